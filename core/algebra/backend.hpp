@@ -1,0 +1,133 @@
+/// The factorisations behind LinearSolver, one class a library. Private to core/algebra: include linear_solver.hpp.
+///
+/// Each class holds one pattern, analysed in its constructor, and offers
+///   Factorisation factorise(const T* values)                    a new factor, or why there is none
+///   void solve(const Matrix<T>& b, Matrix<T>& x, bool transposed)  pre: the last factorise() was done; x is n x columns
+///   std::string name() const                                    library, version, kind, ordering
+///   long factor_nonzeros() const                                entries of the last factor
+/// `Factor<T>` is the closed set of those built in. Data is what the library keeps; it is held by a shared_ptr because
+/// that destroys a type which is incomplete here, and it is never shared.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <variant>
+
+#include "core/algebra/linear_solver.hpp"
+
+namespace stickslip {
+
+/// How one numeric factorisation ended.
+struct Factorisation {
+  enum class Outcome {
+    done,
+    not_positive_definite,  ///< a Cholesky met a pivot that is not positive: another kind may still succeed
+    singular,               ///< an exact zero pivot
+    failed                  ///< no memory, or an error of the library
+  };
+  Outcome outcome = Outcome::done;
+  std::string message;  ///< empty where done
+  /// Smallest pivot over the largest entry of its column, rows and columns being scaled (so the units of the unknowns
+  /// do not matter); in (0, 1] or a little above. Only its order of magnitude has a meaning: a small one is a reason
+  /// to look at the condition number.
+  double smallest_pivot = 1;
+};
+
+#ifdef STICKSLIP_WITH_CHOLMOD
+/// Supernodal Cholesky factorisation; reads the lower triangle.
+class CholmodFactor {
+ public:
+  /// Throws std::runtime_error where the analysis fails (memory).
+  explicit CholmodFactor(std::shared_ptr<const Pattern> pattern);
+  Factorisation factorise(const double* values);
+  void solve(const Matrix<double>& b, Matrix<double>& x, bool transposed);
+  std::string name() const;
+  long factor_nonzeros() const;
+  static std::string library();
+
+ private:
+  struct Data;
+  std::shared_ptr<Data> data_;
+};
+#endif
+
+#ifdef STICKSLIP_WITH_UMFPACK
+/// Multifrontal LU factorisation, symmetric strategy (pivots on the diagonal preferred), METIS ordering.
+class UmfpackFactor {
+ public:
+  /// Throws std::runtime_error where the analysis fails (memory).
+  explicit UmfpackFactor(std::shared_ptr<const Pattern> pattern);
+  Factorisation factorise(const double* values);
+  void solve(const Matrix<double>& b, Matrix<double>& x, bool transposed);
+  std::string name() const;
+  long factor_nonzeros() const;
+  static std::string library();
+
+ private:
+  struct Data;
+  std::shared_ptr<Data> data_;
+};
+#endif
+
+#ifdef STICKSLIP_WITH_MUMPS
+/// Multifrontal LU, LDL^T (1 x 1 and 2 x 2 pivots) or LL^T factorisation by the symmetry, PORD ordering; the
+/// symmetric ones read the lower triangle.
+class MumpsFactor {
+ public:
+  /// Throws std::runtime_error where the analysis fails (memory).
+  MumpsFactor(std::shared_ptr<const Pattern> pattern, Symmetry symmetry);
+  Factorisation factorise(const double* values);
+  void solve(const Matrix<double>& b, Matrix<double>& x, bool transposed);
+  std::string name() const;
+  long factor_nonzeros() const;
+  static std::string library();
+
+ private:
+  struct Data;
+  std::shared_ptr<Data> data_;
+};
+#endif
+
+/// Supernodal LU factorisation with partial pivoting of the row-scaled matrix, COLAMD ordering; always built in, and
+/// the only one for complex matrices.
+template <class T>
+class EigenFactor {
+ public:
+  explicit EigenFactor(std::shared_ptr<const Pattern> pattern);
+  Factorisation factorise(const T* values);
+  void solve(const Matrix<T>& b, Matrix<T>& x, bool transposed);
+  std::string name() const;
+  long factor_nonzeros() const;
+
+ private:
+  struct Data;
+  std::shared_ptr<Data> data_;
+};
+/// "Eigen 3.4.0".
+std::string eigen_library();
+
+template <class T>
+struct FactorOf {
+  using Type = std::variant<EigenFactor<T>>;
+};
+template <>
+struct FactorOf<double> {
+  using Type = std::variant<EigenFactor<double>
+#ifdef STICKSLIP_WITH_CHOLMOD
+                            ,
+                            CholmodFactor
+#endif
+#ifdef STICKSLIP_WITH_UMFPACK
+                            ,
+                            UmfpackFactor
+#endif
+#ifdef STICKSLIP_WITH_MUMPS
+                            ,
+                            MumpsFactor
+#endif
+                            >;
+};
+template <class T>
+using Factor = typename FactorOf<T>::Type;
+
+}  // namespace stickslip

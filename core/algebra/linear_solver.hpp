@@ -1,0 +1,88 @@
+/// Sparse direct solvers behind one interface: analyse(pattern) once, factorise(values) often, solve blocks of
+/// right-hand sides, transposed or not. What each backend is for and why: core/README.md, "Linear algebra".
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/algebra/scalar.hpp"
+
+namespace stickslip {
+
+/// Structure of a square sparse matrix, compressed columns, row indices ascending in each column. It stays as it is
+/// for the life of a model: every state of a contact point finds its entry here, zero or not.
+struct Pattern {
+  int size = 0;
+  std::vector<int> column_start;  ///< size + 1 offsets into row
+  std::vector<int> row;           ///< row index of each stored entry
+  int nonzeros() const { return static_cast<int>(row.size()); }
+};
+
+/// What is known of the matrix; it selects the backend and halves the work where symmetry allows.
+enum class Symmetry {
+  positive_definite,  ///< symmetric positive definite: Cholesky
+  indefinite,         ///< symmetric, saddle point: LDL^T with pivoting where a backend has it
+  general             ///< unsymmetric values (slip), symmetric structure: LU
+};
+
+enum class Backend { automatic, cholmod, umfpack, mumps, eigen };
+
+/// Work done so far; equal on every machine, so it is the primary measure of cost.
+struct SolverCounters {
+  long analyses = 0;
+  long factorizations = 0;
+  long backsolves = 0;  ///< right-hand sides, not calls
+  long fallbacks = 0;   ///< factorisations repeated by another kind because the first failed
+};
+
+/// T is double or std::complex<double>; the complex one (the oracle's) is always Eigen's SparseLU.
+/// The matrix is passed whole (both triangles) whatever the symmetry.
+template <class T>
+class LinearSolver {
+ public:
+  explicit LinearSolver(Backend backend = Backend::automatic);
+  ~LinearSolver();
+  LinearSolver(LinearSolver&&) noexcept;
+  LinearSolver& operator=(LinearSolver&&) noexcept;
+
+  /// Orders and analyses the pattern (kept by reference-counted pointer, so it may not change afterwards).
+  void analyse(std::shared_ptr<const Pattern> pattern, Symmetry symmetry);
+
+  /// Factorises the values (one per entry of the pattern). A Cholesky that meets a pivot that is not positive falls
+  /// back to LDL^T or LU (`fallbacks` counts it). Returns false where the matrix is singular to working precision or
+  /// not finite; `message` then says which pivot or row. pre: analyse().
+  bool factorise(const T* values);
+
+  /// Solves A X = B (or A^T X = B, without conjugation) for all columns of B in one call and returns X.
+  /// pre: the last factorise() returned true.
+  Matrix<T> solve(const Matrix<T>& right_hand_sides, bool transposed = false);
+
+  /// Relative backward error of the last solve, max_i |b - A x|_i / (|A||x| + |b|)_i over its columns (Oettli-Prager);
+  /// computed on demand from the values last factorised.
+  double backward_error() const;
+
+  /// Estimate of the 1-norm condition number (Hager-Higham, about 5 solves, which are not counted).
+  double condition_estimate();
+
+  const SolverCounters& counters() const;
+  std::string name() const;             ///< e.g. "MUMPS 5.5.1 LU, PORD"
+  const std::string& message() const;   ///< why the last factorise() failed
+  long factor_nonzeros() const;         ///< entries of the last factor; 0 where the backend does not tell
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// Names of the backends built in, for provenance: {"CHOLMOD 3.0.14", "UMFPACK 5.7.9", "MUMPS 5.5.1", "Eigen 3.4.0"}.
+std::vector<std::string> linear_solver_libraries();
+/// True where the backend is built in.
+bool has_backend(Backend);
+/// The BLAS that is loaded, as far as it tells ("OpenBLAS 0.3.21 serial ..."; "unknown (reference?)").
+std::string blas_name();
+/// Sets the BLAS to n threads where it knows how (weak symbol openblas_set_num_threads); returns whether it did.
+bool set_blas_threads(int n);
+
+}  // namespace stickslip

@@ -1,0 +1,140 @@
+/// The scalars of stickslip: double for the solver, Dual<N> for every derivative, std::complex<double> for
+/// the oracle of the tests (complex step over the whole program).
+///
+/// One template serves the three, so solver, derivative and oracle cannot drift apart. Two rules keep that true:
+///   - branch on `value(x)`, the primal part, never on x;
+///   - no implicit conversion from Dual or complex to double exists: a forgotten dependence does not compile.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <complex>
+#include <type_traits>
+
+namespace stickslip {
+
+/// Forward derivative: a value and N directional derivatives. S is the scalar it is built on (double, or
+/// std::complex<double> where the oracle needs a tangent of its own).
+template <int N, class S = double>
+struct Dual {
+  using Gradient = Eigen::Array<S, N, 1>;
+  S v{};
+  Gradient d = Gradient::Zero();
+
+  Dual() = default;
+  Dual(const S& primal) : v(primal) {}  // NOLINT: a constant is a Dual with zero derivative
+  Dual(int primal) : v(primal) {}       // NOLINT
+  Dual(double primal) requires(!std::is_same_v<S, double>) : v(primal) {}  // NOLINT
+  Dual(const S& primal, const Gradient& gradient) : v(primal), d(gradient) {}
+
+  /// The value with derivative one in direction i.
+  static Dual seed(const S& primal, int i) {
+    Dual x(primal);
+    x.d[i] = S(1);
+    return x;
+  }
+
+  Dual operator-() const { return {-v, -d}; }
+  Dual& operator+=(const Dual& o) { v += o.v; d += o.d; return *this; }
+  Dual& operator-=(const Dual& o) { v -= o.v; d -= o.d; return *this; }
+  Dual& operator*=(const Dual& o) { d = d * o.v + o.d * v; v *= o.v; return *this; }
+  Dual& operator/=(const Dual& o) { return *this = *this / o; }
+
+  friend Dual operator+(const Dual& a, const Dual& b) { return {a.v + b.v, a.d + b.d}; }
+  friend Dual operator-(const Dual& a, const Dual& b) { return {a.v - b.v, a.d - b.d}; }
+  friend Dual operator*(const Dual& a, const Dual& b) { return {a.v * b.v, a.d * b.v + b.d * a.v}; }
+  friend Dual operator/(const Dual& a, const Dual& b) {
+    const S q = a.v / b.v;
+    return {q, (a.d - b.d * q) / b.v};
+  }
+
+  friend Dual sqrt(const Dual& a) {
+    using std::sqrt;
+    const S root = sqrt(a.v);
+    return {root, a.d / (S(2) * root)};
+  }
+  friend Dual exp(const Dual& a) {
+    using std::exp;
+    const S e = exp(a.v);
+    return {e, a.d * e};
+  }
+  friend Dual log(const Dual& a) {
+    using std::log;
+    return {log(a.v), a.d / a.v};
+  }
+  friend Dual sin(const Dual& a) {
+    using std::cos, std::sin;
+    return {sin(a.v), a.d * cos(a.v)};
+  }
+  friend Dual cos(const Dual& a) {
+    using std::cos, std::sin;
+    return {cos(a.v), a.d * -sin(a.v)};
+  }
+  friend Dual pow(const Dual& a, double exponent) {
+    using std::pow;
+    return {pow(a.v, exponent), a.d * (exponent * pow(a.v, exponent - 1))};
+  }
+};
+
+/// Primal part: the only thing a branch may look at.
+inline double value(double x) { return x; }
+inline double value(const std::complex<double>& x) { return x.real(); }
+template <int N, class S>
+double value(const Dual<N, S>& x) { return value(x.v); }
+
+template <class T>
+using Vector = Eigen::Matrix<T, Eigen::Dynamic, 1>;
+template <class T>
+using Matrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
+template <class T, int D>
+using Vec = Eigen::Matrix<T, D, 1>;
+template <class T, int R, int C = R>
+using Mat = Eigen::Matrix<T, R, C>;
+
+/// Sum of a_i b_i, without conjugation: analytic, so that the complex step may pass through it.
+template <class A, class B>
+auto dot(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
+  return a.cwiseProduct(b).sum();
+}
+
+/// Euclidean norm without conjugation; not differentiable at zero, where the caller must not use it.
+template <class A>
+auto norm(const Eigen::MatrixBase<A>& a) {
+  using std::sqrt;
+  return sqrt(dot(a, a));
+}
+
+/// Primal parts of a vector or matrix.
+template <class A>
+auto values(const Eigen::MatrixBase<A>& a) {
+  return a.unaryExpr([](const typename A::Scalar& x) { return value(x); }).eval();
+}
+
+}  // namespace stickslip
+
+namespace Eigen {
+template <int N, class S>
+struct NumTraits<stickslip::Dual<N, S>> : NumTraits<double> {
+  using Real = stickslip::Dual<N, S>;
+  using NonInteger = stickslip::Dual<N, S>;
+  using Nested = stickslip::Dual<N, S>;
+  using Literal = stickslip::Dual<N, S>;
+  enum {
+    IsComplex = 0,
+    IsInteger = 0,
+    IsSigned = 1,
+    RequireInitialization = 1,
+    ReadCost = 1 + N,
+    AddCost = 1 + N,
+    MulCost = 1 + 3 * N
+  };
+};
+template <int N, class S, class Op>
+struct ScalarBinaryOpTraits<stickslip::Dual<N, S>, S, Op> {
+  using ReturnType = stickslip::Dual<N, S>;
+};
+template <int N, class S, class Op>
+struct ScalarBinaryOpTraits<S, stickslip::Dual<N, S>, Op> {
+  using ReturnType = stickslip::Dual<N, S>;
+};
+}  // namespace Eigen

@@ -1,0 +1,90 @@
+/// One contact point: kinematics, trial traction, Coulomb projection and nodal forces, for every method and scalar.
+///
+/// Small strain: projection, normal, frame and area are those of the initial configuration, so the relative
+/// displacement w = u_s - sum N_i u_i - u_obstacle gives
+///
+///   g_N  = g_0 + n . w           normal gap (length; negative is penetration)
+///   s    = e_a . w               tangential placement; the only history of the augmented Lagrangian methods
+///   dg_T = s - s_previous        slip increment since the last converged increment
+///   z    = lambda + rho (g_N, (rho_T/rho) dg_T),   t = P_mu(z)        core/contact/friction.hpp
+///
+/// and the nodal forces of the residual: slave +A (t_N n + t_a e_a), master node i  -N_i A (t_N n + t_a e_a).
+/// The methods differ only in who supplies lambda. Source: theory of [AC91], [PC99], [SL92].
+#pragma once
+
+#include <array>
+
+#include "core/contact/friction.hpp"
+
+namespace stickslip {
+
+/// Where the radius of the friction cone comes from: the projected normal traction or the multiplier itself.
+enum class ConeRadius { augmented, multiplier };
+
+/// Initial geometry of one contact point; a function of nodal coordinates and obstacle data, in any scalar.
+template <class T>
+struct PointGeometry {
+  static constexpr int max_nodes = 5;  ///< slave and up to four master nodes
+  T gap{};                                                       ///< initial normal gap, with the offset of the contact
+  Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> normal;           ///< unit, out of the master
+  Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 2> tangents;      ///< orthonormal frame, one column each
+  Eigen::Matrix<T, Eigen::Dynamic, 1, 0, max_nodes, 1> weights;  ///< of the displacements in w: +1, -N_1, -N_2, ...
+  T area{};                                                      ///< tributary area of the slave node
+};
+
+/// What a contact point leaves behind at the end of an increment: its local unknowns, and the history of the next.
+template <class T, int Tangents>
+struct PointOutcome {
+  ContactState state = ContactState::open;
+  T gap{};
+  Vec<T, Tangents> placement = Vec<T, Tangents>::Zero();  ///< s
+  Vec<T, Tangents> slip = Vec<T, Tangents>::Zero();       ///< dg_T of this increment
+  Traction<T, Tangents> traction;                         ///< t
+};
+
+/// Penalty / scale of a point, force per length cubed.
+template <class T>
+struct PointRegularisation {
+  T normal{}, tangential{};
+};
+
+/// Evaluates the point. `w`: relative displacement; `state`: the branch to take, or nullptr to classify.
+template <class T, int D, int Tangents>
+PointOutcome<T, Tangents> evaluate_point(const PointGeometry<T>& geometry, const Vec<T, D>& w,
+                                         const Traction<T, Tangents>& multiplier,
+                                         const Vec<T, Tangents>& previous_placement,
+                                         const PointRegularisation<T>& rho, const T& friction, ConeRadius cone,
+                                         double mesh_size, const ContactState* state) {
+  static_assert(Tangents == 0 || Tangents == D - 1);
+  PointOutcome<T, Tangents> point;
+  point.gap = geometry.gap + dot(geometry.normal.template head<D>(), w);
+  Traction<T, Tangents> trial;
+  trial.normal = multiplier.normal + rho.normal * point.gap;
+  for (int a = 0; a < Tangents; ++a) {
+    point.placement[a] = dot(geometry.tangents.col(a).template head<D>(), w);
+    point.slip[a] = point.placement[a] - previous_placement[a];
+    trial.tangential[a] = multiplier.tangential[a] + rho.tangential * point.slip[a];
+  }
+  T bound{};
+  if constexpr (Tangents > 0) {
+    const T& pressure = cone == ConeRadius::augmented ? trial.normal : multiplier.normal;
+    if (value(pressure) < 0 || cone == ConeRadius::augmented) bound = -friction * pressure;
+  }
+  point.state = state ? *state : classify(trial, value(bound), tie_band * value(rho.normal) * mesh_size);
+  point.traction = project_coulomb(trial, bound, point.state);
+  return point;
+}
+
+/// Force of the point per unit weight, A (t_N n + t_a e_a): add weight_i times it to the residual rows of node i.
+template <class T, int D, int Tangents>
+Vec<T, D> point_force(const PointGeometry<T>& geometry, const Traction<T, Tangents>& traction) {
+  Vec<T, D> force;
+  for (int i = 0; i < D; ++i) {
+    T f = traction.normal * geometry.normal[i];
+    for (int a = 0; a < Tangents; ++a) f += traction.tangential[a] * geometry.tangents(i, a);
+    force[i] = geometry.area * f;
+  }
+  return force;
+}
+
+}  // namespace stickslip

@@ -1,0 +1,47 @@
+#include "core/contact/search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace stickslip {
+namespace {
+
+/// Relative distance (of a facet's length) within which a projection counts as lying at the facet's end.
+constexpr double at_end = 1e-9;
+
+struct Foot {
+  double xi, distance;
+};
+
+Foot project(const Points<double>& points, const std::vector<int>& facet, const Vec<double, 2>& x) {
+  const Vec<double, 2> a = points.col(facet[0]).head<2>(), tau = points.col(facet[1]).head<2>() - a;
+  const double xi = (x - a).dot(tau) / tau.squaredNorm();
+  return {xi, (x - a - std::clamp(xi, 0.0, 1.0) * tau).norm()};
+}
+
+}  // namespace
+
+std::optional<ClosestPoint> closest_point(const Points<double>& points, const std::vector<std::vector<int>>& facets,
+                                          const Vec<double, 2>& x) {
+  int best = -1;
+  Foot foot{0, std::numeric_limits<double>::infinity()};
+  for (std::size_t f = 0; f < facets.size(); ++f) {
+    const Foot candidate = project(points, facets[f], x);
+    if (candidate.distance < foot.distance) {
+      foot = candidate;
+      best = static_cast<int>(f);
+    }
+  }
+  if (best < 0) return std::nullopt;
+  const bool start = foot.xi < at_end, end = foot.xi > 1 - at_end;
+  if (!start && !end) return ClosestPoint{best, -1};
+  const int vertex = facets[best][end ? 1 : 0];
+  for (std::size_t f = 0; f < facets.size(); ++f)
+    if (facets[f][end ? 0 : 1] == vertex)
+      return end ? ClosestPoint{best, static_cast<int>(f)} : ClosestPoint{static_cast<int>(f), best};
+  const bool past_the_end = foot.xi < -at_end || foot.xi > 1 + at_end;
+  return past_the_end ? std::nullopt : std::optional<ClosestPoint>(ClosestPoint{best, -1});
+}
+
+}  // namespace stickslip

@@ -1,0 +1,117 @@
+/// Initial geometry of a slave point against each kind of master surface: gap, unit normal out of the master, frame and
+/// the weights of the displacements. Each is a closed form in the coordinates, so any scalar differentiates it.
+///
+/// In 2D the frame is e = (-n_y, n_x): a facet directed a -> b with the solid on its left has n = (tau_y, -tau_x) and
+/// e = tau.
+#pragma once
+
+#include "core/contact/contact_point.hpp"
+#include "core/model/scene.hpp"
+
+namespace stickslip {
+
+namespace detail {
+
+/// Orthonormal frame of the plane normal to n (unit), D x (D-1).
+template <class T, class Normal>
+auto tangent_frame(const Normal& n) {
+  decltype(PointGeometry<T>::tangents) frame(n.size(), n.size() - 1);
+  if (n.size() == 2) {
+    frame(0, 0) = -n[1];
+    frame(1, 0) = n[0];
+    return frame;
+  }
+  int smallest = 0;  // the axis furthest from n
+  for (int i = 1; i < 3; ++i)
+    if (std::abs(value(n[i])) < std::abs(value(n[smallest]))) smallest = i;
+  Vec<T, 3> first;
+  for (int i = 0; i < 3; ++i) first[i] = T(i == smallest ? 1 : 0) - n[smallest] * n[i];
+  const T length = norm(first);
+  for (int i = 0; i < 3; ++i) first[i] /= length;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    frame(i, 0) = first[i];
+    frame(i, 1) = n[j] * first[k] - n[k] * first[j];
+  }
+  return frame;
+}
+
+template <class T>
+PointGeometry<T> rigid(const T& gap, const Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1>& normal) {
+  PointGeometry<T> g;
+  g.gap = gap;
+  g.normal = normal;
+  g.tangents = tangent_frame<T>(normal);
+  g.weights.resize(1);
+  g.weights[0] = T(1);
+  return g;
+}
+
+}  // namespace detail
+
+/// Against the half-space behind `plane`.
+template <class T, class Point>
+PointGeometry<T> against_plane(const Point& x, const Plane& plane, const Numbers<T>& numbers) {
+  const int D = static_cast<int>(x.size());
+  Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> n(D);
+  for (int i = 0; i < D; ++i) n[i] = numbers(plane.normal[i]);
+  const T length = norm(n);
+  T gap{};
+  for (int i = 0; i < D; ++i) {
+    n[i] /= length;
+    gap += (x[i] - numbers(plane.point[i])) * n[i];
+  }
+  return detail::rigid<T>(gap, n);
+}
+
+/// Against a rigid disk, or the rim of a cup. Singular where the point is the centre.
+template <class T>
+PointGeometry<T> against_circle(const Vec<T, 2>& x, const Circle& circle, const Numbers<T>& numbers) {
+  Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> n(2);
+  for (int i = 0; i < 2; ++i) n[i] = x[i] - numbers(circle.center[i]);
+  const T distance = norm(n);
+  const T sign(circle.inside ? -1.0 : 1.0);
+  for (int i = 0; i < 2; ++i) n[i] *= sign / distance;
+  return detail::rigid<T>(sign * (distance - numbers(circle.radius)), n);
+}
+
+/// Against the facet a -> b (solid on its left); the projection lies on the facet.
+template <class T>
+PointGeometry<T> against_facet(const Vec<T, 2>& x, const Vec<T, 2>& a, const Vec<T, 2>& b) {
+  const Vec<T, 2> tau = b - a;
+  const T length = norm(tau);
+  const T xi = dot((x - a).eval(), tau) / (length * length);
+  PointGeometry<T> g;
+  g.normal.resize(2);
+  g.normal << tau[1] / length, -tau[0] / length;
+  g.gap = dot((x - a).eval(), g.normal);
+  g.tangents = detail::tangent_frame<T>(g.normal);
+  g.weights.resize(3);
+  g.weights << T(1), xi - T(1), -xi;
+  return g;
+}
+
+/// Against the vertex v between the facets before -> v and v -> after: the normal is the bisector of the two, so that
+/// it depends neither on the numbering nor on the order of the facets.
+template <class T>
+PointGeometry<T> against_vertex(const Vec<T, 2>& x, const Vec<T, 2>& before, const Vec<T, 2>& v,
+                                const Vec<T, 2>& after) {
+  auto unit = [](const Vec<T, 2>& t) {
+    const T length = norm(t);
+    return Vec<T, 2>(t[0] / length, t[1] / length);
+  };
+  Vec<T, 2> tau = Vec<T, 2>::Constant(T(0));
+  if (values(before) != values(v)) tau += unit(v - before);
+  if (values(after) != values(v)) tau += unit(after - v);
+  tau = unit(tau);
+  PointGeometry<T> g;
+  g.normal.resize(2);
+  g.normal << tau[1], -tau[0];
+  g.gap = dot((x - v).eval(), g.normal);
+  g.tangents = detail::tangent_frame<T>(g.normal);
+  g.weights.resize(3);
+  g.weights << T(1), T(-1), T(0);
+  return g;
+}
+
+}  // namespace stickslip

@@ -1,0 +1,58 @@
+/// Lumped bodies: one node, and chains of bars along a line or a circular arc, nodes in order along the chain.
+/// Chains have the sides `start`, `end`, `nodes` (all), `interior` (all but the ends); a point `node` and `anchor`.
+#pragma once
+
+#include <string>
+
+#include "core/mesh/mesh.hpp"
+#include "core/model/scene.hpp"
+
+namespace stickslip {
+
+/// What is wrong with the description, or "".
+std::string fault(const PointMesh&, const std::string& element, int dimension);
+std::string fault(const LineMesh&, const std::string& element, int dimension);
+std::string fault(const ArcMesh&, const std::string& element, int dimension);
+
+/// Node 0, `node`, and node 1, `anchor`, where the spring ends; they start at the same place.
+Mesh topology(const PointMesh&, const std::string& element, int dimension);
+/// The facets of `nodes` and of `interior` are the bars that touch the side, from start to end.
+Mesh topology(const LineMesh&, const std::string& element, int dimension);
+Mesh topology(const ArcMesh&, const std::string& element, int dimension);
+
+/// Coordinates, dimension x 2.
+template <class T>
+Points<T> coordinates(const PointMesh& point, const Numbers<T>& numbers, int dimension) {
+  Points<T> points(dimension, 2);
+  for (int axis = 0; axis < dimension; ++axis) points(axis, 0) = points(axis, 1) = numbers(point.at[axis]);
+  return points;
+}
+
+/// Coordinates, dimension x (cells + 1), in equal steps.
+template <class T>
+Points<T> coordinates(const LineMesh& line, const Numbers<T>& numbers, int dimension) {
+  Points<T> points(dimension, line.cells + 1);
+  for (int node = 0; node <= line.cells; ++node) {
+    const double s = static_cast<double>(node) / line.cells;
+    for (int axis = 0; axis < dimension; ++axis)
+      points(axis, node) = numbers(line.from[axis]) * T(1 - s) + numbers(line.to[axis]) * T(s);
+  }
+  return points;
+}
+
+/// Coordinates, dimension x (cells + 1), in equal angles; z = 0 in 3D.
+template <class T>
+Points<T> coordinates(const ArcMesh& arc, const Numbers<T>& numbers, int dimension) {
+  using std::cos, std::sin;
+  const T degree(std::acos(-1.0) / 180), radius = numbers(arc.radius);
+  Points<T> points = Points<T>::Constant(dimension, arc.cells + 1, T(0.0));
+  for (int node = 0; node <= arc.cells; ++node) {
+    const double s = static_cast<double>(node) / arc.cells;
+    const T angle = (numbers(arc.from_angle) * T(1 - s) + numbers(arc.to_angle) * T(s)) * degree;
+    points(0, node) = numbers(arc.center[0]) + radius * cos(angle);
+    points(1, node) = numbers(arc.center[1]) + radius * sin(angle);
+  }
+  return points;
+}
+
+}  // namespace stickslip

@@ -1,0 +1,376 @@
+#include "core/mesh/msh_file.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <unordered_map>
+
+namespace stickslip {
+namespace {
+
+struct Fault {
+  std::size_t offset;
+  std::string message;
+};
+
+struct Token {
+  std::size_t offset;
+  std::string_view text;
+};
+
+/// Words of the text in order; a fault of form ends the reading by an exception that parse_msh catches.
+class Tokens {
+ public:
+  explicit Tokens(std::string_view text) : text_(text) {}
+
+  bool at_end() { return offset() == text_.size(); }
+
+  /// Where the next word begins.
+  std::size_t offset() {
+    while (here_ < text_.size() && is_space(text_[here_])) ++here_;
+    return here_;
+  }
+
+  Token next(const std::string& what) {
+    if (at_end()) throw Fault{text_.size(), "the file ends where " + what + " should stand: it is truncated"};
+    const std::size_t start = here_;
+    while (here_ < text_.size() && !is_space(text_[here_])) ++here_;
+    return {start, text_.substr(start, here_ - start)};
+  }
+
+  long long integer(const std::string& what) { return number<long long>(what, "a whole number"); }
+
+  double real(const std::string& what) {
+    const std::size_t start = offset();
+    const double x = number<double>(what, "a number");
+    if (!std::isfinite(x)) throw Fault{start, what + " is not finite"};
+    return x;
+  }
+
+  long long count(const std::string& what) {
+    const std::size_t start = offset();
+    const long long n = integer(what);
+    if (n < 0) throw Fault{start, what + " is negative"};
+    return n;
+  }
+
+  std::string quoted(const std::string& what) {
+    if (at_end() || text_[here_] != '"') throw Fault{here_, what + " should stand here, in double quotes"};
+    const std::size_t end = text_.find('"', here_ + 1);
+    if (end == std::string_view::npos) throw Fault{here_, "the quote of " + what + " is not closed"};
+    std::string name(text_.substr(here_ + 1, end - here_ - 1));
+    here_ = end + 1;
+    return name;
+  }
+
+  /// The word must be `keyword`, the end of a section whose header announced what has been read.
+  void close(const std::string& keyword, const std::string& announced) {
+    const Token token = next(keyword);
+    if (token.text != keyword)
+      throw Fault{token.offset,
+                  keyword + " should stand here, after " + announced + " announced; found " + shown(token)};
+  }
+
+  void skip_section(const std::string& keyword) {
+    while (next(keyword).text != keyword) {
+    }
+  }
+
+  static std::string shown(const Token& token) { return "\"" + std::string(token.text.substr(0, 40)) + "\""; }
+
+ private:
+  static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+  template <class Value>
+  Value number(const std::string& what, const char* kind) {
+    const Token token = next(what);
+    Value value{};
+    const auto [end, error] = std::from_chars(token.text.data(), token.text.data() + token.text.size(), value);
+    if (error == std::errc() && end == token.text.data() + token.text.size()) return value;
+    const char* hint = token.text.front() == '$' ? ": the section has fewer entries than announced" : "";
+    throw Fault{token.offset, what + " should stand here, " + kind + "; found " + shown(token) + hint};
+  }
+
+  std::string_view text_;
+  std::size_t here_ = 0;
+};
+
+std::string element_type_name(long long type) {
+  static constexpr const char* names[] = {"",
+                                          "2-node line",
+                                          "3-node triangle",
+                                          "4-node quadrangle",
+                                          "4-node tetrahedron",
+                                          "8-node hexahedron",
+                                          "6-node prism",
+                                          "5-node pyramid",
+                                          "3-node line",
+                                          "6-node triangle",
+                                          "9-node quadrangle",
+                                          "10-node tetrahedron",
+                                          "27-node hexahedron",
+                                          "18-node prism",
+                                          "14-node pyramid",
+                                          "1-node point",
+                                          "8-node quadrangle"};
+  if (type >= 1 && type < static_cast<long long>(std::size(names))) return names[type];
+  return "unknown or of higher order";
+}
+
+std::optional<ElementShape> shape_of(long long type) {
+  switch (type) {
+    case 15:
+      return ElementShape::point;
+    case 1:
+      return ElementShape::bar2;
+    case 2:
+      return ElementShape::tri3;
+    case 3:
+      return ElementShape::quad4;
+    default:
+      return std::nullopt;
+  }
+}
+
+int dimension_of(ElementShape shape) { return shape == ElementShape::point ? 0 : shape == ElementShape::bar2 ? 1 : 2; }
+
+class Parser {
+ public:
+  Parser(const std::string& text, const std::string& file_name, MshFile& file)
+      : tokens_(text), file_name_(file_name), file_(file) {}
+
+  void parse() {
+    format();
+    while (!tokens_.at_end()) {
+      const Token token = tokens_.next("a section");
+      const std::string section(token.text);
+      if (section.front() != '$')
+        throw Fault{token.offset, "a section should begin here; found " + Tokens::shown(token)};
+      if (section == "$PhysicalNames")
+        physical_names();
+      else if (section == "$Entities" && version_4_)
+        entities();
+      else if (section == "$Nodes")
+        version_4_ ? nodes_4() : nodes_2();
+      else if (section == "$Elements")
+        version_4_ ? elements_4() : elements_2();
+      else if (section == "$PartitionedEntities")
+        throw Fault{token.offset, "the mesh is partitioned: save it with \"gmsh -unpartition\""};
+      else
+        tokens_.skip_section("$End" + section.substr(1));
+    }
+    if (file_.nodes.empty()) throw Fault{tokens_.offset(), "the file has no nodes"};
+    if (file_.elements.empty()) throw Fault{tokens_.offset(), "the file has no elements"};
+  }
+
+ private:
+  std::string conversion() const {
+    return "; \"gmsh " + file_name_ + " -save -format msh41 -setnumber Mesh.Binary 0 -o NEW.msh\" converts it";
+  }
+
+  void format() {
+    const Token first = tokens_.next("$MeshFormat");
+    if (first.text != "$MeshFormat")
+      throw Fault{first.offset, "a mesh file of Gmsh begins with $MeshFormat; found " + Tokens::shown(first)};
+    const Token version = tokens_.next("the version of the format");
+    if (version.text != "2.2" && version.text != "4.1")
+      throw Fault{version.offset,
+                  "version " + Tokens::shown(version) + " of the format is not read, only 2.2 and 4.1" + conversion()};
+    version_4_ = version.text == "4.1";
+    const Token kind = tokens_.next("0 for ASCII");
+    if (kind.text == "1") throw Fault{kind.offset, "the file is binary, only ASCII is read" + conversion()};
+    if (kind.text != "0") throw Fault{kind.offset, "0 for ASCII should stand here; found " + Tokens::shown(kind)};
+    tokens_.integer("the size of a number");
+    tokens_.close("$EndMeshFormat", "the format");
+  }
+
+  void physical_names() {
+    const long long count = tokens_.count("the number of physical names");
+    for (long long i = 0; i < count; ++i) {
+      const long long dimension = tokens_.integer("the dimension of a physical group");
+      const long long tag = tokens_.integer("the number of a physical group");
+      const std::string name = tokens_.quoted("the name of a physical group");
+      if (dimension >= 0 && dimension <= 2) file_.names[{static_cast<int>(dimension), tag}] = name;
+    }
+    tokens_.close("$EndPhysicalNames", "the " + std::to_string(count) + " names");
+  }
+
+  void entities() {
+    std::array<long long, 4> counts{};
+    for (long long& count : counts) count = tokens_.count("the number of entities");
+    for (int dimension = 0; dimension < 4; ++dimension)
+      for (long long i = 0; i < counts[dimension]; ++i) {
+        const long long tag = tokens_.integer("the number of an entity");
+        for (int k = 0; k < (dimension == 0 ? 3 : 6); ++k) tokens_.real("a coordinate of an entity's bounds");
+        auto& groups = groups_of_[{dimension, tag}];
+        const long long physical = tokens_.count("the number of an entity's physical groups");
+        for (long long k = 0; k < physical; ++k) groups.push_back(group_number(tokens_.integer("a physical group")));
+        const long long bounding = dimension == 0 ? 0 : tokens_.count("the number of an entity's bounding entities");
+        for (long long k = 0; k < bounding; ++k) tokens_.integer("a bounding entity");
+      }
+    tokens_.close("$EndEntities", "the entities");
+  }
+
+  void add_node(long long tag, const std::array<double, 3>& at, std::size_t offset) {
+    if (!position_.emplace(tag, static_cast<int>(file_.nodes.size())).second)
+      throw Fault{offset, "node " + std::to_string(tag) + " appears twice"};
+    file_.nodes.push_back({tag, at});
+  }
+
+  std::array<double, 3> coordinates() {
+    std::array<double, 3> at{};
+    for (double& x : at) x = tokens_.real("a coordinate of a node");
+    return at;
+  }
+
+  void nodes_2() {
+    const long long count = tokens_.count("the number of nodes");
+    for (long long i = 0; i < count; ++i) {
+      const std::size_t offset = tokens_.offset();
+      const long long tag = tokens_.integer("the number of a node");
+      add_node(tag, coordinates(), offset);
+    }
+    tokens_.close("$EndNodes", "the " + std::to_string(count) + " nodes");
+  }
+
+  void nodes_4() {
+    const long long blocks = tokens_.count("the number of blocks of nodes");
+    const std::size_t count_offset = tokens_.offset();
+    const long long count = tokens_.count("the number of nodes");
+    for (int k = 0; k < 2; ++k) tokens_.integer("the smallest and the largest node number");
+    for (long long block = 0; block < blocks; ++block) {
+      const std::size_t offset = tokens_.offset();
+      const long long dimension = tokens_.integer("the dimension of a block's entity");
+      if (dimension < 0 || dimension > 3) throw Fault{offset, "the dimension of an entity is 0 to 3"};
+      tokens_.integer("the number of a block's entity");
+      const bool parametric = tokens_.integer("1 for parametric nodes, else 0") == 1;
+      const long long size = tokens_.count("the number of nodes of a block");
+      std::vector<std::pair<long long, std::size_t>> tags;
+      for (long long i = 0; i < size; ++i) {
+        const std::size_t tag_offset = tokens_.offset();
+        tags.push_back({tokens_.integer("the number of a node"), tag_offset});
+      }
+      for (const auto& [tag, tag_offset] : tags) {
+        add_node(tag, coordinates(), tag_offset);
+        for (long long k = 0; parametric && k < dimension; ++k) tokens_.real("a parametric coordinate of a node");
+      }
+    }
+    check_total(count, static_cast<long long>(file_.nodes.size()), count_offset, "nodes");
+    tokens_.close("$EndNodes", "the nodes");
+  }
+
+  void elements_2() {
+    const long long count = tokens_.count("the number of elements");
+    for (long long i = 0; i < count; ++i) {
+      const std::size_t offset = tokens_.offset();
+      const long long tag = tokens_.integer("the number of an element");
+      const ElementShape shape = element_shape(tag);
+      const long long tags = tokens_.count("the number of an element's tags");
+      long long group = 0;
+      for (long long k = 0; k < tags; ++k) {
+        const long long value = tokens_.integer("a tag of an element");
+        if (k == 0) group = group_number(value);
+      }
+      add_element(tag, shape, {group}, offset);
+    }
+    tokens_.close("$EndElements", "the " + std::to_string(count) + " elements");
+  }
+
+  void elements_4() {
+    const long long blocks = tokens_.count("the number of blocks of elements");
+    const std::size_t count_offset = tokens_.offset();
+    const long long count = tokens_.count("the number of elements");
+    for (int k = 0; k < 2; ++k) tokens_.integer("the smallest and the largest element number");
+    long long total = 0;
+    for (long long block = 0; block < blocks; ++block) {
+      const std::size_t offset = tokens_.offset();
+      const long long dimension = tokens_.integer("the dimension of a block's entity");
+      const long long entity = tokens_.integer("the number of a block's entity");
+      const ElementShape shape = element_shape(std::nullopt);
+      if (dimension != dimension_of(shape))
+        throw Fault{offset, "an entity of dimension " + std::to_string(dimension) + " holds elements of dimension " +
+                                std::to_string(dimension_of(shape))};
+      const auto known = groups_of_.find({static_cast<int>(dimension), entity});
+      const std::vector<long long> none{0};
+      const auto& groups = known == groups_of_.end() || known->second.empty() ? none : known->second;
+      const long long size = tokens_.count("the number of elements of a block");
+      for (long long i = 0; i < size; ++i, ++total) {
+        const std::size_t element_offset = tokens_.offset();
+        const long long tag = tokens_.integer("the number of an element");
+        add_element(tag, shape, groups, element_offset);
+      }
+    }
+    check_total(count, total, count_offset, "elements");
+    tokens_.close("$EndElements", "the elements");
+  }
+
+  ElementShape element_shape(std::optional<long long> tag) {
+    const std::size_t offset = tokens_.offset();
+    const long long type = tokens_.integer("the type of an element");
+    if (const auto shape = shape_of(type)) return *shape;
+    throw Fault{offset, (tag ? "element " + std::to_string(*tag) : "a block of elements") + " has type " +
+                            std::to_string(type) + " (" + element_type_name(type) +
+                            "), which is not read; plane bodies of 3-node triangles or 4-node quadrangles are"};
+  }
+
+  void add_element(long long tag, ElementShape shape, const std::vector<long long>& groups, std::size_t offset) {
+    MshElement element{tag, shape, {}, {dimension_of(shape), 0}, offset};
+    for (int k = 0; k < nodes_of(shape); ++k) {
+      const std::size_t node_offset = tokens_.offset();
+      const long long node = tokens_.integer("a node of element " + std::to_string(tag));
+      const auto known = position_.find(node);
+      if (known == position_.end())
+        throw Fault{node_offset, "element " + std::to_string(tag) + " has node " + std::to_string(node) +
+                                     ", which is not in $Nodes above it"};
+      element.nodes[k] = known->second;
+    }
+    for (long long group : groups) {
+      element.group.second = group;
+      file_.elements.push_back(element);
+    }
+  }
+
+  /// A physical group with a minus sign is the same group, its curve or surface turned round.
+  static long long group_number(long long tag) {
+    return tag == std::numeric_limits<long long>::min() ? 0 : std::abs(tag);
+  }
+
+  static void check_total(long long announced, long long found, std::size_t offset, const std::string& what) {
+    if (announced != found)
+      throw Fault{offset, std::to_string(announced) + " " + what + " are announced, " + std::to_string(found) +
+                              " are in the blocks"};
+  }
+
+  Tokens tokens_;
+  const std::string& file_name_;
+  MshFile& file_;
+  bool version_4_ = false;
+  std::map<MshGroup, std::vector<long long>> groups_of_;  // by entity: its physical groups
+  std::unordered_map<long long, int> position_;           // of a node's number in file_.nodes
+};
+
+}  // namespace
+
+std::string msh_location(const std::string& text, std::size_t offset) {
+  const std::string_view before = std::string_view(text).substr(0, std::min(offset, text.size()));
+  const auto line_start = before.rfind('\n');
+  const std::size_t column = line_start == std::string_view::npos ? before.size() : before.size() - line_start - 1;
+  return std::to_string(1 + std::count(before.begin(), before.end(), '\n')) + ":" + std::to_string(column + 1);
+}
+
+MshFile parse_msh(const std::string& text, const std::string& file_name) {
+  MshFile file;
+  try {
+    Parser(text, file_name, file).parse();
+  } catch (const Fault& fault) {
+    file.error = msh_location(text, fault.offset) + ": " + fault.message;
+  }
+  return file;
+}
+
+}  // namespace stickslip

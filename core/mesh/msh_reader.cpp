@@ -1,0 +1,269 @@
+#include "core/mesh/msh_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <set>
+
+#include "core/mesh/msh_file.hpp"
+#include "core/mesh/quality.hpp"
+#include "core/mesh/sides.hpp"
+
+namespace stickslip {
+namespace {
+
+using Elements = std::vector<const MshElement*>;
+using Edge = std::pair<int, int>;
+
+Edge turned(const Edge& edge) { return {edge.second, edge.first}; }
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
+  return list;
+}
+
+/// Twice the signed area of an element where it lies.
+double twice_area(const Mesh& mesh, const Points<double>& points, int element) {
+  const int count = nodes_of(mesh.shape);
+  const int* nodes = mesh.connectivity.data() + element * count;
+  double sum = 0;
+  for (int k = 0; k < count; ++k) {
+    // from the first node, so that a body far from the origin loses no digits
+    const Vec<double, 2> a = points.col(nodes[k]) - points.col(nodes[0]);
+    const Vec<double, 2> b = points.col(nodes[(k + 1) % count]) - points.col(nodes[0]);
+    sum += a[0] * b[1] - a[1] * b[0];
+  }
+  return sum;
+}
+
+/// Segments in order: each piece from its beginning (the node no segment leads to; a closed one from the first given).
+Side side_of_segments(const std::vector<Edge>& segments) {
+  std::multimap<int, std::size_t> from;
+  std::set<int> ends;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    from.emplace(segments[i].first, i);
+    ends.insert(segments[i].second);
+  }
+  Side side;
+  std::set<int> listed;
+  auto list = [&](int node) {
+    if (listed.insert(node).second) side.nodes.push_back(node);
+  };
+  std::vector<bool> used(segments.size(), false);
+  auto follow = [&](std::size_t i) {
+    for (std::optional<std::size_t> next = i; next && !used[*next];) {
+      used[*next] = true;
+      const auto [a, b] = segments[*next];
+      list(a);
+      list(b);
+      side.facets.push_back({a, b});
+      next.reset();
+      for (auto [it, last] = from.equal_range(b); it != last && !next; ++it)
+        if (!used[it->second]) next = it->second;
+    }
+  };
+  for (std::size_t i = 0; i < segments.size(); ++i)
+    if (!ends.count(segments[i].first)) follow(i);
+  for (std::size_t i = 0; i < segments.size(); ++i) follow(i);
+  return side;
+}
+
+class Import {
+ public:
+  Import(const std::string& text, const std::string& file_name, const MshFile& file, ImportResult& result)
+      : text_(text), file_name_(file_name), file_(file), result_(result) {
+    for (const MshElement& element : file.elements)
+      if (element.group.second != 0) groups_[element.group].push_back(&element);
+  }
+
+  void run() {
+    bool found = false;
+    for (const auto& [group, elements] : groups_)
+      if (group.first == 2) {
+        found = true;
+        if (!used_names_.insert(name_of(group)).second) {
+          fault(elements.front(), "two physical surfaces have the name \"" + name_of(group) + "\"");
+        } else if (const auto body = body_of(group, elements)) {
+          result_.bodies.push_back(*body);
+        }
+      }
+    if (!found) report_no_surface();
+    if (result_.errors.empty()) note_unused();
+  }
+
+ private:
+  void fault(const MshElement* at, const std::string& message) {
+    result_.errors.push_back(file_name_ + ":" + msh_location(text_, at->offset) + ": " + message);
+  }
+
+  std::string name_of(const MshGroup& group) const {
+    const auto name = file_.names.find(group);
+    return name == file_.names.end() || name->second.empty() ? std::to_string(group.second) : name->second;
+  }
+
+  void report_no_surface() {
+    std::vector<std::string> existing;
+    for (const auto& [group, elements] : groups_)
+      existing.push_back((group.first == 1 ? "curve \"" : "point \"") + name_of(group) + "\"");
+    const auto is_plane = [](const MshElement& e) { return e.group.first == 2; };
+    const auto plane = std::count_if(file_.elements.begin(), file_.elements.end(), is_plane);
+    result_.errors.push_back(
+        file_name_ + ":1:1: no element belongs to a physical surface, so there is no body; the file has " +
+        std::to_string(plane) + " plane elements in no physical surface and the physical groups: " +
+        (existing.empty() ? "none" : joined(existing)));
+  }
+
+  std::optional<ImportedMesh> body_of(const MshGroup& group, const Elements& elements) {
+    ImportedMesh body{file_name_, name_of(group), {}, {}};
+    body.mesh.shape = elements.front()->shape;
+    for (const MshElement* element : elements)
+      if (element->shape != body.mesh.shape) {
+        fault(element, "body \"" + body.body + "\" mixes triangles and quadrangles, from element " +
+                           std::to_string(element->tag) + " on");
+        return std::nullopt;
+      }
+    const std::vector<int> node = number_nodes(elements, body);
+    if (!is_plane(body.body, elements) || !turn_counter_clockwise(elements, body)) return std::nullopt;
+    add_sides(body, node);
+    return body;
+  }
+
+  /// Nodes of the body's elements in the order of the file; gives the body's number of each node of the file, or -1.
+  std::vector<int> number_nodes(const Elements& elements, ImportedMesh& body) const {
+    const int count = nodes_of(body.mesh.shape);
+    std::vector<int> number(file_.nodes.size(), -1);
+    for (const MshElement* element : elements)
+      for (int k = 0; k < count; ++k) number[element->nodes[k]] = 0;
+    for (int& n : number)
+      if (n == 0) n = body.mesh.node_count++;
+    body.points.resize(2, body.mesh.node_count);
+    for (std::size_t i = 0; i < number.size(); ++i)
+      if (number[i] >= 0) body.points.col(number[i]) << file_.nodes[i].at[0], file_.nodes[i].at[1];
+    for (const MshElement* element : elements)
+      for (int k = 0; k < count; ++k) body.mesh.connectivity.push_back(number[element->nodes[k]]);
+    return number;
+  }
+
+  bool is_plane(const std::string& name, const Elements& elements) {
+    std::array<double, 3> low, high;
+    low.fill(std::numeric_limits<double>::infinity());
+    high.fill(-std::numeric_limits<double>::infinity());
+    for (const MshElement* element : elements)
+      for (int k = 0; k < nodes_of(element->shape); ++k)
+        for (int axis = 0; axis < 3; ++axis) {
+          const double x = file_.nodes[element->nodes[k]].at[axis];
+          low[axis] = std::min(low[axis], x);
+          high[axis] = std::max(high[axis], x);
+        }
+    // a mesher leaves rounding in z, of the size of the coordinates
+    const double size = std::max(high[0] - low[0], high[1] - low[1]);
+    const double rounding =
+        1e3 * std::numeric_limits<double>::epsilon() * (size + std::max(std::abs(low[2]), std::abs(high[2])));
+    if (high[2] - low[2] <= rounding) return true;
+    fault(elements.front(), "body \"" + name + "\" does not lie in a plane z = constant");
+    return false;
+  }
+
+  /// Turns all elements if all are clockwise; false, with the fault, if an element cannot be used.
+  bool turn_counter_clockwise(const Elements& elements, ImportedMesh& body) {
+    Mesh& mesh = body.mesh;
+    const int count = nodes_of(mesh.shape), all = mesh.element_count();
+    int clockwise = 0;
+    for (int e = 0; e < all; ++e) clockwise += twice_area(mesh, body.points, e) < 0;
+    const bool mostly_clockwise = 2 * clockwise > all;
+    for (int e = 0; e < all && mostly_clockwise; ++e)
+      std::reverse(mesh.connectivity.begin() + e * count + 1, mesh.connectivity.begin() + (e + 1) * count);
+    const auto bad = first_inverted_element(mesh, body.points);
+    if (!bad) return true;
+    const MshElement* element = elements[*bad];
+    const bool against = twice_area(mesh, body.points, *bad) < 0 && clockwise != 0 && clockwise != all;
+    fault(element, "element " + std::to_string(element->tag) + " of body \"" + body.body + "\" " +
+                       (against ? "is turned against the others (clockwise and counter-clockwise are mixed)"
+                                : "is degenerate: a corner is flat or turns inwards"));
+    return false;
+  }
+
+  void add_sides(ImportedMesh& body, const std::vector<int>& node) {
+    const Mesh& mesh = body.mesh;
+    const int count = nodes_of(mesh.shape);
+    std::set<Edge> edges;  // directed as their element has them; an inner edge in both directions
+    for (int e = 0; e < mesh.element_count(); ++e)
+      for (int k = 0; k < count; ++k)
+        edges.insert({mesh.connectivity[e * count + k], mesh.connectivity[e * count + (k + 1) % count]});
+    for (const auto& [group, elements] : groups_) {
+      if (group.first == 2) continue;
+      std::vector<Edge> segments;
+      Side side;
+      for (const MshElement* element : elements) {
+        const int first = node[element->nodes[0]];
+        if (group.first == 0) {
+          if (first < 0) continue;
+          side.nodes.push_back(first);
+        } else {
+          const Edge edge{first, node[element->nodes[1]]};
+          if (!edges.count(edge) && !edges.count(turned(edge))) continue;
+          segments.push_back(edges.count(edge) ? edge : turned(edge));
+        }
+        used_.insert(element);
+      }
+      if (group.first == 1) side = side_of_segments(segments);
+      if (side.nodes.empty()) continue;
+      if (!body.mesh.sides.emplace(name_of(group), side).second)
+        fault(elements.front(),
+              "two physical groups on body \"" + body.body + "\" have the name \"" + name_of(group) + "\"");
+    }
+  }
+
+  /// Curves and points that are no part of a body: wholly, that is allowed; in part, it is a fault.
+  void note_unused() {
+    for (const auto& [group, elements] : groups_) {
+      if (group.first == 2) continue;
+      const std::string what = (group.first == 1 ? "physical curve \"" : "physical point \"") + name_of(group) + "\"";
+      const auto lost = [&](const MshElement* e) { return used_.count(e) == 0; };
+      const auto first = std::find_if(elements.begin(), elements.end(), lost);
+      if (first == elements.end()) continue;
+      if (std::all_of(elements.begin(), elements.end(), lost)) {
+        result_.notes.push_back(what + " is not on a body");
+      } else {
+        fault(*first, "element " + std::to_string((*first)->tag) + " of " + what +
+                          " is no edge or node of an element of a body");
+      }
+    }
+  }
+
+  const std::string& text_;
+  const std::string& file_name_;
+  const MshFile& file_;
+  ImportResult& result_;
+  std::map<MshGroup, Elements> groups_;
+  std::set<std::string> used_names_;
+  std::set<const MshElement*> used_;  // lines and points that became part of a side
+};
+
+}  // namespace
+
+ImportResult read_msh(std::istream& stream, const std::string& file_name) {
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  ImportResult result;
+  const MshFile file = parse_msh(text, file_name);
+  if (file.error.empty()) {
+    Import(text, file_name, file, result).run();
+  } else {
+    result.errors.push_back(file_name + ":" + file.error);
+  }
+  return result;
+}
+
+std::string body_error(const ImportResult& result, const std::string& body) {
+  std::vector<std::string> names;
+  for (const ImportedMesh& each : result.bodies) names.push_back(each.body);
+  if (std::find(names.begin(), names.end(), body) != names.end()) return "";
+  if (names.empty()) return "there is no body \"" + body + "\": the mesh has none";
+  return "there is no body \"" + body + "\"; did you mean \"" + nearest_name(body, names) + "\"? the mesh has " +
+         joined(names);
+}
+
+}  // namespace stickslip

@@ -1,0 +1,236 @@
+/// Contact points of a model: their local unknowns, nodal forces, multiplier rows and tangents.
+///
+/// Displacements enter, and forces leave, as compact vectors over Model::contact_nodes (D per node). The multiplier
+/// lambda is an argument: the methods differ only in who supplies it.
+#pragma once
+
+#include <map>
+
+#include "core/model/slots.hpp"
+#include "core/model/state.hpp"
+
+namespace stickslip {
+
+/// Regularisation of all points, force per length cubed.
+template <class T>
+using RegularisationField = std::vector<PointRegularisation<T>>;
+
+/// Everything a contact evaluation reads beside displacement and multiplier.
+template <class T>
+struct ContactInput {
+  const Model& model;
+  const Slots<T>& slots;
+  const RegularisationField<T>& rho;
+  const Vector<T>& previous_placement;  ///< slip history
+  ConeRadius cone = ConeRadius::augmented;
+  double time = 0;
+};
+
+/// State before the first increment: nothing has moved, no traction.
+template <class T>
+State<T> initial_state(const Model& model) {
+  State<T> state;
+  auto zeros = [](std::size_t n) { return Vector<T>::Constant(static_cast<Eigen::Index>(n), T(0)).eval(); };
+  const std::size_t points = model.points.size(), tangential = model.multiplier_count - points;
+  state.displacement = zeros(model.dof_count());
+  state.multiplier = state.contact.traction = zeros(model.multiplier_count);
+  state.contact.state.assign(points, ContactState::open);
+  state.contact.gap = zeros(points);
+  state.contact.placement = state.contact.slip = zeros(tangential);
+  state.dissipation = zeros(model.effects.friction ? model.scene.contacts.size() : 0);
+  return state;
+}
+
+namespace detail {
+
+/// Calls f.template operator()<D, Tangents>() for a point.
+template <class F>
+decltype(auto) with_point(const Model& model, const ContactPoint& point, F&& f) {
+  return with_dimension(model.dimension, [&]<int D>() {
+    return point.tangents > 0 ? f.template operator()<D, D - 1>() : f.template operator()<D, 0>();
+  });
+}
+
+/// Rigid displacement of the obstacle of a point.
+template <class T, int D>
+Vec<T, D> obstacle_displacement(const ContactInput<T>& input, const ContactPoint& point) {
+  Vec<T, D> u = Vec<T, D>::Constant(T(0));
+  if (point.obstacle < 0) return u;
+  for (const auto& [axis, table] : input.model.scene.obstacles[point.obstacle].move)
+    u[axis - 'x'] = evaluate(table, input.time, input.slots.numbers);
+  return u;
+}
+
+template <class T, int Tangents>
+Traction<T, Tangents> gather_traction(const Vector<T>& field, int offset) {
+  Traction<T, Tangents> t;
+  t.normal = field[offset];
+  for (int a = 0; a < Tangents; ++a) t.tangential[a] = field[offset + 1 + a];
+  return t;
+}
+
+/// Relative displacement w of a point from compact displacements.
+template <class T, int D>
+Vec<T, D> relative_displacement(const ContactInput<T>& input, int p, const Vector<T>& compact) {
+  const auto& point = input.model.points[p];
+  Vec<T, D> w = -obstacle_displacement<T, D>(input, point);
+  for (std::size_t n = 0; n < point.places.size(); ++n)
+    for (int i = 0; i < D; ++i) w[i] += input.slots.geometry[p].weights[n] * compact[point.places[n] * D + i];
+  return w;
+}
+
+template <class T, int Tangents>
+Vec<T, Tangents> previous_placement(const ContactInput<T>& input, int p) {
+  Vec<T, Tangents> s;
+  for (int a = 0; a < Tangents; ++a) s[a] = input.previous_placement[tangential_offset(input.model, p) + a];
+  return s;
+}
+
+/// The geometry of a point with the scalar U built on T.
+template <class U, class T>
+PointGeometry<U> promote(const PointGeometry<T>& g) {
+  PointGeometry<U> out;
+  auto cast = [](const T& x) { return U(x); };
+  out.gap = U(g.gap);
+  out.area = U(g.area);
+  out.normal = g.normal.unaryExpr(cast);
+  out.tangents = g.tangents.unaryExpr(cast);
+  return out;
+}
+
+}  // namespace detail
+
+/// Local unknowns of all points. `compact`: displacements of the contact nodes; `multiplier`: lambda; `states`: the
+/// branches to take, or nullptr to classify.
+template <class T>
+ContactField<T> evaluate_contact(const ContactInput<T>& input, const Vector<T>& compact, const Vector<T>& multiplier,
+                                 const std::vector<ContactState>* states) {
+  const Model& model = input.model;
+  ContactField<T> field;
+  const int count = static_cast<int>(model.points.size());
+  field.state.resize(count);
+  field.gap.resize(count);
+  field.traction.resize(model.multiplier_count);
+  field.placement.resize(model.multiplier_count - count);
+  field.slip.resize(model.multiplier_count - count);
+  for (int p = 0; p < count; ++p) {
+    const auto& point = model.points[p];
+    detail::with_point(model, point, [&]<int D, int Tangents>() {
+      const auto outcome = evaluate_point<T, D, Tangents>(
+          input.slots.geometry[p], detail::relative_displacement<T, D>(input, p, compact),
+          detail::gather_traction<T, Tangents>(multiplier, point.multiplier),
+          detail::previous_placement<T, Tangents>(input, p), input.rho[p], input.slots.friction[point.contact],
+          input.cone, point.mesh_size, states ? &(*states)[p] : nullptr);
+      field.state[p] = outcome.state;
+      field.gap[p] = outcome.gap;
+      field.traction[point.multiplier] = outcome.traction.normal;
+      const int offset = tangential_offset(model, p);
+      for (int a = 0; a < Tangents; ++a) {
+        field.placement[offset + a] = outcome.placement[a];
+        field.slip[offset + a] = outcome.slip[a];
+        field.traction[point.multiplier + 1 + a] = outcome.traction.tangential[a];
+      }
+    });
+  }
+  return field;
+}
+
+/// Nodal contact forces of the residual, compact.
+template <class T>
+Vector<T> contact_forces(const Model& model, const Slots<T>& slots, const Vector<T>& traction) {
+  const int D = model.dimension;
+  Vector<T> forces = Vector<T>::Constant(static_cast<Eigen::Index>(model.contact_nodes.size()) * D, T(0));
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const auto& point = model.points[p];
+    detail::with_point(model, point, [&]<int d, int Tangents>() {
+      const Vec<T, d> force = point_force<T, d, Tangents>(
+          slots.geometry[p], detail::gather_traction<T, Tangents>(traction, point.multiplier));
+      for (std::size_t n = 0; n < point.places.size(); ++n)
+        for (int i = 0; i < d; ++i) forces[point.places[n] * d + i] += slots.geometry[p].weights[n] * force[i];
+    });
+  }
+  return forces;
+}
+
+/// Multiplier rows of the monolithic method, A (t - lambda) per component (force).
+template <class T>
+Vector<T> multiplier_residual(const Model& model, const Slots<T>& slots, const Vector<T>& traction,
+                              const Vector<T>& multiplier) {
+  Vector<T> rows(model.multiplier_count);
+  for (std::size_t p = 0; p < model.points.size(); ++p)
+    for (int c = 0; c < model.points[p].components(); ++c) {
+      const int k = model.points[p].multiplier + c;
+      rows[k] = slots.geometry[p].area * (traction[k] - multiplier[k]);
+    }
+  return rows;
+}
+
+/// Tangent of one point with respect to its relative displacement w and its scaled multiplier l = lambda / rho.
+template <class T>
+struct PointTangent {
+  Matrix<T> force_w, force_l;  ///< D x D, D x components
+  Matrix<T> row_w, row_l;      ///< of A (t - lambda): components x D, components x components
+};
+
+template <class T>
+PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<T>& compact,
+                              const Vector<T>& multiplier, ContactState state) {
+  const auto& point = input.model.points[p];
+  return detail::with_point(input.model, point, [&]<int D, int Tangents>() {
+    constexpr int C = 1 + Tangents;
+    using Probe = Dual<D + C, T>;
+    const auto geometry = detail::promote<Probe>(input.slots.geometry[p]);
+    const Vec<T, D> w_value = detail::relative_displacement<T, D>(input, p, compact);
+    const auto lambda_value = detail::gather_traction<T, Tangents>(multiplier, point.multiplier);
+    const PointRegularisation<Probe> rho{Probe(input.rho[p].normal), Probe(input.rho[p].tangential)};
+    Vec<Probe, D> w;
+    for (int i = 0; i < D; ++i) w[i] = Probe::seed(w_value[i], i);
+    Traction<Probe, Tangents> lambda;
+    lambda.normal = Probe(lambda_value.normal);
+    lambda.normal.d[D] = input.rho[p].normal;
+    Vec<Probe, Tangents> previous;
+    for (int a = 0; a < Tangents; ++a) {
+      lambda.tangential[a] = Probe(lambda_value.tangential[a]);
+      lambda.tangential[a].d[D + 1 + a] = input.rho[p].tangential;
+      previous[a] = Probe(input.previous_placement[tangential_offset(input.model, p) + a]);
+    }
+    const auto outcome =
+        evaluate_point<Probe, D, Tangents>(geometry, w, lambda, previous, rho,
+                                           Probe(input.slots.friction[point.contact]), input.cone, point.mesh_size,
+                                           &state);
+    const Vec<Probe, D> force = point_force<Probe, D, Tangents>(geometry, outcome.traction);
+    PointTangent<T> tangent{Matrix<T>(D, D), Matrix<T>(D, C), Matrix<T>(C, D), Matrix<T>(C, C)};
+    for (int i = 0; i < D; ++i) {
+      for (int j = 0; j < D; ++j) tangent.force_w(i, j) = force[i].d[j];
+      for (int c = 0; c < C; ++c) tangent.force_l(i, c) = force[i].d[D + c];
+    }
+    for (int r = 0; r < C; ++r) {
+      const Probe row = r == 0 ? outcome.traction.normal - lambda.normal
+                               : outcome.traction.tangential[r - 1] - lambda.tangential[r - 1];
+      for (int j = 0; j < D; ++j) tangent.row_w(r, j) = input.slots.geometry[p].area * row.d[j];
+      for (int c = 0; c < C; ++c) tangent.row_l(r, c) = input.slots.geometry[p].area * row.d[D + c];
+    }
+    return tangent;
+  });
+}
+
+/// Frictional work of the increment, added to the previous dissipation, per contact: sum A t_T . plastic slip, where
+/// the elastic part (t - lambda)/rho of a regularised slip does no work that is lost.
+template <class T>
+Vector<T> dissipated(const ContactInput<T>& input, const ContactField<T>& field, const Vector<T>& multiplier,
+                     const Vector<T>& previous) {
+  Vector<T> work = previous;
+  for (std::size_t p = 0; p < input.model.points.size(); ++p) {
+    const auto& point = input.model.points[p];
+    if (field.state[p] != ContactState::slip) continue;
+    for (int a = 0; a < point.tangents; ++a) {
+      const int k = point.multiplier + 1 + a;
+      const T plastic = field.slip[tangential_offset(input.model, static_cast<int>(p)) + a] -
+                        (field.traction[k] - multiplier[k]) / input.rho[p].tangential;
+      work[point.contact] += input.slots.geometry[p].area * field.traction[k] * plastic;
+    }
+  }
+  return work;
+}
+
+}  // namespace stickslip

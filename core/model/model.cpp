@@ -1,0 +1,321 @@
+#include "core/model/model.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <optional>
+#include <map>
+#include <set>
+
+#include "core/contact/search.hpp"
+#include "core/mesh/generators.hpp"
+#include "core/mesh/sides.hpp"
+#include "core/solids/shapes.hpp"
+
+namespace stickslip {
+namespace {
+
+int body_index(const Scene& scene, const std::string& name) {
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+    if (scene.bodies[b].name == name) return static_cast<int>(b);
+  throw ModelError("there is no body \"" + name + "\"");
+}
+
+bool same_motion(const Table& a, const Table& b) {
+  return std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), [](auto& p, auto& q) {
+    return p.first == q.first && p.second.value == q.second.value;
+  });
+}
+
+/// One row of a closed set of constraints: dof -> who prescribes it.
+void prescribe(Model& model, std::map<int, Constraint>& by_dof, int support, const SideSet& side) {
+  for (const auto& [axis, table] : model.scene.supports[support].move) {
+    const int component = axis - 'x';
+    if (component < 0 || component >= model.dimension) throw ModelError(std::string("a support moves along ") + axis);
+    for (int node : side.nodes) {
+      const int dof = node * model.dimension + component;
+      const auto found = by_dof.find(dof);
+      if (found != by_dof.end() && found->second.support >= 0) {  // a corner shared by two supports
+        const auto& other = model.scene.supports[found->second.support];
+        if (same_motion(other.move.at(axis), table)) continue;
+        throw ModelError("supports on " + other.on + " and on " + model.scene.supports[support].on +
+                         " move a node they share differently along " + axis);
+      }
+      by_dof[dof] = {dof, support, axis};
+    }
+  }
+}
+
+void number_dofs(Model& model) {
+  std::map<int, Constraint> by_dof;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    if (model.bodies[b].mesh.shape == ElementShape::point)  // an anchor that nobody moves stays where it is
+      for (int i = 0; i < model.dimension; ++i) {
+        const int dof = (model.bodies[b].first_node + 1) * model.dimension + i;
+        by_dof[dof] = {dof, -1, 'x'};
+      }
+  for (std::size_t s = 0; s < model.scene.supports.size(); ++s)
+    prescribe(model, by_dof, static_cast<int>(s), model.side(model.scene.supports[s].on));
+  model.free_index.assign(model.dof_count(), 0);
+  for (const auto& [dof, constraint] : by_dof) {
+    model.constraints.push_back(constraint);
+    model.free_index[dof] = -1;
+  }
+  for (int dof = 0; dof < model.dof_count(); ++dof)
+    if (model.free_index[dof] == 0) {
+      model.free_index[dof] = static_cast<int>(model.free_dofs.size());
+      model.free_dofs.push_back(dof);
+    }
+}
+
+/// Mean of the outward facet normals at a slave node (solid on the left of a facet), zero where it has none.
+Vec<double, 2> outward_normal(const Points<double>& points, const std::vector<std::pair<int, int>>& facets) {
+  Vec<double, 2> n = Vec<double, 2>::Zero();
+  for (const auto& [a, b] : facets) {
+    const Vec<double, 2> tau = points.col(b).head<2>() - points.col(a).head<2>();
+    n += Vec<double, 2>(tau[1], -tau[0]);
+  }
+  return n;
+}
+
+/// Finds the master of a slave node; false where it faces none.
+bool find_master(const Points<double>& points, const SideSet& master, ContactPoint& point) {
+  const Vec<double, 2> x = points.col(point.nodes[0]).head<2>();
+  const auto closest = closest_point(points, master.facets, x);
+  if (!closest) return false;
+  const auto& facet = master.facets[closest->facet];
+  const Vec<double, 2> tau = points.col(facet[1]).head<2>() - points.col(facet[0]).head<2>();
+  const Vec<double, 2> slave_normal = outward_normal(points, point.area_facets);
+  const bool continuum = point.tangents >= 0 && slave_normal.norm() > 0;
+  if (continuum && slave_normal.dot(Vec<double, 2>(tau[1], -tau[0])) >= 0) return false;  // looks the same way
+  if (closest->second < 0) {
+    point.master = ContactPoint::Master::facet;
+    point.nodes.insert(point.nodes.end(), {facet[0], facet[1]});
+    return true;
+  }
+  point.master = ContactPoint::Master::vertex;
+  const int before = facet[0], vertex = facet[1], after = master.facets[closest->second][1];
+  point.nodes.insert(point.nodes.end(), {vertex, after});
+  point.neighbours = {before, after};
+  return true;
+}
+
+int obstacle_index(const Scene& scene, const std::string& name) {
+  for (std::size_t o = 0; o < scene.obstacles.size(); ++o)
+    if (scene.obstacles[o].name == name) return static_cast<int>(o);
+  return -1;
+}
+
+/// Local size of the slave side: mean length of the facets at the node.
+double local_size(const Points<double>& points, const std::vector<std::pair<int, int>>& facets) {
+  double size = 0;
+  for (const auto& [a, b] : facets) size += (points.col(a) - points.col(b)).norm() / facets.size();
+  return size;
+}
+
+void pair_contact(Model& model, const Points<double>& points, int index) {
+  const Contact& contact = model.scene.contacts[index];
+  const SideSet slave = model.side(contact.slave);
+  const int obstacle = obstacle_index(model.scene, contact.master);
+  SideSet master;
+  if (obstacle < 0) {
+    master = model.side(contact.master);
+    if (model.dimension == 3) throw ModelError("contact " + contact.name + ": a deformable master needs a 2D space");
+    if (master.facets.empty()) throw ModelError("contact " + contact.name + ": the master side has no facets");
+  }
+  const auto& mesh = model.bodies[slave.body].mesh;
+  for (int node : slave.nodes) {
+    ContactPoint point;
+    point.contact = index;
+    point.obstacle = obstacle;
+    point.nodes = {node};
+    point.slave_body = slave.body;
+    for (const auto& facet : slave.facets)
+      if (facet[0] == node || facet[1] == node) point.area_facets.emplace_back(facet[0], facet[1]);
+    point.area_of_bar = mesh.shape == ElementShape::bar2 && slave.nodes.size() == 1 && point.area_facets.empty();
+    point.mesh_size = local_size(points, point.area_facets);
+    point.tangents = contact.friction ? model.dimension - 1 : 0;
+    if (obstacle >= 0) {
+      const bool plane = std::holds_alternative<Plane>(model.scene.obstacles[obstacle].shape);
+      if (!plane && model.dimension == 3) throw ModelError("obstacle " + contact.master + ": a circle needs a 2D space");
+      point.master = plane ? ContactPoint::Master::plane : ContactPoint::Master::circle;
+    } else if (!find_master(points, master, point)) {
+      continue;
+    }
+    model.effects.contact = true;
+    model.effects.friction |= point.tangents > 0;
+    model.effects.deformable_master |= obstacle < 0;
+    point.multiplier = model.multiplier_count;
+    model.multiplier_count += point.components();
+    model.points.push_back(point);
+  }
+}
+
+/// Ends of the increments: equal steps of each leg, and the breakpoints of every table in it.
+std::vector<double> step_ends(const Scene& scene) {
+  std::vector<double> ends;
+  double start = 0;
+  for (const auto& leg : scene.legs) {
+    for (int i = 1; i <= leg.steps; ++i) ends.push_back(start + (leg.end - start) * i / leg.steps);
+    start = leg.end;
+  }
+  const std::vector<double> regular = ends;
+  auto hit = [&](const Table& table) {
+    for (const auto& [t, unused] : table.points) {
+      const double band = 1e-9 * start;
+      const bool there =
+          std::any_of(regular.begin(), regular.end(), [&](double r) { return std::abs(r - t) <= band; });
+      if (t > band && t < start && !there) ends.push_back(t);
+    }
+  };
+  for (const auto& support : scene.supports)
+    for (const auto& [axis, table] : support.move) hit(table);
+  for (const auto& obstacle : scene.obstacles)
+    for (const auto& [axis, table] : obstacle.move) hit(table);
+  for (const auto& load : scene.loads)
+    if (load.history) hit(*load.history);
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  return ends;
+}
+
+/// Shape function values at x of an element, if it holds x (to rounding).
+std::optional<std::vector<double>> weights_at(ElementShape shape, const Points<double>& points,
+                                              const std::vector<int>& nodes, const Eigen::VectorXd& x) {
+  constexpr double band = 1e-9;
+  if (shape == ElementShape::point) {
+    if ((points.col(nodes[0]) - x).norm() > 0) return std::nullopt;
+    return std::vector<double>{1, 0};
+  }
+  if (shape == ElementShape::bar2) {
+    const Eigen::VectorXd a = points.col(nodes[0]), tau = points.col(nodes[1]) - a;
+    const double s = (x - a).dot(tau) / tau.squaredNorm();
+    if (s < -band || s > 1 + band || (x - a - s * tau).norm() > band * tau.norm()) return std::nullopt;
+    return std::vector<double>{1 - s, s};
+  }
+  const bool tri = shape == ElementShape::tri3;
+  Eigen::Vector2d xi = tri ? Eigen::Vector2d(1.0 / 3, 1.0 / 3) : Eigen::Vector2d(0, 0);
+  Eigen::VectorXd N;
+  for (int iteration = 0; iteration < 20; ++iteration) {  // Newton for the natural coordinates; one step for T3
+    Mat<double, 2, Eigen::Dynamic> dN;
+    if (tri) {
+      N = Eigen::Vector3d(1 - xi[0] - xi[1], xi[0], xi[1]);
+      dN = Tri3::quadrature()[0].gradient;
+    } else {
+      const auto q = Quad4::at(xi[0], xi[1], 1);
+      N = q.value;
+      dN = q.gradient;
+    }
+    Eigen::Vector2d defect = -x;
+    Eigen::Matrix2d J = Eigen::Matrix2d::Zero();
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+      defect += N[a] * points.col(nodes[a]);
+      J += points.col(nodes[a]) * dN.col(a).transpose();
+    }
+    const Eigen::Vector2d step = J.partialPivLu().solve(defect);
+    xi -= step;
+    if (!(xi.norm() < 1e3)) return std::nullopt;
+    if (step.norm() < 1e-14) break;
+  }
+  const bool inside = tri ? xi.minCoeff() > -band && xi.sum() < 1 + band : xi.cwiseAbs().maxCoeff() < 1 + band;
+  if (!inside) return std::nullopt;
+  return std::vector<double>(N.data(), N.data() + N.size());
+}
+
+/// Finds where a response with `at` is taken. Throws ModelError where no element holds the point.
+ResponsePlace locate_response(const Model& model, const Points<double>& points, const Response& response) {
+  ResponsePlace place;
+  if (response.at.empty()) return place;
+  Eigen::VectorXd x(model.dimension);
+  for (int i = 0; i < model.dimension; ++i) x[i] = response.at[i].value;
+  if (response.kind == Response::Kind::displacement) {
+    for (const auto& body : model.bodies) {
+      const int n = nodes_of(body.mesh.shape);
+      for (int e = 0; e < body.mesh.element_count(); ++e) {
+        std::vector<int> nodes(n);
+        Eigen::VectorXd low = Eigen::VectorXd::Constant(model.dimension, INFINITY), high = -low;
+        for (int a = 0; a < n; ++a) {
+          nodes[a] = body.first_node + body.mesh.connectivity[e * n + a];
+          low = low.cwiseMin(points.col(nodes[a]));
+          high = high.cwiseMax(points.col(nodes[a]));
+        }
+        const double slack = 1e-6 * (high - low).norm();
+        if ((x.array() < low.array() - slack).any() || (x.array() > high.array() + slack).any()) continue;
+        if (const auto weights = weights_at(body.mesh.shape, points, nodes, x)) {
+          for (int a = 0; a < n; ++a) place.nodes.emplace_back(nodes[a], (*weights)[a]);
+          return place;
+        }
+      }
+    }
+    throw ModelError("response " + response.name + ": no element holds the point of `at`");
+  }
+  const int contact = model.contact_index(response.on);
+  double nearest = INFINITY;
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const double distance = (points.col(model.points[p].nodes[0]) - x).norm();
+    if (model.points[p].contact == contact && distance < nearest) {
+      nearest = distance;
+      place.contact_point = static_cast<int>(p);
+    }
+  }
+  if (place.contact_point < 0) throw ModelError("response " + response.name + ": the contact has no point");
+  return place;
+}
+
+}  // namespace
+
+SideSet resolve_side(const Scene& scene, const std::vector<BodyMesh>& bodies, const std::string& text) {
+  const SideExpression expression = parse_side_expression(text);
+  if (!expression.error.empty()) throw ModelError(expression.error);
+  SideSet set;
+  set.body = body_index(scene, expression.body);
+  const auto& body = bodies[set.body];
+  if (const auto error = side_error(body.mesh, expression); !error.empty()) throw ModelError(error);
+  const Side side = evaluate_side(body.mesh, expression);
+  set.nodes = side.nodes;
+  set.facets = side.facets;
+  for (int& node : set.nodes) node += body.first_node;
+  for (auto& facet : set.facets)
+    for (int& node : facet) node += body.first_node;
+  return set;
+}
+
+SideSet Model::side(const std::string& expression) const { return resolve_side(scene, bodies, expression); }
+
+int Model::contact_index(const std::string& name) const {
+  for (std::size_t c = 0; c < scene.contacts.size(); ++c)
+    if (scene.contacts[c].name == name) return static_cast<int>(c);
+  throw ModelError("there is no contact \"" + name + "\"");
+}
+
+Model make_model(const Scene& scene) {
+  Model model;
+  model.scene = scene;
+  model.dimension = scene.dimension();
+  for (const auto& body : scene.bodies) {
+    const std::string fault = mesh_fault(body.mesh, body.element, model.dimension);
+    if (!fault.empty()) throw ModelError("body " + body.name + ": " + fault);
+    model.bodies.push_back({make_mesh(body.mesh, body.element, model.dimension), model.node_count});
+    model.node_count += model.bodies.back().mesh.node_count;
+  }
+  Points<double> points(model.dimension, model.node_count);
+  const auto numbers = scene.as<double>();
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    points.middleCols(model.bodies[b].first_node, model.bodies[b].mesh.node_count) =
+        make_points<double>(scene.bodies[b].mesh, numbers, model.dimension);
+  number_dofs(model);
+  for (std::size_t c = 0; c < scene.contacts.size(); ++c) pair_contact(model, points, static_cast<int>(c));
+  std::set<int> nodes;
+  for (const auto& point : model.points) nodes.insert(point.nodes.begin(), point.nodes.end());
+  model.contact_nodes.assign(nodes.begin(), nodes.end());
+  for (auto& point : model.points)
+    for (int node : point.nodes)
+      point.places.push_back(static_cast<int>(
+          std::lower_bound(model.contact_nodes.begin(), model.contact_nodes.end(), node) - model.contact_nodes.begin()));
+  for (const auto& response : scene.responses)
+    model.response_places.push_back(locate_response(model, points, response));
+  model.times = step_ends(scene);
+  model.effects.sensitivity = !scene.parameters.empty();
+  return model;
+}
+
+}  // namespace stickslip

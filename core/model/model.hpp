@@ -1,0 +1,109 @@
+/// Model: what a scene becomes once its meshes are made and its contact pairs are found. It holds everything that does
+/// not depend on a number (nodes, dofs, contact points, active effects); what does is in Slots<T>. Immutable.
+#pragma once
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/contact/contact_point.hpp"
+#include "core/mesh/mesh.hpp"
+#include "core/model/scene.hpp"
+
+namespace stickslip {
+
+/// A scene that cannot become a model; what() says why in the user's words.
+struct ModelError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Mesh of a body with its place in the numbering of all nodes.
+struct BodyMesh {
+  Mesh mesh;
+  int first_node = 0;
+};
+
+/// One slave node and what it can touch. Fixed for small strain.
+struct ContactPoint {
+  enum class Master { plane, circle, facet, vertex };
+  Master master = Master::plane;
+  int contact = 0;             ///< index in Scene::contacts
+  int obstacle = -1;           ///< index in Scene::obstacles, -1 for a deformable master
+  std::vector<int> nodes;      ///< slave, then master nodes (facet: its two; vertex: the vertex and one neighbour)
+  std::vector<int> places;     ///< of `nodes` in Model::contact_nodes
+  std::vector<int> neighbours; ///< vertex: the vertices before and after it, whose facets share the normal
+  std::vector<std::pair<int, int>> area_facets;  ///< facets of the slave side at the node; half of each is tributary
+  bool area_of_bar = false;    ///< tributary area is the bar's cross-section; with no facets either: 1
+  int slave_body = 0;
+  double mesh_size = 0;        ///< local size of the slave side, 0 for a lumped point
+  int multiplier = 0;          ///< offset of its components in the multiplier vector
+  int tangents = 0;            ///< 0 (frictionless) or D - 1
+  int components() const { return 1 + tangents; }
+};
+
+/// A dof whose displacement is prescribed: the table of supports[support].move[axis], or zero where support < 0
+/// (the anchor of a spring that nobody moves).
+struct Constraint {
+  int dof = 0, support = -1;
+  char axis = 'x';
+};
+
+/// The physical effects that a scene calls for; what is off has no unknown, no storage and no code path.
+struct Effects {
+  bool contact = false;
+  bool friction = false;
+  bool deformable_master = false;
+  bool sensitivity = false;
+  bool linear_bulk = true;  ///< the internal forces are linear in the displacements: the tangent of the bodies is constant
+};
+
+/// Nodes and facets of a side expression, in the numbering of the model.
+struct SideSet {
+  int body = 0;
+  std::vector<int> nodes;
+  std::vector<std::vector<int>> facets;
+};
+
+/// Where a response is taken that names a point: nodes and weights of the element that holds it (fixed: the point is
+/// convected with the shape parameters), or the nearest contact point.
+struct ResponsePlace {
+  std::vector<std::pair<int, double>> nodes;
+  int contact_point = -1;
+};
+
+struct Model {
+  Scene scene;
+  int dimension = 2;
+  int node_count = 0;
+  std::vector<BodyMesh> bodies;
+  std::vector<ContactPoint> points;
+  int multiplier_count = 0;
+  std::vector<Constraint> constraints;   ///< ascending dof
+  std::vector<int> free_index;           ///< per dof: index among the free ones, or -1
+  std::vector<int> free_dofs;
+  std::vector<int> contact_nodes;        ///< ascending; all nodes of all contact points
+  std::vector<ResponsePlace> response_places;  ///< per response
+  std::vector<double> times;             ///< ends of the increments, breakpoints of every table included
+  Effects effects;
+
+  int dof_count() const { return dimension * node_count; }
+  /// The nodes and facets of "body.side", "body.a & body.b", "body.a - body.b". Throws ModelError.
+  SideSet side(const std::string& expression) const;
+  int contact_index(const std::string& name) const;
+};
+
+/// Makes meshes, finds contact pairs, numbers the dofs. Throws ModelError where the scene makes no sense as a whole
+/// (what a single entry may hold was checked when it was read).
+Model make_model(const Scene& scene);
+
+/// "a.b - a.c" resolved on the meshes of a scene; used by make_model and by the scene reader's checks.
+SideSet resolve_side(const Scene& scene, const std::vector<BodyMesh>& bodies, const std::string& expression);
+
+/// Calls f with the space dimension as a compile-time constant: f.template operator()<D>().
+template <class F>
+decltype(auto) with_dimension(int dimension, F&& f) {
+  return dimension == 3 ? f.template operator()<3>() : f.template operator()<2>();
+}
+
+}  // namespace stickslip

@@ -1,0 +1,142 @@
+/// Responses: scalars of a state, in any scalar, so that their derivatives are the same code (interface.md, section 2).
+#pragma once
+
+#include "core/model/contact_assembly.hpp"
+#include "core/model/loading.hpp"
+
+namespace stickslip {
+
+/// f_int - f_ext + contact over all dofs: zero at free dofs in equilibrium, the force of the support on the body at
+/// prescribed ones.
+template <class T>
+Vector<T> nodal_balance(const Model& model, const Slots<T>& slots, const State<T>& state, double time) {
+  Vector<T> rows = bulk_forces(model, slots, state.displacement) - external_forces(model, slots, time);
+  add_compact(model, contact_forces(model, slots, state.contact.traction), rows);
+  return rows;
+}
+
+namespace detail {
+
+/// Reduces samples by `take`; the weights are those of the mean. max and min follow the primal value.
+template <class T>
+T take_of(Response::Take take, const std::vector<T>& samples, const std::vector<T>& weights) {
+  if (take == Response::Take::mean) {
+    T sum{}, total{};
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      sum += weights[i] * samples[i];
+      total += weights[i];
+    }
+    return sum / total;
+  }
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    const bool larger = value(samples[i]) > value(samples[best]);
+    if (larger == (take == Response::Take::max) && value(samples[i]) != value(samples[best])) best = i;
+  }
+  return samples[best];
+}
+
+/// Accumulated tangential slip of a point along a component: x y z, or "" for its own tangent (2D).
+template <class T>
+T slip_component(const Model& model, const Slots<T>& slots, const State<T>& state, int p, const std::string& component) {
+  const int offset = tangential_offset(model, p);
+  if (component.empty()) return state.contact.placement[offset];
+  T s{};
+  for (int a = 0; a < model.points[p].tangents; ++a)
+    s += slots.geometry[p].tangents(component[0] - 'x', a) * state.contact.placement[offset + a];
+  return s;
+}
+
+template <class T>
+T contact_response(const Model& model, const Slots<T>& slots, const Response& response, const ResponsePlace& place,
+                   const State<T>& state) {
+  using Kind = Response::Kind;
+  const int contact = model.contact_index(response.on);
+  if (response.kind == Kind::dissipation) return state.dissipation.size() ? state.dissipation[contact] : T(0);
+  T force{}, second_moment{};
+  std::vector<T> samples, weights;
+  std::vector<int> of_contact;
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p)
+    if (model.points[p].contact == contact && (place.contact_point < 0 || place.contact_point == p))
+      of_contact.push_back(p);
+  Vector<T> centroid = Vector<T>::Constant(model.dimension, T(0));
+  for (int p : of_contact) {
+    const auto& point = model.points[p];
+    const auto& geometry = slots.geometry[p];
+    const T pressure = -state.contact.traction[point.multiplier];
+    weights.push_back(geometry.area);
+    if (response.kind == Kind::contact_pressure) samples.push_back(pressure);
+    if (response.kind == Kind::gap) samples.push_back(state.contact.gap[p]);
+    if (response.kind == Kind::slip && point.tangents > 0)
+      samples.push_back(slip_component(model, slots, state, p, response.component));
+    if (response.kind == Kind::contact_force && response.component != "normal")
+      force -= with_point(model, point, [&]<int D, int Tangents>() {
+        return point_force<T, D, Tangents>(geometry, gather_traction<T, Tangents>(state.contact.traction,
+                                                                                  point.multiplier))[response.component[0] - 'x'];
+      });
+    else
+      force += geometry.area * pressure;
+    for (int i = 0; i < model.dimension; ++i) centroid[i] += geometry.area * pressure * slots.points(i, point.nodes[0]);
+  }
+  if (response.kind == Kind::contact_force) return force;
+  if (response.kind == Kind::contact_half_width) {
+    if (!(value(force) > 0)) return T(0);
+    for (int p : of_contact) {
+      const T weight = -slots.geometry[p].area * state.contact.traction[model.points[p].multiplier];
+      for (int i = 0; i < model.dimension; ++i) {
+        const T arm = slots.points(i, model.points[p].nodes[0]) - centroid[i] / force;
+        second_moment += weight * arm * arm;
+      }
+    }
+    using std::sqrt;
+    return T(2) * sqrt(second_moment / force);
+  }
+  return samples.empty() ? T(0) : take_of(response.take, samples, weights);
+}
+
+}  // namespace detail
+
+/// Value of a response at a state. `balance`: nodal_balance of the state; read by `reaction` alone, may be empty
+/// otherwise.
+template <class T>
+T evaluate_response(const Model& model, const Slots<T>& slots, int index, const State<T>& state,
+                    const Vector<T>& balance) {
+  const Response& response = model.scene.responses[index];
+  const ResponsePlace& place = model.response_places[index];
+  const int D = model.dimension, axis = response.component.empty() ? 0 : response.component[0] - 'x';
+  if (response.kind == Response::Kind::reaction) {
+    T sum{};
+    for (int node : model.side(response.on).nodes)
+      if (model.free_index[node * D + axis] < 0) sum += balance[node * D + axis];
+    return sum;
+  }
+  if (response.kind == Response::Kind::displacement) {
+    if (!place.nodes.empty()) {
+      T u{};
+      for (const auto& [node, weight] : place.nodes) u += T(weight) * state.displacement[node * D + axis];
+      return u;
+    }
+    std::vector<T> samples;
+    for (int node : model.side(response.on).nodes) samples.push_back(state.displacement[node * D + axis]);
+    return detail::take_of(response.take, samples, std::vector<T>(samples.size(), T(1)));
+  }
+  if (response.kind == Response::Kind::strain_energy)
+    return T(0.5) * dot(bulk_forces(model, slots, state.displacement), state.displacement);
+  return detail::contact_response(model, slots, response, place, state);
+}
+
+/// All responses of a model at a state.
+template <class T>
+Vector<T> evaluate_responses(const Model& model, const Slots<T>& slots, const State<T>& state, double time) {
+  const auto& responses = model.scene.responses;
+  Vector<T> balance;
+  for (const auto& response : responses)
+    if (response.kind == Response::Kind::reaction && balance.size() == 0)
+      balance = nodal_balance(model, slots, state, time);
+  Vector<T> out(responses.size());
+  for (std::size_t i = 0; i < responses.size(); ++i)
+    out[i] = evaluate_response(model, slots, static_cast<int>(i), state, balance);
+  return out;
+}
+
+}  // namespace stickslip

@@ -1,0 +1,213 @@
+/// Scene: the plain description of one problem, as the user wrote it, before anything is computed from it.
+/// interface.md, section 2, is its contract; studies/scene_reader builds it from JSON.
+///
+/// Every physical or geometric number is a Number: its value and its slot in `Scene::numbers`. A Numbers<T> gives all of
+/// them in the scalar T, so a parameter, a difference step and a complex step are the same thing: a change of some slots.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/algebra/scalar.hpp"
+#include "core/mesh/mesh.hpp"
+
+namespace stickslip {
+
+/// A number of the scene. slot < 0: a constant nobody can differentiate with respect to.
+struct Number {
+  double value = 0;
+  int slot = -1;
+  Number() = default;
+  Number(double v) : value(v) {}  // NOLINT: scenes are written in C++ too
+  Number(double v, int s) : value(v), slot(s) {}
+};
+
+/// All numbers of a scene in the scalar T.
+template <class T>
+struct Numbers {
+  std::vector<T> at_slot;
+  T operator()(const Number& n) const { return n.slot < 0 ? T(n.value) : at_slot[n.slot]; }
+};
+
+/// Value in time: linear between points, held before the first and after the last. A plain number is one point at
+/// t = 0, in force from the first step on (times are not parameters, values are).
+struct Table {
+  std::vector<std::pair<double, Number>> points;
+  bool constant() const { return points.size() == 1; }
+};
+
+/// The table at time t. pre: at least one point.
+template <class T>
+T evaluate(const Table& table, double t, const Numbers<T>& numbers) {
+  const auto& p = table.points;
+  if (t <= p.front().first) return numbers(p.front().second);
+  for (std::size_t i = 1; i < p.size(); ++i)
+    if (t <= p[i].first) {
+      const double s = (t - p[i - 1].first) / (p[i].first - p[i - 1].first);
+      return numbers(p[i - 1].second) * T(1 - s) + numbers(p[i].second) * T(s);
+    }
+  return numbers(p.back().second);
+}
+
+// --- meshes ------------------------------------------------------------------------------------------------------
+
+/// Axis-parallel block; sides left right bottom top. `grade` > 1 makes cells grow away from the side named in
+/// `grade_towards` by that total ratio (largest cell / smallest cell).
+struct BoxMesh {
+  std::array<Number, 2> min, max;
+  std::array<int, 2> cells{1, 1};
+  std::string grade_towards;  ///< empty: uniform
+  Number grade = 1.0;
+};
+/// Half disk below or above its diameter: the arc points in `facing` direction ("down" or "up"). Graded towards the
+/// pole of the arc. Sides: arc, flat.
+struct HalfDiskMesh {
+  std::array<Number, 2> center;
+  Number radius;
+  std::array<int, 2> cells{8, 8};  ///< [along a quarter of the arc, from arc to centre]
+  Number grade = 1.0;              ///< largest / smallest cell along the arc, smallest at the pole
+  std::string facing = "down";
+};
+/// One node. Sides NAME.node, NAME.anchor (grounded_spring).
+struct PointMesh {
+  std::vector<Number> at;  ///< 2 or 3 coordinates
+};
+/// Chain of bars. Sides start, end, nodes (all), interior (all but the two ends).
+struct LineMesh {
+  std::vector<Number> from, to;
+  int cells = 1;
+};
+/// Chain of bars along a circular arc, angles in degrees from +x, counter-clockwise. Sides as LineMesh.
+struct ArcMesh {
+  std::array<Number, 2> center;
+  Number radius, from_angle, to_angle;
+  int cells = 1;
+};
+/// Body of an imported mesh: topology and coordinates as read.
+struct ImportedMesh {
+  std::string file, body;
+  Mesh mesh;
+  Points<double> points;
+};
+using MeshDescription = std::variant<BoxMesh, HalfDiskMesh, PointMesh, LineMesh, ArcMesh, ImportedMesh>;
+
+// --- bodies ------------------------------------------------------------------------------------------------------
+
+struct LinearElastic {
+  Number E, nu;
+};
+/// d x d symmetric stiffness of a point to its anchor.
+struct GroundedSpring {
+  std::vector<std::vector<Number>> stiffness;
+};
+using Material = std::variant<LinearElastic, GroundedSpring>;
+
+struct Body {
+  std::string name;
+  MeshDescription mesh;
+  Material material;
+  std::string element;  ///< "T3", "Q4", "bar" or "" (follows from the mesh and material)
+  Number area = 1.0;    ///< of a bar's cross-section
+};
+
+/// Rigid half-space behind a point; normal points out of it, into the free space (need not be a unit vector).
+struct Plane {
+  std::vector<Number> point, normal;
+};
+/// Rigid disk, or the outside of one (`inside`: a cup, the free space is inside).
+struct Circle {
+  std::array<Number, 2> center;
+  Number radius;
+  bool inside = false;
+};
+struct Obstacle {
+  std::string name;
+  std::variant<Plane, Circle> shape;
+  std::map<char, Table> move;  ///< rigid displacement by axis
+};
+
+struct Contact {
+  std::string name;
+  std::string slave;   ///< side expression of a deformable body
+  std::string master;  ///< obstacle name, or side expression of a deformable body
+  std::optional<Number> friction;  ///< none: frictionless, no tangential unknowns or code path
+  Number offset = 0.0;             ///< added to the geometric gap
+};
+
+/// Prescribed displacement by axis on a side (an anchor's move drives the spring).
+struct Support {
+  std::string on;
+  std::map<char, Table> move;
+};
+
+struct Load {
+  enum class Kind { traction, force };
+  std::string on;
+  Kind kind = Kind::traction;
+  std::vector<Number> vector;      ///< traction: per area (per length on a bar); force: total, shared by tributary area
+  std::optional<Table> history;    ///< factor in time; none: 1 from the first step on
+};
+
+// --- what is asked -----------------------------------------------------------------------------------------------
+
+struct Response {
+  enum class Kind {
+    reaction, contact_force, displacement, contact_pressure, gap, slip, dissipation, strain_energy, contact_half_width
+  };
+  enum class Take { mean, max, min };
+  std::string name;
+  Kind kind = Kind::displacement;
+  std::string on;                 ///< side expression, or contact name, as the kind asks
+  std::string component;          ///< x y z normal
+  Take take = Take::mean;
+  std::vector<Number> at;         ///< point of the initial configuration instead of `on`
+};
+
+/// A parameter: weights on slots; its derivative is the sum of weight * d/d(slot).
+struct Parameter {
+  std::string name;
+  std::vector<std::pair<int, double>> slots;
+  std::string pointer;  ///< as the user named it (the first, where weighted)
+  double value = 0;     ///< of the first slot
+};
+
+/// [t_end, steps] each; the first leg starts at t = 0.
+struct Leg {
+  double end = 1;
+  int steps = 1;
+};
+
+enum class Space { plane_strain, plane_stress, solid };
+
+struct Scene {
+  std::string title;
+  Space space = Space::plane_strain;
+  std::vector<Body> bodies;
+  std::vector<Obstacle> obstacles;
+  std::vector<Contact> contacts;
+  std::vector<Support> supports;
+  std::vector<Load> loads;
+  std::vector<Leg> legs;
+  std::vector<Response> responses;
+  std::vector<Parameter> parameters;
+
+  std::vector<double> numbers;         ///< value of each slot
+  std::vector<std::string> pointers;   ///< JSON pointer of each slot
+
+  int dimension() const;  ///< 2, or 3 for Space::solid
+
+  /// All numbers as T, unseeded.
+  template <class T>
+  Numbers<T> as() const {
+    return {std::vector<T>(numbers.begin(), numbers.end())};
+  }
+};
+
+inline int Scene::dimension() const { return space == Space::solid ? 3 : 2; }
+
+}  // namespace stickslip

@@ -1,0 +1,141 @@
+/// Slots: every number a residual reads, in the scalar T: nodal coordinates, material numbers, initial contact geometry,
+/// friction, loads. double for the solver, Dual<N> for dslots/dparameters (the pseudo-loads), complex for the oracle.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "core/contact/surfaces.hpp"
+#include "core/mesh/generators.hpp"
+#include "core/model/model.hpp"
+#include "core/solids/bar.hpp"
+#include "core/solids/continuum.hpp"
+#include "core/solids/linear_elastic.hpp"
+
+namespace stickslip {
+
+/// Bars of a body: E times the cross-section (force).
+template <class T>
+struct BarLaw {
+  T axial, area;
+};
+/// Spring of a point to its anchor, D x D.
+template <class T>
+struct SpringLaw {
+  Matrix<T> stiffness;
+};
+template <class T>
+using Law = std::variant<LinearElasticLaw<T>, BarLaw<T>, SpringLaw<T>>;
+
+template <class T>
+struct Slots {
+  Numbers<T> numbers;
+  Points<T> points;                         ///< D x nodes
+  std::vector<Law<T>> laws;                 ///< per body
+  std::vector<PointGeometry<T>> geometry;   ///< per contact point
+  std::vector<T> stiffness;                 ///< per contact point: local nodal stiffness k_i (force per length)
+  std::vector<T> friction;                  ///< per contact; zero, and unread, where frictionless
+  std::vector<Vector<T>> loads;             ///< per load: nodal forces at history = 1
+};
+
+namespace detail {
+
+template <class T>
+Vec<T, 2> point2(const Points<T>& points, int node) {
+  return {points(0, node), points(1, node)};
+}
+
+template <class T>
+Law<T> make_law(const Scene& scene, const Body& body, const Mesh& mesh, const Numbers<T>& numbers) {
+  if (const auto* spring = std::get_if<GroundedSpring>(&body.material)) {
+    const int d = static_cast<int>(spring->stiffness.size());
+    SpringLaw<T> law{Matrix<T>(d, d)};
+    for (int i = 0; i < d; ++i)
+      for (int j = 0; j < d; ++j) law.stiffness(i, j) = numbers(spring->stiffness[i][j]);
+    return law;
+  }
+  const auto& elastic = std::get<LinearElastic>(body.material);
+  const T E = numbers(elastic.E);
+  if (mesh.shape == ElementShape::bar2) return BarLaw<T>{E * numbers(body.area), numbers(body.area)};
+  return LinearElasticLaw<T>(E, numbers(elastic.nu), scene.space);
+}
+
+/// Length of the line between two nodes, any dimension.
+template <class T>
+T distance(const Points<T>& points, int a, int b) {
+  return norm((points.col(a) - points.col(b)).eval());
+}
+
+template <class T>
+T tributary_area(const ContactPoint& point, const Slots<T>& slots) {
+  if (point.area_of_bar) return std::get<BarLaw<T>>(slots.laws[point.slave_body]).area;
+  if (point.area_facets.empty()) return T(1);
+  T area{};
+  for (const auto& [a, b] : point.area_facets) area += T(0.5) * distance(slots.points, a, b);
+  return area;
+}
+
+template <class T>
+PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
+  const auto& numbers = slots.numbers;
+  PointGeometry<T> geometry;
+  if (point.master == ContactPoint::Master::plane) {
+    const auto& plane = std::get<Plane>(model.scene.obstacles[point.obstacle].shape);
+    geometry = against_plane<T>(slots.points.col(point.nodes[0]), plane, numbers);
+  } else if (point.master == ContactPoint::Master::circle) {
+    const auto& circle = std::get<Circle>(model.scene.obstacles[point.obstacle].shape);
+    geometry = against_circle<T>(point2(slots.points, point.nodes[0]), circle, numbers);
+  } else if (point.master == ContactPoint::Master::facet) {
+    geometry = against_facet<T>(point2(slots.points, point.nodes[0]), point2(slots.points, point.nodes[1]),
+                                point2(slots.points, point.nodes[2]));
+  } else {
+    geometry = against_vertex<T>(point2(slots.points, point.nodes[0]), point2(slots.points, point.neighbours[0]),
+                                 point2(slots.points, point.nodes[1]), point2(slots.points, point.neighbours[1]));
+  }
+  geometry.gap += numbers(model.scene.contacts[point.contact].offset);
+  geometry.area = tributary_area(point, slots);
+  return geometry;
+}
+
+/// Nodal forces of a load at history = 1.
+template <class T>
+Vector<T> load_vector(const Model& model, const Load& load, const Slots<T>& slots) {
+  const int D = model.dimension;
+  Vector<T> forces = Vector<T>::Constant(model.dof_count(), T(0));
+  const SideSet side = model.side(load.on);
+  auto add = [&](int node, const T& share) {
+    for (int i = 0; i < D; ++i) forces[node * D + i] += share * slots.numbers(load.vector[i]);
+  };
+  std::vector<std::pair<int, T>> share;  // tributary area of the loaded nodes
+  T total{};
+  for (const auto& facet : side.facets) {
+    const T half = T(0.5) * distance(slots.points, facet[0], facet[1]);
+    for (int node : facet) share.emplace_back(node, half);
+    total += T(2) * half;
+  }
+  if (side.facets.empty()) {  // single nodes: equal shares
+    for (int node : side.nodes) share.emplace_back(node, T(1));
+    total = T(static_cast<double>(side.nodes.size()));
+  }
+  for (const auto& [node, area] : share) add(node, load.kind == Load::Kind::force ? T(area / total) : area);
+  return forces;
+}
+
+}  // namespace detail
+
+/// Internal nodal forces of all bodies, dof-wise. u: all dofs.
+template <class T>
+Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>& u);
+
+/// Calls sink(nodes, K) for each element of body b (or those listed in `only`): node list and tangent, node-major.
+template <class T, class Sink>
+void for_each_element_tangent(const Model& model, const Slots<T>& slots, int b, const std::vector<int>* only,
+                              Sink&& sink);
+
+/// All slots of a model in the scalar of `numbers`.
+template <class T>
+Slots<T> make_slots(const Model& model, const Numbers<T>& numbers);
+
+}  // namespace stickslip
+
+#include "core/model/slots_impl.hpp"

@@ -1,0 +1,190 @@
+/// Definitions of the templates in slots.hpp.
+#pragma once
+
+#include "core/model/slots.hpp"
+
+namespace stickslip {
+
+namespace detail {
+
+/// Calls f(Shape{}) with the continuum shape of a mesh.
+template <class F>
+void with_shape(ElementShape shape, F&& f) {
+  if (shape == ElementShape::tri3) f(Tri3{});
+  if (shape == ElementShape::quad4) f(Quad4{});
+}
+
+template <class T, class Shape>
+Mat<T, 2, Shape::nodes> gather_coordinates(const Points<T>& points, const int* nodes) {
+  Mat<T, 2, Shape::nodes> X;
+  for (int a = 0; a < Shape::nodes; ++a)
+    for (int i = 0; i < 2; ++i) X(i, a) = points(i, nodes[a]);
+  return X;
+}
+
+template <class T, class Shape>
+Mat<T, 2, Shape::nodes> gather_displacements(const Vector<T>& u, const int* nodes) {
+  Mat<T, 2, Shape::nodes> local;
+  for (int a = 0; a < Shape::nodes; ++a)
+    for (int i = 0; i < 2; ++i) local(i, a) = u[nodes[a] * 2 + i];
+  return local;
+}
+
+/// Nodes of element e in the numbering of the model.
+inline std::vector<int> element_nodes(const BodyMesh& body, int e) {
+  const int n = nodes_of(body.mesh.shape);
+  std::vector<int> nodes(n);
+  for (int a = 0; a < n; ++a) nodes[a] = body.first_node + body.mesh.connectivity[e * n + a];
+  return nodes;
+}
+
+/// Tangent of a two-node lumped element: [k, -k; -k, k] of a spring, or a bar.
+template <class T>
+Matrix<T> lumped_tangent(const Model& model, const Slots<T>& slots, int b, const std::vector<int>& nodes) {
+  const int D = model.dimension;
+  if (const auto* spring = std::get_if<SpringLaw<T>>(&slots.laws[b])) {
+    Matrix<T> K(2 * D, 2 * D);
+    K << spring->stiffness, -spring->stiffness, -spring->stiffness, spring->stiffness;
+    return K;
+  }
+  return with_dimension(D, [&]<int d>() -> Matrix<T> {
+    Mat<T, d, 2> X;
+    for (int a = 0; a < 2; ++a)
+      for (int i = 0; i < d; ++i) X(i, a) = slots.points(i, nodes[a]);
+    return bar_tangent<T, d>(X, std::get<BarLaw<T>>(slots.laws[b]).axial);
+  });
+}
+
+inline bool is_continuum(ElementShape shape) { return shape == ElementShape::tri3 || shape == ElementShape::quad4; }
+
+}  // namespace detail
+
+template <class T>
+Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>& u) {
+  const int D = model.dimension;
+  Vector<T> forces = Vector<T>::Constant(model.dof_count(), T(0));
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const auto& body = model.bodies[b];
+    if (detail::is_continuum(body.mesh.shape)) {
+      const auto& law = std::get<LinearElasticLaw<T>>(slots.laws[b]);
+      detail::with_shape(body.mesh.shape, [&]<class Shape>(Shape) {
+        std::array<int, Shape::nodes> nodes;
+        for (int e = 0; e < body.mesh.element_count(); ++e) {
+          for (int a = 0; a < Shape::nodes; ++a)
+            nodes[a] = body.first_node + body.mesh.connectivity[e * Shape::nodes + a];
+          const auto f = element_forces<T, Shape>(law, detail::gather_coordinates<T, Shape>(slots.points, nodes.data()),
+                                                  detail::gather_displacements<T, Shape>(u, nodes.data()));
+          for (int a = 0; a < Shape::nodes; ++a)
+            for (int i = 0; i < 2; ++i) forces[nodes[a] * 2 + i] += f(i, a);
+        }
+      });
+      continue;
+    }
+    for (int e = 0; e < body.mesh.element_count(); ++e) {
+      const auto nodes = detail::element_nodes(body, e);
+      const Matrix<T> K = detail::lumped_tangent(model, slots, static_cast<int>(b), nodes);
+      for (int a = 0; a < 2; ++a)
+        for (int i = 0; i < D; ++i)
+          for (int j = 0; j < D; ++j)  // K is [k, -k; -k, k]: forces of the relative displacement, free of cancellation
+            forces[nodes[a] * D + i] += K(a * D + i, j) * (u[nodes[0] * D + j] - u[nodes[1] * D + j]);
+    }
+  }
+  return forces;
+}
+
+template <class T, class Sink>
+void for_each_element_tangent(const Model& model, const Slots<T>& slots, int b, const std::vector<int>* only,
+                              Sink&& sink) {
+  const auto& body = model.bodies[b];
+  const int count = only ? static_cast<int>(only->size()) : body.mesh.element_count();
+  for (int k = 0; k < count; ++k) {
+    const int e = only ? (*only)[k] : k;
+    const auto nodes = detail::element_nodes(body, e);
+    if (!detail::is_continuum(body.mesh.shape)) {
+      sink(nodes, detail::lumped_tangent(model, slots, b, nodes));
+      continue;
+    }
+    const auto& law = std::get<LinearElasticLaw<T>>(slots.laws[b]);
+    detail::with_shape(body.mesh.shape, [&]<class Shape>(Shape) {
+      const Mat<T, 2, Shape::nodes> rest = Mat<T, 2, Shape::nodes>::Constant(T(0));
+      sink(nodes,
+           element_tangent<T, Shape>(law, detail::gather_coordinates<T, Shape>(slots.points, nodes.data()), rest));
+    });
+  }
+}
+
+/// Diagonal D x D blocks of the bodies' stiffness at the contact nodes, in the order of Model::contact_nodes.
+template <class T>
+std::vector<Matrix<T>> nodal_stiffness(const Model& model, const Slots<T>& slots) {
+  const int D = model.dimension;
+  std::vector<int> place(model.node_count, -1);
+  for (std::size_t i = 0; i < model.contact_nodes.size(); ++i) place[model.contact_nodes[i]] = static_cast<int>(i);
+  std::vector<Matrix<T>> blocks(model.contact_nodes.size(), Matrix<T>::Constant(D, D, T(0)));
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    std::vector<int> touching;
+    for (int e = 0; e < model.bodies[b].mesh.element_count(); ++e)
+      for (int node : detail::element_nodes(model.bodies[b], e))
+        if (place[node] >= 0) {
+          touching.push_back(e);
+          break;
+        }
+    for_each_element_tangent(model, slots, static_cast<int>(b), &touching, [&](const auto& nodes, const auto& K) {
+      for (std::size_t a = 0; a < nodes.size(); ++a)
+        if (place[nodes[a]] >= 0)
+          for (int i = 0; i < D; ++i)
+            for (int j = 0; j < D; ++j) blocks[place[nodes[a]]](i, j) += K(a * D + i, a * D + j);
+    });
+  }
+  return blocks;
+}
+
+/// k_i of each contact point: harmonic mean of n.K_ii n at the slave node and at the interpolated master nodes (slave
+/// only if the master is rigid). Where a node has next to no stiffness along n (bars along their axis), the mean over
+/// all directions stands in for it.
+template <class T>
+std::vector<T> contact_stiffness(const Model& model, const Slots<T>& slots) {
+  const auto blocks = nodal_stiffness(model, slots);
+  auto along = [&](int node, const auto& n) {
+    const auto& nodes = model.contact_nodes;
+    const auto& K = blocks[std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin()];
+    const int D = model.dimension;
+    T k{}, mean{};
+    for (int i = 0; i < D; ++i) {
+      mean += K(i, i) / T(static_cast<double>(D));
+      for (int j = 0; j < D; ++j) k += n[i] * K(i, j) * n[j];
+    }
+    return value(k) > 1e-6 * value(mean) ? k : mean;
+  };
+  std::vector<T> stiffness;
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const auto& point = model.points[p];
+    const auto& geometry = slots.geometry[p];
+    const T slave = along(point.nodes[0], geometry.normal);
+    T master{};
+    for (std::size_t i = 1; i < point.nodes.size(); ++i)
+      master += -geometry.weights[i] * along(point.nodes[i], geometry.normal);
+    stiffness.push_back(point.nodes.size() == 1 ? slave : T(2) * slave * master / (slave + master));
+  }
+  return stiffness;
+}
+
+template <class T>
+Slots<T> make_slots(const Model& model, const Numbers<T>& numbers) {
+  Slots<T> slots;
+  slots.numbers = numbers;
+  slots.points.resize(model.dimension, model.node_count);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const auto& body = model.bodies[b];
+    slots.points.middleCols(body.first_node, body.mesh.node_count) =
+        make_points<T>(model.scene.bodies[b].mesh, numbers, model.dimension);
+    slots.laws.push_back(detail::make_law(model.scene, model.scene.bodies[b], body.mesh, numbers));
+  }
+  for (const auto& contact : model.scene.contacts)
+    slots.friction.push_back(contact.friction ? numbers(*contact.friction) : T(0));
+  for (const auto& point : model.points) slots.geometry.push_back(detail::initial_geometry(model, point, slots));
+  slots.stiffness = contact_stiffness(model, slots);
+  for (const auto& load : model.scene.loads) slots.loads.push_back(detail::load_vector(model, load, slots));
+  return slots;
+}
+
+}  // namespace stickslip

@@ -1,0 +1,79 @@
+/// State of a model at one time, and the trajectory of states that a run leaves: plain values in any scalar.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/contact/contact_point.hpp"
+#include "core/model/model.hpp"
+#include "core/model/result.hpp"
+
+namespace stickslip {
+
+/// Local unknowns of all contact points. Normal quantities: one per point; tangential ones: `tangents` per point at
+/// tangential_offset(); tractions: 1 + tangents per point at ContactPoint::multiplier. Frictionless: nothing tangential.
+template <class T>
+struct ContactField {
+  std::vector<ContactState> state;
+  Vector<T> gap;
+  Vector<T> placement;  ///< s, the slip history
+  Vector<T> slip;       ///< dg_T of this increment
+  Vector<T> traction;   ///< t; compression negative
+};
+
+/// Where the tangential quantities of point p stand (each earlier point has exactly one normal component).
+inline int tangential_offset(const Model& model, int p) { return model.points[p].multiplier - p; }
+
+template <class T>
+struct State {
+  Vector<T> displacement;  ///< all dofs
+  Vector<T> multiplier;    ///< lambda as the increment's last equilibrium used it, laid out as traction
+  ContactField<T> contact;
+  Vector<T> dissipation;   ///< frictional work since the start, per contact; empty without friction
+};
+
+/// Uzawa: the equilibrium after one augmentation; kept only where the truncated sensitivity asks for it.
+template <class T>
+struct Sweep {
+  State<T> state;
+  std::vector<double> rho_factor;
+};
+
+template <class T>
+struct Increment {
+  double time = 0;
+  bool requested = true;  ///< an end of step the scene asked for; false: a sub-step from step cutting
+  Status status = Status::converged;
+  std::string message;
+  State<T> state;
+  std::vector<double> rho_factor;  ///< adaption of the regularisation, per contact point
+  int newton = 0, augmentations = 0, cutbacks = 0;
+  double contraction = 0;          ///< Uzawa: last measured ratio of multiplier updates; 0 if not measured
+  std::vector<IterationRecord> history;
+  std::vector<Sweep<T>> sweeps;
+};
+
+/// Seconds by what they were spent on.
+struct Seconds {
+  double setup = 0, assembly = 0, factorization = 0, backsolve = 0, sensitivity = 0, total = 0;
+};
+
+template <class T>
+struct Trajectory {
+  Status status = Status::converged;
+  std::string message;
+  State<T> initial;
+  std::vector<Increment<T>> increments;
+  Counters counters;
+  Seconds seconds;
+  std::string engine;      ///< "sparse, MUMPS ..." or "condensed, ..."
+  int reduced_unknowns = 0;  ///< size of the systems Newton solved
+  /// Ends of all increments, sub-steps included: replaying them repeats the discrete path.
+  std::vector<double> step_table() const {
+    std::vector<double> times;
+    for (const auto& increment : increments) times.push_back(increment.time);
+    return times;
+  }
+};
+
+}  // namespace stickslip

@@ -1,0 +1,42 @@
+/// What every method's increment starts from and leaves.
+#pragma once
+
+#include "methods/newton.hpp"
+#include "methods/regularisation.hpp"
+
+namespace stickslip {
+
+/// A run in progress: the immutable problem, the engine, and what is carried from increment to increment.
+template <class T, class E>
+struct Run {
+  const Model& model;
+  const Slots<T>& slots;
+  E& engine;
+  Account account;
+};
+
+/// An equilibrium as the state that the next increment starts from. `multiplier`: the lambda it was found with.
+template <class T, class E>
+State<T> settle(Run<T, E>& run, const ContactInput<T>& input, const Equilibrium<T>& equilibrium,
+                const Vector<T>& previous_dissipation) {
+  State<T> state;
+  state.displacement = run.engine.all(equilibrium.u);
+  state.multiplier = equilibrium.multiplier;
+  state.contact = equilibrium.field;
+  state.dissipation = dissipated(input, equilibrium.field, equilibrium.multiplier, previous_dissipation);
+  return state;
+}
+
+/// Fills the parts of an increment that all methods have.
+template <class T>
+void account_for(Increment<T>& increment, const Equilibrium<T>& equilibrium, int augmentation) {
+  increment.status = equilibrium.status;
+  increment.message = equilibrium.message;
+  increment.newton += equilibrium.iterations;
+  for (auto entry : equilibrium.history) {
+    entry.augmentation = augmentation;
+    increment.history.push_back(entry);
+  }
+}
+
+}  // namespace stickslip

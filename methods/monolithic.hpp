@@ -1,0 +1,33 @@
+/// Monolithic augmented Lagrangian: displacements and multipliers are solved together by semi-smooth Newton.
+///
+///   t = P_mu(lambda + rho g),   R_u = f_int - f_ext + sum A t dg = 0,   R_l = A (t - lambda) = 0
+///
+///   rho  scale, force per length cubed: it shapes the path of Newton's method, not the solution
+///   cone augmented: radius -mu t_N;  multiplier: radius -mu lambda_N. Same zeros, another path
+///
+/// At the solution lambda = t satisfies Signorini and Coulomb to rounding for every rho > 0. The only history is the slip
+/// placement; the last lambda is a mere start value. Options: methods/options.hpp. [AC91], [PC99]
+#pragma once
+
+#include "methods/increment.hpp"
+
+namespace stickslip {
+
+inline ConeRadius cone_radius(const MonolithicAL& method) {
+  return method.cone == MonolithicAL::Cone::augmented ? ConeRadius::augmented : ConeRadius::multiplier;
+}
+
+template <class T, class E>
+Increment<T> solve_increment(const MonolithicAL& method, Run<T, E>& run, const State<T>& previous,
+                             const std::vector<double>&, double time) {
+  Increment<T> increment;
+  const auto rho = initial_regularisation(run.slots, method);
+  const ContactInput<T> input{run.model, run.slots, rho, previous.contact.placement, cone_radius(method), time};
+  const auto equilibrium = newton(run.engine, input, run.engine.begin(time, previous.displacement),
+                                  previous.contact.traction, true, method.newton, run.account);
+  account_for(increment, equilibrium, 0);
+  increment.state = settle(run, input, equilibrium, previous.dissipation);
+  return increment;
+}
+
+}  // namespace stickslip

@@ -1,0 +1,286 @@
+/// Semi-smooth Newton for one equilibrium, shared by all methods.
+///
+///   R_u(u, lambda) = f_int(u) - f_ext + contact forces of t = P_mu(lambda + rho g) = 0
+///   R_l(u, lambda) = A (t - lambda) = 0                            only where lambda is an unknown
+///
+/// Each iteration solves with the tangent of the branch that every point is in. Residuals are relative, each to a scale
+/// of its own, the largest among the run's equilibria and the iterate at hand:
+///   equilibrium   largest nodal |R_u|                / largest nodal force of any kind
+///   normal        closed: |t_N - lambda_N|/rho = |g_N| / largest of A|t|/k and of the relative displacement;
+///   tangential    stick: |dg_T| likewise; open and slip: |t - lambda| / largest traction
+/// Converged: all within the tolerance and no state changed since the last tangent. Where a residual stops falling at
+/// the level of its own rounding the status is converged_at_roundoff. The full step is taken when
+/// it lands in another active set, for that is how the set is found; within one set the residual must fall, and a repeated
+/// set without progress asks the same of every step: backtracking. [AC91], [HSW08]; theory: core/README.md.
+#pragma once
+
+#include <chrono>
+#include <unordered_map>
+
+#include "core/model/engine.hpp"
+#include "methods/options.hpp"
+
+namespace stickslip {
+
+/// Largest force, length and traction among the equilibria of the run so far. Iterates on the way do not count: a first
+/// iterate may overshoot by any factor.
+struct RunScales {
+  double force = 0, length = 0, traction = 0;
+};
+
+/// Adds the seconds of its own life to a total.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& total) : total_(total), start_(std::chrono::steady_clock::now()) {}
+  ~Stopwatch() { total_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+
+ private:
+  double& total_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+/// What a run carries from solve to solve; owned by the caller.
+struct Account {
+  RunScales scales;
+  Counters counters;
+  Seconds seconds;
+};
+
+template <class T>
+struct Equilibrium {
+  Status status = Status::converged;
+  std::string message;
+  Vector<T> u;           ///< engine dofs
+  Vector<T> multiplier;  ///< lambda
+  ContactField<T> field;
+  int iterations = 0;
+  std::vector<IterationRecord> history;
+};
+
+namespace detail {
+
+inline double ratio(double x, double scale) { return x == 0 ? 0 : x / scale; }
+
+struct Residuals {
+  double equilibrium = 0, normal = 0, tangential = 0;
+  double floor_equilibrium = 0, floor_length = 0;  ///< what rounding alone may leave of them
+  double largest() const { return std::max({equilibrium, normal, tangential}); }
+  bool finite() const { return std::isfinite(equilibrium) && std::isfinite(normal) && std::isfinite(tangential); }
+  bool within(double tolerance) const { return finite() && largest() <= tolerance; }
+  bool within_rounding(double tolerance) const {
+    return finite() && equilibrium <= std::max(tolerance, floor_equilibrium) &&
+           std::max(normal, tangential) <= std::max(tolerance, floor_length);
+  }
+};
+
+/// One point of the Newton path, evaluated.
+template <class T>
+struct Evaluation {
+  ContactField<T> field;
+  Vector<T> rows_u, rows_l;
+  Residuals residuals;
+  RunScales scales;  ///< of the run, and of this iterate
+};
+
+template <class T, class E>
+Evaluation<T> evaluate(E& engine, const ContactInput<T>& input, const Vector<T>& u, const Vector<T>& multiplier,
+                       bool unknown, const RunScales& of_run) {
+  constexpr double rounding_factor = 100;  // several hundred terms meet in a row; each rounds once
+  const Model& model = input.model;
+  Evaluation<T> at;
+  RunScales& scales = at.scales;
+  scales = of_run;
+  const Vector<T> compact = engine.compact(u);
+  at.field = evaluate_contact<T>(input, compact, multiplier, nullptr);
+  ForceScale force{scales.force, 0};
+  at.rows_u = engine.residual(u, contact_forces(model, input.slots, at.field.traction), force);
+  scales.force = force.force;
+  double contact_rounding = 0;
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const auto& point = model.points[p];
+    const double area = value(input.slots.geometry[p].area), stiffness = value(input.slots.stiffness[p]);
+    double moved = value(at.field.gap[p]) - value(input.slots.geometry[p].gap);
+    moved *= moved;
+    double traction = value(at.field.traction[point.multiplier]);
+    traction *= traction;
+    for (int a = 0; a < point.tangents; ++a) {
+      const double s = value(at.field.placement[tangential_offset(model, static_cast<int>(p)) + a]);
+      const double t = value(at.field.traction[point.multiplier + 1 + a]);
+      moved += s * s;
+      traction += t * t;
+    }
+    traction = std::sqrt(traction);
+    scales.traction = std::max(scales.traction, traction);
+    scales.length = std::max({scales.length, std::sqrt(moved), area * traction / stiffness});
+    contact_rounding = std::max(contact_rounding, area * value(input.rho[p].normal));
+  }
+  const double reach = largest_nodal_norm(compact, model.dimension);
+  for (Eigen::Index row = 0; row < at.rows_u.size(); ++row)
+    if (!engine.is_free(row)) at.rows_u[row] = T(0);
+  at.residuals.equilibrium = ratio(largest_nodal_norm(at.rows_u, model.dimension), scales.force);
+  at.residuals.floor_equilibrium =
+      rounding_factor * ratio(force.rounding + unit_roundoff * contact_rounding * reach, scales.force);
+  at.residuals.floor_length = rounding_factor * ratio(unit_roundoff * reach, scales.length);
+  if (!unknown) return at;
+  at.rows_l = multiplier_residual(model, input.slots, at.field.traction, multiplier);
+  for (std::size_t p = 0; p < model.points.size(); ++p)
+    for (int c = 0; c < model.points[p].components(); ++c) {
+      const int k = model.points[p].multiplier + c;
+      const double defect = std::abs(value(at.field.traction[k]) - value(multiplier[k]));
+      const ContactState state = at.field.state[p];
+      const bool is_length = c == 0 ? state != ContactState::open : state == ContactState::stick;
+      const double rho = value(c == 0 ? input.rho[p].normal : input.rho[p].tangential);
+      const double relative = is_length ? ratio(defect / rho, scales.length) : ratio(defect, scales.traction);
+      double& worst = c == 0 ? at.residuals.normal : at.residuals.tangential;
+      worst = std::max(worst, relative);
+    }
+  return at;
+}
+
+inline std::size_t signature(const std::vector<ContactState>& states) {
+  std::size_t hash = 1469598103934665603ull;
+  for (ContactState s : states) hash = (hash ^ static_cast<std::size_t>(s)) * 1099511628211ull;
+  return hash;
+}
+
+template <class T>
+IterationRecord record(const Evaluation<T>& at, const std::vector<ContactState>& before, double step_length) {
+  IterationRecord r;
+  r.residual = at.residuals.largest();
+  r.equilibrium = at.residuals.equilibrium;
+  r.normal = at.residuals.normal;
+  r.tangential = at.residuals.tangential;
+  r.step_length = step_length;
+  for (std::size_t p = 0; p < at.field.state.size(); ++p) {
+    const ContactState s = at.field.state[p];
+    ++(s == ContactState::open ? r.open : s == ContactState::stick ? r.stick : r.slip);
+    if (!before.empty() && before[p] != s) ++r.changed;
+  }
+  return r;
+}
+
+/// The branches of the tangent: those of the evaluation, but a point at the apex of its cone (closed, no bound, no
+/// tangential trial) takes stick, which is an element of the generalised derivative there: a body that only friction holds
+/// then has a regular first tangent.
+template <class T>
+std::vector<ContactState> tangent_branches(const Model& model, const ContactInput<T>& input,
+                                           const ContactField<T>& field, const Vector<T>& multiplier) {
+  std::vector<ContactState> branches = field.state;
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    const auto& point = model.points[p];
+    if (branches[p] != ContactState::slip || point.tangents == 0 || value(input.slots.friction[point.contact]) == 0)
+      continue;
+    bool apex = value(field.traction[point.multiplier]) == 0;
+    for (int a = 0; a < point.tangents; ++a)
+      apex &= value(field.slip[tangential_offset(model, p) + a]) == 0 && value(multiplier[point.multiplier + 1 + a]) == 0;
+    if (apex) branches[p] = ContactState::stick;
+  }
+  return branches;
+}
+
+/// Whether the derivative that rides on a scalar still moves: nothing rides on a double; the oracle's imaginary part
+/// follows the real one an iteration later.
+template <class T>
+constexpr int extra_iterations() {
+  return std::is_same_v<T, double> ? 0 : 3;
+}
+
+}  // namespace detail
+
+/// Solves one equilibrium from the start values `u` (engine dofs) and `multiplier`. `unknown`: lambda is solved for;
+/// otherwise it stays as it is.
+template <class T, class E>
+Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vector<T> multiplier, bool unknown,
+                      const NewtonOptions& options, Account& account) {
+  const Model& model = input.model;
+  constexpr double shortest_step = 1.0 / 128;
+  Equilibrium<T> result;
+  std::vector<ContactState> used;                        // states of the last tangent
+  std::unordered_map<std::size_t, double> seen;          // active set -> smallest residual met with it
+  bool damped = false;
+  int extra = detail::extra_iterations<T>(), steady = 0;
+  double step_length = 1;
+  auto at = detail::evaluate(engine, input, u, multiplier, unknown, account.scales);
+  for (int iteration = 0;; ++iteration) {
+    result.history.push_back(detail::record(at, used, step_length));
+    result.history.back().changed = iteration == 0 ? 0 : result.history.back().changed;
+    const bool unchanged = iteration == 0 || result.history.back().changed == 0;
+    auto finish = [&](Status status, std::string message = "") {
+      result.status = status;
+      result.message = std::move(message);
+      result.iterations = iteration;
+      if (is_converged(status)) account.scales = at.scales;
+      result.u = std::move(u);
+      result.multiplier = std::move(multiplier);
+      result.field = std::move(at.field);
+      return std::move(result);
+    };
+    if (!at.residuals.finite()) return finish(Status::not_finite, "the residual is not finite");
+    steady = unchanged && iteration > 0 ? steady + 1 : 0;
+    if (unchanged && at.residuals.within(options.tolerance)) {
+      if (extra-- == 0) return finish(Status::converged);
+    } else if (steady >= 2 && at.residuals.within_rounding(options.tolerance) &&
+               2 * at.residuals.largest() > result.history[iteration - 1].residual) {
+      if (extra-- == 0)
+        return finish(Status::converged_at_roundoff, "the residual stopped falling at the level of rounding");
+    }
+    if (iteration >= options.max_iterations)
+      return finish(damped ? Status::cycle : Status::cap,
+                    damped ? "the active set repeats; try a smaller stiffness or scale, or more steps"
+                           : "Newton's method reached max_iterations; try more steps");
+    if (options.line_search && !damped && !unchanged) {
+      const auto [entry, fresh] = seen.try_emplace(detail::signature(at.field.state), at.residuals.largest());
+      damped = !fresh && at.residuals.largest() > 0.5 * entry->second;
+      entry->second = std::min(entry->second, at.residuals.largest());
+    }
+
+    used = at.field.state;
+    const auto branch = detail::tangent_branches(model, input, at.field, multiplier);
+    BlockVector<T> step;
+    {
+      std::vector<PointTangent<T>> tangents;
+      {
+        const Stopwatch time(account.seconds.assembly);
+        const Vector<T> compact = engine.compact(u);
+        for (int p = 0; p < static_cast<int>(model.points.size()); ++p)
+          tangents.push_back(point_tangent<T>(input, p, compact, multiplier, branch[p]));
+      }
+      const Stopwatch time(account.seconds.factorization);
+      if (!engine.factorise(tangents, account.counters)) return finish(Status::singular, engine.message());
+    }
+    {
+      const Stopwatch time(account.seconds.backsolve);
+      step = engine.solve({-at.rows_u, unknown ? Matrix<T>(-at.rows_l) : Matrix<T>()});
+      ++account.counters.backsolves;
+    }
+    ++account.counters.newton;
+    if (unknown)
+      for (std::size_t p = 0; p < model.points.size(); ++p)
+        for (int c = 0; c < model.points[p].components(); ++c)
+          step.l(model.points[p].multiplier + c, 0) *= c == 0 ? input.rho[p].normal : input.rho[p].tangential;
+
+    const Stopwatch time(account.seconds.assembly);
+    const double before = at.residuals.largest();
+    double best = std::numeric_limits<double>::infinity();
+    const Vector<T> u0 = u, multiplier0 = multiplier;
+    for (double length = 1; length > shortest_step; length /= 2) {
+      const Vector<T> u1 = u0 + T(length) * step.u.col(0);
+      const Vector<T> multiplier1 = unknown ? Vector<T>(multiplier0 + T(length) * step.l.col(0)) : multiplier0;
+      auto trial = detail::evaluate(engine, input, u1, multiplier1, unknown, account.scales);
+      const double merit = trial.residuals.largest();
+      if (merit < best || !std::isfinite(best)) {
+        best = merit;
+        step_length = length;
+        u = u1;
+        multiplier = multiplier1;
+        at = std::move(trial);
+      }
+      const bool new_branch = length == 1 && at.field.state != used;
+      if (!options.line_search || merit < 0.9 * before || (!damped && new_branch)) break;
+      if (at.residuals.within_rounding(options.tolerance)) break;
+    }
+  }
+}
+
+}  // namespace stickslip

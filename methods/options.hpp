@@ -1,0 +1,69 @@
+/// Options of the methods, with their defaults, meaning and range. One struct a method; `Method` is the closed set.
+#pragma once
+
+#include <string_view>
+#include <variant>
+
+#include "core/model/scene.hpp"
+
+namespace stickslip {
+
+/// Newton's method, the same for all.
+struct NewtonOptions {
+  double tolerance = 1e-12;  ///< relative, each residual to its own scale (methods/newton.hpp); 0 < tolerance < 1
+  int max_iterations = 50;   ///< per solve; >= 1
+  bool line_search = true;   ///< backtracking once the full step has repeated an active set without progress
+};
+
+/// Regularisation rho (force per length cubed) of each contact point. `relative` is a multiple of the local nodal
+/// stiffness per tributary area, k_i / A_i; `absolute` is the raw value.
+struct Regularisation {
+  enum class Kind { automatic, relative, absolute };
+  Kind kind = Kind::automatic;
+  Number value = 1.0;  ///< > 0; not used where automatic
+};
+
+struct Penalty {
+  static constexpr std::string_view name = "penalty";
+  static constexpr double automatic_multiple = 1e3;
+  Regularisation stiffness;
+  Number tangential_ratio = 1.0;  ///< tangential over normal penalty; > 0
+  NewtonOptions newton;
+};
+
+struct UzawaAL {
+  static constexpr std::string_view name = "uzawa_al";
+  static constexpr double automatic_multiple = 10;
+  enum class Sensitivity { iterated, truncated, oversized };
+  Regularisation scale;
+  double tolerance = 1e-10;      ///< error left in the multiplier (relative), and violation; 0 < tolerance < 1
+  int max_augmentations = 200;   ///< per increment; >= 1
+  bool adapt = true;             ///< multiply rho by 4 where an augmentation did not shrink the violation by 4
+  Sensitivity sensitivity = Sensitivity::iterated;
+  double oversize = 1e3;         ///< kappa_s of the oversized scheme; > 1
+  NewtonOptions newton;
+};
+
+struct MonolithicAL {
+  static constexpr std::string_view name = "monolithic_al";
+  static constexpr double automatic_multiple = 1;
+  enum class Cone { augmented, multiplier };
+  Regularisation scale;
+  Cone cone = Cone::augmented;   ///< radius -mu z_N (augmented) or -mu lambda_N (multiplier): same zeros, another path
+  NewtonOptions newton;
+};
+
+/// The closed set: what is missing in a visit over it does not compile.
+using Method = std::variant<Penalty, UzawaAL, MonolithicAL>;
+
+inline std::string_view name_of(const Method& method) {
+  return std::visit([](const auto& m) { return std::string_view(m.name); }, method);
+}
+
+/// Exact or fast: which linear algebra carries the run (scene key "linear_solver", results name what was used).
+struct LinearAlgebra {
+  enum class Engine { automatic, sparse, condensed };
+  Engine engine = Engine::automatic;
+};
+
+}  // namespace stickslip

@@ -1,0 +1,56 @@
+/// From the option `stiffness` or `scale` to rho of every contact point, force per length cubed:
+///
+///   relative c:  rho_i = c k_i / A_i        k_i: local nodal stiffness (core/model/slots), A_i: tributary area
+///   absolute:    rho_i = value
+///   automatic:   relative, with the multiple that the method's file gives
+///
+/// rho is a function of the scene, so its derivative is there by itself.
+#pragma once
+
+#include "core/model/contact_assembly.hpp"
+#include "methods/options.hpp"
+
+namespace stickslip {
+
+template <class T>
+RegularisationField<T> regularisation(const Slots<T>& slots, const Regularisation& option, double automatic_multiple,
+                                      const T& tangential_ratio) {
+  RegularisationField<T> rho;
+  for (std::size_t p = 0; p < slots.geometry.size(); ++p) {
+    const T local = slots.stiffness[p] / slots.geometry[p].area;
+    T normal{};
+    switch (option.kind) {
+      case Regularisation::Kind::automatic: normal = T(automatic_multiple) * local; break;
+      case Regularisation::Kind::relative: normal = slots.numbers(option.value) * local; break;
+      case Regularisation::Kind::absolute: normal = slots.numbers(option.value); break;
+    }
+    rho.push_back({normal, tangential_ratio * normal});
+  }
+  return rho;
+}
+
+/// rho of a method's options before any adaption.
+template <class T>
+RegularisationField<T> initial_regularisation(const Slots<T>& slots, const Penalty& m) {
+  return regularisation(slots, m.stiffness, Penalty::automatic_multiple, slots.numbers(m.tangential_ratio));
+}
+template <class T>
+RegularisationField<T> initial_regularisation(const Slots<T>& slots, const UzawaAL& m) {
+  return regularisation(slots, m.scale, UzawaAL::automatic_multiple, T(1));
+}
+template <class T>
+RegularisationField<T> initial_regularisation(const Slots<T>& slots, const MonolithicAL& m) {
+  return regularisation(slots, m.scale, MonolithicAL::automatic_multiple, T(1));
+}
+
+/// rho after adaption, per point factors (empty: none).
+template <class T>
+RegularisationField<T> adapted(RegularisationField<T> rho, const std::vector<double>& factor) {
+  for (std::size_t p = 0; p < factor.size(); ++p) {
+    rho[p].normal *= T(factor[p]);
+    rho[p].tangential *= T(factor[p]);
+  }
+  return rho;
+}
+
+}  // namespace stickslip

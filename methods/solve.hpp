@@ -1,0 +1,153 @@
+/// From a model to its trajectory: increments in time, with step cutting and clean rollback, for any method and scalar.
+/// solve_in is the template (the oracle of the tests instantiates it in complex numbers); solve() in methods/method.hpp
+/// is its use in double.
+#pragma once
+
+#include "methods/monolithic.hpp"
+#include "methods/penalty.hpp"
+#include "methods/uzawa.hpp"
+
+namespace stickslip {
+
+/// How a run is carried out, apart from its method.
+struct RunOptions {
+  LinearAlgebra linear_algebra;
+  Backend backend = Backend::automatic;
+  std::vector<double> replay;  ///< ends of the increments to repeat, without cutting; empty: the model's own steps
+};
+
+namespace detail {
+
+/// Good enough to go on from: converged, or cut off by max_augmentations as asked.
+template <class T>
+bool usable(const Increment<T>& increment) {
+  return is_converged(increment.status) || (increment.status == Status::cap && increment.augmentations > 0 &&
+                                            increment.message.starts_with("max_augmentations"));
+}
+
+/// Advances the trajectory to `target`; false where it gave up (the failed increment is then the last).
+template <class T, class E, class M>
+bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double target, bool may_cut) {
+  constexpr double smallest = 1.0 / 1024, regrowth = 1.5;
+  const std::size_t start_count = trajectory.increments.size();
+  const double start = start_count ? trajectory.increments.back().time : 0;
+  double reached = start, step = target - start;
+  int easy = 0, cutbacks = 0;
+  std::optional<Increment<T>> failed;
+  while (true) {
+    const bool last = reached + step >= target - 1e-9 * (target - start);
+    const double next = last ? target : reached + step;
+    const auto& increments = trajectory.increments;
+    const State<T>& previous = increments.empty() ? trajectory.initial : increments.back().state;
+    const auto factor = increments.empty() ? std::vector<double>{} : increments.back().rho_factor;
+    auto increment = solve_increment(method, run, previous, factor, next);
+    increment.time = next;
+    increment.requested = last;
+    increment.cutbacks = cutbacks;
+    if (usable(increment)) {
+      trajectory.increments.push_back(std::move(increment));
+      if (last) return true;
+      reached = next;
+      if (++easy >= 3) step *= regrowth;
+      continue;
+    }
+    if (!failed) failed = std::move(increment);
+    easy = 0;
+    step = (next - reached) / 2;
+    if (!may_cut || step < smallest * (target - start)) break;
+    ++cutbacks;
+    ++run.account.counters.cutbacks;
+  }
+  trajectory.increments.resize(start_count);
+  failed->time = target;
+  failed->requested = true;
+  failed->cutbacks = cutbacks;
+  trajectory.increments.push_back(std::move(*failed));
+  return false;
+}
+
+template <class T, class E, class M>
+void march(const M& method, const Model& model, const Slots<T>& slots, E& engine, const RunOptions& options,
+           Trajectory<T>& trajectory) {
+  Run<T, E> run{model, slots, engine, {}};
+  trajectory.initial = initial_state<T>(model);
+  const auto& times = options.replay.empty() ? model.times : options.replay;
+  for (double time : times) {
+    const bool reached = advance(method, run, trajectory, time, options.replay.empty());
+    const auto& last = trajectory.increments.back();
+    if (trajectory.status == Status::converged || !reached) {
+      if (last.status != Status::converged) {
+        trajectory.status = last.status;
+        trajectory.message = last.message;
+      }
+    }
+    if (!reached) break;
+  }
+  if (!options.replay.empty())
+    for (auto& increment : trajectory.increments)
+      increment.requested = std::binary_search(model.times.begin(), model.times.end(), increment.time);
+  trajectory.counters += run.account.counters;
+  trajectory.seconds.assembly += run.account.seconds.assembly;
+  trajectory.seconds.factorization += run.account.seconds.factorization;
+  trajectory.seconds.backsolve += run.account.seconds.backsolve;
+  trajectory.engine = engine.name();
+  trajectory.reduced_unknowns = engine.unknowns();
+}
+
+/// Whether the condensed engine is the cheaper one: the dense factor of the contact dofs against a sparse one of all
+/// (about 30 n^1.5 operations in 2D, at a third of the dense rate).
+inline bool condensed_pays(const Model& model) {
+  const double dense = std::pow(double(model.contact_nodes.size()) * model.dimension + model.multiplier_count, 3) / 1.5;
+  const double sparse = 100 * std::pow(double(model.free_dofs.size()), 1.5);
+  return dense < sparse || model.free_dofs.size() < 200;
+}
+
+}  // namespace detail
+
+/// What a run allocates and leaves for its sensitivities: owned by the caller, the only mutable thing beside them.
+/// `condensation` may be handed on to another run on the same slots (a sweep over methods): it is reused if it is there.
+template <class T>
+struct Workspace {
+  std::shared_ptr<Condensation<T>> condensation;
+  std::optional<Engine<T>> engine;
+};
+
+/// Builds the engine a run asks for: condensed where the bodies are linear and it pays (or it is demanded).
+template <class T>
+void make_engine(const Model& model, const Slots<T>& slots, bool unknown_multipliers, const RunOptions& options,
+                 Workspace<T>& workspace) {
+  using Kind = LinearAlgebra::Engine;
+  const Kind kind = options.linear_algebra.engine;
+  auto& condensation = workspace.condensation;
+  if (kind == Kind::condensed || (kind == Kind::automatic && detail::condensed_pays(model))) {
+    if (!condensation) condensation = std::make_shared<Condensation<T>>(model, slots, options.backend);
+    if (condensation->valid()) {
+      workspace.engine.emplace(std::in_place_type<CondensedEngine<T>>, model, slots, unknown_multipliers, condensation);
+      return;
+    }
+  }
+  workspace.engine.emplace(std::in_place_type<SparseEngine<T>>, model, slots, unknown_multipliers, options.backend);
+}
+
+/// Runs a method through a model. `model` and `slots` must outlive the workspace's engine.
+template <class T>
+Trajectory<T> solve_in(const Model& model, const Slots<T>& slots, const Method& method, const RunOptions& options,
+                       Workspace<T>& workspace) {
+  Trajectory<T> trajectory;
+  const Stopwatch total(trajectory.seconds.total);
+  const bool reused = workspace.condensation != nullptr;
+  {
+    const Stopwatch setup(trajectory.seconds.setup);
+    make_engine<T>(model, slots, std::holds_alternative<MonolithicAL>(method), options, workspace);
+  }
+  if (workspace.condensation && !reused) trajectory.counters += workspace.condensation->counters;
+  std::visit(
+      [&](const auto& m) {
+        std::visit([&](auto& engine) { detail::march(m, model, slots, engine, options, trajectory); },
+                   *workspace.engine);
+      },
+      method);
+  return trajectory;
+}
+
+}  // namespace stickslip
