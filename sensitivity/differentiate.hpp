@@ -1,0 +1,25 @@
+/// From a trajectory to the derivatives of all responses with respect to all parameters of the scene, by the scheme that
+/// matches the method that ran.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "methods/method.hpp"
+
+namespace stickslip {
+
+struct Gradients {
+  Status status = Status::converged;  ///< singular: the tangent of an increment; cap: an iterated scheme did not settle
+  std::string message;
+  /// Per increment of the trajectory: responses x parameters. Ends where the scheme failed.
+  std::vector<Matrix<double>> of;
+  Counters counters;
+  double seconds = 0;
+};
+
+/// `workspace`: that of the run (its engine is used and left with another factor). The trajectory is not changed.
+Gradients differentiate(const Model& model, const Slots<double>& slots, const Method& method,
+                        const Trajectory<double>& trajectory, Workspace<double>& workspace);
+
+}  // namespace stickslip

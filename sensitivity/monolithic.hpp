@@ -1,0 +1,29 @@
+/// Monolithic augmented Lagrangian: exact and not iterative. lambda is part of p, so one back-solve a parameter with the
+/// tangent of the converged state gives Du and D lambda together, all parameters in one block. The only history is the slip
+/// placement; the last lambda is a start value and is not differentiated. The derivative with respect to rho vanishes
+/// at the solution. [SLK10]
+#pragma once
+
+#include "sensitivity/direct.hpp"
+
+namespace stickslip {
+
+template <class E>
+bool differentiate_increment(const MonolithicAL& method, Differentiation<E>& problem, const State<double>& previous,
+                             const Increment<double>& increment) {
+  const auto rho = initial_regularisation(problem.slots, method);
+  std::vector<RegularisationField<Direction>> rho_blocks;
+  std::vector<Vector<Direction>> lambda;
+  for (auto& block : problem.blocks) {
+    rho_blocks.push_back(initial_regularisation(block.slots, method));
+    lambda.push_back(lift(increment.state.multiplier));
+  }
+  LinearisedEquilibrium<E> linearised(problem, increment.state, rho, std::move(rho_blocks), cone_radius(method),
+                                      increment.time, true, previous.contact.placement);
+  if (!linearised.valid()) return false;
+  const auto fields = linearised.solve(lambda);
+  linearised.settle(fields, lambda);
+  return true;
+}
+
+}  // namespace stickslip

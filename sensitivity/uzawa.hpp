@@ -1,0 +1,114 @@
+/// Uzawa: the derivative of  lambda <- t(u(lambda), lambda)  mirrors the updates.
+///
+///   iterated   (two-phase) lambda first converges, then  D lambda <- D t(Du(D lambda), D lambda)  with one factorisation,
+///              a back-solve a parameter and pass, until settled: error q^m, q the contraction of the updates
+///   truncated  (piggyback) one pass per augmentation that was performed, with its own tangent: the exact derivative of
+///              the truncated algorithm, for a loop that was cut off or stopped at a coarse tolerance
+///   oversized  one pass with kappa_s rho in place of rho, states frozen: error O(1/kappa_s), no iteration [SZ00]
+///
+/// All carry D lambda of the last increment in as D lambda^0. [SLK10 sec. 1], [CD20]
+#pragma once
+
+#include "sensitivity/direct.hpp"
+
+namespace stickslip {
+
+namespace detail {
+
+/// D lambda of the last increment on the value of `multiplier`.
+template <class E>
+std::vector<Vector<Direction>> carried_multiplier(Differentiation<E>& problem, const Vector<double>& multiplier) {
+  std::vector<Vector<Direction>> lambda;
+  for (auto& block : problem.blocks) {
+    lambda.push_back(lift(multiplier));
+    for (Eigen::Index k = 0; k < multiplier.size(); ++k)
+      lambda.back()[k].d = block.previous.contact.traction[k].d;
+  }
+  return lambda;
+}
+
+/// lambda with the derivative of `fields`.
+inline void update(std::vector<Vector<Direction>>& lambda, const std::vector<ContactField<Direction>>& fields) {
+  for (std::size_t b = 0; b < lambda.size(); ++b)
+    for (Eigen::Index k = 0; k < lambda[b].size(); ++k) lambda[b][k].d = fields[b].traction[k].d;
+}
+
+template <class E>
+LinearisedEquilibrium<E> linearise(const UzawaAL& method, Differentiation<E>& problem, const State<double>& previous,
+                                   const State<double>& at, std::vector<double> factor, double oversize, double time,
+                                   RegularisationField<double>& rho) {
+  for (double& f : factor) f *= oversize;
+  rho = adapted(initial_regularisation(problem.slots, method), factor);
+  std::vector<RegularisationField<Direction>> rho_blocks;
+  for (auto& block : problem.blocks) rho_blocks.push_back(adapted(initial_regularisation(block.slots, method), factor));
+  return LinearisedEquilibrium<E>(problem, at, rho, std::move(rho_blocks), ConeRadius::augmented, time, false,
+                                  previous.contact.placement);
+}
+
+/// Iterates D lambda until the change, extrapolated by its own contraction, is below `tolerance` of D lambda or at the
+/// rounding of rho Dg, for every parameter.
+template <class E>
+bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, const RegularisationField<double>& rho,
+             std::vector<Vector<Direction>>& lambda, std::vector<ContactField<Direction>>& fields) {
+  constexpr double tolerance = 1e-13, rounding = 1e-16;
+  constexpr int limit = 20000;
+  double stiffest = 0;
+  for (const auto& r : rho) stiffest = std::max(stiffest, r.normal);
+  Eigen::ArrayXd last = Eigen::ArrayXd::Zero(problem.parameters);
+  auto columns = [&](auto&& pick) { return gather(problem.blocks, problem.parameters, pick); };
+  for (int pass = 1; pass <= limit; ++pass) {
+    const Matrix<double> before = columns([&](auto&, int b) -> auto& { return lambda[b]; });
+    fields = linearised.solve(lambda);
+    const Matrix<double> after = columns([&](auto&, int b) -> auto& { return fields[b].traction; });
+    update(lambda, fields);
+    bool settled = true;
+    for (int j = 0; j < problem.parameters && after.rows() > 0; ++j) {
+      const double change = (after.col(j) - before.col(j)).cwiseAbs().maxCoeff();
+      const double size = after.col(j).cwiseAbs().maxCoeff();
+      const double floor = 8 * rounding * stiffest * linearised.relative_reach().col(j).cwiseAbs().maxCoeff();
+      const double q = last[j] > 0 ? change / last[j] : 1;
+      const double left = q < 1 ? change * q / (1 - q) : change;
+      const bool stalled = pass > 3 && change <= std::max(floor, 4 * rounding * size);
+      settled &= change == 0 || stalled || (q < 1 && pass > 2 && left <= tolerance * size);
+      last[j] = change;
+    }
+    if (settled) return true;
+  }
+  problem.message = "the iterated sensitivity did not settle in 20000 passes; try a larger scale, or oversized";
+  return false;
+}
+
+}  // namespace detail
+
+template <class E>
+bool differentiate_increment(const UzawaAL& method, Differentiation<E>& problem, const State<double>& previous,
+                             const Increment<double>& increment) {
+  RegularisationField<double> rho;
+  if (method.sensitivity == UzawaAL::Sensitivity::truncated) {
+    auto lambda = detail::carried_multiplier(problem, previous.contact.traction);
+    for (const auto& sweep : increment.sweeps) {
+      auto linearised = detail::linearise(method, problem, previous, sweep.state, sweep.rho_factor, 1, increment.time, rho);
+      if (!linearised.valid()) return false;
+      for (std::size_t b = 0; b < lambda.size(); ++b)
+        for (Eigen::Index k = 0; k < lambda[b].size(); ++k) lambda[b][k].v = sweep.state.multiplier[k];
+      const auto fields = linearised.solve(lambda);
+      linearised.settle(fields, lambda);
+      detail::update(lambda, fields);
+    }
+    return true;
+  }
+  const bool oversized = method.sensitivity == UzawaAL::Sensitivity::oversized;
+  auto linearised = detail::linearise(method, problem, previous, increment.state, increment.rho_factor,
+                                      oversized ? method.oversize : 1, increment.time, rho);
+  if (!linearised.valid()) return false;
+  auto lambda = detail::carried_multiplier(problem, increment.state.multiplier);
+  std::vector<ContactField<Direction>> fields;
+  if (oversized)
+    fields = linearised.solve(lambda);
+  else if (!detail::iterate(problem, linearised, rho, lambda, fields))
+    return false;
+  linearised.settle(fields, lambda);
+  return true;
+}
+
+}  // namespace stickslip

@@ -1,0 +1,127 @@
+#include "studies/metrics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/model/response.hpp"
+
+namespace stickslip {
+namespace {
+
+/// A point on the cone to within this share of its bound counts as on it.
+constexpr double on_cone = 1e-6;
+
+/// Tangential parts of a point: traction, slip of the increment.
+struct Tangential {
+  Eigen::VectorXd traction, slip;
+};
+
+Tangential tangential(const Model& model, const State<double>& state, int p) {
+  const auto& point = model.points[p];
+  return {state.contact.traction.segment(point.multiplier + 1, point.tangents),
+          state.contact.slip.segment(tangential_offset(model, p), point.tangents)};
+}
+
+struct Scales {
+  double length = 0, traction = 0, force = 0;
+};
+
+/// Largest relative displacement (or elastic displacement of the tractions), traction and nodal force of a state.
+void enlarge(const Model& model, const Slots<double>& slots, const State<double>& state, double time, Scales& scales) {
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const auto& point = model.points[p];
+    const double traction = state.contact.traction.segment(point.multiplier, point.components()).norm();
+    const double normal = state.contact.gap[p] - slots.geometry[p].gap;
+    const double along =
+        state.contact.placement.segment(tangential_offset(model, static_cast<int>(p)), point.tangents).norm();
+    scales.traction = std::max(scales.traction, traction);
+    scales.length = std::max({scales.length, std::hypot(normal, along),
+                              slots.geometry[p].area * traction / slots.stiffness[p]});
+  }
+  const int D = model.dimension;
+  scales.force = std::max({scales.force, largest_nodal_norm(bulk_forces(model, slots, state.displacement), D),
+                           largest_nodal_norm(external_forces(model, slots, time), D),
+                           largest_nodal_norm(contact_forces(model, slots, state.contact.traction), D)});
+}
+
+double relative(double x, double scale) { return x == 0 ? 0 : x / scale; }
+
+}  // namespace
+
+double KktError::largest() const { return std::max({equilibrium, gap, complementarity, cone, stick, slip_direction}); }
+
+std::vector<KktError> kkt_errors(const Model& model, const Slots<double>& slots, const Trajectory<double>& trajectory) {
+  std::vector<KktError> errors;
+  Scales scales;
+  std::vector<Eigen::VectorXd> creep;
+  for (const auto& point : model.points) creep.push_back(Eigen::VectorXd::Zero(point.tangents));
+  for (const auto& increment : trajectory.increments) {
+    const auto& state = increment.state;
+    enlarge(model, slots, state, increment.time, scales);
+    KktError e;
+    Vector<double> balance = nodal_balance(model, slots, state, increment.time);
+    for (const auto& constraint : model.constraints) balance[constraint.dof] = 0;
+    e.equilibrium = relative(largest_nodal_norm(balance, model.dimension), scales.force);
+    for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+      const auto& point = model.points[p];
+      const double gap = state.contact.gap[p], pressure = -state.contact.traction[point.multiplier];
+      const double elastic = slots.stiffness[p] / slots.geometry[p].area;
+      e.gap = std::max(e.gap, relative(std::max(0.0, -gap), scales.length));
+      e.complementarity = std::max(e.complementarity, relative(std::abs(std::min(gap * elastic, pressure)), scales.traction));
+      if (point.tangents == 0) continue;
+      const auto [traction, slip] = tangential(model, state, p);
+      const double bound = slots.friction[point.contact] * std::max(0.0, pressure), size = traction.norm();
+      e.cone = std::max(e.cone, relative(std::max(0.0, size - bound), scales.traction));
+      const bool inside = pressure > 0 && size < bound * (1 - on_cone);
+      creep[p] = inside ? Eigen::VectorXd(creep[p] + slip) : Eigen::VectorXd::Zero(point.tangents);
+      e.stick = std::max(e.stick, relative(creep[p].norm(), scales.length));
+      const double moved = slip.norm();
+      if (!inside && size > 0 && moved > 1e-9 * scales.length)
+        e.slip_direction = std::max(e.slip_direction, 1 - traction.dot(slip) / (size * moved));
+    }
+    errors.push_back(e);
+  }
+  return errors;
+}
+
+Margins margins(const Model& model, const Slots<double>& slots, const State<double>& state) {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  Margins margin{none, none};
+  double largest = 0;
+  for (const auto& point : model.points) largest = std::max(largest, -state.contact.traction[point.multiplier]);
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    const auto& point = model.points[p];
+    const double pressure = -state.contact.traction[point.multiplier];
+    const double elastic = slots.stiffness[p] / slots.geometry[p].area;
+    const bool open = state.contact.state[p] == ContactState::open;
+    const double distance = open ? elastic * state.contact.gap[p] : pressure;
+    margin.open = std::min(margin.open, largest > 0 ? distance / largest : none);
+    if (open || point.tangents == 0) continue;
+    const auto [traction, slip] = tangential(model, state, p);
+    const double bound = slots.friction[point.contact] * pressure;
+    const double reach = state.contact.state[p] == ContactState::stick ? bound - traction.norm() : elastic * slip.norm();
+    if (bound > 0) margin.slip = std::min(margin.slip, reach / bound);
+  }
+  return margin;
+}
+
+std::vector<ContactSummary> summarise(const Model& model, const Slots<double>& slots, const State<double>& state) {
+  std::vector<ContactSummary> all(model.scene.contacts.size());
+  for (auto& summary : all) summary.tangential_force.assign(model.dimension, 0.0);
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    const auto& point = model.points[p];
+    auto& summary = all[point.contact];
+    const ContactState s = state.contact.state[p];
+    ++(s == ContactState::open ? summary.open : s == ContactState::stick ? summary.stick : summary.slip);
+    summary.penetration = std::max(summary.penetration, -state.contact.gap[p]);
+    summary.normal_force -= slots.geometry[p].area * state.contact.traction[point.multiplier];
+    for (int i = 0; i < model.dimension; ++i)
+      for (int a = 0; a < point.tangents; ++a)
+        summary.tangential_force[i] -= slots.geometry[p].area * state.contact.traction[point.multiplier + 1 + a] *
+                                       slots.geometry[p].tangents(i, a);
+  }
+  return all;
+}
+
+}  // namespace stickslip
