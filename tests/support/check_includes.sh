@@ -1,0 +1,83 @@
+#!/usr/bin/env bash
+# check_includes.sh SOURCE_DIR: fails and names each #include that points the wrong way.
+# check_includes.sh --self-test: fails where a wrong include would go unseen.
+#
+#   core <- methods <- sensitivity <- studies; within core: algebra, mesh <- solids, contact <- model.
+#   core/model/scene.hpp, the plain description of a scene, is open to all of core but algebra.
+#   Below studies/ there is no JSON and no printing; solver libraries are seen by core/algebra alone.
+set -euo pipefail
+
+# what the quoted includes of a folder may begin with
+allowed() {
+  case "$1" in
+    core/algebra) echo 'core/algebra/' ;;
+    core/mesh) echo 'core/(algebra|mesh)/|core/model/scene\.hpp' ;;
+    core/solids) echo 'core/(algebra|mesh|solids)/|core/model/scene\.hpp' ;;
+    core/contact) echo 'core/(algebra|mesh|solids|contact)/|core/model/scene\.hpp' ;;
+    core/model) echo 'core/' ;;
+    methods) echo '(core|methods)/' ;;
+    sensitivity) echo '(core|methods|sensitivity)/' ;;
+    studies) echo '(core|methods|sensitivity|studies)/' ;;
+  esac
+}
+folders="core/algebra core/mesh core/solids core/contact core/model methods sensitivity studies"
+solver_headers='<(cholmod|umfpack|dmumps_c|SuiteSparse_config)[^>]*>'
+printing='<(nlohmann|fmt|CLI)/|<(iostream|print)>|\b(printf|fprintf|puts|cout|cerr)\b'
+
+check() {
+  cd "$1"
+  local folder wrong="" found
+  for folder in $folders; do
+    [ -d "$folder" ] || continue
+    found=$(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' --include='*.[hc]pp' "$folder" |
+      grep -vE "\"($(allowed "$folder"))" || true)
+    wrong+=${found:+$found$'\n'}
+    case "$folder" in core/algebra) ;; *)
+      found=$(grep -rnE "#[[:space:]]*include[[:space:]]*$solver_headers" --include='*.[hc]pp' "$folder" || true)
+      wrong+=${found:+$found$'\n'} ;;
+    esac
+    case "$folder" in studies) ;; *)
+      found=$(grep -rnE "$printing" --include='*.[hc]pp' "$folder" | grep -vE ':[0-9]+:[[:space:]]*//' || true)
+      wrong+=${found:+$found$'\n'} ;;
+    esac
+  done
+  if [ -n "$wrong" ]; then
+    printf 'against the direction of includes (see %s):\n%s' "tests/support/check_includes.sh" "$wrong" >&2
+    return 1
+  fi
+}
+
+self_test() {
+  local line folder
+  tree=$(mktemp -d)
+  trap 'rm -rf "$tree"' EXIT
+  mkdir -p "$tree"/core/{algebra,mesh,solids,contact,model} "$tree"/{methods,sensitivity,studies}
+  echo '#include "core/algebra/scalar.hpp"' >"$tree/studies/good.cpp"
+  echo '#include "core/model/scene.hpp"' >"$tree/core/mesh/good.hpp"
+  (check "$tree") || { echo "a good tree is refused" >&2; return 1; }
+  while read -r folder line; do
+    echo "$line" >"$tree/$folder/wrong.hpp"
+    if (check "$tree") 2>/dev/null; then
+      echo "unseen in $folder: $line" >&2
+      return 1
+    fi
+    rm "$tree/$folder/wrong.hpp"
+  done <<'CASES'
+core/algebra #include "core/mesh/mesh.hpp"
+core/mesh #include "core/model/model.hpp"
+core/solids #include "core/contact/friction.hpp"
+core/contact #  include "core/model/state.hpp"
+core/model #include "methods/options.hpp"
+core/model #include <nlohmann/json.hpp>
+methods #include "sensitivity/direct.hpp"
+methods #include <umfpack.h>
+sensitivity #include "studies/vtu.hpp"
+sensitivity std::cout << "iteration";
+studies #include "bench/kernels.hpp"
+CASES
+}
+
+case "${1:---self-test}" in
+  --self-test) self_test ;;
+  *) check "$1" ;;
+esac
