@@ -59,7 +59,7 @@ Increment<T> solve_increment(const UzawaAL& method, Run<T, E>& run, const State<
   Vector<T> u = run.engine.begin(time, previous.displacement), lambda = previous.contact.traction;
   std::vector<double> violations;
   std::vector<ContactState> states;
-  double last_update = 0;
+  double last_update = 0, last_riding = std::numeric_limits<double>::infinity();
   NewtonOptions inner = method.newton;  // an inner residual above the outer tolerance would stall the updates
   inner.tolerance = std::min(inner.tolerance, 0.01 * method.tolerance);
   for (int sweep = 1;; ++sweep) {
@@ -93,7 +93,8 @@ Increment<T> solve_increment(const UzawaAL& method, Run<T, E>& run, const State<
     const bool at_roundoff = settled && worst <= rounding && last_update > 0 && 2 * update > last_update;
     const bool done = (settled || largest_update == 0) &&
                       ((left <= method.tolerance * run.account.scales.traction && worst <= negligible) || at_roundoff);
-    const bool still_riding = !truncated && detail::riding(change) > 1e-15 * detail::riding(equilibrium.field.traction);
+    const double riding = truncated ? 0 : detail::riding(change);
+    const bool still_riding = riding > 1e-13 * detail::riding(equilibrium.field.traction) && !(riding >= last_riding);
     const int limit = method.max_augmentations * (std::is_same_v<T, double> || truncated ? 1 : 20);
     if (done && at_roundoff && left > method.tolerance * run.account.scales.traction)
       increment.status = Status::converged_at_roundoff;
@@ -108,6 +109,7 @@ Increment<T> solve_increment(const UzawaAL& method, Run<T, E>& run, const State<
     violations = now;
     states = equilibrium.field.state;
     last_update = update;
+    last_riding = done ? riding : std::numeric_limits<double>::infinity();
     u = equilibrium.u;
     lambda = equilibrium.field.traction;
   }

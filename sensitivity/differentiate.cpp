@@ -33,6 +33,8 @@ void run(const M& method, Differentiation<E>& problem, const Trajectory<double>&
     for (auto& block : problem.blocks)
       responses.push_back(evaluate_responses(model, block.slots, block.current, increment.time));
     gradients.of.push_back(gather(problem.blocks, problem.parameters, [&](auto&, int b) -> auto& { return responses[b]; }));
+    gradients.last_displacement = gather(problem.blocks, problem.parameters,
+                                         [](ParameterBlock& block, int) -> auto& { return block.current.displacement; });
     for (auto& block : problem.blocks) std::swap(block.previous, block.current);
     previous = &increment.state;
   }

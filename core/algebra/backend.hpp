@@ -2,7 +2,7 @@
 ///
 /// Each class holds one pattern, analysed in its constructor, and offers
 ///   Factorisation factorise(const T* values)                    a new factor, or why there is none
-///   void solve(const Matrix<T>& b, Matrix<T>& x, bool transposed)  pre: the last factorise() was done; x is n x columns
+///   void solve(const Matrix<T>& b, Matrix<T>& x, bool transposed)  sets x; pre: the last factorise() was done
 ///   std::string name() const                                    library, version, kind, ordering
 ///   long factor_nonzeros() const                                entries of the last factor
 /// `Factor<T>` is the closed set of those built in. Data is what the library keeps; it is held by a shared_ptr because

@@ -27,8 +27,8 @@ struct CholmodFactor::Data {
     common.try_catch = true;  // no text on stdout: the status is read after each call
     common.supernodal = CHOLMOD_SUPERNODAL;
     common.quick_return_if_not_posdef = true;
-    // AMD; METIS too, and the better of the two, where AMD's factor costs over 500 flops an entry and fills in fivefold:
-    // in 3D it does, in 2D METIS takes ten times the analysis for a tie.
+    // AMD; METIS too, and the better of the two, where AMD's factor costs over 500 flops an entry and fills in
+    // fivefold: in 3D it does, in 2D METIS takes ten times the analysis for a tie.
     common.nmethods = 0;
   }
   Data(const Data&) = delete;
@@ -98,8 +98,8 @@ CholmodFactor::CholmodFactor(std::shared_ptr<const Pattern> pattern)
 Factorisation CholmodFactor::factorise(const double* values) {
   using Outcome = Factorisation::Outcome;
   Data& d = *data_;
-  const auto no_diagonal = std::find_if(d.diagonal.begin(), d.diagonal.end(),
-                                        [&](int entry) { return entry < 0 || !(values[entry] > 0); });
+  const auto no_diagonal =
+      std::find_if(d.diagonal.begin(), d.diagonal.end(), [&](int entry) { return entry < 0 || !(values[entry] > 0); });
   if (no_diagonal != d.diagonal.end())
     return {Outcome::not_positive_definite,
             "diagonal entry of row " + std::to_string(no_diagonal - d.diagonal.begin()) + " is not positive"};

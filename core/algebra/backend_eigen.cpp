@@ -13,8 +13,8 @@ template <class T>
 struct EigenFactor<T>::Data {
   using Sparse = Eigen::SparseMatrix<T, Eigen::ColMajor, int>;
   std::shared_ptr<const Pattern> pattern;
-  Sparse matrix;                        ///< R A
-  Eigen::VectorXd row_scale;            ///< R: powers of two, so that scaling rounds nothing
+  Sparse matrix;              ///< R A
+  Eigen::VectorXd row_scale;  ///< R: powers of two, so that scaling rounds nothing
   Eigen::SparseLU<Sparse, Eigen::COLAMDOrdering<int>> lu;
 
   /// Smallest |u_kk| over the largest entry of the row-scaled column it came from.
@@ -40,8 +40,8 @@ EigenFactor<T>::EigenFactor(std::shared_ptr<const Pattern> pattern) : data_(std:
   d.pattern = std::move(pattern);
   const Pattern& p = *d.pattern;
   const std::vector<T> ones(p.row.size(), T(1));
-  d.matrix = Eigen::Map<const typename Data::Sparse>(p.size, p.size, p.nonzeros(), p.column_start.data(),
-                                                     p.row.data(), ones.data());
+  d.matrix = Eigen::Map<const typename Data::Sparse>(p.size, p.size, p.nonzeros(), p.column_start.data(), p.row.data(),
+                                                     ones.data());
   d.lu.analyzePattern(d.matrix);
 }
 
@@ -51,8 +51,7 @@ Factorisation EigenFactor<T>::factorise(const T* values) {
   Data& d = *data_;
   const Pattern& p = *d.pattern;
   d.row_scale.setZero(p.size);
-  for (int e = 0; e < p.nonzeros(); ++e)
-    d.row_scale[p.row[e]] = std::max(d.row_scale[p.row[e]], std::abs(values[e]));
+  for (int e = 0; e < p.nonzeros(); ++e) d.row_scale[p.row[e]] = std::max(d.row_scale[p.row[e]], std::abs(values[e]));
   for (int i = 0; i < p.size; ++i) {
     if (!(d.row_scale[i] > 0)) return {Outcome::singular, "row " + std::to_string(i) + " is zero"};
     d.row_scale[i] = std::exp2(-std::ilogb(d.row_scale[i]));

@@ -15,7 +15,7 @@ namespace {
 constexpr int job_initialise = -1, job_terminate = -2, job_analyse = 1, job_factorise = 2, job_solve = 3;
 constexpr int use_comm_world = -987654;  // the users' guide's number for MPI_COMM_WORLD
 constexpr int ordering_amd = 0, ordering_pord = 4;
-constexpr int columns_at_a_time = 32;    // of a block of right-hand sides
+constexpr int columns_at_a_time = 32;  // of a block of right-hand sides
 
 }  // namespace
 
@@ -34,7 +34,7 @@ struct MumpsFactor::Data {
     run(job_initialise);
     for (int i : {1, 2, 3}) icntl(i) = -1;  // no output unit
     icntl(4) = 0;
-    icntl(6) = 0;   // no column permutation by value: the pattern is analysed before there are values
+    icntl(6) = 0;  // no column permutation by value: the pattern is analysed before there are values
     // PORD: SCOTCH and the automatic choice give another ordering, thus other bits, in each run. But PORD ends the
     // process on a complete graph, so matrices near that go to AMD; they have little to gain from an ordering.
     const long n = pattern->size, dense = n * n / 2;

@@ -98,9 +98,9 @@ void UmfpackFactor::solve(const Matrix<double>& b, Matrix<double>& x, bool trans
   Data& d = *data_;
   x.resize(b.rows(), b.cols());
   for (Eigen::Index c = 0; c < b.cols(); ++c) {
-    const int status = umfpack_di_wsolve(transposed ? UMFPACK_At : UMFPACK_A, nullptr, nullptr, nullptr,
-                                         x.col(c).data(), b.col(c).data(), d.numeric, d.control, nullptr,
-                                         d.integer_work.data(), d.work.data());
+    const int status =
+        umfpack_di_wsolve(transposed ? UMFPACK_At : UMFPACK_A, nullptr, nullptr, nullptr, x.col(c).data(),
+                          b.col(c).data(), d.numeric, d.control, nullptr, d.integer_work.data(), d.work.data());
     if (status < UMFPACK_OK) throw std::bad_alloc();  // the factor is good, so nothing else can go wrong
   }
 }

@@ -1,5 +1,6 @@
-/// Lumped bodies: one node, and chains of bars along a line or a circular arc, nodes in order along the chain.
-/// Chains have the sides `start`, `end`, `nodes` (all), `interior` (all but the ends); a point `node` and `anchor`.
+/// Lumped bodies: a node on a spring, and chains of bars along a line or a circular arc, nodes in order along the
+/// chain. Chains have the sides `start`, `end`, `nodes` (all), `interior` (all but the ends); a point `node` and
+/// `anchor`.
 #pragma once
 
 #include <string>

@@ -139,6 +139,9 @@ std::optional<ElementShape> shape_of(long long type) {
 
 int dimension_of(ElementShape shape) { return shape == ElementShape::point ? 0 : shape == ElementShape::bar2 ? 1 : 2; }
 
+/// Nodes Gmsh writes for an element: a point of a mesh file has no anchor.
+int nodes_in_file(ElementShape shape) { return shape == ElementShape::point ? 1 : nodes_of(shape); }
+
 class Parser {
  public:
   Parser(const std::string& text, const std::string& file_name, MshFile& file)
@@ -320,7 +323,7 @@ class Parser {
 
   void add_element(long long tag, ElementShape shape, const std::vector<long long>& groups, std::size_t offset) {
     MshElement element{tag, shape, {}, {dimension_of(shape), 0}, offset};
-    for (int k = 0; k < nodes_of(shape); ++k) {
+    for (int k = 0; k < nodes_in_file(shape); ++k) {
       const std::size_t node_offset = tokens_.offset();
       const long long node = tokens_.integer("a node of element " + std::to_string(tag));
       const auto known = position_.find(node);

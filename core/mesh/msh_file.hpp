@@ -25,7 +25,7 @@ struct MshNode {
 struct MshElement {
   long long tag = 0;
   ElementShape shape = ElementShape::point;
-  std::array<int, 4> nodes{};  ///< positions in MshFile::nodes, nodes_of(shape) of them
+  std::array<int, 4> nodes{};  ///< positions in MshFile::nodes: 1, 2, 3 or 4 by the shape
   MshGroup group;              ///< number 0: in no group
   std::size_t offset = 0;      ///< of its first character in the text
 };

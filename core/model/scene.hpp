@@ -73,7 +73,7 @@ struct HalfDiskMesh {
   Number grade = 1.0;              ///< largest / smallest cell along the arc, smallest at the pole
   std::string facing = "down";
 };
-/// One node. Sides NAME.node, NAME.anchor (grounded_spring).
+/// One node and the anchor of its spring, at the same place. Sides NAME.node, NAME.anchor (grounded_spring).
 struct PointMesh {
   std::vector<Number> at;  ///< 2 or 3 coordinates
 };

@@ -1,0 +1,376 @@
+#include "core/mesh/generators.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <stdexcept>
+
+#include "core/mesh/quality.hpp"
+
+namespace stickslip {
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+/// Area of all elements of a plane mesh.
+double area(const Mesh& mesh, const Points<double>& points) {
+  const int count = nodes_of(mesh.shape);
+  double sum = 0;
+  for (int e = 0; e < mesh.element_count(); ++e)
+    for (int k = 0; k < count; ++k) {
+      const int a = mesh.connectivity[e * count + k], b = mesh.connectivity[e * count + (k + 1) % count];
+      sum += (points(0, a) * points(1, b) - points(0, b) * points(1, a)) / 2;
+    }
+  return sum;
+}
+
+/// Area the facets of these sides enclose, by the divergence theorem: positive if the solid lies on their left.
+double enclosed(const Mesh& mesh, const Points<double>& points) {
+  double sum = 0;
+  for (const auto& [name, side] : mesh.sides)
+    for (const auto& facet : side.facets)
+      sum += (points(0, facet[0]) * points(1, facet[1]) - points(0, facet[1]) * points(1, facet[0])) / 2;
+  return sum;
+}
+
+/// Least sine over the corners of all elements.
+double worst_corner(const Mesh& mesh, const Points<double>& points) {
+  const int count = nodes_of(mesh.shape);
+  double worst = 1;
+  for (int e = 0; e < mesh.element_count(); ++e)
+    for (int k = 0; k < count; ++k) {
+      auto at = [&](int i) -> Vec<double, 2> { return points.col(mesh.connectivity[e * count + (k + i) % count]); };
+      const Vec<double, 2> out = (at(1) - at(0)).normalized(), back = (at(count - 1) - at(0)).normalized();
+      worst = std::min(worst, out[0] * back[1] - out[1] * back[0]);
+    }
+  return worst;
+}
+
+Points<double> points_of(const MeshDescription& description, int dimension = 2) {
+  return make_points(description, Numbers<double>{}, dimension);
+}
+
+BoxMesh box() {
+  BoxMesh mesh;
+  mesh.min = {1.0, -0.5};
+  mesh.max = {4.3, 1.7};
+  mesh.cells = {5, 4};
+  return mesh;
+}
+
+HalfDiskMesh half_disk(int along, int inwards, double grade, const char* facing = "down") {
+  HalfDiskMesh mesh;
+  mesh.center = {0.3, 8.1};
+  mesh.radius = 8.0;
+  mesh.cells = {along, inwards};
+  mesh.grade = grade;
+  mesh.facing = facing;
+  return mesh;
+}
+
+/// Every edge of an element that no other element has is a facet of exactly one side.
+void expect_sides_cover_boundary(const Mesh& mesh) {
+  std::multiset<std::pair<int, int>> edges, facets;
+  const int count = nodes_of(mesh.shape);
+  for (int e = 0; e < mesh.element_count(); ++e)
+    for (int k = 0; k < count; ++k)
+      edges.insert({mesh.connectivity[e * count + k], mesh.connectivity[e * count + (k + 1) % count]});
+  std::multiset<std::pair<int, int>> boundary;
+  for (const auto& [a, b] : edges)
+    if (!edges.count({b, a})) boundary.insert({a, b});
+  for (const auto& [name, side] : mesh.sides)
+    for (const auto& facet : side.facets) facets.insert({facet[0], facet[1]});
+  EXPECT_EQ(facets, boundary);
+}
+
+TEST(Box, HasItsAreaItsBoundaryAndItsCornersForBothElements) {
+  for (const char* element : {"Q4", "T3", ""}) {
+    const Mesh mesh = make_mesh(box(), element, 2);
+    const Points<double> points = points_of(box());
+    EXPECT_EQ(mesh.node_count, 30);
+    EXPECT_EQ(mesh.element_count(), mesh.shape == ElementShape::tri3 ? 40 : 20);
+    EXPECT_EQ(points.cols(), mesh.node_count);
+    // sums of some hundred products of coordinates below 5
+    EXPECT_NEAR(area(mesh, points), 3.3 * 2.2, 1000 * eps);
+    EXPECT_NEAR(enclosed(mesh, points), 3.3 * 2.2, 1000 * eps);
+    EXPECT_FALSE(first_inverted_element(mesh, points));
+    expect_sides_cover_boundary(mesh);
+    EXPECT_EQ(points.rowwise().maxCoeff(), (Vec<double, 2>(4.3, 1.7)));  // exactly as given
+    EXPECT_EQ(points.rowwise().minCoeff(), (Vec<double, 2>(1.0, -0.5)));
+  }
+}
+
+TEST(Box, GrowsGeometricallyAwayFromTheNamedSideByTheGivenRatio) {
+  for (const char* towards : {"left", "right", "bottom", "top"}) {
+    BoxMesh mesh = box();
+    mesh.grade_towards = towards;
+    mesh.grade = 8.0;
+    mesh.cells = {4, 4};
+    const Points<double> points = points_of(mesh);
+    const bool along_x = std::string(towards) == "left" || std::string(towards) == "right";
+    std::vector<double> steps;
+    for (int i = 0; i < 4; ++i)
+      steps.push_back(along_x ? points(0, i + 1) - points(0, i) : points(1, 5 * (i + 1)) - points(1, 5 * i));
+    if (std::string(towards) == "right" || std::string(towards) == "top") std::reverse(steps.begin(), steps.end());
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(steps[i + 1] / steps[i], 2.0, 100 * eps);  // cube root of 8
+    EXPECT_NEAR(points(along_x ? 1 : 0, along_x ? 5 : 1) - points(along_x ? 1 : 0, 0), (along_x ? 2.2 : 3.3) / 4,
+                10 * eps);
+  }
+}
+
+TEST(Box, OfTrianglesHasNoTriangleWithTwoEdgesOnTheBoundary) {
+  for (int nx : {2, 3, 4, 5})
+    for (int ny : {2, 3, 6}) {
+      BoxMesh description = box();
+      description.cells = {nx, ny};
+      const Mesh mesh = make_mesh(description, "T3", 2);
+      std::map<int, int> boundary_edges;
+      std::set<std::vector<int>> facets;
+      for (const auto& [name, side] : mesh.sides) facets.insert(side.facets.begin(), side.facets.end());
+      for (int e = 0; e < mesh.element_count(); ++e)
+        for (int k = 0; k < 3; ++k)
+          boundary_edges[e] += facets.count({mesh.connectivity[3 * e + k], mesh.connectivity[3 * e + (k + 1) % 3]});
+      for (const auto& [element, edges] : boundary_edges) EXPECT_LT(edges, 2) << nx << " x " << ny;
+    }
+}
+
+TEST(HalfDisk, HasUsableElementsForAnyCountsAndGradesItAccepts) {
+  for (int along = 2; along <= 24; along += along < 8 ? 1 : 8)
+    for (int inwards = (along + 1) / 2; inwards <= 2 * along; ++inwards)
+      for (double grade : {1.0, 3.0, 10.0, 30.0, 100.0}) {
+        if (inwards < 2) continue;
+        const HalfDiskMesh disk = half_disk(along, inwards, grade);
+        for (const char* element : {"Q4", "T3"}) {
+          const Mesh mesh = make_mesh(disk, element, 2);
+          EXPECT_FALSE(first_inverted_element(mesh, points_of(disk))) << along << " " << inwards << " " << grade;
+        }
+        const double worst = worst_corner(make_mesh(disk, "Q4", 2), points_of(disk));
+        // the qualities half_disk.hpp promises
+        const double promised = along == inwards ? 0.6 : std::min(along, inwards) > 2 ? 0.3 : 0.08;
+        EXPECT_GT(worst, promised) << along << " " << inwards << " " << grade;
+      }
+}
+
+TEST(HalfDisk, HasTheAreaOfThePolygonOfItsArc) {
+  const HalfDiskMesh disk = half_disk(9, 8, 20);
+  const Mesh mesh = make_mesh(disk, "Q4", 2);
+  const Points<double> points = points_of(disk);
+  const std::vector<int>& arc = mesh.sides.at("arc").nodes;
+  double polygon = 0;  // triangles from the centre
+  for (std::size_t i = 1; i < arc.size(); ++i) {
+    const Vec<double, 2> center(0.3, 8.1), a = points.col(arc[i - 1]) - center, b = points.col(arc[i]) - center;
+    polygon += (a[0] * b[1] - a[1] * b[0]) / 2;
+  }
+  EXPECT_NEAR(area(mesh, points), polygon, 1e4 * eps * polygon);  // sums of some thousand products
+  EXPECT_NEAR(enclosed(mesh, points), polygon, 1e4 * eps * polygon);
+  EXPECT_GT(polygon, 0.97 * std::acos(-1.0) * 64 / 2);
+  expect_sides_cover_boundary(mesh);
+}
+
+TEST(HalfDisk, HasItsArcOnTheCircleInGeometricStepsFromThePole) {
+  const HalfDiskMesh disk = half_disk(12, 10, 50);
+  const Mesh mesh = make_mesh(disk, "Q4", 2);
+  const Points<double> points = points_of(disk);
+  const std::vector<int>& arc = mesh.sides.at("arc").nodes;
+  ASSERT_EQ(arc.size(), 25u);
+  const Vec<double, 2> center(0.3, 8.1);
+  std::vector<double> angle;  // from the pole
+  for (int node : arc) {
+    const Vec<double, 2> r = points.col(node) - center;
+    EXPECT_NEAR(r.norm(), 8.0, 8 * 8 * eps);  // a few roundings of numbers up to 16
+    angle.push_back(std::atan2(r[0], -r[1]));
+  }
+  EXPECT_EQ(points(0, arc[12]), 0.3);
+  const double factor = std::pow(50.0, 1.0 / 11);
+  for (int i = 12; i + 2 < 25; ++i)  // the least step, 0.007 of the radius, has lost three digits
+    EXPECT_NEAR((angle[i + 2] - angle[i + 1]) / (angle[i + 1] - angle[i]), factor, 1e4 * eps);
+  EXPECT_NEAR((angle[24] - angle[23]) / (angle[13] - angle[12]), 50, 50 * 1e4 * eps);
+}
+
+TEST(HalfDisk, FacingUpMirrorsTheOneFacingDownNodeByNode) {
+  HalfDiskMesh down = half_disk(8, 7, 10, "down"), up = half_disk(8, 7, 10, "up");
+  down.center = {0.0, 8.0};
+  up.center = {0.0, -8.0};
+  const Points<double> a = points_of(down), b = points_of(up);
+  EXPECT_EQ(a.row(0), b.row(0));
+  EXPECT_EQ(a.row(1), -b.row(1));
+  for (const char* element : {"Q4", "T3"}) {
+    const Mesh upper = make_mesh(down, element, 2), lower = make_mesh(up, element, 2);
+    EXPECT_FALSE(first_inverted_element(lower, b));
+    EXPECT_GT(enclosed(lower, b), 0);
+    std::vector<int> arc = lower.sides.at("arc").nodes;
+    std::reverse(arc.begin(), arc.end());
+    EXPECT_EQ(upper.sides.at("arc").nodes, arc);
+    EXPECT_EQ(upper.connectivity.size(), lower.connectivity.size());
+  }
+}
+
+TEST(Chain, HasItsSidesAndItsNodesInTwoAndThreeDimensions) {
+  LineMesh line;
+  line.from = {0.0, 1.0, 2.0};
+  line.to = {3.0, 1.0, -1.0};
+  line.cells = 3;
+  const Mesh mesh = make_mesh(line, "bar", 3);
+  EXPECT_EQ(mesh.dimension, 3);
+  EXPECT_EQ(mesh.connectivity, (std::vector<int>{0, 1, 1, 2, 2, 3}));
+  EXPECT_EQ(mesh.sides.at("start").nodes, std::vector<int>{0});
+  EXPECT_EQ(mesh.sides.at("end").nodes, std::vector<int>{3});
+  EXPECT_EQ(mesh.sides.at("interior").nodes, (std::vector<int>{1, 2}));
+  EXPECT_EQ(mesh.sides.at("interior").facets.size(), 3u);  // each interior node keeps both its bars
+  EXPECT_EQ(mesh.sides.at("nodes").nodes.size(), 4u);
+  const Points<double> points = points_of(line, 3);
+  EXPECT_EQ(points.col(3), (Vec<double, 3>(3, 1, -1)));
+  EXPECT_NEAR(points(0, 1), 1.0, 4 * eps);  // a product and a sum of numbers near 1
+}
+
+TEST(Chain, OnAnArcLiesAtEqualAnglesInDegrees) {
+  ArcMesh arc;
+  arc.center = {1.0, 2.0};
+  arc.radius = 2.0;
+  arc.from_angle = 0.0;
+  arc.to_angle = 90.0;
+  arc.cells = 3;
+  for (int dimension : {2, 3}) {
+    const Points<double> points = points_of(arc, dimension);
+    EXPECT_NEAR(points(0, 1), 1 + 2 * std::cos(std::acos(-1.0) / 6), 16 * eps);  // a few roundings of numbers near 4
+    EXPECT_NEAR(points(1, 3), 4, 16 * eps);
+    if (dimension == 3) {
+      EXPECT_EQ(points(2, 2), 0);
+    }
+  }
+}
+
+TEST(Point, IsANodeAndItsAnchorAtTheSamePlace) {
+  PointMesh point;
+  point.at = {0.5, -1.0};
+  const Mesh mesh = make_mesh(point, "", 2);
+  EXPECT_EQ(mesh.node_count, 2);
+  EXPECT_EQ(mesh.element_count(), 1);
+  EXPECT_EQ(mesh.sides.at("node").nodes, std::vector<int>{0});
+  EXPECT_EQ(mesh.sides.at("anchor").nodes, std::vector<int>{1});
+  const Points<double> points = points_of(point);
+  EXPECT_EQ(points.col(0), (Vec<double, 2>(0.5, -1.0)));
+  EXPECT_EQ(points.col(1), points.col(0));
+}
+
+/// Coordinates' derivatives with respect to every slot, by Dual and by complex step, are the same to rounding.
+template <int N>
+void expect_exact_derivatives(const MeshDescription& description, const std::vector<double>& numbers) {
+  ASSERT_EQ(numbers.size(), static_cast<std::size_t>(N));
+  Numbers<Dual<N>> seeded;
+  for (int i = 0; i < N; ++i) seeded.at_slot.push_back(Dual<N>::seed(numbers[i], i));
+  const Points<Dual<N>> dual = make_points(description, seeded, 2);
+  for (int i = 0; i < N; ++i) {
+    const double step = 1e-30;  // so small that its square is lost: the complex step has no truncation error
+    Numbers<std::complex<double>> moved{{numbers.begin(), numbers.end()}};
+    moved.at_slot[i] += std::complex<double>(0, step);
+    const Points<std::complex<double>> oracle = make_points(description, moved, 2);
+    double largest = 0;
+    for (Eigen::Index k = 0; k < dual.size(); ++k) {
+      const double derivative = dual.data()[k].d[i], expected = oracle.data()[k].imag() / step;
+      largest = std::max(largest, std::abs(expected));
+      // both evaluate the same formula of some fifty operations on numbers near 10
+      EXPECT_NEAR(derivative, expected, 1000 * eps * (1 + std::abs(expected)));
+    }
+    EXPECT_GT(largest, 1e-3) << "slot " << i << " moves nothing";
+  }
+}
+
+TEST(Coordinates, OfABoxHaveExactDerivatives) {
+  BoxMesh mesh;
+  mesh.min = {Number(1, 0), Number(2, 1)};
+  mesh.max = {Number(3, 2), Number(5, 3)};
+  mesh.cells = {3, 4};
+  for (const char* towards : {"right", "bottom"})
+    for (double grade : {1.0, 5.0}) {  // 1: where a formula with (ratio - 1) below the line would fail
+      mesh.grade = Number(grade, 4);
+      mesh.grade_towards = towards;
+      expect_exact_derivatives<5>(mesh, {1, 2, 3, 5, grade});
+    }
+}
+
+TEST(Coordinates, OfAHalfDiskHaveExactDerivatives) {
+  for (const char* facing : {"down", "up"})
+    for (double grade : {1.0, 40.0}) {
+      HalfDiskMesh mesh = half_disk(6, 5, grade, facing);
+      mesh.center = {Number(0.3, 0), Number(8.1, 1)};
+      mesh.radius = Number(8, 2);
+      mesh.grade = Number(grade, 3);
+      expect_exact_derivatives<4>(mesh, {0.3, 8.1, 8, grade});
+    }
+}
+
+TEST(Coordinates, OfChainsAndPointsHaveExactDerivatives) {
+  LineMesh line;
+  line.from = {Number(0, 0), Number(1, 1)};
+  line.to = {Number(4, 2), Number(3, 3)};
+  line.cells = 3;
+  expect_exact_derivatives<4>(line, {0, 1, 4, 3});
+  ArcMesh arc;
+  arc.center = {Number(1, 0), Number(2, 1)};
+  arc.radius = Number(3, 2);
+  arc.from_angle = Number(-20, 3);
+  arc.to_angle = Number(130, 4);
+  arc.cells = 5;
+  expect_exact_derivatives<5>(arc, {1, 2, 3, -20, 130});
+  PointMesh point;
+  point.at = {Number(1, 0), Number(2, 1)};
+  expect_exact_derivatives<2>(point, {1, 2});
+}
+
+TEST(Descriptions, ThatMakeNoMeshAreRefusedWithAReason) {
+  auto expect_fault = [](const MeshDescription& description, const char* element, int dimension, const char* part) {
+    EXPECT_NE(mesh_fault(description, element, dimension).find(part), std::string::npos)
+        << mesh_fault(description, element, dimension);
+    EXPECT_THROW(make_mesh(description, element, dimension), std::invalid_argument);
+  };
+  expect_fault(box(), "bar", 2, "T3 or Q4, not bar");
+  expect_fault(box(), "Q4", 3, "plane");
+  BoxMesh bad = box();
+  bad.max[1] = -0.5;
+  expect_fault(bad, "Q4", 2, "greater than min");
+  bad = box();
+  bad.cells = {0, 1};
+  expect_fault(bad, "Q4", 2, "at least 1");
+  bad = box();
+  bad.grade_towards = "north";
+  expect_fault(bad, "Q4", 2, "not north");
+  expect_fault(half_disk(4, 9, 1), "Q4", 2, "factor 2");
+  expect_fault(half_disk(4, 4, 1, "left"), "Q4", 2, "not left");
+  expect_fault(half_disk(4, 4, 0), "Q4", 2, "grade");
+  LineMesh line;
+  line.from = line.to = {1.0, 1.0};
+  expect_fault(line, "bar", 2, "same point");
+  expect_fault(line, "bar", 3, "2 coordinates");
+  PointMesh point;
+  point.at = {1.0};
+  expect_fault(point, "", 2, "1 coordinates");
+}
+
+TEST(InvertedElements, AreFoundWhetherFlatTurnedOrOfNoLength) {
+  const Mesh mesh = make_mesh(box(), "Q4", 2);
+  Points<double> points = points_of(box());
+  points.col(7) = points.col(9);  // beyond node 8: element 0 is only stretched, element 1 folds
+  EXPECT_EQ(first_inverted_element(mesh, points), 1);
+  Points<double> far = points_of(box()).array() + 1e17;  // all coordinates round to the same number
+  EXPECT_EQ(first_inverted_element(mesh, far), 0);
+  points = points_of(box()).rowwise().reverse();
+  points.row(0).swap(points.row(1));
+  EXPECT_EQ(first_inverted_element(mesh, points), 0);
+  points = points_of(box());
+  points(0, 29) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(first_inverted_element(mesh, points), 19);
+  LineMesh line;
+  line.from = {0.0, 0.0};
+  line.to = {1.0, 0.0};
+  line.cells = 2;
+  Points<double> chain = points_of(line);
+  EXPECT_FALSE(first_inverted_element(make_mesh(line, "bar", 2), chain));
+  chain.col(2) = chain.col(1);
+  EXPECT_EQ(first_inverted_element(make_mesh(line, "bar", 2), chain), 1);
+}
+
+}  // namespace
+}  // namespace stickslip

@@ -1,0 +1,156 @@
+/// Every scheme against the complex step of the whole program, and the properties that no scheme may miss.
+#include <gtest/gtest.h>
+
+#include "sensitivity/gradcheck.hpp"
+#include "tests/support/oracle.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace stickslip {
+namespace {
+
+using scenes::run;
+
+/// Largest difference between scheme and oracle over all increments, responses and parameters, each relative to the
+/// largest derivative of its response in the run, or to the response over the parameter.
+double worst_error(const Scene& scene, const Method& method) {
+  const auto s = run(scene, method);
+  EXPECT_EQ(s.gradients.of.size(), s.trajectory.increments.size()) << s.gradients.message;
+  Matrix<double> responses(scene.responses.size(), s.trajectory.increments.size());
+  for (std::size_t n = 0; n < s.trajectory.increments.size(); ++n) {
+    const auto& increment = s.trajectory.increments[n];
+    responses.col(n) = evaluate_responses(s.model, s.slots, increment.state, increment.time);
+  }
+  double worst = 0;
+  for (int j = 0; j < static_cast<int>(scene.parameters.size()); ++j) {
+    const Matrix<double> exact = oracle::complex_step(s.model, method, s.trajectory.step_table(), j);
+    for (Eigen::Index i = 0; i < exact.rows(); ++i) {
+      const double scale = std::max(exact.row(i).cwiseAbs().maxCoeff(),
+                                    responses.row(i).cwiseAbs().maxCoeff() / std::abs(scene.parameters[j].value));
+      for (Eigen::Index n = 0; n < exact.cols(); ++n) {
+        // a response that stays zero (no slip, no heat) has the derivative zero, to the last bit
+        const double error = std::abs(s.gradients.of[n](i, j) - exact(i, n)) / (scale > 0 ? scale : 1);
+        EXPECT_LE(error, 1e-3) << name_of(method) << " " << scene.responses[i].name << "/" << scene.parameters[j].name
+                               << " increment " << n << ": " << s.gradients.of[n](i, j) << " " << exact(i, n);
+        worst = std::max(worst, error);
+      }
+    }
+  }
+  return worst;
+}
+
+std::vector<Scene> scenes_to_check() {
+  return {scenes::stop(),
+          scenes::slider({{0, 0}, {1, 0.1}, {2, -0.1}, {3, 0.04}}, 9),
+          scenes::dragged_point({{0, 0, 0}, {1, 0, -0.6}, {2, 0.7, -0.6}, {3, 0.2, 0.9}}, 24, 0.3),
+          scenes::greco_plate(8),
+          scenes::two_boxes(6, 9),
+          scenes::two_boxes(5, 4, "T3", 0.25),
+          scenes::two_boxes(4, 4, "Q4", 2)};
+}
+
+/// Oracle and scheme round differently: 50 u cond, with cond up to about 1e4 in these scenes, stays below.
+constexpr double rounding = 1e-10;
+
+TEST(Oracle, MonolithicSchemeIsExact) {
+  for (const auto& scene : scenes_to_check()) EXPECT_LE(worst_error(scene, MonolithicAL{}), rounding);
+}
+
+TEST(Oracle, MonolithicSchemeIsExactForTheOtherCone) {
+  MonolithicAL method;
+  method.cone = MonolithicAL::Cone::multiplier;
+  for (const auto& scene : {scenes::greco_plate(8), scenes::two_boxes(6, 9)}) EXPECT_LE(worst_error(scene, method), rounding);
+}
+
+TEST(Oracle, PenaltySchemeIsExactForThePenalisedProblem) {
+  for (const auto& scene : scenes_to_check())
+    for (double stiffness : {10.0, 1e3}) {
+      Penalty method{scenes::relative(stiffness)};
+      method.tangential_ratio = 0.4;
+      EXPECT_LE(worst_error(scene, method), rounding);
+    }
+}
+
+TEST(Oracle, TruncatedUzawaSchemeIsTheDerivativeOfTheTruncatedLoop) {
+  for (const auto& scene : scenes_to_check())
+    for (int cap : {1, 3}) {
+      UzawaAL method;
+      method.sensitivity = UzawaAL::Sensitivity::truncated;
+      method.max_augmentations = cap;
+      EXPECT_LE(worst_error(scene, method), rounding);
+    }
+}
+
+TEST(Oracle, IteratedUzawaSchemeIsTheDerivativeOfTheConvergedSolution) {
+  UzawaAL method;
+  method.tolerance = 1e-13;
+  method.max_augmentations = 5000;
+  for (const auto& scene : scenes_to_check()) EXPECT_LE(worst_error(scene, method), rounding);
+}
+
+TEST(Oracle, AutomaticAndRelativeStiffnessCarryTheirDependenceOnTheScene) {
+  // a penalty of fixed multiple moves with E, so that the penetration does not: leaving that out would show at once
+  const auto scene = scenes::two_boxes(6, 9);
+  EXPECT_LE(worst_error(scene, Penalty{scenes::relative(2)}), rounding);
+  const auto fixed = run(scene, Penalty{scenes::absolute(5000)}), moving = run(scene, Penalty{});
+  EXPECT_GT(std::abs(fixed.derivative("press", "E") - moving.derivative("press", "E")), 1e-6);
+}
+
+TEST(Oracle, OversizedSchemeErrorFallsWithItsFactor) {
+  const auto scene = scenes::greco_plate(8);
+  double before = 0;
+  for (double kappa : {1e2, 1e3, 1e4}) {
+    UzawaAL method;
+    method.tolerance = 1e-13;
+    method.adapt = false;
+    method.sensitivity = UzawaAL::Sensitivity::oversized;
+    method.oversize = kappa;
+    const auto s = run(scene, method);
+    const auto exact = run(scene, MonolithicAL{});
+    const double error = std::abs(s.derivative("friction", "mu") / exact.derivative("friction", "mu") - 1);
+    if (before > 0) {
+      EXPECT_NEAR(std::log10(before / error), 1, 0.1) << kappa;
+    }
+    before = error;
+  }
+}
+
+TEST(Oracle, DifferentiatingDoesNotChangeTheSolution) {
+  const auto scene = scenes::two_boxes(6, 9);
+  const Model model = make_model(scene);
+  const auto slots = make_slots<double>(model, scene.as<double>());
+  Workspace<double> workspace;
+  const auto trajectory = solve(model, slots, UzawaAL{}, {}, workspace);
+  const Vector<double> before = trajectory.increments.back().state.displacement;
+  differentiate(model, slots, UzawaAL{}, trajectory, workspace);
+  EXPECT_EQ(trajectory.increments.back().state.displacement, before);
+}
+
+TEST(Oracle, OneBacksolveAParameterAndIncrementForTheMonolithicMethod) {
+  const auto scene = scenes::two_boxes(6, 9);
+  const auto s = run(scene, MonolithicAL{});
+  EXPECT_EQ(s.gradients.counters.sensitivity_backsolves,
+            static_cast<long>(scene.parameters.size() * s.trajectory.increments.size()));
+  EXPECT_LE(s.gradients.counters.sensitivity_factorizations, static_cast<long>(s.trajectory.increments.size()));
+}
+
+TEST(GradientCheck, AgreesForEveryMethodAndFindsAWrongDerivative) {
+  for (const Method& method : {Method(Penalty{}), Method(UzawaAL{}), Method(MonolithicAL{})}) {
+    const auto check = check_gradients(make_model(scenes::slider({{0, 0}, {1, 0.1}, {2, -0.05}}, 6)), method, {});
+    EXPECT_TRUE(check.passed()) << name_of(method);
+    for (const auto& entry : check.entries)
+      EXPECT_EQ(entry.verdict, GradientCheck::Verdict::agrees)
+          << name_of(method) << " " << entry.response << "/" << entry.parameter << " " << entry.computed << " "
+          << entry.difference << " error " << entry.error << " allowed " << entry.allowed;
+  }
+}
+
+TEST(GradientCheck, NeverPassesWhatItCouldNotCheck) {
+  // at F = k g0 exactly every step changes a state on one side
+  const auto check = check_gradients(make_model(scenes::stop(10, 1000, 0.01)), MonolithicAL{}, {});
+  EXPECT_FALSE(check.passed());
+  EXPECT_EQ(check.entries.front().verdict, GradientCheck::Verdict::not_checked);
+  EXPECT_GT(check.rejected, 0);
+}
+
+}  // namespace
+}  // namespace stickslip

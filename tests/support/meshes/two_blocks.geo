@@ -1,0 +1,42 @@
+// Two bodies that share an edge, one of triangles and one of quadrangles, with a hole, a corner and an unused curve.
+//   gmsh two_blocks.geo -2 -format msh22 -o two_blocks_22.msh
+//   gmsh two_blocks.geo -2 -format msh41 -o two_blocks_41.msh
+Mesh.MeshSizeMax = 0.8;
+Point(1) = {0, 0, 0};
+Point(2) = {2, 0, 0};
+Point(3) = {2, 1, 0};
+Point(4) = {0, 1, 0};
+Point(5) = {2, 3, 0};
+Point(6) = {0, 3, 0};
+Point(7) = {1, 2, 0};
+Point(8) = {1.4, 2, 0};
+Point(9) = {0.6, 2, 0};
+Point(10) = {5, 0, 0};
+Point(11) = {5, 1, 0};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 1};
+Line(5) = {3, 5};
+Line(6) = {5, 6};
+Line(7) = {6, 4};
+Circle(8) = {8, 7, 9};
+Circle(9) = {9, 7, 8};
+Line(10) = {10, 11};
+Curve Loop(1) = {1, 2, 3, 4};
+Curve Loop(2) = {5, 6, 7, -3};
+Curve Loop(3) = {8, 9};
+Plane Surface(1) = {1};
+Plane Surface(2) = {2, 3};
+Transfinite Curve {1, 3} = 5;
+Transfinite Curve {2, 4} = 3;
+Transfinite Surface {1};
+Recombine Surface {1};
+Physical Surface("quads", 1) = {1};
+Physical Surface("triangles", 2) = {2};
+Physical Curve("bottom", 3) = {1};
+Physical Curve("shared", 4) = {3};
+Physical Curve("outside", 5) = {2, 5, 6};
+Physical Curve("hole", 6) = {8, 9};
+Physical Curve("apart", 7) = {10};
+Physical Point("corner", 8) = {1};

@@ -1,0 +1,223 @@
+/// Small scenes written in C++, shared by the tests: what interface.md's files say, without the files. Every number that
+/// a test differentiates has a slot.
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/model/response.hpp"
+#include "sensitivity/differentiate.hpp"
+
+namespace stickslip::scenes {
+
+/// A number with a slot, and a parameter of the same name.
+inline Number parameter(Scene& scene, const std::string& name, double value) {
+  scene.numbers.push_back(value);
+  scene.pointers.push_back("/" + name);
+  const int slot = static_cast<int>(scene.numbers.size()) - 1;
+  scene.parameters.push_back({name, {{slot, 1.0}}, "/" + name, value});
+  return {value, slot};
+}
+
+inline Response response(const std::string& name, Response::Kind kind, const std::string& on, const std::string& component = "",
+                         Response::Take take = Response::Take::mean) {
+  Response r;
+  r.name = name;
+  r.kind = kind;
+  r.on = on;
+  r.component = component;
+  r.take = take;
+  return r;
+}
+
+inline Table table(std::vector<std::pair<double, Number>> points) { return {std::move(points)}; }
+
+inline Load force(const std::string& on, std::vector<Number> vector) {
+  return {on, Load::Kind::force, std::move(vector), {}};
+}
+inline Load traction(const std::string& on, std::vector<Number> vector) {
+  return {on, Load::Kind::traction, std::move(vector), {}};
+}
+inline Support support(const std::string& on, std::map<char, Table> move) { return {on, std::move(move)}; }
+
+inline Contact contact(const std::string& name, const std::string& slave, const std::string& master) {
+  Contact c;
+  c.name = name;
+  c.slave = slave;
+  c.master = master;
+  return c;
+}
+
+/// A1: spring k pushed by F against a stop at g0, all in y.
+inline Scene stop(double F = 15, double k = 1000, double g0 = 0.01) {
+  Scene s;
+  s.legs = {{1, 1}};
+  const Number f = parameter(s, "F", F), stiffness = parameter(s, "k", k), gap = parameter(s, "g0", g0);
+  s.bodies = {{"block", PointMesh{{0.0, 0.0}}, GroundedSpring{{{k, 0.0}, {0.0, stiffness}}}, "", 1.0}};
+  s.obstacles = {{"stop", Plane{{0.0, gap}, {0.0, -1.0}}, {}}};
+  s.contacts = {contact("touch", "block.node", "stop")};
+  s.loads = {force("block.node", {0.0, f})};
+  s.responses = {response("u", Response::Kind::displacement, "block.node", "y"),
+                 response("press", Response::Kind::contact_force, "touch", "normal")};
+  return s;
+}
+
+/// A2: block pressed by N, dragged by a spring k whose anchor follows `drive` (t, U); amplitude U0 scales the drive.
+inline Scene slider(const std::vector<std::pair<double, double>>& drive, int steps, double k = 100, double mu = 0.3,
+                    double N = 10) {
+  Scene s;
+  s.legs = {{drive.back().first, steps}};
+  const Number friction = parameter(s, "mu", mu), load = parameter(s, "N", -N), spring = parameter(s, "k", k);
+  s.parameters[1].slots[0].second = -1;
+  s.bodies = {{"block", PointMesh{{0.0, 0.0}}, GroundedSpring{{{spring, 0.0}, {0.0, k}}}, "", 1.0}};
+  s.obstacles = {{"floor", Plane{{0.0, 0.0}, {0.0, 1.0}}, {}}};
+  s.contacts = {contact("sole", "block.node", "floor")};
+  s.contacts[0].friction = friction;
+  s.loads = {force("block.node", {0.0, load})};
+  Table motion;
+  Parameter amplitude{"U0", {}, "/U0", 0};
+  for (const auto& [t, U] : drive) {
+    s.numbers.push_back(U);
+    s.pointers.push_back("/U" + std::to_string(motion.points.size()));
+    const int slot = static_cast<int>(s.numbers.size()) - 1;
+    motion.points.emplace_back(t, Number(U, slot));
+    if (U != 0) {
+      if (amplitude.value == 0) amplitude.value = U;
+      amplitude.slots.emplace_back(slot, U / amplitude.value);
+    }
+  }
+  s.parameters.push_back(amplitude);
+  s.supports = {support("block.anchor", {{'x', motion}})};
+  s.responses = {response("u", Response::Kind::displacement, "block.node", "x"),
+                 response("heat", Response::Kind::dissipation, "sole"),
+                 response("pull", Response::Kind::reaction, "block.anchor", "x"),
+                 response("press", Response::Kind::contact_force, "sole", "normal")};
+  return s;
+}
+
+/// A3: a point on a rough plane in space, dragged by an isotropic spring; mu N / k = c. Its anchor runs through
+/// `path` (t, x, y), relative to the point's start.
+inline Scene dragged_point(const std::vector<std::array<double, 3>>& path, int steps, double c) {
+  Scene s;
+  s.space = Space::solid;
+  s.legs = {{path.back()[0], steps}};
+  const double k = 10;
+  const Number mu = parameter(s, "mu", 0.1 * c);  // N = 100
+  const Number spring = parameter(s, "k", k);
+  s.bodies = {{"point", PointMesh{{0.0, 0.0, 0.0}},
+               GroundedSpring{{{spring, 0.0, 0.0}, {0.0, spring, 0.0}, {0.0, 0.0, spring}}}, "", 1.0}};
+  s.obstacles = {{"floor", Plane{{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}}, {}}};
+  s.contacts = {contact("sole", "point.node", "floor")};
+  s.contacts[0].friction = mu;
+  s.loads = {force("point.node", {0.0, 0.0, -100.0})};
+  Table x, y;
+  for (const auto& [t, px, py] : path) {
+    x.points.emplace_back(t, px);
+    y.points.emplace_back(t, py);
+  }
+  s.supports = {support("point.anchor", {{'x', x}, {'y', y}})};
+  s.responses = {response("x", Response::Kind::displacement, "point.node", "x"),
+                 response("y", Response::Kind::displacement, "point.node", "y"),
+                 response("heat", Response::Kind::dissipation, "sole")};
+  return s;
+}
+
+/// B2: the GRECO plate with n x n elements.
+inline Scene greco_plate(int n, double mu = 1) {
+  Scene s;
+  s.legs = {{1, 1}};
+  const Number friction = parameter(s, "mu", mu), E = parameter(s, "E", 1.3e11), F = parameter(s, "F", 15e7),
+               height = parameter(s, "height", 0.04);
+  BoxMesh box;
+  box.min = {0.0, 0.0};
+  box.max = {0.04, height};
+  box.cells = {n, n};
+  s.bodies = {{"plate", box, LinearElastic{E, 0.2}, "", 1.0}};
+  s.obstacles = {{"floor", Plane{{0.0, 0.0}, {0.0, 1.0}}, {}}};
+  s.contacts = {contact("sole", "plate.bottom - plate.right", "floor")};
+  s.contacts[0].friction = friction;
+  s.loads = {traction("plate.left", {F, 0.0}), traction("plate.top", {0.0, -5e7})};
+  s.supports = {support("plate.right", {{'x', table({{0, 0.0}})}}),
+                support("plate.right & plate.bottom", {{'y', table({{0, 0.0}})}})};
+  const double at[] = {0, 1.25e-3, 5e-3, 7.5e-3, 11.25e-3};
+  for (int i = 0; i < 5; ++i) {
+    s.responses.push_back(response("u" + std::to_string(i), Response::Kind::displacement, "", "x"));
+    s.responses.back().at = {at[i], 0.0};
+  }
+  s.responses.push_back(response("friction", Response::Kind::contact_force, "sole", "x"));
+  s.responses.push_back(response("heat", Response::Kind::dissipation, "sole"));
+  s.responses.push_back(response("reaction", Response::Kind::reaction, "plate.right", "x"));
+  return s;
+}
+
+/// Two elastic boxes, slave above with `slave` cells along the interface and master below with `master`; pressed
+/// down by 0.01 and then moved sideways to and fro.
+inline Scene two_boxes(int slave, int master, const std::string& element = "Q4", double mu = 0.3) {
+  Scene s;
+  s.legs = {{3, 12}};
+  const Number friction = parameter(s, "mu", mu), E = parameter(s, "E", 1000), down = parameter(s, "down", -0.01),
+               height = parameter(s, "height", 2.0), offset = parameter(s, "offset", 1e-4);
+  BoxMesh upper, lower;
+  upper.min = {0.2, 1.0};
+  upper.max = {1.8, height};
+  upper.cells = {slave, 3};
+  lower.min = {0.0, 0.0};
+  lower.max = {2.0, 1.0};
+  lower.cells = {master, 4};
+  s.bodies = {{"upper", upper, LinearElastic{E, 0.3}, element, 1.0}, {"lower", lower, LinearElastic{1500.0, 0.2}, element, 1.0}};
+  s.contacts = {contact("touch", "upper.bottom", "lower.top")};
+  s.contacts[0].friction = friction;
+  s.contacts[0].offset = offset;
+  s.supports = {support("lower.bottom", {{'x', table({{0, 0.0}})}, {'y', table({{0, 0.0}})}}),
+                support("upper.top", {{'x', table({{0, 0.0}, {1, 0.0}, {2, 0.008}, {3, -0.004}})},
+                                      {'y', table({{0, 0.0}, {1, down}})}})};
+  s.responses = {response("press", Response::Kind::contact_force, "touch", "normal"),
+                 response("shear", Response::Kind::contact_force, "touch", "x"),
+                 response("peak", Response::Kind::contact_pressure, "touch", "", Response::Take::max),
+                 response("width", Response::Kind::contact_half_width, "touch"),
+                 response("heat", Response::Kind::dissipation, "touch"),
+                 response("energy", Response::Kind::strain_energy, ""),
+                 response("pull", Response::Kind::reaction, "upper.top", "x")};
+  return s;
+}
+
+/// A solved scene with its derivatives.
+struct Solved {
+  Model model;
+  Slots<double> slots;
+  Trajectory<double> trajectory;
+  Gradients gradients;
+
+  /// Value of a response, and its derivative, at increment n (negative: from the end).
+  double value(const std::string& name, int n = -1) const {
+    const auto& increment = trajectory.increments.at(index(n));
+    return evaluate_responses(model, slots, increment.state, increment.time)[response(name)];
+  }
+  double derivative(const std::string& name, const std::string& of, int n = -1) const {
+    for (std::size_t j = 0; j < model.scene.parameters.size(); ++j)
+      if (model.scene.parameters[j].name == of) return gradients.of.at(index(n))(response(name), j);
+    throw std::out_of_range(of);
+  }
+  int response(const std::string& name) const {
+    for (std::size_t i = 0; i < model.scene.responses.size(); ++i)
+      if (model.scene.responses[i].name == name) return static_cast<int>(i);
+    throw std::out_of_range(name);
+  }
+  std::size_t index(int n) const { return n < 0 ? trajectory.increments.size() + n : n; }
+};
+
+inline Solved run(const Scene& scene, const Method& method, const RunOptions& options = {}) {
+  Solved out{make_model(scene), {}, {}, {}};
+  out.slots = make_slots<double>(out.model, scene.as<double>());
+  Workspace<double> workspace;
+  out.trajectory = solve(out.model, out.slots, method, options, workspace);
+  out.gradients = differentiate(out.model, out.slots, method, out.trajectory, workspace);
+  return out;
+}
+
+inline Regularisation relative(double multiple) { return {Regularisation::Kind::relative, multiple}; }
+inline Regularisation absolute(double value) { return {Regularisation::Kind::absolute, value}; }
+
+}  // namespace stickslip::scenes
