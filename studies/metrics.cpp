@@ -36,8 +36,8 @@ void enlarge(const Model& model, const Slots<double>& slots, const State<double>
     const double along =
         state.contact.placement.segment(tangential_offset(model, static_cast<int>(p)), point.tangents).norm();
     scales.traction = std::max(scales.traction, traction);
-    scales.length = std::max({scales.length, std::hypot(normal, along),
-                              slots.geometry[p].area * traction / slots.stiffness[p]});
+    scales.length =
+        std::max({scales.length, std::hypot(normal, along), slots.geometry[p].area * traction / slots.stiffness[p]});
   }
   const int D = model.dimension;
   scales.force = std::max({scales.force, largest_nodal_norm(bulk_forces(model, slots, state.displacement), D),
@@ -68,7 +68,8 @@ std::vector<KktError> kkt_errors(const Model& model, const Slots<double>& slots,
       const double gap = state.contact.gap[p], pressure = -state.contact.traction[point.multiplier];
       const double elastic = slots.stiffness[p] / slots.geometry[p].area;
       e.gap = std::max(e.gap, relative(std::max(0.0, -gap), scales.length));
-      e.complementarity = std::max(e.complementarity, relative(std::abs(std::min(gap * elastic, pressure)), scales.traction));
+      e.complementarity =
+          std::max(e.complementarity, relative(std::abs(std::min(gap * elastic, pressure)), scales.traction));
       if (point.tangents == 0) continue;
       const auto [traction, slip] = tangential(model, state, p);
       const double bound = slots.friction[point.contact] * std::max(0.0, pressure), size = traction.norm();
@@ -100,7 +101,8 @@ Margins margins(const Model& model, const Slots<double>& slots, const State<doub
     if (open || point.tangents == 0) continue;
     const auto [traction, slip] = tangential(model, state, p);
     const double bound = slots.friction[point.contact] * pressure;
-    const double reach = state.contact.state[p] == ContactState::stick ? bound - traction.norm() : elastic * slip.norm();
+    const double reach =
+        state.contact.state[p] == ContactState::stick ? bound - traction.norm() : elastic * slip.norm();
     if (bound > 0) margin.slip = std::min(margin.slip, reach / bound);
   }
   return margin;

@@ -28,8 +28,8 @@ constexpr double refine_above = 1e-10;
 /// (a stiff penalty makes one), and above it a matrix that is singular to working precision is not in sight.
 constexpr double small_pivot = 1e-8;
 /// The scaled matrix counts as singular where its condition number times epsilon exceeds this. Rounding gives an
-/// exactly singular matrix some condition number beyond 1 / epsilon: 4e16 and more where a body floats, rarely down to
-/// 5e14 where random rows depend on each other.
+/// exactly singular matrix some condition number beyond 1 / epsilon: 4e16 and more where a body floats; where random
+/// rows depend on each other, one in 3500 stays below the limit.
 constexpr double singular_condition = 0.1;
 
 /// Rows of X side by side, so that one pass over the matrix serves all right-hand sides.

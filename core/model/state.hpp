@@ -34,7 +34,7 @@ struct State {
 
 /// Uzawa: the equilibrium after one augmentation; kept only where the truncated sensitivity asks for it.
 template <class T>
-struct Sweep {
+struct AugmentedState {
   State<T> state;
   std::vector<double> rho_factor;
 };
@@ -50,7 +50,7 @@ struct Increment {
   int newton = 0, augmentations = 0, cutbacks = 0;
   double contraction = 0;          ///< Uzawa: last measured ratio of multiplier updates; 0 if not measured
   std::vector<IterationRecord> history;
-  std::vector<Sweep<T>> sweeps;
+  std::vector<AugmentedState<T>> sweeps;
 };
 
 /// Seconds by what they were spent on.

@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, runs the headline study and says where its report is. Safe to run again: it builds
+# and computes only what is missing. STICKSLIP_NO_APT=1 installs nothing; STICKSLIP_JOBS=n starts n compilers.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+
+bash tools/install_dependencies.sh
+# shellcheck source=tools/environment.sh
+. tools/environment.sh
+
+cmake --preset release -DSTICKSLIP_BUILD_TESTS=OFF -DSTICKSLIP_BUILD_BENCH=OFF
+cmake --build --preset release -j "$jobs" --target stickslip
+
+results=results/cattaneo_mindlin
+build/release/stickslip study studies/scenes/cattaneo_mindlin.study.json -o "$results" --resume
+echo "The report: $PWD/$results/report.html"

@@ -1,0 +1,26 @@
+/// Files that are whole or absent: a run that is killed leaves what it had written before, never half of it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stickslip {
+
+/// Writes `content` to a temporary file beside `path` and renames it over `path`; missing folders are made. A reader
+/// sees the old file or the new one, whole. Throws std::system_error with the path where the disk refuses.
+void write_file_atomically(const std::filesystem::path& path, std::string_view content);
+
+/// Appends `line` and a newline in one write, and returns once they are on the disk (fsync). A torn last line, left by
+/// a process that was killed, is cut off first. pre: `line` holds no newline. Throws std::system_error.
+void append_line(const std::filesystem::path& path, std::string_view line);
+
+/// The whole lines of a file that append_line() wrote, without their newlines; a torn last line is left out. Empty
+/// where the file does not exist. Throws std::system_error where it cannot be read.
+std::vector<std::string> read_lines(const std::filesystem::path& path);
+
+/// The content of a file. Throws std::system_error where it cannot be read.
+std::string read_file(const std::filesystem::path& path);
+
+}  // namespace stickslip

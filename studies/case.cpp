@@ -1,0 +1,248 @@
+#include "studies/case.hpp"
+
+#include <sys/resource.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/model/response.hpp"
+#include "studies/json_document.hpp"
+#include "studies/method_options.hpp"
+#include "studies/provenance.hpp"
+#include "studies/version.hpp"
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+
+/// A contact point nearer than this to another state has no two-sided derivative.
+constexpr double weak = 1e-8;
+
+const char* name_of(ContactState state) {
+  return state == ContactState::open ? "open" : state == ContactState::stick ? "stick" : "slip";
+}
+
+/// JSON has no infinity.
+json finite(double x) { return std::isfinite(x) ? json(x) : json(nullptr); }
+
+json history_json(const std::vector<IterationRecord>& history) {
+  json out = json::array();
+  for (const auto& r : history)
+    out.push_back({{"residual", finite(r.residual)},
+                   {"equilibrium", finite(r.equilibrium)},
+                   {"normal", finite(r.normal)},
+                   {"tangential", finite(r.tangential)},
+                   {"open", r.open},
+                   {"stick", r.stick},
+                   {"slip", r.slip},
+                   {"changed", r.changed},
+                   {"step_length", r.step_length},
+                   {"augmentation", r.augmentation}});
+  return out;
+}
+
+std::vector<StepResult> gather_steps(const CaseResult& result) {
+  const auto& [model, slots, unused] = *result.problem;
+  const auto errors = kkt_errors(model, slots, result.trajectory);
+  std::vector<StepResult> steps;
+  StepResult step;
+  for (std::size_t n = 0; n < result.trajectory.increments.size(); ++n) {
+    const auto& increment = result.trajectory.increments[n];
+    step.newton += increment.newton;
+    step.augmentations += increment.augmentations;
+    step.history.insert(step.history.end(), increment.history.begin(), increment.history.end());
+    if (!increment.requested) continue;
+    step.increment = &increment;
+    step.kkt = errors[n];
+    step.margins = margins(model, slots, increment.state);
+    step.responses = evaluate_responses(model, slots, increment.state, increment.time);
+    if (n < result.gradients.of.size()) step.sensitivities = result.gradients.of[n];
+    step.differentiable = std::min(step.margins.open, step.margins.slip) > weak;
+    steps.push_back(std::move(step));
+    step = {};
+  }
+  return steps;
+}
+
+}  // namespace
+
+Problem::Problem(const Scene& scene) {
+  const Stopwatch time(seconds);
+  model = make_model(scene);
+  slots = make_slots<double>(model, scene.as<double>());
+}
+
+Status CaseResult::status() const {
+  return trajectory.status != Status::converged ? trajectory.status : gradients.status;
+}
+
+std::string CaseResult::message() const {
+  return trajectory.status != Status::converged || gradients.message.empty() ? trajectory.message : gradients.message;
+}
+
+CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method, const RunOptions& options,
+                    std::shared_ptr<Condensation<double>>& condensation) {
+  CaseResult result;
+  result.problem = problem;
+  result.method = method;
+  Workspace<double> workspace{condensation, {}};
+  result.trajectory = solve(problem->model, problem->slots, method, options, workspace);
+  condensation = workspace.condensation;
+  std::visit([&](auto& engine) { result.nonzeros = engine.nonzeros(); }, *workspace.engine);
+  const bool solved = !result.trajectory.increments.empty() && result.trajectory.status != Status::singular &&
+                      result.trajectory.status != Status::not_finite;
+  if (solved) {
+    result.condition_estimate = std::visit([](auto& engine) { return engine.condition_estimate(); }, *workspace.engine);
+    result.gradients = differentiate(problem->model, problem->slots, method, result.trajectory, workspace);
+  }
+  result.steps = gather_steps(result);
+  return result;
+}
+
+json kkt_json(const KktError& e) {
+  return {{"equilibrium", finite(e.equilibrium)},
+          {"gap", finite(e.gap)},
+          {"complementarity", finite(e.complementarity)},
+          {"cone", finite(e.cone)},
+          {"stick", finite(e.stick)},
+          {"slip_direction", finite(e.slip_direction)}};
+}
+
+json size_json(const CaseResult& result) {
+  const auto& model = result.problem->model;
+  const bool unknown = std::holds_alternative<MonolithicAL>(result.method);
+  return {{"displacements", model.free_dofs.size()},
+          {"multipliers", unknown ? model.multiplier_count : 0},
+          {"nonzeros", result.nonzeros},
+          {"contact_points", model.points.size()},
+          {"reduced_unknowns", result.trajectory.reduced_unknowns},
+          {"engine", result.trajectory.engine}};
+}
+
+json cost_json(const CaseResult& result) {
+  Counters counts = result.trajectory.counters;
+  counts += result.gradients.counters;
+  const auto& seconds = result.trajectory.seconds;
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return {{"counts",
+           {{"assemblies", counts.assemblies},
+            {"factorizations", counts.factorizations},
+            {"analyses", counts.analyses},
+            {"backsolves", counts.backsolves},
+            {"sensitivity_backsolves", counts.sensitivity_backsolves},
+            {"sensitivity_factorizations", counts.sensitivity_factorizations},
+            {"newton", counts.newton},
+            {"augmentations", counts.augmentations},
+            {"cutbacks", counts.cutbacks}}},
+          {"seconds",
+           {{"total", seconds.total + result.gradients.seconds},
+            {"setup", seconds.setup + result.problem->seconds},
+            {"assembly", seconds.assembly},
+            {"factorization", seconds.factorization},
+            {"backsolve", seconds.backsolve},
+            {"contact_search", 0.0},
+            {"sensitivity", result.gradients.seconds},
+            {"output", 0.0}}},
+          {"peak_memory_mb", usage.ru_maxrss / 1024.0},
+          {"condition_estimate", finite(result.condition_estimate)}};
+}
+
+json steps_json(const CaseResult& result) {
+  const auto& scene = result.problem->model.scene;
+  json steps = json::array();
+  for (const auto& step : result.steps) {
+    json contacts = json::object(), responses = json::object(), sensitivities = json::object();
+    const auto summaries = summarise(result.problem->model, result.problem->slots, step.increment->state);
+    for (std::size_t c = 0; c < summaries.size(); ++c)
+      contacts[scene.contacts[c].name] = {{"open", summaries[c].open},
+                                          {"stick", summaries[c].stick},
+                                          {"slip", summaries[c].slip},
+                                          {"penetration", finite(summaries[c].penetration)},
+                                          {"normal_force", finite(summaries[c].normal_force)},
+                                          {"tangential_force", summaries[c].tangential_force}};
+    for (std::size_t i = 0; i < scene.responses.size(); ++i) {
+      responses[scene.responses[i].name] = finite(step.responses[i]);
+      for (std::size_t j = 0; step.sensitivities.size() && j < scene.parameters.size(); ++j)
+        sensitivities[scene.responses[i].name][scene.parameters[j].name] = finite(step.sensitivities(i, j));
+    }
+    json entry = {{"time", step.increment->time},
+                  {"status", name_of(step.increment->status)},
+                  {"newton", step.newton},
+                  {"augmentations", step.augmentations},
+                  {"cutbacks", step.increment->cutbacks},
+                  {"history", history_json(step.history)},
+                  {"contacts", contacts},
+                  {"kkt", kkt_json(step.kkt)},
+                  {"margins", {{"open", finite(step.margins.open)}, {"slip", finite(step.margins.slip)}}},
+                  {"responses", responses}};
+    if (!scene.parameters.empty()) {
+      entry["sensitivities"] = sensitivities;
+      entry["differentiable"] = step.differentiable;
+    }
+    if (step.increment->contraction > 0) entry["contraction"] = step.increment->contraction;
+    if (!step.increment->message.empty()) entry["message"] = step.increment->message;
+    steps.push_back(std::move(entry));
+  }
+  return steps;
+}
+
+json interface_json(const CaseResult& result) {
+  json contacts = json::object();
+  if (result.steps.empty()) return contacts;
+  const auto& [model, slots, unused] = *result.problem;
+  const auto& state = result.steps.back().increment->state;
+  for (std::size_t c = 0; c < model.scene.contacts.size(); ++c) {
+    json x = json::array(), y = json::array(), arc = json::array(), area = json::array(), gap = json::array(),
+         slip = json::array(), normal = json::array(), tangential = json::array(), states = json::array();
+    double along = 0;
+    const ContactPoint* last = nullptr;
+    for (std::size_t p = 0; p < model.points.size(); ++p) {
+      const auto& point = model.points[p];
+      if (point.contact != static_cast<int>(c)) continue;
+      if (last) along += (slots.points.col(point.nodes[0]) - slots.points.col(last->nodes[0])).norm();
+      last = &point;
+      x.push_back(slots.points(0, point.nodes[0]));
+      y.push_back(slots.points(1, point.nodes[0]));
+      arc.push_back(along);
+      area.push_back(slots.geometry[p].area);
+      gap.push_back(finite(state.contact.gap[p]));
+      normal.push_back(finite(state.contact.traction[point.multiplier]));
+      const bool plane = point.tangents == 1;  // one component keeps its sign; two are shown by their size
+      const auto t = state.contact.traction.segment(point.multiplier + 1, point.tangents);
+      const auto s = state.contact.placement.segment(tangential_offset(model, static_cast<int>(p)), point.tangents);
+      tangential.push_back(finite(plane ? t[0] : t.norm()));
+      slip.push_back(finite(plane ? s[0] : s.norm()));
+      states.push_back(name_of(state.contact.state[p]));
+    }
+    contacts[model.scene.contacts[c].name] = {
+        {"x", x},         {"y", y},       {"arc", arc},       {"area", area},
+        {"gap", gap},     {"slip", slip}, {"normal", normal}, {"tangential", tangential},
+        {"state", states}};
+  }
+  return contacts;
+}
+
+json result_json(const CaseResult& result, const std::string& scene_text) {
+  const auto& model = result.problem->model;
+  const auto& effects = model.effects;
+  json out;
+  out["stickslip"] = version::number;
+  out["scene"] = {{"title", model.scene.title}, {"hash", fingerprint(scene_text)}};
+  out["method"] = to_json(result.method);
+  out["status"] = name_of(result.status());
+  out["message"] = result.message();
+  out["effects"] = {{"friction", effects.friction},
+                    {"finite_strain", false},
+                    {"plasticity", false},
+                    {"smoothing", false},
+                    {"sensitivity", effects.sensitivity}};
+  out["size"] = size_json(result);
+  out["steps"] = steps_json(result);
+  out["cost"] = cost_json(result);
+  out["provenance"] = provenance(1);
+  return out;
+}
+
+}  // namespace stickslip

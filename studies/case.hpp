@@ -1,0 +1,60 @@
+/// One case: a scene run through one method, with its derivatives and the method-blind measures of what came out.
+#pragma once
+
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "sensitivity/differentiate.hpp"
+#include "studies/metrics.hpp"
+
+namespace stickslip {
+
+/// Model and slots of one scene: shared, immutable, by all methods that run on it.
+struct Problem {
+  Model model;
+  Slots<double> slots;
+  double seconds = 0;  ///< to make them
+  explicit Problem(const Scene& scene);
+};
+
+/// A step that the scene asked for, gathered from its sub-steps.
+struct StepResult {
+  const Increment<double>* increment;  ///< the last of its sub-steps
+  int newton = 0, augmentations = 0;
+  std::vector<IterationRecord> history;
+  KktError kkt;
+  Margins margins;
+  Vector<double> responses;
+  Matrix<double> sensitivities;  ///< responses x parameters; empty where there are none
+  bool differentiable = true;    ///< no contact point is about to change state
+};
+
+struct CaseResult {
+  std::shared_ptr<const Problem> problem;
+  Method method;
+  Trajectory<double> trajectory;
+  Gradients gradients;
+  std::vector<StepResult> steps;
+  double condition_estimate = 0;
+  long nonzeros = 0;
+  Status status() const;  ///< of the trajectory, or of the derivatives where only they failed
+  std::string message() const;
+};
+
+/// Runs a method. `condensation` may hold one of the same problem and is filled otherwise (see Workspace).
+CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method, const RunOptions& options,
+                    std::shared_ptr<Condensation<double>>& condensation);
+
+/// result.json of interface.md, section 3. `scene_text`: what the hash is of.
+nlohmann::json result_json(const CaseResult& result, const std::string& scene_text);
+/// Parts of it that a study's row has too.
+nlohmann::json cost_json(const CaseResult& result);
+nlohmann::json steps_json(const CaseResult& result);
+nlohmann::json size_json(const CaseResult& result);
+nlohmann::json kkt_json(const KktError& error);
+/// Contact points of the last step by contact: position, arc length, tractions, gap, slip, state.
+nlohmann::json interface_json(const CaseResult& result);
+
+}  // namespace stickslip

@@ -1,0 +1,198 @@
+#include "studies/commands.hpp"
+
+#include <fmt/core.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "sensitivity/gradcheck.hpp"
+#include "studies/atomic_file.hpp"
+#include "studies/case.hpp"
+#include "studies/explain.hpp"
+#include "studies/fields.hpp"
+#include "studies/method_options.hpp"
+#include "studies/progress.hpp"
+#include "studies/report/report.hpp"
+#include "studies/scene_reader.hpp"
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+
+constexpr int done = 0, bad_input = 2, not_solved = 3;
+
+/// A scene read and made into a problem; on a fault everything known of it is on standard error.
+struct Loaded {
+  Input input;
+  std::shared_ptr<const Problem> problem;
+};
+
+std::optional<Loaded> load(const RunArguments& arguments) {
+  Diagnostics diagnostics;
+  auto input = read_scene(arguments.scene, arguments.overrides, arguments.method, diagnostics);
+  if (!input) {
+    std::cerr << diagnostics.text();
+    return std::nullopt;
+  }
+  for (const auto& note : diagnostics.notes()) std::cerr << "note: " << note.text() << '\n';
+  try {
+    auto problem = std::make_shared<const Problem>(input->scene);
+    return Loaded{std::move(*input), problem};
+  } catch (const ModelError& error) {
+    std::cerr << arguments.scene << ": " << error.what() << '\n';
+    return std::nullopt;
+  }
+}
+
+RunOptions options_of(const Input& input) { return {input.linear_algebra, input.backend, {}}; }
+
+std::filesystem::path output_directory(const std::string& given, const std::string& input) {
+  return given.empty() ? std::filesystem::path("results") / std::filesystem::path(input).stem() : std::filesystem::path(given);
+}
+
+int fields_every(const OutputOptions& output) {
+  switch (output.fields) {
+    case OutputOptions::Fields::last: return 0;
+    case OutputOptions::Fields::all: return 1;
+    case OutputOptions::Fields::every: return output.every;
+  }
+  return 0;
+}
+
+void print_summary(const CaseResult& result) {
+  const auto& scene = result.problem->model.scene;
+  fmt::print("{:>10} {:>24} {:>7} {:>7} {:>6} {:>6} {:>6} {:>10}\n", "time", "status", "newton", "augm.", "open", "stick",
+             "slip", "kkt");
+  for (const auto& step : result.steps) {
+    int open = 0, stick = 0, slip = 0;
+    for (const auto& s : summarise(result.problem->model, result.problem->slots, step.increment->state)) {
+      open += s.open;
+      stick += s.stick;
+      slip += s.slip;
+    }
+    fmt::print("{:>10.6g} {:>24} {:>7} {:>7} {:>6} {:>6} {:>6} {:>10.1e}\n", step.increment->time,
+               name_of(step.increment->status), step.newton, step.augmentations, open, stick, slip, step.kkt.largest());
+  }
+  if (result.steps.empty()) return;
+  const auto& last = result.steps.back();
+  fmt::print("\nresponses at t = {:g}, and their derivatives\n", last.increment->time);
+  for (std::size_t i = 0; i < scene.responses.size(); ++i) {
+    fmt::print("  {:<20} {: .10e}", scene.responses[i].name, last.responses[i]);
+    for (std::size_t j = 0; last.sensitivities.size() && j < scene.parameters.size(); ++j)
+      fmt::print("   d/d{} {: .6e}", scene.parameters[j].name, last.sensitivities(i, j));
+    fmt::print("\n");
+  }
+  if (!scene.parameters.empty() && !last.differentiable)
+    fmt::print("  a contact point is about to change state: these are derivatives from one side only\n");
+}
+
+json check_json(const GradientCheck& check) {
+  static const char* const verdicts[] = {"agrees", "differs", "not checked"};
+  json entries = json::array();
+  for (const auto& e : check.entries)
+    entries.push_back({{"response", e.response}, {"parameter", e.parameter}, {"time", e.time},
+                       {"computed", e.computed}, {"difference", e.difference}, {"error", e.error},
+                       {"estimate", e.estimate}, {"allowed", e.allowed}, {"scale", e.scale}, {"step", e.step},
+                       {"verdict", verdicts[static_cast<int>(e.verdict)]}});
+  return {{"status", name_of(check.status)}, {"message", check.message}, {"passed", check.passed()},
+          {"runs", check.runs}, {"rejected", check.rejected}, {"entries", entries}};
+}
+
+}  // namespace
+
+int run_command(const RunArguments& arguments) {
+  const auto loaded = load(arguments);
+  if (!loaded) return bad_input;
+  std::shared_ptr<Condensation<double>> condensation;
+  const auto result = run_case(loaded->problem, loaded->input.method, options_of(loaded->input), condensation);
+  json document = result_json(result, canonical_text(loaded->input));
+  if (!arguments.json || !arguments.output.empty()) {
+    double seconds = 0;
+    const auto directory = output_directory(arguments.output, arguments.scene);
+    {
+      const Stopwatch time(seconds);
+      write_fields(directory, result, fields_every(loaded->input.output));
+    }
+    document["cost"]["seconds"]["output"] = seconds;
+    write_file_atomically(directory / "result.json", document.dump(2) + "\n");
+    if (!arguments.json) {
+      print_summary(result);
+      fmt::print("\nwritten: {0}/result.json, {0}/fields.pvd\n", directory.string());
+    }
+  }
+  if (arguments.json) std::cout << document.dump(2) << '\n';
+  if (is_converged(result.status())) return done;
+  fmt::print(stderr, "{}: {}\n", name_of(result.status()), result.message());
+  return not_solved;
+}
+
+int explain_command(const RunArguments& arguments) {
+  const auto loaded = load(arguments);
+  if (!loaded) return bad_input;
+  const std::string text = explain(loaded->input, *loaded->problem);
+  std::cout << (arguments.json ? json{{"explain", text}}.dump(2) + "\n" : text);
+  return done;
+}
+
+int gradcheck_command(const RunArguments& arguments) {
+  const auto loaded = load(arguments);
+  if (!loaded) return bad_input;
+  const auto& model = loaded->problem->model;
+  if (model.scene.parameters.empty() || model.scene.responses.empty()) {
+    std::cerr << arguments.scene << ": gradcheck needs parameters and responses\n";
+    return bad_input;
+  }
+  GradientCheck check;
+  {
+    std::optional<Progress> bar;
+    check = check_gradients(model, loaded->input.method, options_of(loaded->input), [&](int, int total) {
+      if (!bar) bar.emplace(std::cerr, progress_style_of_stderr(), "difference runs", total);
+      bar->advance();
+    });
+  }
+  if (arguments.json) {
+    std::cout << check_json(check).dump(2) << '\n';
+  } else {
+    static const char* const verdicts[] = {"agrees", "DIFFERS", "not checked"};
+    fmt::print("{} by {}: {} difference runs, {} of them through other contact states\n", arguments.scene,
+               name_of(loaded->input.method), check.runs, check.rejected);
+    fmt::print("{:<16} {:<12} {:>9} {:>18} {:>18} {:>9} {:>9}  {}\n", "response", "parameter", "time", "computed",
+               "difference", "error", "allowed", "verdict");
+    for (const auto& e : check.entries)
+      fmt::print("{:<16} {:<12} {:>9.4g} {:>18.10e} {:>18.10e} {:>9.1e} {:>9.1e}  {}\n", e.response, e.parameter, e.time,
+                 e.computed, e.difference, e.error, e.allowed, verdicts[static_cast<int>(e.verdict)]);
+    fmt::print("error and allowed are relative to the largest derivative of the run (or response / parameter)\n");
+  }
+  if (check.passed()) return done;
+  if (check.entries.empty()) fmt::print(stderr, "{}: {}\n", name_of(check.status), check.message);
+  return not_solved;
+}
+
+int methods_command(bool as_json) {
+  json all = json::object();
+  for (const auto& name : method_names()) all.update(to_json(*default_method(name)));
+  if (as_json) {
+    std::cout << all.dump(2) << '\n';
+    return done;
+  }
+  for (const auto& [name, options] : all.items()) {
+    fmt::print("{}\n", name);
+    for (const auto& [option, standard] : options.items()) fmt::print("  {:<18} {}\n", option, standard.dump());
+  }
+  return done;
+}
+
+int report_command(const std::string& directory) {
+  if (!std::filesystem::exists(std::filesystem::path(directory) / "results.jsonl")) {
+    std::cerr << directory << ": there is no results.jsonl; run `stickslip study` first\n";
+    return bad_input;
+  }
+  write_report(directory);
+  fmt::print("{}\n", (std::filesystem::path(directory) / "report.html").string());
+  return done;
+}
+
+}  // namespace stickslip

@@ -1,0 +1,33 @@
+/// The commands of the program (interface.md, section 1). Each returns the exit code: 0 done, 2 bad input, 3 the solve
+/// failed in a diagnosed way. Faults go to standard error, results to files and standard output.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace stickslip {
+
+struct RunArguments {
+  std::string scene;
+  std::optional<std::string> method;
+  std::vector<std::string> overrides;
+  std::string output;  ///< directory; empty: results/NAME OF THE SCENE (with `json`: nothing is written)
+  bool json = false;   ///< one JSON document on standard output and nothing else
+};
+
+struct StudyArguments {
+  std::string study;
+  std::string output;  ///< directory; empty: results/NAME OF THE STUDY
+  bool resume = false;
+  std::vector<std::string> overrides;
+};
+
+int run_command(const RunArguments& arguments);
+int explain_command(const RunArguments& arguments);
+int gradcheck_command(const RunArguments& arguments);
+int methods_command(bool json);
+int study_command(const StudyArguments& arguments);
+int report_command(const std::string& directory);
+
+}  // namespace stickslip

@@ -1,0 +1,192 @@
+#include "studies/fields.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "studies/vtu.hpp"
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+
+/// Mean stress of each element, xx yy zz xy yz xz; zero for lumped elements. Plane strain: zz = nu (xx + yy).
+Matrix<double> element_stress(const Problem& problem, const State<double>& state) {
+  const auto& model = problem.model;
+  int count = 0;
+  for (const auto& body : model.bodies) count += body.mesh.element_count();
+  Matrix<double> stress = Matrix<double>::Zero(6, count);
+  int column = 0;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const auto& body = model.bodies[b];
+    if (!detail::is_continuum(body.mesh.shape)) {
+      column += body.mesh.element_count();
+      continue;
+    }
+    const auto& law = std::get<LinearElasticLaw<double>>(problem.slots.laws[b]);
+    detail::with_shape(body.mesh.shape, [&]<class Shape>(Shape) {
+      for (int e = 0; e < body.mesh.element_count(); ++e, ++column) {
+        const auto nodes = detail::element_nodes(body, e);
+        const auto X = detail::gather_coordinates<double, Shape>(problem.slots.points, nodes.data());
+        const auto u = detail::gather_displacements<double, Shape>(state.displacement, nodes.data());
+        double volume = 0;
+        for (const auto& point : Shape::quadrature()) {
+          const Gradient<double, Shape> gradient(point, X);
+          const Mat<double, 2> H = gradient.of(u), s = law.template stress<double, 2>(H);
+          const double zz = model.scene.space == Space::plane_strain ? law.lame * H.trace() : 0;
+          Eigen::Matrix<double, 6, 1> components;
+          components << s(0, 0), s(1, 1), zz, s(0, 1), 0, 0;
+          stress.col(column) += gradient.volume * components;
+          volume += gradient.volume;
+        }
+        stress.col(column) /= volume;
+      }
+    });
+  }
+  return stress;
+}
+
+double von_mises(const Eigen::Ref<const Eigen::Matrix<double, 6, 1>>& s) {
+  const double normal = std::pow(s[0] - s[1], 2) + std::pow(s[1] - s[2], 2) + std::pow(s[2] - s[0], 2);
+  return std::sqrt(0.5 * normal + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+}
+
+Matrix<double> nodal(const Model& model, const Eigen::Ref<const Vector<double>>& dofs) {
+  return Eigen::Map<const Matrix<double>>(dofs.data(), model.dimension, model.node_count);
+}
+
+/// Force per area on the slave at point p.
+Vector<double> traction_vector(const Problem& problem, const State<double>& state, int p) {
+  const auto& point = problem.model.points[p];
+  const auto& geometry = problem.slots.geometry[p];
+  Vector<double> t = -state.contact.traction[point.multiplier] * geometry.normal;
+  for (int a = 0; a < point.tangents; ++a)
+    t -= state.contact.traction[point.multiplier + 1 + a] * geometry.tangents.col(a);
+  return t;
+}
+
+void append_contact_fields(VtuData& data, const Problem& problem, const State<double>& state) {
+  const auto& model = problem.model;
+  Matrix<double> code = Matrix<double>::Constant(1, model.node_count, -1),
+                 pressure = Matrix<double>::Zero(1, model.node_count),
+                 traction = Matrix<double>::Zero(model.dimension, model.node_count), gap = pressure;
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    const int node = model.points[p].nodes[0];
+    code(0, node) = static_cast<int>(state.contact.state[p]);
+    pressure(0, node) = -state.contact.traction[model.points[p].multiplier];
+    gap(0, node) = state.contact.gap[p];
+    traction.col(node) = traction_vector(problem, state, p);
+  }
+  data.point_fields.push_back({"contact_state", code});
+  data.point_fields.push_back({"contact_pressure", pressure});
+  data.point_fields.push_back({"contact_traction", traction});
+  data.point_fields.push_back({"gap", gap});
+}
+
+VtuData fields_of(const CaseResult& result, const StepResult& step, bool last) {
+  const auto& problem = *result.problem;
+  const auto& model = problem.model;
+  VtuData data;
+  data.time = step.increment->time;
+  data.points.resize(model.dimension, 0);
+  Matrix<double> body_index(1, 0);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const auto& body = model.bodies[b];
+    append_mesh(data, body.mesh, problem.slots.points.middleCols(body.first_node, body.mesh.node_count));
+    body_index.conservativeResize(1, static_cast<Eigen::Index>(data.cells.size()));
+    body_index.rightCols(body.mesh.element_count()).setConstant(static_cast<double>(b));
+  }
+  const auto& state = step.increment->state;
+  data.point_fields.push_back({"displacement", nodal(model, state.displacement)});
+  if (model.effects.contact) append_contact_fields(data, problem, state);
+  const auto& derivative = result.gradients.last_displacement;
+  if (last && derivative.size() > 0)
+    for (std::size_t j = 0; j < model.scene.parameters.size(); ++j)
+      data.point_fields.push_back(
+          {"d_displacement_d_" + model.scene.parameters[j].name, nodal(model, derivative.col(j))});
+  data.cell_fields.push_back({"body", body_index});
+  const Matrix<double> stress = element_stress(problem, state);
+  Matrix<double> mises(1, stress.cols());
+  for (Eigen::Index e = 0; e < stress.cols(); ++e) mises(0, e) = von_mises(stress.col(e));
+  data.cell_fields.push_back({"stress", stress});
+  data.cell_fields.push_back({"von_mises", mises});
+  return data;
+}
+
+json point_json(const Eigen::Ref<const Vector<double>>& x) {
+  return json(std::vector<double>(x.data(), x.data() + x.size()));
+}
+
+json numbers_json(const std::vector<Number>& numbers) {
+  json out = json::array();
+  for (const auto& n : numbers) out.push_back(n.value);
+  return out;
+}
+
+}  // namespace
+
+void write_fields(const std::filesystem::path& directory, const CaseResult& result, int every) {
+  std::vector<PvdEntry> entries;
+  for (std::size_t n = 0; n < result.steps.size(); ++n) {
+    const bool last = n + 1 == result.steps.size();
+    if (!last && (every == 0 || (n + 1) % every != 0)) continue;
+    const std::string file = fmt::format("fields_{:04}.vtu", n + 1);
+    write_vtu(directory / file, fields_of(result, result.steps[n], last));
+    entries.push_back({result.steps[n].increment->time, file});
+  }
+  write_pvd(directory / "fields.pvd", entries);
+}
+
+json picture_json(const CaseResult& result) {
+  const auto& problem = *result.problem;
+  const auto& model = problem.model;
+  if (result.steps.empty()) return nullptr;
+  const auto& state = result.steps.back().increment->state;
+  json points = json::array(), displacement = json::array(), elements = json::array(), bodies = json::array(),
+       mises = json::array(), contact = json::array(), obstacles = json::array(), names = json::array();
+  const Matrix<double> u = nodal(model, state.displacement), stress = element_stress(problem, state);
+  for (int node = 0; node < model.node_count; ++node) {
+    points.push_back(point_json(problem.slots.points.col(node)));
+    displacement.push_back(point_json(u.col(node)));
+  }
+  int column = 0;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    names.push_back(model.scene.bodies[b].name);
+    for (int e = 0; e < model.bodies[b].mesh.element_count(); ++e, ++column) {
+      elements.push_back(detail::element_nodes(model.bodies[b], e));
+      bodies.push_back(b);
+      mises.push_back(von_mises(stress.col(column)));
+    }
+  }
+  static const char* const state_names[] = {"open", "stick", "slip"};
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    const auto& point = model.points[p];
+    const int node = point.nodes[0];
+    const auto t = state.contact.traction.segment(point.multiplier + 1, point.tangents);
+    contact.push_back({{"name", model.scene.contacts[point.contact].name},
+                       {"x", problem.slots.points(0, node) + u(0, node)},
+                       {"y", problem.slots.points(1, node) + u(1, node)},
+                       {"node", node},
+                       {"state", state_names[static_cast<int>(state.contact.state[p])]},
+                       {"normal", state.contact.traction[point.multiplier]},
+                       {"tangential", point.tangents == 1 ? t[0] : t.norm()}});
+  }
+  for (const auto& obstacle : model.scene.obstacles) {
+    if (const auto* plane = std::get_if<Plane>(&obstacle.shape)) {
+      obstacles.push_back(
+          {{"plane", {{"point", numbers_json(plane->point)}, {"normal", numbers_json(plane->normal)}}}});
+    } else {
+      const auto& circle = std::get<Circle>(obstacle.shape);
+      obstacles.push_back({{"circle",
+                            {{"center", {circle.center[0].value, circle.center[1].value}},
+                             {"radius", circle.radius.value},
+                             {"inside", circle.inside}}}});
+    }
+  }
+  return {{"points", points}, {"elements", elements}, {"displacement", displacement}, {"von_mises", mises},
+          {"bodies", bodies}, {"body_names", names},  {"contact", contact},           {"obstacles", obstacles}};
+}
+
+}  // namespace stickslip

@@ -1,0 +1,20 @@
+/// Pictures of a case: the .vtu / .pvd that ParaView reads, and the picture.json that the report draws.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+
+#include "studies/case.hpp"
+
+namespace stickslip {
+
+/// Writes DIR/fields_NNNN.vtu for every `every`-th step and the last one (0: the last alone), and DIR/fields.pvd.
+/// Point fields: displacement, contact_state (-1: no contact point, 0 open, 1 stick, 2 slip), contact_pressure,
+/// contact_traction (force per area on the slave), gap; at the last step d_displacement_d_NAME per parameter. Cell
+/// fields: body, and for continua stress (xx yy zz xy yz xz) and von_mises.
+void write_fields(const std::filesystem::path& directory, const CaseResult& result, int every);
+
+/// The last step as the report's picture: points, elements, displacement, von Mises stress, contact points, obstacles.
+nlohmann::json picture_json(const CaseResult& result);
+
+}  // namespace stickslip

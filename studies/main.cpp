@@ -1,0 +1,59 @@
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+
+#include "core/algebra/linear_solver.hpp"
+#include "studies/commands.hpp"
+#include "studies/provenance.hpp"
+
+namespace {
+
+void add_scene(CLI::App& command, stickslip::RunArguments& arguments) {
+  command.add_option("SCENE", arguments.scene, "scene file (JSON)")->required();
+  command.add_option("-m,--method", arguments.method, "penalty, uzawa_al or monolithic_al in place of the scene's");
+  command.add_option("--set", arguments.overrides, "POINTER=VALUE: change a number of the scene")->allow_extra_args(false);
+  command.add_flag("--json", arguments.json, "one JSON document on standard output and nothing else");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace stickslip;
+  set_blas_threads(1);
+  CLI::App app{"stickslip: one frictional contact problem, three ways to enforce it, and their derivatives"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", [] { return version_text(); });
+  RunArguments run, explain, gradcheck;
+  StudyArguments study;
+  std::string directory;
+  bool methods_json = false;
+  auto& run_app = *app.add_subcommand("run", "simulate a scene");
+  add_scene(run_app, run);
+  run_app.add_option("-o,--output", run.output, "directory for result.json and fields");
+  auto& study_app = *app.add_subcommand("study", "compare methods on a scene and write a report");
+  study_app.add_option("STUDY", study.study, "study file (JSON)")->required();
+  study_app.add_option("-o,--output", study.output, "directory for results.jsonl and report.html");
+  study_app.add_flag("--resume", study.resume, "keep the cells that are there and run what is missing");
+  auto& explain_app = *app.add_subcommand("explain", "say what would be simulated, and what would not");
+  add_scene(explain_app, explain);
+  auto& gradcheck_app = *app.add_subcommand("gradcheck", "hold every sensitivity against differences");
+  add_scene(gradcheck_app, gradcheck);
+  auto& report_app = *app.add_subcommand("report", "rebuild report.html from recorded results");
+  report_app.add_option("DIR", directory, "directory of a study")->required();
+  auto& methods_app = *app.add_subcommand("methods", "list the methods and their options");
+  methods_app.add_flag("--json", methods_json, "as JSON");
+  try {
+    app.parse(argc, argv);
+    if (run_app) return run_command(run);
+    if (study_app) return study_command(study);
+    if (explain_app) return explain_command(explain);
+    if (gradcheck_app) return gradcheck_command(gradcheck);
+    if (report_app) return report_command(directory);
+    return methods_command(methods_json);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const std::exception& error) {
+    std::cerr << "stickslip: " << error.what() << "\nthis is a bug of ours: please report it with the scene\n";
+    return 1;
+  }
+}

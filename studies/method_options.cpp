@@ -1,0 +1,228 @@
+#include "studies/method_options.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "studies/scene_reading.hpp"
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+
+constexpr Rule below_one{"a number > 0 and < 1", [](double x) { return x > 0 && x < 1; }};
+constexpr Rule above_one{"a number > 1", [](double x) { return x > 1; }};
+
+/// Values of an enumeration by name; `later`: names of the format that this version does not have.
+template <class E>
+struct Words {
+  std::vector<std::pair<std::string, E>> values;
+  std::vector<std::string> later = {};
+};
+/// For options with one value so far.
+enum class Only { one };
+
+// One list of options a method; it serves reading, writing and the names in messages. A number with a slot is a
+// Number, one that only steers the iteration a double.
+
+template <class Visitor>
+void visit_options(NewtonOptions& newton, Visitor&& visit) {
+  visit("tolerance", newton.tolerance, below_one);
+  visit("max_iterations", newton.max_iterations);
+  visit("line_search", newton.line_search);
+}
+
+template <class Visitor>
+void visit_options(Penalty& method, Visitor&& visit) {
+  visit("stiffness", method.stiffness);
+  visit("tangential_ratio", method.tangential_ratio);
+  visit("newton", method.newton);
+}
+
+template <class Visitor>
+void visit_options(UzawaAL& method, Visitor&& visit) {
+  using Sensitivity = UzawaAL::Sensitivity;
+  Only none = Only::one, augmented = Only::one;
+  visit("scale", method.scale);
+  visit("tolerance", method.tolerance, below_one);
+  visit("max_augmentations", method.max_augmentations);
+  visit("adapt", method.adapt);
+  visit("acceleration", none, Words<Only>{{{"none", Only::one}}, {"aitken", "anderson"}});
+  visit("cone", augmented, Words<Only>{{{"augmented", Only::one}}, {"frozen"}});
+  visit("sensitivity", method.sensitivity,
+        Words<Sensitivity>{{{"iterated", Sensitivity::iterated},
+                            {"truncated", Sensitivity::truncated},
+                            {"oversized", Sensitivity::oversized}}});
+  visit("oversize", method.oversize, above_one);
+  visit("newton", method.newton);
+}
+
+template <class Visitor>
+void visit_options(MonolithicAL& method, Visitor&& visit) {
+  using Cone = MonolithicAL::Cone;
+  visit("scale", method.scale);
+  visit("cone", method.cone, Words<Cone>{{{"augmented", Cone::augmented}, {"multiplier", Cone::multiplier}}});
+  visit("newton", method.newton);
+}
+
+/// Names of the options of a method, or of newton.
+template <class Options>
+std::vector<std::string> option_names() {
+  std::vector<std::string> names;
+  Options options;
+  visit_options(options, [&](const char* name, auto&&...) { names.emplace_back(name); });
+  return names;
+}
+
+/// Calls f(M{}) for each method of the closed set.
+template <class F, std::size_t... I>
+void for_each_method(F&& f, std::index_sequence<I...>) {
+  (f(std::variant_alternative_t<I, Method>{}), ...);
+}
+template <class F>
+void for_each_method(F&& f) {
+  for_each_method(std::forward<F>(f), std::make_index_sequence<std::variant_size_v<Method>>{});
+}
+
+/// Reads the options of one object.
+struct Reader {
+  const JsonNode& node;
+  SceneReading& reading;
+
+  void operator()(const char* name, Regularisation& option) {
+    const auto given = node.find(name);
+    if (!given || given->value() == "auto") return;
+    if (given->value().is_object()) {
+      option.kind = Regularisation::Kind::absolute;
+      given->is_object({{"absolute"}});
+      option.value = reading.required(*given, "absolute", positive);
+    } else if (given->value().is_number()) {
+      option.kind = Regularisation::Kind::relative;
+      option.value = reading.number(*given, positive);
+    } else {
+      given->must_be(R"("auto", a number > 0 or {"absolute": a number > 0})");
+    }
+  }
+  void operator()(const char* name, Number& option) { option = reading.optional(node, name, option.value, positive); }
+  void operator()(const char* name, double& option, const Rule& rule) {
+    if (const auto given = node.find(name)) option = reading.setting(*given, rule).value_or(option);
+  }
+  void operator()(const char* name, int& option) {
+    if (const auto given = node.find(name)) option = reading.count(*given, 1).value_or(option);
+  }
+  void operator()(const char* name, bool& option) {
+    if (const auto given = node.find(name)) option = given->boolean().value_or(option);
+  }
+  template <class E>
+  void operator()(const char* name, E& option, const Words<E>& words) {
+    const auto given = node.find(name);
+    if (!given) return;
+    std::vector<std::string> allowed;
+    for (const auto& [word, unused] : words.values) allowed.push_back(word);
+    const auto choice = given->choice(allowed, words.later);
+    for (const auto& [word, value] : words.values)
+      if (word == choice) option = value;
+  }
+  void operator()(const char* name, NewtonOptions& newton) {
+    const auto given = node.find(name);
+    if (given && given->is_object({{}, option_names<NewtonOptions>()})) visit_options(newton, Reader{*given, reading});
+  }
+};
+
+/// Writes the options of one object.
+struct Writer {
+  json& object;
+
+  void operator()(const char* name, const Regularisation& option) {
+    switch (option.kind) {
+      case Regularisation::Kind::automatic:
+        object[name] = "auto";
+        break;
+      case Regularisation::Kind::relative:
+        object[name] = option.value.value;
+        break;
+      case Regularisation::Kind::absolute:
+        object[name] = {{"absolute", option.value.value}};
+        break;
+    }
+  }
+  void operator()(const char* name, const Number& option) { object[name] = option.value; }
+  void operator()(const char* name, double option, const Rule&) { object[name] = option; }
+  void operator()(const char* name, int option) { object[name] = option; }
+  void operator()(const char* name, bool option) { object[name] = option; }
+  template <class E>
+  void operator()(const char* name, E option, const Words<E>& words) {
+    for (const auto& [word, value] : words.values)
+      if (value == option) object[name] = word;
+  }
+  void operator()(const char* name, NewtonOptions newton) {
+    object[name] = json::object();
+    visit_options(newton, Writer{object[name]});
+  }
+};
+
+bool has(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Reports the keys that are no options of the method, each with where it belongs.
+void check_option_names(const JsonNode& node, const std::string& method, const std::vector<std::string>& own) {
+  for (const auto& [key, option] : node.members()) {
+    if (has(own, key)) continue;
+    std::vector<std::string> others;
+    for_each_method([&, &key = key]<class M>(const M&) {
+      if (has(option_names<M>(), key)) others.emplace_back(M::name);
+    });
+    std::string message;
+    if (!others.empty())
+      message = in_quotes(key) + " is an option of " + listed(others) + ", not of " + method + ";";
+    else if (has(option_names<NewtonOptions>(), key))
+      message = in_quotes(key) + R"( belongs inside "newton";)";
+    else
+      message = "unknown option " + in_quotes(key) + " of " + method + ";" + suggestion(key, own);
+    option.error_at_key(message + " allowed: " + listed(own));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> method_names() {
+  std::vector<std::string> names;
+  for_each_method([&](const auto& method) { names.emplace_back(method.name); });
+  return names;
+}
+
+std::optional<Method> default_method(const std::string& name) {
+  std::optional<Method> found;
+  for_each_method([&](const auto& method) {
+    if (method.name == name) found = method;
+  });
+  return found;
+}
+
+std::optional<Method> read_method(const JsonNode& node, SceneReading& reading) {
+  const auto kind = node.kind(method_names());
+  if (!kind) return std::nullopt;
+  const auto& [name, options] = *kind;
+  if (!options.is_map("the options of " + name)) return std::nullopt;
+  const std::size_t faults = reading.diagnostics.error_count();
+  Method method = *default_method(name);
+  std::visit(
+      [&, &name = name, &options = options]<class M>(M& chosen) {
+        check_option_names(options, name, option_names<M>());
+        visit_options(chosen, Reader{options, reading});
+      },
+      method);
+  if (reading.diagnostics.error_count() > faults) return std::nullopt;
+  return method;
+}
+
+json to_json(const Method& method) {
+  json options = json::object();
+  Method copy = method;
+  std::visit([&](auto& chosen) { visit_options(chosen, Writer{options}); }, copy);
+  return {{std::string(name_of(method)), options}};
+}
+
+}  // namespace stickslip

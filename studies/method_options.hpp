@@ -1,0 +1,28 @@
+/// Options of the methods in JSON: {"penalty": {"stiffness": 100}}.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "methods/options.hpp"
+
+namespace stickslip {
+
+class JsonNode;
+struct SceneReading;
+
+/// Names of the closed set, in its order.
+std::vector<std::string> method_names();
+
+/// The method with its default options, without slots; none where there is none of this name.
+std::optional<Method> default_method(const std::string& name);
+
+/// The method an object with one key names; its numbers get slots. None where it is at fault.
+std::optional<Method> read_method(const JsonNode&, SceneReading&);
+
+/// {"NAME": {every option, as used}}.
+nlohmann::json to_json(const Method&);
+
+}  // namespace stickslip

@@ -1,0 +1,253 @@
+#include <Eigen/Cholesky>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "core/mesh/generators.hpp"
+#include "core/mesh/quality.hpp"
+#include "studies/scene_reading.hpp"
+
+namespace stickslip {
+namespace {
+
+std::array<Number, 2> pair_of(const std::vector<Number>& numbers) { return {numbers[0], numbers[1]}; }
+
+/// "cells": [a, b].
+std::array<int, 2> cells_of(const JsonNode& node, SceneReading& reading) {
+  std::array<int, 2> cells{1, 1};
+  const auto list = node.find("cells");
+  const auto both = list ? list->array(2, "an array of 2 whole numbers >= 1") : std::nullopt;
+  for (int i = 0; both && i < 2; ++i) cells[i] = reading.count((*both)[i], 1).value_or(1);
+  constexpr double most = std::numeric_limits<int>::max() / 4.0;  // nodes of a quadrilateral are numbered by an int
+  if (static_cast<double>(cells[0]) * cells[1] > most) list->must_be("fewer cells than 5e8 in all");
+  return cells;
+}
+
+std::optional<BoxMesh> read_box(const JsonNode& node, SceneReading& reading) {
+  if (!node.is_object({{"min", "max", "cells"}, {"grade"}})) return std::nullopt;
+  BoxMesh box;
+  box.min = pair_of(reading.required_vector(node, "min", 2));
+  box.max = pair_of(reading.required_vector(node, "max", 2));
+  box.cells = cells_of(node, reading);
+  for (int axis = 0; axis < 2; ++axis)
+    if (box.max[axis].value <= box.min[axis].value)
+      node.find("max")->elements()[axis].must_be("greater than min, which is " + shown(box.min[axis].value));
+  if (const auto grade = node.find("grade"))
+    if (const auto towards = grade->kind({"left", "right", "bottom", "top"})) {
+      box.grade_towards = towards->first;
+      box.grade = reading.number(towards->second, positive);
+    }
+  return box;
+}
+
+std::optional<HalfDiskMesh> read_half_disk(const JsonNode& node, SceneReading& reading) {
+  if (!node.is_object({{"center", "radius", "cells"}, {"grade", "facing"}})) return std::nullopt;
+  HalfDiskMesh disk;
+  disk.center = pair_of(reading.required_vector(node, "center", 2));
+  disk.radius = reading.required(node, "radius", positive);
+  disk.cells = cells_of(node, reading);
+  disk.grade = reading.optional(node, "grade", 1, positive);
+  if (const auto facing = node.find("facing")) disk.facing = facing->choice({"down", "up"}).value_or("down");
+  return disk;
+}
+
+std::optional<PointMesh> read_point(const JsonNode& node, SceneReading& reading) {
+  if (!node.is_object({{"at"}})) return std::nullopt;
+  return PointMesh{reading.required_vector(node, "at", reading.dimension())};
+}
+
+int chain_cells(const JsonNode& node, SceneReading& reading) {
+  const auto cells = node.find("cells");
+  return cells ? reading.count(*cells, 1).value_or(1) : 1;
+}
+
+std::optional<LineMesh> read_line(const JsonNode& node, SceneReading& reading) {
+  if (!node.is_object({{"from", "to", "cells"}})) return std::nullopt;
+  LineMesh line;
+  line.from = reading.required_vector(node, "from", reading.dimension());
+  line.to = reading.required_vector(node, "to", reading.dimension());
+  line.cells = chain_cells(node, reading);
+  return line;
+}
+
+std::optional<ArcMesh> read_arc(const JsonNode& node, SceneReading& reading) {
+  if (!node.is_object({{"center", "radius", "from_angle", "to_angle", "cells"}})) return std::nullopt;
+  ArcMesh arc;
+  arc.center = pair_of(reading.required_vector(node, "center", 2));
+  arc.radius = reading.required(node, "radius", positive);
+  arc.from_angle = reading.required(node, "from_angle", any_number);
+  arc.to_angle = reading.required(node, "to_angle", any_number);
+  arc.cells = chain_cells(node, reading);
+  return arc;
+}
+
+/// The mesh file's content, read at most once; none where it cannot be read.
+const MeshFile* mesh_file(const JsonNode& node, const std::string& name, SceneReading& reading) {
+  const std::string path = (reading.folder / name).lexically_normal().string();
+  auto found = reading.mesh_files.find(path);
+  if (found == reading.mesh_files.end()) {
+    std::ifstream stream(path, std::ios::binary);
+    std::ostringstream text;
+    if (stream) text << stream.rdbuf();
+    if (!stream || stream.bad()) {
+      node.error("the mesh file " + path + " cannot be read");
+      return nullptr;
+    }
+    std::istringstream content(text.str());
+    found = reading.mesh_files.emplace(path, MeshFile{read_msh(content, path), fingerprint(text.str())}).first;
+  }
+  reading.mesh_fingerprints[name] = found->second.fingerprint;
+  for (const std::string& error : found->second.content.errors) reading.diagnostics.error({{}, "", error});
+  return &found->second;
+}
+
+std::optional<ImportedMesh> read_gmsh(const JsonNode& mesh, const JsonNode& node, SceneReading& reading) {
+  const auto name = node.text();
+  const auto body = mesh.find("body");
+  if (!body) mesh.error(R"(the key "body" is missing: the physical name of a surface in the mesh file)");
+  const auto body_name = body ? body->text() : std::nullopt;
+  const MeshFile* file = name ? mesh_file(node, *name, reading) : nullptr;
+  if (!file || !body_name) return std::nullopt;
+  for (const ImportedMesh& each : file->content.bodies)
+    if (each.body == *body_name) return each;
+  // a file that is at fault may lack the body for that reason
+  if (file->content.errors.empty()) body->error(body_error(file->content, *body_name));
+  return std::nullopt;
+}
+
+template <class Kind>
+std::optional<MeshDescription> described(std::optional<Kind> mesh) {
+  if (!mesh) return std::nullopt;
+  return MeshDescription(*std::move(mesh));
+}
+
+std::optional<MeshDescription> read_mesh(const JsonNode& node, SceneReading& reading) {
+  const auto kind =
+      node.kind({"box", "half_disk", "point", "line", "arc", "gmsh"}, {"ring", "disk", "sphere", "quad"}, {"body"});
+  if (!kind) return std::nullopt;
+  const auto& [name, mesh] = *kind;
+  if (name != "gmsh")
+    if (const auto body = node.find("body")) body->error_at_key("belongs to gmsh, not to " + name);
+  if (reading.dimension() == 3 && name != "point" && name != "line" && name != "arc") {
+    mesh.error_at_key(in_quotes(name) +
+                      " in the space solid is not available in this version; allowed: point, line, arc");
+    return std::nullopt;
+  }
+  if (name == "box") return described(read_box(mesh, reading));
+  if (name == "half_disk") return described(read_half_disk(mesh, reading));
+  if (name == "point") return described(read_point(mesh, reading));
+  if (name == "line") return described(read_line(mesh, reading));
+  if (name == "arc") return described(read_arc(mesh, reading));
+  return described(read_gmsh(node, mesh, reading));
+}
+
+std::optional<Material> read_elastic(const JsonNode& node, SceneReading& reading) {
+  static constexpr Rule between{"a number > -1 and < 0.5", [](double nu) { return nu > -1 && nu < 0.5; }};
+  if (!node.is_object({{"E", "nu"}})) return std::nullopt;
+  return LinearElastic{reading.required(node, "E", positive), reading.required(node, "nu", between)};
+}
+
+std::optional<Material> read_spring(const JsonNode& node, SceneReading& reading) {
+  if (!node.is_object({{"stiffness"}})) return std::nullopt;
+  const auto matrix = node.find("stiffness");
+  if (!matrix) return std::nullopt;
+  const int d = reading.dimension();
+  const std::string size = std::to_string(d) + " x " + std::to_string(d);
+  const auto rows = matrix->array(d, "a " + size + " matrix, [[...], ...]");
+  if (!rows) return std::nullopt;
+  GroundedSpring spring;
+  Eigen::MatrixXd values(d, d);
+  for (int i = 0; i < d; ++i) {
+    spring.stiffness.push_back(reading.vector((*rows)[i], d));
+    for (int j = 0; j < d; ++j) values(i, j) = spring.stiffness[i][j].value;
+  }
+  if (!values.allFinite()) return std::nullopt;
+  for (int i = 0; i < d; ++i)
+    for (int j = 0; j < i; ++j) {
+      const int below = spring.stiffness[i][j].slot, above = spring.stiffness[j][i].slot;
+      reading.symmetric[below] = above;
+      reading.symmetric[above] = below;
+      if (values(i, j) != values(j, i)) {
+        (*rows)[i].elements()[j].must_be(shown(values(j, i)) + ", so that the stiffness is symmetric");
+        return std::nullopt;
+      }
+    }
+  if (Eigen::LLT<Eigen::MatrixXd>(values).info() != Eigen::Success) {
+    matrix->must_be("positive definite, or nothing would hold the point");
+    return std::nullopt;
+  }
+  return spring;
+}
+
+std::optional<Material> read_material(const JsonNode& node, const MeshDescription* mesh, SceneReading& reading) {
+  const auto kind = node.kind({"linear_elastic", "grounded_spring"}, {"neo_hookean", "j2_plastic"});
+  if (!kind) return std::nullopt;
+  const auto& [name, material] = *kind;
+  const std::string wanted = mesh && std::holds_alternative<PointMesh>(*mesh) ? "grounded_spring" : "linear_elastic";
+  if (mesh && name != wanted)
+    material.error_at_key(in_quotes(name) + " does not go with this mesh; allowed: " + wanted +
+                          " (grounded_spring holds a point, linear_elastic fills the rest)");
+  return name == "grounded_spring" ? read_spring(material, reading) : read_elastic(material, reading);
+}
+
+/// Makes the mesh and looks at it; none where it is at fault.
+std::optional<Mesh> check_mesh(const JsonNode& body, const JsonNode& node, const MeshDescription& description,
+                               const std::string& element, SceneReading& reading) {
+  if (reading.diagnostics.has_error_in(node.pointer())) return std::nullopt;
+  if (const auto message = mesh_fault(description, "", reading.dimension()); !message.empty()) {
+    node.error(message);
+    return std::nullopt;
+  }
+  if (const auto message = mesh_fault(description, element, reading.dimension()); !message.empty()) {
+    body.find("element")->error(message);
+    return std::nullopt;
+  }
+  Mesh mesh = make_mesh(description, element, reading.dimension());
+  const auto points = make_points<double>(description, reading.scene.as<double>(), reading.dimension());
+  if (const auto bad = first_inverted_element(mesh, points)) {
+    std::string corners;
+    const int n = nodes_of(mesh.shape);
+    for (int a = 0; a < n; ++a) {
+      const auto x = points.col(mesh.connectivity[*bad * n + a]);
+      corners += " (" + shown(x[0]) + ", " + shown(x[1]) + ")";
+    }
+    node.error("element " + std::to_string(*bad + 1) + " is inverted or flat; its corners are" + corners);
+    return std::nullopt;
+  }
+  return mesh;
+}
+
+void read_body(const std::string& name, const JsonNode& node, SceneReading& reading) {
+  check_name(node, name);
+  if (!node.is_object({{"mesh", "material"}, {"element", "area"}, {"thickness"}})) return;
+  Body body;
+  body.name = name;
+  if (const auto element = node.find("element"))
+    body.element = element->choice({"T3", "Q4", "bar", "point"}).value_or("");
+  const auto mesh_node = node.find("mesh");
+  const auto mesh = mesh_node ? read_mesh(*mesh_node, reading) : std::nullopt;
+  const auto material_node = node.find("material");
+  const auto material = material_node ? read_material(*material_node, mesh ? &*mesh : nullptr, reading) : std::nullopt;
+  if (mesh && (std::holds_alternative<LineMesh>(*mesh) || std::holds_alternative<ArcMesh>(*mesh)))
+    body.area = reading.optional(node, "area", 1, positive);
+  else if (const auto area = node.find("area"); area && mesh)
+    area->error_at_key("only bars (line, arc) have an area");
+  if (mesh)
+    if (auto made = check_mesh(node, *mesh_node, *mesh, body.element, reading))
+      reading.meshes.emplace(name, *std::move(made));
+  if (!mesh || !material) return;
+  body.mesh = *mesh;
+  body.material = *material;
+  reading.scene.bodies.push_back(std::move(body));
+}
+
+}  // namespace
+
+void read_bodies(const JsonNode& node, SceneReading& reading) {
+  if (!node.is_map("bodies by name")) return;
+  if (node.value().empty()) node.error("is empty; must hold one body at least");
+  for (const auto& [name, body] : node.members()) reading.body_names.push_back(name);
+  for (const auto& [name, body] : node.members()) read_body(name, body, reading);
+}
+
+}  // namespace stickslip

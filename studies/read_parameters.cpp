@@ -1,0 +1,108 @@
+#include <algorithm>
+
+#include "studies/method_options.hpp"
+#include "studies/scene_reading.hpp"
+
+namespace stickslip {
+namespace {
+
+/// Name of the method whose options a pointer leads into; "" where it leads elsewhere.
+std::string method_of(const std::string& pointer) {
+  const std::string start = "/method/";
+  if (pointer.rfind(start, 0) != 0) return "";
+  return pointer.substr(start.size(), pointer.find('/', start.size()) - start.size());
+}
+
+/// Why a pointer names no number of the scene, as the end of a sentence that begins with it.
+std::string reason(const std::string& pointer, const nlohmann::json& root, const SceneReading& reading) {
+  if (const auto constant = reading.constants.find(pointer); constant != reading.constants.end())
+    return pointer + " is " + constant->second;
+  if (std::string fault = pointer_fault(root, pointer); !fault.empty()) return fault;
+  const auto& value = *value_at(root, pointer);
+  if (value.is_array()) return pointer + " is an array; a parameter is one number of it, such as " + pointer + "/0";
+  if (value.is_object()) return pointer + " is an object; a parameter is one number in it";
+  if (!value.is_number()) return pointer + " is " + shown(value) + "; a parameter must be a number";
+  return pointer + " is neither a physical nor a geometric number";
+}
+
+struct Reader {
+  const nlohmann::json& root;
+  std::string method;
+  bool drop_others;
+  SceneReading& reading;
+  std::vector<std::string> dropped = {};
+
+  /// Adds a term to the parameter. `node`: what names it; `place`: its pointer in the file.
+  void add(const JsonNode& node, const std::string& pointer, double weight, Parameter& parameter) {
+    const auto slot = reading.slots.find(pointer);
+    if (slot != reading.slots.end()) {
+      if (parameter.slots.empty()) {
+        parameter.pointer = pointer;
+        parameter.value = reading.scene.numbers[slot->second];
+      }
+      parameter.slots.emplace_back(slot->second, weight);
+      return;
+    }
+    const std::string of = method_of(pointer);
+    const auto names = method_names();
+    const bool other = !of.empty() && of != method && std::find(names.begin(), names.end(), of) != names.end();
+    if (other && drop_others) {
+      reading.diagnostics.note(
+          {node.place(), node.pointer(), pointer + " is an option of " + of + ", and " + method + " runs: left out"});
+      dropped.push_back(node.pointer());
+    } else if (other) {
+      node.error_at_key(pointer + " is an option of " + of + ", and the scene's method is " + method);
+    } else if (!reading.diagnostics.has_error_in(pointer) || !value_at(root, pointer)) {
+      node.error_at_key(reason(pointer, root, reading));
+    }
+  }
+
+  void read(const std::string& name, const JsonNode& node) {
+    constexpr const char* allowed = "a JSON pointer such as /contacts/sole/friction, or {pointer: weight, ...}";
+    Parameter parameter;
+    parameter.name = name;
+    if (node.value().is_string()) {
+      add(node, node.value(), 1, parameter);
+    } else if (!node.value().is_object() || node.value().empty()) {
+      return node.must_be(allowed);
+    } else if (const auto shape = node.find("shape")) {
+      return shape->error_at_key("a shape parameter of an imported mesh is not available in this version; allowed: " +
+                                 std::string(allowed));
+    } else {
+      for (const auto& [pointer, weight] : node.members()) {
+        static constexpr Rule not_zero{"a number other than 0", [](double w) { return w != 0; }};
+        if (const auto value = weight.number(not_zero)) add(weight, pointer, *value, parameter);
+      }
+    }
+    check_symmetry(node, parameter);
+    if (!parameter.slots.empty()) reading.scene.parameters.push_back(std::move(parameter));
+  }
+
+  /// A parameter may not leave a symmetric matrix unsymmetric.
+  void check_symmetry(const JsonNode& node, const Parameter& parameter) const {
+    auto weight_of = [&](int slot) {
+      double weight = 0;
+      for (const auto& [each, w] : parameter.slots) weight += each == slot ? w : 0;
+      return weight;
+    };
+    for (const auto& [slot, weight] : parameter.slots) {
+      const auto partner = reading.symmetric.find(slot);
+      if (partner == reading.symmetric.end() || weight_of(partner->second) == weight_of(slot)) continue;
+      return node.error("changes one of two equal numbers of a symmetric matrix; " +
+                        reading.scene.pointers[partner->second] + " must have the weight of " +
+                        reading.scene.pointers[slot]);
+    }
+  }
+};
+
+}  // namespace
+
+std::vector<std::string> read_parameters(const JsonNode& node, const nlohmann::json& root, const std::string& method,
+                                         bool drop_others, SceneReading& reading) {
+  if (!node.is_map("parameters by name")) return {};
+  Reader reader{root, method, drop_others, reading};
+  for (const auto& [name, parameter] : node.members()) reader.read(name, parameter);
+  return reader.dropped;
+}
+
+}  // namespace stickslip

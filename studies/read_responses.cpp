@@ -1,0 +1,114 @@
+#include <algorithm>
+#include <array>
+
+#include "studies/scene_reading.hpp"
+
+namespace stickslip {
+namespace {
+
+/// What a kind of response is taken of, and which keys it has besides.
+struct Kind {
+  const char* name;
+  Response::Kind kind;
+  bool of_contact;  ///< key "contact"; otherwise "on", where the kind has any
+  enum class Component { none, axis, axis_or_normal, axis_in_space } component;
+  bool sampled;  ///< keys "take" and "at"
+};
+
+constexpr std::array kinds{
+    Kind{"reaction", Response::Kind::reaction, false, Kind::Component::axis, false},
+    Kind{"contact_force", Response::Kind::contact_force, true, Kind::Component::axis_or_normal, false},
+    Kind{"displacement", Response::Kind::displacement, false, Kind::Component::axis, true},
+    Kind{"contact_pressure", Response::Kind::contact_pressure, true, Kind::Component::none, true},
+    Kind{"gap", Response::Kind::gap, true, Kind::Component::none, true},
+    Kind{"slip", Response::Kind::slip, true, Kind::Component::axis_in_space, true},
+    Kind{"dissipation", Response::Kind::dissipation, true, Kind::Component::none, false},
+    Kind{"strain_energy", Response::Kind::strain_energy, false, Kind::Component::none, false},
+    Kind{"contact_half_width", Response::Kind::contact_half_width, true, Kind::Component::none, false},
+};
+
+Keys keys_of(const Kind& kind, const SceneReading& reading) {
+  Keys keys;
+  if (kind.of_contact) keys.required.push_back("contact");
+  if (kind.kind == Response::Kind::reaction) keys.required.push_back("on");
+  if (kind.kind == Response::Kind::displacement) keys.optional.push_back("on");
+  if (kind.component == Kind::Component::axis_in_space)
+    (reading.dimension() == 3 ? keys.required : keys.optional).push_back("component");
+  else if (kind.component != Kind::Component::none)
+    keys.required.push_back("component");
+  if (kind.sampled) keys.optional.insert(keys.optional.end(), {"take", "at"});
+  if (kind.kind == Response::Kind::reaction || kind.kind == Response::Kind::contact_force) keys.later = {"about"};
+  return keys;
+}
+
+void read_contact_name(const JsonNode& node, const Kind& kind, Response& response, SceneReading& reading) {
+  const auto name = node.text();
+  if (!name) return;
+  response.on = *name;
+  const auto& names = reading.contact_names;
+  if (std::find(names.begin(), names.end(), *name) == names.end())
+    return node.error("is " + in_quotes(*name) + ": there is no such contact;" + suggestion(*name, names) +
+                      " allowed: " + listed(names));
+  if (kind.kind != Response::Kind::slip) return;
+  for (const Contact& contact : reading.scene.contacts)
+    if (contact.name == *name && !contact.friction)
+      node.error("is " + in_quotes(*name) + ", a contact without friction, whose slip is not followed; give it a " +
+                 "friction, which may be 0");
+}
+
+/// "on" of a displacement: a side; beside "at", a body will do.
+void read_on(const JsonNode& node, bool beside_at, Response& response, SceneReading& reading) {
+  if (node.value().is_string()) response.on = node.value();
+  const auto& names = reading.body_names;
+  const bool body = std::find(names.begin(), names.end(), response.on) != names.end();
+  if (!(beside_at && body)) reading.side(node);
+}
+
+void read_response(const std::string& name, const JsonNode& outer, SceneReading& reading) {
+  std::vector<std::string> names;
+  for (const Kind& each : kinds) names.emplace_back(each.name);
+  const auto found = outer.kind(names);
+  if (!found) return;
+  const JsonNode& node = found->second;
+  const Kind& kind = *std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) { return k.name == found->first; });
+  if (!node.is_object(keys_of(kind, reading))) return;
+  if (kind.kind == Response::Kind::contact_half_width && reading.dimension() == 3)
+    node.error_at_key("a half width needs a plane space");
+
+  Response response;
+  response.name = name;
+  response.kind = kind.kind;
+  const auto on = node.find("on"), at = node.find("at"), take = node.find("take"), component = node.find("component");
+  if (const auto contact = node.find("contact"); contact && kind.of_contact)
+    read_contact_name(*contact, kind, response, reading);
+  if (on && !kind.of_contact) read_on(*on, at.has_value(), response, reading);
+  if (kind.kind == Response::Kind::displacement && !on && !at)
+    node.error(R"(one of the keys is missing: "on", a side BODY.SIDE, or "at", a point)");
+  if (component && kind.component != Kind::Component::none) {
+    auto allowed = reading.axes();
+    if (kind.component == Kind::Component::axis_or_normal) allowed.insert(allowed.begin(), "normal");
+    response.component = component->choice(allowed, {"moment"}).value_or(allowed.front());
+  }
+  if (take && kind.sampled) {
+    const auto way = take->choice({"mean", "max", "min"}).value_or("mean");
+    response.take = way == "max" ? Response::Take::max : way == "min" ? Response::Take::min : Response::Take::mean;
+    if (at) take->error_at_key(R"("take" has no meaning beside "at", which is a single point)");
+  }
+  if (at && kind.sampled)
+    if (const auto point =
+            at->array(reading.dimension(), "an array of " + std::to_string(reading.dimension()) + " numbers"))
+      for (const JsonNode& coordinate : *point) {
+        reading.constants[coordinate.pointer()] = "where a response is taken, not a part of the scene";
+        response.at.emplace_back(coordinate.number(any_number).value_or(0));
+      }
+  reading.scene.responses.push_back(std::move(response));
+}
+
+}  // namespace
+
+void read_responses(const JsonNode& node, SceneReading& reading) {
+  if (!node.is_map("responses by name")) return;
+  for (const auto& [name, response] : node.members()) read_response(name, response, reading);
+}
+
+}  // namespace stickslip

@@ -1,0 +1,80 @@
+/// The charts: each is a set of rows, Vega-Lite panels over them, and the table of the same numbers.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "studies/report/html.hpp"
+#include "studies/report/records.hpp"
+
+namespace stickslip::report {
+
+/// How one curve looks, in every panel of a figure: colour by method, and marker and dash so that grey print tells too.
+struct Series {
+  std::string name, color, shape;
+  std::vector<int> dash;
+  int size = 60;  ///< of the marker, px^2: methods differ, so that equal points show as nested markers
+};
+
+/// One coordinate system. `spec` is Vega-Lite over the data set "rows"; the strings "$series", "$colors", "$shapes",
+/// "$dashes", "$sizes" stand for the series that are in the rows shown, "$ink" for the colour of the text.
+struct Panel {
+  std::string title;
+  nlohmann::json spec;
+  std::string x, y;  ///< fields of the rows, for the picture that needs no script
+  bool x_log = true, y_log = true;
+  std::string only;  ///< rows of this panel: those whose `panel` is this; empty: all
+  bool folded = false;
+};
+
+/// A choice of rows: those whose `field` is (one of) the chosen, among rows whose `when_field` is `when`.
+struct Choice {
+  std::string label, field;
+  std::vector<std::string> options, chosen;
+  bool several = false;
+  std::string when_field, when;
+};
+
+struct Figure {
+  std::string id, title, text;
+  nlohmann::json rows = nlohmann::json::array();
+  std::vector<Series> series;
+  std::vector<Panel> panels;
+  std::vector<Choice> choices;
+  Table table;
+};
+
+enum class Against { same_mesh, closed_form, coulomb };  ///< enforcement, discretisation, the KKT measures
+enum class Of { responses, sensitivities };
+
+/// Error against work (factorisations and weighted back-solves), seconds and back-solves; one curve per method and
+/// constant option, joined along its swept knob. Nothing where no cell has such an error.
+std::optional<Figure> work_precision(const Study& study, Against against, Of of);
+
+/// Discretisation error against the mesh level and seconds, a curve a setting; nothing with one mesh level.
+std::optional<Figure> mesh_convergence(const Study& study);
+
+/// Enforcement errors of responses and sensitivities against a knob, methods without it as level lines.
+/// `knobs` share the axis.
+std::optional<Figure> error_against_knob(const Study& study, const std::vector<std::string>& knobs);
+
+/// Newton iterations and augmentations of a whole run against the same knob; failed runs are crosses.
+std::optional<Figure> iterations_against_knob(const Study& study, const std::vector<std::string>& knobs);
+
+/// Residual per iteration of the step that took most iterations (of a failed run, the last), main variant.
+std::optional<Figure> convergence_histories(const Study& study);
+
+/// Pressure and tangential traction along the interface at the last step with the closed form, and the difference from
+/// the most accurate cell, main variant.
+std::optional<Figure> tractions(const Study& study);
+
+/// Groups of knobs that share an axis: stiffness and scale, both multiples of the local nodal stiffness, are one.
+std::vector<std::vector<std::string>> knob_groups(const Study& study);
+
+/// The converged cell of `family` in the main variant with the smallest enforcement error (then kkt, then the last);
+/// nullptr where none converged.
+const Cell* best_cell(const Study& study, const std::string& family);
+
+}  // namespace stickslip::report

@@ -1,0 +1,186 @@
+#include "studies/report/headline.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "studies/report/html.hpp"
+
+namespace stickslip::report {
+
+namespace {
+
+std::vector<const Cell*> main_cells(const Study& study) {
+  std::vector<const Cell*> out;
+  for (const auto& cell : study.cells)
+    if (cell.variant == study.main_variant) out.push_back(&cell);
+  return out;
+}
+
+/// What one class of quantities needs to be compared: where its error is and what it costs.
+struct Measure {
+  std::string prefix, words;
+  double Cell::*work;
+  double Cell::*seconds;
+};
+
+/// Factorisations and back-solves of the cell, those of the derivatives included where they are what is measured.
+std::string spent(const Cell& cell, const Measure& measure) {
+  const bool derivative = measure.prefix == "sensitivity:";
+  const double factorizations =
+      cell.count("factorizations") - (derivative ? 0 : cell.count("sensitivity_factorizations"));
+  const double backsolves = cell.count("backsolves") + (derivative ? cell.count("sensitivity_backsolves") : 0);
+  std::string out =
+      fmt::format("{} factorisations and {} back-solves", number(factorizations, 9), number(backsolves, 9));
+  if (cell.*measure.seconds > 0) out += fmt::format(" ({} s)", number(cell.*measure.seconds, 2));
+  return out;
+}
+
+/// The accuracy to compare at: 1e-6, or the strictest power of ten some run reached.
+std::optional<double> target_of(const std::vector<const Cell*>& cells, const Measure& measure) {
+  std::optional<double> least;
+  for (const Cell* cell : cells)
+    if (const auto error = worst(cell->enforcement, measure.prefix); error && cell->converged)
+      least = std::min(least.value_or(*error), *error);
+  if (!least) return std::nullopt;
+  return *least <= 1e-6 ? 1e-6 : std::pow(10, std::ceil(std::log10(*least)));
+}
+
+std::string label_in_words(const Cell& cell) {
+  const std::string options = series_of(cell, "").substr(family_name(cell.family).size());
+  return family_name(cell.family) + (options.empty() ? "" : " (" + options.substr(1) + ")");
+}
+
+/// The cheapest converged cell of each method that reaches the target, and for the others how far they came.
+std::string cost_sentence(const Study& study, const Measure& measure) {
+  const auto cells = main_cells(study);
+  const auto target = target_of(cells, measure);
+  if (!target) return {};
+  struct Candidate {
+    const Cell* cheapest = nullptr;  // of those that reach the target
+    const Cell* nearest = nullptr;   // smallest error of all converged
+  };
+  std::map<std::string, Candidate> by_family;
+  for (const Cell* cell : cells) {
+    const auto error = worst(cell->enforcement, measure.prefix);
+    if (!error || !cell->converged) continue;
+    auto& [cheapest, nearest] = by_family[cell->family];
+    if (*error <= *target && (!cheapest || cell->*measure.work < cheapest->*measure.work)) cheapest = cell;
+    if (!nearest || *error < *worst(nearest->enforcement, measure.prefix)) nearest = cell;
+  }
+  std::vector<const Cell*> reached, missed;
+  for (const auto& [family, c] : by_family)
+    (c.cheapest ? reached : missed).push_back(c.cheapest ? c.cheapest : c.nearest);
+  std::sort(reached.begin(), reached.end(),
+            [&](const Cell* a, const Cell* b) { return a->*measure.work < b->*measure.work; });
+
+  std::string out = fmt::format("To bring every {} within {} of the exact contact conditions on the same mesh, ",
+                                measure.words, number(*target, 2));
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    const Cell& cell = *reached[i];
+    if (i == 0) {
+      out += fmt::format("{} needs{} {}", label_in_words(cell), by_family.size() > 1 ? " least:" : "",
+                         spent(cell, measure));
+    } else {
+      const double factor = cell.*measure.work / (reached.front()->*measure.work);
+      out += fmt::format("; {} needs {}", label_in_words(cell), spent(cell, measure));
+      if (std::isfinite(factor)) out += fmt::format(", {} times the work", number(factor, 2));
+    }
+    if (*worst(cell.enforcement, measure.prefix) == 0) out += " (its error is exactly 0: it is the reference itself)";
+  }
+  out += ".";
+  for (const Cell* cell : missed)
+    out += fmt::format(" {} did not get there: its best was {} with {}.", family_name(cell->family),
+                       number(*worst(cell->enforcement, measure.prefix), 2), label_in_words(*cell));
+  for (const auto& family : study.families) {
+    const bool tried = std::any_of(cells.begin(), cells.end(), [&](const Cell* c) { return c->family == family; });
+    if (tried && by_family.count(family) == 0) out += " " + family_name(family) + " has no converged run here.";
+  }
+  return out;
+}
+
+/// How penalty's error follows its stiffness up to the smallest error, and where rounding takes over.
+std::string penalty_sentence(const Study& study) {
+  std::vector<std::pair<double, double>> points;
+  for (const Cell* cell : main_cells(study))
+    if (const Knob* knob = find_knob(*cell, "stiffness"); cell->family == "penalty" && cell->converged && knob)
+      if (const auto error = worst(cell->enforcement, "response:"); error && *error > 0 && knob->value.value_or(0) > 0)
+        points.emplace_back(*knob->value, *error);
+  std::sort(points.begin(), points.end());
+  const auto least =
+      std::min_element(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  if (points.size() < 3 || least - points.begin() < 2) return {};
+  // The median slope between neighbours: neither the soft end, where the bodies pass through each other, nor the first
+  // rounding near the least error sways it.
+  std::vector<double> slopes;
+  for (auto p = points.begin(); p != least; ++p)
+    if ((p + 1)->first > p->first)
+      slopes.push_back(std::log((p + 1)->second / p->second) / std::log((p + 1)->first / p->first));
+  if (slopes.empty()) return {};
+  std::nth_element(slopes.begin(), slopes.begin() + static_cast<long>(slopes.size() / 2), slopes.end());
+  std::string out =
+      fmt::format("Penalty's error falls as stiffness to the power {} down to {} at stiffness {}",
+                  number(slopes[slopes.size() / 2], 2), number(least->second, 2), number(least->first, 3));
+  if (least + 1 != points.end())
+    out += fmt::format(", and rises again beyond it, to {} at {}", number(points.back().second, 2),
+                       number(points.back().first, 3));
+  return out + ".";
+}
+
+std::string mesh_sentence(const Study& study) {
+  std::optional<double> best_mesh, best_method;
+  for (const Cell* cell : main_cells(study)) {
+    if (!cell->converged) continue;
+    if (const auto error = worst(cell->discretization, "response:"))
+      best_mesh = std::min(best_mesh.value_or(*error), *error);
+    if (const auto error = worst(cell->enforcement, "response:"))
+      best_method = std::min(best_method.value_or(*error), *error);
+  }
+  if (!best_mesh) return {};
+  std::string out =
+      fmt::format("Against the closed form the best run is off by {} in its worst response", number(*best_mesh, 2));
+  if (best_method && *best_method < *best_mesh)
+    out += ": that is the mesh, and enforcing contact more strictly than this does not bring the answer nearer to it";
+  return out + ".";
+}
+
+std::string failure_sentence(const Study& study) {
+  std::map<std::string, long> by_status;
+  long failed = 0;
+  for (const auto& cell : study.cells)
+    if (!cell.converged) {
+      ++failed;
+      ++by_status[cell.status.empty() ? "no status" : cell.status];
+    }
+  if (failed == 0) return study.cells.size() == 1 ? "The run converged." : "All runs converged.";
+  std::string kinds;
+  for (const auto& [status, n] : by_status) kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", n, status);
+  return fmt::format(
+      "{} of {} runs did not converge ({}); they stay in the tables and, where they left numbers, in "
+      "the charts as crosses.",
+      failed, study.cells.size(), kinds);
+}
+
+}  // namespace
+
+std::vector<std::string> headline(const Study& study) {
+  if (study.cells.empty()) return {"The study has no results yet."};
+  std::vector<std::string> out;
+  for (const Measure& measure :
+       {Measure{"response:", "response", &Cell::work, &Cell::seconds},
+        Measure{"sensitivity:", "sensitivity", &Cell::sensitivity_work, &Cell::sensitivity_seconds}})
+    out.push_back(cost_sentence(study, measure));
+  out.push_back(penalty_sentence(study));
+  out.push_back(mesh_sentence(study));
+  out.erase(std::remove(out.begin(), out.end(), std::string()), out.end());
+  if (!out.empty() && !study.main_variant.empty())
+    out.push_back("These figures are for " + study.main_variant +
+                  (study.variants.size() > 1 ? "; the charts offer the others." : "."));
+  out.push_back(failure_sentence(study));
+  return out;
+}
+
+}  // namespace stickslip::report

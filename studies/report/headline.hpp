@@ -1,0 +1,16 @@
+/// The main findings of a study as plain English sentences, computed from its cells.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "studies/report/records.hpp"
+
+namespace stickslip::report {
+
+/// Sentences, plain text, most important first: what each method spends to bring the responses, then the
+/// sensitivities, within one accuracy (1e-6, or the strictest decade any run reached); how penalty's error follows its
+/// stiffness; what the mesh itself costs in accuracy; what failed. At least one sentence.
+std::vector<std::string> headline(const Study& study);
+
+}  // namespace stickslip::report

@@ -1,0 +1,107 @@
+#include "studies/report/html.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+
+namespace stickslip::report {
+
+namespace {
+
+std::string replace_all(std::string text, std::string_view from, std::string_view to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+bool reads_as_number(const std::string& text) {
+  if (text.empty()) return false;
+  char* end = nullptr;
+  std::strtod(text.c_str(), &end);
+  return *end == '\0';
+}
+
+}  // namespace
+
+std::string escape(std::string_view text) {
+  std::string out;
+  out.reserve(text.size());
+  for (const char c : text) switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
+      default:
+        out += c;
+    }
+  return out;
+}
+
+std::string embed(const nlohmann::json& value) {
+  return replace_all(value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), "<", "\\u003c");
+}
+
+std::string embed_script(std::string_view code) {
+  return replace_all(replace_all(std::string(code), "</script", "<\\/script"), "<!--", "<\\!--");
+}
+
+std::string number(double value, int digits) {
+  if (!std::isfinite(value)) return {};
+  // printf writes 1e+06 and 1e-06; people write 1e6 and 1e-6.
+  std::string text = fmt::format("{:.{}g}", value, digits);
+  if (const std::size_t e = text.find('e'); e != std::string::npos) {
+    std::size_t first = text.find_first_not_of("+-0", e + 1);
+    if (first == std::string::npos) first = text.size() - 1;
+    text = text.substr(0, e + 1) + (text[e + 1] == '-' ? "-" : "") + text.substr(first);
+  }
+  return text;
+}
+
+std::string plain(const nlohmann::json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_integer()) return value.dump();
+  if (value.is_number()) return number(value.get<double>(), 6);
+  if (value.is_null()) return {};
+  return value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+std::string to_html(const Table& table, std::string_view caption) {
+  std::string out = fmt::format(
+      "<div class=\"wide\" role=\"region\" tabindex=\"0\" aria-label=\"{0}\"><table>"
+      "<caption>{0}</caption><thead><tr>",
+      escape(caption));
+  std::vector<bool> used(table.header.size(), table.rows.empty());
+  for (const auto& row : table.rows)
+    for (std::size_t i = 0; i < row.size(); ++i) used[i] = used[i] || !row[i].empty();
+  for (std::size_t i = 0; i < used.size(); ++i)
+    if (used[i]) out += "<th scope=\"col\">" + escape(table.header[i]) + "</th>";
+  out += "</tr></thead><tbody>\n";
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const bool marked = i < table.row_classes.size() && !table.row_classes[i].empty();
+    out += marked ? fmt::format("<tr class=\"{}\">", escape(table.row_classes[i])) : "<tr>";
+    for (std::size_t j = 0; j < used.size(); ++j) {
+      const std::string& cell = table.rows[i][j];
+      if (used[j]) out += (reads_as_number(cell) ? "<td class=\"n\">" : "<td>") + escape(cell) + "</td>";
+    }
+    out += "</tr>\n";
+  }
+  return out + "</tbody></table></div>\n";
+}
+
+std::string folded(std::string_view summary, std::string_view content) {
+  return fmt::format("<details><summary>{}</summary>\n{}</details>\n", escape(summary), content);
+}
+
+}  // namespace stickslip::report

@@ -1,0 +1,40 @@
+/// The few words of HTML the report is written in. Everything that comes from a record passes through here.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stickslip::report {
+
+/// `text` with & < > " ' replaced by entities: safe as element content and as an attribute value.
+std::string escape(std::string_view text);
+
+/// `value` as JSON that may stand inside <script type="application/json">: every '<' is written \u003c, so no text of a
+/// record can close the element. Bytes that are not UTF-8 become U+FFFD.
+std::string embed(const nlohmann::json& value);
+
+/// `code` as it may stand inside <script>: "</script" and "<!--" are broken by a backslash, which changes no string
+/// literal and no regular expression.
+std::string embed_script(std::string_view code);
+
+/// Shortest usual form with `digits` significant digits; not finite: "".
+std::string number(double value, int digits = 3);
+
+/// JSON as a short text: a string bare, a number by number(), null "", anything else dumped.
+std::string plain(const nlohmann::json& value);
+
+/// A table. Cells are plain text and are escaped here; a cell that reads as a number is set flush right; a column
+/// without any entry is left out.
+struct Table {
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows;
+  std::vector<std::string> row_classes;  ///< empty, or one a row
+};
+std::string to_html(const Table& table, std::string_view caption);
+
+/// <details> with a summary (escaped) around `content` (HTML).
+std::string folded(std::string_view summary, std::string_view content);
+
+}  // namespace stickslip::report

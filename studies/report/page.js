@@ -1,0 +1,122 @@
+'use strict';
+// Draws each figure from the rows recorded beside it. Nothing is fetched; where this script fails, the plain pictures
+// stay.
+(() => {
+  document.documentElement.classList.add('js');
+  const dark = matchMedia('(prefers-color-scheme: dark)');
+  const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+  /** Rows that pass every control: its field is among what is chosen, where the control speaks of the row. */
+  function rowsShown(figure, rows) {
+    const tests = [...figure.querySelectorAll('[data-field]')].map((control) => {
+      const {field, whenField, when} = control.dataset;
+      const values = control.matches('select') ?
+          [control.value] : [...control.querySelectorAll('input:checked')].map((box) => box.value);
+      return (row) => (whenField && row[whenField] !== when) || values.includes(row[field] ?? '');
+    });
+    return rows.filter((row) => tests.every((test) => test(row)));
+  }
+
+  /** The specification with the words $series, $colors, ... replaced by the series that occur in the rows. */
+  function filled(spec, series, rows) {
+    const names = new Set(rows.map((row) => row.series));
+    const present = series.filter((s) => names.has(s.name));
+    const ink = css('--ink');
+    const words = new Map([
+      ['$series', present.map((s) => s.name)],
+      ['$colors', present.map((s) => s.color === '$ink' ? ink : s.color)],
+      ['$shapes', present.map((s) => s.shape)],
+      ['$dashes', present.map((s) => s.dash)],
+      ['$sizes', present.map((s) => s.size)],
+      ['$ink', ink],
+    ]);
+    const copy = JSON.parse(JSON.stringify(spec), (key, value) => words.has(value) ? words.get(value) : value);
+    copy.datasets = {rows};
+    for (const layer of copy.layer)
+      for (const channel of [layer.encoding?.x, layer.encoding?.y])
+        if (channel?.scale) fitAxis(channel, rows.map((row) => row[channel.field]));
+    return copy;
+  }
+
+  /** Gives a logarithmic axis its ticks, and an axis of one single value a length. */
+  function fitAxis(channel, values) {
+    const log = channel.scale.type === 'log';
+    const usable = values.filter((value) => Number.isFinite(value) && (!log || value > 0));
+    const low = usable.reduce((a, b) => Math.min(a, b), Infinity);
+    const high = usable.reduce((a, b) => Math.max(a, b), -Infinity);
+    if (log) channel.axis.values = logTicks(Math.log10(low) - 0.5, Math.log10(high) + 0.5);
+    if (low === high) channel.scale.domain = log ? [low / 3, low * 3] : [low - (Math.abs(low) || 1), low + (Math.abs(low) || 1)];
+  }
+
+  /** Powers of ten between two exponents, thinned out to nine at most; over few decades also 2 and 5 times them. */
+  function logTicks(low, high) {
+    const step = Math.max(1, Math.ceil((high - low) / 9)), ticks = [];
+    for (let e = Math.floor(low / step) * step; e <= high + step; e += step)
+      for (const m of high - low < 3 ? [1, 2, 5] : [1]) ticks.push(m * 10 ** e);
+    return ticks;
+  }
+
+  function config() {
+    const ink = css('--ink'), soft = css('--soft'), line = css('--line');
+    return {
+      background: 'transparent',
+      font: 'system-ui, sans-serif',
+      axis: {labelColor: ink, titleColor: ink, gridColor: line, domainColor: soft, tickColor: soft, labelFontSize: 12,
+             titleFontSize: 12, titleFontWeight: 'normal', titleLimit: 420},
+      legend: {labelColor: ink, titleColor: ink, labelFontSize: 12, symbolStrokeWidth: 2},
+      view: {stroke: line},
+    };
+  }
+
+  async function draw(figure) {
+    const data = JSON.parse(document.getElementById(figure.id + '-data').textContent);
+    const rows = rowsShown(figure, data.rows.map((values) =>
+        Object.fromEntries(data.fields.map((field, i) => [field, values[i]]).filter(([, value]) => value !== null))));
+    const panels = figure.querySelectorAll('.panel');
+    for (const [i, spec] of data.panels.entries()) {
+      const panel = panels[i];
+      if (panel.closest('details:not([open])')) continue;  // has no width yet; drawn when it is opened
+      const only = spec.usermeta.panel;
+      const own = only ? rows.filter((row) => row.panel === only) : rows;
+      await vegaEmbed(panel.querySelector('.vega'), filled(spec, data.series, own), {
+        mode: 'vega-lite', renderer: 'svg', config: config(), logLevel: vega.Error,
+        actions: {export: true, source: false, compiled: false, editor: false},
+        tooltip: {theme: dark.matches ? 'dark' : 'light'},
+        downloadFileName: figure.id + '-' + i,
+      });
+      panel.querySelector('.static').hidden = true;
+    }
+  }
+
+  const figures = [...document.querySelectorAll('figure[data-chart]')];
+  const drawn = new Set();
+  const watch = new IntersectionObserver((entries) => {
+    for (const {isIntersecting, target} of entries) {
+      if (!isIntersecting) continue;
+      watch.unobserve(target);
+      drawn.add(target);
+      draw(target).catch(console.error);
+    }
+  }, {rootMargin: '600px'});
+  for (const figure of figures) {
+    watch.observe(figure);
+    figure.addEventListener('change', () => draw(figure).catch(console.error));
+    for (const folded of figure.querySelectorAll('details.panels-folded'))
+      folded.addEventListener('toggle', () => folded.open && draw(figure).catch(console.error));
+  }
+  dark.addEventListener('change', () => drawn.forEach((figure) => draw(figure).catch(console.error)));
+
+  // Each table can be taken along.
+  for (const table of document.querySelectorAll('table')) {
+    const quoted = (cell) => '"' + cell.textContent.replaceAll('"', '""') + '"';
+    const link = document.createElement('a');
+    link.textContent = 'CSV';
+    link.href = '#';
+    link.download = table.caption.textContent.replace(/[^A-Za-z0-9]+/g, '-') + '.csv';
+    link.addEventListener('click', () => {
+      const text = [...table.rows].map((row) => [...row.cells].map(quoted).join(',')).join('\n');
+      link.href = URL.createObjectURL(new Blob([text], {type: 'text/csv'}));
+    });
+    table.caption.append(' ', link);
+  }
+})();

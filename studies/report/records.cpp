@@ -1,0 +1,237 @@
+#include "studies/report/records.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <set>
+#include <stdexcept>
+
+#include "studies/report/html.hpp"
+#include "studies/report/look_up.hpp"
+
+namespace stickslip::report {
+
+using nlohmann::json;
+
+namespace {
+
+/// Magnitudes of the numbers of an object. What is not finite was written as null by JSON and is left out.
+std::map<std::string, double> errors_at(const json& errors, const std::string& key) {
+  std::map<std::string, double> out;
+  for (const auto& [name, value] : object_at(errors, key).items())
+    if (value.is_number() && std::isfinite(value.get<double>())) out[name] = std::abs(value.get<double>());
+  return out;
+}
+
+Knob read_knob(const std::string& name, const json& value) {
+  if (const json& absolute = at(value, "absolute"); absolute.is_number())
+    return {name + " (absolute)", plain(absolute), absolute.get<double>()};
+  if (value.is_number()) return {name, plain(value), value.get<double>()};
+  return {name, plain(value), std::nullopt};
+}
+
+std::string scene_text(const json& vary) {
+  std::string out;
+  for (const auto& [pointer, value] : vary.items())
+    out += fmt::format("{}{} = {}", out.empty() ? "" : ", ", pointer, plain(value));
+  return out;
+}
+
+Cell read_cell(const json& record) {
+  Cell cell;
+  cell.record = record;
+  if (const json& method = at(record, "method"); method.is_object() && !method.empty())
+    cell.family = method.begin().key();
+  else if (method.is_string())
+    cell.family = method.get<std::string>();
+  for (const auto& [name, value] : object_at(record, "knobs").items()) cell.knobs.push_back(read_knob(name, value));
+  cell.label = text_at(record, "label");
+  if (cell.label.empty()) {
+    cell.label = cell.family;
+    for (const auto& knob : cell.knobs) cell.label += " " + knob.name + "=" + knob.text;
+  }
+  if (cell.family.empty()) cell.family = cell.label.substr(0, cell.label.find(' '));
+  cell.status = text_at(record, "status");
+  cell.converged = cell.status == "converged" || cell.status == "converged_at_roundoff";
+  cell.scene = scene_text(object_at(record, "vary"));
+  cell.refine = static_cast<int>(number_at(record, "refine"));
+  const json& errors = at(record, "errors");
+  cell.enforcement = errors_at(errors, "enforcement");
+  cell.discretization = errors_at(errors, "discretization");
+  cell.kkt = errors_at(errors, "kkt");
+  return cell;
+}
+
+/// Cost of one back-solve over one factorisation on each mesh, pooled over its cells: the response's alone, since
+/// seconds.sensitivity does not tell the two apart. A mesh whose seconds are missing or zero gets none.
+std::map<int, double> measured_ratio(const std::vector<Cell>& cells) {
+  struct Sums {
+    double factor_seconds = 0, factors = 0, back_seconds = 0, backs = 0;
+  };
+  std::map<int, Sums> sums;
+  for (const auto& cell : cells) {
+    const json& seconds = at(at(cell.record, "cost"), "seconds");
+    Sums& s = sums[cell.refine];
+    s.factor_seconds += number_at(seconds, "factorization");
+    s.back_seconds += number_at(seconds, "backsolve");
+    s.factors += cell.count("factorizations") - cell.count("sensitivity_factorizations");
+    s.backs += cell.count("backsolves");
+  }
+  std::map<int, double> ratio;
+  for (const auto& [refine, s] : sums)
+    if (s.factor_seconds > 0 && s.factors > 0 && s.back_seconds > 0 && s.backs > 0)
+      ratio[refine] = (s.back_seconds / s.backs) / (s.factor_seconds / s.factors);
+  return ratio;
+}
+
+void measure_work(Cell& cell, double ratio) {
+  const json& seconds = at(at(cell.record, "cost"), "seconds");
+  cell.sensitivity_work =
+      cell.count("factorizations") + ratio * (cell.count("backsolves") + cell.count("sensitivity_backsolves"));
+  cell.work =
+      cell.count("factorizations") - cell.count("sensitivity_factorizations") + ratio * cell.count("backsolves");
+  cell.sensitivity_seconds = number_at(seconds, "total") - number_at(seconds, "output");
+  cell.seconds = cell.sensitivity_seconds - number_at(seconds, "sensitivity");
+}
+
+template <class Get>
+std::vector<std::string> distinct(const std::vector<Cell>& cells, Get get) {
+  std::vector<std::string> out;
+  for (const auto& cell : cells)
+    if (std::string value = get(cell); std::find(out.begin(), out.end(), value) == out.end()) out.push_back(value);
+  return out;
+}
+
+std::string main_variant_of(const Study& study) {
+  std::string best;
+  long most = -1;
+  for (const auto& variant : study.variants) {
+    const long converged = std::count_if(study.cells.begin(), study.cells.end(),
+                                         [&](const Cell& c) { return c.converged && c.variant == variant; });
+    if (converged >= most) {
+      most = converged;
+      best = variant;
+    }
+  }
+  return best;
+}
+
+json read_json(const std::filesystem::path& path) {
+  std::ifstream in(path);
+  if (!in) return nullptr;
+  try {
+    return json::parse(in);
+  } catch (const json::parse_error& e) {
+    throw std::runtime_error(path.string() + ": " + e.what());
+  }
+}
+
+}  // namespace
+
+double Cell::count(const std::string& name) const { return number_at(at(at(record, "cost"), "counts"), name); }
+
+Study read_study(const std::filesystem::path& directory) {
+  Study study;
+  study.description = read_json(directory / "study.json");
+  study.picture = read_json(directory / "picture.json");
+
+  std::ifstream in(directory / "results.jsonl");
+  if (!in) throw std::runtime_error((directory / "results.jsonl").string() + ": cannot be opened");
+  std::map<std::string, std::size_t> at_id;
+  for (std::string line; std::getline(in, line);) {
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    const json record = json::parse(line, nullptr, false);
+    if (!record.is_object()) {
+      ++study.unreadable_lines;
+      continue;
+    }
+    const std::string id = text_at(record, "id");
+    const auto known = id.empty() ? at_id.end() : at_id.find(id);
+    if (known != at_id.end()) {
+      study.cells[known->second] = read_cell(record);
+      continue;
+    }
+    if (!id.empty()) at_id[id] = study.cells.size();
+    study.cells.push_back(read_cell(record));
+  }
+
+  std::set<int> levels;
+  for (const auto& cell : study.cells) levels.insert(cell.refine);
+  study.refined = levels.size() > 1;
+  study.ratio = measured_ratio(study.cells);
+  for (auto& cell : study.cells) {
+    cell.variant = cell.scene;
+    if (study.refined) cell.variant += fmt::format("{}mesh level {}", cell.scene.empty() ? "" : ", ", cell.refine);
+    const auto ratio = study.ratio.find(cell.refine);
+    measure_work(cell, ratio == study.ratio.end() ? 0 : ratio->second);
+  }
+  study.families = distinct(study.cells, [](const Cell& c) { return c.family; });
+  study.variants = distinct(study.cells, [](const Cell& c) { return c.variant; });
+  study.main_variant = main_variant_of(study);
+  return study;
+}
+
+std::string family_name(const std::string& family) {
+  if (family == "penalty") return "Penalty";
+  if (family == "uzawa_al") return "Uzawa AL";
+  if (family == "monolithic_al") return "Monolithic AL";
+  return family;
+}
+
+std::string running_knob(const Study& study, const std::string& family) {
+  std::map<std::string, std::set<std::string>> values;
+  for (const auto& cell : study.cells)
+    if (cell.family == family)
+      for (const auto& knob : cell.knobs) values[knob.name].insert(knob.text);
+  for (const char* preferred : {"stiffness", "tolerance", "scale"})
+    if (const auto found = values.find(preferred); found != values.end() && found->second.size() > 1) return preferred;
+  std::string best;
+  std::size_t most = 1;
+  for (const auto& [name, set] : values)
+    if (set.size() > most) {
+      most = set.size();
+      best = name;
+    }
+  return best;
+}
+
+std::vector<std::string> knob_names(const Study& study) {
+  std::vector<std::string> names;
+  std::map<std::string, std::set<double>> values;
+  for (const auto& cell : study.cells)
+    for (const auto& knob : cell.knobs)
+      if (knob.value) {
+        if (values[knob.name].empty()) names.push_back(knob.name);
+        values[knob.name].insert(*knob.value);
+      }
+  names.erase(std::remove_if(names.begin(), names.end(), [&](const auto& name) { return values[name].size() < 2; }),
+              names.end());
+  return names;
+}
+
+const Knob* find_knob(const Cell& cell, const std::string& name) {
+  for (const auto& knob : cell.knobs)
+    if (knob.name == name) return &knob;
+  return nullptr;
+}
+
+std::string series_of(const Cell& cell, const std::string& knob) {
+  std::string rest = cell.label;
+  if (rest.rfind(cell.family, 0) == 0) rest.erase(0, cell.family.size());
+  // The recorded label says NAME=VALUE; an absolute value may be written in any form, so all up to the blank goes.
+  const std::string key = " " + knob.substr(0, knob.find(" (")) + "=";
+  if (const std::size_t from = knob.empty() ? std::string::npos : rest.find(key); from != std::string::npos)
+    rest.erase(from, std::min(rest.find(' ', from + 1), rest.size()) - from);
+  return family_name(cell.family) + rest;
+}
+
+std::optional<double> worst(const std::map<std::string, double>& errors, const std::string& prefix) {
+  std::optional<double> out;
+  for (const auto& [name, value] : errors)
+    if (name.rfind(prefix, 0) == 0) out = std::max(out.value_or(0), value);
+  return out;
+}
+
+}  // namespace stickslip::report

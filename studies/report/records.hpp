@@ -1,0 +1,74 @@
+/// What a study left behind, as the report sees it: study.json, results.jsonl and picture.json, read tolerantly.
+/// A key that is missing leaves an empty value; a line that is no JSON is counted, not fatal.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace stickslip::report {
+
+/// One swept option of a method and the value this cell gave it.
+struct Knob {
+  std::string name;             ///< option name; "NAME (absolute)" where the value is {"absolute": number}
+  std::string text;             ///< the value as shown
+  std::optional<double> value;  ///< the number, where it is one
+};
+
+/// One cell of a study: a method with its options, on one variant of the scene.
+struct Cell {
+  nlohmann::json record;  ///< the whole line
+  std::string label;      ///< method and swept options, as recorded or made up from them
+  std::string family;     ///< key of the method: penalty, uzawa_al, monolithic_al, ...
+  std::string status;
+  bool converged = false;
+  std::string scene;    ///< the values of `vary`; empty where nothing is varied
+  int refine = 0;       ///< mesh level
+  std::string variant;  ///< scene and, where there are several, mesh level
+  std::vector<Knob> knobs;
+  std::map<std::string, double> enforcement;     ///< against the same mesh; keys response:* sensitivity:* field:*
+  std::map<std::string, double> discretization;  ///< against the closed form; same keys
+  std::map<std::string, double> kkt;             ///< method-blind measures
+  double work = 0;              ///< flop equivalents in factorisations, the response alone (see Study::ratio)
+  double sensitivity_work = 0;  ///< the same with the derivatives' share added
+  double seconds = 0, sensitivity_seconds = 0;  ///< 0 where not recorded; without output
+  double count(const std::string& name) const;  ///< cost.counts[name]; 0 where not recorded
+};
+
+struct Study {
+  nlohmann::json description;         ///< study.json; null where missing
+  nlohmann::json picture;             ///< picture.json; null where missing
+  std::vector<Cell> cells;            ///< in recorded order; of an id recorded twice, the last
+  std::vector<std::string> families;  ///< in order of appearance
+  std::vector<std::string> variants;  ///< in order of appearance
+  std::string main_variant;           ///< the one shown first: most cells converged, of equals the last
+  std::map<int, double> ratio;        ///< cost of one back-solve over one factorisation, by refinement; measured
+  bool refined = false;               ///< more than one mesh level
+  int unreadable_lines = 0;
+};
+
+/// Reads `directory`. Throws std::runtime_error where results.jsonl cannot be opened or study.json is no JSON.
+Study read_study(const std::filesystem::path& directory);
+
+/// "Penalty", "Uzawa AL", "Monolithic AL"; another key as it stands.
+std::string family_name(const std::string& family);
+
+/// The knob a curve of `family` runs along: the one swept; of several, stiffness, then tolerance, then scale, then the
+/// one with most values. Empty where nothing is swept.
+std::string running_knob(const Study& study, const std::string& family);
+
+/// Names of the knobs with at least two different numbers, over all families, in order of appearance.
+std::vector<std::string> knob_names(const Study& study);
+
+const Knob* find_knob(const Cell& cell, const std::string& name);
+
+/// Label without the part that says `knob`, and with the method's name in words: what is constant along a curve.
+std::string series_of(const Cell& cell, const std::string& knob);
+
+/// Largest value of those whose key starts with `prefix`; nothing where there is none.
+std::optional<double> worst(const std::map<std::string, double>& errors, const std::string& prefix);
+
+}  // namespace stickslip::report

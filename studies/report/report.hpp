@@ -1,0 +1,18 @@
+/// The report of a study: one HTML file that needs no network, from recorded results alone.
+#pragma once
+
+#include <filesystem>
+
+namespace stickslip {
+
+/// Reads study.json, results.jsonl and picture.json of `directory` (all but results.jsonl may be missing) and writes
+/// directory/report.html, whole or not at all.
+/// Throws std::runtime_error, with the path, where results.jsonl cannot be read or study.json or picture.json is no
+/// JSON, and its kind std::system_error where the file cannot be written.
+///
+/// Conventions it relies on beyond interface.md, section 4: interface tractions `normal` are negative in compression
+/// and pressure is drawn positive, for the analytic curves too; an analytic curve's `s` is the contact's `arc`, its `x`
+/// (used where present) the contact's `x`; contact points of picture.json stand at their deformed place.
+void write_report(const std::filesystem::path& directory);
+
+}  // namespace stickslip

@@ -1,0 +1,141 @@
+#include "studies/scene_reader.hpp"
+
+#include <filesystem>
+
+#include "studies/method_options.hpp"
+#include "studies/scene_reading.hpp"
+
+namespace stickslip {
+namespace {
+
+void read_space(const JsonNode& root, SceneReading& reading) {
+  const auto space = root.find("space");
+  const auto name = space ? space->choice({"plane_strain", "plane_stress", "solid"}, {"axisymmetric"}) : std::nullopt;
+  if (name == "plane_stress") reading.scene.space = Space::plane_stress;
+  if (name == "solid") reading.scene.space = Space::solid;
+}
+
+void read_linear_solver(const JsonNode& node, Input& input) {
+  using Engine = LinearAlgebra::Engine;
+  if (!node.is_object({{}, {"engine", "backend"}})) return;
+  if (const auto engine = node.find("engine")) {
+    const auto name = engine->choice({"auto", "sparse", "condensed"});
+    if (name == "sparse") input.linear_algebra.engine = Engine::sparse;
+    if (name == "condensed") input.linear_algebra.engine = Engine::condensed;
+  }
+  if (const auto backend = node.find("backend")) {
+    const std::map<std::string, Backend> all{{"auto", Backend::automatic},
+                                             {"cholmod", Backend::cholmod},
+                                             {"umfpack", Backend::umfpack},
+                                             {"mumps", Backend::mumps},
+                                             {"eigen", Backend::eigen}};
+    std::vector<std::string> names;
+    for (const auto& [name, unused] : all) names.push_back(name);
+    const auto name = backend->choice(names);
+    if (!name) return;
+    input.backend = all.at(*name);
+    if (input.backend != Backend::automatic && !has_backend(input.backend))
+      backend->error("is " + in_quotes(*name) + ", which is not part of this build");
+  }
+}
+
+void read_output(const JsonNode& node, OutputOptions& output) {
+  if (!node.is_object({{}, {"fields"}})) return;
+  const auto fields = node.find("fields");
+  if (!fields || fields->value() == "last") return;
+  if (fields->value() == "all") {
+    output.fields = OutputOptions::Fields::all;
+  } else if (fields->value().is_number()) {
+    output.fields = OutputOptions::Fields::every;
+    output.every = fields->count(1).value_or(1);
+  } else {
+    fields->must_be(R"("last", "all" or a whole number >= 1)");
+  }
+}
+
+}  // namespace
+
+std::optional<Input> read_scene(const JsonDocument& given, const std::optional<std::string>& method_name,
+                                Diagnostics& diagnostics, MeshFiles& mesh_files) {
+  const std::size_t faults = diagnostics.error_count();
+  const std::filesystem::path folder = std::filesystem::path(given.file()).parent_path();
+  JsonDocument document = given;
+  const JsonNode file_root(given, diagnostics);
+  if (!file_root.is_object({{"bodies", "time"},
+                            {"title", "space", "strain", "obstacles", "contacts", "supports", "loads", "responses",
+                             "parameters", "method", "linear_solver", "output", "sensitivity"},
+                            {"objectives"}}))
+    return std::nullopt;
+
+  // Another method than the scene's: what the scene says of its own is checked, then replaced.
+  const bool known = !method_name || default_method(*method_name);
+  if (!known)
+    diagnostics.error({{"-m " + *method_name},
+                       "",
+                       "there is no method " + in_quotes(*method_name) + ";" +
+                           suggestion(*method_name, method_names()) + " allowed: " + listed(method_names())});
+  const auto own = file_root.find("method");
+  const bool replaced = method_name && known && !(own && own->value().is_object() && own->find(*method_name));
+  if (replaced) {
+    SceneReading apart(diagnostics, folder, mesh_files);
+    if (own) read_method(*own, apart);
+    document.set("/method", {{*method_name, nlohmann::json::object()}}, {"-m " + *method_name});
+  }
+
+  Input input;
+  input.file = document.file();
+  const JsonNode root(document, diagnostics);
+  SceneReading reading(diagnostics, folder, mesh_files);
+  auto part = [&](const char* key, auto&& read) {
+    if (const auto node = root.find(key)) read(*node, reading);
+  };
+  if (const auto title = root.find("title")) reading.scene.title = title->text().value_or("");
+  read_space(root, reading);
+  if (const auto strain = root.find("strain")) strain->choice({"small"}, {"finite"});
+  part("bodies", read_bodies);
+  part("obstacles", read_obstacles);
+  part("contacts", read_contacts);
+  part("supports", read_supports);
+  part("loads", read_loads);
+  part("time", read_time);
+  part("responses", read_responses);
+  if (const auto node = root.find("linear_solver")) read_linear_solver(*node, input);
+  if (const auto node = root.find("output")) read_output(*node, input.output);
+  if (const auto node = root.find("sensitivity"); node && node->is_object({{}, {"mode"}}))
+    if (const auto mode = node->find("mode")) mode->choice({"direct"}, {"adjoint"});
+
+  const auto method_node = root.find("method");
+  if (!method_node && known) root.error(R"(the key "method" is missing; allowed: )" + listed(method_names()));
+  const auto method = method_node ? read_method(*method_node, reading) : std::nullopt;
+  std::vector<std::string> dropped;
+  if (const auto node = root.find("parameters"))
+    dropped = read_parameters(*node, document.root(), method ? std::string(name_of(*method)) : "",
+                              method_name.has_value(), reading);
+  if (diagnostics.error_count() > faults) return std::nullopt;
+
+  for (const std::string& pointer : dropped) document.remove(pointer);
+  input.scene = std::move(reading.scene);
+  input.method = *method;
+  input.document = document.root();
+  input.mesh_fingerprints = std::move(reading.mesh_fingerprints);
+  return input;
+}
+
+std::optional<Input> read_scene(const std::string& file, const Overrides& overrides,
+                                const std::optional<std::string>& method_name, Diagnostics& diagnostics) {
+  auto document = JsonDocument::read(file, diagnostics);
+  if (!document) return std::nullopt;
+  for (const std::string& assignment : overrides) document->override_value(assignment, diagnostics);
+  MeshFiles mesh_files;
+  auto input = read_scene(*document, method_name, diagnostics, mesh_files);
+  return diagnostics.has_errors() ? std::nullopt : std::move(input);
+}
+
+std::string canonical_text(const Input& input) {
+  nlohmann::json canonical = input.document;
+  canonical.erase("title");
+  canonical["method"] = to_json(input.method);
+  return nlohmann::json{{"scene", canonical}, {"meshes", input.mesh_fingerprints}}.dump();
+}
+
+}  // namespace stickslip

@@ -1,0 +1,134 @@
+#include "studies/study.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+
+/// Relative L2 difference of component c (0 normal, 1 tangential) of all tractions, weighted by area.
+double traction_difference(const CaseResult& result, const CaseResult& reference, int c) {
+  const auto& model = result.problem->model;
+  const auto& t = result.steps.back().increment->state.contact.traction;
+  const auto& exact = reference.steps.back().increment->state.contact.traction;
+  double difference = 0, size = 0;
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const auto& point = model.points[p];
+    const double area = result.problem->slots.geometry[p].area;
+    const int first = c == 0 ? 0 : 1, last = c == 0 ? 1 : point.components();
+    for (int k = point.multiplier + first; k < point.multiplier + last; ++k) {
+      difference += area * (t[k] - exact[k]) * (t[k] - exact[k]);
+      size += area * exact[k] * exact[k];
+    }
+  }
+  return difference == 0 ? 0 : std::sqrt(difference / size);
+}
+
+/// Linear interpolation in a curve of ascending x; 0 outside.
+double at(const json& x, const json& y, double where) {
+  for (std::size_t i = 1; i < x.size(); ++i)
+    if (where >= x[i - 1].get<double>() && where <= x[i].get<double>()) {
+      const double s = (where - x[i - 1].get<double>()) / (x[i].get<double>() - x[i - 1].get<double>());
+      return (1 - s) * y[i - 1].get<double>() + s * y[i].get<double>();
+    }
+  return 0;
+}
+
+/// Relative L2 difference from a curve of the closed form over the points of its contact.
+double curve_difference(const CaseResult& result, const std::string& contact, const json& curve, bool normal) {
+  const auto& model = result.problem->model;
+  const auto& t = result.steps.back().increment->state.contact.traction;
+  const int index = model.contact_index(contact);
+  double difference = 0, size = 0;
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const auto& point = model.points[p];
+    if (point.contact != index || (!normal && point.tangents != 1)) continue;
+    const double area = result.problem->slots.geometry[p].area;
+    const double exact = at(curve["x"], curve[normal ? "normal" : "tangential"], result.problem->slots.points(0, point.nodes[0]));
+    const double d = t[point.multiplier + (normal ? 0 : 1)] - exact;
+    difference += area * d * d;
+    size += area * exact * exact;
+  }
+  return size > 0 ? std::sqrt(difference / size) : 0;
+}
+
+double relative(double difference, double scale) { return difference == 0 ? 0 : difference / scale; }
+
+}  // namespace
+
+Errors enforcement_errors(const CaseResult& result, const CaseResult& reference) {
+  Errors errors;
+  if (result.steps.size() != reference.steps.size() || result.steps.empty()) return errors;
+  const auto& scene = result.problem->model.scene;
+  for (std::size_t i = 0; i < scene.responses.size(); ++i) {
+    double difference = 0, size = 0;
+    for (std::size_t n = 0; n < result.steps.size(); ++n) {
+      difference = std::max(difference, std::abs(result.steps[n].responses[i] - reference.steps[n].responses[i]));
+      size = std::max(size, std::abs(reference.steps[n].responses[i]));
+    }
+    errors["response:" + scene.responses[i].name] = relative(difference, size);
+    for (std::size_t j = 0; j < scene.parameters.size(); ++j) {
+      double worst = 0;
+      double scale = scene.parameters[j].value != 0 ? size / std::abs(scene.parameters[j].value) : 0;
+      bool complete = true;
+      for (std::size_t n = 0; n < result.steps.size(); ++n) {
+        const auto& computed = result.steps[n].sensitivities;
+        const auto& exact = reference.steps[n].sensitivities;
+        complete = complete && computed.size() > 0 && exact.size() > 0;
+        if (!complete) break;
+        worst = std::max(worst, std::abs(computed(i, j) - exact(i, j)));
+        scale = std::max(scale, std::abs(exact(i, j)));
+      }
+      if (complete)
+        errors["sensitivity:" + scene.responses[i].name + "/" + scene.parameters[j].name] = relative(worst, scale);
+    }
+  }
+  if (result.problem->model.effects.contact) errors["field:normal_traction"] = traction_difference(result, reference, 0);
+  if (result.problem->model.effects.friction)
+    errors["field:tangential_traction"] = traction_difference(result, reference, 1);
+  return errors;
+}
+
+Errors discretisation_errors(const CaseResult& result, const ReferenceValues& reference) {
+  Errors errors;
+  if (result.steps.empty()) return errors;
+  const auto& scene = result.problem->model.scene;
+  const auto& last = result.steps.back();
+  for (std::size_t i = 0; i < scene.responses.size(); ++i) {
+    const auto& name = scene.responses[i].name;
+    const auto exact = reference.responses.find(name);
+    double size = std::abs(last.responses[i]);
+    if (exact != reference.responses.end()) {
+      if (exact->second != 0) size = std::abs(exact->second);
+      errors["response:" + name] = relative(std::abs(last.responses[i] - exact->second), size);
+    }
+    const auto derivatives = reference.sensitivities.find(name);
+    if (derivatives == reference.sensitivities.end() || last.sensitivities.size() == 0) continue;
+    for (std::size_t j = 0; j < scene.parameters.size(); ++j) {
+      const auto value = derivatives->second.find(scene.parameters[j].name);
+      if (value == derivatives->second.end()) continue;
+      const double parameter = std::abs(scene.parameters[j].value);
+      const double scale = value->second != 0 ? std::abs(value->second) : parameter > 0 ? size / parameter : 1;
+      errors["sensitivity:" + name + "/" + scene.parameters[j].name] =
+          relative(std::abs(last.sensitivities(i, j) - value->second), scale);
+    }
+  }
+  for (const auto& [contact, curve] : reference.curves.items()) {
+    errors["field:normal_traction"] = curve_difference(result, contact, curve, true);
+    if (result.problem->model.effects.friction)
+      errors["field:tangential_traction"] = curve_difference(result, contact, curve, false);
+  }
+  return errors;
+}
+
+bool asked_for(const std::string& name, const std::vector<std::string>& patterns) {
+  return patterns.empty() || std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) {
+           if (pattern.empty() || pattern.back() != '*') return name == pattern;
+           return name.compare(0, pattern.size() - 1, pattern, 0, pattern.size() - 1) == 0;
+         });
+}
+
+}  // namespace stickslip

@@ -1,0 +1,367 @@
+#include "studies/study_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <system_error>
+
+#include "studies/json_node.hpp"
+#include "studies/method_options.hpp"
+#include "studies/references.hpp"
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+
+bool has(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// The values of a list, each once.
+std::vector<PlacedValue> values_of(const JsonNode& list) {
+  std::vector<PlacedValue> values;
+  if (!list.value().is_array() || list.value().empty()) {
+    list.must_be("a list of values");
+    return values;
+  }
+  for (const JsonNode& element : list.elements()) {
+    const bool again =
+        std::any_of(values.begin(), values.end(), [&](const auto& v) { return v.value == element.value(); });
+    if (again)
+      element.error("is " + shown(element.value()) + ", which the list has already");
+    else
+      values.push_back({element.value(), element.place()});
+  }
+  return values;
+}
+
+/// What a list as an option's value means.
+enum class Lists { swept, refused };
+
+/// Options below a node, each with its values.
+void collect_options(const JsonNode& node, const std::string& pointer, Lists lists, std::vector<Knob>& options) {
+  for (const auto& [name, option] : node.members()) {
+    const std::string below = child_pointer(pointer, name);
+    const bool list = option.value().is_array();
+    if (option.value().is_object() && !option.value().empty())
+      collect_options(option, below, lists, options);
+    else if (list && lists == Lists::swept)
+      options.push_back({below, values_of(option)});
+    else if (list)
+      option.must_be(R"(one value; only lists in the "methods" of a study are swept)");
+    else
+      options.push_back({below, {{option.value(), option.place()}}});
+  }
+}
+
+std::optional<MethodSweep> read_method_sweep(const JsonNode& node, Lists lists) {
+  const auto kind = node.kind(method_names());
+  if (!kind || !kind->second.is_map("the options of " + kind->first)) return std::nullopt;
+  MethodSweep sweep{kind->first, kind->second.place(), {}};
+  collect_options(kind->second, "", lists, sweep.options);
+  return sweep;
+}
+
+/// Names that responses, and where there are parameters derivatives "RESPONSE/PARAMETER", have in the scene.
+std::vector<std::string> result_names(const json& scene, bool with_derivatives) {
+  std::vector<std::string> names;
+  const json none = json::object();
+  const auto part = [&](const char* key) -> const json& { return scene.contains(key) ? scene.at(key) : none; };
+  for (const auto& [response, unused] : part("responses").items()) names.push_back(response);
+  if (with_derivatives)
+    for (const auto& [response, unused] : part("responses").items())
+      for (const auto& [parameter, unused_too] : part("parameters").items())
+        names.push_back(response + "/" + parameter);
+  return names;
+}
+
+void check_result_name(const JsonNode& node, const std::string& name, const std::vector<std::string>& names) {
+  if (!has(names, name))
+    node.error_at_key("the scene has no " + in_quotes(name) + ";" + suggestion(name, names) +
+                      " allowed: " + listed(names));
+}
+
+std::optional<Reference> read_reference(const JsonNode& node, const json& scene) {
+  const auto kind = node.kind({"analytic", "values", "method"}, {"overkill"}, {"map", "radius"});
+  if (!kind) return std::nullopt;
+  const auto& [name, value] = *kind;
+  Reference reference;
+  reference.entry = node.value();
+  if (name != "analytic")
+    for (const char* key : {"map", "radius"})
+      if (const auto other = node.find(key)) other->error_at_key("belongs to analytic, not to " + name);
+  if (name == "analytic") {
+    const auto form = value.choice(analytic_names());
+    const auto map = node.find("map");
+    if (!map) node.error(R"(the key "map" is missing: {RESPONSE: QUANTITY, ...})");
+    if (map && map->is_map("quantities by response"))
+      for (const auto& [response, quantity] : map->members()) {
+        check_result_name(quantity, response, result_names(scene, false));
+        if (form) quantity.choice(analytic_quantities(*form));
+      }
+    if (const auto radius = node.find("radius")) radius->number(positive);
+  } else if (name == "values") {
+    reference.kind = Reference::Kind::values;
+    if (value.is_map("numbers by response, or by RESPONSE/PARAMETER"))
+      for (const auto& [result, number] : value.members()) {
+        check_result_name(number, result, result_names(scene, true));
+        number.number(any_number);
+      }
+  } else {
+    reference.kind = Reference::Kind::method;
+    const auto sweep = read_method_sweep(value, Lists::refused);
+    if (!sweep) return std::nullopt;
+    reference.method = *sweep;
+  }
+  return reference;
+}
+
+std::vector<Knob> read_vary(const JsonNode& node, const json& scene) {
+  std::vector<Knob> knobs;
+  if (!node.is_map("lists of values by JSON pointer of the scene")) return knobs;
+  for (const auto& [pointer, list] : node.members()) {
+    if (pointer == "/method" || pointer.rfind("/method/", 0) == 0)
+      list.error_at_key(R"(an option of a method is swept as a list in "methods")");
+    else if (const std::string fault = pointer_fault(scene, pointer); !fault.empty())
+      list.error_at_key(fault);
+    else if (value_at(scene, pointer)->is_object())
+      list.error_at_key("names an object; must name a number, a text or an array");
+    else
+      knobs.push_back({pointer, values_of(list)});
+  }
+  return knobs;
+}
+
+void read_errors(const JsonNode& node, std::vector<std::string>& patterns) {
+  if (!node.value().is_array()) return node.must_be("a list of patterns");
+  for (const JsonNode& element : node.elements()) {
+    const auto pattern = element.text();
+    if (!pattern) continue;
+    const bool known = *pattern == "kkt" || pattern->rfind("response:", 0) == 0 ||
+                       pattern->rfind("sensitivity:", 0) == 0 || pattern->rfind("field:", 0) == 0;
+    if (!known) element.must_be("\"kkt\", or begin with response:, sensitivity: or field:, as in \"response:*\"");
+    patterns.push_back(*pattern);
+  }
+}
+
+/// Calls f with one value of each sweep in turn, the last sweep's fastest.
+template <class F>
+void for_each_combination(const std::vector<Knob>& sweeps, F&& f) {
+  std::vector<const PlacedValue*> chosen(sweeps.size());
+  auto choose = [&](auto&& self, std::size_t i) -> void {
+    if (i == sweeps.size()) return f(chosen);
+    for (const PlacedValue& value : sweeps[i].values) {
+      chosen[i] = &value;
+      self(self, i + 1);
+    }
+  };
+  choose(choose, 0);
+}
+
+/// "/newton/tolerance" as "newton.tolerance".
+std::string option_name(const std::string& pointer) {
+  std::string name = pointer.substr(1);
+  std::replace(name.begin(), name.end(), '/', '.');
+  return name;
+}
+
+/// Puts a method with its options into the cell. The faults that follow are left to complete().
+void set_method(CellInput& cell, const MethodSweep& method, const std::vector<const PlacedValue*>& chosen) {
+  const std::string base = child_pointer("/method", method.method);
+  cell.document.set("/method", {{method.method, json::object()}}, method.place);
+  cell.label = method.method;
+  cell.knobs = json::object();
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const Knob& option = method.options[i];
+    const auto& [value, place] = *chosen[i];
+    // an option within an object, as /scale/absolute, needs the object
+    for (auto slash = option.pointer.find('/', 1); slash != std::string::npos;
+         slash = option.pointer.find('/', slash + 1))
+      if (const std::string outer = base + option.pointer.substr(0, slash); !value_at(cell.document.root(), outer))
+        cell.document.set(outer, json::object(), place);
+    cell.document.set(base + option.pointer, value, place);
+    const std::string name = option_name(option.pointer);
+    cell.label += " " + name + "=" + (value.is_string() ? value.get<std::string>() : shown(value));
+    if (option.values.size() > 1) cell.knobs[name] = value;
+  }
+}
+
+/// Puts the method of a reference into the cell.
+void set_reference(CellInput& cell, const Reference& reference) {
+  std::vector<const PlacedValue*> chosen;
+  for (const Knob& option : reference.method.options) chosen.push_back(&option.values.front());
+  set_method(cell, reference.method, chosen);
+}
+
+/// Reads the cell's document and fills in what follows from it; false where it is at fault.
+bool complete(CellInput& cell, const std::string& method, const std::string& program_version, Diagnostics& diagnostics,
+              MeshFiles& mesh_files) {
+  // Each of a study's methods drops the parameters that belong to another one; notes on that would be one a cell.
+  Diagnostics own;
+  auto input = read_scene(cell.document, method, own, mesh_files);
+  for (const Diagnostic& error : own.errors()) diagnostics.error(error);
+  if (!input) return false;
+  cell.method = input->method;
+  cell.canonical = canonical_text(*input);
+  cell.id = cell_id(cell.canonical, program_version);
+  return true;
+}
+
+}  // namespace
+
+std::string cell_id(const std::string& canonical, const std::string& program_version) {
+  return fingerprint(canonical + "\n" + program_version);
+}
+
+bool refine_meshes(JsonDocument& scene, int level, const Place& origin, Diagnostics& diagnostics) {
+  auto finer = [&](json& count) {
+    if (!count.is_number()) return;
+    const double cells = count.get<double>() * (1 << level);
+    constexpr double most = 1e15;  // beyond, the scene's reader has something to say; here only overflow matters
+    if (cells == std::floor(cells) && std::abs(cells) < most)
+      count = static_cast<long long>(cells);
+    else
+      count = cells;
+  };
+  JsonDocument result = scene;
+  bool possible = true;
+  const json bodies = level > 0 ? scene.root().value("bodies", json::object()) : json::object();
+  for (const auto& [name, body] : bodies.items()) {
+    const json* mesh = value_at(body, "/mesh");
+    if (!mesh || !mesh->is_object()) continue;
+    const std::string pointer = child_pointer("/bodies", name) + "/mesh";
+    if (mesh->contains("gmsh")) {
+      diagnostics.error({origin, pointer, "an imported mesh cannot be refined; allowed: level 0"});
+      possible = false;
+    }
+    for (const auto& [kind, generator] : mesh->items()) {
+      if (!generator.is_object() || !generator.contains("cells")) continue;
+      json cells = generator["cells"];
+      if (cells.is_array())
+        for (json& count : cells) finer(count);
+      else
+        finer(cells);
+      result.set(child_pointer(pointer, kind) + "/cells", std::move(cells), origin);
+    }
+  }
+  if (possible) scene = std::move(result);
+  return possible;
+}
+
+std::optional<Study> read_study(const std::string& file, Diagnostics& diagnostics) {
+  const std::size_t faults = diagnostics.error_count();
+  auto document = JsonDocument::read(file, diagnostics);
+  if (!document) return std::nullopt;
+  Study study;
+  study.document = *std::move(document);
+  const JsonNode root(study.document, diagnostics);
+  if (!root.is_object({{"scene"}, {"title", "methods", "vary", "refine", "reference", "errors", "timing"}}))
+    return std::nullopt;
+  if (const auto title = root.find("title")) study.title = title->text().value_or("");
+
+  // what the rest is checked against
+  const auto scene_node = root.find("scene");
+  const auto scene_name = scene_node ? scene_node->text() : std::nullopt;
+  if (!scene_name) return std::nullopt;
+  const std::filesystem::path scene_path = (std::filesystem::path(file).parent_path() / *scene_name).lexically_normal();
+  std::error_code unreadable;
+  if (!std::filesystem::is_regular_file(scene_path, unreadable)) {
+    scene_node->error("the scene file " + scene_path.string() + " cannot be read");
+    return std::nullopt;
+  }
+  auto scene = JsonDocument::read(scene_path.string(), diagnostics);
+  if (!scene) return std::nullopt;
+  study.scene = *std::move(scene);
+  const json& scene_root = study.scene.root();
+  if (!scene_root.is_object()) {
+    diagnostics.error({study.scene.place(""), "", "is " + shown(scene_root) + "; must be an object"});
+    return std::nullopt;
+  }
+
+  if (const auto methods = root.find("methods")) {
+    if (!methods->value().is_array() || methods->value().empty())
+      methods->must_be("a list of methods, as in [{\"penalty\": {\"stiffness\": [10, 100]}}]");
+    else
+      for (const JsonNode& method : methods->elements())
+        if (auto sweep = read_method_sweep(method, Lists::swept)) study.methods.push_back(*std::move(sweep));
+  } else if (scene_root.contains("method")) {
+    if (auto sweep = read_method_sweep(*JsonNode(study.scene, diagnostics).find("method"), Lists::refused))
+      study.methods.push_back(*std::move(sweep));
+  } else {
+    root.error(R"(the key "methods" is missing, and the scene names no method)");
+  }
+  if (const auto vary = root.find("vary")) study.vary = read_vary(*vary, scene_root);
+  study.refine = {{0, study.document.place("")}};
+  if (const auto refine = root.find("refine")) {
+    study.refine = values_of(*refine);
+    constexpr double most = 10;  // a thousand times the cells each way
+    for (const JsonNode& level : refine->value().is_array() ? refine->elements() : std::vector<JsonNode>{})
+      if (const auto number = level.count(0); number && *number > most) level.must_be("a level from 0 to 10");
+  }
+  if (const auto references = root.find("reference")) {
+    if (!references->value().is_array())
+      references->must_be("a list of references");
+    else
+      for (const JsonNode& node : references->elements())
+        if (auto reference = read_reference(node, scene_root)) study.references.push_back(*std::move(reference));
+  }
+  study.errors = {"response:*", "sensitivity:*", "kkt"};
+  if (const auto errors = root.find("errors")) {
+    study.errors.clear();
+    read_errors(*errors, study.errors);
+  }
+  if (const auto timing = root.find("timing"); timing && timing->is_object({{}, {"repeat"}}))
+    if (const auto repeat = timing->find("repeat")) study.repeat = repeat->count(1).value_or(1);
+  if (diagnostics.error_count() > faults) return std::nullopt;
+  return study;
+}
+
+std::vector<CellInput> expand(const Study& study, const std::string& program_version, Diagnostics& diagnostics,
+                              MeshFiles& mesh_files) {
+  const std::size_t faults = diagnostics.error_count();
+  std::vector<CellInput> cells;
+  std::set<std::string> ids;
+  for (const auto& [level, level_place] : study.refine) {
+    CellInput refined;
+    refined.document = study.scene;
+    refined.refine = level.get<int>();
+    if (!refine_meshes(refined.document, refined.refine, level_place, diagnostics)) continue;
+    for_each_combination(study.vary, [&](const std::vector<const PlacedValue*>& varied) {
+      CellInput scene = refined;
+      for (std::size_t i = 0; i < varied.size(); ++i) {
+        scene.document.set(study.vary[i].pointer, varied[i]->value, varied[i]->place);
+        scene.vary[study.vary[i].pointer] = varied[i]->value;
+      }
+      for (const MethodSweep& method : study.methods)
+        for_each_combination(method.options, [&](const std::vector<const PlacedValue*>& chosen) {
+          CellInput cell = scene;
+          set_method(cell, method, chosen);
+          if (complete(cell, method.method, program_version, diagnostics, mesh_files) && ids.insert(cell.id).second)
+            cells.push_back(std::move(cell));
+        });
+    });
+  }
+  // a reference with faulty options would be found only when it is run
+  if (!cells.empty())
+    for (const Reference& reference : study.references)
+      if (reference.kind == Reference::Kind::method) {
+        CellInput cell = cells.front();
+        set_reference(cell, reference);
+        complete(cell, reference.method.method, program_version, diagnostics, mesh_files);
+      }
+  if (diagnostics.error_count() > faults) cells.clear();
+  return cells;
+}
+
+CellInput reference_cell(const CellInput& cell, const Reference& reference, const std::string& program_version,
+                         MeshFiles& mesh_files) {
+  CellInput other = cell;
+  set_reference(other, reference);
+  Diagnostics none;
+  complete(other, reference.method.method, program_version, none, mesh_files);
+  return other;
+}
+
+}  // namespace stickslip

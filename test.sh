@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds with warnings as errors and runs the tests; arguments go to ctest in place of
+# "-LE slow", which leaves the slow ones out. STICKSLIP_NO_APT=1 installs nothing; STICKSLIP_JOBS=n: n compilers.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+
+bash tools/install_dependencies.sh test
+bash tools/check_format.sh
+# shellcheck source=tools/environment.sh
+. tools/environment.sh
+
+cmake --preset ci
+cmake --build --preset ci -j "$jobs"
+
+[ $# -gt 0 ] || set -- -LE slow
+ctest --test-dir build/ci -j 2 --output-on-failure "$@"

@@ -1,0 +1,567 @@
+#include "studies/report/report.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "studies/report/charts.hpp"
+#include "studies/report/headline.hpp"
+#include "studies/report/picture.hpp"
+#include "studies/report/records.hpp"
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+using report::Against;
+using report::Of;
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+// --- a study on disk -----------------------------------------------------------------------------------------------
+
+/// A record with errors of one response and one sensitivity, `factorizations` as its cost.
+json cell(const std::string& family, const json& knobs, double error, int factorizations) {
+  static int made = 0;
+  std::string label = family;
+  for (const auto& [name, value] : knobs.items()) label += " " + name + "=" + value.dump();
+  const json history = json::array({{{"residual", 1.0}, {"changed", 3}}, {{"residual", 1e-4}}, {{"residual", 0.0}}});
+  const json face = {{"x", {-1, 0, 1}},
+                     {"y", {0, 0, 0}},
+                     {"arc", {0, 1, 2}},
+                     {"gap", {0.1, 0, 0}},
+                     {"slip", {0, 0, 0.01}},
+                     {"normal", {0, -2.0 - error, -1}},
+                     {"state", {"open", "stick", "slip"}},
+                     {"tangential", {0, 0.1, 0.3}}};
+  return {{"id", "cell-" + std::to_string(++made)},
+          {"label", label},
+          {"method", {{family, knobs}}},
+          {"knobs", knobs},
+          {"vary", json::object()},
+          {"refine", 0},
+          {"status", "converged"},
+          {"message", ""},
+          {"errors",
+           {{"enforcement", {{"response:press", error}, {"sensitivity:press/E", 2 * error}}},
+            {"discretization", {{"response:press", 0.01 + error}}},
+            {"kkt", {{"gap", error}}}}},
+          {"responses", {{"press", 9.9}}},
+          {"sensitivities", {{"press", {{"E", 0.1}}}}},
+          {"steps", json::array({{{"time", 1}, {"status", "converged"}, {"newton", 3}, {"history", history}}})},
+          {"interface", {{"sole", face}}},
+          {"cost",
+           {{"counts",
+             {{"factorizations", factorizations},
+              {"backsolves", 2 * factorizations},
+              {"sensitivity_backsolves", 1},
+              {"sensitivity_factorizations", 0},
+              {"newton", factorizations}}},
+            // One back-solve costs 0.1 factorisations: (0.2 s / 2 n) / (1 s / n).
+            {"seconds",
+             {{"total", 2.0 * factorizations},
+              {"factorization", 1.0 * factorizations},
+              {"backsolve", 0.2 * factorizations},
+              {"sensitivity", 0.1}}}}},
+          {"provenance", {{"git", "abc"}, {"cpu", "a processor"}, {"libraries", {{"solver", "1.2"}}}}}};
+}
+
+/// Penalty at four stiffnesses with error 1/stiffness, Uzawa, and a monolithic run that is its own reference.
+std::vector<json> three_methods() {
+  std::vector<json> cells;
+  for (const double stiffness : {1e3, 1e5, 1e7, 1e9})
+    cells.push_back(cell("penalty", {{"stiffness", stiffness}}, 1 / stiffness, stiffness < 1e9 ? 14 : 18));
+  cells.push_back(cell("uzawa_al", {{"tolerance", 1e-4}}, 1e-5, 20));
+  cells.push_back(cell("uzawa_al", {{"tolerance", 1e-8}}, 1e-9, 40));
+  cells.push_back(cell("monolithic_al", json::object(), 0, 10));
+  return cells;
+}
+
+json description() {
+  return {{"title", "a study"},
+          {"command", "stickslip study a.json -o out"},
+          {"scene_title", "a scene"},
+          {"explain", "No inertia."}};
+}
+
+/// A plane mesh of two squares with one contact point of each state.
+json picture() {
+  return {{"points", {{0, 0}, {1, 0}, {2, 0}, {0, 1}, {1, 1}, {2, 1}}},
+          {"elements", {{0, 1, 4, 3}, {1, 2, 5, 4}}},
+          {"displacement", {{0, 0}, {0, 0}, {0, 0}, {0, 0.1}, {0, 0.1}, {0, 0.1}}},
+          {"von_mises", {1.0, 2.0}},
+          {"contact",
+           {{{"name", "sole"}, {"x", 0}, {"y", 0}, {"state", "stick"}, {"normal", -1}, {"tangential", 0}},
+            {{"name", "sole"}, {"x", 2}, {"y", 0}, {"state", "slip"}, {"normal", -1}, {"tangential", 0}}}},
+          {"obstacles", {{{"plane", {{"point", {0, 0}}, {"normal", {0, 1}}}}}}},
+          {"bodies", {0, 0}},
+          {"body_names", {"block"}}};
+}
+
+class Report : public testing::Test {
+ protected:
+  Report() {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    directory_ = std::filesystem::path("report_test") / test->name();
+    std::filesystem::remove_all(directory_);
+    std::filesystem::create_directories(directory_);
+  }
+  ~Report() override { std::filesystem::remove_all(directory_); }
+
+  void record(const json& study, const std::vector<json>& cells, const json& picture = nullptr) {
+    std::ofstream(directory_ / "study.json") << study.dump();
+    if (!picture.is_null()) std::ofstream(directory_ / "picture.json") << picture.dump();
+    std::ofstream results(directory_ / "results.jsonl");
+    for (const auto& line : cells) results << line.dump() << '\n';
+  }
+  std::string page() {
+    write_report(directory_);
+    std::ifstream in(directory_ / "report.html");
+    std::stringstream text;
+    text << in.rdbuf();
+    return text.str();
+  }
+  report::Study study() { return report::read_study(directory_); }
+
+  std::filesystem::path directory_;
+};
+
+// --- reading the page ----------------------------------------------------------------------------------------------
+
+struct Element {
+  std::string name, attributes;
+};
+
+/// Tags of a page in order, "/name" for an end tag; what stands inside script and style is skipped.
+std::vector<Element> tags_of(const std::string& page) {
+  std::vector<Element> tags;
+  for (std::size_t at = page.find('<'); at != std::string::npos; at = page.find('<', at)) {
+    const std::size_t close = page.find('>', at);
+    if (close == std::string::npos) break;
+    std::string tag = page.substr(at + 1, close - at - 1);
+    const std::size_t end = tag.find_first_of(" \n/", 1);
+    const std::string name = tag.substr(0, end);
+    const bool empty = !tag.empty() && tag.back() == '/';
+    tags.push_back({name, end == std::string::npos ? "" : tag.substr(end)});
+    if (empty) tags.push_back({"/" + name, ""});
+    at = close;
+    if (name == "script" || name == "style") at = page.find("</" + name, at);
+  }
+  return tags;
+}
+
+/// The data blocks of the charts, parsed. Throws where one is no JSON.
+std::vector<json> data_of(const std::string& page) {
+  std::vector<json> out;
+  const std::string open = "<script type=\"application/json\"";
+  for (std::size_t at = page.find(open); at != std::string::npos; at = page.find(open, at + 1)) {
+    const std::size_t from = page.find('>', at) + 1;
+    out.push_back(json::parse(page.substr(from, page.find("</script>", from) - from)));
+  }
+  return out;
+}
+
+std::string without_scripts(std::string page) {
+  for (std::size_t at = page.find("<script"); at != std::string::npos; at = page.find("<script", at))
+    page.erase(at, page.find("</script>", at) + std::string("</script>").size() - at);
+  return page;
+}
+
+std::string all_of(const std::vector<std::string>& sentences) {
+  std::string out;
+  for (const auto& sentence : sentences) out += sentence + "\n";
+  return out;
+}
+
+// --- the page ------------------------------------------------------------------------------------------------------
+
+TEST_F(Report, LoadsNothingFromANetwork) {
+  record(description(), three_methods(), picture());
+  const std::string html = page();
+  for (const auto& tag : tags_of(html)) {
+    EXPECT_THAT(tag.name, testing::AnyOf("!DOCTYPE", Not(testing::AnyOf("link", "img", "iframe", "object", "embed"))));
+    EXPECT_THAT(tag.attributes, AllOf(Not(HasSubstr("src=")), Not(HasSubstr("http://")), Not(HasSubstr("https://"))))
+        << tag.name;
+  }
+  EXPECT_THAT(html, HasSubstr("default-src 'none'"));  // the browser refuses what the page should not ask for
+  EXPECT_THAT(html.substr(0, html.find("</style>")), AllOf(Not(HasSubstr("@import")), Not(HasSubstr("url(http"))));
+}
+
+TEST_F(Report, ClosesEveryElementItOpensAndUsesEachIdOnce) {
+  record(description(), three_methods(), picture());
+  const std::set<std::string> void_elements = {"!DOCTYPE", "meta", "input", "br"};
+  std::vector<std::string> open;
+  std::set<std::string> ids;
+  for (const auto& tag : tags_of(page())) {
+    if (void_elements.count(tag.name)) continue;
+    if (const std::size_t at = tag.attributes.find(" id=\""); at != std::string::npos) {
+      const std::string id = tag.attributes.substr(at + 5, tag.attributes.find('"', at + 5) - at - 5);
+      EXPECT_TRUE(ids.insert(id).second) << id;
+    }
+    if (tag.name.front() != '/') {
+      open.push_back(tag.name);
+      continue;
+    }
+    ASSERT_FALSE(open.empty()) << tag.name;
+    ASSERT_EQ("/" + open.back(), tag.name);
+    open.pop_back();
+  }
+  EXPECT_TRUE(open.empty());
+}
+
+TEST_F(Report, CarriesEachChartsRowsUnderOneListOfFields) {
+  record(description(), three_methods(), picture());
+  const auto charts = data_of(page());
+  EXPECT_GE(charts.size(), 6u);  // two costs of accuracy, one closed form, a knob, tractions, histories at least
+  for (const auto& chart : charts) {
+    EXPECT_FALSE(chart["rows"].empty());
+    EXPECT_FALSE(chart["panels"].empty());
+    for (const auto& row : chart["rows"]) EXPECT_EQ(row.size(), chart["fields"].size());
+  }
+}
+
+TEST_F(Report, EscapesHostileNames) {
+  record(description(), three_methods(), picture());
+  const auto count_scripts = [](const std::string& html) {
+    std::size_t n = 0;
+    for (const auto& tag : tags_of(html)) n += tag.name == "script";
+    return n;
+  };
+  const std::size_t ordinary = count_scripts(page());
+
+  const std::string hostile = "</script><!--<script>\"'<img src=x onerror=alert(1)>&amp;{{css}}$ink";
+  json study = description();
+  for (const char* key : {"title", "command", "scene_title", "explain"}) study[key] = hostile;
+  auto cells = three_methods();
+  for (auto& c : cells) {
+    c["label"] = c["label"].get<std::string>() + " " + hostile;
+    c["message"] = c["provenance"]["cpu"] = hostile;
+    c["interface"] = {{hostile, c["interface"]["sole"]}};
+    c["errors"]["enforcement"]["response:" + hostile] = 1e-3;
+    c["responses"][hostile] = 1;
+  }
+  cells.back()["status"] = hostile;
+  json drawn = picture();
+  drawn["contact"][0]["name"] = drawn["contact"][0]["state"] = hostile;
+  record(study, cells, drawn);
+  const std::string html = page();
+
+  EXPECT_EQ(count_scripts(html), ordinary);
+  for (const auto& tag : tags_of(html)) EXPECT_NE(tag.name, "img");
+  EXPECT_THAT(without_scripts(html), HasSubstr("&lt;img src=x onerror=alert(1)&gt;&amp;amp;{{css}}$ink"));
+  bool found = false;  // and the charts still know the name as it was
+  for (const auto& chart : data_of(html))
+    for (const auto& series : chart["series"])
+      found = found || series["name"].get<std::string>().find(hostile) != std::string::npos;
+  EXPECT_TRUE(found);
+}
+
+TEST_F(Report, KeepsFailedRunsAsRowsWithTheirStatus) {
+  auto cells = three_methods();
+  cells[3]["status"] = "not_finite";
+  cells[3]["message"] = "step 2 of 10";
+  cells[3]["errors"] = json::object();
+  cells[4]["status"] = "cap";
+  record(description(), cells, picture());
+  const std::string html = without_scripts(page());
+  EXPECT_THAT(html, HasSubstr("<tr class=\"failed\"><td>penalty stiffness=1000000000.0</td><td>not_finite</td>"));
+  EXPECT_THAT(html, HasSubstr("step 2 of 10"));
+  EXPECT_THAT(html, HasSubstr("2 of 7 runs did not converge (1 cap, 1 not_finite)"));
+
+  const auto figure = report::work_precision(study(), Against::same_mesh, Of::responses);
+  int crosses = 0;
+  for (const auto& row : figure->rows) crosses += row["failed"].get<bool>();
+  EXPECT_EQ(crosses, 1);  // the one that left numbers
+}
+
+TEST_F(Report, WritesAPageWithoutResults) {
+  record(description(), {});
+  EXPECT_THAT(page(), AllOf(HasSubstr("The study has no results yet."), HasSubstr("stickslip study a.json -o out")));
+}
+
+TEST_F(Report, WritesAPageWhereEveryRunFailed) {
+  auto cells = three_methods();
+  for (auto& c : cells) {
+    c["status"] = "singular";
+    c["errors"] = json::object();
+    c.erase("interface");
+    c["steps"] = json::array();
+  }
+  record(description(), cells);
+  EXPECT_THAT(page(), HasSubstr("7 of 7 runs did not converge (7 singular)"));
+}
+
+TEST_F(Report, WritesAPageFromRecordsThatHoldNothingButAMethod) {
+  record(nullptr, {{{"method", {{"penalty", json::object()}}}}, {{"label", "uzawa_al"}, {"status", "converged"}}});
+  EXPECT_THAT(page(), AllOf(HasSubstr("no status"), HasSubstr("Uzawa AL"), HasSubstr("Frictional contact study")));
+}
+
+TEST_F(Report, CountsLinesThatAreNoRecords) {
+  record(description(), three_methods());
+  std::ofstream(directory_ / "results.jsonl", std::ios::app) << "{\"id\": \"torn\n[1]\n\n";
+  EXPECT_THAT(page(), HasSubstr("2 line(s) of results.jsonl could not be read"));
+}
+
+TEST_F(Report, TakesTheLastRecordOfAnId) {
+  auto cells = three_methods();
+  cells.push_back(cells[0]);
+  cells.back()["status"] = "cap";
+  record(description(), cells);
+  ASSERT_EQ(study().cells.size(), 7u);
+  EXPECT_EQ(study().cells[0].status, "cap");
+}
+
+TEST_F(Report, SaysWhichFileIsMissingOrBroken) {
+  const auto message = [&] {
+    try {
+      write_report(directory_);
+    } catch (const std::runtime_error& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(message(), HasSubstr("results.jsonl"));
+  record(description(), three_methods());
+  const std::string before = page();
+  std::ofstream(directory_ / "study.json") << "{";
+  EXPECT_THAT(message(), HasSubstr("study.json"));
+  std::ifstream in(directory_ / "report.html");
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), before);  // the former report stands
+}
+
+TEST_F(Report, WarnsWhereRunsComeFromUnlikeMachines) {
+  auto cells = three_methods();
+  record(description(), cells);
+  EXPECT_THAT(page(), Not(HasSubstr("different builds or machines")));
+  cells[1]["provenance"]["cpu"] = "another processor";
+  record(description(), cells);
+  EXPECT_THAT(page(), HasSubstr("2 different builds or machines"));
+}
+
+// --- the numbers ---------------------------------------------------------------------------------------------------
+
+TEST_F(Report, WeighsBackSolvesByTheirMeasuredCost) {
+  record(description(), three_methods());
+  const auto s = study();
+  // 14 factorisations and 28 back-solves at a tenth each: exact but for the rounding of these few sums.
+  EXPECT_NEAR(s.ratio.at(0), 0.1, 1e-14);
+  EXPECT_NEAR(s.cells[0].work, 14 + 2.8, 1e-12);
+  EXPECT_NEAR(s.cells[0].sensitivity_work, 14 + 2.9, 1e-12);
+  EXPECT_NEAR(s.cells[0].seconds, 28 - 0.1, 1e-12);
+}
+
+TEST_F(Report, HeadlineNamesTheCheapestRunOfEachMethodThatIsAccurateEnough) {
+  record(description(), three_methods());
+  const std::string text = all_of(report::headline(study()));
+  EXPECT_THAT(text, HasSubstr("To bring every response within 1e-6"));
+  EXPECT_THAT(text, HasSubstr("Monolithic AL needs least: 10 factorisations and 20 back-solves"));
+  // Works of 12, 16.8 and 48; the Uzawa run of 24 is not accurate enough.
+  EXPECT_THAT(text,
+              HasSubstr("Penalty (stiffness=10000000.0) needs 14 factorisations and 28 back-solves (28 s), 1.4 times"));
+  EXPECT_THAT(text, HasSubstr("Uzawa AL (tolerance=1e-08) needs 40 factorisations and 80 back-solves (80 s), 4 times"));
+  EXPECT_THAT(text, HasSubstr("Penalty's error falls as stiffness to the power -1 down to 1e-9 at stiffness 1e9."));
+}
+
+TEST_F(Report, HeadlineSaysWhichMethodDoesNotReachTheAccuracy) {
+  auto cells = three_methods();
+  cells.erase(cells.begin() + 2, cells.begin() + 4);
+  record(description(), cells);
+  EXPECT_THAT(all_of(report::headline(study())), HasSubstr("Penalty did not get there: its best was 1e-5"));
+}
+
+TEST_F(Report, HeadlineTakesTheStrictestDecadeThatWasReached) {
+  record(description(), {cell("penalty", {{"stiffness", 10}}, 3e-3, 5), cell("uzawa_al", json::object(), 0.2, 5)});
+  EXPECT_THAT(all_of(report::headline(study())), HasSubstr("within 0.01 of"));
+}
+
+TEST_F(Report, HeadlineSeesRoundingLiftThePenaltysError) {
+  auto cells = three_methods();
+  cells.push_back(cell("penalty", {{"stiffness", 1e12}}, 3e-4, 14));
+  record(description(), cells);
+  EXPECT_THAT(all_of(report::headline(study())), HasSubstr("and rises again beyond it, to 0.0003 at 1e12"));
+}
+
+TEST_F(Report, DrawsErrorsOfExactlyZeroBelowAllOthersAndNamesThem) {
+  record(description(), three_methods());
+  const auto figure = report::work_precision(study(), Against::same_mesh, Of::responses);
+  ASSERT_TRUE(figure);
+  double least = 1;
+  for (const auto& row : figure->rows)
+    if (!row["zero"].get<bool>()) least = std::min(least, row["shown"].get<double>());
+  int zeros = 0;
+  for (const auto& row : figure->rows)
+    if (row["zero"].get<bool>()) {
+      ++zeros;
+      EXPECT_EQ(row["error"], 0);
+      EXPECT_GT(row["shown"], 0);
+      EXPECT_LT(row["shown"], least);
+    }
+  EXPECT_EQ(zeros, 1);
+  EXPECT_THAT(page(), HasSubstr("exactly 0"));
+}
+
+TEST_F(Report, JoinsOneCurveAMethodAlongItsSweptKnob) {
+  record(description(), three_methods());
+  const auto s = study();
+  EXPECT_EQ(report::running_knob(s, "penalty"), "stiffness");
+  EXPECT_EQ(report::running_knob(s, "uzawa_al"), "tolerance");
+  EXPECT_EQ(report::running_knob(s, "monolithic_al"), "");
+  const auto figure = report::work_precision(s, Against::same_mesh, Of::responses);
+  std::vector<std::string> names;
+  for (const auto& series : figure->series) names.push_back(series.name);
+  EXPECT_THAT(names, testing::ElementsAre("Penalty, along stiffness", "Uzawa AL, along tolerance", "Monolithic AL"));
+  std::set<std::string> colors, shapes;
+  for (const auto& series : figure->series) {
+    colors.insert(series.color);
+    shapes.insert(series.shape);
+  }
+  EXPECT_EQ(colors.size(), 3u);
+  EXPECT_EQ(shapes.size(), 3u);  // apart in grey too
+}
+
+TEST_F(Report, KeepsOtherKnobsApartAsCurvesOfTheirOwn) {
+  std::vector<json> cells;
+  for (const double scale : {1, 10})
+    for (const double tolerance : {1e-4, 1e-8})
+      cells.push_back(cell("uzawa_al", {{"scale", scale}, {"tolerance", tolerance}}, tolerance, 10));
+  record(description(), cells);
+  const auto figure = report::work_precision(study(), Against::same_mesh, Of::responses);
+  ASSERT_EQ(figure->series.size(), 2u);
+  EXPECT_EQ(figure->series[0].name, "Uzawa AL scale=1.0, along tolerance");
+  EXPECT_EQ(figure->series[0].color, figure->series[1].color);
+  EXPECT_NE(figure->series[0].shape, figure->series[1].shape);
+}
+
+TEST_F(Report, DrawsMethodsWithoutTheKnobAsLevelLines) {
+  record(description(), three_methods());
+  const auto figure = report::error_against_knob(study(), {"stiffness"});
+  ASSERT_TRUE(figure);
+  std::set<double> ends;
+  for (const auto& row : figure->rows)
+    if (row.value("family", "") == "monolithic_al") ends.insert(row["knob"].get<double>());
+  EXPECT_THAT(ends, testing::ElementsAre(1e3, 1e9));
+}
+
+TEST_F(Report, DrawsAGuideOfSlopeMinusOneBesideThePenalty) {
+  record(description(), three_methods());
+  const auto figure = report::error_against_knob(study(), {"stiffness"});
+  std::vector<std::pair<double, double>> guide;
+  for (const auto& row : figure->rows)
+    if (row.value("guide", false) && row["panel"] == "responses") guide.emplace_back(row["knob"], row["error"]);
+  ASSERT_EQ(guide.size(), 2u);
+  // Error times stiffness is constant along it; both are products of few factors, so a few roundings apart at most.
+  EXPECT_NEAR(guide[0].first * guide[0].second / (guide[1].first * guide[1].second), 1, 1e-14);
+}
+
+TEST_F(Report, TreatsAnAbsoluteStiffnessAsAKnobOfItsOwn) {
+  record(description(), {cell("penalty", {{"stiffness", {{"absolute", 1e3}}}}, 1e-3, 5),
+                         cell("penalty", {{"stiffness", {{"absolute", 1e4}}}}, 1e-4, 5),
+                         cell("penalty", {{"stiffness", "auto"}}, 1e-2, 5)});
+  const auto s = study();
+  EXPECT_THAT(report::knob_names(s), testing::ElementsAre("stiffness (absolute)"));
+  EXPECT_EQ(report::series_of(s.cells[0], "stiffness (absolute)"), "Penalty");
+  EXPECT_TRUE(report::error_against_knob(s, {"stiffness (absolute)"}));
+}
+
+TEST_F(Report, ShowsFirstTheSceneWhereMostRunsConverged) {
+  auto cells = three_methods();
+  for (auto& c : cells) c["vary"] = {{"/contacts/sole/friction", 0.1}};
+  auto more = three_methods();
+  for (auto& c : more) c["vary"] = {{"/contacts/sole/friction", 0.3}};
+  more[0]["status"] = "cycle";
+  cells.insert(cells.end(), more.begin(), more.end());
+  record(description(), cells);
+  EXPECT_EQ(study().main_variant, "/contacts/sole/friction = 0.1");
+  EXPECT_THAT(page(), HasSubstr("Which setting works where"));
+}
+
+TEST_F(Report, JoinsMeshLevelsWhereThereAreSeveral) {
+  auto cells = three_methods();
+  record(description(), cells);
+  EXPECT_FALSE(report::mesh_convergence(study()));
+  auto finer = three_methods();
+  for (auto& c : finer) c["refine"] = 1;
+  cells.insert(cells.end(), finer.begin(), finer.end());
+  record(description(), cells);
+  const auto figure = report::mesh_convergence(study());
+  ASSERT_TRUE(figure);
+  std::map<std::string, std::set<double>> levels;
+  for (const auto& row : figure->rows) levels[row["line"]].insert(row["level"].get<double>());
+  EXPECT_EQ(levels.size(), 7u);
+  for (const auto& [line, found] : levels) EXPECT_EQ(found.size(), 2u) << line;
+}
+
+TEST_F(Report, DrawsTractionsWithPressurePositiveAndTheClosedForm) {
+  json study_json = description();
+  study_json["analytic"] = {
+      {"name", "hertz_line"},
+      {"curves", {{"sole", {{"s", {0, 1, 2}}, {"normal", {0, -2, -1}}, {"tangential", {0, 0, 0}}}}}}};
+  record(study_json, three_methods());
+  const auto figure = report::tractions(study());
+  ASSERT_TRUE(figure);
+  EXPECT_EQ(figure->series.front().name, "closed form (hertz_line)");
+  for (const auto& row : figure->rows)
+    if (row["panel"] == "pressure") {
+      EXPECT_GE(row["error"], 0);
+    }
+  double largest = 0;  // distance of the softest penalty, whose pressure at the middle is off by 1e-3 of 2
+  for (const auto& row : figure->rows)
+    if (row["panel"] == "difference") largest = std::max(largest, row["error"].get<double>());
+  EXPECT_NEAR(largest, 0.5e-3, 1e-9);  // rows carry six digits
+}
+
+TEST_F(Report, ShowsTheHistoryOfTheHardestStep) {
+  auto cells = three_methods();
+  json steps = json::array();
+  for (const int length : {2, 5, 3}) {
+    json step = {{"time", length}, {"history", json::array()}};
+    for (int i = 0; i < length; ++i) step["history"].push_back({{"residual", std::pow(10.0, -i)}});
+    steps.push_back(step);
+  }
+  cells[0]["steps"] = steps;
+  cells[1]["steps"] = steps;
+  cells[1]["status"] = "cap";  // of a failed run, the last
+  record(description(), cells);
+  const auto figure = report::convergence_histories(study());
+  std::map<std::string, int> iterations;
+  for (const auto& row : figure->rows) ++iterations[row["label"]];
+  EXPECT_EQ(iterations.at(cells[0]["label"]), 5);
+  EXPECT_EQ(iterations.at(cells[1]["label"]), 3);
+}
+
+// --- the picture ---------------------------------------------------------------------------------------------------
+
+TEST(ReportPicture, DrawsBodiesObstaclesAndContactStates) {
+  const std::string svg = report::draw_picture(picture());
+  EXPECT_THAT(svg, AllOf(HasSubstr("role=\"img\""), HasSubstr("<title id="), HasSubstr("<desc id="),
+                         HasSubstr("class=\"obstacle\""), HasSubstr("sole: stick"), HasSubstr("sole: slip"),
+                         HasSubstr("true scale"), Not(HasSubstr("nan")), Not(HasSubstr("inf "))));
+}
+
+TEST(ReportPicture, StatesByHowMuchSmallDisplacementsAreEnlarged) {
+  json small = picture();
+  for (auto& u : small["displacement"]) u[1] = u[1].get<double>() * 1e-3;
+  // 1e-4 of a width of 2: 3 % of the width is 600 times that, 500 the round number below.
+  EXPECT_THAT(report::draw_picture(small), HasSubstr("displacements 500 times enlarged"));
+}
+
+TEST(ReportPicture, DrawsNothingWhereThereIsNoPlaneMesh) {
+  EXPECT_EQ(report::draw_picture(nullptr), "");
+  EXPECT_EQ(report::draw_picture({{"points", {{0, 0}}}, {"elements", json::array()}}), "");
+  EXPECT_EQ(report::draw_picture({{"points", {{0, 0, 0}, {1, 0, 0}}}, {"elements", {{0, 1}}}}), "");
+}
+
+TEST(ReportPicture, LeavesOutElementsThatNameNoNode) {
+  json broken = picture();
+  broken["elements"].push_back({0, 1, 99});
+  EXPECT_THAT(report::draw_picture(broken), HasSubstr("2 elements"));
+}
+
+}  // namespace
+}  // namespace stickslip

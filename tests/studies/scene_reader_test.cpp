@@ -1,0 +1,752 @@
+#include "studies/scene_reader.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "core/mesh/generators.hpp"
+#include "studies/method_options.hpp"
+
+namespace stickslip {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr const char* block_scene = R"({
+  "title": "block pushed over a floor",
+  "space": "plane_strain",
+  "bodies": {
+    "block": {
+      "mesh": {"box": {"min": [0, 0], "max": [4, 2], "cells": [4, 2]}},
+      "material": {"linear_elastic": {"E": 1000, "nu": 0.25}},
+      "element": "Q4"
+    }
+  },
+  "obstacles": {"floor": {"plane": {"point": [0, -1], "normal": [0, 2]}}},
+  "contacts": {"sole": {"slave": "block.bottom", "master": "floor", "friction": 0.3}},
+  "supports": [{"on": "block.left", "move": {"x": [[0, 0], [1, 0.2]]}}],
+  "loads": [{"on": "block.top", "traction": [0, -5], "history": [[0, 0], [1, 1]]}],
+  "time": {"end": 2, "steps": 10},
+  "responses": {
+    "pull": {"reaction": {"on": "block.left", "component": "x"}},
+    "press": {"contact_force": {"contact": "sole", "component": "normal"}},
+    "tip": {"displacement": {"on": "block.right", "component": "y", "take": "max"}}
+  },
+  "parameters": {"mu": "/contacts/sole/friction"},
+  "method": {"monolithic_al": {"scale": 2}}
+})";
+
+constexpr const char* lumped_scene = R"({
+  "bodies": {
+    "mass": {
+      "mesh": {"point": {"at": [0, 0]}},
+      "material": {"grounded_spring": {"stiffness": [[3, 1], [1, 2]]}}
+    },
+    "belt": {
+      "mesh": {"arc": {"center": [0, 0], "radius": 1, "from_angle": 0, "to_angle": 90, "cells": 4}},
+      "material": {"linear_elastic": {"E": 10, "nu": 0}},
+      "area": 0.5
+    },
+    "rod": {
+      "mesh": {"line": {"from": [2, 0], "to": [3, 0], "cells": 3}},
+      "material": {"linear_elastic": {"E": 10, "nu": 0}}
+    }
+  },
+  "obstacles": {"drum": {"circle": {"center": [0, 0], "radius": 0.5}, "move": {"y": -0.1}}},
+  "contacts": {"wrap": {"slave": "belt.interior", "master": "drum"}},
+  "supports": [{"on": "mass.anchor", "move": {"x": 0, "y": [[0, 1], [2, 3]]}}],
+  "loads": [{"on": "mass.node", "force": [1, 0]}],
+  "time": {"legs": [[1, 2], [3, 5]]},
+  "method": {"penalty": {"stiffness": {"absolute": 50}}},
+  "output": {"fields": "all"}
+})";
+
+std::optional<Input> read_text(const std::string& text, Diagnostics& diagnostics,
+                               const std::optional<std::string>& method = std::nullopt) {
+  const auto document = JsonDocument::parse(text, STICKSLIP_SOURCE_DIR "/tests/studies/scene.json", diagnostics);
+  if (!document) return std::nullopt;
+  MeshFiles mesh_files;
+  return read_scene(*document, method, diagnostics, mesh_files);
+}
+
+Input valid(const std::string& text, const std::optional<std::string>& method = std::nullopt) {
+  Diagnostics diagnostics;
+  auto input = read_text(text, diagnostics, method);
+  EXPECT_EQ(diagnostics.text(), "");
+  return input.value();
+}
+
+std::string edited(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  EXPECT_EQ(text.find(from, at + 1), std::string::npos) << from << " is not unique";
+  return text.replace(at, from.size(), to);
+}
+
+/// Value of the slot that the pointer names.
+double slot_value(const Scene& scene, const std::string& pointer) {
+  const auto found = std::find(scene.pointers.begin(), scene.pointers.end(), pointer);
+  EXPECT_NE(found, scene.pointers.end()) << pointer;
+  return scene.numbers.at(found - scene.pointers.begin());
+}
+
+TEST(SceneReader, ReadsABlockOnAFloor) {
+  const Input input = valid(block_scene);
+  const Scene& scene = input.scene;
+  EXPECT_EQ(scene.title, "block pushed over a floor");
+  EXPECT_EQ(scene.space, Space::plane_strain);
+  ASSERT_EQ(scene.bodies.size(), 1u);
+  const auto& box = std::get<BoxMesh>(scene.bodies[0].mesh);
+  EXPECT_EQ(box.max[0].value, 4);
+  EXPECT_EQ(box.max[1].value, 2);
+  EXPECT_EQ(box.cells, (std::array{4, 2}));
+  EXPECT_EQ(scene.bodies[0].element, "Q4");
+  EXPECT_EQ(std::get<LinearElastic>(scene.bodies[0].material).nu.value, 0.25);
+  const auto& plane = std::get<Plane>(scene.obstacles.at(0).shape);
+  EXPECT_EQ(plane.point[1].value, -1);
+  EXPECT_EQ(plane.normal[1].value, 2);
+  EXPECT_EQ(scene.contacts.at(0).slave, "block.bottom");
+  EXPECT_EQ(scene.contacts[0].master, "floor");
+  EXPECT_EQ(scene.contacts[0].friction->value, 0.3);
+  EXPECT_EQ(scene.contacts[0].offset.value, 0);
+  EXPECT_EQ(scene.supports.at(0).on, "block.left");
+  const Table& move = scene.supports[0].move.at('x');
+  ASSERT_EQ(move.points.size(), 2u);
+  EXPECT_EQ(move.points[1].first, 1);
+  EXPECT_EQ(move.points[1].second.value, 0.2);
+  EXPECT_EQ(scene.loads.at(0).kind, Load::Kind::traction);
+  EXPECT_EQ(scene.loads[0].vector.at(1).value, -5);
+  EXPECT_EQ(scene.loads[0].history->points.size(), 2u);
+  ASSERT_EQ(scene.legs.size(), 1u);
+  EXPECT_EQ(scene.legs[0].end, 2);
+  EXPECT_EQ(scene.legs[0].steps, 10);
+  ASSERT_EQ(scene.responses.size(), 3u);  // by name: press, pull, tip
+  EXPECT_EQ(scene.responses[0].kind, Response::Kind::contact_force);
+  EXPECT_EQ(scene.responses[0].on, "sole");
+  EXPECT_EQ(scene.responses[0].component, "normal");
+  EXPECT_EQ(scene.responses[1].kind, Response::Kind::reaction);
+  EXPECT_EQ(scene.responses[2].take, Response::Take::max);
+  EXPECT_EQ(scene.responses[2].component, "y");
+  const auto& method = std::get<MonolithicAL>(input.method);
+  EXPECT_EQ(method.scale.kind, Regularisation::Kind::relative);
+  EXPECT_EQ(method.scale.value.value, 2);
+  EXPECT_EQ(input.output.fields, OutputOptions::Fields::last);
+}
+
+TEST(SceneReader, ReadsLumpedBodies) {
+  const Input input = valid(lumped_scene);
+  const Scene& scene = input.scene;
+  ASSERT_EQ(scene.bodies.size(), 3u);  // by name: belt, mass, rod
+  const auto& arc = std::get<ArcMesh>(scene.bodies[0].mesh);
+  EXPECT_EQ(arc.to_angle.value, 90);
+  EXPECT_EQ(arc.cells, 4);
+  EXPECT_EQ(scene.bodies[0].area.value, 0.5);
+  EXPECT_EQ(std::get<GroundedSpring>(scene.bodies[1].material).stiffness[0][1].value, 1);
+  EXPECT_EQ(std::get<LineMesh>(scene.bodies[2].mesh).to[0].value, 3);
+  EXPECT_EQ(std::get<Circle>(scene.obstacles.at(0).shape).radius.value, 0.5);
+  EXPECT_EQ(scene.obstacles[0].move.at('y').points[0].second.value, -0.1);
+  EXPECT_FALSE(scene.contacts.at(0).friction.has_value());
+  EXPECT_EQ(scene.loads.at(0).kind, Load::Kind::force);
+  EXPECT_FALSE(scene.loads[0].history.has_value());
+  ASSERT_EQ(scene.legs.size(), 2u);
+  EXPECT_EQ(scene.legs[1].end, 3);
+  EXPECT_EQ(scene.legs[1].steps, 5);
+  EXPECT_EQ(std::get<Penalty>(input.method).stiffness.kind, Regularisation::Kind::absolute);
+  EXPECT_EQ(std::get<Penalty>(input.method).stiffness.value.value, 50);
+  EXPECT_EQ(input.output.fields, OutputOptions::Fields::all);
+}
+
+TEST(SceneReader, GivesEveryPhysicalNumberASlotNamedByItsPointer) {
+  const Scene block = valid(block_scene).scene, lumped = valid(lumped_scene).scene;
+  ASSERT_EQ(block.numbers.size(), block.pointers.size());
+  for (const auto& [pointer, value] :
+       std::vector<std::pair<std::string, double>>{{"/bodies/block/mesh/box/max/0", 4},
+                                                   {"/bodies/block/material/linear_elastic/E", 1000},
+                                                   {"/obstacles/floor/plane/point/1", -1},
+                                                   {"/contacts/sole/friction", 0.3},
+                                                   {"/contacts/sole/offset", 0},
+                                                   {"/supports/0/move/x/1/1", 0.2},
+                                                   {"/loads/0/traction/1", -5},
+                                                   {"/loads/0/history/1/1", 1},
+                                                   {"/method/monolithic_al/scale", 2}})
+    EXPECT_EQ(slot_value(block, pointer), value) << pointer;
+  for (const auto& [pointer, value] :
+       std::vector<std::pair<std::string, double>>{{"/bodies/mass/material/grounded_spring/stiffness/1/1", 2},
+                                                   {"/bodies/belt/mesh/arc/to_angle", 90},
+                                                   {"/bodies/belt/area", 0.5},
+                                                   {"/bodies/rod/area", 1},
+                                                   {"/obstacles/drum/move/y", -0.1},
+                                                   {"/supports/0/move/y/1/1", 3},
+                                                   {"/method/penalty/stiffness/absolute", 50},
+                                                   {"/method/penalty/tangential_ratio", 1}})
+    EXPECT_EQ(slot_value(lumped, pointer), value) << pointer;
+  const auto& nu = std::get<LinearElastic>(block.bodies[0].material).nu;
+  EXPECT_EQ(block.pointers.at(nu.slot), "/bodies/block/material/linear_elastic/nu");
+}
+
+TEST(SceneReader, TurnsPointersIntoWeightedSlots) {
+  const Scene scene = valid(edited(block_scene, R"("mu": "/contacts/sole/friction")",
+                                   R"("mu": "/contacts/sole/friction", "gap": "/contacts/sole/offset",
+                      "push": {"/supports/0/move/x/1/1": 2, "/loads/0/traction/1": -1},
+                      "scale": "/method/monolithic_al/scale")"))
+                          .scene;
+  ASSERT_EQ(scene.parameters.size(), 4u);  // by name: gap, mu, push, scale
+  EXPECT_EQ(scene.pointers[scene.parameters[0].slots.at(0).first], "/contacts/sole/offset");
+  EXPECT_EQ(scene.parameters[1].value, 0.3);
+  EXPECT_EQ(scene.parameters[1].pointer, "/contacts/sole/friction");
+  const Parameter& push = scene.parameters[2];
+  ASSERT_EQ(push.slots.size(), 2u);
+  EXPECT_EQ(scene.pointers[push.slots[0].first], "/loads/0/traction/1");
+  EXPECT_EQ(push.slots[0].second, -1);
+  EXPECT_EQ(push.slots[1].second, 2);
+  EXPECT_EQ(push.value, -5);
+}
+
+TEST(SceneReader, ReadsEveryOptionOfEveryMethod) {
+  auto method = [&](const std::string& text) {
+    return valid(edited(block_scene, R"({"monolithic_al": {"scale": 2}})", text)).method;
+  };
+  const auto penalty = std::get<Penalty>(method(R"({"penalty": {"stiffness": 1e4, "tangential_ratio": 0.5,
+      "newton": {"tolerance": 1e-9, "max_iterations": 7, "line_search": false}}})"));
+  EXPECT_EQ(penalty.stiffness.kind, Regularisation::Kind::relative);
+  EXPECT_EQ(penalty.stiffness.value.value, 1e4);
+  EXPECT_EQ(penalty.tangential_ratio.value, 0.5);
+  EXPECT_EQ(penalty.newton.tolerance, 1e-9);
+  EXPECT_EQ(penalty.newton.max_iterations, 7);
+  EXPECT_FALSE(penalty.newton.line_search);
+  const auto uzawa = std::get<UzawaAL>(method(R"({"uzawa_al": {"scale": "auto", "tolerance": 1e-4,
+      "max_augmentations": 9, "adapt": false, "acceleration": "none", "cone": "augmented",
+      "sensitivity": "oversized", "oversize": 50}})"));
+  EXPECT_EQ(uzawa.scale.kind, Regularisation::Kind::automatic);
+  EXPECT_EQ(uzawa.tolerance, 1e-4);
+  EXPECT_EQ(uzawa.max_augmentations, 9);
+  EXPECT_FALSE(uzawa.adapt);
+  EXPECT_EQ(uzawa.sensitivity, UzawaAL::Sensitivity::oversized);
+  EXPECT_EQ(uzawa.oversize, 50);
+  const auto monolithic =
+      std::get<MonolithicAL>(method(R"({"monolithic_al": {"scale": {"absolute": 3}, "cone": "multiplier"}})"));
+  EXPECT_EQ(monolithic.scale.kind, Regularisation::Kind::absolute);
+  EXPECT_EQ(monolithic.scale.value.value, 3);
+  EXPECT_EQ(monolithic.cone, MonolithicAL::Cone::multiplier);
+}
+
+TEST(SceneReader, WritesTheOptionsOfAMethodSoThatTheyReadTheSame) {
+  for (const std::string text :
+       {R"({"penalty": {"stiffness": {"absolute": 2400.5}, "tangential_ratio": 0.3, "newton": {"max_iterations": 3}}})",
+        R"({"uzawa_al": {"scale": 0.1, "sensitivity": "truncated", "adapt": false, "tolerance": 1e-05}})",
+        R"({"monolithic_al": {"cone": "multiplier", "newton": {"line_search": false}}})"}) {
+    const auto written = to_json(valid(edited(block_scene, R"({"monolithic_al": {"scale": 2}})", text)).method);
+    const auto flat = written.flatten(), given = nlohmann::json::parse(text).flatten();
+    for (const auto& [pointer, value] : given.items())
+      EXPECT_EQ(flat.value(pointer, nlohmann::json()), value) << pointer;
+    const auto again = to_json(valid(edited(block_scene, R"({"monolithic_al": {"scale": 2}})", written.dump())).method);
+    EXPECT_EQ(again, written);
+  }
+}
+
+TEST(SceneReader, ReadsAnImportedMeshBesideTheSceneFile) {
+  const Input input =
+      valid(R"({"bodies": {"disk": {"mesh": {"gmsh": "../studies/../../studies/meshes/half_disk_coarse.msh",
+      "body": "disk"}, "material": {"linear_elastic": {"E": 1, "nu": 0}}}},
+      "supports": [{"on": "disk.flat", "move": {"x": 0, "y": 0}}], "time": {"end": 1, "steps": 1},
+      "method": {"penalty": {}}})");
+  const auto& mesh = std::get<ImportedMesh>(input.scene.bodies.at(0).mesh);
+  EXPECT_EQ(mesh.mesh.sides.count("arc"), 1u);
+  EXPECT_EQ(mesh.points.cols(), mesh.mesh.node_count);
+  EXPECT_EQ(input.mesh_fingerprints.at("../studies/../../studies/meshes/half_disk_coarse.msh").size(), 16u);
+}
+
+TEST(SceneReader, ReadsTheScenesThatAreShipped) {
+  int read = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(STICKSLIP_SOURCE_DIR "/studies/scenes")) {
+    const std::string name = entry.path().filename().string();
+    if (entry.path().extension() != ".json" || name.find(".study.") != std::string::npos) continue;
+    Diagnostics diagnostics;
+    EXPECT_TRUE(read_scene(entry.path().string(), {}, std::nullopt, diagnostics).has_value());
+    EXPECT_EQ(diagnostics.text(), "");
+    ++read;
+  }
+  EXPECT_GT(read, 0);
+}
+
+TEST(SceneReader, ReplacesTheMethodAndDropsWhatBelongsToTheOther) {
+  const auto text = edited(block_scene, R"("mu": "/contacts/sole/friction")",
+                           R"("mu": "/contacts/sole/friction", "s": "/method/monolithic_al/scale",
+                              "both": {"/contacts/sole/friction": 1, "/method/monolithic_al/scale": 2})");
+  Diagnostics diagnostics;
+  const Input input = read_text(text, diagnostics, "penalty").value();
+  EXPECT_FALSE(diagnostics.has_errors());
+  ASSERT_EQ(diagnostics.notes().size(), 2u);
+  EXPECT_EQ(diagnostics.notes()[1].pointer, "/parameters/s");
+  EXPECT_THAT(diagnostics.notes()[1].message, HasSubstr("is an option of monolithic_al, and penalty runs"));
+  EXPECT_EQ(std::get<Penalty>(input.method).stiffness.kind, Regularisation::Kind::automatic);
+  ASSERT_EQ(input.scene.parameters.size(), 2u);
+  EXPECT_EQ(input.scene.parameters[0].name, "both");
+  EXPECT_EQ(input.scene.parameters[0].slots.size(), 1u);
+  EXPECT_EQ(input.document["method"], nlohmann::json::parse(R"({"penalty": {}})"));
+  // what is left reads the same again, without a word on methods
+  EXPECT_EQ(canonical_text(valid(input.document.dump())), canonical_text(input));
+}
+
+TEST(SceneReader, KeepsTheOptionsOfTheMethodThatIsAskedFor) {
+  EXPECT_EQ(std::get<MonolithicAL>(valid(block_scene, "monolithic_al").method).scale.value.value, 2);
+}
+
+TEST(SceneReader, RefusesAMethodThatDoesNotExist) {
+  Diagnostics diagnostics;
+  EXPECT_FALSE(read_text(block_scene, diagnostics, "penaty").has_value());
+  EXPECT_EQ(diagnostics.text(),
+            "-m penaty: there is no method \"penaty\"; did you mean \"penalty\"? allowed: penalty, uzawa_al, "
+            "monolithic_al\n");
+}
+
+TEST(SceneReader, CarriesOutOverridesAndNamesThemInFaults) {
+  const auto path = std::filesystem::path(testing::TempDir()) / "overridden_scene.json";
+  std::ofstream(path) << block_scene;
+  Diagnostics diagnostics;
+  const auto input = read_scene(path.string(), {"/contacts/sole/friction=0.4", "/time/steps=3"}, {}, diagnostics);
+  ASSERT_TRUE(input.has_value()) << diagnostics.text();
+  EXPECT_EQ(input->scene.contacts[0].friction->value, 0.4);
+  EXPECT_EQ(input->scene.legs[0].steps, 3);
+  EXPECT_FALSE(read_scene(path.string(), {"/contacts/sole/friction=-0.4", "/time/stops=3"}, {}, diagnostics));
+  EXPECT_EQ(
+      diagnostics.text(),
+      "--set /time/stops=3: /time/stops names nothing: /time has no \"stops\"; did you mean \"steps\"? it has end, "
+      "steps\n"
+      "--set /contacts/sole/friction=-0.4: /contacts/sole/friction: is -0.4; must be a number >= 0\n");
+  std::filesystem::remove(path);
+}
+
+TEST(SceneReader, HashesWhatIsSimulatedAndNothingElse) {
+  auto hash = [](const std::string& text) { return fingerprint(canonical_text(valid(text))); };
+  const std::string original = hash(block_scene);
+  EXPECT_EQ(hash(edited(block_scene, "block pushed over a floor", "another title")), original);
+  EXPECT_EQ(hash(edited(block_scene, R"("scale": 2)", R"("scale": 2, "cone": "augmented")")), original);
+  EXPECT_NE(hash(edited(block_scene, R"("scale": 2)", R"("scale": 2.5)")), original);
+  EXPECT_NE(hash(edited(block_scene, R"("nu": 0.25)", R"("nu": 0.26)")), original);
+}
+
+TEST(SceneReader, ReportsAllFaultsOfAFileInItsOrder) {
+  auto text = edited(block_scene, R"("E": 1000, "nu": 0.25)", R"("E": -1, "nu": 0.5)");
+  text = edited(text, R"("steps": 10)", R"("steps": 0)");
+  text = edited(text, R"("friction": 0.3)", R"("frction": 0.3)");
+  Diagnostics diagnostics;
+  EXPECT_FALSE(read_text(text, diagnostics).has_value());
+  std::vector<std::string> pointers;
+  for (const auto& error : diagnostics.errors()) pointers.push_back(error.pointer);
+  EXPECT_THAT(pointers,
+              ElementsAre("/bodies/block/material/linear_elastic/E", "/bodies/block/material/linear_elastic/nu",
+                          "/contacts/sole/frction", "/time/steps", "/parameters/mu"));
+}
+
+TEST(SceneReader, MissesTheKeysThatEverySceneHas) {
+  Diagnostics diagnostics;
+  EXPECT_FALSE(read_text("// nothing\n{}", diagnostics).has_value());
+  ASSERT_EQ(diagnostics.error_count(), 3u) << diagnostics.text();
+  EXPECT_THAT(diagnostics.text(), HasSubstr("scene.json:2:1: the key \"bodies\" is missing; required: bodies, time"));
+  EXPECT_THAT(diagnostics.text(), HasSubstr("scene.json:2:1: the key \"time\" is missing"));
+  EXPECT_THAT(diagnostics.text(), HasSubstr("scene.json:2:1: the key \"method\" is missing; allowed: penalty"));
+}
+
+/// A scene with one edit: `from` becomes `to`, in which @ marks the place that the fault must name.
+struct Broken {
+  const char* name;
+  const char* scene;
+  std::string from, to;
+  std::string pointer, message;
+};
+void PrintTo(const Broken& broken, std::ostream* out) { *out << broken.to; }
+
+class BrokenScene : public testing::TestWithParam<Broken> {};
+
+TEST_P(BrokenScene, IsRefusedWithPlacePointerAndReason) {
+  const Broken& broken = GetParam();
+  std::string text = edited(broken.scene, broken.from, broken.to);
+  const auto mark = text.find('@');
+  ASSERT_NE(mark, std::string::npos);
+  text.erase(mark, 1);
+  const int line = 1 + static_cast<int>(std::count(text.begin(), text.begin() + mark, '\n'));
+  const int column = static_cast<int>(mark - (text.rfind('\n', mark - 1) + 1)) + 1;
+  Diagnostics diagnostics;
+  EXPECT_FALSE(read_text(text, diagnostics).has_value());
+  ASSERT_EQ(diagnostics.error_count(), 1u) << diagnostics.text();
+  const Diagnostic fault = diagnostics.errors()[0];
+  EXPECT_EQ(fault.place.line, line) << fault.text();
+  EXPECT_EQ(fault.place.column, column) << fault.text();
+  EXPECT_EQ(fault.pointer, broken.pointer);
+  EXPECT_THAT(fault.message, HasSubstr(broken.message));
+}
+
+const char* const box = R"({"box": {"min": [0, 0], "max": [4, 2], "cells": [4, 2]}})";
+const char* const floor_plane = R"({"plane": {"point": [0, -1], "normal": [0, 2]}})";
+const char* const sole = R"("sole": {"slave": "block.bottom", "master": "floor", "friction": 0.3})";
+const char* const support = R"({"on": "block.left", "move": {"x": [[0, 0], [1, 0.2]]}})";
+const char* const load = R"({"on": "block.top", "traction": [0, -5], "history": [[0, 0], [1, 1]]})";
+const char* const times = R"({"end": 2, "steps": 10})";
+const char* const pull = R"({"reaction": {"on": "block.left", "component": "x"}})";
+const char* const tip = R"({"displacement": {"on": "block.right", "component": "y", "take": "max"}})";
+const char* const mu = R"("mu": "/contacts/sole/friction")";
+const char* const method = R"({"monolithic_al": {"scale": 2}})";
+const char* const spring = "[[3, 1], [1, 2]]";
+
+std::vector<Broken> broken_bodies() {
+  const char* b = block_scene;
+  return {
+      {"unknown_top_key", b, R"("title")", R"(@"titel")", "/titel", R"(did you mean "title"?)"},
+      {"objectives", b, R"("title": "block pushed over a floor")", R"(@"objectives": {})", "/objectives",
+       "is not available in this version"},
+      {"title_number", b, R"("block pushed over a floor")", "@7", "/title", "is 7; must be a text"},
+      {"unknown_space", b, R"("plane_strain")", R"(@"plane_strin")", "/space", R"(did you mean "plane_strain"?)"},
+      {"axisymmetric", b, R"("plane_strain")", R"(@"axisymmetric")", "/space",
+       "is not available in this version; allowed: plane_strain"},
+      {"finite_strain", b, R"("space": "plane_strain")", R"("strain": @"finite")", "/strain",
+       "is not available in this version; allowed: small"},
+      {"bodies_list", b, R"("element": "Q4")", R"("element": @4)", "/bodies/block/element",
+       "must be one of T3, Q4, bar, point"},
+      {"bar_in_a_box", b, R"("element": "Q4")", R"("element": @"bar")", "/bodies/block/element",
+       "a box has elements T3 or Q4, not bar"},
+      {"area_of_a_box", b, R"("element": "Q4")", R"(@"area": 2)", "/bodies/block/area", "only bars"},
+      {"thickness", b, R"("element": "Q4")", R"(@"thickness": 2)", "/bodies/block/thickness",
+       "is not available in this version"},
+      {"negative_E", b, R"("E": 1000)", R"("E": @-1000)", "/bodies/block/material/linear_elastic/E",
+       "is -1000; must be a number > 0"},
+      {"nu_too_large", b, R"("nu": 0.25)", R"("nu": @0.5)", "/bodies/block/material/linear_elastic/nu",
+       "is 0.5; must be a number > -1 and < 0.5"},
+      {"nu_text", b, R"("nu": 0.25)", R"("nu": @"0.25")", "/bodies/block/material/linear_elastic/nu",
+       R"(is "0.25"; must be a number)"},
+      {"nu_missing", b, R"({"E": 1000, "nu": 0.25})", R"(@{"E": 1000})", "/bodies/block/material/linear_elastic",
+       R"("nu" is missing)"},
+      {"neo_hookean", b, R"("linear_elastic")", R"(@"neo_hookean")", "/bodies/block/material/neo_hookean",
+       "is not available in this version; allowed: linear_elastic, grounded_spring"},
+      {"unknown_material", b, R"("linear_elastic")", R"(@"linear_elastc")", "/bodies/block/material/linear_elastc",
+       R"(did you mean "linear_elastic"?)"},
+      {"spring_in_a_box", b, R"({"linear_elastic": {"E": 1000, "nu": 0.25}})",
+       R"({@"grounded_spring": {"stiffness": [[1, 0], [0, 1]]}})", "/bodies/block/material/grounded_spring",
+       "does not go with this mesh"},
+      {"two_meshes", b, R"({"box": {)", R"({@"point": {"at": [0, 0]}, "box": {)", "/bodies/block/mesh/point",
+       "only one is allowed"},
+      {"no_mesh", b, box, "@{}", "/bodies/block/mesh", "one of the keys is missing: box"},
+      {"ring", b, box, R"({@"ring": {}})", "/bodies/block/mesh/ring",
+       "is not available in this version; allowed: box, half_disk"},
+      {"box_turned_over", b, R"("max": [4, 2])", R"("max": [4, @0])", "/bodies/block/mesh/box/max/1",
+       "is 0; must be greater than min, which is 0"},
+      {"box_in_one_dimension", b, R"("max": [4, 2])", R"("max": @[4])", "/bodies/block/mesh/box/max",
+       "must be an array of 2 numbers"},
+      {"no_cells", b, R"("cells": [4, 2])", R"("cells": [@0, 2])", "/bodies/block/mesh/box/cells/0",
+       "must be a whole number from 1"},
+      {"half_a_cell", b, R"("cells": [4, 2])", R"("cells": [4, @2.5])", "/bodies/block/mesh/box/cells/1",
+       "is 2.5; must be a whole number"},
+      {"too_many_cells", b, R"("cells": [4, 2])", R"("cells": @[1000000, 1000000])", "/bodies/block/mesh/box/cells",
+       "fewer cells"},
+      {"grade_of_no_side", b, R"("cells": [4, 2])", R"("cells": [4, 2], "grade": {@"botom": 3})",
+       "/bodies/block/mesh/box/grade/botom", R"(did you mean "bottom"?)"},
+      {"grade_of_zero", b, R"("cells": [4, 2])", R"("cells": [4, 2], "grade": {"bottom": @0})",
+       "/bodies/block/mesh/box/grade/bottom", "must be a number > 0"},
+      {"folded_half_disk", b, box, R"(@{"half_disk": {"center": [0, 0], "radius": 1, "cells": [2, 9]}})",
+       "/bodies/block/mesh", "must not differ"},
+      {"half_disk_facing_left", b, box,
+       R"({"half_disk": {"center": [0, 0], "radius": 1, "cells": [4, 4], "facing": @"left"}})",
+       "/bodies/block/mesh/half_disk/facing", "allowed: down, up"},
+      {"body_of_a_box", b, R"({"box": {)", R"({@"body": "a", "box": {)", "/bodies/block/mesh/body", "belongs to gmsh"},
+      {"no_mesh_file", b, box, R"({"gmsh": @"no_such.msh", "body": "lower"})", "/bodies/block/mesh/gmsh",
+       "no_such.msh cannot be read"},
+      {"no_mesh_body", b, box, R"(@{"gmsh": "../../studies/meshes/half_disk_coarse.msh"})", "/bodies/block/mesh",
+       R"("body" is missing)"},
+      {"dotted_name", b, R"("block": {)",
+       R"(@"blo.ck": {"mesh": {"point": {"at": [0, 0]}},
+           "material": {"grounded_spring": {"stiffness": [[1, 0], [0, 1]]}}}, "block": {)",
+       "/bodies/blo.ck", "no space, dot or &"},
+  };
+}
+
+std::vector<Broken> broken_contacts() {
+  const char* b = block_scene;
+  return {
+      {"normal_of_zero", b, R"("normal": [0, 2])", R"("normal": @[0, 0])", "/obstacles/floor/plane/normal",
+       "a vector that is not zero"},
+      {"normal_in_space", b, R"("normal": [0, 2])", R"("normal": @[0, 0, 1])", "/obstacles/floor/plane/normal",
+       "must be an array of 2 numbers"},
+      {"sphere", b, floor_plane, R"({@"sphere": {}})", "/obstacles/floor/sphere",
+       "is not available in this version; allowed: plane, circle"},
+      {"radius_of_zero", b, floor_plane, R"({"circle": {"center": [0, 0], "radius": @0}})",
+       "/obstacles/floor/circle/radius", "must be a number > 0"},
+      {"inside_of_one", b, floor_plane, R"({"circle": {"center": [0, 0], "radius": 1, "inside": @1}})",
+       "/obstacles/floor/circle/inside", "must be true or false"},
+      {"rotating_obstacle", b, floor_plane, R"({@"rotate": {}, "plane": {"point": [0, -1], "normal": [0, 2]}})",
+       "/obstacles/floor/rotate", "is not available in this version"},
+      {"move_along_z", b, floor_plane, R"({"move": {@"z": 1}, "plane": {"point": [0, -1], "normal": [0, 2]}})",
+       "/obstacles/floor/move/z", "allowed: x, y"},
+      {"obstacle_named_as_a_body", b, R"("obstacles": {)",
+       R"("obstacles": {@"block": {"plane": {"point": [0, -1], "normal": [0, 2]}}, )", "/obstacles/block",
+       "a body has the name"},
+      {"negative_friction", b, R"("friction": 0.3)", R"("friction": @-0.3)", "/contacts/sole/friction",
+       "is -0.3; must be a number >= 0"},
+      {"unknown_key", b, R"("friction": 0.3)", R"("friction": 0.3, @"ofset": 0)", "/contacts/sole/ofset",
+       R"(did you mean "offset"?)"},
+      {"slave_is_an_obstacle", b, R"("slave": "block.bottom")", R"("slave": @"floor")", "/contacts/sole/slave",
+       "an obstacle is rigid"},
+      {"unknown_slave_body", b, R"("slave": "block.bottom")", R"("slave": @"blok.bottom")", "/contacts/sole/slave",
+       R"(there is no body "blok"; did you mean "block"?)"},
+      {"unknown_slave_side", b, R"("slave": "block.bottom")", R"("slave": @"block.botom")", "/contacts/sole/slave",
+       R"(did you mean "bottom"?)"},
+      {"slave_without_a_side", b, R"("slave": "block.bottom")", R"("slave": @"block")", "/contacts/sole/slave",
+       "a body; must be BODY.SIDE"},
+      {"empty_slave", b, R"("slave": "block.bottom")", R"("slave": @"block.bottom & block.top")",
+       "/contacts/sole/slave", "no node belongs"},
+      {"unknown_master", b, R"("master": "floor")", R"("master": @"flor")", "/contacts/sole/master",
+       R"(did you mean "floor"?)"},
+      {"master_without_facets", b, R"("master": "floor")", R"("master": @"block.top & block.left")",
+       "/contacts/sole/master", "a master needs facets"},
+      {"contact_with_itself", b, R"("master": "floor")", R"("master": @"block.bottom")", "/contacts/sole/master",
+       "shares nodes with the slave"},
+      {"missing_master", b, R"({"slave": "block.bottom", "master": "floor", "friction": 0.3})",
+       R"(@{"slave": "block.bottom", "friction": 0.3})", "/contacts/sole", R"("master" is missing)"},
+      {"smooth_surface", b, R"("friction": 0.3)", R"("friction": 0.3, "surface": @"smooth")", "/contacts/sole/surface",
+       "is not available in this version; allowed: faceted"},
+      {"segment_contact", b, R"("friction": 0.3)", R"("friction": 0.3, "discretization": @"segment")",
+       "/contacts/sole/discretization", "is not available in this version; allowed: node"},
+      {"all_against_all", b, sole,
+       std::string(R"("all": {"slave": "block.top", "master": "floor", @"between": "all"}, )") + sole,
+       "/contacts/all/between", "is not available in this version"},
+  };
+}
+
+std::vector<Broken> broken_loading() {
+  const char* b = block_scene;
+  return {
+      {"supports_object", b, std::string("[") + support + "]", R"(@{})", "/supports", "must be an array of supports"},
+      {"support_without_move", b, support, R"(@{"on": "block.left"})", "/supports/0", R"("move" is missing)"},
+      {"support_without_axis", b, R"({"x": [[0, 0], [1, 0.2]]})", "@{}", "/supports/0/move", "must name an axis"},
+      {"support_along", b, support, R"({"on": "block.left", "move": {"x": 0}, @"along": [1, 1]})", "/supports/0/along",
+       "is not available in this version"},
+      {"repeated_table", b, "[[0, 0], [1, 0.2]]", R"(@{"table": [[0, 0]], "repeat": 3})", "/supports/0/move/x",
+       "is not available in this version"},
+      {"table_of_numbers", b, "[[0, 0], [1, 0.2]]", "[@0, [1, 0.2]]", "/supports/0/move/x/0",
+       "must be a pair [t, value]"},
+      {"table_empty", b, "[[0, 0], [1, 0.2]]", "@[]", "/supports/0/move/x", "must be a number or a table"},
+      {"table_back_in_time", b, "[[0, 0], [1, 0.2]]", "[[0, 0], [@0, 0.2]]", "/supports/0/move/x/1/0",
+       "times must increase, and the one before is 0"},
+      {"two_supports_of_one_node", b, support, std::string(support) + R"(, {"on": "block.bottom", "move": {"x": @0}})",
+       "/supports/1/move/x", R"(differs from /supports/0/move/x, which is on "block.left")"},
+      {"two_supports_of_one_side", b, support, std::string(support) + R"(, {"on": "block.left", "move": {"x": @0.3}})",
+       "/supports/1/move/x", "holds a node"},
+      {"load_without_a_kind", b, load, R"(@{"on": "block.top"})", "/loads/0",
+       "one of the keys is missing: traction, force"},
+      {"load_of_two_kinds", b, load, R"({"on": "block.top", "force": [0, 1], @"traction": [0, 1]})",
+       "/loads/0/traction", "only one is allowed"},
+      {"load_nowhere", b, load, R"(@{"traction": [0, -5]})", "/loads/0", R"("on" is missing)"},
+      {"pressure", b, load, R"({"on": "block.top", @"pressure": 5})", "/loads/0/pressure",
+       "is not available in this version; allowed: traction, force"},
+      {"traction_on_a_corner", b, R"("block.top")", R"(@"block.top & block.left")", "/loads/0/on", "use force instead"},
+      {"traction_of_one_number", b, R"("traction": [0, -5])", R"("traction": @5)", "/loads/0/traction",
+       "must be an array of 2 numbers"},
+      {"history_of_text", b, R"("history": [[0, 0], [1, 1]])", R"("history": @"ramp")", "/loads/0/history",
+       "must be a number or a table"},
+      {"no_end", b, times, R"(@{"steps": 10})", "/time", R"("end" is missing)"},
+      {"end_of_zero", b, times, R"({"end": @0, "steps": 10})", "/time/end", "must be a number > 0"},
+      {"no_steps", b, times, R"({"end": 1, "steps": @0})", "/time/steps", "must be a whole number from 1"},
+      {"legs_back_in_time", b, times, R"({"legs": [[1, 2], [@1, 2]]})", "/time/legs/1/0",
+       "later than the end of the leg before, 1"},
+      {"legs_and_end", b, times, R"({"legs": [[1, 2]], @"end": 2})", "/time/end", "unknown key"},
+      {"arc_length", b, times, R"({"end": 1, "steps": 1, @"control": "arc_length"})", "/time/control",
+       "is not available in this version"},
+  };
+}
+
+std::vector<Broken> broken_responses() {
+  const char* b = block_scene;
+  return {
+      {"unknown_response", b, pull, R"({@"reacton": {}})", "/responses/pull/reacton", R"(did you mean "reaction"?)"},
+      {"reaction_of_nothing", b, pull, R"({"reaction": @{"component": "x"}})", "/responses/pull/reaction",
+       R"("on" is missing)"},
+      {"reaction_without_component", b, pull, R"({"reaction": @{"on": "block.left"}})", "/responses/pull/reaction",
+       R"("component" is missing)"},
+      {"component_z", b, pull, R"({"reaction": {"on": "block.left", "component": @"z"}})",
+       "/responses/pull/reaction/component", "allowed: x, y"},
+      {"moment", b, pull, R"({"reaction": {"on": "block.left", "component": @"moment"}})",
+       "/responses/pull/reaction/component", "is not available in this version"},
+      {"unknown_contact", b, R"({"contact": "sole", "component": "normal"})",
+       R"({"contact": @"soul", "component": "normal"})", "/responses/press/contact_force/contact",
+       R"(did you mean "sole"?)"},
+      {"side_of_a_contact_force", b, R"({"contact": "sole", "component": "normal"})",
+       R"({"contact": "sole", "component": "normal", @"on": "block.left"})", "/responses/press/contact_force/on",
+       "unknown key"},
+      {"displacement_nowhere", b, tip, R"({"displacement": @{"component": "y"}})", "/responses/tip/displacement",
+       R"("on", a side BODY.SIDE, or "at", a point)"},
+      {"take_at_a_point", b, tip, R"({"displacement": {"at": [0, 0], "component": "y", @"take": "max"}})",
+       "/responses/tip/displacement/take", R"(has no meaning beside "at")"},
+      {"at_in_space", b, tip, R"({"displacement": {"at": @[0, 0, 0], "component": "y"}})",
+       "/responses/tip/displacement/at", "must be an array of 2 numbers"},
+      {"take_the_median", b, R"("take": "max")", R"("take": @"median")", "/responses/tip/displacement/take",
+       "allowed: mean, max, min"},
+      {"slip_without_friction", lumped_scene, R"("output": {"fields": "all"})",
+       R"("responses": {"s": {"slip": {"contact": @"wrap"}}})", "/responses/s/slip/contact",
+       "whose slip is not followed"},
+  };
+}
+
+std::vector<Broken> broken_parameters() {
+  const char* b = block_scene;
+  auto pointing = [](const std::string& pointer) { return "@\"mu\": \"" + pointer + "\""; };
+  return {
+      {"pointer_to_nothing", b, mu, pointing("/contacts/sole/frictoin"), "/parameters/mu",
+       R"(has no "frictoin"; did you mean "friction"?)"},
+      {"pointer_without_slash", b, mu, pointing("contacts"), "/parameters/mu", "must begin with /"},
+      {"pointer_to_a_count", b, mu, pointing("/bodies/block/mesh/box/cells/0"), "/parameters/mu", "is a count"},
+      {"pointer_to_steps", b, mu, pointing("/time/steps"), "/parameters/mu", "is a count"},
+      {"pointer_to_an_end", b, mu, pointing("/time/end"), "/parameters/mu", "is a time"},
+      {"pointer_to_a_time", b, mu, pointing("/supports/0/move/x/1/0"), "/parameters/mu",
+       "is a time; times are no parameters"},
+      {"pointer_to_text", b, mu, pointing("/contacts/sole/slave"), "/parameters/mu", "must be a number"},
+      {"pointer_to_an_array", b, mu, pointing("/loads/0/traction"), "/parameters/mu", "such as /loads/0/traction/0"},
+      {"pointer_to_an_object", b, mu, pointing("/contacts/sole"), "/parameters/mu", "is an object"},
+      {"pointer_to_a_tolerance", b, R"("mu": "/contacts/sole/friction"},
+  "method": {"monolithic_al": {"scale": 2}})",
+       R"(@"tol": "/method/monolithic_al/newton/tolerance"},
+  "method": {"monolithic_al": {"newton": {"tolerance": 1e-8}}})",
+       "/parameters/tol", "is a setting of the method"},
+      {"pointer_to_auto", b, R"("mu": "/contacts/sole/friction"},
+  "method": {"monolithic_al": {"scale": 2}})",
+       R"(@"s": "/method/monolithic_al/scale"},
+  "method": {"monolithic_al": {"scale": "auto"}})",
+       "/parameters/s", "is \"auto\"; a parameter must be a number"},
+      {"pointer_to_another_method", b, mu, pointing("/method/penalty/stiffness"), "/parameters/mu",
+       "is an option of penalty, and the scene's method is monolithic_al"},
+      {"parameter_of_three", b, mu, R"("mu": @3)", "/parameters/mu", "is 3; must be a JSON pointer"},
+      {"weight_of_zero", b, mu, R"("mu": {"/contacts/sole/friction": @0})", "/parameters/mu/~1contacts~1sole~1friction",
+       "must be a number other than 0"},
+      {"shape", b, mu, R"("mu": {@"shape": {"side": "block.top", "direction": [0, 1]}})", "/parameters/mu/shape",
+       "is not available in this version"},
+      {"half_of_a_symmetric_pair", lumped_scene, R"("output": {"fields": "all"})",
+       R"("parameters": {"k": @"/bodies/mass/material/grounded_spring/stiffness/0/1"})", "/parameters/k",
+       "must have the weight"},
+  };
+}
+
+std::vector<Broken> broken_methods() {
+  const char* b = block_scene;
+  return {
+      {"unknown_method", b, R"("monolithic_al")", R"(@"monolitic_al")", "/method/monolitic_al",
+       R"(did you mean "monolithic_al"?)"},
+      {"two_methods", b, method, R"({"monolithic_al": {}, @"penalty": {}})", "/method/penalty", "only one is allowed"},
+      {"option_of_another", b, R"("scale": 2)", R"(@"max_augmentations": 2)", "/method/monolithic_al/max_augmentations",
+       "is an option of uzawa_al, not of monolithic_al"},
+      {"option_of_newton", b, R"("scale": 2)", R"(@"line_search": true)", "/method/monolithic_al/line_search",
+       R"(belongs inside "newton")"},
+      {"unknown_option", b, R"("scale": 2)", R"(@"scael": 2)", "/method/monolithic_al/scael",
+       R"(did you mean "scale"?)"},
+      {"scale_of_zero", b, R"("scale": 2)", R"("scale": @0)", "/method/monolithic_al/scale", "must be a number > 0"},
+      {"scale_text", b, R"("scale": 2)", R"("scale": @"big")", "/method/monolithic_al/scale",
+       R"(must be "auto", a number > 0 or {"absolute")"},
+      {"scale_absolute_text", b, R"("scale": 2)", R"("scale": {"absolute": @-2})",
+       "/method/monolithic_al/scale/absolute", "must be a number > 0"},
+      {"unknown_cone", b, R"("scale": 2)", R"("cone": @"frozen")", "/method/monolithic_al/cone",
+       "allowed: augmented, multiplier"},
+      {"acceleration", b, method, R"({"uzawa_al": {"acceleration": @"aitken"}})", "/method/uzawa_al/acceleration",
+       "is not available in this version; allowed: none"},
+      {"tolerance_of_one", b, method, R"({"uzawa_al": {"tolerance": @1}})", "/method/uzawa_al/tolerance",
+       "must be a number > 0 and < 1"},
+      {"newton_of_none", b, R"("scale": 2)", R"("newton": {"max_iterations": @0})",
+       "/method/monolithic_al/newton/max_iterations", "must be a whole number from 1"},
+      {"newton_unknown", b, R"("scale": 2)", R"("newton": {@"tolerence": 0.1})",
+       "/method/monolithic_al/newton/tolerence", R"(did you mean "tolerance"?)"},
+      {"method_number", b, method, "@1", "/method", "must be an object with one of the keys penalty"},
+      {"engine", b, R"("title": "block pushed over a floor")", R"("linear_solver": {"engine": @"dense"})",
+       "/linear_solver/engine", "allowed: auto, sparse, condensed"},
+      {"backend", b, R"("title": "block pushed over a floor")", R"("linear_solver": {"backend": @"pardiso"})",
+       "/linear_solver/backend", "allowed: auto"},
+      {"fields", b, R"("title": "block pushed over a floor")", R"("output": {"fields": @"first"})", "/output/fields",
+       R"(must be "last", "all" or)"},
+      {"adjoint", b, R"("title": "block pushed over a floor")", R"("sensitivity": {"mode": @"adjoint"})",
+       "/sensitivity/mode", "is not available in this version; allowed: direct"},
+  };
+}
+
+std::vector<Broken> broken_lumped() {
+  const char* l = lumped_scene;
+  return {
+      {"unsymmetric_spring", l, spring, "[[3, 1], [@2, 2]]", "/bodies/mass/material/grounded_spring/stiffness/1/0",
+       "is 2; must be 1, so that the stiffness is symmetric"},
+      {"indefinite_spring", l, spring, "@[[1, 2], [2, 1]]", "/bodies/mass/material/grounded_spring/stiffness",
+       "must be positive definite"},
+      {"large_spring", l, spring, "@[[3, 1, 0], [1, 2, 0], [0, 0, 1]]",
+       "/bodies/mass/material/grounded_spring/stiffness", "must be a 2 x 2 matrix"},
+      {"ragged_spring", l, spring, "[[3, 1], @[1]]", "/bodies/mass/material/grounded_spring/stiffness/1",
+       "must be an array of 2 numbers"},
+      {"point_in_space", l, R"("at": [0, 0])", R"("at": @[0, 0, 0])", "/bodies/mass/mesh/point/at",
+       "must be an array of 2 numbers"},
+      {"area_of_zero", l, R"("area": 0.5)", R"("area": @0)", "/bodies/belt/area", "must be a number > 0"},
+      {"arc_of_a_full_turn", l,
+       R"({"arc": {"center": [0, 0], "radius": 1, "from_angle": 0, "to_angle": 90, "cells": 4}})",
+       R"(@{"arc": {"center": [0, 0], "radius": 1, "from_angle": 0, "to_angle": 360, "cells": 4}})",
+       "/bodies/belt/mesh", "less than 360 degrees"},
+      {"line_of_no_length", l, R"({"line": {"from": [2, 0], "to": [3, 0], "cells": 3}})",
+       R"(@{"line": {"from": [2, 0], "to": [2, 0], "cells": 3}})", "/bodies/rod/mesh", "the same point"},
+      {"slave_is_an_anchor", l, R"("belt.interior")", R"(@"mass.anchor")", "/contacts/wrap/slave", "touches nothing"},
+      {"load_on_an_anchor", l, R"("mass.node")", R"(@"mass.anchor")", "/loads/0/on", "does nothing"},
+      {"circle_in_space",
+       R"({"space": "solid", "time": {"end": 1, "steps": 1}, "method": {"penalty": {}}, "bodies": {"a": {"mesh": {"point": {"at": [0, 0, 0]}}, "material": {"grounded_spring": {"stiffness": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}}}}, "obstacles": {"o": {"plane": 0}}})",
+       R"("plane": 0)", R"(@"circle": {"center": [0, 0], "radius": 1})", "/obstacles/o/circle", "needs a plane space"},
+  };
+}
+
+std::string name_of_case(const testing::TestParamInfo<Broken>& info) { return info.param.name; }
+
+INSTANTIATE_TEST_SUITE_P(Bodies, BrokenScene, testing::ValuesIn(broken_bodies()), name_of_case);
+INSTANTIATE_TEST_SUITE_P(Contacts, BrokenScene, testing::ValuesIn(broken_contacts()), name_of_case);
+INSTANTIATE_TEST_SUITE_P(Loading, BrokenScene, testing::ValuesIn(broken_loading()), name_of_case);
+INSTANTIATE_TEST_SUITE_P(Responses, BrokenScene, testing::ValuesIn(broken_responses()), name_of_case);
+INSTANTIATE_TEST_SUITE_P(Parameters, BrokenScene, testing::ValuesIn(broken_parameters()), name_of_case);
+INSTANTIATE_TEST_SUITE_P(Methods, BrokenScene, testing::ValuesIn(broken_methods()), name_of_case);
+INSTANTIATE_TEST_SUITE_P(Lumped, BrokenScene, testing::ValuesIn(broken_lumped()), name_of_case);
+
+TEST(SceneReader, ReportsFaultsOfAMeshFileWithTheirOwnPlace) {
+  const auto path = std::filesystem::path(testing::TempDir()) / "broken.msh";
+  std::ofstream(path) << "$MeshFormat\n9.9 0 8\n$EndMeshFormat\n";
+  const auto text = edited(block_scene, box, "{\"gmsh\": \"" + path.string() + "\", \"body\": \"a\"}");
+  Diagnostics diagnostics;
+  EXPECT_FALSE(read_text(text, diagnostics).has_value());
+  ASSERT_EQ(diagnostics.error_count(), 1u) << diagnostics.text();
+  EXPECT_THAT(diagnostics.text(), testing::StartsWith(path.string() + ":2:1: "));
+  std::filesystem::remove(path);
+}
+
+TEST(SceneReader, RefusesAnImportedMeshWithAnInvertedElement) {
+  const auto path = std::filesystem::path(testing::TempDir()) / "concave.msh";
+  std::ofstream(path) << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 1 \"a\"\n$EndPhysicalNames\n"
+                         "$Nodes\n4\n1 0 0 0\n2 4 0 0\n3 1 1 0\n4 0 4 0\n$EndNodes\n"
+                         "$Elements\n1\n1 3 2 1 1 1 2 3 4\n$EndElements\n";
+  Diagnostics diagnostics;
+  EXPECT_FALSE(read_text(R"({"bodies": {"a": {"mesh": {"gmsh": ")" + path.string() + R"(", "body": "a"},
+      "material": {"linear_elastic": {"E": 1, "nu": 0}}}}, "time": {"end": 1, "steps": 1}, "method": {"penalty": {}}})",
+                         diagnostics));
+  ASSERT_EQ(diagnostics.error_count(), 1u) << diagnostics.text();
+  EXPECT_THAT(diagnostics.text(), HasSubstr("inverted"));
+  EXPECT_THAT(diagnostics.text(), HasSubstr("(1, 1)"));  // the corner that points inwards, among the element's
+  std::filesystem::remove(path);
+}
+
+TEST(SceneReader, SurvivesWhateverTypeAValueHas) {
+  // every value in turn becomes something else: a fault or not, but never a crash
+  for (const char* text : {block_scene, lumped_scene}) {
+    const auto scene = nlohmann::json::parse(text);
+    const auto flat = scene.flatten();
+    for (const auto& [pointer, unused] : flat.items())
+      for (std::string at = pointer; !at.empty(); at.erase(at.rfind('/')))
+        for (const char* value : {"null", "[]", "{}", "\"x\"", "true", "-1e300", "[[]]", "{\"a\": {\"b\": []}}"}) {
+          auto broken = scene;
+          broken[nlohmann::json::json_pointer(at)] = nlohmann::json::parse(value);
+          Diagnostics diagnostics;
+          const auto input = read_text(broken.dump(), diagnostics);
+          EXPECT_EQ(input.has_value(), !diagnostics.has_errors()) << at << " = " << value;
+        }
+  }
+}
+
+}  // namespace
+}  // namespace stickslip

@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# install_dependencies.sh [test]: installs what is missing of the Debian (12 or later) packages that the build needs,
+# and with `test` those of the tests. STICKSLIP_NO_APT=1 installs nothing.
+set -euo pipefail
+
+# libopenblas0-serial is named because SuiteSparse would else bring the reference BLAS, which is 3 to 6 times slower;
+# libmumps-seq-5.5 with libmumps-headers-dev, because libmumps-seq-dev would bring an MPI development tree.
+packages=(g++ cmake ninja-build libeigen3-dev libsuitesparse-dev libopenblas0-serial libmumps-seq-5.5
+  libmumps-headers-dev nlohmann-json3-dev libcli11-dev libfmt-dev)
+case "${1:-}" in
+  "") ;;
+  test) packages+=(libgtest-dev libgmock-dev libbenchmark-dev) ;;
+  *) echo "usage: $0 [test]" >&2; exit 2 ;;
+esac
+
+if [ "${STICKSLIP_NO_APT:-0}" = 1 ]; then
+  exit 0
+fi
+if ! command -v apt-get >/dev/null; then
+  echo "no apt-get here: install the equivalents of: ${packages[*]}" >&2
+  exit 0
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+  [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
+done
+[ ${#missing[@]} -gt 0 ] || exit 0
+
+as_root=()
+if [ "$(id -u)" != 0 ]; then
+  command -v sudo >/dev/null || { echo "not root and no sudo; as root: apt-get install ${missing[*]}" >&2; exit 1; }
+  as_root=(sudo)
+fi
+echo "installing: ${missing[*]}"
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"
