@@ -160,23 +160,42 @@ IterationRecord record(const Evaluation<T>& at, const std::vector<ContactState>&
   return r;
 }
 
-/// The branches of the tangent: those of the evaluation, but a point at the apex of its cone (closed, no bound, no
-/// tangential trial) takes stick, which is an element of the generalised derivative there: a body that only friction holds
-/// then has a regular first tangent.
+/// The branches that a Newton step is taken in: those of the evaluation, with two exceptions.
+///   - A point at the apex of its cone (closed, no bound, no tangential trial) sticks, which is an element of the
+///     generalised derivative there: a body that only friction holds then has a regular first tangent.
+///   - A point that slipped in the last step and would now slip the other way sticks first. Far from the solution a
+///     large rho turns any small overshoot of the slip into slip of the opposite sign, and points flip for ever; stick
+///     lies between the two.
+/// `last`: field and branches of the last step; empty at the first.
 template <class T>
-std::vector<ContactState> tangent_branches(const Model& model, const ContactInput<T>& input,
-                                           const ContactField<T>& field, const Vector<T>& multiplier) {
+std::vector<ContactState> step_branches(const Model& model, const ContactInput<T>& input, const ContactField<T>& field,
+                                        const Vector<T>& multiplier, const ContactField<T>& last) {
   std::vector<ContactState> branches = field.state;
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     const auto& point = model.points[p];
     if (branches[p] != ContactState::slip || point.tangents == 0 || value(input.slots.friction[point.contact]) == 0)
       continue;
     bool apex = value(field.traction[point.multiplier]) == 0;
-    for (int a = 0; a < point.tangents; ++a)
-      apex &= value(field.slip[tangential_offset(model, p) + a]) == 0 && value(multiplier[point.multiplier + 1 + a]) == 0;
-    if (apex) branches[p] = ContactState::stick;
+    double along_last = 0;
+    for (int a = 0; a < point.tangents; ++a) {
+      const int k = point.multiplier + 1 + a;
+      apex &= value(field.slip[tangential_offset(model, p) + a]) == 0 && value(multiplier[k]) == 0;
+      if (!last.state.empty()) along_last += value(field.traction[k]) * value(last.traction[k]);
+    }
+    const bool reversed = !last.state.empty() && last.state[p] == ContactState::slip && along_last < 0;
+    if (apex || reversed) branches[p] = ContactState::stick;
   }
   return branches;
+}
+
+/// Rows of an evaluation anew, in given branches.
+template <class T, class E>
+void rows_in(E& engine, const ContactInput<T>& input, const Vector<T>& u, const Vector<T>& multiplier, bool unknown,
+             const std::vector<ContactState>& branch, Evaluation<T>& at) {
+  const auto field = evaluate_contact<T>(input, engine.compact(u), multiplier, &branch);
+  ForceScale unused;
+  at.rows_u = engine.residual(u, contact_forces(input.model, input.slots, field.traction), unused);
+  if (unknown) at.rows_l = multiplier_residual(input.model, input.slots, field.traction, multiplier);
 }
 
 /// Whether the derivative that rides on a scalar still moves: nothing rides on a double; the oracle's imaginary part
@@ -197,6 +216,7 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
   constexpr double shortest_step = 1.0 / 128;
   Equilibrium<T> result;
   std::vector<ContactState> used;                        // states of the last tangent
+  ContactField<T> directed;                              // field and branches of the last step
   std::unordered_map<std::size_t, double> seen;          // active set -> smallest residual met with it
   bool damped = false;
   int extra = detail::extra_iterations<T>(), steady = 0;
@@ -235,8 +255,10 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
       entry->second = std::min(entry->second, at.residuals.largest());
     }
 
+    const auto branch = detail::step_branches(model, input, at.field, multiplier, directed);
     used = at.field.state;
-    const auto branch = detail::tangent_branches(model, input, at.field, multiplier);
+    directed = at.field;
+    directed.state = branch;
     BlockVector<T> step;
     {
       std::vector<PointTangent<T>> tangents;
@@ -251,6 +273,7 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
     }
     {
       const Stopwatch time(account.seconds.backsolve);
+      if (branch != used) detail::rows_in(engine, input, u, multiplier, unknown, branch, at);
       step = engine.solve({-at.rows_u, unknown ? Matrix<T>(-at.rows_l) : Matrix<T>()});
       ++account.counters.backsolves;
     }

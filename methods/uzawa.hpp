@@ -96,8 +96,10 @@ Increment<T> solve_increment(const UzawaAL& method, Run<T, E>& run, const State<
     const double riding = truncated ? 0 : detail::riding(change);
     const bool still_riding = riding > 1e-13 * detail::riding(equilibrium.field.traction) && !(riding >= last_riding);
     const int limit = method.max_augmentations * (std::is_same_v<T, double> || truncated ? 1 : 20);
-    if (done && at_roundoff && left > method.tolerance * run.account.scales.traction)
-      increment.status = Status::converged_at_roundoff;
+    if (done)  // the outer tolerance decides, not the stricter one of the inner solves
+      increment.status = at_roundoff && left > method.tolerance * run.account.scales.traction
+                             ? Status::converged_at_roundoff
+                             : Status::converged;
     if (done && !(still_riding && sweep < limit)) return keep();
     if (sweep >= limit) {
       increment.status = Status::cap;

@@ -85,8 +85,7 @@ bool find_master(const Points<double>& points, const SideSet& master, ContactPoi
   const auto& facet = master.facets[closest->facet];
   const Vec<double, 2> tau = points.col(facet[1]).head<2>() - points.col(facet[0]).head<2>();
   const Vec<double, 2> slave_normal = outward_normal(points, point.area_facets);
-  const bool continuum = point.tangents >= 0 && slave_normal.norm() > 0;
-  if (continuum && slave_normal.dot(Vec<double, 2>(tau[1], -tau[0])) >= 0) return false;  // looks the same way
+  if (point.shares_normal && slave_normal.dot(Vec<double, 2>(tau[1], -tau[0])) >= 0) return false;  // looks the same way
   if (closest->second < 0) {
     point.master = ContactPoint::Master::facet;
     point.nodes.insert(point.nodes.end(), {facet[0], facet[1]});
@@ -133,6 +132,7 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
       if (facet[0] == node || facet[1] == node) point.area_facets.emplace_back(facet[0], facet[1]);
     point.area_of_bar = mesh.shape == ElementShape::bar2 && slave.nodes.size() == 1 && point.area_facets.empty();
     point.mesh_size = local_size(points, point.area_facets);
+    point.shares_normal = obstacle < 0 && mesh.shape != ElementShape::bar2 && mesh.shape != ElementShape::point;
     point.tangents = contact.friction ? model.dimension - 1 : 0;
     if (obstacle >= 0) {
       const bool plane = std::holds_alternative<Plane>(model.scene.obstacles[obstacle].shape);

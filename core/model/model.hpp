@@ -35,6 +35,7 @@ struct ContactPoint {
   std::vector<int> neighbours; ///< vertex: the vertices before and after it, whose facets share the normal
   std::vector<std::pair<int, int>> area_facets;  ///< facets of the slave side at the node; half of each is tributary
   bool area_of_bar = false;    ///< tributary area is the bar's cross-section; with no facets either: 1
+  bool shares_normal = false;  ///< deformable continua on both sides: the normal is the bisector of the two
   int slave_body = 0;
   double mesh_size = 0;        ///< local size of the slave side, 0 for a lumped point
   int multiplier = 0;          ///< offset of its components in the multiplier vector

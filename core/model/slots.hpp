@@ -75,6 +75,17 @@ T tributary_area(const ContactPoint& point, const Slots<T>& slots) {
   return area;
 }
 
+/// Outward normal of the slave side at its node: sum over its facets (solid on their left), weighted by length.
+template <class T>
+Vec<T, 2> slave_normal(const ContactPoint& point, const Points<T>& points) {
+  Vec<T, 2> n = Vec<T, 2>::Constant(T(0));
+  for (const auto& [a, b] : point.area_facets) {
+    n[0] += points(1, b) - points(1, a);
+    n[1] -= points(0, b) - points(0, a);
+  }
+  return n;
+}
+
 template <class T>
 PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
   const auto& numbers = slots.numbers;
@@ -92,6 +103,7 @@ PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point,
     geometry = against_vertex<T>(point2(slots.points, point.nodes[0]), point2(slots.points, point.neighbours[0]),
                                  point2(slots.points, point.nodes[1]), point2(slots.points, point.neighbours[1]));
   }
+  if (point.shares_normal) share_normal(geometry, slave_normal(point, slots.points));
   geometry.gap += numbers(model.scene.contacts[point.contact].offset);
   geometry.area = tributary_area(point, slots);
   return geometry;
