@@ -5,8 +5,8 @@
 ///   rho  scale, force per length cubed: it shapes the path of Newton's method, not the solution
 ///   cone augmented: radius -mu t_N;  multiplier: radius -mu lambda_N. Same zeros, another path
 ///
-/// At the solution lambda = t satisfies Signorini and Coulomb to rounding for every rho > 0. The only history is the slip
-/// placement; the last lambda is a mere start value. Options: methods/options.hpp. [AC91], [PC99]
+/// At the solution lambda = t satisfies Signorini and Coulomb to rounding for every rho > 0. The only history is the
+/// slip placement; the last lambda is a mere start value. Options: methods/options.hpp. [AC91], [PC99]
 #pragma once
 
 #include "methods/increment.hpp"

@@ -10,8 +10,8 @@
 ///   tangential    stick: |dg_T| likewise; open and slip: |t - lambda| / largest traction
 /// Converged: all within the tolerance and no state changed since the last tangent. Where a residual stops falling at
 /// the level of its own rounding the status is converged_at_roundoff. The full step is taken when
-/// it lands in another active set, for that is how the set is found; within one set the residual must fall, and a repeated
-/// set without progress asks the same of every step: backtracking. [AC91], [HSW08]; theory: core/README.md.
+/// it lands in another active set, for that is how the set is found; within one set the residual must fall, and a
+/// repeated set without progress asks the same of every step: backtracking. [AC91], [HSW08]; theory: core/README.md.
 #pragma once
 
 #include <chrono>
@@ -215,9 +215,9 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
   const Model& model = input.model;
   constexpr double shortest_step = 1.0 / 128;
   Equilibrium<T> result;
-  std::vector<ContactState> used;                        // states of the last tangent
-  ContactField<T> directed;                              // field and branches of the last step
-  std::unordered_map<std::size_t, double> seen;          // active set -> smallest residual met with it
+  std::vector<ContactState> used;                // states of the last tangent
+  ContactField<T> directed;                      // field and branches of the last step
+  std::unordered_map<std::size_t, double> seen;  // active set -> smallest residual met with it
   bool damped = false;
   int extra = detail::extra_iterations<T>(), steady = 0;
   double step_length = 1;

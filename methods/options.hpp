@@ -36,11 +36,11 @@ struct UzawaAL {
   static constexpr double automatic_multiple = 10;
   enum class Sensitivity { iterated, truncated, oversized };
   Regularisation scale;
-  double tolerance = 1e-10;      ///< error left in the multiplier (relative), and violation; 0 < tolerance < 1
-  int max_augmentations = 200;   ///< per increment; >= 1
-  bool adapt = true;             ///< multiply rho by 4 where an augmentation did not shrink the violation by 4
+  double tolerance = 1e-10;     ///< error left in the multiplier (relative), and violation; 0 < tolerance < 1
+  int max_augmentations = 200;  ///< per increment; >= 1
+  bool adapt = true;            ///< multiply rho by 4 where an augmentation did not shrink the violation by 4
   Sensitivity sensitivity = Sensitivity::iterated;
-  double oversize = 1e3;         ///< kappa_s of the oversized scheme; > 1
+  double oversize = 1e3;  ///< kappa_s of the oversized scheme; > 1
   NewtonOptions newton;
 };
 
@@ -49,7 +49,7 @@ struct MonolithicAL {
   static constexpr double automatic_multiple = 1;
   enum class Cone { augmented, multiplier };
   Regularisation scale;
-  Cone cone = Cone::augmented;   ///< radius -mu z_N (augmented) or -mu lambda_N (multiplier): same zeros, another path
+  Cone cone = Cone::augmented;  ///< radius -mu z_N (augmented) or -mu lambda_N (multiplier): same zeros, another path
   NewtonOptions newton;
 };
 

@@ -20,9 +20,15 @@ RegularisationField<T> regularisation(const Slots<T>& slots, const Regularisatio
     const T local = slots.stiffness[p] / slots.geometry[p].area;
     T normal{};
     switch (option.kind) {
-      case Regularisation::Kind::automatic: normal = T(automatic_multiple) * local; break;
-      case Regularisation::Kind::relative: normal = slots.numbers(option.value) * local; break;
-      case Regularisation::Kind::absolute: normal = slots.numbers(option.value); break;
+      case Regularisation::Kind::automatic:
+        normal = T(automatic_multiple) * local;
+        break;
+      case Regularisation::Kind::relative:
+        normal = slots.numbers(option.value) * local;
+        break;
+      case Regularisation::Kind::absolute:
+        normal = slots.numbers(option.value);
+        break;
     }
     rho.push_back({normal, tangential_ratio * normal});
   }

@@ -105,7 +105,8 @@ inline bool condensed_pays(const Model& model) {
 }  // namespace detail
 
 /// What a run allocates and leaves for its sensitivities: owned by the caller, the only mutable thing beside them.
-/// `condensation` may be handed on to another run on the same slots (a sweep over methods): it is reused if it is there.
+/// `condensation` may be handed on to another run on the same slots (a sweep over methods): it is reused if it is
+/// there.
 template <class T>
 struct Workspace {
   std::shared_ptr<Condensation<T>> condensation;

@@ -41,9 +41,7 @@ void adapt(const Slots<T>& slots, const RegularisationField<T>& initial, const s
 
 /// Largest derivative that rides on the entries: the imaginary part of the oracle, nothing on a double.
 inline double riding(const Vector<double>&) { return 0; }
-inline double riding(const Vector<std::complex<double>>& v) {
-  return v.size() ? v.imag().cwiseAbs().maxCoeff() : 0;
-}
+inline double riding(const Vector<std::complex<double>>& v) { return v.size() ? v.imag().cwiseAbs().maxCoeff() : 0; }
 
 }  // namespace detail
 
@@ -74,7 +72,8 @@ Increment<T> solve_increment(const UzawaAL& method, Run<T, E>& run, const State<
       return increment;
     };
     if (!is_converged(equilibrium.status)) return keep();
-    if (truncated) increment.sweeps.push_back({settle(run, input, equilibrium, previous.dissipation), increment.rho_factor});
+    if (truncated)
+      increment.sweeps.push_back({settle(run, input, equilibrium, previous.dissipation), increment.rho_factor});
 
     const Vector<T> change = equilibrium.field.traction - lambda;
     const double update = values(change).norm();
@@ -106,7 +105,7 @@ Increment<T> solve_increment(const UzawaAL& method, Run<T, E>& run, const State<
       increment.message = "max_augmentations reached; try a larger scale, or adapt";
       return keep();
     }
-    if (method.adapt && settled && !done) 
+    if (method.adapt && settled && !done)
       detail::adapt(run.slots, initial, violations, now, std::max(negligible, rounding), increment.rho_factor);
     violations = now;
     states = equilibrium.field.state;

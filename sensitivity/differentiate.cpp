@@ -32,9 +32,11 @@ void run(const M& method, Differentiation<E>& problem, const Trajectory<double>&
     std::vector<Vector<Direction>> responses;
     for (auto& block : problem.blocks)
       responses.push_back(evaluate_responses(model, block.slots, block.current, increment.time));
-    gradients.of.push_back(gather(problem.blocks, problem.parameters, [&](auto&, int b) -> auto& { return responses[b]; }));
-    gradients.last_displacement = gather(problem.blocks, problem.parameters,
-                                         [](ParameterBlock& block, int) -> auto& { return block.current.displacement; });
+    gradients.of.push_back(gather(
+        problem.blocks, problem.parameters, [&](auto&, int b) -> auto& { return responses[b]; }));
+    gradients.last_displacement = gather(
+        problem.blocks, problem.parameters,
+        [](ParameterBlock & block, int) -> auto& { return block.current.displacement; });
     for (auto& block : problem.blocks) std::swap(block.previous, block.current);
     previous = &increment.state;
   }
@@ -58,7 +60,8 @@ Gradients differentiate(const Model& model, const Slots<double>& slots, const Me
       [&](const auto& m) {
         std::visit(
             [&](auto& engine) {
-              Differentiation problem{model, slots, engine, blocks, parameters, {}, {}};
+              using E = std::decay_t<decltype(engine)>;
+              Differentiation<E> problem{model, slots, engine, blocks, parameters, {}, {}};
               run(m, problem, trajectory, gradients);
               gradients.counters = problem.counters;
             },

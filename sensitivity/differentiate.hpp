@@ -1,5 +1,5 @@
-/// From a trajectory to the derivatives of all responses with respect to all parameters of the scene, by the scheme that
-/// matches the method that ran.
+/// From a trajectory to the derivatives of all responses with respect to all parameters of the scene, by the scheme
+/// that matches the method that ran.
 #pragma once
 
 #include <string>

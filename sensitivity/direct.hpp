@@ -57,8 +57,8 @@ inline void add_derivatives(Vector<Direction>& v, const Matrix<double>& columns,
     for (Eigen::Index i = 0; i < v.size(); ++i) v[i].d[d] += columns(i, block * directions + d);
 }
 
-/// One equilibrium with its derivative problem: factorised tangent and the bodies' part of the pseudo-load, which do not
-/// change while D lambda is iterated.
+/// One equilibrium with its derivative problem: factorised tangent and the bodies' part of the pseudo-load, which do
+/// not change while D lambda is iterated.
 template <class E>
 class LinearisedEquilibrium {
  public:
@@ -88,8 +88,12 @@ class LinearisedEquilibrium {
   };
   Rows evaluate(const std::vector<Vector<Direction>>& compact, const std::vector<Vector<Direction>>& lambda);
   ContactInput<Direction> input(int block) const {
-    return {problem_.model, problem_.blocks[block].slots, rho_blocks_[block],
-            problem_.blocks[block].previous.contact.placement, cone_, time_};
+    return {problem_.model,
+            problem_.blocks[block].slots,
+            rho_blocks_[block],
+            problem_.blocks[block].previous.contact.placement,
+            cone_,
+            time_};
   }
 
   Differentiation<E>& problem_;
@@ -107,10 +111,14 @@ class LinearisedEquilibrium {
 template <class E>
 LinearisedEquilibrium<E>::LinearisedEquilibrium(Differentiation<E>& problem, const State<double>& at,
                                                 const RegularisationField<double>& rho,
-                                                std::vector<RegularisationField<Direction>> rho_blocks,
-                                                ConeRadius cone, double time, bool unknown,
-                                                const Vector<double>& previous_placement)
-    : problem_(problem), at_(at), rho_blocks_(std::move(rho_blocks)), rho_(rho), cone_(cone), time_(time),
+                                                std::vector<RegularisationField<Direction>> rho_blocks, ConeRadius cone,
+                                                double time, bool unknown, const Vector<double>& previous_placement)
+    : problem_(problem),
+      at_(at),
+      rho_blocks_(std::move(rho_blocks)),
+      rho_(rho),
+      cone_(cone),
+      time_(time),
       unknown_(unknown) {
   const Model& model = problem.model;
   const ContactInput<double> primal{model, problem.slots, rho, previous_placement, cone, time};
@@ -135,7 +143,8 @@ LinearisedEquilibrium<E>::LinearisedEquilibrium(Differentiation<E>& problem, con
     rows.push_back(bulk_forces(model, block.slots, u) - external_forces(model, block.slots, time));
     u_.push_back(std::move(u));
   }
-  bulk_ = gather(problem.blocks, problem.parameters, [&](auto&, int b) -> auto& { return rows[b]; });
+  bulk_ = gather(
+      problem.blocks, problem.parameters, [&](auto&, int b) -> auto& { return rows[b]; });
   reduced_ = problem.engine.reduce(bulk_);
 }
 
@@ -180,10 +189,12 @@ typename LinearisedEquilibrium<E>::Rows LinearisedEquilibrium<E>::evaluate(
     const auto& slots = problem_.blocks[b].slots;
     rows.fields.push_back(evaluate_contact<Direction>(input(b), compact[b], lambda[b], &at_.contact.state));
     forces.push_back(contact_forces(problem_.model, slots, rows.fields[b].traction));
-    if (unknown_) multiplier_rows.push_back(multiplier_residual(problem_.model, slots, rows.fields[b].traction, lambda[b]));
+    if (unknown_)
+      multiplier_rows.push_back(multiplier_residual(problem_.model, slots, rows.fields[b].traction, lambda[b]));
   }
   auto columns = [&](std::vector<Vector<Direction>>& of) {
-    return gather(problem_.blocks, problem_.parameters, [&](auto&, int b) -> auto& { return of[b]; });
+    return gather(
+        problem_.blocks, problem_.parameters, [&](auto&, int b) -> auto& { return of[b]; });
   };
   const Matrix<double> contact = columns(forces);
   rows.u = reduced_ + problem_.engine.scatter(contact);
@@ -195,7 +206,8 @@ typename LinearisedEquilibrium<E>::Rows LinearisedEquilibrium<E>::evaluate(
     if (!problem_.engine.is_free(i)) rows.u.row(i).setZero();
   for (Eigen::Index j = 0; j < rows.u.cols() && rows.u.rows() > 0; ++j) {
     const double size = contact.rows() ? contact.col(j).cwiseAbs().maxCoeff() : 0;
-    rows.accurate &= rows.u.col(j).cwiseAbs().maxCoeff() <= 1e-12 * std::max(size, internal.col(j).cwiseAbs().maxCoeff());
+    rows.accurate &=
+        rows.u.col(j).cwiseAbs().maxCoeff() <= 1e-12 * std::max(size, internal.col(j).cwiseAbs().maxCoeff());
   }
   return rows;
 }

@@ -48,7 +48,7 @@ double parameter_size(const Parameter& parameter, const Matrix<double>& largest_
 
 /// Central differences of one parameter at each usable step: responses x increments.
 struct Differences {
-  std::vector<double> step;            ///< absolute
+  std::vector<double> step;  ///< absolute
   std::vector<Matrix<double>> values;
 };
 
@@ -74,8 +74,8 @@ Extrapolated extrapolate(const Differences& differences, Eigen::Index i, Eigen::
 }  // namespace
 
 bool GradientCheck::passed() const {
-  return !entries.empty() && std::all_of(entries.begin(), entries.end(),
-                                         [](const Entry& e) { return e.verdict == Verdict::agrees; });
+  return !entries.empty() &&
+         std::all_of(entries.begin(), entries.end(), [](const Entry& e) { return e.verdict == Verdict::agrees; });
 }
 
 Method as_claimed(const Method& method) {
@@ -128,7 +128,8 @@ GradientCheck check_gradients(const Model& model, const Method& given, const Run
         side[s] = run(model, shifted, method, replay);
         if (progress) progress(++check.runs, total);
       }
-      const bool same = side[0].usable && side[1].usable && side[0].states == base.states && side[1].states == base.states;
+      const bool same =
+          side[0].usable && side[1].usable && side[0].states == base.states && side[1].states == base.states;
       if (!same) {
         check.rejected += 2;
         continue;
@@ -160,9 +161,9 @@ GradientCheck check_gradients(const Model& model, const Method& given, const Run
         worst.allowed = allowed;
         worst.step = best.step / size;
         // an estimate as large as the derivative itself checks nothing
-        worst.verdict = estimate > 1e-3          ? GradientCheck::Verdict::not_checked
-                        : error <= allowed       ? GradientCheck::Verdict::agrees
-                                                 : GradientCheck::Verdict::differs;
+        worst.verdict = estimate > 1e-3    ? GradientCheck::Verdict::not_checked
+                        : error <= allowed ? GradientCheck::Verdict::agrees
+                                           : GradientCheck::Verdict::differs;
       }
       check.entries.push_back(worst);
     }

@@ -2,8 +2,8 @@
 ///
 /// The differences sweep the step over several decades, replay the step table of the base run, and throw out a step
 /// whose runs pass through other contact states than the base run: across a change of state a difference is no
-/// derivative. Neighbouring steps are extrapolated (Richardson, error h^2 -> h^4); the spread of the extrapolated values
-/// and the rounding of the responses give the difference its own error estimate.
+/// derivative. Neighbouring steps are extrapolated (Richardson, error h^2 -> h^4); the spread of the extrapolated
+/// values and the rounding of the responses give the difference its own error estimate.
 #pragma once
 
 #include <functional>
@@ -31,8 +31,8 @@ struct GradientCheck {
   std::vector<Entry> entries;
   Status status = Status::converged;  ///< of the base run
   std::string message;
-  int runs = 0;      ///< difference runs
-  int rejected = 0;  ///< of them, thrown out for other states or no convergence
+  int runs = 0;         ///< difference runs
+  int rejected = 0;     ///< of them, thrown out for other states or no convergence
   bool passed() const;  ///< something was checked, and nothing differs or was left unchecked
 };
 
@@ -40,8 +40,8 @@ struct GradientCheck {
 /// solution, so the check runs it to rounding; the others as they are.
 Method as_claimed(const Method& method);
 
-/// Checks all parameters and responses at every requested step. `progress(done, total)` is called after each run; it may
-/// be empty.
+/// Checks all parameters and responses at every requested step. `progress(done, total)` is called after each run; it
+/// may be empty.
 GradientCheck check_gradients(const Model& model, const Method& method, const RunOptions& options,
                               const std::function<void(int, int)>& progress = {});
 

@@ -1,7 +1,7 @@
-/// Monolithic augmented Lagrangian: exact and not iterative. lambda is part of p, so one back-solve a parameter with the
-/// tangent of the converged state gives Du and D lambda together, all parameters in one block. The only history is the slip
-/// placement; the last lambda is a start value and is not differentiated. The derivative with respect to rho vanishes
-/// at the solution. [SLK10]
+/// Monolithic augmented Lagrangian: exact and not iterative. lambda is part of p, so one back-solve a parameter with
+/// the tangent of the converged state gives Du and D lambda together, all parameters in one block. The only history is
+/// the slip placement; the last lambda is a start value and is not differentiated. The derivative with respect to rho
+/// vanishes at the solution. [SLK10]
 #pragma once
 
 #include "sensitivity/direct.hpp"

@@ -1,5 +1,5 @@
-/// Penalty: one linear solve a parameter, as for elastoplasticity. D lambda = (0, D t_T of the last increment): the stored
-/// traction is history, so its derivative travels from increment to increment. Exact for the penalised problem.
+/// Penalty: one linear solve a parameter, as for elastoplasticity. D lambda = (0, D t_T of the last increment): the
+/// stored traction is history, so its derivative travels from increment to increment. Exact for the penalised problem.
 /// [MTV94], [SLK10 sec. 3]
 #pragma once
 

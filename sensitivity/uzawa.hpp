@@ -1,6 +1,7 @@
 /// Uzawa: the derivative of  lambda <- t(u(lambda), lambda)  mirrors the updates.
 ///
-///   iterated   (two-phase) lambda first converges, then  D lambda <- D t(Du(D lambda), D lambda)  with one factorisation,
+///   iterated   (two-phase) lambda first converges, then  D lambda <- D t(Du(D lambda), D lambda)  with one
+///   factorisation,
 ///              a back-solve a parameter and pass, until settled: error q^m, q the contraction of the updates
 ///   truncated  (piggyback) one pass per augmentation that was performed, with its own tangent: the exact derivative of
 ///              the truncated algorithm, for a loop that was cut off or stopped at a coarse tolerance
@@ -21,8 +22,7 @@ std::vector<Vector<Direction>> carried_multiplier(Differentiation<E>& problem, c
   std::vector<Vector<Direction>> lambda;
   for (auto& block : problem.blocks) {
     lambda.push_back(lift(multiplier));
-    for (Eigen::Index k = 0; k < multiplier.size(); ++k)
-      lambda.back()[k].d = block.previous.contact.traction[k].d;
+    for (Eigen::Index k = 0; k < multiplier.size(); ++k) lambda.back()[k].d = block.previous.contact.traction[k].d;
   }
   return lambda;
 }
@@ -87,7 +87,8 @@ bool differentiate_increment(const UzawaAL& method, Differentiation<E>& problem,
   if (method.sensitivity == UzawaAL::Sensitivity::truncated) {
     auto lambda = detail::carried_multiplier(problem, previous.contact.traction);
     for (const auto& sweep : increment.sweeps) {
-      auto linearised = detail::linearise(method, problem, previous, sweep.state, sweep.rho_factor, 1, increment.time, rho);
+      auto linearised =
+          detail::linearise(method, problem, previous, sweep.state, sweep.rho_factor, 1, increment.time, rho);
       if (!linearised.valid()) return false;
       for (std::size_t b = 0; b < lambda.size(); ++b)
         for (Eigen::Index k = 0; k < lambda[b].size(); ++k) lambda[b][k].v = sweep.state.multiplier[k];

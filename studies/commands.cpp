@@ -50,22 +50,26 @@ std::optional<Loaded> load(const RunArguments& arguments) {
 RunOptions options_of(const Input& input) { return {input.linear_algebra, input.backend, {}}; }
 
 std::filesystem::path output_directory(const std::string& given, const std::string& input) {
-  return given.empty() ? std::filesystem::path("results") / std::filesystem::path(input).stem() : std::filesystem::path(given);
+  return given.empty() ? std::filesystem::path("results") / std::filesystem::path(input).stem()
+                       : std::filesystem::path(given);
 }
 
 int fields_every(const OutputOptions& output) {
   switch (output.fields) {
-    case OutputOptions::Fields::last: return 0;
-    case OutputOptions::Fields::all: return 1;
-    case OutputOptions::Fields::every: return output.every;
+    case OutputOptions::Fields::last:
+      return 0;
+    case OutputOptions::Fields::all:
+      return 1;
+    case OutputOptions::Fields::every:
+      return output.every;
   }
   return 0;
 }
 
 void print_summary(const CaseResult& result) {
   const auto& scene = result.problem->model.scene;
-  fmt::print("{:>10} {:>24} {:>7} {:>7} {:>6} {:>6} {:>6} {:>10}\n", "time", "status", "newton", "augm.", "open", "stick",
-             "slip", "kkt");
+  fmt::print("{:>10} {:>24} {:>7} {:>7} {:>6} {:>6} {:>6} {:>10}\n", "time", "status", "newton", "augm.", "open",
+             "stick", "slip", "kkt");
   for (const auto& step : result.steps) {
     int open = 0, stick = 0, slip = 0;
     for (const auto& s : summarise(result.problem->model, result.problem->slots, step.increment->state)) {
@@ -93,12 +97,20 @@ json check_json(const GradientCheck& check) {
   static const char* const verdicts[] = {"agrees", "differs", "not checked"};
   json entries = json::array();
   for (const auto& e : check.entries)
-    entries.push_back({{"response", e.response}, {"parameter", e.parameter}, {"time", e.time},
-                       {"computed", e.computed}, {"difference", e.difference}, {"error", e.error},
-                       {"estimate", e.estimate}, {"allowed", e.allowed}, {"scale", e.scale}, {"step", e.step},
+    entries.push_back({{"response", e.response},
+                       {"parameter", e.parameter},
+                       {"time", e.time},
+                       {"computed", e.computed},
+                       {"difference", e.difference},
+                       {"error", e.error},
+                       {"estimate", e.estimate},
+                       {"allowed", e.allowed},
+                       {"scale", e.scale},
+                       {"step", e.step},
                        {"verdict", verdicts[static_cast<int>(e.verdict)]}});
-  return {{"status", name_of(check.status)}, {"message", check.message}, {"passed", check.passed()},
-          {"runs", check.runs}, {"rejected", check.rejected}, {"entries", entries}};
+  return {{"status", name_of(check.status)}, {"message", check.message},
+          {"passed", check.passed()},        {"runs", check.runs},
+          {"rejected", check.rejected},      {"entries", entries}};
 }
 
 }  // namespace
@@ -162,8 +174,8 @@ int gradcheck_command(const RunArguments& arguments) {
     fmt::print("{:<16} {:<12} {:>9} {:>18} {:>18} {:>9} {:>9}  {}\n", "response", "parameter", "time", "computed",
                "difference", "error", "allowed", "verdict");
     for (const auto& e : check.entries)
-      fmt::print("{:<16} {:<12} {:>9.4g} {:>18.10e} {:>18.10e} {:>9.1e} {:>9.1e}  {}\n", e.response, e.parameter, e.time,
-                 e.computed, e.difference, e.error, e.allowed, verdicts[static_cast<int>(e.verdict)]);
+      fmt::print("{:<16} {:<12} {:>9.4g} {:>18.10e} {:>18.10e} {:>9.1e} {:>9.1e}  {}\n", e.response, e.parameter,
+                 e.time, e.computed, e.difference, e.error, e.allowed, verdicts[static_cast<int>(e.verdict)]);
     fmt::print("error and allowed are relative to the largest derivative of the run (or response / parameter)\n");
   }
   if (check.passed()) return done;

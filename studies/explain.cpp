@@ -11,19 +11,26 @@ namespace {
 
 const char* shape_name(ElementShape shape) {
   switch (shape) {
-    case ElementShape::point: return "springs";
-    case ElementShape::bar2: return "bars";
-    case ElementShape::tri3: return "T3 triangles";
-    case ElementShape::quad4: return "Q4 quadrilaterals";
+    case ElementShape::point:
+      return "springs";
+    case ElementShape::bar2:
+      return "bars";
+    case ElementShape::tri3:
+      return "T3 triangles";
+    case ElementShape::quad4:
+      return "Q4 quadrilaterals";
   }
   return "";
 }
 
 const char* space_name(Space space) {
   switch (space) {
-    case Space::plane_strain: return "plane strain";
-    case Space::plane_stress: return "plane stress";
-    case Space::solid: return "space (3D)";
+    case Space::plane_strain:
+      return "plane strain";
+    case Space::plane_stress:
+      return "plane stress";
+    case Space::solid:
+      return "space (3D)";
   }
   return "";
 }
@@ -49,29 +56,35 @@ std::string explain(const Input& input, const Problem& problem) {
   const auto& scene = model.scene;
   const auto& effects = model.effects;
   std::string text = scene.title.empty() ? input.file + "\n" : scene.title + "\n";
-  text += fmt::format("\nspace: {}, small strain: linear strains, contact geometry of the start\nbodies:\n", space_name(scene.space));
+  text += fmt::format("\nspace: {}, small strain: linear strains, contact geometry of the start\nbodies:\n",
+                      space_name(scene.space));
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const auto& mesh = model.bodies[b].mesh;
-    text += fmt::format("  {}: {} nodes, {} {}\n", scene.bodies[b].name, mesh.node_count, mesh.element_count(), shape_name(mesh.shape));
+    text += fmt::format("  {}: {} nodes, {} {}\n", scene.bodies[b].name, mesh.node_count, mesh.element_count(),
+                        shape_name(mesh.shape));
   }
   text += "contacts (node to segment):\n" + contact_lines(model);
   text += fmt::format("driving: {} supports, {} loads, {} steps to t = {}\n", scene.supports.size(), scene.loads.size(),
                       model.times.size(), model.times.empty() ? 0 : model.times.back());
   const bool monolithic = std::holds_alternative<MonolithicAL>(input.method);
   text += fmt::format("unknowns: {} displacements", model.free_dofs.size());
-  text += monolithic ? fmt::format(", {} multipliers\n", model.multiplier_count) : ", no multipliers among the unknowns\n";
+  text +=
+      monolithic ? fmt::format(", {} multipliers\n", model.multiplier_count) : ", no multipliers among the unknowns\n";
   text += fmt::format("method: {}\n", to_json(input.method).dump());
-  const bool condensed = input.linear_algebra.engine == LinearAlgebra::Engine::condensed ||
-                         (input.linear_algebra.engine == LinearAlgebra::Engine::automatic && detail::condensed_pays(model));
-  text += condensed ? fmt::format("linear algebra: bodies condensed once to {} contact dofs, Newton on a dense system\n",
-                                  model.contact_nodes.size() * model.dimension)
-                    : "linear algebra: one sparse factorisation an iteration, the bodies' part assembled once\n";
+  const bool condensed =
+      input.linear_algebra.engine == LinearAlgebra::Engine::condensed ||
+      (input.linear_algebra.engine == LinearAlgebra::Engine::automatic && detail::condensed_pays(model));
+  text += condensed
+              ? fmt::format("linear algebra: bodies condensed once to {} contact dofs, Newton on a dense system\n",
+                            model.contact_nodes.size() * model.dimension)
+              : "linear algebra: one sparse factorisation an iteration, the bodies' part assembled once\n";
   text += "\nsimulated:\n";
   if (effects.contact) text += "  unilateral contact\n";
   if (effects.friction) text += "  Coulomb friction, path dependent (slip is remembered)\n";
   if (effects.deformable_master) text += "  contact between deformable bodies\n";
-  if (effects.sensitivity) text += fmt::format("  derivatives of {} responses with respect to {} parameters, direct\n",
-                                               scene.responses.size(), scene.parameters.size());
+  if (effects.sensitivity)
+    text += fmt::format("  derivatives of {} responses with respect to {} parameters, direct\n", scene.responses.size(),
+                        scene.parameters.size());
   text += "left out (no unknowns, no storage, no code path):\n";
   if (!effects.contact) text += "  contact: no slave node faces a master\n";
   if (!effects.friction) text += "  friction: no contact has a coefficient\n";

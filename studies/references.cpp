@@ -113,8 +113,8 @@ json curves_of(const CaseResult& result, const std::map<std::string, double>& va
     normal.push_back(-p);
     tangential.push_back(sign * q);
   }
-  return {
-      {result.problem->model.scene.contacts.front().name, {{"x", place}, {"normal", normal}, {"tangential", tangential}}}};
+  return {{result.problem->model.scene.contacts.front().name,
+           {{"x", place}, {"normal", normal}, {"tangential", tangential}}}};
 }
 
 /// Sign of the sum of tangential components over the contact, to draw the curve on the side of the data.

@@ -82,7 +82,8 @@ json timed_cost(const CaseResult& first, const Input& input, Variant& variant, i
 json only_asked(const Errors& errors, const std::vector<std::string>& patterns) {
   json out = json::object();
   for (const auto& [name, error] : errors)
-    if (name.starts_with("field:") || asked_for(name, patterns)) out[name] = std::isfinite(error) ? json(error) : json(nullptr);
+    if (name.starts_with("field:") || asked_for(name, patterns))
+      out[name] = std::isfinite(error) ? json(error) : json(nullptr);
   return out;
 }
 
@@ -101,8 +102,13 @@ json row_of(const Study& study, const CellInput& cell, Variant& variant, MeshFil
     if (!values.curves.is_null() && analytic.is_null() && is_converged(result.status()))
       analytic = {{"name", reference.entry.value("analytic", "")}, {"curves", values.curves}};
   }
-  json row = {{"id", cell.id}, {"label", cell.label}, {"method", to_json(input.method)}, {"knobs", cell.knobs},
-              {"vary", cell.vary}, {"refine", cell.refine}, {"status", name_of(result.status())},
+  json row = {{"id", cell.id},
+              {"label", cell.label},
+              {"method", to_json(input.method)},
+              {"knobs", cell.knobs},
+              {"vary", cell.vary},
+              {"refine", cell.refine},
+              {"status", name_of(result.status())},
               {"message", result.message()}};
   const json steps = steps_json(result);
   if (!steps.empty()) {
@@ -113,8 +119,11 @@ json row_of(const Study& study, const CellInput& cell, Variant& variant, MeshFil
   row["errors"] = errors;
   row["steps"] = json::array();
   for (const auto& step : steps)
-    row["steps"].push_back({{"time", step["time"]}, {"status", step["status"]}, {"newton", step["newton"]},
-                            {"augmentations", step["augmentations"]}, {"cutbacks", step["cutbacks"]},
+    row["steps"].push_back({{"time", step["time"]},
+                            {"status", step["status"]},
+                            {"newton", step["newton"]},
+                            {"augmentations", step["augmentations"]},
+                            {"cutbacks", step["cutbacks"]},
                             {"history", step["history"]}});
   row["interface"] = interface_json(result);
   row["size"] = size_json(result);
@@ -175,7 +184,8 @@ int study_command(const StudyArguments& arguments) {
   }
   std::filesystem::path stem = std::filesystem::path(arguments.study).stem();
   if (stem.extension() == ".study") stem = stem.stem();
-  const std::filesystem::path directory = arguments.output.empty() ? "results" / stem : std::filesystem::path(arguments.output);
+  const std::filesystem::path directory =
+      arguments.output.empty() ? "results" / stem : std::filesystem::path(arguments.output);
   const auto rows = directory / "results.jsonl";
   if (!arguments.resume) std::filesystem::remove(rows);
   const auto finished = finished_cells(rows);
@@ -194,7 +204,8 @@ int study_command(const StudyArguments& arguments) {
       append_line(rows, row.dump());
       if (!row["status"].get<std::string>().starts_with("converged")) {
         ++failed;
-        progress.note(fmt::format("{}: {} ({})", cell.label, row["status"].get<std::string>(), row["message"].get<std::string>()));
+        progress.note(fmt::format("{}: {} ({})", cell.label, row["status"].get<std::string>(),
+                                  row["message"].get<std::string>()));
       }
       progress.advance();
     }

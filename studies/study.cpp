@@ -47,7 +47,8 @@ double curve_difference(const CaseResult& result, const std::string& contact, co
     const auto& point = model.points[p];
     if (point.contact != index || (!normal && point.tangents != 1)) continue;
     const double area = result.problem->slots.geometry[p].area;
-    const double exact = at(curve["x"], curve[normal ? "normal" : "tangential"], result.problem->slots.points(0, point.nodes[0]));
+    const double exact =
+        at(curve["x"], curve[normal ? "normal" : "tangential"], result.problem->slots.points(0, point.nodes[0]));
     const double d = t[point.multiplier + (normal ? 0 : 1)] - exact;
     difference += area * d * d;
     size += area * exact * exact;
@@ -86,7 +87,8 @@ Errors enforcement_errors(const CaseResult& result, const CaseResult& reference)
         errors["sensitivity:" + scene.responses[i].name + "/" + scene.parameters[j].name] = relative(worst, scale);
     }
   }
-  if (result.problem->model.effects.contact) errors["field:normal_traction"] = traction_difference(result, reference, 0);
+  if (result.problem->model.effects.contact)
+    errors["field:normal_traction"] = traction_difference(result, reference, 0);
   if (result.problem->model.effects.friction)
     errors["field:tangential_traction"] = traction_difference(result, reference, 1);
   return errors;

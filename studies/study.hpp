@@ -4,9 +4,8 @@
 
 #include <functional>
 #include <map>
-#include <string>
-
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 
 #include "studies/case.hpp"
 #include "studies/references.hpp"

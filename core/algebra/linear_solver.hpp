@@ -67,9 +67,9 @@ class LinearSolver {
   double condition_estimate();
 
   const SolverCounters& counters() const;
-  std::string name() const;             ///< e.g. "MUMPS 5.5.1 LU, PORD"
-  const std::string& message() const;   ///< why the last factorise() failed
-  long factor_nonzeros() const;         ///< entries of the last factor; 0 where the backend does not tell
+  std::string name() const;            ///< e.g. "MUMPS 5.5.1 LU, PORD"
+  const std::string& message() const;  ///< why the last factorise() failed
+  long factor_nonzeros() const;        ///< entries of the last factor; 0 where the backend does not tell
 
  private:
   struct Implementation;

@@ -35,9 +35,21 @@ struct Dual {
   }
 
   Dual operator-() const { return {-v, -d}; }
-  Dual& operator+=(const Dual& o) { v += o.v; d += o.d; return *this; }
-  Dual& operator-=(const Dual& o) { v -= o.v; d -= o.d; return *this; }
-  Dual& operator*=(const Dual& o) { d = d * o.v + o.d * v; v *= o.v; return *this; }
+  Dual& operator+=(const Dual& o) {
+    v += o.v;
+    d += o.d;
+    return *this;
+  }
+  Dual& operator-=(const Dual& o) {
+    v -= o.v;
+    d -= o.d;
+    return *this;
+  }
+  Dual& operator*=(const Dual& o) {
+    d = d * o.v + o.d * v;
+    v *= o.v;
+    return *this;
+  }
   Dual& operator/=(const Dual& o) { return *this = *this / o; }
 
   friend Dual operator+(const Dual& a, const Dual& b) { return {a.v + b.v, a.d + b.d}; }
@@ -80,7 +92,9 @@ struct Dual {
 inline double value(double x) { return x; }
 inline double value(const std::complex<double>& x) { return x.real(); }
 template <int N, class S>
-double value(const Dual<N, S>& x) { return value(x.v); }
+double value(const Dual<N, S>& x) {
+  return value(x.v);
+}
 
 template <class T>
 using Vector = Eigen::Matrix<T, Eigen::Dynamic, 1>;

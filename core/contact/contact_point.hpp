@@ -24,10 +24,10 @@ enum class ConeRadius { augmented, multiplier };
 /// Initial geometry of one contact point; a function of nodal coordinates and obstacle data, in any scalar.
 template <class T>
 struct PointGeometry {
-  static constexpr int max_nodes = 5;  ///< slave and up to four master nodes
-  T gap{};                                                       ///< initial normal gap, with the offset of the contact
-  Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> normal;           ///< unit, out of the master
-  Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 2> tangents;      ///< orthonormal frame, one column each
+  static constexpr int max_nodes = 5;                   ///< slave and up to four master nodes
+  T gap{};                                              ///< initial normal gap, with the offset of the contact
+  Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> normal;  ///< unit, out of the master
+  Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 2> tangents;  ///< orthonormal frame, one column each
   Eigen::Matrix<T, Eigen::Dynamic, 1, 0, max_nodes, 1> weights;  ///< of the displacements in w: +1, -N_1, -N_2, ...
   T area{};                                                      ///< tributary area of the slave node
 };
@@ -52,9 +52,9 @@ struct PointRegularisation {
 template <class T, int D, int Tangents>
 PointOutcome<T, Tangents> evaluate_point(const PointGeometry<T>& geometry, const Vec<T, D>& w,
                                          const Traction<T, Tangents>& multiplier,
-                                         const Vec<T, Tangents>& previous_placement,
-                                         const PointRegularisation<T>& rho, const T& friction, ConeRadius cone,
-                                         double mesh_size, const ContactState* state) {
+                                         const Vec<T, Tangents>& previous_placement, const PointRegularisation<T>& rho,
+                                         const T& friction, ConeRadius cone, double mesh_size,
+                                         const ContactState* state) {
   static_assert(Tangents == 0 || Tangents == D - 1);
   PointOutcome<T, Tangents> point;
   point.gap = geometry.gap + dot(geometry.normal.template head<D>(), w);

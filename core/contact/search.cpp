@@ -34,7 +34,7 @@ std::optional<ClosestPoint> closest_point(const Points<double>& points, const st
     }
   }
   if (best < 0) return std::nullopt;
-  const bool start = foot.xi < at_end, end = foot.xi > 1 - at_end;
+  const bool start = foot.xi<at_end, end = foot.xi> 1 - at_end;
   if (!start && !end) return ClosestPoint{best, -1};
   const int vertex = facets[best][end ? 1 : 0];
   for (std::size_t f = 0; f < facets.size(); ++f)

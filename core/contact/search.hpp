@@ -9,8 +9,8 @@
 namespace stickslip {
 
 /// Closest point of the curve: inside facet `facet` (second < 0), or at the vertex shared by facets `facet` and
-/// `second` (the one that ends there, the one that starts there). A vertex that only one facet has (the end of the curve)
-/// counts as that facet's.
+/// `second` (the one that ends there, the one that starts there). A vertex that only one facet has (the end of the
+/// curve) counts as that facet's.
 struct ClosestPoint {
   int facet = -1;
   int second = -1;

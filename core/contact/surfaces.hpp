@@ -125,7 +125,8 @@ void share_normal(PointGeometry<T>& geometry, const Vec<T, 2>& slave_normal) {
   Vec<T, 2> mean(geometry.normal[0] - slave_normal[0] / length, geometry.normal[1] - slave_normal[1] / length);
   const T size = norm(mean);
   for (int i = 0; i < 2; ++i) mean[i] /= size;
-  geometry.gap *= mean[0] * geometry.normal[0] + mean[1] * geometry.normal[1];  // the gap vector is along the old normal
+  geometry.gap *=
+      mean[0] * geometry.normal[0] + mean[1] * geometry.normal[1];  // the gap vector is along the old normal
   geometry.normal << mean[0], mean[1];
   geometry.tangents = detail::tangent_frame<T>(geometry.normal);
 }

@@ -27,7 +27,7 @@ struct Mesh {
   int dimension = 2;  ///< of the space the nodes live in
   int node_count = 0;
   ElementShape shape = ElementShape::quad4;
-  std::vector<int> connectivity;     ///< nodes_of(shape) per element; counter-clockwise in 2D
+  std::vector<int> connectivity;  ///< nodes_of(shape) per element; counter-clockwise in 2D
   std::map<std::string, Side> sides;
   int element_count() const { return static_cast<int>(connectivity.size()) / nodes_of(shape); }
 };

@@ -194,10 +194,9 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
       lambda.tangential[a].d[D + 1 + a] = input.rho[p].tangential;
       previous[a] = Probe(input.previous_placement[tangential_offset(input.model, p) + a]);
     }
-    const auto outcome =
-        evaluate_point<Probe, D, Tangents>(geometry, w, lambda, previous, rho,
-                                           Probe(input.slots.friction[point.contact]), input.cone, point.mesh_size,
-                                           &state);
+    const auto outcome = evaluate_point<Probe, D, Tangents>(geometry, w, lambda, previous, rho,
+                                                            Probe(input.slots.friction[point.contact]), input.cone,
+                                                            point.mesh_size, &state);
     const Vec<Probe, D> force = point_force<Probe, D, Tangents>(geometry, outcome.traction);
     PointTangent<T> tangent{Matrix<T>(D, D), Matrix<T>(D, C), Matrix<T>(C, D), Matrix<T>(C, C)};
     for (int i = 0; i < D; ++i) {

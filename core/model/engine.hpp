@@ -131,10 +131,10 @@ class Condensation {
 
  private:
   const Model& model_;
-  std::vector<int> interior_;  ///< free dofs outside the contact
-  std::vector<int> place_;     ///< per dof: index in interior_, or -1
-  Eigen::SparseMatrix<T> stiffness_;          ///< all dofs
-  Eigen::SparseMatrix<T> interior_contact_;   ///< K_ic
+  std::vector<int> interior_;                ///< free dofs outside the contact
+  std::vector<int> place_;                   ///< per dof: index in interior_, or -1
+  Eigen::SparseMatrix<T> stiffness_;         ///< all dofs
+  Eigen::SparseMatrix<T> interior_contact_;  ///< K_ic
   Matrix<T> schur_;
   LinearSolver<T> solver_;
   bool valid_ = true;
@@ -160,7 +160,9 @@ class CondensedEngine {
   double condition_estimate();
   std::string name() const;
   const std::string& message() const { return message_; }
-  int unknowns() const { return static_cast<int>(free_list_.size()) + (unknown_multipliers_ ? model_.multiplier_count : 0); }
+  int unknowns() const {
+    return static_cast<int>(free_list_.size()) + (unknown_multipliers_ ? model_.multiplier_count : 0);
+  }
   long nonzeros() const { return static_cast<long>(unknowns()) * unknowns(); }
 
  private:
@@ -170,9 +172,9 @@ class CondensedEngine {
   std::shared_ptr<Condensation<T>> condensation_;
   std::vector<char> free_;
   std::vector<int> free_list_, free_place_;
-  Vector<T> rest_;      ///< all dofs: prescribed values outside the contact, zero elsewhere
-  Matrix<T> rest_rows_; ///< f_ext - K rest, all dofs
-  Vector<T> load_;      ///< reduced load on the contact dofs
+  Vector<T> rest_;       ///< all dofs: prescribed values outside the contact, zero elsewhere
+  Matrix<T> rest_rows_;  ///< f_ext - K rest, all dofs
+  Vector<T> load_;       ///< reduced load on the contact dofs
   bool symmetric_;
   std::vector<int> active_;  ///< multiplier rows in the factor: those of points that are not open
   Vector<T> open_diagonal_;  ///< of the other multiplier rows

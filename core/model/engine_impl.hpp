@@ -139,8 +139,8 @@ template <class T>
 Vector<T> SparseEngine<T>::residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const {
   Vector<T> rows = bulk_forces(model_, slots_, u);
   const int D = model_.dimension;
-  scale.force = std::max({scale.force, largest_nodal_norm(rows, D), largest_nodal_norm(external_, D),
-                          largest_nodal_norm(contact, D)});
+  scale.force = std::max(
+      {scale.force, largest_nodal_norm(rows, D), largest_nodal_norm(external_, D), largest_nodal_norm(contact, D)});
   scale.rounding = detail::unit_roundoff * stiffness_ * largest_nodal_norm(u, D);
   rows -= external_;
   add_compact(model_, contact, rows);
@@ -331,8 +331,8 @@ template <class T>
 Vector<T> CondensedEngine<T>::residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const {
   const int D = model_.dimension;
   Vector<T> rows = condensation_->schur() * u;
-  scale.force = std::max({scale.force, largest_nodal_norm(rows, D), largest_nodal_norm(load_, D),
-                          largest_nodal_norm(contact, D)});
+  scale.force = std::max(
+      {scale.force, largest_nodal_norm(rows, D), largest_nodal_norm(load_, D), largest_nodal_norm(contact, D)});
   double stiffest = 0;
   for (Eigen::Index i = 0; i < u.size(); ++i) stiffest = std::max(stiffest, value(condensation_->schur()(i, i)));
   scale.rounding = detail::unit_roundoff * stiffest * largest_nodal_norm(u, D);

@@ -2,8 +2,8 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <optional>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "core/contact/search.hpp"
@@ -21,9 +21,8 @@ int body_index(const Scene& scene, const std::string& name) {
 }
 
 bool same_motion(const Table& a, const Table& b) {
-  return std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), [](auto& p, auto& q) {
-    return p.first == q.first && p.second.value == q.second.value;
-  });
+  return std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(),
+                    [](auto& p, auto& q) { return p.first == q.first && p.second.value == q.second.value; });
 }
 
 /// One row of a closed set of constraints: dof -> who prescribes it.
@@ -85,7 +84,8 @@ bool find_master(const Points<double>& points, const SideSet& master, ContactPoi
   const auto& facet = master.facets[closest->facet];
   const Vec<double, 2> tau = points.col(facet[1]).head<2>() - points.col(facet[0]).head<2>();
   const Vec<double, 2> slave_normal = outward_normal(points, point.area_facets);
-  if (point.shares_normal && slave_normal.dot(Vec<double, 2>(tau[1], -tau[0])) >= 0) return false;  // looks the same way
+  if (point.shares_normal && slave_normal.dot(Vec<double, 2>(tau[1], -tau[0])) >= 0)
+    return false;  // looks the same way
   if (closest->second < 0) {
     point.master = ContactPoint::Master::facet;
     point.nodes.insert(point.nodes.end(), {facet[0], facet[1]});
@@ -136,7 +136,8 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
     point.tangents = contact.friction ? model.dimension - 1 : 0;
     if (obstacle >= 0) {
       const bool plane = std::holds_alternative<Plane>(model.scene.obstacles[obstacle].shape);
-      if (!plane && model.dimension == 3) throw ModelError("obstacle " + contact.master + ": a circle needs a 2D space");
+      if (!plane && model.dimension == 3)
+        throw ModelError("obstacle " + contact.master + ": a circle needs a 2D space");
       point.master = plane ? ContactPoint::Master::plane : ContactPoint::Master::circle;
     } else if (!find_master(points, master, point)) {
       continue;
@@ -160,10 +161,9 @@ std::vector<double> step_ends(const Scene& scene) {
   }
   const std::vector<double> regular = ends;
   auto hit = [&](const Table& table) {
-    for (const auto& [t, unused] : table.points) {
-      const double band = 1e-9 * start;
-      const bool there =
-          std::any_of(regular.begin(), regular.end(), [&](double r) { return std::abs(r - t) <= band; });
+    for (const auto& point : table.points) {
+      const double t = point.first, band = 1e-9 * start;
+      const bool there = std::any_of(regular.begin(), regular.end(), [&](double r) { return std::abs(r - t) <= band; });
       if (t > band && t < start && !there) ends.push_back(t);
     }
   };
@@ -309,8 +309,9 @@ Model make_model(const Scene& scene) {
   model.contact_nodes.assign(nodes.begin(), nodes.end());
   for (auto& point : model.points)
     for (int node : point.nodes)
-      point.places.push_back(static_cast<int>(
-          std::lower_bound(model.contact_nodes.begin(), model.contact_nodes.end(), node) - model.contact_nodes.begin()));
+      point.places.push_back(
+          static_cast<int>(std::lower_bound(model.contact_nodes.begin(), model.contact_nodes.end(), node) -
+                           model.contact_nodes.begin()));
   for (const auto& response : scene.responses)
     model.response_places.push_back(locate_response(model, points, response));
   model.times = step_ends(scene);

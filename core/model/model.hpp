@@ -28,18 +28,18 @@ struct BodyMesh {
 struct ContactPoint {
   enum class Master { plane, circle, facet, vertex };
   Master master = Master::plane;
-  int contact = 0;             ///< index in Scene::contacts
-  int obstacle = -1;           ///< index in Scene::obstacles, -1 for a deformable master
-  std::vector<int> nodes;      ///< slave, then master nodes (facet: its two; vertex: the vertex and one neighbour)
-  std::vector<int> places;     ///< of `nodes` in Model::contact_nodes
-  std::vector<int> neighbours; ///< vertex: the vertices before and after it, whose facets share the normal
+  int contact = 0;              ///< index in Scene::contacts
+  int obstacle = -1;            ///< index in Scene::obstacles, -1 for a deformable master
+  std::vector<int> nodes;       ///< slave, then master nodes (facet: its two; vertex: the vertex and one neighbour)
+  std::vector<int> places;      ///< of `nodes` in Model::contact_nodes
+  std::vector<int> neighbours;  ///< vertex: the vertices before and after it, whose facets share the normal
   std::vector<std::pair<int, int>> area_facets;  ///< facets of the slave side at the node; half of each is tributary
   bool area_of_bar = false;    ///< tributary area is the bar's cross-section; with no facets either: 1
   bool shares_normal = false;  ///< deformable continua on both sides: the normal is the bisector of the two
   int slave_body = 0;
-  double mesh_size = 0;        ///< local size of the slave side, 0 for a lumped point
-  int multiplier = 0;          ///< offset of its components in the multiplier vector
-  int tangents = 0;            ///< 0 (frictionless) or D - 1
+  double mesh_size = 0;  ///< local size of the slave side, 0 for a lumped point
+  int multiplier = 0;    ///< offset of its components in the multiplier vector
+  int tangents = 0;      ///< 0 (frictionless) or D - 1
   int components() const { return 1 + tangents; }
 };
 
@@ -56,7 +56,8 @@ struct Effects {
   bool friction = false;
   bool deformable_master = false;
   bool sensitivity = false;
-  bool linear_bulk = true;  ///< the internal forces are linear in the displacements: the tangent of the bodies is constant
+  bool linear_bulk =
+      true;  ///< the internal forces are linear in the displacements: the tangent of the bodies is constant
 };
 
 /// Nodes and facets of a side expression, in the numbering of the model.
@@ -80,12 +81,12 @@ struct Model {
   std::vector<BodyMesh> bodies;
   std::vector<ContactPoint> points;
   int multiplier_count = 0;
-  std::vector<Constraint> constraints;   ///< ascending dof
-  std::vector<int> free_index;           ///< per dof: index among the free ones, or -1
+  std::vector<Constraint> constraints;  ///< ascending dof
+  std::vector<int> free_index;          ///< per dof: index among the free ones, or -1
   std::vector<int> free_dofs;
-  std::vector<int> contact_nodes;        ///< ascending; all nodes of all contact points
+  std::vector<int> contact_nodes;              ///< ascending; all nodes of all contact points
   std::vector<ResponsePlace> response_places;  ///< per response
-  std::vector<double> times;             ///< ends of the increments, breakpoints of every table included
+  std::vector<double> times;                   ///< ends of the increments, breakpoints of every table included
   Effects effects;
 
   int dof_count() const { return dimension * node_count; }

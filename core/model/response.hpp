@@ -38,7 +38,8 @@ T take_of(Response::Take take, const std::vector<T>& samples, const std::vector<
 
 /// Accumulated tangential slip of a point along a component: x y z, or "" for its own tangent (2D).
 template <class T>
-T slip_component(const Model& model, const Slots<T>& slots, const State<T>& state, int p, const std::string& component) {
+T slip_component(const Model& model, const Slots<T>& slots, const State<T>& state, int p,
+                 const std::string& component) {
   const int offset = tangential_offset(model, p);
   if (component.empty()) return state.contact.placement[offset];
   T s{};
@@ -71,8 +72,9 @@ T contact_response(const Model& model, const Slots<T>& slots, const Response& re
       samples.push_back(slip_component(model, slots, state, p, response.component));
     if (response.kind == Kind::contact_force && response.component != "normal")
       force -= with_point(model, point, [&]<int D, int Tangents>() {
-        return point_force<T, D, Tangents>(geometry, gather_traction<T, Tangents>(state.contact.traction,
-                                                                                  point.multiplier))[response.component[0] - 'x'];
+        return point_force<T, D, Tangents>(
+            geometry,
+            gather_traction<T, Tangents>(state.contact.traction, point.multiplier))[response.component[0] - 'x'];
       });
     else
       force += geometry.area * pressure;

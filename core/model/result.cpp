@@ -4,17 +4,28 @@ namespace stickslip {
 
 std::string_view name_of(Status status) {
   switch (status) {
-    case Status::converged: return "converged";
-    case Status::converged_at_roundoff: return "converged_at_roundoff";
-    case Status::cap: return "cap";
-    case Status::cycle: return "cycle";
-    case Status::stagnated: return "stagnated";
-    case Status::infeasible: return "infeasible";
-    case Status::no_equilibrium: return "no_equilibrium";
-    case Status::non_unique: return "non_unique";
-    case Status::singular: return "singular";
-    case Status::inverted_element: return "inverted_element";
-    case Status::not_finite: return "not_finite";
+    case Status::converged:
+      return "converged";
+    case Status::converged_at_roundoff:
+      return "converged_at_roundoff";
+    case Status::cap:
+      return "cap";
+    case Status::cycle:
+      return "cycle";
+    case Status::stagnated:
+      return "stagnated";
+    case Status::infeasible:
+      return "infeasible";
+    case Status::no_equilibrium:
+      return "no_equilibrium";
+    case Status::non_unique:
+      return "non_unique";
+    case Status::singular:
+      return "singular";
+    case Status::inverted_element:
+      return "inverted_element";
+    case Status::not_finite:
+      return "not_finite";
   }
   return "";
 }

@@ -30,8 +30,8 @@ struct Counters {
   long assemblies = 0;
   long factorizations = 0;  ///< numeric, of any matrix: tangents and the condensation's
   long analyses = 0;
-  long backsolves = 0;              ///< right-hand sides solved for the response
-  long sensitivity_backsolves = 0;  ///< right-hand sides solved for derivatives
+  long backsolves = 0;                  ///< right-hand sides solved for the response
+  long sensitivity_backsolves = 0;      ///< right-hand sides solved for derivatives
   long sensitivity_factorizations = 0;  ///< of `factorizations`, those the derivatives asked for
   long newton = 0;
   long augmentations = 0;
@@ -41,12 +41,12 @@ struct Counters {
 
 /// One Newton iteration: the convergence history of result.json.
 struct IterationRecord {
-  double residual = 0;       ///< largest of the three below, each relative to its own scale and tolerance-free
+  double residual = 0;  ///< largest of the three below, each relative to its own scale and tolerance-free
   double equilibrium = 0, normal = 0, tangential = 0;
   int open = 0, stick = 0, slip = 0;
-  int changed = 0;           ///< contact points whose state changed since the previous iteration
-  double step_length = 1;    ///< line search
-  int augmentation = 0;      ///< Uzawa sweep it belongs to
+  int changed = 0;         ///< contact points whose state changed since the previous iteration
+  double step_length = 1;  ///< line search
+  int augmentation = 0;    ///< Uzawa sweep it belongs to
 };
 
 }  // namespace stickslip

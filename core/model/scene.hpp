@@ -1,8 +1,9 @@
 /// Scene: the plain description of one problem, as the user wrote it, before anything is computed from it.
 /// interface.md, section 2, is its contract; studies/scene_reader builds it from JSON.
 ///
-/// Every physical or geometric number is a Number: its value and its slot in `Scene::numbers`. A Numbers<T> gives all of
-/// them in the scalar T, so a parameter, a difference step and a complex step are the same thing: a change of some slots.
+/// Every physical or geometric number is a Number: its value and its slot in `Scene::numbers`. A Numbers<T> gives all
+/// of them in the scalar T, so a parameter, a difference step and a complex step are the same thing: a change of some
+/// slots.
 #pragma once
 
 #include <array>
@@ -133,8 +134,8 @@ struct Obstacle {
 
 struct Contact {
   std::string name;
-  std::string slave;   ///< side expression of a deformable body
-  std::string master;  ///< obstacle name, or side expression of a deformable body
+  std::string slave;               ///< side expression of a deformable body
+  std::string master;              ///< obstacle name, or side expression of a deformable body
   std::optional<Number> friction;  ///< none: frictionless, no tangential unknowns or code path
   Number offset = 0.0;             ///< added to the geometric gap
 };
@@ -149,23 +150,31 @@ struct Load {
   enum class Kind { traction, force };
   std::string on;
   Kind kind = Kind::traction;
-  std::vector<Number> vector;      ///< traction: per area (per length on a bar); force: total, shared by tributary area
-  std::optional<Table> history;    ///< factor in time; none: 1 from the first step on
+  std::vector<Number> vector;    ///< traction: per area (per length on a bar); force: total, shared by tributary area
+  std::optional<Table> history;  ///< factor in time; none: 1 from the first step on
 };
 
 // --- what is asked -----------------------------------------------------------------------------------------------
 
 struct Response {
   enum class Kind {
-    reaction, contact_force, displacement, contact_pressure, gap, slip, dissipation, strain_energy, contact_half_width
+    reaction,
+    contact_force,
+    displacement,
+    contact_pressure,
+    gap,
+    slip,
+    dissipation,
+    strain_energy,
+    contact_half_width
   };
   enum class Take { mean, max, min };
   std::string name;
   Kind kind = Kind::displacement;
-  std::string on;                 ///< side expression, or contact name, as the kind asks
-  std::string component;          ///< x y z normal
+  std::string on;         ///< side expression, or contact name, as the kind asks
+  std::string component;  ///< x y z normal
   Take take = Take::mean;
-  std::vector<Number> at;         ///< point of the initial configuration instead of `on`
+  std::vector<Number> at;  ///< point of the initial configuration instead of `on`
 };
 
 /// A parameter: weights on slots; its derivative is the sum of weight * d/d(slot).
@@ -196,8 +205,8 @@ struct Scene {
   std::vector<Response> responses;
   std::vector<Parameter> parameters;
 
-  std::vector<double> numbers;         ///< value of each slot
-  std::vector<std::string> pointers;   ///< JSON pointer of each slot
+  std::vector<double> numbers;        ///< value of each slot
+  std::vector<std::string> pointers;  ///< JSON pointer of each slot
 
   int dimension() const;  ///< 2, or 3 for Space::solid
 

@@ -1,5 +1,6 @@
-/// Slots: every number a residual reads, in the scalar T: nodal coordinates, material numbers, initial contact geometry,
-/// friction, loads. double for the solver, Dual<N> for dslots/dparameters (the pseudo-loads), complex for the oracle.
+/// Slots: every number a residual reads, in the scalar T: nodal coordinates, material numbers, initial contact
+/// geometry, friction, loads. double for the solver, Dual<N> for dslots/dparameters (the pseudo-loads), complex for the
+/// oracle.
 #pragma once
 
 #include <variant>
@@ -30,12 +31,12 @@ using Law = std::variant<LinearElasticLaw<T>, BarLaw<T>, SpringLaw<T>>;
 template <class T>
 struct Slots {
   Numbers<T> numbers;
-  Points<T> points;                         ///< D x nodes
-  std::vector<Law<T>> laws;                 ///< per body
-  std::vector<PointGeometry<T>> geometry;   ///< per contact point
-  std::vector<T> stiffness;                 ///< per contact point: local nodal stiffness k_i (force per length)
-  std::vector<T> friction;                  ///< per contact; zero, and unread, where frictionless
-  std::vector<Vector<T>> loads;             ///< per load: nodal forces at history = 1
+  Points<T> points;                        ///< D x nodes
+  std::vector<Law<T>> laws;                ///< per body
+  std::vector<PointGeometry<T>> geometry;  ///< per contact point
+  std::vector<T> stiffness;                ///< per contact point: local nodal stiffness k_i (force per length)
+  std::vector<T> friction;                 ///< per contact; zero, and unread, where frictionless
+  std::vector<Vector<T>> loads;            ///< per load: nodal forces at history = 1
 };
 
 namespace detail {

@@ -11,7 +11,8 @@
 namespace stickslip {
 
 /// Local unknowns of all contact points. Normal quantities: one per point; tangential ones: `tangents` per point at
-/// tangential_offset(); tractions: 1 + tangents per point at ContactPoint::multiplier. Frictionless: nothing tangential.
+/// tangential_offset(); tractions: 1 + tangents per point at ContactPoint::multiplier. Frictionless: nothing
+/// tangential.
 template <class T>
 struct ContactField {
   std::vector<ContactState> state;
@@ -29,7 +30,7 @@ struct State {
   Vector<T> displacement;  ///< all dofs
   Vector<T> multiplier;    ///< lambda as the increment's last equilibrium used it, laid out as traction
   ContactField<T> contact;
-  Vector<T> dissipation;   ///< frictional work since the start, per contact; empty without friction
+  Vector<T> dissipation;  ///< frictional work since the start, per contact; empty without friction
 };
 
 /// Uzawa: the equilibrium after one augmentation; kept only where the truncated sensitivity asks for it.
@@ -48,7 +49,7 @@ struct Increment {
   State<T> state;
   std::vector<double> rho_factor;  ///< adaption of the regularisation, per contact point
   int newton = 0, augmentations = 0, cutbacks = 0;
-  double contraction = 0;          ///< Uzawa: last measured ratio of multiplier updates; 0 if not measured
+  double contraction = 0;  ///< Uzawa: last measured ratio of multiplier updates; 0 if not measured
   std::vector<IterationRecord> history;
   std::vector<AugmentedState<T>> sweeps;
 };
@@ -66,7 +67,7 @@ struct Trajectory {
   std::vector<Increment<T>> increments;
   Counters counters;
   Seconds seconds;
-  std::string engine;      ///< "sparse, MUMPS ..." or "condensed, ..."
+  std::string engine;        ///< "sparse, MUMPS ..." or "condensed, ..."
   int reduced_unknowns = 0;  ///< size of the systems Newton solved
   /// Ends of all increments, sub-steps included: replaying them repeats the discrete path.
   std::vector<double> step_table() const {

@@ -68,7 +68,7 @@ Mat<T, Shape::dimension * Shape::nodes> element_tangent(const Law& law,
   constexpr int D = Shape::dimension, n = Shape::nodes;
   using Probe = Dual<D * D, T>;
   static const auto quadrature = Shape::quadrature();
-  Mat<T, D * n> K = Mat<T, D * n>::Zero();
+  Mat<T, D* n> K = Mat<T, D * n>::Zero();
   for (const auto& point : quadrature) {
     const Gradient<T, Shape> gradient(point, coordinates);
     const Mat<T, D> H = gradient.of(u);

@@ -12,8 +12,8 @@ struct Tri3 {
   static constexpr int nodes = 3, dimension = 2, points = 1;
   struct Point {
     double weight;
-    Mat<double, 2, 3> gradient;       ///< dN_a/dxi, one column a node
-    Eigen::Vector3d value;            ///< N_a
+    Mat<double, 2, 3> gradient;  ///< dN_a/dxi, one column a node
+    Eigen::Vector3d value;       ///< N_a
   };
   static std::array<Point, points> quadrature() {
     Mat<double, 2, 3> g;

@@ -1,5 +1,5 @@
-/// A1 to A3: one point, closed forms of the solution, of each method's own error and of its derivatives, for the printed
-/// parameters and for others.
+/// A1 to A3: one point, closed forms of the solution, of each method's own error and of its derivatives, for the
+/// printed parameters and for others.
 #include <gtest/gtest.h>
 
 #include "tests/support/scenes.hpp"
@@ -67,7 +67,8 @@ TEST_P(Stop, UzawaIteratesAndTruncatedDerivativesFollowTheGeometricSeries) {
     expect_close(s.value("u") - g0, lambda * std::pow(theta, i - 1) / (k + rho), g0, "penetration_i");
     expect_close(s.derivative("press", "F"), 1 - left, 0, "dlambda_i/dF");
     expect_close(s.derivative("press", "k"),
-                 -g0 * (1 - left) - lambda * i * std::pow(theta, i - 1) * rho / ((k + rho) * (k + rho)), 0, "dlambda_i/dk");
+                 -g0 * (1 - left) - lambda * i * std::pow(theta, i - 1) * rho / ((k + rho) * (k + rho)), 0,
+                 "dlambda_i/dk");
     expect_close(s.derivative("press", "g0"), -k * (1 - left), 0, "dlambda_i/dg0");
   }
 }

@@ -1,8 +1,9 @@
 /// Every scheme against the complex step of the whole program, and the properties that no scheme may miss.
+#include "tests/support/oracle.hpp"
+
 #include <gtest/gtest.h>
 
 #include "sensitivity/gradcheck.hpp"
-#include "tests/support/oracle.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace stickslip {
@@ -58,7 +59,8 @@ TEST(Oracle, MonolithicSchemeIsExact) {
 TEST(Oracle, MonolithicSchemeIsExactForTheOtherCone) {
   MonolithicAL method;
   method.cone = MonolithicAL::Cone::multiplier;
-  for (const auto& scene : {scenes::greco_plate(8), scenes::two_boxes(6, 9)}) EXPECT_LE(worst_error(scene, method), rounding);
+  for (const auto& scene : {scenes::greco_plate(8), scenes::two_boxes(6, 9)})
+    EXPECT_LE(worst_error(scene, method), rounding);
 }
 
 TEST(Oracle, PenaltySchemeIsExactForThePenalisedProblem) {

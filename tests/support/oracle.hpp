@@ -12,8 +12,10 @@ namespace stickslip::oracle {
 
 using Complex = std::complex<double>;
 
-/// Derivatives of all responses with respect to parameter j at every increment of a replayed run: responses x increments.
-inline Matrix<double> complex_step(const Model& model, const Method& method, const std::vector<double>& step_table, int j) {
+/// Derivatives of all responses with respect to parameter j at every increment of a replayed run: responses x
+/// increments.
+inline Matrix<double> complex_step(const Model& model, const Method& method, const std::vector<double>& step_table,
+                                   int j) {
   constexpr double h = 1e-30;
   auto numbers = model.scene.as<Complex>();
   for (const auto& [slot, weight] : model.scene.parameters[j].slots) numbers.at_slot[slot] += Complex(0, h * weight);

@@ -1,5 +1,5 @@
-/// Small scenes written in C++, shared by the tests: what interface.md's files say, without the files. Every number that
-/// a test differentiates has a slot.
+/// Small scenes written in C++, shared by the tests: what interface.md's files say, without the files. Every number
+/// that a test differentiates has a slot.
 #pragma once
 
 #include <cmath>
@@ -21,8 +21,8 @@ inline Number parameter(Scene& scene, const std::string& name, double value) {
   return {value, slot};
 }
 
-inline Response response(const std::string& name, Response::Kind kind, const std::string& on, const std::string& component = "",
-                         Response::Take take = Response::Take::mean) {
+inline Response response(const std::string& name, Response::Kind kind, const std::string& on,
+                         const std::string& component = "", Response::Take take = Response::Take::mean) {
   Response r;
   r.name = name;
   r.kind = kind;
@@ -166,7 +166,8 @@ inline Scene two_boxes(int slave, int master, const std::string& element = "Q4",
   lower.min = {0.0, 0.0};
   lower.max = {2.0, 1.0};
   lower.cells = {master, 4};
-  s.bodies = {{"upper", upper, LinearElastic{E, 0.3}, element, 1.0}, {"lower", lower, LinearElastic{1500.0, 0.2}, element, 1.0}};
+  s.bodies = {{"upper", upper, LinearElastic{E, 0.3}, element, 1.0},
+              {"lower", lower, LinearElastic{1500.0, 0.2}, element, 1.0}};
   s.contacts = {contact("touch", "upper.bottom", "lower.top")};
   s.contacts[0].friction = friction;
   s.contacts[0].offset = offset;
