@@ -58,15 +58,20 @@ struct Extrapolated {
 };
 
 Extrapolated extrapolate(const Differences& differences, Eigen::Index i, Eigen::Index n, double rounding) {
-  Extrapolated best;
+  std::vector<double> values;  // the h^2 term taken away from each pair of neighbouring steps
   for (std::size_t k = 0; k + 1 < differences.step.size(); ++k) {
     const double ratio = differences.step[k] / differences.step[k + 1], r2 = ratio * ratio;
-    const double coarse = differences.values[k](i, n), fine = differences.values[k + 1](i, n);
-    const double value = (r2 * fine - coarse) / (r2 - 1);
-    // the h^2 term that the extrapolation took away bounds what it left
-    const double truncation = std::abs(value - fine);
-    const double estimate = truncation + rounding / differences.step[k + 1];
-    if (estimate < best.estimate) best = {value, estimate, differences.step[k + 1]};
+    values.push_back((r2 * differences.values[k + 1](i, n) - differences.values[k](i, n)) / (r2 - 1));
+  }
+  Extrapolated best;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    // what truncation (large steps) and the solver's noise (small ones) leave shows in the distance to the neighbours;
+    // a pair without neighbours has only the term it took away to tell
+    double spread = values.size() == 1 ? std::abs(values[k] - differences.values[k + 1](i, n)) : 0;
+    if (k > 0) spread = std::max(spread, std::abs(values[k] - values[k - 1]));
+    if (k + 1 < values.size()) spread = std::max(spread, std::abs(values[k] - values[k + 1]));
+    const double estimate = spread + rounding / differences.step[k + 1];
+    if (estimate < best.estimate) best = {values[k], estimate, differences.step[k + 1]};
   }
   return best;
 }

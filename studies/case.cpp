@@ -188,6 +188,23 @@ json steps_json(const CaseResult& result) {
   return steps;
 }
 
+json regularisation_json(const CaseResult& result) {
+  const auto& slots = result.problem->slots;
+  const auto initial = std::visit([&](const auto& m) { return initial_regularisation(slots, m); }, result.method);
+  const auto last = result.trajectory.increments.empty() ? std::vector<double>{}
+                                                         : result.trajectory.increments.back().rho_factor;
+  const auto used = adapted(initial, last);
+  double low = 0, high = 0, low_multiple = 0, high_multiple = 0;
+  for (std::size_t p = 0; p < used.size(); ++p) {
+    const double rho = used[p].normal, multiple = rho * slots.geometry[p].area / slots.stiffness[p];
+    low = p == 0 ? rho : std::min(low, rho);
+    high = std::max(high, rho);
+    low_multiple = p == 0 ? multiple : std::min(low_multiple, multiple);
+    high_multiple = std::max(high_multiple, multiple);
+  }
+  return {{"absolute", {{"min", low}, {"max", high}}}, {"multiple", {{"min", low_multiple}, {"max", high_multiple}}}};
+}
+
 json interface_json(const CaseResult& result) {
   json contacts = json::object();
   if (result.steps.empty()) return contacts;
@@ -231,6 +248,7 @@ json result_json(const CaseResult& result, const std::string& scene_text) {
   out["stickslip"] = version::number;
   out["scene"] = {{"title", model.scene.title}, {"hash", fingerprint(scene_text)}};
   out["method"] = to_json(result.method);
+  out["regularisation"] = regularisation_json(result);
   out["status"] = name_of(result.status());
   out["message"] = result.message();
   out["effects"] = {{"friction", effects.friction},

@@ -30,6 +30,13 @@ struct Loaded {
   std::shared_ptr<const Problem> problem;
 };
 
+/// A fault of the scene as a whole, with the place of the entry it is about.
+Diagnostic located(const ModelError& error, const std::string& file) {
+  Diagnostics unused;
+  const auto document = JsonDocument::read(file, unused);
+  return {document ? document->place(error.pointer) : Place{file}, error.pointer, error.what()};
+}
+
 std::optional<Loaded> load(const RunArguments& arguments) {
   Diagnostics diagnostics;
   auto input = read_scene(arguments.scene, arguments.overrides, arguments.method, diagnostics);
@@ -42,7 +49,7 @@ std::optional<Loaded> load(const RunArguments& arguments) {
     auto problem = std::make_shared<const Problem>(input->scene);
     return Loaded{std::move(*input), problem};
   } catch (const ModelError& error) {
-    std::cerr << arguments.scene << ": " << error.what() << '\n';
+    std::cerr << located(error, arguments.scene).text() << '\n';
     return std::nullopt;
   }
 }

@@ -104,7 +104,7 @@ json row_of(const Study& study, const CellInput& cell, Variant& variant, MeshFil
   }
   json row = {{"id", cell.id},
               {"label", cell.label},
-              {"method", to_json(input.method)},
+              {"method", to_json(input.method)}, {"regularisation", regularisation_json(result)},
               {"knobs", cell.knobs},
               {"vary", cell.vary},
               {"refine", cell.refine},
@@ -176,11 +176,16 @@ int study_command(const StudyArguments& arguments) {
     std::cerr << diagnostics.text();
     return bad_input;
   }
-  try {
-    for (const auto& cell : cells) problem_of(input_of(cell, meshes));
-  } catch (const ModelError& error) {
-    std::cerr << arguments.study << ": " << error.what() << '\n';
-    return bad_input;
+  std::string checked;  // every variant becomes a model before anything is written
+  for (const auto& cell : cells) {
+    if (variant_key(cell) == checked) continue;
+    checked = variant_key(cell);
+    try {
+      problem_of(input_of(cell, meshes));
+    } catch (const ModelError& error) {
+      std::cerr << Diagnostic{cell.document.place(error.pointer), error.pointer, error.what()}.text() << '\n';
+      return bad_input;
+    }
   }
   std::filesystem::path stem = std::filesystem::path(arguments.study).stem();
   if (stem.extension() == ".study") stem = stem.stem();
@@ -190,7 +195,7 @@ int study_command(const StudyArguments& arguments) {
   if (!arguments.resume) std::filesystem::remove(rows);
   const auto finished = finished_cells(rows);
   json analytic = nullptr, picture = nullptr;
-  int failed = 0;
+  int run = 0, failed = 0;  // of this call; with --resume those of earlier ones stand in the report
   Variant variant;
   {
     Progress progress(std::cerr, progress_style_of_stderr(), "cells", static_cast<long>(cells.size()));
@@ -199,6 +204,7 @@ int study_command(const StudyArguments& arguments) {
         progress.advance();
         continue;
       }
+      ++run;
       if (variant.key != variant_key(cell)) variant = make_variant(*study, cell, meshes);
       const json row = row_of(*study, cell, variant, meshes, analytic);
       append_line(rows, row.dump());
@@ -219,7 +225,8 @@ int study_command(const StudyArguments& arguments) {
     write_file_atomically(directory / "study.json",
                           description(*study, arguments, cells.back(), variant, analytic, meshes).dump(2) + "\n");
   write_report(directory);
-  fmt::print("{} cells, {} of them without a converged result (kept as rows)\nreport: {}\n", cells.size(), failed,
+  fmt::print("{} cells, {} run now, {} of these without a converged result (kept as rows)\nreport: {}\n", cells.size(),
+             run, failed,
              (directory / "report.html").string());
   return done;
 }

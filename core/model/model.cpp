@@ -29,15 +29,15 @@ bool same_motion(const Table& a, const Table& b) {
 void prescribe(Model& model, std::map<int, Constraint>& by_dof, int support, const SideSet& side) {
   for (const auto& [axis, table] : model.scene.supports[support].move) {
     const int component = axis - 'x';
-    if (component < 0 || component >= model.dimension) throw ModelError(std::string("a support moves along ") + axis);
+    if (component < 0 || component >= model.dimension) throw ModelError(std::string("there is no axis ") + axis + " in this space", "/supports/" + std::to_string(support));
     for (int node : side.nodes) {
       const int dof = node * model.dimension + component;
       const auto found = by_dof.find(dof);
       if (found != by_dof.end() && found->second.support >= 0) {  // a corner shared by two supports
         const auto& other = model.scene.supports[found->second.support];
         if (same_motion(other.move.at(axis), table)) continue;
-        throw ModelError("supports on " + other.on + " and on " + model.scene.supports[support].on +
-                         " move a node they share differently along " + axis);
+        throw ModelError("moves a node that " + other.on + " has too differently from the support there, along " + axis,
+                         "/supports/" + std::to_string(support) + "/move/" + axis);
       }
       by_dof[dof] = {dof, support, axis};
     }
@@ -118,8 +118,8 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
   SideSet master;
   if (obstacle < 0) {
     master = model.side(contact.master);
-    if (model.dimension == 3) throw ModelError("contact " + contact.name + ": a deformable master needs a 2D space");
-    if (master.facets.empty()) throw ModelError("contact " + contact.name + ": the master side has no facets");
+    if (model.dimension == 3) throw ModelError("a deformable master needs a 2D space", "/contacts/" + contact.name);
+    if (master.facets.empty()) throw ModelError("the master side has no facets", "/contacts/" + contact.name);
   }
   const auto& mesh = model.bodies[slave.body].mesh;
   for (int node : slave.nodes) {
@@ -137,7 +137,7 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
     if (obstacle >= 0) {
       const bool plane = std::holds_alternative<Plane>(model.scene.obstacles[obstacle].shape);
       if (!plane && model.dimension == 3)
-        throw ModelError("obstacle " + contact.master + ": a circle needs a 2D space");
+        throw ModelError("a circle needs a 2D space", "/obstacles/" + contact.master);
       point.master = plane ? ContactPoint::Master::plane : ContactPoint::Master::circle;
     } else if (!find_master(points, master, point)) {
       continue;
@@ -246,7 +246,7 @@ ResponsePlace locate_response(const Model& model, const Points<double>& points, 
         }
       }
     }
-    throw ModelError("response " + response.name + ": no element holds the point of `at`");
+    throw ModelError("no element holds the point of `at`", "/responses/" + response.name);
   }
   const int contact = model.contact_index(response.on);
   double nearest = INFINITY;
@@ -257,7 +257,7 @@ ResponsePlace locate_response(const Model& model, const Points<double>& points, 
       place.contact_point = static_cast<int>(p);
     }
   }
-  if (place.contact_point < 0) throw ModelError("response " + response.name + ": the contact has no point");
+  if (place.contact_point < 0) throw ModelError("no slave node of the contact faces its master", "/responses/" + response.name);
   return place;
 }
 
@@ -293,7 +293,7 @@ Model make_model(const Scene& scene) {
   model.dimension = scene.dimension();
   for (const auto& body : scene.bodies) {
     const std::string fault = mesh_fault(body.mesh, body.element, model.dimension);
-    if (!fault.empty()) throw ModelError("body " + body.name + ": " + fault);
+    if (!fault.empty()) throw ModelError(fault, "/bodies/" + body.name + "/mesh");
     model.bodies.push_back({make_mesh(body.mesh, body.element, model.dimension), model.node_count});
     model.node_count += model.bodies.back().mesh.node_count;
   }

@@ -13,9 +13,12 @@
 
 namespace stickslip {
 
-/// A scene that cannot become a model; what() says why in the user's words.
+/// A scene that cannot become a model; what() says why in the user's words, `pointer` which entry of the scene it is
+/// about, as a JSON pointer ("" where it is about none).
 struct ModelError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+  explicit ModelError(const std::string& message, std::string where = "")
+      : std::runtime_error(message), pointer(std::move(where)) {}
+  std::string pointer;
 };
 
 /// Mesh of a body with its place in the numbering of all nodes.
