@@ -1,6 +1,6 @@
-/// One increment of the GRECO plate by each method, engine and backend: seconds per Newton iteration, of them the numeric
-/// factorisation; and one sensitivity sweep. `iteration_over_factorisation` is what an iteration costs beside the factor
-/// it cannot do without.
+/// One increment of the GRECO plate by each method, engine and backend: seconds per Newton iteration, of them the
+/// numeric factorisation; and one sensitivity sweep. `iteration_over_factorisation` is what an iteration costs beside
+/// the factor it cannot do without.
 #include <benchmark/benchmark.h>
 
 #include "sensitivity/differentiate.hpp"
@@ -53,15 +53,24 @@ void sensitivity(benchmark::State& state, const Method& method) {
 
 using Engine = LinearAlgebra::Engine;
 BENCHMARK_CAPTURE(increment, monolithic_sparse_mumps, MonolithicAL{}, Engine::sparse, Backend::mumps)
-    ->Arg(100)->Arg(224)->Unit(benchmark::kMillisecond);
+    ->Arg(100)
+    ->Arg(224)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(increment, monolithic_sparse_umfpack, MonolithicAL{}, Engine::sparse, Backend::umfpack)
-    ->Arg(100)->Arg(224)->Unit(benchmark::kMillisecond);
+    ->Arg(100)
+    ->Arg(224)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(increment, monolithic_condensed, MonolithicAL{}, Engine::condensed, Backend::automatic)
-    ->Arg(100)->Arg(224)->Unit(benchmark::kMillisecond);
+    ->Arg(100)
+    ->Arg(224)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(increment, penalty_sparse_mumps, Penalty{}, Engine::sparse, Backend::mumps)
-    ->Arg(100)->Arg(224)->Unit(benchmark::kMillisecond);
+    ->Arg(100)
+    ->Arg(224)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(increment, uzawa_condensed, UzawaAL{}, Engine::condensed, Backend::automatic)
-    ->Arg(100)->Unit(benchmark::kMillisecond);
+    ->Arg(100)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(sensitivity, penalty, Penalty{})->Arg(100)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(sensitivity, uzawa, UzawaAL{})->Arg(100)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(sensitivity, monolithic, MonolithicAL{})->Arg(100)->Unit(benchmark::kMillisecond);

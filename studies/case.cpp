@@ -191,8 +191,8 @@ json steps_json(const CaseResult& result) {
 json regularisation_json(const CaseResult& result) {
   const auto& slots = result.problem->slots;
   const auto initial = std::visit([&](const auto& m) { return initial_regularisation(slots, m); }, result.method);
-  const auto last = result.trajectory.increments.empty() ? std::vector<double>{}
-                                                         : result.trajectory.increments.back().rho_factor;
+  const auto last =
+      result.trajectory.increments.empty() ? std::vector<double>{} : result.trajectory.increments.back().rho_factor;
   const auto used = adapted(initial, last);
   double low = 0, high = 0, low_multiple = 0, high_multiple = 0;
   for (std::size_t p = 0; p < used.size(); ++p) {

@@ -104,7 +104,8 @@ json row_of(const Study& study, const CellInput& cell, Variant& variant, MeshFil
   }
   json row = {{"id", cell.id},
               {"label", cell.label},
-              {"method", to_json(input.method)}, {"regularisation", regularisation_json(result)},
+              {"method", to_json(input.method)},
+              {"regularisation", regularisation_json(result)},
               {"knobs", cell.knobs},
               {"vary", cell.vary},
               {"refine", cell.refine},
@@ -226,8 +227,7 @@ int study_command(const StudyArguments& arguments) {
                           description(*study, arguments, cells.back(), variant, analytic, meshes).dump(2) + "\n");
   write_report(directory);
   fmt::print("{} cells, {} run now, {} of these without a converged result (kept as rows)\nreport: {}\n", cells.size(),
-             run, failed,
-             (directory / "report.html").string());
+             run, failed, (directory / "report.html").string());
   return done;
 }
 

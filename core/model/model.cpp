@@ -29,7 +29,9 @@ bool same_motion(const Table& a, const Table& b) {
 void prescribe(Model& model, std::map<int, Constraint>& by_dof, int support, const SideSet& side) {
   for (const auto& [axis, table] : model.scene.supports[support].move) {
     const int component = axis - 'x';
-    if (component < 0 || component >= model.dimension) throw ModelError(std::string("there is no axis ") + axis + " in this space", "/supports/" + std::to_string(support));
+    if (component < 0 || component >= model.dimension)
+      throw ModelError(std::string("there is no axis ") + axis + " in this space",
+                       "/supports/" + std::to_string(support));
     for (int node : side.nodes) {
       const int dof = node * model.dimension + component;
       const auto found = by_dof.find(dof);
@@ -136,8 +138,7 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
     point.tangents = contact.friction ? model.dimension - 1 : 0;
     if (obstacle >= 0) {
       const bool plane = std::holds_alternative<Plane>(model.scene.obstacles[obstacle].shape);
-      if (!plane && model.dimension == 3)
-        throw ModelError("a circle needs a 2D space", "/obstacles/" + contact.master);
+      if (!plane && model.dimension == 3) throw ModelError("a circle needs a 2D space", "/obstacles/" + contact.master);
       point.master = plane ? ContactPoint::Master::plane : ContactPoint::Master::circle;
     } else if (!find_master(points, master, point)) {
       continue;
@@ -257,7 +258,8 @@ ResponsePlace locate_response(const Model& model, const Points<double>& points, 
       place.contact_point = static_cast<int>(p);
     }
   }
-  if (place.contact_point < 0) throw ModelError("no slave node of the contact faces its master", "/responses/" + response.name);
+  if (place.contact_point < 0)
+    throw ModelError("no slave node of the contact faces its master", "/responses/" + response.name);
   return place;
 }
 

@@ -52,7 +52,7 @@
   function logTicks(low, high) {
     const step = Math.max(1, Math.ceil((high - low) / 9)), ticks = [];
     for (let e = Math.floor(low / step) * step; e <= high + step; e += step)
-      for (const m of high - low < 3 ? [1, 2, 5] : [1]) ticks.push(m * 10 ** e);
+      for (const m of high - low < 2 ? [1, 1.5, 2, 3, 4, 5, 7] : high - low < 3 ? [1, 2, 5] : [1]) ticks.push(m * 10 ** e);
     return ticks;
   }
 

@@ -47,8 +47,9 @@ class Axis {
       const double step = std::max(1.0, std::ceil((high_ - low_) / 7));
       for (double e = std::ceil(low_ / step) * step; e <= high_; e += step) out.push_back(std::pow(10, e));
     } else if (log_) {
+      const bool narrow = high_ - low_ < 0.8;  // less than a decade: two or three of 1 2 5 would be all
       for (double e = std::floor(low_); e <= high_; ++e)
-        for (const double m : {1, 2, 5})
+        for (const double m : narrow ? std::vector<double>{1, 1.5, 2, 3, 4, 5, 7} : std::vector<double>{1, 2, 5})
           if (const double v = m * std::pow(10, e); scaled(v) >= low_ && scaled(v) <= high_) out.push_back(v);
     } else {
       double step = std::pow(10, std::floor(std::log10((high_ - low_) / 5)));

@@ -1,0 +1,75 @@
+/// Step cutting: what fails is cut, what was cut is remembered, and what is given up leaves no trace.
+#include <gtest/gtest.h>
+
+#include "tests/support/scenes.hpp"
+
+namespace stickslip {
+namespace {
+
+using scenes::run;
+
+MonolithicAL limited(int max_iterations) {
+  MonolithicAL method;
+  method.newton.max_iterations = max_iterations;
+  return method;
+}
+
+/// One step a leg: the slip front crosses the whole interface in it.
+Scene abrupt() {
+  Scene scene = scenes::two_boxes(48, 72);
+  scene.legs = {{3, 3}};
+  return scene;
+}
+
+TEST(Stepping, CutsAnIncrementThatDoesNotConvergeAndReachesTheEnd) {
+  const auto s = run(abrupt(), limited(6));
+  ASSERT_TRUE(is_converged(s.trajectory.status)) << s.trajectory.message;
+  EXPECT_GT(s.trajectory.counters.cutbacks, 0);
+  double before = 0;
+  int requested = 0;
+  for (const auto& increment : s.trajectory.increments) {
+    EXPECT_GT(increment.time, before);
+    before = increment.time;
+    requested += increment.requested;
+    const Vector<double> balance = nodal_balance(s.model, s.slots, increment.state, increment.time);
+    for (int dof : s.model.free_dofs)
+      // the method's tolerance of 1e-11 of forces of order 1, with room for the scale of the largest increment
+      EXPECT_NEAR(balance[dof], 0, 1e-9) << increment.time;
+  }
+  EXPECT_EQ(requested, static_cast<int>(s.model.times.size()));
+  EXPECT_EQ(before, s.model.times.back());
+}
+
+TEST(Stepping, ReplayOfTheStepTableGivesTheSameBits) {
+  const auto scene = abrupt();
+  const auto first = run(scene, limited(6));
+  RunOptions replay;
+  replay.replay = first.trajectory.step_table();
+  const auto again = run(scene, limited(50), replay);
+  ASSERT_EQ(again.trajectory.increments.size(), first.trajectory.increments.size());
+  for (std::size_t n = 0; n < first.trajectory.increments.size(); ++n) {
+    EXPECT_EQ(again.trajectory.increments[n].requested, first.trajectory.increments[n].requested);
+    EXPECT_EQ(again.trajectory.increments[n].state.contact.state, first.trajectory.increments[n].state.contact.state);
+  }
+}
+
+TEST(Stepping, GivesUpWithTheStatusAndKeepsWhatWasReached) {
+  // from one step to the next the front advances by more than one Newton step can follow, however small the increment
+  const auto s = run(scenes::greco_plate(8), limited(1));
+  EXPECT_EQ(s.trajectory.status, Status::cap);
+  ASSERT_EQ(s.trajectory.increments.size(), 1u) << "sub-steps of a step that was given up are rolled back";
+  EXPECT_TRUE(s.trajectory.increments.back().requested);
+  EXPECT_EQ(s.trajectory.increments.back().time, 1);
+  EXPECT_GT(s.trajectory.increments.back().cutbacks, 0);
+}
+
+TEST(Stepping, BreakpointsOfEveryTableAreHit) {
+  auto scene = scenes::slider({{0, 0}, {0.37, 0.1}, {1, -0.1}}, 4);
+  const auto s = run(scene, MonolithicAL{});
+  const std::vector<double> expected{0.25, 0.37, 0.5, 0.75, 1};
+  ASSERT_EQ(s.trajectory.increments.size(), expected.size());
+  for (std::size_t n = 0; n < expected.size(); ++n) EXPECT_DOUBLE_EQ(s.trajectory.increments[n].time, expected[n]);
+}
+
+}  // namespace
+}  // namespace stickslip
