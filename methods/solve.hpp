@@ -3,6 +3,8 @@
 /// is its use in double.
 #pragma once
 
+#include <functional>
+
 #include "methods/monolithic.hpp"
 #include "methods/penalty.hpp"
 #include "methods/uzawa.hpp"
@@ -13,7 +15,8 @@ namespace stickslip {
 struct RunOptions {
   LinearAlgebra linear_algebra;
   Backend backend = Backend::automatic;
-  std::vector<double> replay;  ///< ends of the increments to repeat, without cutting; empty: the model's own steps
+  std::vector<double> replay;     ///< ends of the increments to repeat, without cutting; empty: the model's own steps
+  std::function<void()> on_step;  ///< called after each requested step; may be empty
 };
 
 namespace detail {
@@ -81,6 +84,7 @@ void march(const M& method, const Model& model, const Slots<T>& slots, E& engine
         trajectory.message = last.message;
       }
     }
+    if (options.on_step) options.on_step();
     if (!reached) break;
   }
   if (!options.replay.empty())

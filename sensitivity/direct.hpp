@@ -57,6 +57,15 @@ inline void add_derivatives(Vector<Direction>& v, const Matrix<double>& columns,
     for (Eigen::Index i = 0; i < v.size(); ++i) v[i].d[d] += columns(i, block * directions + d);
 }
 
+/// rho of a method with its derivatives, per block; `factor`: adaption, empty for none.
+template <class M, class E>
+std::vector<RegularisationField<Direction>> regularisation_blocks(const M& method, const Differentiation<E>& problem,
+                                                                  const std::vector<double>& factor = {}) {
+  std::vector<RegularisationField<Direction>> rho;
+  for (const auto& block : problem.blocks) rho.push_back(adapted(initial_regularisation(block.slots, method), factor));
+  return rho;
+}
+
 /// One equilibrium with its derivative problem: factorised tangent and the bodies' part of the pseudo-load, which do
 /// not change while D lambda is iterated.
 template <class E>

@@ -12,14 +12,9 @@ template <class E>
 bool differentiate_increment(const MonolithicAL& method, Differentiation<E>& problem, const State<double>& previous,
                              const Increment<double>& increment) {
   const auto rho = initial_regularisation(problem.slots, method);
-  std::vector<RegularisationField<Direction>> rho_blocks;
-  std::vector<Vector<Direction>> lambda;
-  for (auto& block : problem.blocks) {
-    rho_blocks.push_back(initial_regularisation(block.slots, method));
-    lambda.push_back(lift(increment.state.multiplier));
-  }
-  LinearisedEquilibrium<E> linearised(problem, increment.state, rho, std::move(rho_blocks), cone_radius(method),
-                                      increment.time, true, previous.contact.placement);
+  std::vector<Vector<Direction>> lambda(problem.blocks.size(), lift(increment.state.multiplier));
+  LinearisedEquilibrium<E> linearised(problem, increment.state, rho, regularisation_blocks(method, problem),
+                                      cone_radius(method), increment.time, true, previous.contact.placement);
   if (!linearised.valid()) return false;
   const auto fields = linearised.solve(lambda);
   linearised.settle(fields, lambda);

@@ -11,14 +11,10 @@ template <class E>
 bool differentiate_increment(const Penalty& method, Differentiation<E>& problem, const State<double>& previous,
                              const Increment<double>& increment) {
   const auto rho = initial_regularisation(problem.slots, method);
-  std::vector<RegularisationField<Direction>> rho_blocks;
   std::vector<Vector<Direction>> lambda;
-  for (auto& block : problem.blocks) {
-    rho_blocks.push_back(initial_regularisation(block.slots, method));
-    lambda.push_back(stored_traction(problem.model, block.previous));
-  }
-  LinearisedEquilibrium<E> linearised(problem, increment.state, rho, std::move(rho_blocks), ConeRadius::augmented,
-                                      increment.time, false, previous.contact.placement);
+  for (auto& block : problem.blocks) lambda.push_back(stored_traction(problem.model, block.previous));
+  LinearisedEquilibrium<E> linearised(problem, increment.state, rho, regularisation_blocks(method, problem),
+                                      ConeRadius::augmented, increment.time, false, previous.contact.placement);
   if (!linearised.valid()) return false;
   linearised.settle(linearised.solve(lambda), lambda);
   return true;

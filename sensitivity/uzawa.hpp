@@ -39,10 +39,8 @@ LinearisedEquilibrium<E> linearise(const UzawaAL& method, Differentiation<E>& pr
                                    RegularisationField<double>& rho) {
   for (double& f : factor) f *= oversize;
   rho = adapted(initial_regularisation(problem.slots, method), factor);
-  std::vector<RegularisationField<Direction>> rho_blocks;
-  for (auto& block : problem.blocks) rho_blocks.push_back(adapted(initial_regularisation(block.slots, method), factor));
-  return LinearisedEquilibrium<E>(problem, at, rho, std::move(rho_blocks), ConeRadius::augmented, time, false,
-                                  previous.contact.placement);
+  return LinearisedEquilibrium<E>(problem, at, rho, regularisation_blocks(method, problem, factor),
+                                  ConeRadius::augmented, time, false, previous.contact.placement);
 }
 
 /// Iterates D lambda until the change, extrapolated by its own contraction, is below `tolerance` of D lambda or at the

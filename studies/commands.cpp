@@ -2,10 +2,12 @@
 
 #include <fmt/core.h>
 
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "sensitivity/gradcheck.hpp"
 #include "studies/atomic_file.hpp"
@@ -54,7 +56,7 @@ std::optional<Loaded> load(const RunArguments& arguments) {
   }
 }
 
-RunOptions options_of(const Input& input) { return {input.linear_algebra, input.backend, {}}; }
+RunOptions options_of(const Input& input) { return {input.linear_algebra, input.backend, {}, {}}; }
 
 std::filesystem::path output_directory(const std::string& given, const std::string& input) {
   return given.empty() ? std::filesystem::path("results") / std::filesystem::path(input).stem()
@@ -126,7 +128,20 @@ int run_command(const RunArguments& arguments) {
   const auto loaded = load(arguments);
   if (!loaded) return bad_input;
   std::shared_ptr<Condensation<double>> condensation;
-  const auto result = run_case(loaded->problem, loaded->input.method, options_of(loaded->input), condensation);
+  auto options = options_of(loaded->input);
+  std::optional<Progress> progress;  // of long work only: a run of a second or two speaks for itself
+  const auto start = std::chrono::steady_clock::now();
+  long pending = 0;
+  options.on_step = [&] {
+    ++pending;
+    if (arguments.json || std::chrono::steady_clock::now() - start < std::chrono::seconds(2)) return;
+    if (!progress)
+      progress.emplace(std::cerr, progress_style_of_stderr(), "steps",
+                       static_cast<long>(loaded->problem->model.times.size()));
+    progress->advance(std::exchange(pending, 0));
+  };
+  const auto result = run_case(loaded->problem, loaded->input.method, options, condensation);
+  progress.reset();
   json document = result_json(result, canonical_text(loaded->input));
   if (!arguments.json || !arguments.output.empty()) {
     double seconds = 0;

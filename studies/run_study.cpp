@@ -34,6 +34,9 @@ struct Variant {
   std::vector<CaseResult> references;  ///< of Reference::Kind::method
 };
 
+/// What a cell's id says of the program: a build of another commit does not take its results for its own.
+std::string program_version() { return std::string(version::number) + "+" + std::string(version::git); }
+
 std::string variant_key(const CellInput& cell) { return json{{"vary", cell.vary}, {"refine", cell.refine}}.dump(); }
 
 /// A valid cell as input. pre: read_study and expand found no fault.
@@ -44,7 +47,7 @@ Input input_of(const CellInput& cell, MeshFiles& meshes) {
   return *std::move(input);
 }
 
-RunOptions options_of(const Input& input) { return {input.linear_algebra, input.backend, {}}; }
+RunOptions options_of(const Input& input) { return {input.linear_algebra, input.backend, {}, {}}; }
 
 /// Options of a method may hold slots of the scene, so each method has a scene of its own; they share meshes and
 /// condensation, which do not depend on it.
@@ -55,7 +58,7 @@ Variant make_variant(const Study& study, const CellInput& cell, MeshFiles& meshe
   variant.key = variant_key(cell);
   for (const auto& reference : study.references) {
     if (reference.kind != Reference::Kind::method) continue;
-    const auto input = input_of(reference_cell(cell, reference, std::string(version::number), meshes), meshes);
+    const auto input = input_of(reference_cell(cell, reference, program_version(), meshes), meshes);
     const auto problem = problem_of(input);
     variant.references.push_back(run_case(problem, input.method, options_of(input), variant.condensation));
   }
@@ -172,7 +175,7 @@ int study_command(const StudyArguments& arguments) {
   MeshFiles meshes;
   const auto study = read_study(arguments.study, diagnostics);
   std::vector<CellInput> cells;
-  if (study) cells = expand(*study, std::string(version::number), diagnostics, meshes);
+  if (study) cells = expand(*study, program_version(), diagnostics, meshes);
   if (!study || diagnostics.has_errors() || cells.empty()) {
     std::cerr << diagnostics.text();
     return bad_input;
