@@ -83,12 +83,19 @@ T contact_response(const Model& model, const Slots<T>& slots, const Response& re
   if (response.kind == Kind::contact_force) return force;
   if (response.kind == Kind::contact_half_width) {
     if (!(value(force) > 0)) return T(0);
+    Vector<T> normal = Vector<T>::Constant(2, T(0));  // of the contact as a whole: arms are measured across it
     for (int p : of_contact) {
       const T weight = -slots.geometry[p].area * state.contact.traction[model.points[p].multiplier];
-      for (int i = 0; i < model.dimension; ++i) {
-        const T arm = slots.points(i, model.points[p].nodes[0]) - centroid[i] / force;
-        second_moment += weight * arm * arm;
-      }
+      for (int i = 0; i < 2; ++i) normal[i] += weight * slots.geometry[p].normal[i];
+    }
+    const T length = norm(normal);
+    for (int p : of_contact) {
+      const T weight = -slots.geometry[p].area * state.contact.traction[model.points[p].multiplier];
+      const int node = model.points[p].nodes[0];
+      const T arm = (normal[0] * (slots.points(1, node) - centroid[1] / force) -
+                     normal[1] * (slots.points(0, node) - centroid[0] / force)) /
+                    length;
+      second_moment += weight * arm * arm;
     }
     using std::sqrt;
     return T(2) * sqrt(second_moment / force);

@@ -416,6 +416,15 @@ class Model:
                 if found is None:
                     continue
                 n, gap, master = found
+                if body.kind not in ("point", "bar"):  # two continua: the bisector of the two normals
+                    outward = np.zeros(2, dtype=complex)
+                    for p, q in side.facets:
+                        if node in (p, q):
+                            tau = body.X[q] - body.X[p]
+                            outward += np.array([tau[1], -tau[0]])
+                    shared = n - outward / np.sqrt(outward @ outward)
+                    shared = shared / np.sqrt(shared @ shared)
+                    n, gap = shared, gap * (shared @ n)
                 weights.update({i: -N for i, N in master.items()})
             elif "plane" in obstacle:
                 n = np.array(obstacle["plane"]["normal"])
@@ -573,7 +582,7 @@ class Path:
         self.u = np.zeros(m.size, dtype=self.K.dtype)
         self.rT_before = np.zeros(n * self.k, dtype=self.K.dtype)
         self.worst = 0.0
-        self.dissipation = 0.0
+        self.dissipation = np.zeros(n * self.k)  # of each tangential component
         self.condensed = None
         self.before = {"time": 0.0}
 
@@ -617,7 +626,7 @@ class Path:
         slip = slip0 + self.BT @ x
         plastic = slip + CT * (rT - self.rT_before)
         touching = np.repeat([s[0] != "open" for s in states], k) if n else np.zeros(0, bool)
-        self.dissipation = self.dissipation - (rT * plastic)[touching].sum()
+        self.dissipation = self.dissipation - np.where(touching, rT * plastic, 0)
         result = {"time": t, "u": x, "rN": rN, "rT": rT, "gap": gap, "slip": slip, "states": states, "f": f,
                   "dissipation": self.dissipation,
                   "margins": self.margins(states, rN, rT, gap, plastic, np.abs(x).max() or 1.0)}
@@ -837,7 +846,8 @@ def responses(model, result, place):
         elif kind == "gap":
             values[name] = take([result["gap"][i] for i in mine])
         elif kind == "dissipation":
-            values[name] = result["dissipation"]
+            k = m.d - 1
+            values[name] = sum(result["dissipation"][i * k:(i + 1) * k].sum() for i in mine)
         elif kind == "strain_energy":
             values[name] = result["u"] @ (m.K @ result["u"]) / 2
         elif kind == "contact_half_width":
