@@ -175,11 +175,13 @@ std::vector<ContactState> step_branches(const Model& model, const ContactInput<T
     const auto& point = model.points[p];
     if (branches[p] != ContactState::slip || point.tangents == 0 || value(input.slots.friction[point.contact]) == 0)
       continue;
-    bool apex = value(field.traction[point.multiplier]) == 0;
+    bool apex = std::abs(value(field.traction[point.multiplier])) <= value(input.rho[p].normal) * point.tie_length;
+    const double tie = value(input.rho[p].tangential) * point.tie_length;
     double along_last = 0;
     for (int a = 0; a < point.tangents; ++a) {
       const int k = point.multiplier + 1 + a;
-      apex &= value(field.slip[tangential_offset(model, p) + a]) == 0 && value(multiplier[k]) == 0;
+      const double slip = value(field.slip[tangential_offset(model, p) + a]);
+      apex &= std::abs(value(multiplier[k]) + value(input.rho[p].tangential) * slip) <= tie;
       if (!last.state.empty()) along_last += value(field.traction[k]) * value(last.traction[k]);
     }
     const bool reversed = !last.state.empty() && last.state[p] == ContactState::slip && along_last < 0;

@@ -48,12 +48,13 @@ struct PointRegularisation {
   T normal{}, tangential{};
 };
 
-/// Evaluates the point. `w`: relative displacement; `state`: the branch to take, or nullptr to classify.
+/// Evaluates the point. `w`: relative displacement; `tie_length`: a gap up to this is none; `state`: the
+/// branch to take, or nullptr to classify.
 template <class T, int D, int Tangents>
 PointOutcome<T, Tangents> evaluate_point(const PointGeometry<T>& geometry, const Vec<T, D>& w,
                                          const Traction<T, Tangents>& multiplier,
                                          const Vec<T, Tangents>& previous_placement, const PointRegularisation<T>& rho,
-                                         const T& friction, ConeRadius cone, double mesh_size,
+                                         const T& friction, ConeRadius cone, double tie_length,
                                          const ContactState* state) {
   static_assert(Tangents == 0 || Tangents == D - 1);
   PointOutcome<T, Tangents> point;
@@ -70,7 +71,7 @@ PointOutcome<T, Tangents> evaluate_point(const PointGeometry<T>& geometry, const
     const T& pressure = cone == ConeRadius::augmented ? trial.normal : multiplier.normal;
     if (value(pressure) < 0 || cone == ConeRadius::augmented) bound = -friction * pressure;
   }
-  point.state = state ? *state : classify(trial, value(bound), tie_band * value(rho.normal) * mesh_size);
+  point.state = state ? *state : classify(trial, value(bound), value(rho.normal) * tie_length);
   point.traction = project_coulomb(trial, bound, point.state);
   return point;
 }

@@ -120,7 +120,7 @@ ContactField<T> evaluate_contact(const ContactInput<T>& input, const Vector<T>& 
           input.slots.geometry[p], detail::relative_displacement<T, D>(input, p, compact),
           detail::gather_traction<T, Tangents>(multiplier, point.multiplier),
           detail::previous_placement<T, Tangents>(input, p), input.rho[p], input.slots.friction[point.contact],
-          input.cone, point.mesh_size, states ? &(*states)[p] : nullptr);
+          input.cone, point.tie_length, states ? &(*states)[p] : nullptr);
       field.state[p] = outcome.state;
       field.gap[p] = outcome.gap;
       field.traction[point.multiplier] = outcome.traction.normal;
@@ -196,7 +196,7 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
     }
     const auto outcome = evaluate_point<Probe, D, Tangents>(geometry, w, lambda, previous, rho,
                                                             Probe(input.slots.friction[point.contact]), input.cone,
-                                                            point.mesh_size, &state);
+                                                            point.tie_length, &state);
     const Vec<Probe, D> force = point_force<Probe, D, Tangents>(geometry, outcome.traction);
     PointTangent<T> tangent{Matrix<T>(D, D), Matrix<T>(D, C), Matrix<T>(C, D), Matrix<T>(C, C)};
     for (int i = 0; i < D; ++i) {

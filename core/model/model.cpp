@@ -134,6 +134,7 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
       if (facet[0] == node || facet[1] == node) point.area_facets.emplace_back(facet[0], facet[1]);
     point.area_of_bar = mesh.shape == ElementShape::bar2 && slave.nodes.size() == 1 && point.area_facets.empty();
     point.mesh_size = local_size(points, point.area_facets);
+    point.tie_length = tie_band * point.mesh_size + 4e-16 * points.col(node).cwiseAbs().maxCoeff();
     point.shares_normal = obstacle < 0 && mesh.shape != ElementShape::bar2 && mesh.shape != ElementShape::point;
     point.tangents = contact.friction ? model.dimension - 1 : 0;
     if (obstacle >= 0) {

@@ -40,9 +40,10 @@ struct ContactPoint {
   bool area_of_bar = false;    ///< tributary area is the bar's cross-section; with no facets either: 1
   bool shares_normal = false;  ///< deformable continua on both sides: the normal is the bisector of the two
   int slave_body = 0;
-  double mesh_size = 0;  ///< local size of the slave side, 0 for a lumped point
-  int multiplier = 0;    ///< offset of its components in the multiplier vector
-  int tangents = 0;      ///< 0 (frictionless) or D - 1
+  double mesh_size = 0;   ///< local size of the slave side, 0 for a lumped point
+  double tie_length = 0;  ///< gaps up to this are rounding of the coordinates, or 1e-12 of the mesh size
+  int multiplier = 0;     ///< offset of its components in the multiplier vector
+  int tangents = 0;       ///< 0 (frictionless) or D - 1
   int components() const { return 1 + tangents; }
 };
 

@@ -22,8 +22,8 @@ const fs::path folder = fs::path(STICKSLIP_SOURCE_DIR) / "tests" / "references";
 /// Relative to the largest value of its kind in the run. Both programs solve to rounding; what is left is the
 /// conditioning of the scenes (1e3 to 1e6 times 1e-16), more in a penalised one, and the tolerance 1e-11 of Newton's
 /// method.
-constexpr double same_solution = 1e-8;
-constexpr double same_derivative = 1e-7;
+constexpr double same_solution = 1e-9;
+constexpr double same_derivative = 1e-8;
 
 CaseResult run_reference(const json& scene, const json& method) {
   json document = scene;
