@@ -39,6 +39,24 @@ void adapt(const Slots<T>& slots, const RegularisationField<T>& initial, const s
   }
 }
 
+/// Contraction of the updates d, A d, A^2 d of a linear iteration: the spectral radius of A on the plane of the first
+/// two (Arnoldi), whose error falls with the third mode's share. Where that plane is a line but for 2 %, of which
+/// rounding may be part, and with two updates, it is the ratio of their lengths.
+inline double contraction(const std::vector<Vector<double>>& updates) {
+  const auto& d1 = updates[updates.size() - 1];
+  const auto& d0 = updates[updates.size() - 2];
+  if (updates.size() == 2) return d1.norm() / d0.norm();
+  const auto& d = updates[updates.size() - 3];
+  const Vector<double> v = d / d.norm(), along = d0 / d.norm();  // A v = along
+  const double h = v.dot(along);
+  const Vector<double> across = along - h * v;
+  if (across.norm() <= 0.02 * along.norm()) return d1.norm() / d0.norm();
+  const Vector<double> w = across / across.norm(), image = (d1 / d.norm() - h * along) / across.norm();  // A w = image
+  const double trace = h + w.dot(image), determinant = h * w.dot(image) - across.norm() * v.dot(image);
+  const double discriminant = trace * trace / 4 - determinant;
+  return discriminant < 0 ? std::sqrt(determinant) : std::abs(trace) / 2 + std::sqrt(discriminant);
+}
+
 /// Largest derivative that rides on the entries: the imaginary part of the oracle, nothing on a double.
 inline double riding(const Vector<double>&) { return 0; }
 inline double riding(const Vector<std::complex<double>>& v) { return v.size() ? v.imag().cwiseAbs().maxCoeff() : 0; }
@@ -57,6 +75,7 @@ Increment<T> solve_increment(const UzawaAL& method, Run<T, E>& run, const State<
   Vector<T> u = run.engine.begin(time, previous.displacement), lambda = previous.contact.traction;
   std::vector<double> violations;
   std::vector<ContactState> states;
+  std::vector<Vector<double>> updates;  // the last three, made in the same states
   double last_update = 0, last_riding = std::numeric_limits<double>::infinity();
   NewtonOptions inner = method.newton;  // an inner residual above the outer tolerance would stall the updates
   inner.tolerance = std::min(inner.tolerance, 0.01 * method.tolerance);
@@ -82,7 +101,10 @@ Increment<T> solve_increment(const UzawaAL& method, Run<T, E>& run, const State<
     for (int p = 0; p < points; ++p) now[p] = detail::violation(model, equilibrium.field, p);
     const double worst = points ? *std::max_element(now.begin(), now.end()) : 0;
     const bool settled = equilibrium.field.state == states;
-    if (settled && last_update > 0) increment.contraction = update / last_update;
+    if (!settled) updates.clear();
+    updates.push_back(values(change));
+    if (updates.size() > 3) updates.erase(updates.begin());
+    if (updates.size() > 1 && last_update > 0) increment.contraction = detail::contraction(updates);
     // what is left of a geometric series after this update, not the update itself, is the error
     const double q = increment.contraction;
     const double left = settled && q > 0 && q < 1 ? largest_update * std::max(1.0, q / (1 - q)) : largest_update;
