@@ -160,6 +160,24 @@ IterationRecord record(const Evaluation<T>& at, const std::vector<ContactState>&
   return r;
 }
 
+/// Lets points stick that start on their cone, up to 1e-8. One that slipped in the last increment starts there, off it
+/// by what that increment's tolerance left, and rounding must not decide where the path begins.
+template <class T>
+void stick_on_cone(const ContactInput<T>& input, const Vector<T>& multiplier, ContactField<T>& field) {
+  for (int p = 0; p < static_cast<int>(input.model.points.size()); ++p) {
+    const auto& point = input.model.points[p];
+    if (field.state[p] != ContactState::slip || point.tangents == 0) continue;
+    double trial = 0;
+    for (int a = 0; a < point.tangents; ++a) {
+      const double slip = value(field.slip[tangential_offset(input.model, p) + a]);
+      const double z = value(multiplier[point.multiplier + 1 + a]) + value(input.rho[p].tangential) * slip;
+      trial += z * z;
+    }
+    const double bound = -value(input.slots.friction[point.contact]) * value(field.traction[point.multiplier]);
+    if (bound > 0 && std::sqrt(trial) <= bound * (1 + 1e-8)) field.state[p] = ContactState::stick;
+  }
+}
+
 /// The branches that a Newton step is taken in: those of the evaluation, with two exceptions.
 ///   - A point at the apex of its cone (closed, no bound, no tangential trial) sticks, which is an element of the
 ///     generalised derivative there: a body that only friction holds then has a regular first tangent.
@@ -257,6 +275,8 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
       entry->second = std::min(entry->second, at.residuals.largest());
     }
 
+    const auto evaluated = at.field.state;
+    if (iteration == 0) detail::stick_on_cone(input, multiplier, at.field);
     const auto branch = detail::step_branches(model, input, at.field, multiplier, directed);
     used = at.field.state;
     directed = at.field;
@@ -275,7 +295,7 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
     }
     {
       const Stopwatch time(account.seconds.backsolve);
-      if (branch != used) detail::rows_in(engine, input, u, multiplier, unknown, branch, at);
+      if (branch != evaluated) detail::rows_in(engine, input, u, multiplier, unknown, branch, at);
       step = engine.solve({-at.rows_u, unknown ? Matrix<T>(-at.rows_l) : Matrix<T>()});
       ++account.counters.backsolves;
     }

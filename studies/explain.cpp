@@ -43,6 +43,7 @@ std::string contact_lines(const Model& model) {
     for (const auto& point : model.points) points += point.contact == static_cast<int>(c);
     const std::size_t slaves = model.side(contact.slave).nodes.size();
     text += fmt::format("  {}: {} against {}, {} contact points", contact.name, contact.slave, contact.master, points);
+    if (contact.segment) text += " (segment-integrated)";
     if (points < static_cast<int>(slaves)) text += fmt::format(" ({} slave nodes face no master)", slaves - points);
     text += contact.friction ? fmt::format(", Coulomb friction {}\n", contact.friction->value) : ", frictionless\n";
   }

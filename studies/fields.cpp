@@ -21,7 +21,7 @@ Matrix<double> element_stress(const Problem& problem, const State<double>& state
   int column = 0;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const auto& body = model.bodies[b];
-    if (!detail::is_continuum(body.mesh.shape)) {
+    if (!is_continuum(body.mesh.shape)) {
       column += body.mesh.element_count();
       continue;
     }

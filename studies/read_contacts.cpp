@@ -103,7 +103,13 @@ void read_contact(const std::string& name, const JsonNode& node, SceneReading& r
   if (const auto friction = node.find("friction")) contact.friction = reading.number(*friction, not_negative);
   contact.offset = reading.optional(node, "offset", 0, any_number);
   if (const auto surface = node.find("surface")) surface->choice({"faceted"}, {"smooth"});
-  if (const auto discretization = node.find("discretization")) discretization->choice({"node"}, {"segment"});
+  if (const auto discretization = node.find("discretization")) {
+    contact.segment = discretization->choice({"node", "segment"}) == "segment";
+    const bool solid = !slave_side || (is_continuum(slave_side->mesh->shape) && !slave_side->side.facets.empty());
+    if (contact.segment && !solid)
+      discretization->error("is \"segment\", which integrates along the facets of a solid body; the slave " +
+                            shown(node.value()["slave"]) + " has none; allowed: \"node\"");
+  }
   reading.scene.contacts.push_back(std::move(contact));
 }
 

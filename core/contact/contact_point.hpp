@@ -24,12 +24,12 @@ enum class ConeRadius { augmented, multiplier };
 /// Initial geometry of one contact point; a function of nodal coordinates and obstacle data, in any scalar.
 template <class T>
 struct PointGeometry {
-  static constexpr int max_nodes = 5;                   ///< slave and up to four master nodes
   T gap{};                                              ///< initial normal gap, with the offset of the contact
   Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> normal;  ///< unit, out of the master
   Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 2> tangents;  ///< orthonormal frame, one column each
-  Eigen::Matrix<T, Eigen::Dynamic, 1, 0, max_nodes, 1> weights;  ///< of the displacements in w: +1, -N_1, -N_2, ...
-  T area{};                                                      ///< tributary area of the slave node
+  Eigen::Matrix<T, Eigen::Dynamic, 1>
+      weights;  ///< of the nodes' displacements in w: slave nodes sum to 1, master to -1
+  T area{};     ///< tributary area of the slave node
 };
 
 /// What a contact point leaves behind at the end of an increment: its local unknowns, and the history of the next.

@@ -15,6 +15,9 @@ enum class ElementShape { point, bar2, tri3, quad4 };
 /// Nodes of one element of the shape.
 int nodes_of(ElementShape);
 
+/// Whether elements of the shape fill a region (springs and bars do not).
+inline bool is_continuum(ElementShape shape) { return shape == ElementShape::tri3 || shape == ElementShape::quad4; }
+
 /// Named part of the boundary: nodes in order along the side where it is a curve, and its facets (2D: node pairs)
 /// directed so that the solid lies on the LEFT of a -> b (counter-clockwise boundary); facets may be empty
 /// (a corner, a point).

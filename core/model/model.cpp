@@ -113,44 +113,97 @@ double local_size(const Points<double>& points, const std::vector<std::pair<int,
   return size;
 }
 
+/// What all points of a contact have in common.
+struct Pairing {
+  int index, obstacle;  ///< in Scene::contacts, Scene::obstacles (-1: deformable master)
+  SideSet slave, master;
+};
+
+void add_point(Model& model, ContactPoint point) {
+  model.effects.contact = true;
+  model.effects.friction |= point.tangents > 0;
+  model.effects.deformable_master |= point.obstacle < 0;
+  point.multiplier = model.multiplier_count;
+  model.multiplier_count += point.components();
+  model.points.push_back(std::move(point));
+}
+
+/// A point at a slave node, still without a master.
+ContactPoint slave_point(const Model& model, const Points<double>& points, const Pairing& pairing, int node) {
+  const auto shape = model.bodies[pairing.slave.body].mesh.shape;
+  ContactPoint point;
+  point.contact = pairing.index;
+  point.obstacle = pairing.obstacle;
+  point.nodes = {node};
+  point.slave_body = pairing.slave.body;
+  for (const auto& facet : pairing.slave.facets)
+    if (facet[0] == node || facet[1] == node) point.area_facets.emplace_back(facet[0], facet[1]);
+  point.area_of_bar = shape == ElementShape::bar2 && pairing.slave.nodes.size() == 1 && point.area_facets.empty();
+  point.mesh_size = local_size(points, point.area_facets);
+  point.tie_length = tie_band * point.mesh_size + 4e-16 * points.col(node).cwiseAbs().maxCoeff();
+  point.tangents = model.scene.contacts[pairing.index].friction ? model.dimension - 1 : 0;
+  return point;
+}
+
+/// Node-to-segment: each slave node against the closest point of its master.
+void pair_nodes(Model& model, const Points<double>& points, const Pairing& pairing) {
+  const auto shape = model.bodies[pairing.slave.body].mesh.shape;
+  for (int node : pairing.slave.nodes) {
+    ContactPoint point = slave_point(model, points, pairing, node);
+    point.shares_normal = pairing.obstacle < 0 && shape != ElementShape::bar2 && shape != ElementShape::point;
+    if (pairing.obstacle >= 0 || find_master(points, pairing.master, point)) add_point(model, std::move(point));
+  }
+}
+
+/// Segment-integrated: the multiplier of each slave node on the pieces of its facets.
+void pair_segments(Model& model, const Points<double>& points, const Pairing& pairing) {
+  const auto& nodes = pairing.slave.nodes;
+  auto carries = [&](int node) { return std::find(nodes.begin(), nodes.end(), node) != nodes.end(); };
+  std::map<int, std::vector<Piece>> of_node;
+  for (const auto& facet : pairing.slave.facets) {
+    Piece whole_facet;
+    whole_facet.slave = {facet[0], facet[1]};
+    const auto pieces =
+        pairing.obstacle >= 0 ? std::vector<Piece>{whole_facet} : facing_pieces(points, facet, pairing.master.facets);
+    for (Piece piece : pieces)
+      for (int end = 0; end < 2; ++end)
+        if (carries(facet[end])) {
+          piece.carrier = end;
+          piece.whole = !carries(facet[1 - end]);
+          of_node[facet[end]].push_back(piece);
+        }
+  }
+  for (int node : nodes) {
+    if (of_node[node].empty()) continue;
+    ContactPoint point = slave_point(model, points, pairing, node);
+    point.master = ContactPoint::Master::pieces;
+    point.pieces = of_node[node];
+    auto add = [&](int n) {
+      if (n >= 0 && std::find(point.nodes.begin(), point.nodes.end(), n) == point.nodes.end()) point.nodes.push_back(n);
+    };
+    for (const auto& piece : point.pieces) std::for_each(piece.slave.begin(), piece.slave.end(), add);
+    point.slave_nodes = static_cast<int>(point.nodes.size());
+    for (const auto& piece : point.pieces) std::for_each(piece.master.begin(), piece.master.end(), add);
+    add_point(model, std::move(point));
+  }
+}
+
 void pair_contact(Model& model, const Points<double>& points, int index) {
   const Contact& contact = model.scene.contacts[index];
-  const SideSet slave = model.side(contact.slave);
-  const int obstacle = obstacle_index(model.scene, contact.master);
-  SideSet master;
-  if (obstacle < 0) {
-    master = model.side(contact.master);
-    if (model.dimension == 3) throw ModelError("a deformable master needs a 2D space", "/contacts/" + contact.name);
-    if (master.facets.empty()) throw ModelError("the master side has no facets", "/contacts/" + contact.name);
+  const std::string where = "/contacts/" + contact.name;
+  Pairing pairing{index, obstacle_index(model.scene, contact.master), model.side(contact.slave), {}};
+  if (pairing.obstacle < 0) {
+    pairing.master = model.side(contact.master);
+    if (model.dimension == 3) throw ModelError("a deformable master needs a 2D space", where);
+    if (pairing.master.facets.empty()) throw ModelError("the master side has no facets", where);
+  } else if (model.dimension == 3 && std::holds_alternative<Circle>(model.scene.obstacles[pairing.obstacle].shape)) {
+    throw ModelError("a circle needs a 2D space", "/obstacles/" + contact.master);
   }
-  const auto& mesh = model.bodies[slave.body].mesh;
-  for (int node : slave.nodes) {
-    ContactPoint point;
-    point.contact = index;
-    point.obstacle = obstacle;
-    point.nodes = {node};
-    point.slave_body = slave.body;
-    for (const auto& facet : slave.facets)
-      if (facet[0] == node || facet[1] == node) point.area_facets.emplace_back(facet[0], facet[1]);
-    point.area_of_bar = mesh.shape == ElementShape::bar2 && slave.nodes.size() == 1 && point.area_facets.empty();
-    point.mesh_size = local_size(points, point.area_facets);
-    point.tie_length = tie_band * point.mesh_size + 4e-16 * points.col(node).cwiseAbs().maxCoeff();
-    point.shares_normal = obstacle < 0 && mesh.shape != ElementShape::bar2 && mesh.shape != ElementShape::point;
-    point.tangents = contact.friction ? model.dimension - 1 : 0;
-    if (obstacle >= 0) {
-      const bool plane = std::holds_alternative<Plane>(model.scene.obstacles[obstacle].shape);
-      if (!plane && model.dimension == 3) throw ModelError("a circle needs a 2D space", "/obstacles/" + contact.master);
-      point.master = plane ? ContactPoint::Master::plane : ContactPoint::Master::circle;
-    } else if (!find_master(points, master, point)) {
-      continue;
-    }
-    model.effects.contact = true;
-    model.effects.friction |= point.tangents > 0;
-    model.effects.deformable_master |= obstacle < 0;
-    point.multiplier = model.multiplier_count;
-    model.multiplier_count += point.components();
-    model.points.push_back(point);
-  }
+  if (!contact.segment) return pair_nodes(model, points, pairing);
+  const auto shape = model.bodies[pairing.slave.body].mesh.shape;
+  if (model.dimension == 3 || pairing.slave.facets.empty() || !is_continuum(shape))
+    throw ModelError("segment integration needs a slave side of facets of a solid body", where);
+  pair_segments(model, points, pairing);
 }
 
 /// Ends of the increments: equal steps of each leg, and the breakpoints of every table in it.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/contact/contact_point.hpp"
+#include "core/contact/segments.hpp"
 #include "core/mesh/mesh.hpp"
 #include "core/model/scene.hpp"
 
@@ -29,14 +30,16 @@ struct BodyMesh {
 
 /// One slave node and what it can touch. Fixed for small strain.
 struct ContactPoint {
-  enum class Master { plane, circle, facet, vertex };
-  Master master = Master::plane;
+  enum class Master { obstacle, facet, vertex, pieces };
+  Master master = Master::obstacle;
   int contact = 0;              ///< index in Scene::contacts
   int obstacle = -1;            ///< index in Scene::obstacles, -1 for a deformable master
   std::vector<int> nodes;       ///< slave, then master nodes (facet: its two; vertex: the vertex and one neighbour)
+  int slave_nodes = 1;          ///< how many of `nodes` are the slave's; more than one if segment-integrated
   std::vector<int> places;      ///< of `nodes` in Model::contact_nodes
   std::vector<int> neighbours;  ///< vertex: the vertices before and after it, whose facets share the normal
   std::vector<std::pair<int, int>> area_facets;  ///< facets of the slave side at the node; half of each is tributary
+  std::vector<Piece> pieces;                     ///< segment-integrated: what the multiplier of nodes[0] acts on
   bool area_of_bar = false;    ///< tributary area is the bar's cross-section; with no facets either: 1
   bool shares_normal = false;  ///< deformable continua on both sides: the normal is the bisector of the two
   int slave_body = 0;

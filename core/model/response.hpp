@@ -1,6 +1,8 @@
 /// Responses: scalars of a state, in any scalar, so that their derivatives are the same code (interface.md, section 2).
 #pragma once
 
+#include <algorithm>
+
 #include "core/model/contact_assembly.hpp"
 #include "core/model/loading.hpp"
 
@@ -82,8 +84,11 @@ T contact_response(const Model& model, const Slots<T>& slots, const Response& re
   }
   if (response.kind == Kind::contact_force) return force;
   if (response.kind == Kind::contact_half_width) {
-    if (!(value(force) > 0)) return T(0);
-    Vector<T> normal = Vector<T>::Constant(2, T(0));  // of the contact as a whole: arms are measured across it
+    const auto closed = std::count_if(of_contact.begin(), of_contact.end(), [&](int p) {
+      return value(state.contact.traction[model.points[p].multiplier]) < 0;
+    });
+    if (closed < 2 || !(value(force) > 0)) return T(0);  // one point alone has no width
+    Vector<T> normal = Vector<T>::Constant(2, T(0));     // of the contact as a whole: arms are measured across it
     for (int p : of_contact) {
       const T weight = -slots.geometry[p].area * state.contact.traction[model.points[p].multiplier];
       for (int i = 0; i < 2; ++i) normal[i] += weight * slots.geometry[p].normal[i];

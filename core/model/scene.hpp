@@ -138,6 +138,7 @@ struct Contact {
   std::string master;              ///< obstacle name, or side expression of a deformable body
   std::optional<Number> friction;  ///< none: frictionless, no tangential unknowns or code path
   Number offset = 0.0;             ///< added to the geometric gap
+  bool segment = false;            ///< segment-integrated gap and slip in place of node-to-segment
 };
 
 /// Prescribed displacement by axis on a side (an anchor's move drives the spring).

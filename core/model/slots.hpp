@@ -87,16 +87,36 @@ Vec<T, 2> slave_normal(const ContactPoint& point, const Points<T>& points) {
   return n;
 }
 
+/// Geometry of a place against an obstacle.
+template <class T, class Place>
+PointGeometry<T> against_obstacle(const Obstacle& obstacle, const Place& x, const Numbers<T>& numbers) {
+  if (const auto* plane = std::get_if<Plane>(&obstacle.shape)) return against_plane<T>(x, *plane, numbers);
+  return against_circle<T>(Vec<T, 2>(x[0], x[1]), std::get<Circle>(obstacle.shape), numbers);
+}
+
+/// Geometry of a segment-integrated point, its area included.
+template <class T>
+PointGeometry<T> integrated_geometry(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
+  return against_pieces<T>(slots.points, point.pieces, point.nodes, [&](const Vec<T, 2>& x) {
+    const auto g = against_obstacle<T>(model.scene.obstacles[point.obstacle], x, slots.numbers);
+    Foot<T> foot;
+    for (int i = 0; i < 2; ++i) {
+      foot.normal[i] = g.normal[i];
+      foot.at[i] = x[i] - g.gap * g.normal[i];
+    }
+    return foot;
+  });
+}
+
 template <class T>
 PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
   const auto& numbers = slots.numbers;
   PointGeometry<T> geometry;
-  if (point.master == ContactPoint::Master::plane) {
-    const auto& plane = std::get<Plane>(model.scene.obstacles[point.obstacle].shape);
-    geometry = against_plane<T>(slots.points.col(point.nodes[0]), plane, numbers);
-  } else if (point.master == ContactPoint::Master::circle) {
-    const auto& circle = std::get<Circle>(model.scene.obstacles[point.obstacle].shape);
-    geometry = against_circle<T>(point2(slots.points, point.nodes[0]), circle, numbers);
+  if (point.master == ContactPoint::Master::pieces) {
+    geometry = integrated_geometry(model, point, slots);
+  } else if (point.master == ContactPoint::Master::obstacle) {
+    const Vector<T> x = slots.points.col(point.nodes[0]);
+    geometry = against_obstacle<T>(model.scene.obstacles[point.obstacle], x, numbers);
   } else if (point.master == ContactPoint::Master::facet) {
     geometry = against_facet<T>(point2(slots.points, point.nodes[0]), point2(slots.points, point.nodes[1]),
                                 point2(slots.points, point.nodes[2]));
@@ -106,7 +126,7 @@ PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point,
   }
   if (point.shares_normal) share_normal(geometry, slave_normal(point, slots.points));
   geometry.gap += numbers(model.scene.contacts[point.contact].offset);
-  geometry.area = tributary_area(point, slots);
+  if (point.pieces.empty()) geometry.area = tributary_area(point, slots);
   return geometry;
 }
 

@@ -55,8 +55,6 @@ Matrix<T> lumped_tangent(const Model& model, const Slots<T>& slots, int b, const
   });
 }
 
-inline bool is_continuum(ElementShape shape) { return shape == ElementShape::tri3 || shape == ElementShape::quad4; }
-
 }  // namespace detail
 
 template <class T>
@@ -65,7 +63,7 @@ Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>
   Vector<T> forces = Vector<T>::Constant(model.dof_count(), T(0));
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const auto& body = model.bodies[b];
-    if (detail::is_continuum(body.mesh.shape)) {
+    if (is_continuum(body.mesh.shape)) {
       const auto& law = std::get<LinearElasticLaw<T>>(slots.laws[b]);
       detail::with_shape(body.mesh.shape, [&]<class Shape>(Shape) {
         std::array<int, Shape::nodes> nodes;
@@ -100,7 +98,7 @@ void for_each_element_tangent(const Model& model, const Slots<T>& slots, int b, 
   for (int k = 0; k < count; ++k) {
     const int e = only ? (*only)[k] : k;
     const auto nodes = detail::element_nodes(body, e);
-    if (!detail::is_continuum(body.mesh.shape)) {
+    if (!is_continuum(body.mesh.shape)) {
       sink(nodes, detail::lumped_tangent(model, slots, b, nodes));
       continue;
     }
@@ -138,9 +136,9 @@ std::vector<Matrix<T>> nodal_stiffness(const Model& model, const Slots<T>& slots
   return blocks;
 }
 
-/// k_i of each contact point: harmonic mean of n.K_ii n at the slave node and at the interpolated master nodes (slave
-/// only if the master is rigid). Where a node has next to no stiffness along n (bars along their axis), the mean over
-/// all directions stands in for it.
+/// k_i of each contact point: harmonic mean of n.K_ii n at the interpolated slave and at the interpolated master nodes
+/// (slave only if the master is rigid). Where a node has next to no stiffness along n (bars along their axis), the mean
+/// over all directions stands in for it.
 template <class T>
 std::vector<T> contact_stiffness(const Model& model, const Slots<T>& slots) {
   const auto blocks = nodal_stiffness(model, slots);
@@ -159,11 +157,15 @@ std::vector<T> contact_stiffness(const Model& model, const Slots<T>& slots) {
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
     const auto& geometry = slots.geometry[p];
-    const T slave = along(point.nodes[0], geometry.normal);
-    T master{};
-    for (std::size_t i = 1; i < point.nodes.size(); ++i)
-      master += -geometry.weights[i] * along(point.nodes[i], geometry.normal);
-    stiffness.push_back(point.nodes.size() == 1 ? slave : T(2) * slave * master / (slave + master));
+    T slave{}, master{};
+    for (int i = 0; i < static_cast<int>(point.nodes.size()); ++i) {
+      const T k = along(point.nodes[i], geometry.normal);
+      if (i < point.slave_nodes)
+        slave += geometry.weights[i] * k;
+      else
+        master += -geometry.weights[i] * k;
+    }
+    stiffness.push_back(point.obstacle >= 0 ? slave : T(2) * slave * master / (slave + master));
   }
   return stiffness;
 }

@@ -13,8 +13,15 @@ using scenes::run;
 
 std::vector<Method> all_methods() { return {Penalty{}, UzawaAL{}, MonolithicAL{}}; }
 
+std::vector<std::pair<Method, bool>> methods_and_discretisations() {
+  std::vector<std::pair<Method, bool>> out;
+  for (const auto& method : all_methods())
+    for (bool segment : {false, true}) out.emplace_back(method, segment);
+  return out;
+}
+
 /// The two boxes with lengths times `length` and stresses times `stress`.
-Scene scaled_boxes(double length, double stress) {
+Scene scaled_boxes(double length, double stress, bool segment) {
   Scene scene = scenes::two_boxes(6, 9);
   auto times = [&](Number& n, double factor) {
     n.value *= factor;
@@ -32,14 +39,15 @@ Scene scaled_boxes(double length, double stress) {
   for (auto& support : scene.supports)
     for (auto& [axis, table] : support.move)
       for (auto& [t, value] : table.points) times(value, length);
+  scene.contacts[0].segment = segment;
   return scene;
 }
 
 TEST(Invariance, UnitsChangeNeitherThePathNorTheAnswer) {
-  for (const auto& method : all_methods()) {
-    const auto reference = run(scaled_boxes(1, 1), method);
+  for (const auto& [method, segment] : methods_and_discretisations()) {
+    const auto reference = run(scaled_boxes(1, 1, segment), method);
     for (const auto& [length, stress] : {std::pair{1e3, 1e-6}, {1e6, 1e-12}, {1e-6, 1.0}, {39.37, 1.45e-4}}) {
-      const auto s = run(scaled_boxes(length, stress), method);
+      const auto s = run(scaled_boxes(length, stress, segment), method);
       ASSERT_EQ(s.trajectory.increments.size(), reference.trajectory.increments.size());
       for (std::size_t n = 0; n < s.trajectory.increments.size(); ++n) {
         const auto &a = s.trajectory.increments[n], &b = reference.trajectory.increments[n];

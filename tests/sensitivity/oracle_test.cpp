@@ -46,7 +46,10 @@ std::vector<Scene> scenes_to_check() {
           scenes::greco_plate(8),
           scenes::two_boxes(6, 9),
           scenes::two_boxes(5, 4, "T3", 0.25),
-          scenes::two_boxes(4, 4, "Q4", 2)};
+          scenes::two_boxes(4, 4, "Q4", 2),
+          scenes::segment_boxes(5, 7),
+          scenes::two_disks(8, false),
+          scenes::two_disks(8, true)};
 }
 
 /// Oracle and scheme round differently: 50 u cond, with cond up to about 1e4 in these scenes, stays below.

@@ -184,6 +184,44 @@ inline Scene two_boxes(int slave, int master, const std::string& element = "Q4",
   return s;
 }
 
+/// two_boxes with segment-integrated contact; `edge`, the right end of the slave, moves the pieces.
+inline Scene segment_boxes(int slave, int master, double mu = 0.3) {
+  Scene s = two_boxes(slave, master, "Q4", mu);
+  s.contacts[0].segment = true;
+  std::get<BoxMesh>(s.bodies[0].mesh).max[0] = parameter(s, "edge", 1.75);
+  return s;
+}
+
+/// Two half disks of radii 1 and `radius`, pressed by 0.04 and then moved sideways; `cells` along a quarter.
+inline Scene two_disks(int cells, bool segment, double mu = 0.2) {
+  Scene s;
+  s.legs = {{1, 3}, {2, 4}};
+  const Number radius = parameter(s, "radius", 1.2), friction = parameter(s, "mu", mu),
+               down = parameter(s, "down", -0.04), E = parameter(s, "E", 1000);
+  HalfDiskMesh upper, lower;
+  upper.center = {0.0, 1.0};
+  upper.radius = 1.0;
+  upper.cells = {cells, cells};
+  upper.grade = 3.0;
+  lower = upper;
+  lower.radius = radius;
+  lower.center = {0.0, -1.2};
+  lower.cells = {cells + 1, cells + 1};
+  lower.facing = "up";
+  s.bodies = {{"upper", upper, LinearElastic{E, 0.3}, "", 1.0}, {"lower", lower, LinearElastic{1500.0, 0.2}, "", 1.0}};
+  s.contacts = {contact("touch", "upper.arc", "lower.arc")};
+  s.contacts[0].friction = friction;
+  s.contacts[0].segment = segment;
+  s.supports = {support("lower.flat", {{'x', table({{0, 0.0}})}, {'y', table({{0, 0.0}})}}),
+                support("upper.flat", {{'x', table({{1, 0.0}, {2, 0.004}})}, {'y', table({{0, 0.0}, {1, down}})}})};
+  s.responses = {response("press", Response::Kind::contact_force, "touch", "normal"),
+                 response("shear", Response::Kind::contact_force, "touch", "x"),
+                 response("width", Response::Kind::contact_half_width, "touch"),
+                 response("heat", Response::Kind::dissipation, "touch"),
+                 response("energy", Response::Kind::strain_energy, "")};
+  return s;
+}
+
 /// A solved scene with its derivatives.
 struct Solved {
   Model model;
