@@ -160,13 +160,15 @@ IterationRecord record(const Evaluation<T>& at, const std::vector<ContactState>&
   return r;
 }
 
-/// Lets points stick that start on their cone, up to 1e-8. One that slipped in the last increment starts there, off it
-/// by what that increment's tolerance left, and rounding must not decide where the path begins.
+/// Gives points that start on their cone, up to 1e-8, the branch of the last increment: one that slipped then starts
+/// there, off it by what that increment's tolerance left, and rounding must not decide where the path begins. If it
+/// slips on, the front of slip need not be found anew; if it turns back, the first step takes it inside its cone.
 template <class T>
-void stick_on_cone(const ContactInput<T>& input, const Vector<T>& multiplier, ContactField<T>& field) {
+void resume_on_cone(const ContactInput<T>& input, const Vector<T>& multiplier, const std::vector<ContactState>& last,
+                    ContactField<T>& field) {
   for (int p = 0; p < static_cast<int>(input.model.points.size()); ++p) {
     const auto& point = input.model.points[p];
-    if (field.state[p] != ContactState::slip || point.tangents == 0) continue;
+    if (field.state[p] == ContactState::open || point.tangents == 0) continue;
     double trial = 0;
     for (int a = 0; a < point.tangents; ++a) {
       const double slip = value(field.slip[tangential_offset(input.model, p) + a]);
@@ -174,7 +176,8 @@ void stick_on_cone(const ContactInput<T>& input, const Vector<T>& multiplier, Co
       trial += z * z;
     }
     const double bound = -value(input.slots.friction[point.contact]) * value(field.traction[point.multiplier]);
-    if (bound > 0 && std::sqrt(trial) <= bound * (1 + 1e-8)) field.state[p] = ContactState::stick;
+    if (bound > 0 && std::abs(std::sqrt(trial) - bound) <= 1e-8 * bound)
+      field.state[p] = last[p] == ContactState::slip ? ContactState::slip : ContactState::stick;
   }
 }
 
@@ -228,10 +231,11 @@ constexpr int extra_iterations() {
 }  // namespace detail
 
 /// Solves one equilibrium from the start values `u` (engine dofs) and `multiplier`. `unknown`: lambda is solved for;
-/// otherwise it stays as it is.
+/// otherwise it stays as it is. `last`: states of the last increment, which points resume that start on their cone;
+/// empty where none is to.
 template <class T, class E>
 Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vector<T> multiplier, bool unknown,
-                      const NewtonOptions& options, Account& account) {
+                      const std::vector<ContactState>& last, const NewtonOptions& options, Account& account) {
   const Model& model = input.model;
   constexpr double shortest_step = 1.0 / 128;
   Equilibrium<T> result;
@@ -276,7 +280,7 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
     }
 
     const auto evaluated = at.field.state;
-    if (iteration == 0) detail::stick_on_cone(input, multiplier, at.field);
+    if (iteration == 0 && !last.empty()) detail::resume_on_cone(input, multiplier, last, at.field);
     const auto branch = detail::step_branches(model, input, at.field, multiplier, directed);
     used = at.field.state;
     directed = at.field;

@@ -27,8 +27,9 @@ Increment<T> solve_increment(const Penalty& method, Run<T, E>& run, const State<
   Increment<T> increment;
   const auto rho = initial_regularisation(run.slots, method);
   const ContactInput<T> input{run.model, run.slots, rho, previous.contact.placement, ConeRadius::augmented, time};
-  const auto equilibrium = newton(run.engine, input, run.engine.begin(time, previous.displacement),
-                                  stored_traction(run.model, previous), false, method.newton, run.account);
+  const auto equilibrium =
+      newton(run.engine, input, run.engine.begin(time, previous.displacement), stored_traction(run.model, previous),
+             false, previous.contact.state, method.newton, run.account);
   account_for(increment, equilibrium, 0);
   increment.state = settle(run, input, equilibrium, previous.dissipation);
   return increment;

@@ -82,7 +82,9 @@ Increment<T> solve_increment(const UzawaAL& method, Run<T, E>& run, const State<
   for (int sweep = 1;; ++sweep) {
     const auto rho = adapted(initial, increment.rho_factor);
     const ContactInput<T> input{model, run.slots, rho, previous.contact.placement, ConeRadius::augmented, time};
-    const auto equilibrium = newton(run.engine, input, u, lambda, false, inner, run.account);
+    const auto equilibrium =
+        newton(run.engine, input, u, lambda, false, sweep == 1 ? previous.contact.state : std::vector<ContactState>{},
+               inner, run.account);
     account_for(increment, equilibrium, sweep);
     increment.augmentations = sweep;
     ++run.account.counters.augmentations;

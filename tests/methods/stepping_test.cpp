@@ -14,15 +14,11 @@ MonolithicAL limited(int max_iterations) {
   return method;
 }
 
-/// One step a leg: the slip front crosses the whole interface in it.
-Scene abrupt() {
-  Scene scene = scenes::two_boxes(48, 72);
-  scene.legs = {{3, 3}};
-  return scene;
-}
+/// Slip runs over 20 nodes in one step, one an iteration.
+Scene abrupt() { return scenes::pull_out(30, {0, 1}, 1); }
 
 TEST(Stepping, CutsAnIncrementThatDoesNotConvergeAndReachesTheEnd) {
-  const auto s = run(abrupt(), limited(6));
+  const auto s = run(abrupt(), limited(12));
   ASSERT_TRUE(is_converged(s.trajectory.status)) << s.trajectory.message;
   EXPECT_GT(s.trajectory.counters.cutbacks, 0);
   double before = 0;
@@ -42,10 +38,10 @@ TEST(Stepping, CutsAnIncrementThatDoesNotConvergeAndReachesTheEnd) {
 
 TEST(Stepping, ReplayOfTheStepTableGivesTheSameBits) {
   const auto scene = abrupt();
-  const auto first = run(scene, limited(6));
+  const auto first = run(scene, limited(12));
   RunOptions replay;
   replay.replay = first.trajectory.step_table();
-  const auto again = run(scene, limited(50), replay);
+  const auto again = run(scene, limited(100), replay);
   ASSERT_EQ(again.trajectory.increments.size(), first.trajectory.increments.size());
   for (std::size_t n = 0; n < first.trajectory.increments.size(); ++n) {
     EXPECT_EQ(again.trajectory.increments[n].requested, first.trajectory.increments[n].requested);

@@ -184,6 +184,26 @@ inline Scene two_boxes(int slave, int master, const std::string& element = "Q4",
   return s;
 }
 
+/// A4: a bar on a rough floor (EA = 1000, length 1, weight 100 per length) pulled at its start. `path`: the pull in
+/// units of P = 20 at t = 0, 1, 2, ...; `steps` to each leg.
+inline Scene pull_out(int cells, const std::vector<double>& path, int steps) {
+  Scene s;
+  const Number friction = parameter(s, "mu", 0.3), stiffness = parameter(s, "EA", 1000), pull = parameter(s, "P", -20);
+  s.parameters.back().slots[0].second = -1;
+  s.bodies = {{"bar", LineMesh{{0.0, 0.0}, {1.0, 0.0}, cells}, LinearElastic{stiffness, 0.0}, "bar", 1.0}};
+  s.obstacles = {{"floor", Plane{{0.0, 0.0}, {0.0, 1.0}}, {}}};
+  s.contacts = {contact("sole", "bar.nodes", "floor")};
+  s.contacts[0].friction = friction;
+  s.loads = {traction("bar.nodes", {0.0, -100.0}), force("bar.start", {pull, 0.0})};
+  Table history;
+  for (std::size_t t = 0; t < path.size(); ++t) history.points.emplace_back(static_cast<double>(t), path[t]);
+  s.loads[1].history = history;
+  for (std::size_t t = 1; t < path.size(); ++t) s.legs.push_back({static_cast<double>(t), steps});
+  s.responses = {response("u", Response::Kind::displacement, "bar.start", "x"),
+                 response("heat", Response::Kind::dissipation, "sole")};
+  return s;
+}
+
 /// two_boxes with segment-integrated contact; `edge`, the right end of the slave, moves the pieces.
 inline Scene segment_boxes(int slave, int master, double mu = 0.3) {
   Scene s = two_boxes(slave, master, "Q4", mu);
