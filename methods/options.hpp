@@ -10,7 +10,7 @@ namespace stickslip {
 
 /// Newton's method, the same for all.
 struct NewtonOptions {
-  double tolerance = 1e-11;  ///< relative, each residual to its own scale (methods/newton.hpp); 0 < tolerance < 1
+  double tolerance = 1e-12;  ///< relative, each residual to its own scale (methods/newton.hpp); 0 < tolerance < 1
   int max_iterations = 100;  ///< per solve; >= 1. A front of slip may pass one node an iteration
   bool line_search = true;   ///< backtracking once the full step has repeated an active set without progress
 };

@@ -248,6 +248,7 @@ struct Solved {
   Slots<double> slots;
   Trajectory<double> trajectory;
   Gradients gradients;
+  double condition = 0;  ///< estimate, of the last tangent of the solver
 
   /// Value of a response, and its derivative, at increment n (negative: from the end).
   double value(const std::string& name, int n = -1) const {
@@ -268,10 +269,11 @@ struct Solved {
 };
 
 inline Solved run(const Scene& scene, const Method& method, const RunOptions& options = {}) {
-  Solved out{make_model(scene), {}, {}, {}};
+  Solved out{make_model(scene), {}, {}, {}, 0};
   out.slots = make_slots<double>(out.model, scene.as<double>());
   Workspace<double> workspace;
   out.trajectory = solve(out.model, out.slots, method, options, workspace);
+  out.condition = std::visit([](auto& engine) { return engine.condition_estimate(); }, *workspace.engine);
   out.gradients = differentiate(out.model, out.slots, method, out.trajectory, workspace);
   return out;
 }
