@@ -76,13 +76,13 @@ void march(const M& method, const Model& model, const Slots<T>& slots, E& engine
   trajectory.initial = initial_state<T>(model);
   const auto& times = options.replay.empty() ? model.times : options.replay;
   for (double time : times) {
+    const std::size_t before = trajectory.increments.size();
     const bool reached = advance(method, run, trajectory, time, options.replay.empty());
-    const auto& last = trajectory.increments.back();
-    if (trajectory.status == Status::converged || !reached) {
-      if (last.status != Status::converged) {
-        trajectory.status = last.status;
-        trajectory.message = last.message;
-      }
+    for (std::size_t n = before; n < trajectory.increments.size(); ++n) {  // the first that is not plainly converged
+      const auto& increment = trajectory.increments[n];
+      if (increment.status == Status::converged || (trajectory.status != Status::converged && reached)) continue;
+      trajectory.status = increment.status;
+      trajectory.message = increment.message;
     }
     if (options.on_step) options.on_step();
     if (!reached) break;

@@ -12,12 +12,21 @@ constexpr double at_end = 1e-9;
 
 struct Foot {
   double xi, distance;
+  Vec<double, 2> at;
 };
+
+/// Decides between feet at the same distance by geometry alone: inside a facet before at its end, then by place.
+bool before(const Foot& a, const Foot& b) {
+  const bool a_inside = a.xi >= 0 && a.xi <= 1, b_inside = b.xi >= 0 && b.xi <= 1;
+  if (a_inside != b_inside) return a_inside;
+  return a.at[0] < b.at[0] || (a.at[0] == b.at[0] && a.at[1] < b.at[1]);
+}
 
 Foot project(const Points<double>& points, const std::vector<int>& facet, const Vec<double, 2>& x) {
   const Vec<double, 2> a = points.col(facet[0]).head<2>(), tau = points.col(facet[1]).head<2>() - a;
   const double xi = (x - a).dot(tau) / tau.squaredNorm();
-  return {xi, (x - a - std::clamp(xi, 0.0, 1.0) * tau).norm()};
+  const Vec<double, 2> at = a + std::clamp(xi, 0.0, 1.0) * tau;
+  return {xi, (x - at).norm(), at};
 }
 
 }  // namespace
@@ -25,10 +34,12 @@ Foot project(const Points<double>& points, const std::vector<int>& facet, const 
 std::optional<ClosestPoint> closest_point(const Points<double>& points, const std::vector<std::vector<int>>& facets,
                                           const Vec<double, 2>& x) {
   int best = -1;
-  Foot foot{0, std::numeric_limits<double>::infinity()};
+  Foot foot{0, std::numeric_limits<double>::infinity(), {0, 0}};
   for (std::size_t f = 0; f < facets.size(); ++f) {
     const Foot candidate = project(points, facets[f], x);
-    if (candidate.distance < foot.distance) {
+    const double band = at_end * (points.col(facets[f][1]) - points.col(facets[f][0])).norm();
+    const bool tie = best >= 0 && std::abs(candidate.distance - foot.distance) <= band;
+    if (tie ? before(candidate, foot) : candidate.distance < foot.distance) {
       foot = candidate;
       best = static_cast<int>(f);
     }

@@ -118,15 +118,14 @@ PointGeometry<T> against_vertex(const Vec<T, 2>& x, const Vec<T, 2>& before, con
 /// slave normal (outward, need not be a unit vector). With contact geometry fixed at the start the common tangent plane
 /// that the two surfaces are about to share is known only up to the angle between them; the bisector is right to second
 /// order in that angle and treats both bodies alike, while the master normal of a curved pair turns part of the closing
-/// motion into slip (two cylinders at b/R = 0.085: 3/4 of the slip that friction is to see).
+/// motion into slip (two cylinders at b/R = 0.085: 3/4 of the slip that friction is to see). The gap is left to the
+/// caller: it is that of slave and master place along the new normal.
 template <class T>
 void share_normal(PointGeometry<T>& geometry, const Vec<T, 2>& slave_normal) {
   const T length = norm(slave_normal);
   Vec<T, 2> mean(geometry.normal[0] - slave_normal[0] / length, geometry.normal[1] - slave_normal[1] / length);
   const T size = norm(mean);
   for (int i = 0; i < 2; ++i) mean[i] /= size;
-  geometry.gap *=
-      mean[0] * geometry.normal[0] + mean[1] * geometry.normal[1];  // the gap vector is along the old normal
   geometry.normal << mean[0], mean[1];
   geometry.tangents = detail::tangent_frame<T>(geometry.normal);
 }

@@ -50,7 +50,7 @@ bool same_tangents(const std::vector<PointTangent<T>>& a, const std::vector<Poin
   if (a.size() != b.size()) return false;
   auto close = [](const Matrix<T>& x, const Matrix<T>& y, double scale) {
     for (Eigen::Index i = 0; i < x.size(); ++i)
-      if (std::abs(x.data()[i] - y.data()[i]) > 1e-14 * scale) return false;
+      if (!(std::abs(x.data()[i] - y.data()[i]) <= 1e-14 * scale)) return false;
     return true;
   };
   for (std::size_t p = 0; p < a.size(); ++p) {
@@ -182,7 +182,6 @@ class CondensedEngine {
   Eigen::LLT<Matrix<T>> llt_;
   bool cholesky_ = false, valid_ = false;
   std::vector<PointTangent<T>> factorised_;
-  double norm_ = 0;
   std::string message_;
 };
 

@@ -388,16 +388,11 @@ bool CondensedEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents,
   if (symmetric_) {
     llt_.compute(K);
     cholesky_ = llt_.info() == Eigen::Success;
-    if (cholesky_) return valid_ = true;
-    ++counters.factorizations;
+    if (!cholesky_) ++counters.factorizations;
   }
-  lu_.compute(K);
-  const auto diagonal = lu_.matrixLU().diagonal().cwiseAbs().eval();
-  norm_ = K.cwiseAbs().rowwise().sum().maxCoeff();
-  Eigen::Index worst = 0;
-  const double smallest = diagonal.minCoeff(&worst);
-  // A pivot at the level of rounding: the block is scaled alike (forces per length), so its norm is the measure.
-  valid_ = smallest > 4 * detail::unit_roundoff * norm_ * 1e-3;
+  if (!cholesky_) lu_.compute(K);
+  // The limit of LinearSolver: beyond a condition of 0.1 / epsilon nothing of a solution is left.
+  valid_ = (cholesky_ ? llt_.rcond() : lu_.rcond()) > 10 * std::numeric_limits<double>::epsilon();
   if (!valid_) message_ = "the tangent is singular to working precision";
   return valid_;
 }

@@ -150,7 +150,7 @@ void pair_nodes(Model& model, const Points<double>& points, const Pairing& pairi
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
   for (int node : pairing.slave.nodes) {
     ContactPoint point = slave_point(model, points, pairing, node);
-    point.shares_normal = pairing.obstacle < 0 && shape != ElementShape::bar2 && shape != ElementShape::point;
+    point.shares_normal = pairing.obstacle < 0 && is_continuum(shape) && !point.area_facets.empty();
     if (pairing.obstacle >= 0 || find_master(points, pairing.master, point)) add_point(model, std::move(point));
   }
 }
@@ -214,11 +214,10 @@ std::vector<double> step_ends(const Scene& scene) {
     for (int i = 1; i <= leg.steps; ++i) ends.push_back(start + (leg.end - start) * i / leg.steps);
     start = leg.end;
   }
-  const std::vector<double> regular = ends;
   auto hit = [&](const Table& table) {
     for (const auto& point : table.points) {
       const double t = point.first, band = 1e-9 * start;
-      const bool there = std::any_of(regular.begin(), regular.end(), [&](double r) { return std::abs(r - t) <= band; });
+      const bool there = std::any_of(ends.begin(), ends.end(), [&](double r) { return std::abs(r - t) <= band; });
       if (t > band && t < start && !there) ends.push_back(t);
     }
   };

@@ -3,6 +3,7 @@
 /// oracle.
 #pragma once
 
+#include <algorithm>
 #include <variant>
 #include <vector>
 
@@ -124,7 +125,12 @@ PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point,
     geometry = against_vertex<T>(point2(slots.points, point.nodes[0]), point2(slots.points, point.neighbours[0]),
                                  point2(slots.points, point.nodes[1]), point2(slots.points, point.neighbours[1]));
   }
-  if (point.shares_normal) share_normal(geometry, slave_normal(point, slots.points));
+  if (point.shares_normal) {
+    share_normal(geometry, slave_normal(point, slots.points));
+    geometry.gap = T(0);
+    for (std::size_t n = 0; n < point.nodes.size(); ++n)
+      geometry.gap += geometry.weights[n] * dot(geometry.normal, point2(slots.points, point.nodes[n]));
+  }
   geometry.gap += numbers(model.scene.contacts[point.contact].offset);
   if (point.pieces.empty()) geometry.area = tributary_area(point, slots);
   return geometry;
@@ -143,8 +149,11 @@ Vector<T> load_vector(const Model& model, const Load& load, const Slots<T>& slot
   T total{};
   for (const auto& facet : side.facets) {
     const T half = T(0.5) * distance(slots.points, facet[0], facet[1]);
-    for (int node : facet) share.emplace_back(node, half);
-    total += T(2) * half;
+    for (int node : facet)
+      if (std::find(side.nodes.begin(), side.nodes.end(), node) != side.nodes.end()) {
+        share.emplace_back(node, half);
+        total += half;
+      }
   }
   if (side.facets.empty()) {  // single nodes: equal shares
     for (int node : side.nodes) share.emplace_back(node, T(1));

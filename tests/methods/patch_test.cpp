@@ -82,7 +82,7 @@ TEST(ContactPatch, PassesWithSegmentIntegrationBetweenAnyTwoMeshes) {
             if (skewed && !mu) continue;  // without friction the upper block slides off
             const auto s = run(stacked(slave, master, skewed, nu, mu, true), method);
             ASSERT_TRUE(is_converged(s.trajectory.status)) << slave << ":" << master << " " << name_of(method);
-            // equilibrium is solved to 1e-11 of the largest nodal force, which a condition of some 10 magnifies
+            // equilibrium is solved to 1e-12 of the largest nodal force, which a condition of some 10 magnifies
             EXPECT_LT(traction_error(s), 1e-10) << slave << ":" << master << " skew " << skewed << " nu " << nu
                                                 << " mu " << mu.value_or(-1) << " " << name_of(method);
             const double E = 1000 / (1 - nu * nu);

@@ -415,7 +415,7 @@ class Model:
                 found = self._project(x, contact["master"])
                 if found is None:
                     continue
-                n, gap, master = found
+                n, gap, master, place = found
                 if body.kind not in ("point", "bar"):  # two continua: the bisector of the two normals
                     outward = np.zeros(2, dtype=complex)
                     for p, q in side.facets:
@@ -424,7 +424,7 @@ class Model:
                             outward += np.array([tau[1], -tau[0]])
                     shared = n - outward / np.sqrt(outward @ outward)
                     shared = shared / np.sqrt(shared @ shared)
-                    n, gap = shared, gap * (shared @ n)
+                    n, gap = shared, shared @ (x - place)
                 weights.update({i: -N for i, N in master.items()})
             elif "plane" in obstacle:
                 n = np.array(obstacle["plane"]["normal"])
@@ -439,8 +439,8 @@ class Model:
             yield Point(name, slave, weights, n, gap + offset, a, contact.get("friction"), obstacle or {})
 
     def _project(self, x, master):
-        """Normal, gap and {node: N} at the closest point of the facets; None past a free end. At a vertex the normal
-        bisects those of its facets."""
+        """Normal, gap, {node: N} and place of the closest point of the facets; None past a free end. At a vertex the
+        normal bisects those of its facets."""
         name, side = self.resolve(master)
         body, found = self.bodies[name], []
         ends = {side.facets[0][0], side.facets[-1][1]}
@@ -465,7 +465,7 @@ class Model:
             tau = tau / np.sqrt(tau @ tau)
             weights = {first + vertex: 1.0}
         n = np.array([tau[1], -tau[0]])
-        return n, n @ (x - y), weights
+        return n, n @ (x - y), weights, y
 
     def operators(self):
         """Sparse B_N (points x dofs) and B_T ((d-1) points x dofs) of gap and slip."""

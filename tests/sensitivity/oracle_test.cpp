@@ -61,8 +61,7 @@ TEST(Oracle, MonolithicSchemeIsExact) {
 TEST(Oracle, MonolithicSchemeIsExactForTheOtherCone) {
   MonolithicAL method;
   method.cone = MonolithicAL::Cone::multiplier;
-  for (const auto& scene : {scenes::greco_plate(8), scenes::two_boxes(6, 9)})
-    EXPECT_LE(worst_error(scene, method), 1);
+  for (const auto& scene : {scenes::greco_plate(8), scenes::two_boxes(6, 9)}) EXPECT_LE(worst_error(scene, method), 1);
 }
 
 TEST(Oracle, PenaltySchemeIsExactForThePenalisedProblem) {

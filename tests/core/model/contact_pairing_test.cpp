@@ -1,0 +1,163 @@
+/// Which contact points a scene has: masters, unknowns, tributary areas.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/model/slots.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace stickslip {
+namespace {
+
+using testing::ElementsAre;
+
+/// A box [0, 4] x [1, 2] of 4 x 1 cells above a master box [0, 4] x [0, 1] of `master` x 1 cells, and a floor at y = 1.
+Scene boxes(int master, const std::string& slave_side = "upper.bottom") {
+  Scene scene;
+  scene.legs = {{1, 1}};
+  BoxMesh upper, lower;
+  upper.min = {0.0, 1.0};
+  upper.max = {4.0, 2.0};
+  upper.cells = {4, 1};
+  lower.min = {0.0, 0.0};
+  lower.max = {4.0, 1.0};
+  lower.cells = {master, 1};
+  scene.bodies = {{"upper", upper, LinearElastic{1000.0, 0.3}, "", 1.0},
+                  {"lower", lower, LinearElastic{1000.0, 0.3}, "", 1.0}};
+  scene.obstacles = {{"floor", Plane{{0.0, 1.0}, {0.0, 1.0}}, {}}};
+  scene.contacts = {scenes::contact("touch", slave_side, "lower.top")};
+  return scene;
+}
+Scene on_floor(const std::string& slave_side) {
+  auto scene = boxes(4, slave_side);
+  scene.contacts[0].master = "floor";
+  return scene;
+}
+
+std::vector<double> areas(const Scene& scene) {
+  const Model model = make_model(scene);
+  std::vector<double> out;
+  for (const auto& geometry : make_slots<double>(model, scene.as<double>()).geometry) out.push_back(geometry.area);
+  return out;
+}
+
+TEST(ContactPairs, FaceAFacetBetweenNodesAndAVertexOnThem) {
+  const Model matching = make_model(boxes(4)), staggered = make_model(boxes(3));
+  ASSERT_EQ(matching.points.size(), 5u);
+  using Master = ContactPoint::Master;
+  EXPECT_EQ(matching.points[0].master, Master::facet);  // the ends of the master curve
+  EXPECT_EQ(matching.points[1].master, Master::vertex);
+  EXPECT_EQ(matching.points[4].master, Master::facet);
+  ASSERT_EQ(staggered.points.size(), 5u);
+  for (const auto& point : staggered.points) EXPECT_EQ(point.master, Master::facet);
+}
+
+TEST(ContactPairs, NameTheirNodesAndTheirPlacesAmongTheContactNodes) {
+  for (int master : {3, 4}) {
+    const Model model = make_model(boxes(master));
+    EXPECT_TRUE(std::is_sorted(model.contact_nodes.begin(), model.contact_nodes.end()));
+    EXPECT_EQ(model.contact_nodes.size(), 5u + master + 1);
+    for (const auto& point : model.points) {
+      ASSERT_EQ(point.nodes.size(), 3u);
+      ASSERT_EQ(point.places.size(), 3u);
+      EXPECT_LT(point.nodes[0], model.bodies[1].first_node);
+      for (int i = 0; i < 3; ++i) EXPECT_EQ(model.contact_nodes[point.places[i]], point.nodes[i]);
+      for (int i = 1; i < 3; ++i) EXPECT_GE(point.nodes[i], model.bodies[1].first_node);
+    }
+  }
+}
+
+TEST(ContactPairs, HaveAMultiplierForEachOfTheirComponentsInARow) {
+  auto scene = boxes(3);
+  scene.contacts.push_back(scenes::contact("rough", "upper.top", "floor"));
+  scene.contacts[1].friction = 0.3;
+  const Model model = make_model(scene);
+  ASSERT_EQ(model.points.size(), 10u);
+  int next = 0;
+  for (const auto& point : model.points) {
+    EXPECT_EQ(point.components(), point.contact == 0 ? 1 : 2);
+    EXPECT_EQ(point.multiplier, next);
+    next += point.components();
+  }
+  EXPECT_EQ(model.multiplier_count, 15);
+}
+
+TEST(ContactPairs, LeaveOutSlaveNodesBeyondTheMaster) {
+  auto scene = boxes(3);
+  std::get<BoxMesh>(scene.bodies[1].mesh).max[0] = 2.5;
+  const Model model = make_model(scene);
+  ASSERT_EQ(model.points.size(), 3u);  // at 0, 1 and 2
+}
+
+TEST(ContactPairs, LeaveOutSlaveNodesThatLookTheSameWayAsTheMaster) {
+  EXPECT_TRUE(make_model(boxes(3, "upper.top")).points.empty());
+  EXPECT_FALSE(make_model(boxes(3, "upper.bottom")).points.empty());
+}
+
+TEST(ContactPairs, TakeACornerAloneForASlaveToo) {
+  EXPECT_EQ(make_model(on_floor("upper.bottom & upper.left")).points.size(), 1u);
+  EXPECT_EQ(make_model(boxes(3, "upper.bottom & upper.left")).points.size(), 1u);
+}
+
+TEST(ContactPairs, TakeEverySlaveNodeAgainstAnObstacle) {
+  EXPECT_EQ(make_model(on_floor("upper.bottom")).points.size(), 5u);
+  EXPECT_EQ(make_model(on_floor("upper.bottom - upper.right")).points.size(), 4u);
+}
+
+TEST(ContactPairs, ThatTheSpaceHasNotAreRefused) {
+  auto scene = scenes::dragged_point({{0, 0, 0}, {1, 0.1, 0}}, 1, 0.3);
+  scene.obstacles[0].shape = Circle{{0.0, 0.0}, 1.0, false};
+  EXPECT_THROW(make_model(scene), ModelError);
+  auto unknown = boxes(3);
+  unknown.contacts[0].master = "cellar";
+  EXPECT_THROW(make_model(unknown), ModelError);
+  auto without_facets = boxes(3);
+  without_facets.contacts[0].master = "lower.top & lower.left";
+  EXPECT_THROW(make_model(without_facets), ModelError);
+}
+
+TEST(TributaryAreas, AreHalfOfEachFacetAndAddUpToTheSide) {
+  EXPECT_THAT(areas(on_floor("upper.bottom")), ElementsAre(0.5, 1, 1, 1, 0.5));
+  auto graded = on_floor("upper.bottom");
+  auto& mesh = std::get<BoxMesh>(graded.bodies[0].mesh);
+  mesh.grade_towards = "left";
+  mesh.grade = 5.0;
+  double total = 0;
+  for (double area : areas(graded)) total += area;
+  EXPECT_NEAR(total, 4, 1e-15 * 16);  // ten roundings of numbers up to 4
+}
+
+TEST(TributaryAreas, OfTheNodesThatAreLeftStayWhole) {
+  EXPECT_THAT(areas(on_floor("upper.bottom - upper.right")), ElementsAre(0.5, 1, 1, 1));
+}
+
+TEST(TributaryAreas, OfBarsAreLengthsAlongThemAndTheCrossSectionAtAnEndAlone) {
+  Scene scene;
+  scene.legs = {{1, 1}};
+  scene.bodies = {{"chain", LineMesh{{0.0, 0.0}, {3.0, 0.0}, 3}, LinearElastic{1.0, 0.3}, "", 0.02}};
+  scene.obstacles = {{"floor", Plane{{0.0, 0.0}, {0.0, 1.0}}, {}}};
+  scene.contacts = {scenes::contact("touch", "chain.nodes", "floor")};
+  EXPECT_THAT(areas(scene), ElementsAre(0.5, 1, 1, 0.5));
+  scene.contacts[0].slave = "chain.interior";
+  EXPECT_THAT(areas(scene), ElementsAre(1, 1));
+  scene.contacts[0].slave = "chain.end";
+  EXPECT_THAT(areas(scene), ElementsAre(0.02));
+}
+
+TEST(TributaryAreas, OfAPointAreOne) { EXPECT_THAT(areas(scenes::stop()), ElementsAre(1)); }
+
+TEST(TieLengths, AreRoundingsOfTheMeshAndOfThePlaceItStandsAt) {
+  const Model here = make_model(on_floor("upper.bottom"));
+  for (const auto& point : here.points) {
+    EXPECT_EQ(point.mesh_size, 1);
+    EXPECT_GT(point.tie_length, 0);
+    EXPECT_LT(point.tie_length, 1e-11);  // of a cell of size one
+  }
+  auto far = on_floor("upper.bottom");
+  auto& mesh = std::get<BoxMesh>(far.bodies[0].mesh);
+  mesh.min[0] = 1e6;
+  mesh.max[0] = 1e6 + 4;
+  EXPECT_GT(make_model(far).points[0].tie_length, 1e-10);  // coordinates of 1e6 are rounded by 1e-10
+}
+
+}  // namespace
+}  // namespace stickslip
