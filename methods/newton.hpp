@@ -221,6 +221,9 @@ void rows_in(E& engine, const ContactInput<T>& input, const Vector<T>& u, const 
   if (unknown) at.rows_l = multiplier_residual(input.model, input.slots, field.traction, multiplier);
 }
 
+inline constexpr const char* redundant_message =
+    "constraints repeat one another: they share the force, and their sum alone is unique";
+
 /// Whether the derivative that rides on a scalar still moves: nothing rides on a double; the oracle's imaginary part
 /// follows the real one an iteration later.
 template <class T>
@@ -242,7 +245,8 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
   std::vector<ContactState> used;                // states of the last tangent
   ContactField<T> directed;                      // field and branches of the last step
   std::unordered_map<std::size_t, double> seen;  // active set -> smallest residual met with it
-  bool damped = false;
+  bool damped = false, redundant = false;  // redundant: constraints repeat one another
+  const auto decided = unknown ? decided_elsewhere(model, input.slots) : std::vector<char>();
   int extra = detail::extra_iterations<T>(), steady = 0;
   double step_length = 1;
   auto at = detail::evaluate(engine, input, u, multiplier, unknown, account.scales);
@@ -263,7 +267,7 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
     if (!at.residuals.finite()) return finish(Status::not_finite, "the residual is not finite");
     steady = unchanged && iteration > 0 ? steady + 1 : 0;
     if (unchanged && at.residuals.within(options.tolerance)) {
-      if (extra-- == 0) return finish(Status::converged);
+      if (extra-- == 0) return finish(Status::converged, redundant ? detail::redundant_message : "");
     } else if (steady >= 2 && at.residuals.within_rounding(options.tolerance) &&
                2 * at.residuals.largest() > result.history[iteration - 1].residual) {
       if (extra-- == 0)
@@ -295,7 +299,10 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
           tangents.push_back(point_tangent<T>(input, p, compact, multiplier, branch[p]));
       }
       const Stopwatch time(account.seconds.factorization);
-      if (!engine.factorise(tangents, account.counters)) return finish(Status::singular, engine.message());
+      const bool regular =
+          unknown ? factorise_sharing(engine, model, decided, std::move(tangents), redundant, account.counters)
+                  : engine.factorise(tangents, account.counters);
+      if (!regular) return finish(Status::singular, engine.message());
     }
     {
       const Stopwatch time(account.seconds.backsolve);

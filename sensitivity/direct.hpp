@@ -112,6 +112,7 @@ class LinearisedEquilibrium {
   ConeRadius cone_;
   double time_;
   bool unknown_, valid_ = false;
+  bool redundant_ = false;            ///< constraints repeat one another: the tangent yields, and is used twice
   std::vector<Vector<Direction>> u_;  ///< per block: value, and the derivative of prescribed motion
   Matrix<double> bulk_, reduced_;     ///< pseudo-load of the bodies, all dofs and engine rows
   Matrix<double> increment_, compact_;
@@ -136,7 +137,9 @@ LinearisedEquilibrium<E>::LinearisedEquilibrium(Differentiation<E>& problem, con
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p)
     tangents.push_back(point_tangent<double>(primal, p, compact, at.multiplier, at.contact.state[p]));
   const long before = problem.counters.factorizations;
-  valid_ = problem.engine.factorise(tangents, problem.counters);
+  valid_ = unknown ? factorise_sharing(problem.engine, model, decided_elsewhere(model, problem.slots),
+                                       std::move(tangents), redundant_, problem.counters)
+                   : problem.engine.factorise(tangents, problem.counters);
   problem.counters.sensitivity_factorizations += problem.counters.factorizations - before;
   if (!valid_) {
     problem.message = "the tangent of the converged state is singular: " + problem.engine.message();
@@ -144,12 +147,11 @@ LinearisedEquilibrium<E>::LinearisedEquilibrium(Differentiation<E>& problem, con
   }
   std::vector<Vector<Direction>> rows;
   for (auto& block : problem.blocks) {
-    Vector<Direction> u = lift(at.displacement);
-    for (const auto& constraint : model.constraints) u[constraint.dof].d.setZero();
-    Vector<Direction> prescribed = u;
+    Vector<Direction> u = lift(at.displacement), prescribed = u;
     prescribe(model, block.slots, time, prescribed);
-    for (const auto& constraint : model.constraints) u[constraint.dof].d = prescribed[constraint.dof].d;
-    rows.push_back(bulk_forces(model, block.slots, u) - external_forces(model, block.slots, time));
+    for (Eigen::Index i = 0; i < u.size(); ++i) u[i].d = prescribed[i].d;
+    const Vector<Direction> balance = bulk_forces(model, block.slots, u) - external_forces(model, block.slots, time);
+    rows.push_back(into_frames(model, block.slots.frames, Layout::all, balance));
     u_.push_back(std::move(u));
   }
   bulk_ = gather(
@@ -181,7 +183,7 @@ std::vector<ContactField<Direction>> LinearisedEquilibrium<E>::solve(std::vector
       if (unknown_) add_derivatives(lambda[b], multiplier, b);
     }
     rows = evaluate(compact, lambda);
-    if (!unknown_ || pass == refinements || rows.accurate) return std::move(rows.fields);
+    if (!unknown_ || pass == refinements || (rows.accurate && !redundant_)) return std::move(rows.fields);
   }
 }
 
@@ -197,7 +199,8 @@ typename LinearisedEquilibrium<E>::Rows LinearisedEquilibrium<E>::evaluate(
   for (int b = 0; b < blocks; ++b) {
     const auto& slots = problem_.blocks[b].slots;
     rows.fields.push_back(evaluate_contact<Direction>(input(b), compact[b], lambda[b], &at_.contact.state));
-    forces.push_back(contact_forces(problem_.model, slots, rows.fields[b].traction));
+    forces.push_back(into_frames(problem_.model, slots.frames, Layout::compact,
+                                 contact_forces(problem_.model, slots, rows.fields[b].traction)));
     if (unknown_)
       multiplier_rows.push_back(multiplier_residual(problem_.model, slots, rows.fields[b].traction, lambda[b]));
   }

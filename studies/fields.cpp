@@ -177,12 +177,16 @@ json picture_json(const CaseResult& result) {
     if (const auto* plane = std::get_if<Plane>(&obstacle.shape)) {
       obstacles.push_back(
           {{"plane", {{"point", numbers_json(plane->point)}, {"normal", numbers_json(plane->normal)}}}});
-    } else {
-      const auto& circle = std::get<Circle>(obstacle.shape);
+    } else if (const auto* circle = std::get_if<Circle>(&obstacle.shape)) {
       obstacles.push_back({{"circle",
-                            {{"center", {circle.center[0].value, circle.center[1].value}},
-                             {"radius", circle.radius.value},
-                             {"inside", circle.inside}}}});
+                            {{"center", {circle->center[0].value, circle->center[1].value}},
+                             {"radius", circle->radius.value},
+                             {"inside", circle->inside}}}});
+    } else if (const auto* polyline = std::get_if<Polyline>(&obstacle.shape)) {
+      json vertices = json::array();
+      for (const auto& x : polyline->points) vertices.push_back({x[0].value, x[1].value});
+      if (polyline->closed) vertices.push_back(vertices.front());
+      obstacles.push_back({{"polyline", {{"points", vertices}}}});
     }
   }
   return {{"points", points}, {"elements", elements}, {"displacement", displacement}, {"von_mises", mises},

@@ -61,7 +61,7 @@ std::vector<KktError> kkt_errors(const Model& model, const Slots<double>& slots,
     enlarge(model, slots, state, increment.time, scales);
     KktError e;
     Vector<double> balance = nodal_balance(model, slots, state, increment.time);
-    for (const auto& constraint : model.constraints) balance[constraint.dof] = 0;
+    balance -= support_forces(model, slots, balance);
     e.equilibrium = relative(largest_nodal_norm(balance, model.dimension), scales.force);
     for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
       const auto& point = model.points[p];

@@ -27,6 +27,11 @@ constexpr std::array kinds{
     Kind{"contact_half_width", Response::Kind::contact_half_width, true, Kind::Component::none, false},
 };
 
+bool has_moment(const Kind& kind, const SceneReading& reading) {
+  return reading.dimension() == 2 &&
+         (kind.kind == Response::Kind::reaction || kind.kind == Response::Kind::contact_force);
+}
+
 Keys keys_of(const Kind& kind, const SceneReading& reading) {
   Keys keys;
   if (kind.of_contact) keys.required.push_back("contact");
@@ -37,7 +42,7 @@ Keys keys_of(const Kind& kind, const SceneReading& reading) {
   else if (kind.component != Kind::Component::none)
     keys.required.push_back("component");
   if (kind.sampled) keys.optional.insert(keys.optional.end(), {"take", "at"});
-  if (kind.kind == Response::Kind::reaction || kind.kind == Response::Kind::contact_force) keys.later = {"about"};
+  if (has_moment(kind, reading)) keys.optional.push_back("about");
   return keys;
 }
 
@@ -64,6 +69,32 @@ void read_on(const JsonNode& node, bool beside_at, Response& response, SceneRead
   if (!(beside_at && body)) reading.side(node);
 }
 
+/// Coordinates that say where a response is taken: they are no parameters.
+std::vector<Number> read_place(const JsonNode& node, SceneReading& reading) {
+  std::vector<Number> place;
+  const auto point = node.array(reading.dimension(), "an array of " + std::to_string(reading.dimension()) + " numbers");
+  if (!point) return place;
+  for (const JsonNode& coordinate : *point) {
+    reading.constants[coordinate.pointer()] = "where a response is taken, not a part of the scene";
+    place.emplace_back(coordinate.number(any_number).value_or(0));
+  }
+  return place;
+}
+
+void read_component(const JsonNode& node, const JsonNode& component, const Kind& kind, Response& response,
+                    SceneReading& reading) {
+  auto allowed = reading.axes();
+  if (kind.component == Kind::Component::axis_or_normal) allowed.insert(allowed.begin(), "normal");
+  const bool moment = has_moment(kind, reading);
+  if (moment) allowed.emplace_back("moment");
+  response.component = component.choice(allowed).value_or(allowed.front());
+  const auto about = moment ? node.find("about") : std::nullopt;
+  if (about) response.about = read_place(*about, reading);
+  if (about && response.component != "moment") about->error_at_key(R"("about" belongs to the component "moment")");
+  if (!about && response.component == "moment")
+    node.error(R"(the key "about" is missing: the point [x, y] that the moment is about)");
+}
+
 void read_response(const std::string& name, const JsonNode& outer, SceneReading& reading) {
   std::vector<std::string> names;
   for (const Kind& each : kinds) names.emplace_back(each.name);
@@ -84,23 +115,13 @@ void read_response(const std::string& name, const JsonNode& outer, SceneReading&
   if (on && !kind.of_contact) read_on(*on, at.has_value(), response, reading);
   if (kind.kind == Response::Kind::displacement && !on && !at)
     node.error(R"(one of the keys is missing: "on", a side BODY.SIDE, or "at", a point)");
-  if (component && kind.component != Kind::Component::none) {
-    auto allowed = reading.axes();
-    if (kind.component == Kind::Component::axis_or_normal) allowed.insert(allowed.begin(), "normal");
-    response.component = component->choice(allowed, {"moment"}).value_or(allowed.front());
-  }
+  if (component && kind.component != Kind::Component::none) read_component(node, *component, kind, response, reading);
   if (take && kind.sampled) {
     const auto way = take->choice({"mean", "max", "min"}).value_or("mean");
     response.take = way == "max" ? Response::Take::max : way == "min" ? Response::Take::min : Response::Take::mean;
     if (at) take->error_at_key(R"("take" has no meaning beside "at", which is a single point)");
   }
-  if (at && kind.sampled)
-    if (const auto point =
-            at->array(reading.dimension(), "an array of " + std::to_string(reading.dimension()) + " numbers"))
-      for (const JsonNode& coordinate : *point) {
-        reading.constants[coordinate.pointer()] = "where a response is taken, not a part of the scene";
-        response.at.emplace_back(coordinate.number(any_number).value_or(0));
-      }
+  if (at && kind.sampled) response.at = read_place(*at, reading);
   reading.scene.responses.push_back(std::move(response));
 }
 

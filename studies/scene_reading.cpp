@@ -45,21 +45,13 @@ std::vector<Number> SceneReading::required_vector(const JsonNode& object, const 
   return std::vector<Number>(size, Number(std::numeric_limits<double>::quiet_NaN()));
 }
 
-Table SceneReading::table(const JsonNode& node) {
-  constexpr const char* allowed = "a number or a table [[t, value], ...] with increasing t";
-  Table table;
-  if (node.value().is_number()) {
-    table.points = {{0, number(node, any_number)}};
-    return table;
-  }
-  if (!node.value().is_array() || node.value().empty()) {
-    if (node.value().is_object() && (node.find("table") || node.find("repeat")))
-      node.error("a table as an object is not available in this version; must be " + std::string(allowed));
-    else
-      node.must_be(allowed);
-    table.points = {{0, Number()}};
-    return table;
-  }
+namespace {
+constexpr const char* allowed_value =
+    R"(a number, a table [[t, value], ...] with increasing t, or {"table": [...], "repeat": n})";
+}
+
+void SceneReading::points(const JsonNode& node, Table& table) {
+  if (!node.value().is_array() || node.value().empty()) return node.must_be(allowed_value);
   for (const JsonNode& point : node.elements()) {
     const auto pair = point.array(2, "a pair [t, value]");
     if (!pair) continue;
@@ -71,8 +63,52 @@ Table SceneReading::table(const JsonNode& node) {
                        shown(table.points.back().first));
     table.points.emplace_back(*t, value);
   }
+}
+
+Table SceneReading::table(const JsonNode& node) {
+  Table table;
+  if (node.value().is_number()) {
+    table.points = {{0, number(node, any_number)}};
+  } else if (node.value().is_object()) {
+    if (node.is_object({{"table"}, {"repeat"}}))
+      if (const auto of = node.find("table")) points(*of, table);
+    if (const auto repeat = node.find("repeat")) table.repeat = count(*repeat, 1).value_or(1);
+    if (table.repeat > 1 && table.points.size() < 2) {
+      if (table.points.size() == 1) node.error("repeats a table of one point; must have two points at least");
+    } else if (table.repeat > 1 && table.points.front().second.value != table.points.back().second.value) {
+      node.error("repeats a table that jumps from " + shown(table.points.back().second.value) + " at its end to " +
+                 shown(table.points.front().second.value) + " at its start; the two must be equal");
+    }
+    if (table.points.size() < 2) table.repeat = 1;
+  } else {
+    points(node, table);
+  }
   if (table.points.empty()) table.points = {{0, Number()}};
   return table;
+}
+
+std::vector<Number> SceneReading::direction(const JsonNode& node, const char* what) {
+  const auto numbers = vector(node, dimension());
+  if (std::all_of(numbers.begin(), numbers.end(), [](const Number& n) { return n.value == 0; })) node.must_be(what);
+  return numbers;
+}
+
+Rotation SceneReading::rotation(const JsonNode& node) {
+  Rotation rotation;
+  rotation.angle.points = {{0, Number()}};
+  const bool space = dimension() == 3;
+  if (!space && node.value().is_object())
+    if (const auto axis = node.find("axis")) {
+      axis->error_at_key("an axis needs the space solid; in a plane space a rotation is about its center");
+      return rotation;
+    }
+  if (!node.is_object(
+          {space ? std::vector<std::string>{"center", "axis", "angle"} : std::vector<std::string>{"center", "angle"}}))
+    return rotation;
+  rotation.center = required_vector(node, "center", dimension());
+  if (const auto axis = node.find("axis")) rotation.axis = direction(*axis, "a vector that is not zero");
+  if (const auto angle = node.find("angle")) rotation.angle = table(*angle);
+  return rotation;
 }
 
 std::map<char, Table> SceneReading::move(const JsonNode& node) {

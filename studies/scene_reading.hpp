@@ -51,10 +51,15 @@ struct SceneReading {
   /// As many numbers as given; NaN where it is at fault.
   std::vector<Number> vector(const JsonNode&, int size);
   std::vector<Number> required_vector(const JsonNode& object, const std::string& key, int size);
-  /// A value in time: a number, or [[t, value], ...] with increasing t. One point at least.
+  /// A value in time: a number, [[t, value], ...] with increasing t, or {"table": [...], "repeat": n}. One point at
+  /// least.
   Table table(const JsonNode&);
   /// Members by axis of {"x": table, ...}.
   std::map<char, Table> move(const JsonNode&);
+  /// A direction: as many numbers as axes, not all zero (`what` completes "must be ...").
+  std::vector<Number> direction(const JsonNode&, const char* what);
+  /// {"center", "angle"} and in space "axis".
+  Rotation rotation(const JsonNode&);
 
   // Numbers that cannot be parameters.
   std::optional<double> time(const JsonNode&, const Rule&);
@@ -65,6 +70,8 @@ struct SceneReading {
   std::optional<NamedSide> side(const JsonNode&);
 
  private:
+  /// Reads [[t, value], ...] into a table.
+  void points(const JsonNode&, Table&);
   int slot(const std::string& pointer, double value);
 };
 

@@ -91,6 +91,13 @@ PointGeometry<T> against_facet(const Vec<T, 2>& x, const Vec<T, 2>& a, const Vec
   return g;
 }
 
+/// The geometry of a facet or vertex that is rigid: nothing but the slave node moves in w.
+template <class T>
+PointGeometry<T> fixed(PointGeometry<T> geometry) {
+  geometry.weights.conservativeResize(1);
+  return geometry;
+}
+
 /// Against the vertex v between the facets before -> v and v -> after: the normal is the bisector of the two, so that
 /// it depends neither on the numbering nor on the order of the facets.
 template <class T>

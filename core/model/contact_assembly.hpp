@@ -51,13 +51,18 @@ decltype(auto) with_point(const Model& model, const ContactPoint& point, F&& f) 
   });
 }
 
-/// Rigid displacement of the obstacle of a point.
+/// Rigid displacement of the obstacle of a point, at the place that the point faces.
 template <class T, int D>
-Vec<T, D> obstacle_displacement(const ContactInput<T>& input, const ContactPoint& point) {
+Vec<T, D> obstacle_displacement(const ContactInput<T>& input, int p) {
+  const auto& point = input.model.points[p];
   Vec<T, D> u = Vec<T, D>::Constant(T(0));
   if (point.obstacle < 0) return u;
   for (const auto& [axis, table] : input.model.scene.obstacles[point.obstacle].move)
     u[axis - 'x'] = evaluate(table, input.time, input.slots.numbers);
+  if (const auto& rotate = input.model.scene.obstacles[point.obstacle].rotate) {
+    const T angle = evaluate(rotate->angle, input.time, input.slots.numbers);
+    for (int i = 0; i < D; ++i) u[i] += angle * input.slots.spins[p][i];
+  }
   return u;
 }
 
@@ -73,7 +78,7 @@ Traction<T, Tangents> gather_traction(const Vector<T>& field, int offset) {
 template <class T, int D>
 Vec<T, D> relative_displacement(const ContactInput<T>& input, int p, const Vector<T>& compact) {
   const auto& point = input.model.points[p];
-  Vec<T, D> w = -obstacle_displacement<T, D>(input, point);
+  Vec<T, D> w = -obstacle_displacement<T, D>(input, p);
   for (std::size_t n = 0; n < point.places.size(); ++n)
     for (int i = 0; i < D; ++i) w[i] += input.slots.geometry[p].weights[n] * compact[point.places[n] * D + i];
   return w;
@@ -211,6 +216,76 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
     }
     return tangent;
   });
+}
+
+/// Which multiplier components have nothing left to decide: their constraint moves along with what supports prescribe,
+/// or with the components before it. Empty where there is none.
+template <class T>
+std::vector<char> decided_elsewhere(const Model& model, const Slots<T>& slots) {
+  constexpr double independent = 1e-9;  // sine of the least angle to what is decided
+  const int D = model.dimension;
+  std::vector<char> decided;
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const auto& point = model.points[p];
+    const auto& geometry = slots.geometry[p];
+    Matrix<double> rows = Matrix<double>::Zero(point.components(), point.nodes.size() * D);  // on free directions
+    bool all_free = true;
+    for (std::size_t n = 0; n < point.nodes.size(); ++n) {
+      Matrix<double> Q = Matrix<double>::Identity(D, D);
+      for (std::size_t f = 0; f < model.framed.size(); ++f)
+        if (model.framed[f].node == point.nodes[n]) Q = values(slots.frames[f]);
+      for (int i = 0; i < D; ++i) {
+        if (model.free_index[point.nodes[n] * D + i] < 0) {
+          all_free = false;
+          continue;
+        }
+        const auto column = static_cast<Eigen::Index>(n) * D + i;
+        rows(0, column) = value(geometry.weights[n]) * values(geometry.normal).dot(Q.col(i));
+        for (int a = 0; a < point.tangents; ++a)
+          rows(1 + a, column) = value(geometry.weights[n]) * values(geometry.tangents.col(a)).dot(Q.col(i));
+      }
+    }
+    if (all_free) continue;
+    for (Eigen::Index c = 0; c < rows.rows(); ++c) {
+      for (Eigen::Index k = 0; k < c; ++k) rows.row(c) -= rows.row(k).dot(rows.row(c)) * rows.row(k);
+      const double left = rows.row(c).norm();
+      if (left <= independent) decided.resize(model.multiplier_count);
+      if (left <= independent) decided[point.multiplier + c] = 1;
+      rows.row(c) *= left <= independent ? 0 : 1 / left;
+    }
+  }
+  return decided;
+}
+
+/// Adds -share times the multiplier's own stiffness to the rows of closed constraints, which have none: those in
+/// `which`, or all where it is nullptr. The residual stays what it is; only the step changes.
+template <class T>
+void yield_rows(const Model& model, const std::vector<char>* which, double share,
+                std::vector<PointTangent<T>>& tangents) {
+  for (std::size_t p = 0; p < tangents.size(); ++p) {
+    auto& tangent = tangents[p];
+    for (Eigen::Index c = 0; c < tangent.row_l.rows(); ++c) {
+      if (which && !(*which)[model.points[p].multiplier + c]) continue;
+      double own = 0, along = 0;
+      for (Eigen::Index k = 0; k < tangent.row_l.cols(); ++k) own = std::max(own, std::abs(value(tangent.row_l(c, k))));
+      for (Eigen::Index i = 0; i < tangent.row_w.cols(); ++i)
+        along = std::max(along, std::abs(value(tangent.row_w(c, i))));
+      if (own <= 1e-8 * along) tangent.row_l(c, c) -= T(share * along);
+    }
+  }
+}
+
+/// Factorises with unknown multipliers that need not be unique. A constraint that supports decide takes its multiplier
+/// from the gap as a penalty would, step by step: nothing where the support agrees with it. Where constraints repeat
+/// one another the tangent is singular; a yield of 1e-8 then shares the force out in the least norm, far above the
+/// limit of singularity and small enough to cost one iteration more. `redundant`: that yield was needed, and is kept.
+template <class T, class E>
+bool factorise_sharing(E& engine, const Model& model, const std::vector<char>& decided,
+                       std::vector<PointTangent<T>> tangents, bool& redundant, Counters& counters) {
+  if (!decided.empty()) yield_rows(model, &decided, 1, tangents);
+  if (!redundant && engine.factorise(tangents, counters)) return true;
+  yield_rows(model, nullptr, 1e-8, tangents);
+  return redundant = engine.factorise(tangents, counters);
 }
 
 /// Frictional work of the increment, added to the previous dissipation, per contact: sum A t_T . plastic slip, where

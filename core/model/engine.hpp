@@ -2,8 +2,9 @@
 /// it does not see whether the bodies are there in full (SparseEngine) or as their Schur complement on the contact dofs
 /// (CondensedEngine: small strain and linear materials; 20-200 times cheaper an iteration).
 ///
-/// An engine owns a displacement vector layout ("engine dofs"): all dofs, or the compact contact dofs. Rows and
-/// increments are in that layout; entries of prescribed dofs are zero in increments and ignored in rows.
+/// An engine owns a displacement vector layout ("engine dofs"): all dofs, or the compact contact dofs, in the frames of
+/// the nodes (model/frames.hpp). Rows and increments are in that layout; entries of prescribed dofs are zero in
+/// increments and ignored in rows. What `compact`, `all` and `expand` return and `residual` is given is in the axes.
 #pragma once
 
 #include <Eigen/Dense>
@@ -73,8 +74,10 @@ class SparseEngine {
   SparseEngine(const Model& model, const Slots<T>& slots, bool unknown_multipliers, Backend backend);
 
   Vector<T> begin(double time, const Vector<T>& displacement);  ///< all dofs, prescribed values at `time` set
-  Vector<T> compact(const Vector<T>& u) const { return to_compact(model_, u); }
-  Vector<T> all(const Vector<T>& u) const { return u; }
+  Vector<T> compact(const Vector<T>& u) const {
+    return out_of_frames(model_, slots_.frames, Layout::compact, to_compact(model_, u));
+  }
+  Vector<T> all(const Vector<T>& u) const { return out_of_frames(model_, slots_.frames, Layout::all, u); }
   /// f_int - f_ext + contact.
   Vector<T> residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const;
   bool is_free(Eigen::Index row) const { return model_.free_index[row] >= 0; }
@@ -82,9 +85,12 @@ class SparseEngine {
   BlockVector<T> solve(const BlockVector<T>& rows);
   /// The bodies' stiffness times engine increments (engine rows).
   Matrix<T> apply_stiffness(const Matrix<T>& u) const;
-  /// Rows over all dofs -> engine rows, and the increment over all dofs that belongs to an engine increment.
+  /// Rows over all dofs, in the frames -> engine rows, and the increment over all dofs, in the axes, that belongs to an
+  /// engine increment.
   Matrix<T> reduce(const Matrix<T>& rows) { return rows; }
-  Matrix<T> expand(const Matrix<T>& u, const Matrix<T>&) { return u; }
+  Matrix<T> expand(const Matrix<T>& u, const Matrix<T>&) {
+    return out_of_frames(model_, slots_.frames, Layout::all, u);
+  }
   Matrix<T> scatter(const Matrix<T>& compact) const;  ///< compact rows -> engine rows
   double condition_estimate() { return solver_.condition_estimate(); }
   std::string name() const { return "sparse, " + solver_.name(); }
@@ -100,7 +106,7 @@ class SparseEngine {
   const Slots<T>& slots_;
   bool unknown_multipliers_;
   int size_;
-  Vector<T> external_;
+  Vector<T> external_;  ///< in the frames
   std::shared_ptr<Pattern> pattern_;
   std::vector<std::vector<int>> point_map_;  ///< per point: entry of each (row, column) pair of its rows, -1 if fixed
   std::vector<T> bulk_, values_;
@@ -110,8 +116,8 @@ class SparseEngine {
   bool analysed_ = false, valid_ = false;
 };
 
-/// The bodies condensed to the contact dofs: S = K_cc - K_ci K_ii^-1 K_ic. Immutable; serves every method, sensitivity
-/// and cell of a sweep on the same numbers.
+/// The bodies condensed to the contact dofs: S = K_cc - K_ci K_ii^-1 K_ic, all in the frames. Immutable; serves every
+/// method, sensitivity and cell of a sweep on the same numbers.
 template <class T>
 class Condensation {
  public:
@@ -147,7 +153,7 @@ class CondensedEngine {
                   std::shared_ptr<Condensation<T>> condensation);
 
   Vector<T> begin(double time, const Vector<T>& displacement);
-  Vector<T> compact(const Vector<T>& u) const { return u; }
+  Vector<T> compact(const Vector<T>& u) const { return out_of_frames(model_, slots_.frames, Layout::compact, u); }
   Vector<T> all(const Vector<T>& u);
   Vector<T> residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const;
   bool is_free(Eigen::Index row) const { return free_[row]; }
@@ -155,7 +161,9 @@ class CondensedEngine {
   BlockVector<T> solve(const BlockVector<T>& rows);
   Matrix<T> apply_stiffness(const Matrix<T>& u) const { return condensation_->schur() * u; }
   Matrix<T> reduce(const Matrix<T>& rows) { return condensation_->reduce(rows); }
-  Matrix<T> expand(const Matrix<T>& u, const Matrix<T>& rows) { return condensation_->expand(u, rows); }
+  Matrix<T> expand(const Matrix<T>& u, const Matrix<T>& rows) {
+    return out_of_frames(model_, slots_.frames, Layout::all, condensation_->expand(u, rows));
+  }
   Matrix<T> scatter(const Matrix<T>& compact) const { return compact; }
   double condition_estimate();
   std::string name() const;

@@ -75,6 +75,31 @@ void for_each_entry(const PointGeometry<T>& geometry, const PointTangent<T>& tan
       for (int c = 0; c < C; ++c) add(nodes * D + r, nodes * D + c, tangent.row_l(r, c));
 }
 
+/// The same in the frames of the nodes.
+template <class T, class Add>
+void for_each_framed_entry(const Model& model, const Slots<T>& slots, int p, const PointTangent<T>& tangent,
+                           bool unknown_multipliers, Add&& add) {
+  const auto& geometry = slots.geometry[p];
+  if (model.framed.empty()) return for_each_entry(geometry, tangent, unknown_multipliers, add);
+  const auto rows = geometry.weights.size() * model.dimension + (unknown_multipliers ? tangent.row_l.rows() : 0);
+  Matrix<T> K = Matrix<T>::Constant(rows, rows, T(0));
+  for_each_entry(geometry, tangent, unknown_multipliers, [&](int r, int c, const T& x) { K(r, c) += x; });
+  K = into_frames(model, slots.frames, model.points[p].nodes, std::move(K));
+  for (int c = 0; c < rows; ++c)
+    for (int r = 0; r < rows; ++r) add(r, c, K(r, c));
+}
+
+/// for_each_element_tangent of a body, in the frames of the nodes.
+template <class T, class Sink>
+void for_each_framed_tangent(const Model& model, const Slots<T>& slots, int b, Sink&& sink) {
+  for_each_element_tangent(model, slots, b, nullptr, [&](const auto& nodes, const auto& K) {
+    if (model.framed.empty())
+      sink(nodes, K);
+    else
+      sink(nodes, into_frames(model, slots.frames, nodes, Matrix<T>(K)));
+  });
+}
+
 inline Symmetry symmetry_of(const Model& model, bool unknown_multipliers) {
   if (model.effects.friction) return Symmetry::general;
   return unknown_multipliers ? Symmetry::indefinite : Symmetry::positive_definite;
@@ -105,7 +130,7 @@ SparseEngine<T>::SparseEngine(const Model& model, const Slots<T>& slots, bool un
   bulk_.assign(pattern_->nonzeros(), T(0));
   std::size_t e = 0;
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    for_each_element_tangent(model, slots, static_cast<int>(b), nullptr, [&](const auto&, const auto& K) {
+    detail::for_each_framed_tangent(model, slots, static_cast<int>(b), [&](const auto&, const auto& K) {
       const auto& rows = lists[e++];
       for (std::size_t c = 0; c < rows.size(); ++c)
         for (std::size_t r = 0; r < rows.size(); ++r)
@@ -129,21 +154,21 @@ std::vector<int> SparseEngine<T>::point_rows(const ContactPoint& point) const {
 
 template <class T>
 Vector<T> SparseEngine<T>::begin(double time, const Vector<T>& displacement) {
-  external_ = external_forces(model_, slots_, time);
+  external_ = into_frames(model_, slots_.frames, Layout::all, external_forces(model_, slots_, time));
   Vector<T> u = displacement;
   prescribe(model_, slots_, time, u);
-  return u;
+  return into_frames(model_, slots_.frames, Layout::all, std::move(u));
 }
 
 template <class T>
 Vector<T> SparseEngine<T>::residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const {
-  Vector<T> rows = bulk_forces(model_, slots_, u);
+  Vector<T> rows = into_frames(model_, slots_.frames, Layout::all, bulk_forces(model_, slots_, all(u)));
   const int D = model_.dimension;
   scale.force = std::max(
       {scale.force, largest_nodal_norm(rows, D), largest_nodal_norm(external_, D), largest_nodal_norm(contact, D)});
   scale.rounding = detail::unit_roundoff * stiffness_ * largest_nodal_norm(u, D);
   rows -= external_;
-  add_compact(model_, contact, rows);
+  add_compact(model_, into_frames(model_, slots_.frames, Layout::compact, contact), rows);
   return rows;
 }
 
@@ -154,9 +179,10 @@ bool SparseEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents, Co
   for (std::size_t p = 0; p < tangents.size(); ++p) {
     const auto& map = point_map_[p];
     const int n = static_cast<int>(std::lround(std::sqrt(static_cast<double>(map.size()))));
-    detail::for_each_entry(slots_.geometry[p], tangents[p], unknown_multipliers_, [&](int row, int column, const T& x) {
+    auto add = [&](int row, int column, const T& x) {
       if (const int entry = map[row * n + column]; entry >= 0) values_[entry] += x;
-    });
+    };
+    detail::for_each_framed_entry(model_, slots_, static_cast<int>(p), tangents[p], unknown_multipliers_, add);
   }
   ++counters.assemblies;
   if (!analysed_) {
@@ -219,7 +245,7 @@ Condensation<T>::Condensation(const Model& model, const Slots<T>& slots, Backend
     }
   std::vector<Eigen::Triplet<T>> all;
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    for_each_element_tangent(model, slots, static_cast<int>(b), nullptr, [&](const auto& nodes, const auto& K) {
+    detail::for_each_framed_tangent(model, slots, static_cast<int>(b), [&](const auto& nodes, const auto& K) {
       for (std::size_t i = 0; i < nodes.size() * D; ++i)
         for (std::size_t j = 0; j < nodes.size() * D; ++j)
           all.emplace_back(nodes[i / D] * D + i % D, nodes[j / D] * D + j % D, K(i, j));
@@ -313,18 +339,21 @@ template <class T>
 Vector<T> CondensedEngine<T>::begin(double time, const Vector<T>& displacement) {
   Vector<T> u = displacement;
   prescribe(model_, slots_, time, u);
+  u = into_frames(model_, slots_.frames, Layout::all, std::move(u));
   rest_ = Vector<T>::Constant(model_.dof_count(), T(0));
   for (const auto& constraint : model_.constraints) rest_[constraint.dof] = u[constraint.dof];
   for (int node : model_.contact_nodes)
     for (int i = 0; i < model_.dimension; ++i) rest_[node * model_.dimension + i] = T(0);
-  rest_rows_ = external_forces(model_, slots_, time) - condensation_->apply_stiffness(rest_);
+  rest_rows_ = into_frames(model_, slots_.frames, Layout::all, external_forces(model_, slots_, time)) -
+               condensation_->apply_stiffness(rest_);
   load_ = condensation_->reduce(rest_rows_);
   return to_compact(model_, u);
 }
 
 template <class T>
 Vector<T> CondensedEngine<T>::all(const Vector<T>& u) {
-  return rest_ + condensation_->expand(u, rest_rows_).col(0);
+  return out_of_frames(model_, slots_.frames, Layout::all,
+                       Vector<T>(rest_ + condensation_->expand(u, rest_rows_).col(0)));
 }
 
 template <class T>
@@ -336,7 +365,7 @@ Vector<T> CondensedEngine<T>::residual(const Vector<T>& u, const Vector<T>& cont
   double stiffest = 0;
   for (Eigen::Index i = 0; i < u.size(); ++i) stiffest = std::max(stiffest, value(condensation_->schur()(i, i)));
   scale.rounding = detail::unit_roundoff * stiffest * largest_nodal_norm(u, D);
-  rows += contact - load_;
+  rows += into_frames(model_, slots_.frames, Layout::compact, contact) - load_;
   return rows;
 }
 
@@ -370,9 +399,10 @@ bool CondensedEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents,
     for (int n : point.places)
       for (int i = 0; i < D; ++i) rows.push_back(free_place_[n * D + i]);
     for (int c = 0; c < point.components(); ++c) rows.push_back(place[point.multiplier + c]);
-    detail::for_each_entry(slots_.geometry[p], tangents[p], unknown_multipliers_, [&](int row, int column, const T& x) {
+    auto add = [&](int row, int column, const T& x) {
       if (rows[row] >= 0 && rows[column] >= 0) K(rows[row], rows[column]) += x;
-    });
+    };
+    detail::for_each_framed_entry(model_, slots_, static_cast<int>(p), tangents[p], unknown_multipliers_, add);
   }
   ++counters.assemblies;
   ++counters.factorizations;

@@ -1,7 +1,7 @@
 /// What drives a model in time: external nodal forces and prescribed displacements.
 #pragma once
 
-#include "core/model/slots.hpp"
+#include "core/model/frames.hpp"
 
 namespace stickslip {
 
@@ -17,14 +17,42 @@ Vector<T> external_forces(const Model& model, const Slots<T>& slots, double t) {
   return forces;
 }
 
-/// Sets the prescribed entries of a displacement vector (all dofs) to their values at time t.
+/// Sets what is prescribed of a displacement vector (all dofs, in the axes) to its values at time t; the rest of it
+/// stays, also across an inclined direction.
 template <class T>
 void prescribe(const Model& model, const Slots<T>& slots, double t, Vector<T>& displacement) {
-  for (const auto& constraint : model.constraints)
-    displacement[constraint.dof] =
-        constraint.support < 0
-            ? T(0)
-            : evaluate(model.scene.supports[constraint.support].move.at(constraint.axis), t, slots.numbers);
+  const int D = model.dimension;
+  auto prescribed = [&](const Constraint& constraint) {
+    return prescribed_value<T>(model.scene, constraint, slots.points.col(constraint.dof / D), t, slots.numbers);
+  };
+  std::size_t next = 0;  // framed node
+  for (const auto& constraint : model.constraints) {
+    while (next < model.framed.size() && model.framed[next].node < constraint.dof / D) ++next;
+    const bool framed = next < model.framed.size() && model.framed[next].node == constraint.dof / D;
+    if (!framed) displacement[constraint.dof] = prescribed(constraint);
+  }
+  for (std::size_t f = 0; f < model.framed.size(); ++f) {
+    const auto& framed = model.framed[f];
+    const Matrix<T>& Q = slots.frames[f];
+    Vector<T> u = Q.transpose().lazyProduct(displacement.segment(framed.node * D, D));
+    for (int c = 0; c < static_cast<int>(framed.prescribed.size()); ++c) {
+      u[c] = prescribed(framed.prescribed[c]);
+      if (framed.prescribed[c].support < 0) continue;
+      const Vector<T> d = direction(model.scene, framed.prescribed[c], slots.numbers);
+      for (int k = 0; k < c; ++k) u[c] -= dot(Q.col(k), d) * u[k];
+      u[c] /= dot(Q.col(c), d);
+    }
+    displacement.segment(framed.node * D, D) = Q.lazyProduct(u).eval();
+  }
+}
+
+/// The part of nodal forces (all dofs, in the axes) that acts along prescribed displacements: of a balance, the forces
+/// of the supports on the bodies.
+template <class T>
+Vector<T> support_forces(const Model& model, const Slots<T>& slots, const Vector<T>& forces) {
+  Vector<T> held = into_frames(model, slots.frames, Layout::all, forces);
+  for (int dof : model.free_dofs) held[dof] = T(0);
+  return out_of_frames(model, slots.frames, Layout::all, std::move(held));
 }
 
 /// Compact displacements of the contact nodes out of all.

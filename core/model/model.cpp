@@ -9,6 +9,7 @@
 #include "core/contact/search.hpp"
 #include "core/mesh/generators.hpp"
 #include "core/mesh/sides.hpp"
+#include "core/model/supports.hpp"
 #include "core/solids/shapes.hpp"
 
 namespace stickslip {
@@ -20,54 +21,6 @@ int body_index(const Scene& scene, const std::string& name) {
   throw ModelError("there is no body \"" + name + "\"");
 }
 
-bool same_motion(const Table& a, const Table& b) {
-  return std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(),
-                    [](auto& p, auto& q) { return p.first == q.first && p.second.value == q.second.value; });
-}
-
-/// One row of a closed set of constraints: dof -> who prescribes it.
-void prescribe(Model& model, std::map<int, Constraint>& by_dof, int support, const SideSet& side) {
-  for (const auto& [axis, table] : model.scene.supports[support].move) {
-    const int component = axis - 'x';
-    if (component < 0 || component >= model.dimension)
-      throw ModelError(std::string("there is no axis ") + axis + " in this space",
-                       "/supports/" + std::to_string(support));
-    for (int node : side.nodes) {
-      const int dof = node * model.dimension + component;
-      const auto found = by_dof.find(dof);
-      if (found != by_dof.end() && found->second.support >= 0) {  // a corner shared by two supports
-        const auto& other = model.scene.supports[found->second.support];
-        if (same_motion(other.move.at(axis), table)) continue;
-        throw ModelError("moves a node that " + other.on + " has too differently from the support there, along " + axis,
-                         "/supports/" + std::to_string(support) + "/move/" + axis);
-      }
-      by_dof[dof] = {dof, support, axis};
-    }
-  }
-}
-
-void number_dofs(Model& model) {
-  std::map<int, Constraint> by_dof;
-  for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    if (model.bodies[b].mesh.shape == ElementShape::point)  // an anchor that nobody moves stays where it is
-      for (int i = 0; i < model.dimension; ++i) {
-        const int dof = (model.bodies[b].first_node + 1) * model.dimension + i;
-        by_dof[dof] = {dof, -1, 'x'};
-      }
-  for (std::size_t s = 0; s < model.scene.supports.size(); ++s)
-    prescribe(model, by_dof, static_cast<int>(s), model.side(model.scene.supports[s].on));
-  model.free_index.assign(model.dof_count(), 0);
-  for (const auto& [dof, constraint] : by_dof) {
-    model.constraints.push_back(constraint);
-    model.free_index[dof] = -1;
-  }
-  for (int dof = 0; dof < model.dof_count(); ++dof)
-    if (model.free_index[dof] == 0) {
-      model.free_index[dof] = static_cast<int>(model.free_dofs.size());
-      model.free_dofs.push_back(dof);
-    }
-}
-
 /// Mean of the outward facet normals at a slave node (solid on the left of a facet), zero where it has none.
 Vec<double, 2> outward_normal(const Points<double>& points, const std::vector<std::pair<int, int>>& facets) {
   Vec<double, 2> n = Vec<double, 2>::Zero();
@@ -76,6 +29,24 @@ Vec<double, 2> outward_normal(const Points<double>& points, const std::vector<st
     n += Vec<double, 2>(tau[1], -tau[0]);
   }
   return n;
+}
+
+/// Finds the facet or vertex of a polyline that a slave node faces; false where it lies past a free end.
+bool find_on_polyline(const Points<double>& points, const Polyline& polyline, const Numbers<double>& numbers,
+                      ContactPoint& point) {
+  const int count = static_cast<int>(polyline.points.size());
+  Points<double> vertices(2, count);
+  for (int v = 0; v < count; ++v)
+    for (int i = 0; i < 2; ++i) vertices(i, v) = numbers(polyline.points[v][i]);
+  std::vector<std::vector<int>> facets;  // reversed: those of the search have the solid on their left
+  for (int v = 0; v + 1 < count + polyline.closed; ++v) facets.push_back({(v + 1) % count, v});
+  const auto closest = closest_point(vertices, facets, points.col(point.nodes[0]).head<2>());
+  if (!closest) return false;
+  const auto& facet = facets[closest->facet];
+  point.master = closest->second < 0 ? ContactPoint::Master::facet : ContactPoint::Master::vertex;
+  point.of_polyline = facet;
+  if (closest->second >= 0) point.of_polyline.push_back(facets[closest->second][1]);
+  return true;
 }
 
 /// Finds the master of a slave node; false where it faces none.
@@ -97,6 +68,21 @@ bool find_master(const Points<double>& points, const SideSet& master, ContactPoi
   const int before = facet[0], vertex = facet[1], after = master.facets[closest->second][1];
   point.nodes.insert(point.nodes.end(), {vertex, after});
   point.neighbours = {before, after};
+  return true;
+}
+
+/// Finds what a slave node faces of its obstacle; false where it faces nothing. Throws ModelError where every place of
+/// it is as near as any other.
+bool find_on_obstacle(const Points<double>& points, const Scene& scene, ContactPoint& point) {
+  const Obstacle& obstacle = scene.obstacles[point.obstacle];
+  const auto numbers = scene.as<double>();
+  if (const auto* polyline = std::get_if<Polyline>(&obstacle.shape))
+    return find_on_polyline(points, *polyline, numbers, point);
+  const auto* circle = std::get_if<Circle>(&obstacle.shape);
+  const auto x = points.col(point.nodes[0]);
+  if (circle && x[0] == numbers(circle->center[0]) && x[1] == numbers(circle->center[1]))
+    throw ModelError("is where a slave node is, from which no place of the circle is nearer than another",
+                     "/obstacles/" + obstacle.name + "/circle/center");
   return true;
 }
 
@@ -151,7 +137,9 @@ void pair_nodes(Model& model, const Points<double>& points, const Pairing& pairi
   for (int node : pairing.slave.nodes) {
     ContactPoint point = slave_point(model, points, pairing, node);
     point.shares_normal = pairing.obstacle < 0 && is_continuum(shape) && !point.area_facets.empty();
-    if (pairing.obstacle >= 0 || find_master(points, pairing.master, point)) add_point(model, std::move(point));
+    const bool faces = pairing.obstacle >= 0 ? find_on_obstacle(points, model.scene, point)
+                                             : find_master(points, pairing.master, point);
+    if (faces) add_point(model, std::move(point));
   }
 }
 
@@ -196,40 +184,48 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
     pairing.master = model.side(contact.master);
     if (model.dimension == 3) throw ModelError("a deformable master needs a 2D space", where);
     if (pairing.master.facets.empty()) throw ModelError("the master side has no facets", where);
-  } else if (model.dimension == 3 && std::holds_alternative<Circle>(model.scene.obstacles[pairing.obstacle].shape)) {
-    throw ModelError("a circle needs a 2D space", "/obstacles/" + contact.master);
+  } else if (model.dimension == 3 && !std::holds_alternative<Plane>(model.scene.obstacles[pairing.obstacle].shape)) {
+    throw ModelError("in space an obstacle must be a plane", "/obstacles/" + contact.master);
   }
   if (!contact.segment) return pair_nodes(model, points, pairing);
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
   if (model.dimension == 3 || pairing.slave.facets.empty() || !is_continuum(shape))
     throw ModelError("segment integration needs a slave side of facets of a solid body", where);
+  if (pairing.obstacle >= 0 && std::holds_alternative<Polyline>(model.scene.obstacles[pairing.obstacle].shape))
+    throw ModelError("segment integration against a polyline is not available in this version", where);
   pair_segments(model, points, pairing);
 }
 
 /// Ends of the increments: equal steps of each leg, and the breakpoints of every table in it.
 std::vector<double> step_ends(const Scene& scene) {
-  std::vector<double> ends;
+  std::set<double> ends;
   double start = 0;
   for (const auto& leg : scene.legs) {
-    for (int i = 1; i <= leg.steps; ++i) ends.push_back(start + (leg.end - start) * i / leg.steps);
+    for (int i = 1; i <= leg.steps; ++i) ends.insert(start + (leg.end - start) * i / leg.steps);
     start = leg.end;
   }
+  const double band = 1e-9 * start;
   auto hit = [&](const Table& table) {
-    for (const auto& point : table.points) {
-      const double t = point.first, band = 1e-9 * start;
-      const bool there = std::any_of(ends.begin(), ends.end(), [&](double r) { return std::abs(r - t) <= band; });
-      if (t > band && t < start && !there) ends.push_back(t);
-    }
+    for (int n = 0; n < table.repeat; ++n)
+      for (std::size_t i = 0; i < table.points.size(); ++i) {
+        const double t = table.time(n, i);
+        const auto next = ends.lower_bound(t - band);
+        const bool there = next != ends.end() && *next <= t + band;
+        if (t > band && t < start && !there) ends.insert(t);
+      }
   };
-  for (const auto& support : scene.supports)
-    for (const auto& [axis, table] : support.move) hit(table);
-  for (const auto& obstacle : scene.obstacles)
-    for (const auto& [axis, table] : obstacle.move) hit(table);
+  auto hit_motion = [&](const auto& of) {
+    for (const auto& [axis, table] : of.move) hit(table);
+    if (of.rotate) hit(of.rotate->angle);
+  };
+  for (const auto& support : scene.supports) {
+    hit_motion(support);
+    if (support.inclined) hit(support.inclined->value);
+  }
+  for (const auto& obstacle : scene.obstacles) hit_motion(obstacle);
   for (const auto& load : scene.loads)
     if (load.history) hit(*load.history);
-  std::sort(ends.begin(), ends.end());
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-  return ends;
+  return {ends.begin(), ends.end()};
 }
 
 /// Shape function values at x of an element, if it holds x (to rounding).
@@ -357,16 +353,19 @@ Model make_model(const Scene& scene) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     points.middleCols(model.bodies[b].first_node, model.bodies[b].mesh.node_count) =
         make_points<double>(scene.bodies[b].mesh, numbers, model.dimension);
-  number_dofs(model);
+  number_dofs(model, points);
   for (std::size_t c = 0; c < scene.contacts.size(); ++c) pair_contact(model, points, static_cast<int>(c));
   std::set<int> nodes;
   for (const auto& point : model.points) nodes.insert(point.nodes.begin(), point.nodes.end());
   model.contact_nodes.assign(nodes.begin(), nodes.end());
+  auto place_of = [&](int node) {
+    const auto found = std::lower_bound(model.contact_nodes.begin(), model.contact_nodes.end(), node);
+    return static_cast<int>(found - model.contact_nodes.begin());
+  };
   for (auto& point : model.points)
-    for (int node : point.nodes)
-      point.places.push_back(
-          static_cast<int>(std::lower_bound(model.contact_nodes.begin(), model.contact_nodes.end(), node) -
-                           model.contact_nodes.begin()));
+    for (int node : point.nodes) point.places.push_back(place_of(node));
+  for (auto& framed : model.framed)
+    if (nodes.count(framed.node)) framed.place = place_of(framed.node);
   for (const auto& response : scene.responses)
     model.response_places.push_back(locate_response(model, points, response));
   model.times = step_ends(scene);

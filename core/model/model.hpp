@@ -30,7 +30,7 @@ struct BodyMesh {
 
 /// One slave node and what it can touch. Fixed for small strain.
 struct ContactPoint {
-  enum class Master { obstacle, facet, vertex, pieces };
+  enum class Master { obstacle, facet, vertex, pieces };  ///< facet and vertex of a deformable side or a polyline
   Master master = Master::obstacle;
   int contact = 0;              ///< index in Scene::contacts
   int obstacle = -1;            ///< index in Scene::obstacles, -1 for a deformable master
@@ -38,6 +38,7 @@ struct ContactPoint {
   int slave_nodes = 1;          ///< how many of `nodes` are the slave's; more than one if segment-integrated
   std::vector<int> places;      ///< of `nodes` in Model::contact_nodes
   std::vector<int> neighbours;  ///< vertex: the vertices before and after it, whose facets share the normal
+  std::vector<int> of_polyline;  ///< points of the polyline: the facet's two, or the vertex between its neighbours
   std::vector<std::pair<int, int>> area_facets;  ///< facets of the slave side at the node; half of each is tributary
   std::vector<Piece> pieces;                     ///< segment-integrated: what the multiplier of nodes[0] acts on
   bool area_of_bar = false;    ///< tributary area is the bar's cross-section; with no facets either: 1
@@ -50,11 +51,20 @@ struct ContactPoint {
   int components() const { return 1 + tangents; }
 };
 
-/// A dof whose displacement is prescribed: the table of supports[support].move[axis], or zero where support < 0
-/// (the anchor of a spring that nobody moves).
+/// A dof whose displacement is prescribed, by supports[support] along an axis, or by its inclined direction where the
+/// axis is `inclined`; zero where support < 0 (the anchor of a spring that nobody moves).
 struct Constraint {
+  static constexpr char inclined = 'n';
   int dof = 0, support = -1;
   char axis = 'x';
+};
+
+/// A node that a support holds in an inclined direction. Its D dofs are not the axes but the vectors of a frame
+/// (Slots::frames): the prescribed directions, orthonormalised in this order, then those across them.
+struct FramedNode {
+  int node = 0;
+  int place = -1;                      ///< in Model::contact_nodes, or -1
+  std::vector<Constraint> prescribed;  ///< of dofs node D, node D + 1, ...
 };
 
 /// The physical effects that a scene calls for; what is off has no unknown, no storage and no code path.
@@ -88,7 +98,8 @@ struct Model {
   std::vector<BodyMesh> bodies;
   std::vector<ContactPoint> points;
   int multiplier_count = 0;
-  std::vector<Constraint> constraints;  ///< ascending dof
+  std::vector<Constraint> constraints;  ///< ascending dof; those of framed nodes included
+  std::vector<FramedNode> framed;       ///< ascending; empty where no support is inclined
   std::vector<int> free_index;          ///< per dof: index among the free ones, or -1
   std::vector<int> free_dofs;
   std::vector<int> contact_nodes;              ///< ascending; all nodes of all contact points

@@ -8,8 +8,8 @@
 
 namespace stickslip {
 
-/// f_int - f_ext + contact over all dofs: zero at free dofs in equilibrium, the force of the support on the body at
-/// prescribed ones.
+/// f_int - f_ext + contact over all dofs, in the axes: zero along free dofs in equilibrium, the force of the support on
+/// the body along prescribed ones (support_forces).
 template <class T>
 Vector<T> nodal_balance(const Model& model, const Slots<T>& slots, const State<T>& state, double time) {
   Vector<T> rows = bulk_forces(model, slots, state.displacement) - external_forces(model, slots, time);
@@ -36,6 +36,13 @@ T take_of(Response::Take take, const std::vector<T>& samples, const std::vector<
     if (larger == (take == Response::Take::max) && value(samples[i]) != value(samples[best])) best = i;
   }
   return samples[best];
+}
+
+/// Component x y z of a force, or its moment about a point of the plane, counter-clockwise, with the arm of the start.
+template <class T, class Force, class Place>
+T component_of(const Response& response, const Force& force, const Place& x, const Numbers<T>& numbers) {
+  if (response.component != "moment") return force[response.component[0] - 'x'];
+  return (x[0] - numbers(response.about[0])) * force[1] - (x[1] - numbers(response.about[1])) * force[0];
 }
 
 /// Accumulated tangential slip of a point along a component: x y z, or "" for its own tangent (2D).
@@ -74,9 +81,9 @@ T contact_response(const Model& model, const Slots<T>& slots, const Response& re
       samples.push_back(slip_component(model, slots, state, p, response.component));
     if (response.kind == Kind::contact_force && response.component != "normal")
       force -= with_point(model, point, [&]<int D, int Tangents>() {
-        return point_force<T, D, Tangents>(
-            geometry,
-            gather_traction<T, Tangents>(state.contact.traction, point.multiplier))[response.component[0] - 'x'];
+        const auto on_slave = point_force<T, D, Tangents>(
+            geometry, gather_traction<T, Tangents>(state.contact.traction, point.multiplier));
+        return component_of(response, on_slave, slots.points.col(point.nodes[0]), slots.numbers);
       });
     else
       force += geometry.area * pressure;
@@ -110,18 +117,18 @@ T contact_response(const Model& model, const Slots<T>& slots, const Response& re
 
 }  // namespace detail
 
-/// Value of a response at a state. `balance`: nodal_balance of the state; read by `reaction` alone, may be empty
+/// Value of a response at a state. `held`: support_forces of the state; read by `reaction` alone, may be empty
 /// otherwise.
 template <class T>
 T evaluate_response(const Model& model, const Slots<T>& slots, int index, const State<T>& state,
-                    const Vector<T>& balance) {
+                    const Vector<T>& held) {
   const Response& response = model.scene.responses[index];
   const ResponsePlace& place = model.response_places[index];
   const int D = model.dimension, axis = response.component.empty() ? 0 : response.component[0] - 'x';
   if (response.kind == Response::Kind::reaction) {
     T sum{};
     for (int node : model.side(response.on).nodes)
-      if (model.free_index[node * D + axis] < 0) sum += balance[node * D + axis];
+      sum += detail::component_of(response, held.segment(node * D, D), slots.points.col(node), slots.numbers);
     return sum;
   }
   if (response.kind == Response::Kind::displacement) {
@@ -143,13 +150,13 @@ T evaluate_response(const Model& model, const Slots<T>& slots, int index, const 
 template <class T>
 Vector<T> evaluate_responses(const Model& model, const Slots<T>& slots, const State<T>& state, double time) {
   const auto& responses = model.scene.responses;
-  Vector<T> balance;
+  Vector<T> held;
   for (const auto& response : responses)
-    if (response.kind == Response::Kind::reaction && balance.size() == 0)
-      balance = nodal_balance(model, slots, state, time);
+    if (response.kind == Response::Kind::reaction && held.size() == 0)
+      held = support_forces(model, slots, nodal_balance(model, slots, state, time));
   Vector<T> out(responses.size());
   for (std::size_t i = 0; i < responses.size(); ++i)
-    out[i] = evaluate_response(model, slots, static_cast<int>(i), state, balance);
+    out[i] = evaluate_response(model, slots, static_cast<int>(i), state, held);
   return out;
 }
 

@@ -6,7 +6,9 @@
 /// slots.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -39,13 +41,29 @@ struct Numbers {
 /// t = 0, in force from the first step on (times are not parameters, values are).
 struct Table {
   std::vector<std::pair<double, Number>> points;
-  bool constant() const { return points.size() == 1; }
+  int repeat = 1;  ///< how often the points are run through, one time right after the other
+  double start() const { return points.front().first; }
+  double period() const { return points.back().first - points.front().first; }
+  /// When point i is reached for the n-th time, n = 0, 1, ...
+  double time(int n, std::size_t i) const { return points[i].first + n * period(); }
 };
 
-/// The table at time t. pre: at least one point.
+/// The time that the points of a repeated table know: `t`, less the periods that went by. A breakpoint of any repeat
+/// is met to the last bit, so that no rounding adds up over the repeats.
+inline double time_in_period(const Table& table, double t) {
+  if (table.repeat == 1 || t <= table.start()) return t;
+  const double period = table.period(), rounding = 4e-16 * std::abs(t);
+  const int passed = static_cast<int>(std::min((t - table.start() - rounding) / period, table.repeat - 1.0));
+  for (std::size_t i = 0; i < table.points.size(); ++i)
+    if (std::abs(t - table.time(passed, i)) <= rounding) return table.points[i].first;
+  return t - passed * period;
+}
+
+/// The table at time `at`. pre: at least one point; two and equal ends where it is repeated.
 template <class T>
-T evaluate(const Table& table, double t, const Numbers<T>& numbers) {
+T evaluate(const Table& table, double at, const Numbers<T>& numbers) {
   const auto& p = table.points;
+  const double t = time_in_period(table, at);
   if (t <= p.front().first) return numbers(p.front().second);
   for (std::size_t i = 1; i < p.size(); ++i)
     if (t <= p[i].first) {
@@ -126,10 +144,23 @@ struct Circle {
   Number radius;
   bool inside = false;
 };
+/// Rigid curve from point to point, the solid on its right. `closed`: the last point is the first again.
+struct Polyline {
+  std::vector<std::array<Number, 2>> points;  ///< without the repeated one
+  bool closed = false;
+};
+/// Rotation theta about a center, and in space an axis through it (need not be a unit vector); positive
+/// counter-clockwise. Small strain: u = theta x (X - center), for a body turned by a finite angle is not free of
+/// linear strain.
+struct Rotation {
+  std::vector<Number> center, axis;  ///< axis: empty in 2D
+  Table angle;                       ///< degrees
+};
 struct Obstacle {
   std::string name;
-  std::variant<Plane, Circle> shape;
-  std::map<char, Table> move;  ///< rigid displacement by axis
+  std::variant<Plane, Circle, Polyline> shape;
+  std::map<char, Table> move = {};      ///< rigid displacement by axis
+  std::optional<Rotation> rotate = {};  ///< added to it
 };
 
 struct Contact {
@@ -141,17 +172,27 @@ struct Contact {
   bool segment = false;            ///< segment-integrated gap and slip in place of node-to-segment
 };
 
-/// Prescribed displacement by axis on a side (an anchor's move drives the spring).
+/// Prescribed displacement n.u along a direction, free across it.
+struct Inclined {
+  std::vector<Number> along;  ///< n, need not be a unit vector: its length does not matter
+  Table value;
+};
+/// Prescribed displacement on a side (an anchor's move drives the spring): by axis, of all axes where it rotates, or
+/// inclined.
 struct Support {
   std::string on;
-  std::map<char, Table> move;
+  std::map<char, Table> move = {};
+  std::optional<Rotation> rotate = {};    ///< of all axes, added to `move`
+  std::optional<Inclined> inclined = {};  ///< alone
 };
 
 struct Load {
-  enum class Kind { traction, force };
-  std::string on;
+  enum class Kind { traction, pressure, force, body_force };
+  std::string on;  ///< a side; a body for body_force
   Kind kind = Kind::traction;
-  std::vector<Number> vector;    ///< traction: per area (per length on a bar); force: total, shared by tributary area
+  /// traction: per area (per length on a bar); pressure: one number, per area, along the inward normal of the start;
+  /// force: total, shared by tributary area; body_force: per volume
+  std::vector<Number> vector;
   std::optional<Table> history;  ///< factor in time; none: 1 from the first step on
 };
 
@@ -173,9 +214,10 @@ struct Response {
   std::string name;
   Kind kind = Kind::displacement;
   std::string on;         ///< side expression, or contact name, as the kind asks
-  std::string component;  ///< x y z normal
+  std::string component;  ///< x y z normal moment
   Take take = Take::mean;
-  std::vector<Number> at;  ///< point of the initial configuration instead of `on`
+  std::vector<Number> about = {};  ///< of a moment
+  std::vector<Number> at;          ///< point of the initial configuration instead of `on`
 };
 
 /// A parameter: weights on slots; its derivative is the sum of weight * d/d(slot).

@@ -10,6 +10,7 @@
 #include "core/contact/surfaces.hpp"
 #include "core/mesh/generators.hpp"
 #include "core/model/model.hpp"
+#include "core/model/supports.hpp"
 #include "core/solids/bar.hpp"
 #include "core/solids/continuum.hpp"
 #include "core/solids/linear_elastic.hpp"
@@ -38,6 +39,9 @@ struct Slots {
   std::vector<T> stiffness;                ///< per contact point: local nodal stiffness k_i (force per length)
   std::vector<T> friction;                 ///< per contact; zero, and unread, where frictionless
   std::vector<Vector<T>> loads;            ///< per load: nodal forces at history = 1
+  std::vector<Matrix<T>> frames;           ///< per framed node: its frame, one vector a column
+  std::vector<Vector<T>> spins;            ///< per contact point: displacement of its obstacle there when it rotates by
+                                           ///< one degree; empty where no obstacle rotates
 };
 
 namespace detail {
@@ -109,6 +113,40 @@ PointGeometry<T> integrated_geometry(const Model& model, const ContactPoint& poi
   });
 }
 
+/// Vertex of the polyline that a point faces, in the order of ContactPoint::of_polyline.
+template <class T>
+Vec<T, 2> polyline_vertex(const Model& model, const ContactPoint& point, int k, const Numbers<T>& numbers) {
+  const auto& x = std::get<Polyline>(model.scene.obstacles[point.obstacle].shape).points[point.of_polyline[k]];
+  return {numbers(x[0]), numbers(x[1])};
+}
+
+template <class T>
+PointGeometry<T> against_polyline(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
+  const Vec<T, 2> x = point2(slots.points, point.nodes[0]);
+  auto vertex = [&](int k) { return polyline_vertex(model, point, k, slots.numbers); };
+  if (point.master == ContactPoint::Master::facet) return against_facet<T>(x, vertex(0), vertex(1));
+  return against_vertex<T>(x, vertex(0), vertex(1), vertex(2));
+}
+
+/// Displacement of the obstacle at the place that a point faces (the mean one, where it is segment-integrated) when it
+/// rotates by one degree; zero where it does not.
+template <class T>
+Vector<T> spin(const Model& model, int p, const Slots<T>& slots) {
+  const auto& point = model.points[p];
+  const auto& geometry = slots.geometry[p];
+  Vector<T> foot = Vector<T>::Constant(model.dimension, T(0));
+  if (point.obstacle < 0 || !model.scene.obstacles[point.obstacle].rotate) return foot;
+  const T gap = geometry.gap - slots.numbers(model.scene.contacts[point.contact].offset);
+  if (!point.of_polyline.empty() && point.master == ContactPoint::Master::vertex)
+    foot = polyline_vertex(model, point, 1, slots.numbers);
+  else
+    for (int i = 0; i < model.dimension; ++i) {
+      for (int n = 0; n < point.slave_nodes; ++n) foot[i] += geometry.weights[n] * slots.points(i, point.nodes[n]);
+      foot[i] -= gap * geometry.normal[i];
+    }
+  return displacement_per_degree(*model.scene.obstacles[point.obstacle].rotate, foot, slots.numbers);
+}
+
 template <class T>
 PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
   const auto& numbers = slots.numbers;
@@ -118,6 +156,8 @@ PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point,
   } else if (point.master == ContactPoint::Master::obstacle) {
     const Vector<T> x = slots.points.col(point.nodes[0]);
     geometry = against_obstacle<T>(model.scene.obstacles[point.obstacle], x, numbers);
+  } else if (!point.of_polyline.empty()) {
+    geometry = fixed(against_polyline(model, point, slots));
   } else if (point.master == ContactPoint::Master::facet) {
     geometry = against_facet<T>(point2(slots.points, point.nodes[0]), point2(slots.points, point.nodes[1]),
                                 point2(slots.points, point.nodes[2]));
@@ -136,38 +176,15 @@ PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point,
   return geometry;
 }
 
-/// Nodal forces of a load at history = 1.
-template <class T>
-Vector<T> load_vector(const Model& model, const Load& load, const Slots<T>& slots) {
-  const int D = model.dimension;
-  Vector<T> forces = Vector<T>::Constant(model.dof_count(), T(0));
-  const SideSet side = model.side(load.on);
-  auto add = [&](int node, const T& share) {
-    for (int i = 0; i < D; ++i) forces[node * D + i] += share * slots.numbers(load.vector[i]);
-  };
-  std::vector<std::pair<int, T>> share;  // tributary area of the loaded nodes
-  T total{};
-  for (const auto& facet : side.facets) {
-    const T half = T(0.5) * distance(slots.points, facet[0], facet[1]);
-    for (int node : facet)
-      if (std::find(side.nodes.begin(), side.nodes.end(), node) != side.nodes.end()) {
-        share.emplace_back(node, half);
-        total += half;
-      }
-  }
-  if (side.facets.empty()) {  // single nodes: equal shares
-    for (int node : side.nodes) share.emplace_back(node, T(1));
-    total = T(static_cast<double>(side.nodes.size()));
-  }
-  for (const auto& [node, area] : share) add(node, load.kind == Load::Kind::force ? T(area / total) : area);
-  return forces;
-}
-
 }  // namespace detail
 
 /// Internal nodal forces of all bodies, dof-wise. u: all dofs.
 template <class T>
 Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>& u);
+
+/// Nodal forces of a load at history = 1, all dofs.
+template <class T>
+Vector<T> load_vector(const Model& model, const Load& load, const Slots<T>& slots);
 
 /// Calls sink(nodes, K) for each element of body b (or those listed in `only`): node list and tangent, node-major.
 template <class T, class Sink>

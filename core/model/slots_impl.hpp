@@ -185,8 +185,15 @@ Slots<T> make_slots(const Model& model, const Numbers<T>& numbers) {
     slots.friction.push_back(contact.friction ? numbers(*contact.friction) : T(0));
   for (const auto& point : model.points) slots.geometry.push_back(detail::initial_geometry(model, point, slots));
   slots.stiffness = contact_stiffness(model, slots);
-  for (const auto& load : model.scene.loads) slots.loads.push_back(detail::load_vector(model, load, slots));
+  for (const auto& load : model.scene.loads) slots.loads.push_back(load_vector(model, load, slots));
+  for (const auto& framed : model.framed) slots.frames.push_back(nodal_frame(model.scene, framed, numbers));
+  const auto& obstacles = model.scene.obstacles;
+  if (std::any_of(obstacles.begin(), obstacles.end(), [](const auto& o) { return o.rotate.has_value(); }))
+    for (int p = 0; p < static_cast<int>(model.points.size()); ++p)
+      slots.spins.push_back(detail::spin(model, p, slots));
   return slots;
 }
 
 }  // namespace stickslip
+
+#include "core/model/load_vector.hpp"

@@ -51,7 +51,10 @@ std::vector<Scene> scenes_to_check() {
           scenes::two_boxes(4, 4, "Q4", 2),
           scenes::segment_boxes(5, 7),
           scenes::two_disks(8, false),
-          scenes::two_disks(8, true)};
+          scenes::two_disks(8, true),
+          scenes::driven_block(),
+          scenes::driven_block("T3"),
+          scenes::turned_point()};
 }
 
 TEST(Oracle, MonolithicSchemeIsExact) {

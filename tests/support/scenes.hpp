@@ -242,6 +242,57 @@ inline Scene two_disks(int cells, bool segment, double mu = 0.2) {
   return s;
 }
 
+/// A block that only supports, loads and obstacles of every kind drive: inclined supports (one of them at a contact
+/// point, one node with two), a rotating support, a rotating and moving obstacle, pressure and body force.
+inline Scene driven_block(const std::string& element = "Q4") {
+  Scene s;
+  s.legs = {{2, 4}};
+  const Number mu = parameter(s, "mu", 0.3), width = parameter(s, "width", 2.0), c = parameter(s, "c", 0.8),
+               n = parameter(s, "n", 0.6), held = parameter(s, "held", 0.004), angle = parameter(s, "angle", 0.4),
+               center = parameter(s, "center", 0.3), turn = parameter(s, "turn", -0.2), p = parameter(s, "p", 3),
+               weight = parameter(s, "weight", -1.5);
+  BoxMesh box;
+  box.min = {0.0, 0.0};
+  box.max = {width, 1.0};
+  box.cells = {4, 3};
+  s.bodies = {{"block", box, LinearElastic{1000.0, 0.3}, element, 1.0}};
+  s.obstacles = {{"floor", Plane{{0.0, 0.0}, {0.02, 1.0}}, {{'y', table({{0, 0.0}, {1, 0.01}})}}}};
+  s.obstacles[0].rotate = Rotation{{center, 0.1}, {}, table({{0, 0.0}, {1, angle}, {2, 0.1}})};
+  s.contacts = {contact("sole", "block.bottom", "floor")};
+  s.contacts[0].friction = mu;
+  Support left = support("block.left - block.top", {}), corner = support("block.right & block.bottom", {}),
+          top = support("block.left & block.top", {}), across = support("block.left & block.top", {});
+  left.inclined = Inclined{{c, n}, table({{0, 0.0}, {1, held}, {2, 0.0}})};
+  corner.inclined = Inclined{{1.0, n}, table({{0, 0.0}})};
+  top.inclined = Inclined{{c, n}, table({{0, 0.0}, {1, held}})};
+  across.move = {{'y', table({{0, 0.0}, {2, -0.003}})}};
+  Support hinge = support("block.right & block.top", {});
+  hinge.rotate = Rotation{{1.0, center}, {}, table({{0, 0.0}, {1, turn}})};
+  s.supports = {left, corner, top, across, hinge};
+  s.loads = {{"block.top", Load::Kind::pressure, {p}, {}}, {"block", Load::Kind::body_force, {0.2, weight}, {}}};
+  s.responses = {response("press", Response::Kind::contact_force, "sole", "normal"),
+                 response("shear", Response::Kind::contact_force, "sole", "x"),
+                 response("torque", Response::Kind::contact_force, "sole", "moment"),
+                 response("left x", Response::Kind::reaction, "block.left", "x"),
+                 response("left y", Response::Kind::reaction, "block.left", "y"),
+                 response("moment", Response::Kind::reaction, "block.right", "moment"),
+                 response("heat", Response::Kind::dissipation, "sole"),
+                 response("u", Response::Kind::displacement, "block.left", "y")};
+  s.responses[2].about = s.responses[5].about = {0.5, -0.25};
+  return s;
+}
+
+/// A3's point in space, whose anchor is held in an inclined direction and turned about a skew axis.
+inline Scene turned_point() {
+  Scene s = dragged_point({{0, 0, 0}, {1, 0, 0}}, 6, 0.3);
+  const Number tilt = parameter(s, "tilt", 0.3), value = parameter(s, "value", 0.5), angle = parameter(s, "angle", 20),
+               axis = parameter(s, "axis", 0.2);
+  s.supports = {support("point.anchor", {})};
+  s.supports[0].inclined = Inclined{{1.0, tilt, -0.2}, table({{0, 0.0}, {0.5, value}, {1, 0.1}})};
+  s.obstacles[0].rotate = Rotation{{0.5, -0.2, 0.0}, {axis, 0.0, 1.0}, table({{0, 0.0}, {1, angle}})};
+  return s;
+}
+
 /// A solved scene with its derivatives.
 struct Solved {
   Model model;

@@ -1,0 +1,97 @@
+/// Nodal forces of a load: consistent shares of what acts on facets and in elements, in any scalar.
+#pragma once
+
+#include "core/model/slots.hpp"
+
+namespace stickslip {
+
+namespace detail {
+
+inline bool is_of(const SideSet& side, int node) {
+  return std::find(side.nodes.begin(), side.nodes.end(), node) != side.nodes.end();
+}
+
+/// Half of each facet at either of its nodes, as far as they belong to the side: force per area, or along the inward normal where it is a pressure (solid
+/// on the left of a facet, whose length the vector below has).
+template <class T>
+void add_surface_load(const Load& load, const SideSet& side, const Slots<T>& slots, int D, Vector<T>& forces) {
+  for (const auto& facet : side.facets) {
+    Vector<T> force(D);
+    if (load.kind == Load::Kind::pressure) {
+      const Vec<T, 2> tau = point2(slots.points, facet[1]) - point2(slots.points, facet[0]);
+      force << -tau[1], tau[0];
+      force *= slots.numbers(load.vector[0]);
+    } else {
+      const T length = distance(slots.points, facet[0], facet[1]);
+      for (int i = 0; i < D; ++i) force[i] = length * slots.numbers(load.vector[i]);
+    }
+    for (int node : facet)
+      for (int i = 0; i < D && is_of(side, node); ++i) forces[node * D + i] += T(0.5) * force[i];
+  }
+}
+
+/// A total force, shared by tributary area; in equal shares among single nodes. A traction takes their area as 1.
+template <class T>
+void add_total_force(const Load& load, const SideSet& side, const Slots<T>& slots, int D, Vector<T>& forces) {
+  std::vector<std::pair<int, T>> share;
+  T total{};
+  for (const auto& facet : side.facets) {
+    const T half = T(0.5) * distance(slots.points, facet[0], facet[1]);
+    for (int node : facet)
+      if (is_of(side, node)) {
+        share.emplace_back(node, half);
+        total += half;
+      }
+  }
+  if (side.facets.empty()) {
+    for (int node : side.nodes) share.emplace_back(node, T(1));
+    total = T(load.kind == Load::Kind::force ? static_cast<double>(side.nodes.size()) : 1.0);
+  }
+  for (const auto& [node, area] : share)
+    for (int i = 0; i < D; ++i) forces[node * D + i] += T(area / total) * slots.numbers(load.vector[i]);
+}
+
+/// int N_a b dV of a continuum, and half of each bar's volume at either end.
+template <class T>
+void add_body_force(const Model& model, const Load& load, const Slots<T>& slots, Vector<T>& forces) {
+  const int D = model.dimension;
+  int b = 0;
+  while (model.scene.bodies[b].name != load.on) ++b;
+  const auto& body = model.bodies[b];
+  auto add = [&](int node, const T& volume) {
+    for (int i = 0; i < D; ++i) forces[node * D + i] += volume * slots.numbers(load.vector[i]);
+  };
+  for (int e = 0; e < body.mesh.element_count(); ++e) {
+    const auto nodes = element_nodes(body, e);
+    if (body.mesh.shape == ElementShape::bar2) {
+      const T half = T(0.5) * distance(slots.points, nodes[0], nodes[1]) * std::get<BarLaw<T>>(slots.laws[b]).area;
+      for (int node : nodes) add(node, half);
+    }
+    with_shape(body.mesh.shape, [&]<class Shape>(Shape) {
+      const auto X = gather_coordinates<T, Shape>(slots.points, nodes.data());
+      for (const auto& point : Shape::quadrature()) {
+        const T volume = Gradient<T, Shape>(point, X).volume;
+        for (int a = 0; a < Shape::nodes; ++a) add(nodes[a], T(point.value[a]) * volume);
+      }
+    });
+  }
+}
+
+}  // namespace detail
+
+template <class T>
+Vector<T> load_vector(const Model& model, const Load& load, const Slots<T>& slots) {
+  Vector<T> forces = Vector<T>::Constant(model.dof_count(), T(0));
+  if (load.kind == Load::Kind::body_force) {
+    detail::add_body_force(model, load, slots, forces);
+    return forces;
+  }
+  const SideSet side = model.side(load.on);
+  if (load.kind == Load::Kind::force || side.facets.empty())
+    detail::add_total_force(load, side, slots, model.dimension, forces);
+  else
+    detail::add_surface_load(load, side, slots, model.dimension, forces);
+  return forces;
+}
+
+}  // namespace stickslip

@@ -1,0 +1,113 @@
+#include "core/model/supports.hpp"
+
+#include <Eigen/QR>
+#include <map>
+#include <set>
+
+namespace stickslip {
+namespace {
+
+/// Sine of the least angle between a direction and the span of others at which it counts as a new one.
+constexpr double new_direction = 1e-9;
+
+void add_breakpoints(const Table& table, std::set<double>& times) {
+  for (int n = 0; n < table.repeat; ++n)
+    for (std::size_t i = 0; i < table.points.size(); ++i) times.insert(table.time(n, i));
+}
+
+/// Breakpoints of all that a support prescribes; between them it is linear in time.
+void add_breakpoints(const Support& support, std::set<double>& times) {
+  for (const auto& [axis, table] : support.move) add_breakpoints(table, times);
+  if (support.rotate) add_breakpoints(support.rotate->angle, times);
+  if (support.inclined) add_breakpoints(support.inclined->value, times);
+}
+
+/// JSON pointer of what a constraint comes from.
+std::string pointer_of(const Scene& scene, const Constraint& constraint) {
+  const std::string support = "/supports/" + std::to_string(constraint.support);
+  if (constraint.axis == Constraint::inclined) return support + "/along";
+  const bool moves = scene.supports[constraint.support].move.count(constraint.axis) > 0;
+  return support + (moves ? std::string("/move/") + constraint.axis : "/rotate");
+}
+
+std::vector<Constraint> constraints_of(const Scene& scene, int support) {
+  const Support& of = scene.supports[support];
+  std::vector<Constraint> all;
+  if (of.inclined) return {{0, support, Constraint::inclined}};
+  for (int i = 0; i < scene.dimension(); ++i)
+    if (const char axis = static_cast<char>('x' + i); of.rotate || of.move.count(axis))
+      all.push_back({0, support, axis});
+  return all;
+}
+
+/// The constraints of one node so far, whose directions are independent.
+struct Held {
+  std::vector<Constraint> by;
+
+  /// Adds one; where its direction is not a new one it must prescribe what the others do already.
+  void add(const Scene& scene, const Numbers<double>& numbers, const Constraint& constraint, const Eigen::VectorXd& x) {
+    const Eigen::VectorXd d = direction(scene, constraint, numbers);
+    Eigen::MatrixXd others(d.size(), by.size());
+    for (std::size_t c = 0; c < by.size(); ++c) others.col(c) = direction(scene, by[c], numbers);
+    Eigen::VectorXd weights;
+    if (!by.empty()) weights = others.colPivHouseholderQr().solve(d);
+    if (by.empty() || (d - others * weights).norm() > new_direction) return by.push_back(constraint);
+    std::set<double> times;
+    add_breakpoints(scene.supports[constraint.support], times);
+    for (const auto& other : by) add_breakpoints(scene.supports[other.support], times);
+    double largest = 0, difference = 0;
+    std::size_t with = 0;  // who has the largest say
+    for (std::size_t c = 1; c < by.size(); ++c)
+      if (std::abs(weights[c]) > std::abs(weights[with])) with = c;
+    for (double t : times) {
+      const double own = prescribed_value(scene, constraint, x, t, numbers);
+      double theirs = 0;
+      for (std::size_t c = 0; c < by.size(); ++c) theirs += weights[c] * prescribed_value(scene, by[c], x, t, numbers);
+      largest = std::max({largest, std::abs(own), std::abs(theirs)});
+      difference = std::max(difference, std::abs(own - theirs));
+    }
+    if (difference <= 1e-10 * largest) return;  // rounding of directions and of arms
+    throw ModelError("moves a node that " + scene.supports[by[with].support].on +
+                         " has too differently from the support there (" + pointer_of(scene, by[with]) + ")",
+                     pointer_of(scene, constraint));
+  }
+};
+
+}  // namespace
+
+void number_dofs(Model& model, const Points<double>& points) {
+  const Scene& scene = model.scene;
+  const auto numbers = scene.as<double>();
+  const int D = model.dimension;
+  std::map<int, Held> held;
+  for (int s = 0; s < static_cast<int>(scene.supports.size()); ++s) {
+    const auto constraints = constraints_of(scene, s);
+    for (int node : model.side(scene.supports[s].on).nodes)
+      for (const auto& constraint : constraints) held[node].add(scene, numbers, constraint, points.col(node));
+  }
+  std::set<int> anchors;  // an anchor stays where nobody moves it
+  for (const auto& body : model.bodies)
+    if (body.mesh.shape == ElementShape::point) anchors.insert(body.first_node + 1);
+  for (int anchor : anchors) held[anchor];
+  for (auto& [node, of] : held) {
+    const bool framed =
+        std::any_of(of.by.begin(), of.by.end(), [](const auto& c) { return c.axis == Constraint::inclined; });
+    for (int k = 0; k < static_cast<int>(of.by.size()); ++k)
+      of.by[k].dof = node * D + (framed ? k : of.by[k].axis - 'x');
+    for (int dof = node * D; anchors.count(node) && dof < (node + 1) * D; ++dof)
+      if (std::none_of(of.by.begin(), of.by.end(), [&](const auto& c) { return c.dof == dof; }))
+        of.by.push_back({dof, -1, 'x'});
+    std::sort(of.by.begin(), of.by.end(), [](const auto& a, const auto& b) { return a.dof < b.dof; });
+    model.constraints.insert(model.constraints.end(), of.by.begin(), of.by.end());
+    if (framed) model.framed.push_back({node, -1, of.by});
+  }
+  model.free_index.assign(model.dof_count(), 0);
+  for (const auto& constraint : model.constraints) model.free_index[constraint.dof] = -1;
+  for (int dof = 0; dof < model.dof_count(); ++dof)
+    if (model.free_index[dof] == 0) {
+      model.free_index[dof] = static_cast<int>(model.free_dofs.size());
+      model.free_dofs.push_back(dof);
+    }
+}
+
+}  // namespace stickslip

@@ -1,0 +1,98 @@
+/// Which displacements are prescribed, and to what: supports by axis, rotating and inclined ones.
+///
+/// A node that an inclined support holds has a frame Q of its own, q_1 ... q_D (FramedNode). Its prescribed directions
+/// d_1 ... d_m are orthonormalised in their order, so that d_c = sum over k <= c of (q_k.d_c) q_k, and
+///
+///   d_c.u = v_c    gives    q_c.u = (v_c - sum over k < c of (q_k.d_c) q_k.u) / (q_c.d_c)
+///
+/// In small strain a rotation is theta x (X - center): the exact one of a finite angle would strain a body that it
+/// turns as a whole.
+#pragma once
+
+#include "core/contact/surfaces.hpp"
+#include "core/model/model.hpp"
+
+namespace stickslip {
+
+/// Displacement of the place x when it is rotated by one degree: (pi / 180) axis x (x - center), length.
+template <class T, class Place>
+Vector<T> displacement_per_degree(const Rotation& rotation, const Place& x, const Numbers<T>& numbers) {
+  const T degree(std::acos(-1.0) / 180);
+  const int D = static_cast<int>(x.size());
+  Vector<T> arm(D), u(D);
+  for (int i = 0; i < D; ++i) arm[i] = degree * (x[i] - numbers(rotation.center[i]));
+  if (D == 2) {
+    u << -arm[1], arm[0];
+    return u;
+  }
+  Vec<T, 3> axis;
+  for (int i = 0; i < 3; ++i) axis[i] = numbers(rotation.axis[i]);
+  const T length = norm(axis);
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    u[i] = (axis[j] * arm[k] - axis[k] * arm[j]) / length;
+  }
+  return u;
+}
+
+/// Unit vector that a constraint prescribes the displacement along. pre: it has a support.
+template <class T>
+Vector<T> direction(const Scene& scene, const Constraint& constraint, const Numbers<T>& numbers) {
+  Vector<T> d = Vector<T>::Constant(scene.dimension(), T(0));
+  if (constraint.axis != Constraint::inclined) {
+    d[constraint.axis - 'x'] = T(1);
+    return d;
+  }
+  const auto& along = scene.supports[constraint.support].inclined->along;
+  for (Eigen::Index i = 0; i < d.size(); ++i) d[i] = numbers(along[i]);
+  const T length = norm(d);
+  for (Eigen::Index i = 0; i < d.size(); ++i) d[i] /= length;
+  return d;
+}
+
+/// What a constraint prescribes for a node at x, along its direction, at time t.
+template <class T, class Place>
+T prescribed_value(const Scene& scene, const Constraint& constraint, const Place& x, double t,
+                   const Numbers<T>& numbers) {
+  if (constraint.support < 0) return T(0);
+  const Support& support = scene.supports[constraint.support];
+  if (constraint.axis == Constraint::inclined) return evaluate(support.inclined->value, t, numbers);
+  const auto move = support.move.find(constraint.axis);
+  T u = move == support.move.end() ? T(0) : evaluate(move->second, t, numbers);
+  if (support.rotate)
+    u += evaluate(support.rotate->angle, t, numbers) *
+         displacement_per_degree<T>(*support.rotate, x, numbers)[constraint.axis - 'x'];
+  return u;
+}
+
+/// Frame of a framed node, D x D, one vector a column.
+template <class T>
+Matrix<T> nodal_frame(const Scene& scene, const FramedNode& framed, const Numbers<T>& numbers) {
+  const int D = scene.dimension();
+  Matrix<T> Q = Matrix<T>::Constant(D, D, T(0));
+  int known = 0;
+  for (const auto& constraint : framed.prescribed) {
+    if (constraint.support < 0) break;  // an anchor is held across its inclined direction as well
+    Vector<T> q = direction(scene, constraint, numbers);
+    for (int k = 0; k < known; ++k) q -= (dot(Q.col(k), q) * Q.col(k)).eval();
+    const T length = norm(q);
+    for (int i = 0; i < D; ++i) Q(i, known) = q[i] / length;
+    ++known;
+  }
+  if (known == 1) {
+    const auto across = detail::tangent_frame<T>(Vector<T>(Q.col(0)));
+    for (int k = 1; k < D; ++k) Q.col(k) = across.col(k - 1);
+  } else if (known == 2 && D == 3) {
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      Q(i, 2) = Q(j, 0) * Q(k, 1) - Q(k, 0) * Q(j, 1);
+    }
+  }
+  return Q;
+}
+
+/// Decides who prescribes what: Model::constraints, framed, free_index and free_dofs. `points`: nodal coordinates.
+/// Supports that share a node must agree on what it does there. Throws ModelError where they do not.
+void number_dofs(Model& model, const Points<double>& points);
+
+}  // namespace stickslip
