@@ -87,6 +87,9 @@ template <class T, class E>
 Evaluation<T> evaluate(E& engine, const ContactInput<T>& input, const Vector<T>& u, const Vector<T>& multiplier,
                        bool unknown, const RunScales& of_run) {
   constexpr double rounding_factor = 100;  // several hundred terms meet in a row; each rounds once
+  // Rounding of this share of the forces means displacements 1e9 times those that the forces cause: a body that drifts
+  // off on a nearly singular tangent, and no equilibrium that rounding hides.
+  constexpr double adrift = 1e-5;
   const Model& model = input.model;
   Evaluation<T> at;
   RunScales& scales = at.scales;
@@ -119,8 +122,10 @@ Evaluation<T> evaluate(E& engine, const ContactInput<T>& input, const Vector<T>&
   for (Eigen::Index row = 0; row < at.rows_u.size(); ++row)
     if (!engine.is_free(row)) at.rows_u[row] = T(0);
   at.residuals.equilibrium = ratio(largest_nodal_norm(at.rows_u, model.dimension), scales.force);
-  at.residuals.floor_equilibrium =
-      rounding_factor * ratio(force.rounding + unit_roundoff * contact_rounding * reach, scales.force);
+  const double bulk_floor = rounding_factor * ratio(force.rounding, scales.force);
+  if (bulk_floor <= adrift)
+    at.residuals.floor_equilibrium =
+        bulk_floor + rounding_factor * ratio(unit_roundoff * contact_rounding * reach, scales.force);
   at.residuals.floor_length = rounding_factor * ratio(unit_roundoff * reach, scales.length);
   if (!unknown) return at;
   at.rows_l = multiplier_residual(model, input.slots, at.field.traction, multiplier);
@@ -131,7 +136,8 @@ Evaluation<T> evaluate(E& engine, const ContactInput<T>& input, const Vector<T>&
       const ContactState state = at.field.state[p];
       const bool is_length = c == 0 ? state != ContactState::open : state == ContactState::stick;
       const double rho = value(c == 0 ? input.rho[p].normal : input.rho[p].tangential);
-      const double relative = is_length ? ratio(defect / rho, scales.length) : ratio(defect, scales.traction);
+      const double traction_scale = scales.traction > 0 ? scales.traction : defect;  // all open, lambda not yet zero
+      const double relative = is_length ? ratio(defect / rho, scales.length) : ratio(defect, traction_scale);
       double& worst = c == 0 ? at.residuals.normal : at.residuals.tangential;
       worst = std::max(worst, relative);
     }
@@ -245,7 +251,7 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
   std::vector<ContactState> used;                // states of the last tangent
   ContactField<T> directed;                      // field and branches of the last step
   std::unordered_map<std::size_t, double> seen;  // active set -> smallest residual met with it
-  bool damped = false, redundant = false;  // redundant: constraints repeat one another
+  bool damped = false, redundant = false;        // redundant: constraints repeat one another
   const auto decided = unknown ? decided_elsewhere(model, input.slots) : std::vector<char>();
   int extra = detail::extra_iterations<T>(), steady = 0;
   double step_length = 1;

@@ -5,6 +5,7 @@
 
 #include <functional>
 
+#include "methods/diagnosis.hpp"
 #include "methods/monolithic.hpp"
 #include "methods/penalty.hpp"
 #include "methods/uzawa.hpp"
@@ -61,6 +62,7 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
     ++cutbacks;
     ++run.account.counters.cutbacks;
   }
+  diagnose(run.model, run.slots, target, *failed);
   trajectory.increments.resize(start_count);
   failed->time = target;
   failed->requested = true;

@@ -6,7 +6,7 @@
 
 #include <map>
 
-#include "core/model/slots.hpp"
+#include "core/model/frames.hpp"
 #include "core/model/state.hpp"
 
 namespace stickslip {
@@ -228,24 +228,23 @@ std::vector<char> decided_elsewhere(const Model& model, const Slots<T>& slots) {
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
     const auto& geometry = slots.geometry[p];
+    const auto is_free = [&](int node) {
+      const auto first = model.free_index.begin() + node * D;
+      return std::all_of(first, first + D, [](int index) { return index >= 0; });
+    };
+    if (std::all_of(point.nodes.begin(), point.nodes.end(), is_free)) continue;
     Matrix<double> rows = Matrix<double>::Zero(point.components(), point.nodes.size() * D);  // on free directions
-    bool all_free = true;
     for (std::size_t n = 0; n < point.nodes.size(); ++n) {
-      Matrix<double> Q = Matrix<double>::Identity(D, D);
-      for (std::size_t f = 0; f < model.framed.size(); ++f)
-        if (model.framed[f].node == point.nodes[n]) Q = values(slots.frames[f]);
+      const int framed = framed_index(model, point.nodes[n]);
+      const Matrix<double> Q = framed < 0 ? Matrix<double>::Identity(D, D).eval() : values(slots.frames[framed]);
       for (int i = 0; i < D; ++i) {
-        if (model.free_index[point.nodes[n] * D + i] < 0) {
-          all_free = false;
-          continue;
-        }
+        if (model.free_index[point.nodes[n] * D + i] < 0) continue;
         const auto column = static_cast<Eigen::Index>(n) * D + i;
         rows(0, column) = value(geometry.weights[n]) * values(geometry.normal).dot(Q.col(i));
         for (int a = 0; a < point.tangents; ++a)
           rows(1 + a, column) = value(geometry.weights[n]) * values(geometry.tangents.col(a)).dot(Q.col(i));
       }
     }
-    if (all_free) continue;
     for (Eigen::Index c = 0; c < rows.rows(); ++c) {
       for (Eigen::Index k = 0; k < c; ++k) rows.row(c) -= rows.row(k).dot(rows.row(c)) * rows.row(k);
       const double left = rows.row(c).norm();

@@ -9,6 +9,13 @@ namespace stickslip {
 /// How nodal vectors are laid out: all nodes, or those of the contact.
 enum class Layout { all, compact };
 
+/// Index of a node in Model::framed, or -1.
+inline int framed_index(const Model& model, int node) {
+  const auto found = std::lower_bound(model.framed.begin(), model.framed.end(), node,
+                                      [](const FramedNode& framed, int sought) { return framed.node < sought; });
+  return found == model.framed.end() || found->node != node ? -1 : static_cast<int>(found - model.framed.begin());
+}
+
 namespace detail {
 
 /// Calls f(Q, first row of the node) for each framed node of the layout.
@@ -46,10 +53,9 @@ Matrix<T> into_frames(const Model& model, const std::vector<Matrix<T>>& frames, 
                       Matrix<T> K) {
   const int D = model.dimension;
   for (std::size_t n = 0; n < nodes.size(); ++n) {
-    const auto found = std::lower_bound(model.framed.begin(), model.framed.end(), nodes[n],
-                                        [](const FramedNode& framed, int node) { return framed.node < node; });
-    if (found == model.framed.end() || found->node != nodes[n]) continue;
-    const Matrix<T>& Q = frames[found - model.framed.begin()];
+    const int index = framed_index(model, nodes[n]);
+    if (index < 0) continue;
+    const Matrix<T>& Q = frames[index];
     const auto first = static_cast<Eigen::Index>(n) * D;
     K.middleRows(first, D) = Q.transpose().lazyProduct(K.middleRows(first, D)).eval();
     K.middleCols(first, D) = K.middleCols(first, D).lazyProduct(Q).eval();

@@ -83,7 +83,10 @@ T contact_response(const Model& model, const Slots<T>& slots, const Response& re
       force -= with_point(model, point, [&]<int D, int Tangents>() {
         const auto on_slave = point_force<T, D, Tangents>(
             geometry, gather_traction<T, Tangents>(state.contact.traction, point.multiplier));
-        return component_of(response, on_slave, slots.points.col(point.nodes[0]), slots.numbers);
+        Vec<T, D> at = Vec<T, D>::Constant(T(0));  // the force is shared by the slave's nodes
+        for (int n = 0; n < point.slave_nodes; ++n)
+          for (int i = 0; i < D; ++i) at[i] += geometry.weights[n] * slots.points(i, point.nodes[n]);
+        return component_of(response, on_slave, at, slots.numbers);
       });
     else
       force += geometry.area * pressure;

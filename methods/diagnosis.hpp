@@ -1,0 +1,79 @@
+/// Why an increment found no solution, in words of the scene.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/model/loading.hpp"
+#include "core/model/state.hpp"
+
+namespace stickslip {
+
+namespace detail {
+
+/// First node of a body, and the one after its last.
+struct NodeRange {
+  int first, end;
+  bool has(int node) const { return node >= first && node < end; }
+};
+
+inline NodeRange nodes_of_body(const Model& model, std::size_t b) {
+  return {model.bodies[b].first_node, model.bodies[b].first_node + model.bodies[b].mesh.node_count};
+}
+
+/// Whether forces within the friction cones of a body's contact points can balance the force on it, in 2D: whether its
+/// opposite lies in the cone that their edges n + mu e, n - mu e span (reversed where the body is the master).
+template <class T>
+bool cones_balance(const Model& model, const Slots<T>& slots, const NodeRange& body, const Vec<double, 2>& force) {
+  constexpr double band = 1e-12, pi = 3.141592653589793;
+  const Vec<double, 2> wanted = -force;
+  double left = pi, right = pi;  // least angles from it to an edge, to either side
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const auto& point = model.points[p];
+    const bool slave = body.has(point.nodes[0]);
+    if (!slave && !body.has(point.nodes.back())) continue;
+    const double mu = point.tangents > 0 ? value(slots.friction[point.contact]) : 0;
+    for (double sign : {-1.0, 1.0}) {
+      Vec<double, 2> edge = values(slots.geometry[p].normal) + sign * mu * values(slots.geometry[p].tangents.col(0));
+      if (!slave) edge = -edge;
+      const double angle = std::atan2(wanted[0] * edge[1] - wanted[1] * edge[0], wanted.dot(edge));
+      if (angle >= -band) left = std::min(left, std::max(angle, 0.0));
+      if (angle <= band) right = std::min(right, std::max(-angle, 0.0));
+    }
+  }
+  return left == 0 || right == 0 || left + right < pi - band;
+}
+
+}  // namespace detail
+
+/// Says where an increment to `time` failed for want of a hold: a body without a support, whose load no forces within
+/// its cones can balance, has no equilibrium; one of which no contact point sticks may move without resistance.
+template <class T>
+void diagnose(const Model& model, const Slots<T>& slots, double time, Increment<T>& failed) {
+  const Vector<double> external = values(external_forces(model, slots, time));
+  const auto& states = failed.state.contact.state;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const auto body = detail::nodes_of_body(model, b);
+    const bool supported = std::any_of(model.constraints.begin(), model.constraints.end(),
+                                       [&](const Constraint& c) { return body.has(c.dof / model.dimension); });
+    if (supported) continue;
+    Vec<double, 2> force = Vec<double, 2>::Zero();
+    for (int node = body.first; node < body.end; ++node) force += external.segment(node * model.dimension, 2);
+    const bool balanced = model.dimension != 2 || force.norm() == 0 || detail::cones_balance(model, slots, body, force);
+    bool sticks = false;
+    for (std::size_t p = 0; p < states.size(); ++p)
+      sticks |=
+          states[p] == ContactState::stick && std::any_of(model.points[p].nodes.begin(), model.points[p].nodes.end(),
+                                                          [&](int node) { return body.has(node); });
+    if (balanced && sticks) continue;
+    failed.message =
+        model.scene.bodies[b].name + " is free to slide: no support holds it, and " +
+        (balanced ? "none of its contact points sticks" : "no friction of its contacts balances its load") + " (" +
+        failed.message + ")";
+    if (!balanced) failed.status = Status::no_equilibrium;
+    return;
+  }
+}
+
+}  // namespace stickslip
