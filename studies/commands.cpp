@@ -18,6 +18,7 @@
 #include "studies/progress.hpp"
 #include "studies/report/report.hpp"
 #include "studies/scene_reader.hpp"
+#include "studies/schema.hpp"
 
 namespace stickslip {
 namespace {
@@ -216,6 +217,11 @@ int methods_command(bool as_json) {
     fmt::print("{}\n", name);
     for (const auto& [option, standard] : options.items()) fmt::print("  {:<18} {}\n", option, standard.dump());
   }
+  return done;
+}
+
+int schema_command(const std::string& kind) {
+  std::cout << (kind == "study" ? study_schema() : scene_schema()).dump(2) << '\n';
   return done;
 }
 

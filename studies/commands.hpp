@@ -27,6 +27,7 @@ int run_command(const RunArguments& arguments);
 int explain_command(const RunArguments& arguments);
 int gradcheck_command(const RunArguments& arguments);
 int methods_command(bool json);
+int schema_command(const std::string& kind);  ///< "scene" or "study"
 int study_command(const StudyArguments& arguments);
 int report_command(const std::string& directory);
 

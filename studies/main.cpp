@@ -43,6 +43,9 @@ int main(int argc, char** argv) {
   report_app.add_option("DIR", directory, "directory of a study")->required();
   auto& methods_app = *app.add_subcommand("methods", "list the methods and their options");
   methods_app.add_flag("--json", methods_json, "as JSON");
+  auto& schema_app = *app.add_subcommand("schema", "print the JSON Schema of scene or study files, for editors");
+  std::string schema_of = "scene";
+  schema_app.add_option("KIND", schema_of, "scene or study")->check(CLI::IsMember({"scene", "study"}));
   try {
     app.parse(argc, argv);
     if (run_app) return run_command(run);
@@ -50,6 +53,7 @@ int main(int argc, char** argv) {
     if (explain_app) return explain_command(explain);
     if (gradcheck_app) return gradcheck_command(gradcheck);
     if (report_app) return report_command(directory);
+    if (schema_app) return schema_command(schema_of);
     return methods_command(methods_json);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;

@@ -162,6 +162,51 @@ struct Writer {
   }
 };
 
+/// Describes the options of one object by JSON Schemas, with their defaults.
+struct Describer {
+  json& properties;
+  OptionLists lists;
+
+  void add(const char* name, const json& schema, const json& standard) {
+    properties[name] = lists == OptionLists::refused
+                           ? schema
+                           : json{{"anyOf", {schema, {{"type", "array"}, {"minItems", 1}, {"items", schema}}}}};
+    if (!standard.is_null()) properties[name]["default"] = standard;
+  }
+  void operator()(const char* name, const Regularisation&) {
+    const json number{{"type", "number"}, {"exclusiveMinimum", 0}};
+    json absolute = json::object();
+    Describer{absolute, lists}.add("absolute", number, {});
+    const json object{
+        {"type", "object"}, {"required", {"absolute"}}, {"additionalProperties", false}, {"properties", absolute}};
+    add(name, {{"anyOf", {{{"const", "auto"}}, number, object}}}, "auto");
+  }
+  void operator()(const char* name, const Number& option) {
+    add(name, {{"type", "number"}, {"exclusiveMinimum", 0}}, option.value);
+  }
+  void operator()(const char* name, double option, const Rule& rule) {
+    json schema{{"type", "number"}, {"description", rule.text}, {"exclusiveMinimum", rule.holds(0.5) ? 0 : 1}};
+    if (!rule.holds(1.5)) schema["exclusiveMaximum"] = 1;
+    add(name, schema, option);
+  }
+  void operator()(const char* name, int option) { add(name, {{"type", "integer"}, {"minimum", 1}}, option); }
+  void operator()(const char* name, bool option) { add(name, {{"type", "boolean"}}, option); }
+  template <class E>
+  void operator()(const char* name, E option, const Words<E>& words) {
+    json allowed = json::array(), standard;
+    for (const auto& [word, value] : words.values) {
+      allowed.push_back(word);
+      if (value == option) standard = word;
+    }
+    add(name, {{"enum", allowed}}, standard);
+  }
+  void operator()(const char* name, NewtonOptions newton) {
+    json own = json::object();
+    visit_options(newton, Describer{own, lists});
+    properties[name] = {{"type", "object"}, {"additionalProperties", false}, {"properties", own}};
+  }
+};
+
 bool has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -216,6 +261,20 @@ std::optional<Method> read_method(const JsonNode& node, SceneReading& reading) {
       method);
   if (reading.diagnostics.error_count() > faults) return std::nullopt;
   return method;
+}
+
+json method_schema(OptionLists lists) {
+  json methods = json::object();
+  for_each_method([&]<class M>(M method) {
+    json options = json::object();
+    visit_options(method, Describer{options, lists});
+    methods[std::string(M::name)] = {{"type", "object"}, {"additionalProperties", false}, {"properties", options}};
+  });
+  return {{"type", "object"},
+          {"minProperties", 1},
+          {"maxProperties", 1},
+          {"additionalProperties", false},
+          {"properties", methods}};
 }
 
 json to_json(const Method& method) {

@@ -22,6 +22,12 @@ std::optional<Method> default_method(const std::string& name);
 /// The method an object with one key names; its numbers get slots. None where it is at fault.
 std::optional<Method> read_method(const JsonNode&, SceneReading&);
 
+/// Whether an option may be a list of values, as in the "methods" of a study.
+enum class OptionLists { refused, swept };
+
+/// JSON Schema of {"NAME": {options}}.
+nlohmann::json method_schema(OptionLists);
+
 /// {"NAME": {every option, as used}}.
 nlohmann::json to_json(const Method&);
 

@@ -62,8 +62,8 @@ std::optional<Input> read_scene(const JsonDocument& given, const std::optional<s
   JsonDocument document = given;
   const JsonNode file_root(given, diagnostics);
   if (!file_root.is_object({{"bodies", "time"},
-                            {"title", "space", "strain", "obstacles", "contacts", "supports", "loads", "responses",
-                             "parameters", "method", "linear_solver", "output", "sensitivity"},
+                            {"$schema", "title", "space", "strain", "obstacles", "contacts", "supports", "loads",
+                             "responses", "parameters", "method", "linear_solver", "output", "sensitivity"},
                             {"objectives"}}))
     return std::nullopt;
 
@@ -134,6 +134,7 @@ std::optional<Input> read_scene(const std::string& file, const Overrides& overri
 std::string canonical_text(const Input& input) {
   nlohmann::json canonical = input.document;
   canonical.erase("title");
+  canonical.erase("$schema");
   canonical["method"] = to_json(input.method);
   return nlohmann::json{{"scene", canonical}, {"meshes", input.mesh_fingerprints}}.dump();
 }

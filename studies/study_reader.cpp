@@ -257,7 +257,7 @@ std::optional<Study> read_study(const std::string& file, Diagnostics& diagnostic
   Study study;
   study.document = *std::move(document);
   const JsonNode root(study.document, diagnostics);
-  if (!root.is_object({{"scene"}, {"title", "methods", "vary", "refine", "reference", "errors", "timing"}}))
+  if (!root.is_object({{"scene"}, {"$schema", "title", "methods", "vary", "refine", "reference", "errors", "timing"}}))
     return std::nullopt;
   if (const auto title = root.find("title")) study.title = title->text().value_or("");
 

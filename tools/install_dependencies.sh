@@ -9,7 +9,7 @@ packages=(g++ cmake ninja-build libeigen3-dev libsuitesparse-dev libopenblas0-se
   libmumps-headers-dev nlohmann-json3-dev libcli11-dev libfmt-dev)
 case "${1:-}" in
   "") ;;
-  test) packages+=(libgtest-dev libgmock-dev libbenchmark-dev) ;;
+  test) packages+=(libgtest-dev libgmock-dev libbenchmark-dev python3-jsonschema) ;;
   *) echo "usage: $0 [test]" >&2; exit 2 ;;
 esac
 

@@ -11,8 +11,8 @@ inline bool is_of(const SideSet& side, int node) {
   return std::find(side.nodes.begin(), side.nodes.end(), node) != side.nodes.end();
 }
 
-/// Half of each facet at either of its nodes, as far as they belong to the side: force per area, or along the inward normal where it is a pressure (solid
-/// on the left of a facet, whose length the vector below has).
+/// Half of each facet at either of its nodes, as far as they belong to the side: force per area, or along the inward
+/// normal where it is a pressure (solid on the left of a facet, whose length the vector below has).
 template <class T>
 void add_surface_load(const Load& load, const SideSet& side, const Slots<T>& slots, int D, Vector<T>& forces) {
   for (const auto& facet : side.facets) {

@@ -32,12 +32,12 @@ struct BodyMesh {
 struct ContactPoint {
   enum class Master { obstacle, facet, vertex, pieces };  ///< facet and vertex of a deformable side or a polyline
   Master master = Master::obstacle;
-  int contact = 0;              ///< index in Scene::contacts
-  int obstacle = -1;            ///< index in Scene::obstacles, -1 for a deformable master
-  std::vector<int> nodes;       ///< slave, then master nodes (facet: its two; vertex: the vertex and one neighbour)
-  int slave_nodes = 1;          ///< how many of `nodes` are the slave's; more than one if segment-integrated
-  std::vector<int> places;      ///< of `nodes` in Model::contact_nodes
-  std::vector<int> neighbours;  ///< vertex: the vertices before and after it, whose facets share the normal
+  int contact = 0;               ///< index in Scene::contacts
+  int obstacle = -1;             ///< index in Scene::obstacles, -1 for a deformable master
+  std::vector<int> nodes;        ///< slave, then master nodes (facet: its two; vertex: the vertex and one neighbour)
+  int slave_nodes = 1;           ///< how many of `nodes` are the slave's; more than one if segment-integrated
+  std::vector<int> places;       ///< of `nodes` in Model::contact_nodes
+  std::vector<int> neighbours;   ///< vertex: the vertices before and after it, whose facets share the normal
   std::vector<int> of_polyline;  ///< points of the polyline: the facet's two, or the vertex between its neighbours
   std::vector<std::pair<int, int>> area_facets;  ///< facets of the slave side at the node; half of each is tributary
   std::vector<Piece> pieces;                     ///< segment-integrated: what the multiplier of nodes[0] acts on

@@ -95,6 +95,43 @@ double slot_value(const Scene& scene, const std::string& pointer) {
   return scene.numbers.at(found - scene.pointers.begin());
 }
 
+TEST(SceneReader, ReadsWhatDrivesAScene) {
+  std::string text = edited(block_scene, R"("supports": [{)", R"("supports": [
+    {"on": "block.right", "along": [3, 4], "value": {"table": [[0, 0], [1, 5], [2, 0]], "repeat": 7}},
+    {"on": "block.right & block.top", "rotate": {"center": [1, 2], "angle": 30}, "move": {"y": 6}}, {)");
+  text = edited(text, R"("loads": [)", R"("loads": [{"on": "block.top", "pressure": 8},
+    {"on": "block", "body_force": [0, -9]}, )");
+  text = edited(text, R"("obstacles": {)", R"("obstacles": {"ring":
+    {"polyline": {"points": [[0, 0], [0, 1], [1, 0], [0, 0]]}, "rotate": {"center": [0, 0], "angle": [[0, 0], [1, 2]]}},
+    "step": {"polyline": {"points": [[0, 0], [1, 0], [1, 1]]}}, )");
+  text = edited(text, R"("pull": {)", R"("torque": {"contact_force": {"contact": "sole", "component": "moment",
+    "about": [4, 5]}}, "pull": {)");
+  const Scene scene = valid(text).scene;
+  const auto& inclined = scene.supports.at(0).inclined.value();
+  EXPECT_EQ(inclined.along[1].value, 4);
+  EXPECT_EQ(inclined.value.repeat, 7);
+  EXPECT_EQ(inclined.value.points.at(1).second.value, 5);
+  EXPECT_EQ(scene.supports[1].rotate.value().angle.points.at(0).second.value, 30);
+  EXPECT_EQ(scene.supports[1].move.at('y').points.at(0).second.value, 6);
+  EXPECT_EQ(scene.loads.at(0).kind, Load::Kind::pressure);
+  EXPECT_EQ(scene.loads[1].kind, Load::Kind::body_force);
+  for (const auto& obstacle : scene.obstacles)
+    if (const auto* line = std::get_if<Polyline>(&obstacle.shape)) {
+      EXPECT_EQ(line->points.size(), 3u);
+      EXPECT_EQ(line->closed, obstacle.name == "ring");
+      EXPECT_EQ(obstacle.rotate.has_value(), obstacle.name == "ring");
+    }
+  for (const char* pointer :
+       {"/supports/0/along/0", "/supports/0/value/table/1/1", "/supports/1/rotate/center/0", "/supports/1/rotate/angle",
+        "/loads/0/pressure", "/loads/1/body_force/1", "/obstacles/ring/polyline/points/1/1"})
+    EXPECT_NE(std::find(scene.pointers.begin(), scene.pointers.end(), pointer), scene.pointers.end()) << pointer;
+  Diagnostics diagnostics;
+  EXPECT_FALSE(
+      read_text(edited(text, R"("mu": "/contacts/sole/friction")", R"("x": "/obstacles/ring/polyline/points/3/0")"),
+                diagnostics));
+  EXPECT_THAT(diagnostics.text(), HasSubstr("its first point is the parameter"));
+}
+
 TEST(SceneReader, ReadsABlockOnAFloor) {
   const Input input = valid(block_scene);
   const Scene& scene = input.scene;

@@ -1,0 +1,282 @@
+/// The schemas against the readers: every object has the keys that the reader allows there, and a validator that is not
+/// ours takes what the reader takes and refuses what it refuses.
+#include "studies/schema.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "studies/scene_reader.hpp"
+#include "studies/study_reader.hpp"
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+const fs::path scenes_folder = fs::path(STICKSLIP_SOURCE_DIR) / "studies" / "scenes";
+
+json parsed(const fs::path& path) {
+  std::ifstream file(path);
+  return json::parse(file, nullptr, true, true);  // with comments
+}
+
+std::vector<fs::path> shipped(bool studies) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(scenes_folder)) {
+    const std::string name = entry.path().filename().string();
+    const bool study = name.find(".study.json") != std::string::npos;
+    if (entry.path().extension() == ".json" && study == studies) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// Scenes that have, between them, an object of every kind that the format knows.
+std::vector<json> rich_scenes() {
+  const char* plane = R"({
+    "bodies": {
+      "block": {"mesh": {"box": {"min": [0, 0], "max": [4, 2], "cells": [4, 2], "grade": {"top": 2}}},
+                "material": {"linear_elastic": {"E": 1000, "nu": 0.25}}, "element": "Q4"},
+      "disk": {"mesh": {"half_disk": {"center": [9, 0], "radius": 1, "cells": [4, 4]}},
+               "material": {"linear_elastic": {"E": 1000, "nu": 0.25}}},
+      "rod": {"mesh": {"line": {"from": [0, 9], "to": [1, 9], "cells": 2}},
+              "material": {"linear_elastic": {"E": 1, "nu": 0}}, "area": 2},
+      "belt": {"mesh": {"arc": {"center": [0, 0], "radius": 1, "from_angle": 0, "to_angle": 90, "cells": 4}},
+               "material": {"linear_elastic": {"E": 10, "nu": 0}}},
+      "mass": {"mesh": {"point": {"at": [5, 5]}}, "material": {"grounded_spring": {"stiffness": [[1, 0], [0, 1]]}}}
+    },
+    "obstacles": {"floor": {"plane": {"point": [0, 0], "normal": [0, 1]}, "move": {"x": 1},
+                            "rotate": {"center": [0, 0], "angle": 3}},
+                  "drum": {"circle": {"center": [0, 0], "radius": 1, "inside": true}},
+                  "step": {"polyline": {"points": [[0, 0], [1, 0], [1, 1]]}}},
+    "contacts": {"sole": {"slave": "block.bottom", "master": "floor", "friction": 0.3}},
+    "supports": [{"on": "block.left", "move": {"y": {"table": [[0, 0], [1, 1], [2, 0]], "repeat": 4}}},
+                 {"on": "block.right", "along": [1, 1], "value": [[0, 0], [1, 1]]},
+                 {"on": "disk.flat", "rotate": {"center": [9, 0], "angle": [[0, 0], [1, 1]]}}],
+    "loads": [{"on": "block.top", "traction": [0, -5], "history": [[0, 0], [1, 1]]},
+              {"on": "disk.arc", "pressure": 2}, {"on": "mass.node", "force": [0, 1]},
+              {"on": "block", "body_force": [0, -1]}],
+    "time": {"end": 1, "steps": 10},
+    "responses": {"a": {"reaction": {"on": "block.left", "component": "moment", "about": [0, 0]}},
+      "b": {"contact_force": {"contact": "sole", "component": "normal"}},
+      "c": {"displacement": {"on": "block.right", "component": "x", "take": "max"}},
+      "d": {"contact_pressure": {"contact": "sole"}}, "e": {"gap": {"contact": "sole", "at": [0, 0]}},
+      "f": {"slip": {"contact": "sole"}}, "g": {"dissipation": {"contact": "sole"}}, "h": {"strain_energy": {}},
+      "i": {"contact_half_width": {"contact": "sole"}}},
+    "parameters": {"mu": "/contacts/sole/friction", "E": {"/bodies/block/material/linear_elastic/E": 2}},
+    "method": {"penalty": {"stiffness": {"absolute": 3}, "newton": {"tolerance": 1e-9}}},
+    "linear_solver": {"engine": "sparse"}, "output": {"fields": 2}, "sensitivity": {"mode": "direct"}
+  })";
+  const char* space = R"({
+    "space": "solid",
+    "bodies": {"mass": {"mesh": {"point": {"at": [0, 0, 0]}},
+                        "material": {"grounded_spring": {"stiffness": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}}}},
+    "supports": [{"on": "mass.anchor", "rotate": {"center": [1, 0, 0], "axis": [0, 0, 1], "angle": 3},
+                  "move": {"z": 1}}],
+    "time": {"legs": [[1, 2]]},
+    "method": {"uzawa_al": {"newton": {}}}
+  })";
+  const char* monolithic = R"({"bodies": {"rod": {"mesh": {"line": {"from": [0, 9], "to": [1, 9], "cells": 2}},
+    "material": {"linear_elastic": {"E": 1, "nu": 0}}}}, "time": {"end": 1, "steps": 1},
+    "method": {"monolithic_al": {"newton": {"line_search": true}}}})";
+  return {json::parse(plane), json::parse(space), json::parse(monolithic)};
+}
+
+/// Faults of a scene as the reader finds them.
+std::vector<Diagnostic> faults(const json& scene) {
+  Diagnostics diagnostics;
+  MeshFiles files;
+  const auto document = JsonDocument::parse(scene.dump(), (scenes_folder / "scene.json").string(), diagnostics);
+  if (document) read_scene(*document, std::nullopt, diagnostics, files);
+  return diagnostics.errors();
+}
+
+/// What stands behind references.
+const json& resolved(const json& root, const json& schema) {
+  if (!schema.contains("$ref")) return schema;
+  return resolved(root, root.at(json::json_pointer(schema["$ref"].get<std::string>().substr(1))));
+}
+
+/// Schema of a member or element; among alternatives the one that has such a thing.
+const json* below(const json& root, const json& schema, const std::string& key, bool of_array) {
+  const json& here = resolved(root, schema);
+  if (here.contains("anyOf"))
+    for (const json& alternative : here["anyOf"])
+      if (const json* found = below(root, alternative, key, of_array)) return found;
+  if (of_array) return here.contains("items") && here["items"].is_object() ? &here["items"] : nullptr;
+  if (here.contains("properties") && here["properties"].contains(key)) return &here["properties"][key];
+  const auto others = here.find("additionalProperties");
+  return others != here.end() && others->is_object() ? &*others : nullptr;
+}
+
+/// Keys that the schema of an object allows; none where they are names of the user's.
+std::optional<std::set<std::string>> keys_of(const json& root, const json& schema) {
+  const json& here = resolved(root, schema);
+  if (here.contains("anyOf") && !here.contains("properties")) {
+    for (const json& alternative : here["anyOf"])
+      if (auto keys = keys_of(root, alternative)) return keys;
+    return std::nullopt;
+  }
+  if (here.value("additionalProperties", json(true)) != false) return std::nullopt;
+  std::set<std::string> keys;
+  const json properties = here.value("properties", json::object());
+  for (const auto& [key, unused] : properties.items()) keys.insert(key);
+  return keys;
+}
+
+/// Calls f(pointer, schema) for each object of a document.
+template <class F>
+void for_each_object(const json& root, const json& schema, const json& value, const std::string& pointer, F&& f) {
+  if (value.is_object()) f(pointer, schema);
+  if (!value.is_structured()) return;
+  for (const auto& [key, child] : value.items()) {
+    const json* of_child = below(root, schema, key, value.is_array());
+    if (of_child && child.is_structured()) for_each_object(root, *of_child, child, pointer + "/" + key, f);
+  }
+}
+
+/// The names after "allowed: " of the fault about the unknown key, up to the end or a remark in brackets.
+std::set<std::string> allowed_by_reader(const json& scene, const std::string& pointer) {
+  for (const Diagnostic& fault : faults(scene)) {
+    if (fault.pointer != pointer) continue;
+    const auto at = fault.message.find("allowed: ");
+    if (at == std::string::npos) continue;
+    std::set<std::string> names;
+    std::istringstream list(fault.message.substr(at + 9));
+    for (std::string name; std::getline(list, name, ',');) {
+      name.erase(0, name.find_first_not_of(' '));
+      if (name != "nothing") names.insert(name.substr(0, name.find(' ')));
+    }
+    return names;
+  }
+  return {};
+}
+
+TEST(Schema, HasInEveryObjectTheKeysThatTheReaderAllows) {
+  const json schema = scene_schema();
+  int compared = 0;
+  for (const json& scene : rich_scenes()) {
+    ASSERT_TRUE(faults(scene).empty()) << faults(scene).front().text();
+    for_each_object(schema, schema, scene, "", [&](const std::string& pointer, const json& at) {
+      auto keys = keys_of(schema, at);
+      if (!keys) return;
+      json changed = scene;
+      changed[json::json_pointer(pointer)]["zzz"] = 1;
+      auto allowed = allowed_by_reader(changed, pointer + "/zzz");
+      if (scene.value("space", "") != "solid") {  // what a schema cannot know without the space
+        keys->erase("z");
+        if (pointer.find("/rotate") != std::string::npos) keys->erase("axis");
+      } else if (pointer.find("/response") != std::string::npos) {
+        keys->erase("about");
+      }
+      if (pointer == "/time" && scene["time"].contains("legs")) keys = {{"legs"}};  // one way or the other
+      EXPECT_EQ(*keys, allowed) << pointer;
+      ++compared;
+    });
+  }
+  EXPECT_GT(compared, 50) << "objects were found and compared";
+}
+
+#ifdef STICKSLIP_PYTHON_WITH_JSONSCHEMA
+/// Runs Python's jsonschema: every document of `valid` must pass, every one of `invalid` must not.
+void validate(const json& schema, const json& valid, const json& invalid) {
+  const fs::path folder = fs::temp_directory_path() / ("stickslip_schema_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  std::ofstream(folder / "all.json") << json{{"schema", schema}, {"valid", valid}, {"invalid", invalid}};
+  std::ofstream(folder / "check.py") << R"(
+import json, sys
+from jsonschema import Draft202012Validator
+of = json.load(open(sys.argv[1]))
+Draft202012Validator.check_schema(of["schema"])
+check = Draft202012Validator(of["schema"])
+wrong = [f"refused: {name}: {next(check.iter_errors(d)).message}" for name, d in of["valid"] if not check.is_valid(d)]
+wrong += [f"taken: {name}" for name, d in of["invalid"] if check.is_valid(d)]
+sys.exit("\n".join(wrong) if wrong else 0)
+)";
+  const std::string command = std::string("\"") + STICKSLIP_PYTHON_WITH_JSONSCHEMA + "\" \"" +
+                              (folder / "check.py").string() + "\" \"" + (folder / "all.json").string() + "\"";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  fs::remove_all(folder);
+}
+
+TEST(Schema, TakesEveryShippedFileAndRefusesUnknownKeysInIt) {
+  for (bool studies : {false, true}) {
+    const json schema = studies ? study_schema() : scene_schema();
+    json valid = json::array(), invalid = json::array();
+    std::vector<std::pair<std::string, json>> documents;
+    for (const auto& path : shipped(studies)) documents.emplace_back(path.filename().string(), parsed(path));
+    ASSERT_GE(documents.size(), 7u);
+    if (!studies)
+      for (const json& scene : rich_scenes()) documents.emplace_back("rich", scene);
+    for (const auto& [name, document] : documents) {
+      valid.push_back({name, document});
+      for_each_object(schema, schema, document, "",
+                      [&, &name = name, &document = document](const std::string& pointer, const json& at) {
+                        if (!keys_of(schema, at)) return;
+                        json changed = document;
+                        changed[json::json_pointer(pointer)]["zzz"] = 1;
+                        invalid.push_back({name + pointer, changed});
+                      });
+    }
+    validate(schema, valid, invalid);
+  }
+}
+
+TEST(Schema, RefusesASampleOfWhatTheReaderRefuses) {
+  const json scene = rich_scenes().front();
+  const std::vector<std::pair<std::string, const char*>> changes{
+      {"/space", R"("plane_strin")"},
+      {"/bodies", "{}"},
+      {"/bodies/block/material/linear_elastic/E", "-1"},
+      {"/bodies/block/material/linear_elastic/nu", "0.5"},
+      {"/bodies/block/material", "{}"},
+      {"/bodies/block/mesh/box/cells", "[4]"},
+      {"/bodies/block/mesh/box/cells/0", "0"},
+      {"/bodies/block/mesh/box/max", "[4, 2, 1]"},
+      {"/bodies/block/element", R"("Q5")"},
+      {"/bodies/rod/area", "0"},
+      {"/obstacles/drum/circle/radius", "0"},
+      {"/obstacles/step/polyline/points", "[[0, 0]]"},
+      {"/contacts/sole/friction", "-0.1"},
+      {"/contacts/sole", R"({"slave": "block.bottom"})"},
+      {"/contacts/sole/surface", R"("smooth")"},
+      {"/supports/0", R"({"on": "block.left"})"},
+      {"/supports/0/move", "{}"},
+      {"/supports/0/move/y", "[]"},
+      {"/supports/0/move/y/repeat", "0"},
+      {"/supports/1", R"({"on": "block.right", "along": [1, 1]})"},
+      {"/supports/1/move", R"({"x": 1})"},
+      {"/loads/0/pressure", "1"},
+      {"/loads/1/pressure", "[1, 2]"},
+      {"/loads/3", R"({"on": "block"})"},
+      {"/time", R"({"end": 1})"},
+      {"/time/steps", "0"},
+      {"/responses/b/contact_force/about", "[0, 0]"},
+      {"/responses/c/displacement/take", R"("median")"},
+      {"/method", R"({"penalty": {}, "monolithic_al": {}})"},
+      {"/method/penalty/newton/tolerance", "1"},
+      {"/output/fields", "0"},
+      {"/linear_solver/engine", R"("dense")"},
+  };
+  json invalid = json::array();
+  for (const auto& [pointer, text] : changes) {
+    json changed = scene;
+    changed[json::json_pointer(pointer)] = json::parse(text);
+    EXPECT_FALSE(faults(changed).empty()) << pointer << ": the reader takes it";
+    invalid.push_back({pointer, changed});
+  }
+  validate(scene_schema(), json::array(), invalid);
+}
+#endif
+
+}  // namespace
+}  // namespace stickslip
