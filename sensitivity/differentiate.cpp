@@ -8,17 +8,6 @@
 namespace stickslip {
 namespace {
 
-/// Numbers of the scene with the parameters of one block seeded.
-Numbers<Direction> seeded(const Scene& scene, int block) {
-  auto numbers = scene.as<Direction>();
-  for (int d = 0; d < directions; ++d) {
-    const std::size_t j = static_cast<std::size_t>(block) * directions + d;
-    if (j >= scene.parameters.size()) break;
-    for (const auto& [slot, weight] : scene.parameters[j].slots) numbers.at_slot[slot].d[d] += weight;
-  }
-  return numbers;
-}
-
 template <class E, class M>
 void run(const M& method, Differentiation<E>& problem, const Trajectory<double>& trajectory, Gradients& gradients) {
   const Model& model = problem.model;
@@ -52,7 +41,10 @@ Gradients differentiate(const Model& model, const Slots<double>& slots, const Me
   const Stopwatch time(gradients.seconds);
   std::vector<ParameterBlock> blocks;
   for (int b = 0; b * directions < parameters; ++b) {
-    ParameterBlock block{make_slots<Direction>(model, seeded(model.scene, b)), initial_state<Direction>(model), {}};
+    std::vector<int> of_block;
+    for (int j = b * directions; j < std::min(parameters, (b + 1) * directions); ++j) of_block.push_back(j);
+    ParameterBlock block{
+        make_slots<Direction>(model, seeded(model.scene, of_block)), initial_state<Direction>(model), {}};
     block.current = block.previous;
     blocks.push_back(std::move(block));
   }

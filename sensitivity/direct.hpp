@@ -18,6 +18,14 @@ namespace stickslip {
 inline constexpr int directions = 4;
 using Direction = Dual<directions>;
 
+/// Numbers of the scene with up to `directions` parameters seeded, each in a direction of its own.
+inline Numbers<Direction> seeded(const Scene& scene, const std::vector<int>& parameters) {
+  auto numbers = scene.as<Direction>();
+  for (std::size_t d = 0; d < parameters.size(); ++d)
+    for (const auto& [slot, weight] : scene.parameters[parameters[d]].slots) numbers.at_slot[slot].d[d] += weight;
+  return numbers;
+}
+
 /// Slots and running state of up to `directions` parameters.
 struct ParameterBlock {
   Slots<Direction> slots;

@@ -16,8 +16,11 @@ namespace {
 
 using nlohmann::json;
 
-/// A contact point nearer than this to another state has no two-sided derivative.
-constexpr double weak = 1e-8;
+/// Whether two one-sided derivatives differ by more than their rounding. `size`: |response| / |parameter|.
+bool is_kink(double backward, double forward, double size) {
+  constexpr double rounding = 1e-9;
+  return !(std::abs(forward - backward) <= rounding * std::max({std::abs(backward), std::abs(forward), size}));
+}
 
 const char* name_of(ContactState state) {
   return state == ContactState::open ? "open" : state == ContactState::stick ? "stick" : "slip";
@@ -42,6 +45,37 @@ json history_json(const std::vector<IterationRecord>& history) {
   return out;
 }
 
+double size_of(const StepResult& step, const Scene& scene, std::size_t response, std::size_t parameter) {
+  const double value = scene.parameters[parameter].value;
+  return value == 0 ? 0 : std::abs(step.responses[response] / value);
+}
+
+/// Fills in the one-sided derivatives of increment n, and whether they are one.
+void take_sides(const CaseResult& result, std::size_t n, StepResult& step) {
+  const auto& scene = result.problem->model.scene;
+  if (!result.one_sided) {
+    step.differentiable = std::min(step.margins.open, step.margins.slip) > weak_margin;
+    return;
+  }
+  step.backward = result.one_sided->backward[n];
+  step.forward = result.one_sided->forward[n];
+  for (std::size_t i = 0; i < scene.responses.size(); ++i)
+    for (std::size_t j = 0; j < scene.parameters.size(); ++j)
+      if (is_kink(step.backward(i, j), step.forward(i, j), size_of(step, scene, i, j))) step.differentiable = false;
+}
+
+/// {response: {parameter: [backward, forward]}} where the two differ and both are known.
+json one_sided_json(const StepResult& step, const Scene& scene) {
+  json out = json::object();
+  for (std::size_t i = 0; step.backward.size() && i < scene.responses.size(); ++i)
+    for (std::size_t j = 0; j < scene.parameters.size(); ++j) {
+      const double backward = step.backward(i, j), forward = step.forward(i, j);
+      if (std::isfinite(backward + forward) && is_kink(backward, forward, size_of(step, scene, i, j)))
+        out[scene.responses[i].name][scene.parameters[j].name] = {backward, forward};
+    }
+  return out;
+}
+
 std::vector<StepResult> gather_steps(const CaseResult& result) {
   const auto& [model, slots, unused] = *result.problem;
   const auto errors = kkt_errors(model, slots, result.trajectory);
@@ -58,7 +92,7 @@ std::vector<StepResult> gather_steps(const CaseResult& result) {
     step.margins = margins(model, slots, increment.state);
     step.responses = evaluate_responses(model, slots, increment.state, increment.time);
     if (n < result.gradients.of.size()) step.sensitivities = result.gradients.of[n];
-    step.differentiable = std::min(step.margins.open, step.margins.slip) > weak;
+    take_sides(result, n, step);
     steps.push_back(std::move(step));
     step = {};
   }
@@ -95,6 +129,8 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
   if (solved) {
     result.condition_estimate = std::visit([](auto& engine) { return engine.condition_estimate(); }, *workspace.engine);
     result.gradients = differentiate(problem->model, problem->slots, method, result.trajectory, workspace);
+    result.one_sided = one_sided_derivatives(problem->model, problem->slots, method, result.trajectory, workspace);
+    if (result.one_sided) result.gradients.counters += result.one_sided->counters;
   }
   result.steps = gather_steps(result);
   return result;
@@ -180,6 +216,7 @@ json steps_json(const CaseResult& result) {
     if (!scene.parameters.empty()) {
       entry["sensitivities"] = sensitivities;
       entry["differentiable"] = step.differentiable;
+      if (!step.differentiable) entry["one_sided"] = one_sided_json(step, scene);
     }
     if (step.increment->contraction > 0) entry["contraction"] = step.increment->contraction;
     if (!step.increment->message.empty()) entry["message"] = step.increment->message;

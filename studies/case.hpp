@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sensitivity/differentiate.hpp"
+#include "sensitivity/one_sided.hpp"
 #include "studies/metrics.hpp"
 
 namespace stickslip {
@@ -27,8 +27,9 @@ struct StepResult {
   KktError kkt;
   Margins margins;
   Vector<double> responses;
-  Matrix<double> sensitivities;  ///< responses x parameters; empty where there are none
-  bool differentiable = true;    ///< no contact point is about to change state
+  Matrix<double> sensitivities;      ///< responses x parameters; empty where there are none
+  bool differentiable = true;        ///< both one-sided derivatives agree
+  Matrix<double> backward, forward;  ///< one-sided sensitivities, where they are known; else empty
 };
 
 struct CaseResult {
@@ -36,6 +37,7 @@ struct CaseResult {
   Method method;
   Trajectory<double> trajectory;
   Gradients gradients;
+  std::optional<OneSided> one_sided;  ///< where a point was about to change state
   std::vector<StepResult> steps;
   double condition_estimate = 0;
   long nonzeros = 0;

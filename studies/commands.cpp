@@ -100,7 +100,7 @@ void print_summary(const CaseResult& result) {
     fmt::print("\n");
   }
   if (!scene.parameters.empty() && !last.differentiable)
-    fmt::print("  a contact point is about to change state: these are derivatives from one side only\n");
+    fmt::print("  a contact point is about to change state: these hold on one side only (result.json: one_sided)\n");
 }
 
 json check_json(const GradientCheck& check) {

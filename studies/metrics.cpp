@@ -86,28 +86,6 @@ std::vector<KktError> kkt_errors(const Model& model, const Slots<double>& slots,
   return errors;
 }
 
-Margins margins(const Model& model, const Slots<double>& slots, const State<double>& state) {
-  constexpr double none = std::numeric_limits<double>::infinity();
-  Margins margin{none, none};
-  double largest = 0;
-  for (const auto& point : model.points) largest = std::max(largest, -state.contact.traction[point.multiplier]);
-  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
-    const auto& point = model.points[p];
-    const double pressure = -state.contact.traction[point.multiplier];
-    const double elastic = slots.stiffness[p] / slots.geometry[p].area;
-    const bool open = state.contact.state[p] == ContactState::open;
-    const double distance = open ? elastic * state.contact.gap[p] : pressure;
-    margin.open = std::min(margin.open, largest > 0 ? distance / largest : none);
-    if (open || point.tangents == 0) continue;
-    const auto [traction, slip] = tangential(model, state, p);
-    const double bound = slots.friction[point.contact] * pressure;
-    const double reach =
-        state.contact.state[p] == ContactState::stick ? bound - traction.norm() : elastic * slip.norm();
-    if (bound > 0) margin.slip = std::min(margin.slip, reach / bound);
-  }
-  return margin;
-}
-
 std::vector<ContactSummary> summarise(const Model& model, const Slots<double>& slots, const State<double>& state) {
   std::vector<ContactSummary> all(model.scene.contacts.size());
   for (auto& summary : all) summary.tangential_force.assign(model.dimension, 0.0);

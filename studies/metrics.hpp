@@ -22,13 +22,6 @@ struct KktError {
   double largest() const;
 };
 
-/// How far the nearest contact point is from a change of state: `open` between open and closed (pressure, or k g / A of
-/// an open point, over the largest pressure); `slip` between stick and slip (distance to the cone, or k |dg_T| / A of a
-/// slipping point, over the friction bound). Infinity where there is no such point.
-struct Margins {
-  double open, slip;
-};
-
 struct ContactSummary {
   int open = 0, stick = 0, slip = 0;
   double penetration = 0;                ///< largest, length
@@ -38,7 +31,6 @@ struct ContactSummary {
 
 /// Measures of the increments of a trajectory, in order (the creep of sticking points is summed along the way).
 std::vector<KktError> kkt_errors(const Model& model, const Slots<double>& slots, const Trajectory<double>& trajectory);
-Margins margins(const Model& model, const Slots<double>& slots, const State<double>& state);
 std::vector<ContactSummary> summarise(const Model& model, const Slots<double>& slots, const State<double>& state);
 
 }  // namespace stickslip

@@ -1,0 +1,128 @@
+/// Derivatives at ties: one from below and one from above, by every method, against closed forms.
+#include "sensitivity/one_sided.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/scenes.hpp"
+
+namespace stickslip {
+namespace {
+
+using namespace scenes;
+
+struct Sides {
+  Model model;
+  std::optional<OneSided> of;
+  long factorizations = 0;
+
+  /// {backward, forward} at increment n.
+  std::pair<double, double> at(const std::string& response, const std::string& parameter, std::size_t n = 0) const {
+    const auto& scene = model.scene;
+    const auto i =
+        std::find_if(scene.responses.begin(), scene.responses.end(), [&](auto& r) { return r.name == response; }) -
+        scene.responses.begin();
+    const auto j =
+        std::find_if(scene.parameters.begin(), scene.parameters.end(), [&](auto& p) { return p.name == parameter; }) -
+        scene.parameters.begin();
+    return {of->backward[n](i, j), of->forward[n](i, j)};
+  }
+};
+
+Sides sides(const Scene& scene, const Method& method) {
+  Sides out{make_model(scene), {}};
+  const auto slots = make_slots<double>(out.model, scene.as<double>());
+  Workspace<double> workspace;
+  const auto trajectory = solve(out.model, slots, method, {}, workspace);
+  EXPECT_TRUE(is_converged(trajectory.status)) << trajectory.message;
+  out.of = one_sided_derivatives(out.model, slots, method, trajectory, workspace);
+  return out;
+}
+
+std::vector<Method> exact_methods() {
+  UzawaAL uzawa;
+  uzawa.tolerance = 1e-12;
+  return {MonolithicAL{}, uzawa};
+}
+
+constexpr double rounding = 1e-9;  // of derivatives of order 1, by chains of a few unknowns
+
+void expect_sides(const std::pair<double, double>& found, double backward, double forward, double size) {
+  EXPECT_NEAR(found.first, backward, rounding * size);
+  EXPECT_NEAR(found.second, forward, rounding * size);
+}
+
+TEST(OneSided, OfASpringThatJustTouchesItsStop) {
+  for (const auto& method : exact_methods()) {
+    const auto s = sides(stop(10, 1000, 0.01), method);
+    ASSERT_TRUE(s.of) << name_of(method);
+    expect_sides(s.at("u", "F"), 1e-3, 0, 1e-3);
+    expect_sides(s.at("press", "F"), 0, 1, 1);
+    expect_sides(s.at("u", "g0"), 1, 0, 1);  // the wall comes nearer, or goes away
+    expect_sides(s.at("press", "g0"), -1000, 0, 1000);
+    expect_sides(s.at("u", "k"), 0, -1e-5, 1e-5);  // a stiffer spring lets go
+  }
+}
+
+TEST(OneSided, OfThePenaltyMethodArePenalised) {
+  const double eps = 1e4;
+  const auto s = sides(stop(10, 1000, 0.01), Penalty{absolute(eps)});
+  ASSERT_TRUE(s.of);
+  expect_sides(s.at("u", "F"), 1e-3, 1 / (1000 + eps), 1e-3);
+  expect_sides(s.at("press", "F"), 0, eps / (1000 + eps), 1);
+}
+
+TEST(OneSided, OfABlockOnItsConeCarryTheirHistoryOn) {
+  // the anchor goes to the edge of slip, U = mu N / k = 0.03, and back to 0.02, where the block sticks
+  for (const auto& method : exact_methods()) {
+    const auto s = sides(slider({{0, 0}, {1, 0.03}, {2, 0.02}}, 2), method);
+    ASSERT_TRUE(s.of) << name_of(method);
+    expect_sides(s.at("u", "U0", 0), 0, 1, 1);
+    expect_sides(s.at("u", "mu", 0), -0.1, 0, 0.1);
+    expect_sides(s.at("heat", "U0", 0), 0, 3, 3);
+    expect_sides(s.at("u", "U0", 1), 0, 1, 1);  // what slipped stays, on one side alone
+    expect_sides(s.at("u", "mu", 1), -0.1, 0, 0.1);
+    expect_sides(s.at("pull", "U0", 1), 100 * 2.0 / 3, 100 * (2.0 / 3 - 1), 100);
+  }
+}
+
+TEST(OneSided, AgreeWhereATieChangesNothing) {
+  // slip to 0.06, then an increment in which nothing moves: the point lies on its cone without slipping
+  for (const auto& method : exact_methods()) {
+    const auto s = sides(slider({{0, 0}, {1, 0.06}, {2, 0.06}}, 2), method);
+    ASSERT_TRUE(s.of) << name_of(method);
+    for (std::size_t n : {0u, 1u}) {
+      expect_sides(s.at("u", "U0", n), 1, 1, 1);
+      expect_sides(s.at("u", "mu", n), -0.1, -0.1, 0.1);
+    }
+  }
+}
+
+TEST(OneSided, OfTwoPointsAtOnceFlipBoth) {
+  // two springs under one load each reach their stops together
+  Scene s = stop(10, 1000, 0.01);
+  s.bodies.push_back(s.bodies[0]);
+  s.bodies[1].name = "other";
+  s.contacts.push_back(s.contacts[0]);
+  s.contacts[1].name = "second";
+  s.contacts[1].slave = "other.node";
+  s.loads.push_back(s.loads[0]);
+  s.loads[1].on = "other.node";
+  s.responses.push_back(response("press2", Response::Kind::contact_force, "second", "normal"));
+  for (const auto& method : exact_methods()) {
+    const auto found = sides(s, method);
+    ASSERT_TRUE(found.of) << name_of(method);
+    expect_sides(found.at("press", "F"), 0, 1, 1);
+    expect_sides(found.at("press2", "F"), 0, 1, 1);
+    expect_sides(found.at("u", "F"), 1e-3, 0, 1e-3);
+  }
+}
+
+TEST(OneSided, AreNotComputedWhereNoPointIsWeak) {
+  for (const auto& method : exact_methods()) EXPECT_FALSE(sides(two_boxes(6, 9), method).of) << name_of(method);
+  UzawaAL truncated;
+  truncated.sensitivity = UzawaAL::Sensitivity::truncated;
+  EXPECT_FALSE(sides(stop(10, 1000, 0.01), truncated).of);
+}
+
+}  // namespace
+}  // namespace stickslip
