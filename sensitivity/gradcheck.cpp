@@ -76,6 +76,17 @@ Extrapolated extrapolate(const Differences& differences, Eigen::Index i, Eigen::
   return best;
 }
 
+/// What the solver's noise leaves in response i: it makes neighbouring differences disagree by noise / step, beside
+/// their truncation, so the least of all pairs of steps, each at its worst increment, is an upper bound.
+double noise(const Differences& differences, Eigen::Index i) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k + 1 < differences.step.size(); ++k) {
+    const double apart = (differences.values[k].row(i) - differences.values[k + 1].row(i)).cwiseAbs().maxCoeff();
+    least = std::min(least, apart * differences.step[k + 1]);
+  }
+  return least;
+}
+
 }  // namespace
 
 bool GradientCheck::passed() const {
@@ -85,8 +96,9 @@ bool GradientCheck::passed() const {
 
 Method as_claimed(const Method& method) {
   Method claimed = method;
+  std::visit([](auto& m) { m.newton.tolerance = std::min(m.newton.tolerance, 1e-14); }, claimed);
   if (auto* uzawa = std::get_if<UzawaAL>(&claimed); uzawa && uzawa->sensitivity != UzawaAL::Sensitivity::truncated) {
-    uzawa->tolerance = std::min(uzawa->tolerance, 1e-14);  // converged_at_roundoff ends it
+    uzawa->tolerance = std::min(uzawa->tolerance, 1e-14);
     uzawa->max_augmentations = std::max(uzawa->max_augmentations, 20000);
   }
   return claimed;
@@ -150,8 +162,8 @@ GradientCheck check_gradients(const Model& model, const Method& given, const Run
       double excess = -1;
       for (Eigen::Index n = 0; n < count && differences.step.size() >= 2; ++n) {
         if (!trajectory.increments[n].requested) continue;
-        // the solver leaves a few roundings, magnified by the conditioning, in a response
-        const auto best = extrapolate(differences, i, n, 1e-14 * largest_response(i, 0));
+        const double rounding = std::max(1e-14 * largest_response(i, 0), noise(differences, i));
+        const auto best = extrapolate(differences, i, n, rounding);
         const double scale = worst.scale > 0 ? worst.scale : 1;
         const double error = std::abs(gradients.of[n](i, j) - best.value) / scale, estimate = best.estimate / scale;
         const double scheme = approximate ? 10 / std::get<UzawaAL>(method).oversize : base_tolerance;

@@ -36,8 +36,9 @@ struct GradientCheck {
   bool passed() const;  ///< something was checked, and nothing differs or was left unchecked
 };
 
-/// The method whose derivative a scheme claims to be: Uzawa's iterated and oversized schemes stand for the converged
-/// solution, so the check runs it to rounding; the others as they are.
+/// The method whose derivative a scheme claims to be, solved to rounding (converged_at_roundoff ends it), for what a
+/// tolerance leaves is noise in a difference. Uzawa's iterated and oversized schemes stand for the converged solution,
+/// the truncated one for the loop as it is.
 Method as_claimed(const Method& method);
 
 /// Checks all parameters and responses at every requested step. `progress(done, total)` is called after each run; it
