@@ -316,6 +316,8 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
       step = engine.solve({-at.rows_u, unknown ? Matrix<T>(-at.rows_l) : Matrix<T>()});
       ++account.counters.backsolves;
     }
+    if (!step.u.allFinite() || !step.l.allFinite())
+      return finish(Status::singular, "the tangent is singular: its solution is not finite");
     ++account.counters.newton;
     if (unknown)
       for (std::size_t p = 0; p < model.points.size(); ++p)

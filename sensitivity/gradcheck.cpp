@@ -81,7 +81,9 @@ Extrapolated extrapolate(const Differences& differences, Eigen::Index i, Eigen::
 double noise(const Differences& differences, Eigen::Index i) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k + 1 < differences.step.size(); ++k) {
-    const double apart = (differences.values[k].row(i) - differences.values[k + 1].row(i)).cwiseAbs().maxCoeff();
+    double apart = 0;
+    for (Eigen::Index n = 0; n < differences.values[k].cols(); ++n)
+      apart = std::max(apart, std::abs(differences.values[k](i, n) - differences.values[k + 1](i, n)));
     least = std::min(least, apart * differences.step[k + 1]);
   }
   return least;

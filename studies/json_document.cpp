@@ -325,12 +325,15 @@ void JsonDocument::override_value(const std::string& assignment, Diagnostics& di
   auto fault = [&](const std::string& message) { diagnostics.error({origin, "", message}); };
   if (equals == std::string::npos) return fault("is not POINTER=VALUE, for example /contacts/sole/friction=0.4");
   const std::string pointer = assignment.substr(0, equals), text = assignment.substr(equals + 1);
-  if (const std::string message = pointer_fault(root_, pointer); !message.empty()) return fault(message);
-  const json& old = *value_at(root_, pointer);
-  if (old.is_object()) return fault(pointer + " names an object; must name a number, a text or an array");
+  const json* old = value_at(root_, pointer);
+  const json* parent = pointer.empty() ? nullptr : value_at(root_, pointer.substr(0, pointer.rfind('/')));
+  const bool can_add = parent && parent->is_object();  // an optional key: whoever reads the object says if it is none
+  if (const std::string message = pointer_fault(root_, pointer); !old && !can_add) return fault(message);
+  if (old && old->is_object()) return fault(pointer + " names an object; must name a number, a text or an array");
   json value = json::parse(text, nullptr, false);
   if (value.is_discarded()) {
-    if (!old.is_string()) return fault(in_quotes(text) + " is not a value of JSON; must be like " + shown(old));
+    if (old && !old->is_string())
+      return fault(in_quotes(text) + " is not a value of JSON; must be like " + shown(*old));
     value = text;
   }
   set(pointer, std::move(value), origin);

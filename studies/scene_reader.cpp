@@ -53,6 +53,24 @@ void read_output(const JsonNode& node, OutputOptions& output) {
   }
 }
 
+/// Another method than the scene's: what the scene says of its own is checked, then replaced by the other's defaults.
+void select_method(JsonDocument& document, const std::optional<std::string>& name, Diagnostics& diagnostics,
+                   MeshFiles& mesh_files) {
+  if (!name || !document.root().is_object()) return;
+  if (!default_method(*name)) {
+    diagnostics.error({{"-m " + *name},
+                       "",
+                       "there is no method " + in_quotes(*name) + ";" + suggestion(*name, method_names()) +
+                           " allowed: " + listed(method_names())});
+    return;
+  }
+  const auto own = JsonNode(document, diagnostics).find("method");
+  if (own && own->value().is_object() && own->find(*name)) return;
+  SceneReading apart(diagnostics, std::filesystem::path(document.file()).parent_path(), mesh_files);
+  if (own) read_method(*own, apart);
+  document.set("/method", {{*name, nlohmann::json::object()}}, {"-m " + *name});
+}
+
 }  // namespace
 
 std::optional<Input> read_scene(const JsonDocument& given, const std::optional<std::string>& method_name,
@@ -67,20 +85,8 @@ std::optional<Input> read_scene(const JsonDocument& given, const std::optional<s
                             {"objectives"}}))
     return std::nullopt;
 
-  // Another method than the scene's: what the scene says of its own is checked, then replaced.
   const bool known = !method_name || default_method(*method_name);
-  if (!known)
-    diagnostics.error({{"-m " + *method_name},
-                       "",
-                       "there is no method " + in_quotes(*method_name) + ";" +
-                           suggestion(*method_name, method_names()) + " allowed: " + listed(method_names())});
-  const auto own = file_root.find("method");
-  const bool replaced = method_name && known && !(own && own->value().is_object() && own->find(*method_name));
-  if (replaced) {
-    SceneReading apart(diagnostics, folder, mesh_files);
-    if (own) read_method(*own, apart);
-    document.set("/method", {{*method_name, nlohmann::json::object()}}, {"-m " + *method_name});
-  }
+  select_method(document, method_name, diagnostics, mesh_files);
 
   Input input;
   input.file = document.file();
@@ -125,8 +131,10 @@ std::optional<Input> read_scene(const std::string& file, const Overrides& overri
                                 const std::optional<std::string>& method_name, Diagnostics& diagnostics) {
   auto document = JsonDocument::read(file, diagnostics);
   if (!document) return std::nullopt;
-  for (const std::string& assignment : overrides) document->override_value(assignment, diagnostics);
   MeshFiles mesh_files;
+  if (method_name && default_method(*method_name))  // before the overrides, which may be about its options
+    select_method(*document, method_name, diagnostics, mesh_files);
+  for (const std::string& assignment : overrides) document->override_value(assignment, diagnostics);
   auto input = read_scene(*document, method_name, diagnostics, mesh_files);
   return diagnostics.has_errors() ? std::nullopt : std::move(input);
 }

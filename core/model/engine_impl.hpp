@@ -421,8 +421,10 @@ bool CondensedEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents,
     if (!cholesky_) ++counters.factorizations;
   }
   if (!cholesky_) lu_.compute(K);
-  // The limit of LinearSolver: beyond a condition of 0.1 / epsilon nothing of a solution is left.
-  valid_ = (cholesky_ ? llt_.rcond() : lu_.rcond()) > 10 * std::numeric_limits<double>::epsilon();
+  // The limit of LinearSolver: beyond a condition of 0.1 / epsilon nothing of a solution is left. A pivot of exactly
+  // zero escapes the estimate, which drops what is not a number.
+  const bool regular = cholesky_ || lu_.matrixLU().diagonal().cwiseAbs().minCoeff() > 0;
+  valid_ = regular && (cholesky_ ? llt_.rcond() : lu_.rcond()) > 10 * std::numeric_limits<double>::epsilon();
   if (!valid_) message_ = "the tangent is singular to working precision";
   return valid_;
 }

@@ -33,6 +33,10 @@ std::string pointer_of(const Scene& scene, const Constraint& constraint) {
 std::vector<Constraint> constraints_of(const Scene& scene, int support) {
   const Support& of = scene.supports[support];
   std::vector<Constraint> all;
+  for (const auto& [axis, unused] : of.move)
+    if (axis < 'x' || axis >= 'x' + scene.dimension())
+      throw ModelError(std::string("there is no axis ") + axis + " in this space",
+                       "/supports/" + std::to_string(support));
   if (of.inclined) return {{0, support, Constraint::inclined}};
   for (int i = 0; i < scene.dimension(); ++i)
     if (const char axis = static_cast<char>('x' + i); of.rotate || of.move.count(axis))

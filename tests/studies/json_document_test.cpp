@@ -139,7 +139,7 @@ TEST(Override, ChangesAValueAndTakesItsPlace) {
 
 TEST(Override, RefusesWhatNamesNoValue) {
   const std::vector<std::pair<std::string, std::string>> faults{
-      {"/contacts/sole/frction=1", "has no \"frction\"; did you mean \"friction\"? it has friction"},
+      {"/contacts/sloe/friction=1", "has no \"sloe\"; did you mean \"sole\"? it has sole"},
       {"/contacts/sole=1", "names an object"},
       {"/contacts/sole/friction", "is not POINTER=VALUE"},
       {"contacts=1", "is no JSON pointer"},
@@ -159,6 +159,14 @@ TEST(Override, RefusesWhatNamesNoValue) {
     EXPECT_THAT(diagnostics.text(), HasSubstr(message));
     EXPECT_EQ(document.root(), before);
   }
+}
+
+TEST(Override, MayAddAnOptionalKeyToAnObjectThatIsThere) {
+  auto document = parsed(R"({"contacts": {"sole": {"friction": 0.3}}})");
+  Diagnostics diagnostics;
+  document.override_value("/contacts/sole/offset=0.1", diagnostics);
+  EXPECT_FALSE(diagnostics.has_errors()) << diagnostics.text();
+  EXPECT_EQ(document.root()["contacts"]["sole"]["offset"], 0.1);
 }
 
 TEST(Diagnostics, ListsFaultsInTheOrderOfTheFile) {

@@ -353,9 +353,20 @@ TEST(SceneReader, CarriesOutOverridesAndNamesThemInFaults) {
   EXPECT_FALSE(read_scene(path.string(), {"/contacts/sole/friction=-0.4", "/time/stops=3"}, {}, diagnostics));
   EXPECT_EQ(
       diagnostics.text(),
-      "--set /time/stops=3: /time/stops names nothing: /time has no \"stops\"; did you mean \"steps\"? it has end, "
-      "steps\n"
-      "--set /contacts/sole/friction=-0.4: /contacts/sole/friction: is -0.4; must be a number >= 0\n");
+      "--set /contacts/sole/friction=-0.4: /contacts/sole/friction: is -0.4; must be a number >= 0\n"
+      "--set /time/stops=3: /time/stops: unknown key \"stops\"; did you mean \"steps\"? allowed: end, steps, legs\n");
+  std::filesystem::remove(path);
+}
+
+TEST(SceneReader, OverridesMayNameOptionsThatTheFileLeavesOut) {
+  const auto path = std::filesystem::path(testing::TempDir()) / "optional_override.json";
+  std::ofstream(path) << block_scene;
+  Diagnostics diagnostics;
+  const auto input =
+      read_scene(path.string(), {"/method/penalty/stiffness=250", "/contacts/sole/offset=0.1"}, "penalty", diagnostics);
+  ASSERT_TRUE(input.has_value()) << diagnostics.text();
+  EXPECT_EQ(std::get<Penalty>(input->method).stiffness.value.value, 250);
+  EXPECT_EQ(input->scene.contacts[0].offset.value, 0.1);
   std::filesystem::remove(path);
 }
 
