@@ -12,6 +12,7 @@
 #include "core/model/model.hpp"
 #include "core/solids/bar.hpp"
 #include "core/solids/continuum.hpp"
+#include "core/solids/edges.hpp"
 #include "core/solids/linear_elastic.hpp"
 
 namespace stickslip {
@@ -34,6 +35,7 @@ struct Slots {
   Numbers<T> numbers;
   Points<T> points;                        ///< D x nodes
   std::vector<Law<T>> laws;                ///< per body
+  std::vector<Depth<T>> depths;            ///< per body
   std::vector<PointGeometry<T>> geometry;  ///< per contact point
   std::vector<T> stiffness;                ///< per contact point: local nodal stiffness k_i (force per length)
   std::vector<T> friction;                 ///< per contact; zero, and unread, where frictionless
@@ -62,18 +64,16 @@ Law<T> make_law(const Scene& scene, const Body& body, const Mesh& mesh, const Nu
   return LinearElasticLaw<T>(E, numbers(elastic.nu), scene.space);
 }
 
-/// Length of the line between two nodes, any dimension.
-template <class T>
-T distance(const Points<T>& points, int a, int b) {
-  return norm((points.col(a) - points.col(b)).eval());
-}
-
 template <class T>
 T tributary_area(const ContactPoint& point, const Slots<T>& slots) {
   if (point.area_of_bar) return std::get<BarLaw<T>>(slots.laws[point.slave_body]).area;
-  if (point.area_facets.empty()) return T(1);
+  if (point.area_edges.empty()) return T(1);
   T area{};
-  for (const auto& [a, b] : point.area_facets) area += T(0.5) * distance(slots.points, a, b);
+  for (const auto& edge : point.area_edges) {
+    const auto shares = edge_shares(slots.points, edge, slots.depths[point.slave_body]);
+    for (std::size_t a = 0; a < edge.size(); ++a)
+      if (edge[a] == point.nodes[0]) area += shares[a];
+  }
   return area;
 }
 
@@ -106,7 +106,7 @@ PointGeometry<T> integrated_geometry(const Model& model, const ContactPoint& poi
       foot.at[i] = x[i] - g.gap * g.normal[i];
     }
     return foot;
-  });
+  }, slots.depths[point.slave_body]);
 }
 
 template <class T>
@@ -147,15 +147,15 @@ Vector<T> load_vector(const Model& model, const Load& load, const Slots<T>& slot
   };
   std::vector<std::pair<int, T>> share;  // tributary area of the loaded nodes
   T total{};
-  for (const auto& facet : side.facets) {
-    const T half = T(0.5) * distance(slots.points, facet[0], facet[1]);
-    for (int node : facet)
-      if (std::find(side.nodes.begin(), side.nodes.end(), node) != side.nodes.end()) {
-        share.emplace_back(node, half);
-        total += half;
+  for (const auto& edge : side.edges) {
+    const auto shares = edge_shares(slots.points, edge, slots.depths[side.body]);
+    for (std::size_t a = 0; a < edge.size(); ++a)
+      if (std::find(side.nodes.begin(), side.nodes.end(), edge[a]) != side.nodes.end()) {
+        share.emplace_back(edge[a], shares[a]);
+        total += shares[a];
       }
   }
-  if (side.facets.empty()) {  // single nodes: equal shares
+  if (side.edges.empty()) {  // single nodes: equal shares
     for (int node : side.nodes) share.emplace_back(node, T(1));
     total = T(static_cast<double>(side.nodes.size()));
   }

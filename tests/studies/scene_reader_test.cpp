@@ -409,7 +409,7 @@ std::vector<Broken> broken_bodies() {
       {"bodies_list", b, R"("element": "Q4")", R"("element": @4)", "/bodies/block/element",
        "must be one of T3, Q4, bar, point"},
       {"bar_in_a_box", b, R"("element": "Q4")", R"("element": @"bar")", "/bodies/block/element",
-       "a box has elements T3 or Q4, not bar"},
+       "a box has elements Q4, Q4_mean_dilatation, Q8, T3 or T6, not bar"},
       {"area_of_a_box", b, R"("element": "Q4")", R"(@"area": 2)", "/bodies/block/area", "only bars"},
       {"thickness", b, R"("element": "Q4")", R"(@"thickness": 2)", "/bodies/block/thickness",
        "is not available in this version"},
