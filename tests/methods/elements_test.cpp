@@ -233,6 +233,68 @@ TEST(Contact, OfABlockOnAFloorHasUniformPressureInEveryElement) {
   }
 }
 
+/// A sphere of radius 10 pressed on a rigid plane by its flat equator, E = 1000, nu = 0.3, as a body of revolution.
+Scene hertz_sphere(const std::string& element, int cells) {
+  Scene s;
+  s.space = Space::axisymmetric;
+  s.legs = {{1, 1}};
+  const Number radius = scenes::parameter(s, "radius", 10), depth = scenes::parameter(s, "depth", -0.06);
+  // half of a half disk: a quad whose left side is the axis would not follow the arc, a sector of a ring does
+  RingMesh ring;
+  ring.center = {0.0, radius};
+  ring.inner = 8.0;
+  ring.outer = radius;
+  ring.from_angle = -90.0;
+  ring.to_angle = -70.0;
+  ring.cells = {cells, 2 * cells};
+  s.bodies = {{"ball", ring, LinearElastic{1000.0, 0.3}, element, 1.0}};
+  s.obstacles = {{"floor", Plane{{0.0, 0.0}, {0.0, 1.0}}, {}}};
+  s.contacts = {scenes::contact("touch", "ball.outer", "floor")};
+  s.supports = {scenes::support("ball.inner", {{'x', table({{0, 0.0}})}, {'y', table({{0, 0.0}, {1, depth}})}})};
+  s.responses = {scenes::response("force", Response::Kind::contact_force, "touch", "normal"),
+                 scenes::response("a", Response::Kind::contact_half_width, "touch"),
+                 scenes::response("peak", Response::Kind::contact_pressure, "touch", "", Response::Take::max)};
+  return s;
+}
+
+TEST(HertzSphere, HasTheRadiusAndTheProfileOfItsForce) {
+  // a^3 = 3 P R / 4 E*, p0 = 3 P / 2 pi a^2 (cases.md A9), whatever the body is far away
+  for (const char* element : {"Q4", "Q4_mean_dilatation", "T3"}) {
+    const auto solved = scenes::run(hertz_sphere(element, 40), MonolithicAL{});
+    ASSERT_TRUE(is_converged(solved.trajectory.status));
+    const double P = solved.value("force"), a = std::cbrt(0.75 * P * 10 * (1 - 0.09) / 1000),
+                 p0 = 1.5 * P / (pi * a * a);
+    std::printf("%-18s P %.4f, a %.4f (%.4f), p0 %.3f (%.3f)\n", element, P, solved.value("a"), a, solved.value("peak"),
+                p0);
+    EXPECT_NEAR(solved.value("a"), a, 0.02 * a);
+    EXPECT_NEAR(solved.value("peak"), p0, 0.05 * p0);  // at the node on the axis
+  }
+}
+
+TEST(Spaces, RefuseWhatTheyCannotHold) {
+  auto expect_refused = [](const Scene& scene, const char* pointer, const char* part) {
+    try {
+      make_model(scene);
+      ADD_FAILURE() << part;
+    } catch (const ModelError& error) {
+      EXPECT_EQ(error.pointer, pointer);
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  };
+  Scene lumped = scenes::stop();
+  lumped.space = Space::axisymmetric;
+  expect_refused(lumped, "/bodies/block/mesh", "no points and no bars");
+  Scene stress = scenes::two_boxes(2, 2, "Q4_mean_dilatation");
+  stress.space = Space::plane_stress;
+  expect_refused(stress, "/bodies/upper/mesh", "in plane stress");
+  Scene left = scenes::two_drums(2, 2, "Q4");
+  std::get<BoxMesh>(left.bodies[1].mesh).min[0] = -0.5;
+  expect_refused(left, "/bodies/lower/mesh", "x is the radius");
+  Scene pulled = scenes::two_drums(2, 2, "Q4");
+  pulled.supports[0].move['x'] = table({{0, 0.0}, {1, 0.1}});
+  expect_refused(pulled, "/supports/0/move/x", "axis of revolution");
+}
+
 // --- press fit (cases.md A14) ----------------------------------------------------------------------------------------
 
 /// A full ring held against rigid motion where its own symmetry keeps it anyway: sides `along_x` and `along_y`, the
