@@ -69,8 +69,9 @@ Foot<T> foot_on_facet(const Vec<T, 2>& x, const Vec<T, 2>& nu, const Vec<T, 2>& 
 
 }  // namespace detail
 
-/// Geometry of the point whose pieces are given, on a slave body of this depth. `nodes`: its nodes, in the order of the weights wanted; `rigid_foot`:
-/// x -> Foot on the obstacle, called for pieces that have no master facet. The result carries its area.
+/// Geometry of the point whose pieces are given, on a slave body of this depth. `nodes`: its nodes, in the order of the
+/// weights wanted; `rigid_foot`: x -> Foot on the obstacle, called for pieces that have no master facet. The result
+/// carries its area.
 template <class T, class RigidFoot>
 PointGeometry<T> against_pieces(const Points<T>& points, const std::vector<Piece>& pieces,
                                 const std::vector<int>& nodes, RigidFoot&& rigid_foot, const Depth<T>& depth = {}) {

@@ -220,8 +220,7 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
   }
   if (!contact.segment) return pair_nodes(model, points, pairing);
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
-  const bool quadratic_master =
-      pairing.obstacle < 0 && is_quadratic(model.bodies[pairing.master.body].mesh.shape);
+  const bool quadratic_master = pairing.obstacle < 0 && is_quadratic(model.bodies[pairing.master.body].mesh.shape);
   if (is_quadratic(shape) || quadratic_master)
     throw ModelError("segment integration needs linear elements on both sides", where);
   if (model.dimension == 3 || pairing.slave.facets.empty() || !is_continuum(shape))

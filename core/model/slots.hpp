@@ -98,15 +98,18 @@ PointGeometry<T> against_obstacle(const Obstacle& obstacle, const Place& x, cons
 /// Geometry of a segment-integrated point, its area included.
 template <class T>
 PointGeometry<T> integrated_geometry(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
-  return against_pieces<T>(slots.points, point.pieces, point.nodes, [&](const Vec<T, 2>& x) {
-    const auto g = against_obstacle<T>(model.scene.obstacles[point.obstacle], x, slots.numbers);
-    Foot<T> foot;
-    for (int i = 0; i < 2; ++i) {
-      foot.normal[i] = g.normal[i];
-      foot.at[i] = x[i] - g.gap * g.normal[i];
-    }
-    return foot;
-  }, slots.depths[point.slave_body]);
+  return against_pieces<T>(
+      slots.points, point.pieces, point.nodes,
+      [&](const Vec<T, 2>& x) {
+        const auto g = against_obstacle<T>(model.scene.obstacles[point.obstacle], x, slots.numbers);
+        Foot<T> foot;
+        for (int i = 0; i < 2; ++i) {
+          foot.normal[i] = g.normal[i];
+          foot.at[i] = x[i] - g.gap * g.normal[i];
+        }
+        return foot;
+      },
+      slots.depths[point.slave_body]);
 }
 
 template <class T>

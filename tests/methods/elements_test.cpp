@@ -109,8 +109,6 @@ TEST(ThickRing, ConvergesToLamesDisplacementsAtTheOrderOfItsElement) {
     for (const char* element : {"T3", "Q4", "T6", "Q8"}) {
       const double coarse = ring_error(space, 0.3, element, 8), fine = ring_error(space, 0.3, element, 16);
       const bool quadratic = std::string(element) == "T6" || std::string(element) == "Q8";
-      std::printf("space %d %-3s n = 8, 16: %.3e %.3e, order %.2f\n", static_cast<int>(space), element, coarse, fine,
-                  std::log2(coarse / fine));
       // of linear elements 2; of T6 3, come from below by a tenth or two; of Q8 4, at the corners of regular meshes
       EXPECT_GT(std::log2(coarse / fine), quadratic ? 2.8 : 1.9) << element << " in space " << static_cast<int>(space);
       EXPECT_LT(fine, quadratic ? 2e-5 : 6e-3) << element;
@@ -122,8 +120,6 @@ TEST(ThickRing, OfNearlyIncompressibleMaterialLocksInQ4AloneAndNotWithMeanDilata
     const double plain = ring_error(space, 0.4999, "Q4", 8),
                  averaged = ring_error(space, 0.4999, "Q4_mean_dilatation", 8),
                  quadratic = ring_error(space, 0.4999, "Q8", 8);
-    std::printf("nu = 0.4999, space %d: Q4 %.3e, Q4_mean_dilatation %.3e, Q8 %.3e\n", static_cast<int>(space), plain,
-                averaged, quadratic);
     EXPECT_GT(plain, 0.5);       // locked: less than half of the displacement is left
     EXPECT_LT(averaged, 0.02);   // C5 asks for 2 %
     EXPECT_LT(quadratic, 0.02);  // 3 x 3 points do not lock
@@ -153,8 +149,6 @@ TEST(Cantilever, HasTimoshenkosDeflection) {
   const double exact = 0.01 * 1e4 / (8 * 1000 / 12.0) + 0.01 * 100 / (2 * 5.0 / 6 * 1000 / 2.6);
   EXPECT_NEAR(exact, 0.15156, 1e-6);
   const double linear = tip("Q4", 160, 16, 1), quadratic = tip("Q8", 20, 2, 1), triangles = tip("T6", 20, 2, 1);
-  std::printf("tip over Timoshenko: Q4 160 x 16 %.5f, Q8 20 x 2 %.5f, T6 20 x 2 %.5f\n", linear / exact,
-              quadratic / exact, triangles / exact);
   for (double u : {linear, quadratic, triangles}) EXPECT_NEAR(u, exact, 0.005 * exact);
   // the load per area halves as the thickness doubles, and so the same load on a stiffer beam
   EXPECT_NEAR(tip("Q8", 20, 2, 2), quadratic / 2, 1e-9 * quadratic);  // rounding of a condition of 1e5
@@ -208,7 +202,7 @@ INSTANTIATE_TEST_SUITE_P(Blocks, Uniform, testing::ValuesIn(every_element()), na
 
 TEST(Contact, OfABlockOnAFloorHasUniformPressureInEveryElement) {
   // consistent tributary areas: a uniform pressure is p at every node of a straight side, middles included
-  for (const auto& [space, element] : every_element()) {
+  auto check = [](Space space, const std::string& element, bool segment) {
     Scene s;
     s.space = space;
     s.legs = {{1, 1}};
@@ -219,6 +213,7 @@ TEST(Contact, OfABlockOnAFloorHasUniformPressureInEveryElement) {
     s.bodies = {{"block", box, LinearElastic{1000.0, 0.3}, element, 1.0, space == Space::axisymmetric ? 1 : 0.4}};
     s.obstacles = {{"floor", Plane{{0.0, 0.0}, {0.0, 1.0}}, {}}};
     s.contacts = {scenes::contact("sole", "block.bottom", "floor")};
+    s.contacts[0].segment = segment;
     if (space == Space::axisymmetric) s.contacts[0].friction = 0.3;  // the axis cannot slide, and has no unknown for it
     s.supports = {held("block.left", 'x')};
     s.loads = {scenes::traction("block.top", {0.0, -10.0})};
@@ -227,9 +222,13 @@ TEST(Contact, OfABlockOnAFloorHasUniformPressureInEveryElement) {
     ASSERT_TRUE(is_converged(solved.trajectory.status)) << element;
     const double area = space == Space::axisymmetric ? pi * 4 : 2 * 0.4;
     EXPECT_NEAR(solved.value("force"), 10 * area, 1e-10 * area) << element;
-    if (space == Space::axisymmetric) continue;  // friction holds the rim back
+    if (space == Space::axisymmetric) return;  // friction holds the rim back
     for (const auto& point : solved.model.points)
       EXPECT_NEAR(-solved.trajectory.increments.back().state.contact.traction[point.multiplier], 10, 1e-10) << element;
+  };
+  for (const auto& [space, element] : every_element()) {
+    check(space, element, false);
+    if (element != "Q8" && element != "T6") check(space, element, true);
   }
 }
 
@@ -264,8 +263,6 @@ TEST(HertzSphere, HasTheRadiusAndTheProfileOfItsForce) {
     ASSERT_TRUE(is_converged(solved.trajectory.status));
     const double P = solved.value("force"), a = std::cbrt(0.75 * P * 10 * (1 - 0.09) / 1000),
                  p0 = 1.5 * P / (pi * a * a);
-    std::printf("%-18s P %.4f, a %.4f (%.4f), p0 %.3f (%.3f)\n", element, P, solved.value("a"), a, solved.value("peak"),
-                p0);
     EXPECT_NEAR(solved.value("a"), a, 0.02 * a);
     EXPECT_NEAR(solved.value("peak"), p0, 0.05 * p0);  // at the node on the axis
   }
@@ -293,6 +290,9 @@ TEST(Spaces, RefuseWhatTheyCannotHold) {
   Scene pulled = scenes::two_drums(2, 2, "Q4");
   pulled.supports[0].move['x'] = table({{0, 0.0}, {1, 0.1}});
   expect_refused(pulled, "/supports/0/move/x", "axis of revolution");
+  Scene segments = scenes::two_boxes(2, 2, "Q8");
+  segments.contacts[0].segment = true;
+  expect_refused(segments, "/contacts/touch", "linear elements");
 }
 
 // --- press fit (cases.md A14) ----------------------------------------------------------------------------------------
@@ -340,8 +340,10 @@ struct Fit {
 };
 
 /// Mean pressure over the circle of the fit, and mean radial displacements.
-Fit solve_fit(Space space, double nu, const std::string& element, int k) {
-  const auto solved = scenes::run(press_fit(space, nu, element, k), MonolithicAL{});
+Fit solve_fit(Space space, double nu, const std::string& element, int k, bool segment) {
+  Scene scene = press_fit(space, nu, element, k);
+  scene.contacts[0].segment = segment;
+  const auto solved = scenes::run(scene, MonolithicAL{});
   EXPECT_TRUE(is_converged(solved.trajectory.status)) << solved.trajectory.message;
   const auto& u = solved.trajectory.increments.back().state.displacement;
   auto radial = [&](const std::string& side) {
@@ -382,24 +384,22 @@ TEST(SlowPressFit, HasLamesPressureAndDisplacementsButForWhatTheFacetsTake) {
     Space space;
     double nu;
     const char* element;
+    bool segment = false;
   };
   for (const Case& c : {Case{Space::plane_strain, 0.3, "Q4"}, Case{Space::plane_strain, 0.4999, "Q4_mean_dilatation"},
-                        Case{Space::plane_stress, 0.3, "Q4"}, Case{Space::plane_strain, 0.3, "Q8"}}) {
+                        Case{Space::plane_stress, 0.3, "Q4"}, Case{Space::plane_strain, 0.3, "Q8"},
+                        Case{Space::plane_strain, 0.3, "Q4", true}}) {
     const double exact = fit_pressure(c.space, c.nu);
     const int facets = std::string(c.element) == "Q8" ? 100 : 50;
     std::vector<double> errors;
     for (int k : {1, 2, 4}) {
-      const Fit fit = solve_fit(c.space, c.nu, c.element, k);
+      const Fit fit = solve_fit(c.space, c.nu, c.element, k, c.segment);
       const double share = fit.pressure / exact;
+      // between two polygons the slave's facets give back what they cut off themselves
+      const double lost = lost_to_facets(facets * k) - (c.segment ? lost_to_facets(64 * k) : 0);
       errors.push_back(std::abs(share - 1));
-      std::printf(
-          "%-18s nu %.4f space %d, %d on %d: p %.5f (%.5f, %+.2e), u of outer and inner ring at the fit %.6f %.6f, at "
-          "the "
-          "rim %.6f\n",
-          c.element, c.nu, static_cast<int>(c.space), 64 * k, 50 * k, fit.pressure, exact, share - 1, fit.outer_at_fit,
-          fit.inner_at_fit, fit.rim);
       // on the coarsest mesh of linear elements points over the middle of a facet are open, and the mean is another
-      EXPECT_NEAR(share, 1 - lost_to_facets(facets * k), facets * k == 50 ? 0.04 : 0.002) << c.element << " " << k;
+      EXPECT_NEAR(share, 1 - lost, facets * k == 50 ? 0.04 : 0.002) << c.element << " " << k;
       // the whole solution is that of the smaller interference; the rings themselves are good to 0.1 %
       const double E1 = c.space == Space::plane_stress ? 1000 : 1000 / (1 - c.nu * c.nu),
                    n = c.space == Space::plane_stress ? c.nu : c.nu / (1 - c.nu);
