@@ -19,6 +19,10 @@ const char* shape_name(ElementShape shape) {
       return "T3 triangles";
     case ElementShape::quad4:
       return "Q4 quadrilaterals";
+    case ElementShape::tri6:
+      return "T6 triangles";
+    case ElementShape::quad8:
+      return "Q8 quadrilaterals";
   }
   return "";
 }
@@ -29,6 +33,8 @@ const char* space_name(Space space) {
       return "plane strain";
     case Space::plane_stress:
       return "plane stress";
+    case Space::axisymmetric:
+      return "axisymmetric (x is the radius, y the axis, all forces are of the full revolution)";
     case Space::solid:
       return "space (3D)";
   }
@@ -61,8 +67,9 @@ std::string explain(const Input& input, const Problem& problem) {
                       space_name(scene.space));
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const auto& mesh = model.bodies[b].mesh;
-    text += fmt::format("  {}: {} nodes, {} {}\n", scene.bodies[b].name, mesh.node_count, mesh.element_count(),
-                        shape_name(mesh.shape));
+    text += fmt::format("  {}: {} nodes, {} {}{}\n", scene.bodies[b].name, mesh.node_count, mesh.element_count(),
+                        shape_name(mesh.shape),
+                        has_mean_dilatation(model.bodies[b].kinematics) ? " with mean dilatation" : "");
   }
   text += "contacts (node to segment):\n" + contact_lines(model);
   text += fmt::format("driving: {} supports, {} loads, {} steps to t = {}\n", scene.supports.size(), scene.loads.size(),

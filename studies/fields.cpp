@@ -12,7 +12,8 @@ namespace {
 
 using nlohmann::json;
 
-/// Mean stress of each element, xx yy zz xy yz xz; zero for lumped elements. Plane strain: zz = nu (xx + yy).
+/// Mean stress of each element, xx yy zz xy yz xz; zero for lumped elements. Plane strain: zz = nu (xx + yy);
+/// axisymmetric: zz is the hoop stress.
 Matrix<double> element_stress(const Problem& problem, const State<double>& state) {
   const auto& model = problem.model;
   int count = 0;
@@ -26,21 +27,22 @@ Matrix<double> element_stress(const Problem& problem, const State<double>& state
       continue;
     }
     const auto& law = std::get<LinearElasticLaw<double>>(problem.slots.laws[b]);
-    detail::with_shape(body.mesh.shape, [&]<class Shape>(Shape) {
+    detail::with_element(body, [&]<class Shape, Kinematics kinematics>() {
+      constexpr int rows = stress_dimension(kinematics);
       for (int e = 0; e < body.mesh.element_count(); ++e, ++column) {
         const auto nodes = detail::element_nodes(body, e);
         const auto X = detail::gather_coordinates<double, Shape>(problem.slots.points, nodes.data());
         const auto u = detail::gather_displacements<double, Shape>(state.displacement, nodes.data());
         double volume = 0;
-        for (const auto& point : Shape::quadrature()) {
-          const Gradient<double, Shape> gradient(point, X);
-          const Mat<double, 2> H = gradient.of(u), s = law.template stress<double, 2>(H);
-          const double zz = model.scene.space == Space::plane_strain ? law.lame * H.trace() : 0;
+        for_each_gradient<double, Shape, kinematics>(X, 1, [&](const auto& gradient) {
+          const Mat<double, rows> H = gradient.of(u), s = law.template stress<double, rows>(H);
+          double zz = model.scene.space == Space::plane_strain ? law.lame * H.trace() : 0;
+          if constexpr (rows == 3) zz = s(2, 2);
           Eigen::Matrix<double, 6, 1> components;
           components << s(0, 0), s(1, 1), zz, s(0, 1), 0, 0;
           stress.col(column) += gradient.volume * components;
           volume += gradient.volume;
-        }
+        });
         stress.col(column) /= volume;
       }
     });

@@ -5,6 +5,7 @@
 
 #include "core/mesh/generators.hpp"
 #include "core/mesh/quality.hpp"
+#include "core/model/model.hpp"
 #include "studies/scene_reading.hpp"
 
 namespace stickslip {
@@ -23,6 +24,16 @@ std::array<int, 2> cells_of(const JsonNode& node, SceneReading& reading) {
   return cells;
 }
 
+/// "grade": {SIDE: ratio}.
+template <class Graded>
+void read_grade(const JsonNode& node, const std::vector<std::string>& sides, Graded& mesh, SceneReading& reading) {
+  const auto grade = node.find("grade");
+  const auto towards = grade ? grade->kind(sides) : std::nullopt;
+  if (!towards) return;
+  mesh.grade_towards = towards->first;
+  mesh.grade = reading.number(towards->second, positive);
+}
+
 std::optional<BoxMesh> read_box(const JsonNode& node, SceneReading& reading) {
   if (!node.is_object({{"min", "max", "cells"}, {"grade"}})) return std::nullopt;
   BoxMesh box;
@@ -32,12 +43,52 @@ std::optional<BoxMesh> read_box(const JsonNode& node, SceneReading& reading) {
   for (int axis = 0; axis < 2; ++axis)
     if (box.max[axis].value <= box.min[axis].value)
       node.find("max")->elements()[axis].must_be("greater than min, which is " + shown(box.min[axis].value));
-  if (const auto grade = node.find("grade"))
-    if (const auto towards = grade->kind({"left", "right", "bottom", "top"})) {
-      box.grade_towards = towards->first;
-      box.grade = reading.number(towards->second, positive);
-    }
+  read_grade(node, {"left", "right", "bottom", "top"}, box, reading);
   return box;
+}
+
+std::optional<QuadMesh> read_quad(const JsonNode& node, SceneReading& reading) {
+  if (!node.is_object({{"corners", "cells"}, {"grade"}})) return std::nullopt;
+  QuadMesh quad;
+  const auto corners = node.find("corners");
+  const auto list = corners ? corners->array(4, "four corners [x, y], counter-clockwise") : std::nullopt;
+  if (!list) return std::nullopt;
+  for (int k = 0; k < 4; ++k) quad.corners[k] = pair_of(reading.vector((*list)[k], 2));
+  quad.cells = cells_of(node, reading);
+  read_grade(node, {"left", "right", "bottom", "top"}, quad, reading);
+  return quad;
+}
+
+std::optional<RingMesh> read_ring(const JsonNode& node, SceneReading& reading) {
+  if (!node.is_object({{"center", "inner", "outer", "cells"}, {"from_angle", "to_angle", "grade"}}))
+    return std::nullopt;
+  RingMesh ring;
+  ring.center = pair_of(reading.required_vector(node, "center", 2));
+  ring.inner = reading.required(node, "inner", positive);
+  ring.outer = reading.required(node, "outer", positive);
+  ring.cells = cells_of(node, reading);
+  ring.from_angle = reading.optional(node, "from_angle", 0, any_number);
+  const auto to = node.find("to_angle");
+  const double end = to ? to->number(any_number).value_or(std::numeric_limits<double>::quiet_NaN()) : 360;
+  if (is_full_turn(ring.from_angle.value, end)) {
+    ring.to_angle = end;
+    reading.constants[child_pointer(node.pointer(), "to_angle")] =
+        "where a closed ring ends, which is where it starts: from_angle is the number that turns it";
+  } else {
+    ring.to_angle = reading.optional(node, "to_angle", 360, any_number);
+  }
+  read_grade(node, {"inner", "outer"}, ring, reading);
+  return ring;
+}
+
+std::optional<DiskMesh> read_disk(const JsonNode& node, SceneReading& reading) {
+  if (!node.is_object({{"center", "radius", "cells"}, {"grade"}})) return std::nullopt;
+  DiskMesh disk;
+  disk.center = pair_of(reading.required_vector(node, "center", 2));
+  disk.radius = reading.required(node, "radius", positive);
+  disk.cells = cells_of(node, reading);
+  disk.grade = reading.optional(node, "grade", 1, positive);
+  return disk;
 }
 
 std::optional<HalfDiskMesh> read_half_disk(const JsonNode& node, SceneReading& reading) {
@@ -123,7 +174,7 @@ std::optional<MeshDescription> described(std::optional<Kind> mesh) {
 
 std::optional<MeshDescription> read_mesh(const JsonNode& node, SceneReading& reading) {
   const auto kind =
-      node.kind({"box", "half_disk", "point", "line", "arc", "gmsh"}, {"ring", "disk", "sphere", "quad"}, {"body"});
+      node.kind({"box", "quad", "ring", "disk", "half_disk", "point", "line", "arc", "gmsh"}, {"sphere"}, {"body"});
   if (!kind) return std::nullopt;
   const auto& [name, mesh] = *kind;
   if (name != "gmsh")
@@ -134,6 +185,9 @@ std::optional<MeshDescription> read_mesh(const JsonNode& node, SceneReading& rea
     return std::nullopt;
   }
   if (name == "box") return described(read_box(mesh, reading));
+  if (name == "quad") return described(read_quad(mesh, reading));
+  if (name == "ring") return described(read_ring(mesh, reading));
+  if (name == "disk") return described(read_disk(mesh, reading));
   if (name == "half_disk") return described(read_half_disk(mesh, reading));
   if (name == "point") return described(read_point(mesh, reading));
   if (name == "line") return described(read_line(mesh, reading));
@@ -203,7 +257,11 @@ std::optional<Mesh> check_mesh(const JsonNode& body, const JsonNode& node, const
     return std::nullopt;
   }
   Mesh mesh = make_mesh(description, element, reading.dimension());
-  const auto points = make_points<double>(description, reading.scene.as<double>(), reading.dimension());
+  const auto points = make_points<double>(description, mesh, reading.scene.as<double>());
+  if (const auto message = radius_fault(reading.scene.space, points, {mesh}); !message.empty()) {
+    node.error(message);
+    return std::nullopt;
+  }
   if (const auto bad = first_inverted_element(mesh, points)) {
     std::string corners;
     const int n = nodes_of(mesh.shape);
@@ -217,21 +275,37 @@ std::optional<Mesh> check_mesh(const JsonNode& body, const JsonNode& node, const
   return mesh;
 }
 
+/// The area of bars, the thickness of a plane continuum.
+void read_section(const JsonNode& node, const MeshDescription& mesh, Body& body, SceneReading& reading) {
+  const auto area = node.find("area"), thickness = node.find("thickness");
+  const bool bars = std::holds_alternative<LineMesh>(mesh) || std::holds_alternative<ArcMesh>(mesh);
+  if (bars)
+    body.area = reading.optional(node, "area", 1, positive);
+  else if (area)
+    area->error_at_key("only bars (line, arc) have an area");
+  const Space space = reading.scene.space;
+  const bool plane = space == Space::plane_strain || space == Space::plane_stress;
+  if (plane && !bars && !std::holds_alternative<PointMesh>(mesh))
+    body.thickness = reading.optional(node, "thickness", 1, positive);
+  else if (thickness)
+    thickness->error_at_key(plane ? "only a continuum has a thickness; a bar has an area"
+                                  : "only a body of plane_strain or plane_stress has a thickness");
+  if (const auto message = space_fault(space, {body.name, mesh, {}, body.element}); !message.empty())
+    node.find(has_mean_dilatation(body.element) && !bars ? "element" : "mesh")->error(message);
+}
+
 void read_body(const std::string& name, const JsonNode& node, SceneReading& reading) {
   check_name(node, name);
-  if (!node.is_object({{"mesh", "material"}, {"element", "area"}, {"thickness"}})) return;
+  if (!node.is_object({{"mesh", "material"}, {"element", "area", "thickness"}})) return;
   Body body;
   body.name = name;
   if (const auto element = node.find("element"))
-    body.element = element->choice({"T3", "Q4", "bar", "point"}).value_or("");
+    body.element = element->choice({"Q4", "Q4_mean_dilatation", "Q8", "T3", "T6", "bar", "point"}).value_or("");
   const auto mesh_node = node.find("mesh");
   const auto mesh = mesh_node ? read_mesh(*mesh_node, reading) : std::nullopt;
   const auto material_node = node.find("material");
   const auto material = material_node ? read_material(*material_node, mesh ? &*mesh : nullptr, reading) : std::nullopt;
-  if (mesh && (std::holds_alternative<LineMesh>(*mesh) || std::holds_alternative<ArcMesh>(*mesh)))
-    body.area = reading.optional(node, "area", 1, positive);
-  else if (const auto area = node.find("area"); area && mesh)
-    area->error_at_key("only bars (line, arc) have an area");
+  if (mesh) read_section(node, *mesh, body, reading);
   if (mesh)
     if (auto made = check_mesh(node, *mesh_node, *mesh, body.element, reading))
       reading.meshes.emplace(name, *std::move(made));

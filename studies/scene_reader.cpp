@@ -10,8 +10,9 @@ namespace {
 
 void read_space(const JsonNode& root, SceneReading& reading) {
   const auto space = root.find("space");
-  const auto name = space ? space->choice({"plane_strain", "plane_stress", "solid"}, {"axisymmetric"}) : std::nullopt;
+  const auto name = space ? space->choice({"plane_strain", "plane_stress", "axisymmetric", "solid"}) : std::nullopt;
   if (name == "plane_stress") reading.scene.space = Space::plane_stress;
+  if (name == "axisymmetric") reading.scene.space = Space::axisymmetric;
   if (name == "solid") reading.scene.space = Space::solid;
 }
 

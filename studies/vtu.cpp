@@ -27,6 +27,10 @@ int points_of(VtuCell cell) {
       return 3;
     case VtuCell::quad:
       return 4;
+    case VtuCell::triangle6:
+      return 6;
+    case VtuCell::quad8:
+      return 8;
   }
   throw std::invalid_argument("vtu: unknown kind of cell");
 }
@@ -41,6 +45,10 @@ VtuCell cell_of(ElementShape shape) {
       return VtuCell::triangle;
     case ElementShape::quad4:
       return VtuCell::quad;
+    case ElementShape::tri6:
+      return VtuCell::triangle6;
+    case ElementShape::quad8:
+      return VtuCell::quad8;
   }
   throw std::invalid_argument("vtu: an element shape without a cell");
 }

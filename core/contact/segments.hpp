@@ -1,8 +1,8 @@
 /// Segment-wise integrated contact (mortar): gap and slip of the multiplier of a slave node, weighted by its shape
 /// function and integrated exactly over the pieces of the slave facets that face one master facet each.
 ///
-///   A_j = int psi_j ds      w_j = (1/A_j) int psi_j (u_s - u_m) ds      g_j = n_j . (1/A_j) int psi_j (x_s - y) ds
-///   n_j parallel to int psi_j (n_m - n_s) ds
+///   A_j = int psi_j dA      w_j = (1/A_j) int psi_j (u_s - u_m) dA      g_j = n_j . (1/A_j) int psi_j (x_s - y) dA
+///   n_j parallel to int psi_j (n_m - n_s) dA
 ///
 /// y is the foot of x_s on the master along the normal of the slave facet, psi_j the linear shape function of the node
 /// on the slave side (1 on a facet whose other node carries no multiplier), so that sum A_j t_j . w_j is the work of
@@ -16,6 +16,7 @@
 
 #include "core/contact/surfaces.hpp"
 #include "core/mesh/mesh.hpp"
+#include "core/solids/edges.hpp"
 
 namespace stickslip {
 
@@ -68,11 +69,12 @@ Foot<T> foot_on_facet(const Vec<T, 2>& x, const Vec<T, 2>& nu, const Vec<T, 2>& 
 
 }  // namespace detail
 
-/// Geometry of the point whose pieces are given. `nodes`: its nodes, in the order of the weights wanted; `rigid_foot`:
-/// x -> Foot on the obstacle, called for pieces that have no master facet. The result carries its area.
+/// Geometry of the point whose pieces are given, on a slave body of this depth. `nodes`: its nodes, in the order of the
+/// weights wanted; `rigid_foot`: x -> Foot on the obstacle, called for pieces that have no master facet. The result
+/// carries its area.
 template <class T, class RigidFoot>
 PointGeometry<T> against_pieces(const Points<T>& points, const std::vector<Piece>& pieces,
-                                const std::vector<int>& nodes, RigidFoot&& rigid_foot) {
+                                const std::vector<int>& nodes, RigidFoot&& rigid_foot, const Depth<T>& depth = {}) {
   static constexpr double gauss[3] = {-0.7745966692414834, 0, 0.7745966692414834};  // exact to degree 5; 2 is needed
   static constexpr double weight[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
   auto at = [&](int node) { return Vec<T, 2>(points(0, node), points(1, node)); };
@@ -94,7 +96,7 @@ PointGeometry<T> against_pieces(const Points<T>& points, const std::vector<Piece
       const detail::Foot<T> foot =
           rigid ? rigid_foot(x) : detail::foot_on_facet<T>(x, nu, at(piece.master[0]), at(piece.master[1]));
       const T psi = piece.whole ? T(1) : piece.carrier == 0 ? T(1) - s : s;
-      const T dA = psi * (to - from) * length * T(weight[q]);
+      const T dA = psi * (to - from) * length * T(weight[q]) * depth.at(x[0]);
       g.area += dA;
       share(piece.slave[0], dA * (T(1) - s));
       share(piece.slave[1], dA * s);

@@ -6,8 +6,12 @@ namespace stickslip {
 
 std::string fault(const ImportedMesh& imported, const std::string& element, int dimension) {
   if (imported.mesh.dimension != dimension) return "an imported mesh is plane, the space is not";
-  const std::string own = imported.mesh.shape == ElementShape::tri3 ? "T3" : "Q4";
-  if (!element.empty() && element != own) return "body " + imported.body + " is made of " + own + ", not " + element;
+  static const std::map<ElementShape, std::string> names = {
+      {ElementShape::tri3, "T3"}, {ElementShape::quad4, "Q4"}, {ElementShape::tri6, "T6"}, {ElementShape::quad8, "Q8"}};
+  const std::string& own = names.at(imported.mesh.shape);
+  const bool averaged = own == "Q4" && has_mean_dilatation(element);
+  if (!element.empty() && element != own && !averaged)
+    return "body " + imported.body + " is made of " + own + ", not " + element;
   return "";
 }
 
@@ -20,7 +24,9 @@ std::string mesh_fault(const MeshDescription& description, const std::string& el
 Mesh make_mesh(const MeshDescription& description, const std::string& element, int dimension) {
   if (const std::string message = mesh_fault(description, element, dimension); !message.empty())
     throw std::invalid_argument(message);
-  return std::visit([&](const auto& mesh) { return topology(mesh, element, dimension); }, description);
+  Mesh mesh = std::visit([&](const auto& kind) { return topology(kind, element, dimension); }, description);
+  const bool imported = std::holds_alternative<ImportedMesh>(description);
+  return is_quadratic(element) && !imported ? with_middles(mesh) : mesh;
 }
 
 }  // namespace stickslip

@@ -1,6 +1,7 @@
 /// From the description of a mesh to its topology (numbers play no part) and its coordinates (in any scalar, so that
-/// the derivative with respect to every dimension is exact). One file per family: box, half_disk, chain; each gives
-/// fault, topology and coordinates of its descriptions.
+/// the derivative with respect to every dimension is exact). One file per family: box, quad, ring, disk, half_disk,
+/// chain; each gives fault, topology and coordinates of its descriptions, and `bend` where it has curved sides: what
+/// moves the middles of quadratic elements onto them.
 #pragma once
 
 #include <string>
@@ -8,8 +9,12 @@
 
 #include "core/mesh/box.hpp"
 #include "core/mesh/chain.hpp"
+#include "core/mesh/disk.hpp"
 #include "core/mesh/half_disk.hpp"
 #include "core/mesh/mesh.hpp"
+#include "core/mesh/middles.hpp"
+#include "core/mesh/quad.hpp"
+#include "core/mesh/ring.hpp"
 #include "core/model/scene.hpp"
 
 namespace stickslip {
@@ -24,16 +29,31 @@ Points<T> coordinates(const ImportedMesh& imported, const Numbers<T>&, int) {
 }
 
 /// What is wrong with a description, this element and this dimension of the space, as a sentence without a full stop;
-/// "" if nothing. `element`: "T3" or "Q4" (box, half disk), "bar" (chains), "point", or "" for the default.
+/// "" if nothing. `element`: "Q4", "Q4_mean_dilatation", "Q8", "T3" or "T6" (plane meshes), "bar" (chains), "point", or
+/// "" for the default.
 std::string mesh_fault(const MeshDescription&, const std::string& element, int dimension);
 
 /// Topology and sides. Throws std::invalid_argument with mesh_fault.
 Mesh make_mesh(const MeshDescription&, const std::string& element, int dimension);
 
-/// Coordinates, dimension x nodes, of the mesh make_mesh gives. pre: mesh_fault is empty.
+/// Coordinates, dimension x nodes, of the mesh of linear elements that make_mesh gives. pre: mesh_fault is empty.
 template <class T>
 Points<T> make_points(const MeshDescription& description, const Numbers<T>& numbers, int dimension) {
   return std::visit([&](const auto& mesh) { return coordinates(mesh, numbers, dimension); }, description);
+}
+
+/// Coordinates, dimension x nodes, of any mesh that make_mesh made of the description.
+template <class T>
+Points<T> make_points(const MeshDescription& description, const Mesh& mesh, const Numbers<T>& numbers) {
+  Points<T> points = make_points(description, numbers, mesh.dimension);
+  if (mesh.middles.empty()) return points;
+  points = with_middles(mesh, points);
+  std::visit(
+      [&](const auto& kind) {
+        if constexpr (requires { bend(kind, mesh, numbers, points); }) bend(kind, mesh, numbers, points);
+      },
+      description);
+  return points;
 }
 
 }  // namespace stickslip

@@ -19,8 +19,7 @@ int HalfDiskLayout::ring(int l, int j) const {
 
 std::string fault(const HalfDiskMesh& disk, const std::string& element, int dimension) {
   if (dimension != 2) return "a half disk needs a plane space";
-  if (!element.empty() && element != "T3" && element != "Q4")
-    return "a half disk has elements T3 or Q4, not " + element;
+  if (const auto message = element_fault("a half disk", element); !message.empty()) return message;
   const auto [few, many] = std::minmax(disk.cells[0], disk.cells[1]);
   if (few < 2) return "cells of a half disk must be at least 2";
   if (many > 2 * few) return "cells of a half disk must not differ by more than a factor 2, or its elements would fold";

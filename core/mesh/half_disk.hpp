@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "core/mesh/circle.hpp"
 #include "core/mesh/structured.hpp"
 #include "core/model/scene.hpp"
 
@@ -96,6 +97,12 @@ Points<T> coordinates(const HalfDiskMesh& disk, const Numbers<T>& numbers, int) 
     }
   }
   return points;
+}
+
+/// Puts the middles of the arc's edges on the circle.
+template <class T>
+void bend(const HalfDiskMesh& disk, const Mesh& mesh, const Numbers<T>& numbers, Points<T>& points) {
+  bend_side(mesh.sides.at("arc"), disk.center, disk.radius, numbers, points);
 }
 
 }  // namespace stickslip

@@ -122,25 +122,35 @@ std::string element_type_name(long long type) {
   return "unknown or of higher order";
 }
 
-std::optional<ElementShape> shape_of(long long type) {
+/// Shape of an element, and the nodes that Gmsh writes for it: a point of a mesh file has no anchor, a line may have a
+/// middle.
+struct ElementKind {
+  ElementShape shape;
+  int node_count;
+};
+
+std::optional<ElementKind> kind_of(long long type) {
   switch (type) {
     case 15:
-      return ElementShape::point;
+      return ElementKind{ElementShape::point, 1};
     case 1:
-      return ElementShape::bar2;
+      return ElementKind{ElementShape::bar2, 2};
+    case 8:
+      return ElementKind{ElementShape::bar2, 3};
     case 2:
-      return ElementShape::tri3;
+      return ElementKind{ElementShape::tri3, 3};
     case 3:
-      return ElementShape::quad4;
+      return ElementKind{ElementShape::quad4, 4};
+    case 9:
+      return ElementKind{ElementShape::tri6, 6};
+    case 16:
+      return ElementKind{ElementShape::quad8, 8};
     default:
       return std::nullopt;
   }
 }
 
 int dimension_of(ElementShape shape) { return shape == ElementShape::point ? 0 : shape == ElementShape::bar2 ? 1 : 2; }
-
-/// Nodes Gmsh writes for an element: a point of a mesh file has no anchor.
-int nodes_in_file(ElementShape shape) { return shape == ElementShape::point ? 1 : nodes_of(shape); }
 
 class Parser {
  public:
@@ -272,14 +282,14 @@ class Parser {
     for (long long i = 0; i < count; ++i) {
       const std::size_t offset = tokens_.offset();
       const long long tag = tokens_.integer("the number of an element");
-      const ElementShape shape = element_shape(tag);
+      const ElementKind kind = element_kind(tag);
       const long long tags = tokens_.count("the number of an element's tags");
       long long group = 0;
       for (long long k = 0; k < tags; ++k) {
         const long long value = tokens_.integer("a tag of an element");
         if (k == 0) group = group_number(value);
       }
-      add_element(tag, shape, {group}, offset);
+      add_element(tag, kind, {group}, offset);
     }
     tokens_.close("$EndElements", "the " + std::to_string(count) + " elements");
   }
@@ -294,10 +304,10 @@ class Parser {
       const std::size_t offset = tokens_.offset();
       const long long dimension = tokens_.integer("the dimension of a block's entity");
       const long long entity = tokens_.integer("the number of a block's entity");
-      const ElementShape shape = element_shape(std::nullopt);
-      if (dimension != dimension_of(shape))
+      const ElementKind kind = element_kind(std::nullopt);
+      if (dimension != dimension_of(kind.shape))
         throw Fault{offset, "an entity of dimension " + std::to_string(dimension) + " holds elements of dimension " +
-                                std::to_string(dimension_of(shape))};
+                                std::to_string(dimension_of(kind.shape))};
       const auto known = groups_of_.find({static_cast<int>(dimension), entity});
       const std::vector<long long> none{0};
       const auto& groups = known == groups_of_.end() || known->second.empty() ? none : known->second;
@@ -305,25 +315,26 @@ class Parser {
       for (long long i = 0; i < size; ++i, ++total) {
         const std::size_t element_offset = tokens_.offset();
         const long long tag = tokens_.integer("the number of an element");
-        add_element(tag, shape, groups, element_offset);
+        add_element(tag, kind, groups, element_offset);
       }
     }
     check_total(count, total, count_offset, "elements");
     tokens_.close("$EndElements", "the elements");
   }
 
-  ElementShape element_shape(std::optional<long long> tag) {
+  ElementKind element_kind(std::optional<long long> tag) {
     const std::size_t offset = tokens_.offset();
     const long long type = tokens_.integer("the type of an element");
-    if (const auto shape = shape_of(type)) return *shape;
-    throw Fault{offset, (tag ? "element " + std::to_string(*tag) : "a block of elements") + " has type " +
-                            std::to_string(type) + " (" + element_type_name(type) +
-                            "), which is not read; plane bodies of 3-node triangles or 4-node quadrangles are"};
+    if (const auto kind = kind_of(type)) return *kind;
+    throw Fault{offset,
+                (tag ? "element " + std::to_string(*tag) : "a block of elements") + " has type " +
+                    std::to_string(type) + " (" + element_type_name(type) +
+                    "), which is not read; plane bodies of 3- or 6-node triangles or 4- or 8-node quadrangles are"};
   }
 
-  void add_element(long long tag, ElementShape shape, const std::vector<long long>& groups, std::size_t offset) {
-    MshElement element{tag, shape, {}, {dimension_of(shape), 0}, offset};
-    for (int k = 0; k < nodes_in_file(shape); ++k) {
+  void add_element(long long tag, ElementKind kind, const std::vector<long long>& groups, std::size_t offset) {
+    MshElement element{tag, kind.shape, kind.node_count, {}, {dimension_of(kind.shape), 0}, offset};
+    for (int k = 0; k < kind.node_count; ++k) {
       const std::size_t node_offset = tokens_.offset();
       const long long node = tokens_.integer("a node of element " + std::to_string(tag));
       const auto known = position_.find(node);

@@ -24,8 +24,9 @@ struct MshNode {
 /// An element of one physical group; an element of several groups is listed once for each.
 struct MshElement {
   long long tag = 0;
-  ElementShape shape = ElementShape::point;
-  std::array<int, 4> nodes{};  ///< positions in MshFile::nodes: 1, 2, 3 or 4 by the shape
+  ElementShape shape = ElementShape::point;  ///< of a line: bar2, whether or not it has a middle
+  int node_count = 0;
+  std::array<int, 8> nodes{};  ///< positions in MshFile::nodes, `node_count` of them
   MshGroup group;              ///< number 0: in no group
   std::size_t offset = 0;      ///< of its first character in the text
 };

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <set>
+#include <tuple>
 
 #include "core/mesh/msh_file.hpp"
 #include "core/mesh/quality.hpp"
@@ -15,9 +16,15 @@ namespace stickslip {
 namespace {
 
 using Elements = std::vector<const MshElement*>;
-using Edge = std::pair<int, int>;
+/// A side of an element: its ends, and its middle, or -1.
+struct Edge {
+  int first, second, middle = -1;
+  bool operator<(const Edge& o) const {
+    return std::tie(first, second, middle) < std::tie(o.first, o.second, o.middle);
+  }
+};
 
-Edge turned(const Edge& edge) { return {edge.second, edge.first}; }
+Edge turned(const Edge& edge) { return {edge.second, edge.first, edge.middle}; }
 
 std::string joined(const std::vector<std::string>& words) {
   std::string list;
@@ -25,10 +32,10 @@ std::string joined(const std::vector<std::string>& words) {
   return list;
 }
 
-/// Twice the signed area of an element where it lies.
+/// Twice the signed area between the corners of an element where it lies.
 double twice_area(const Mesh& mesh, const Points<double>& points, int element) {
-  const int count = nodes_of(mesh.shape);
-  const int* nodes = mesh.connectivity.data() + element * count;
+  const int count = corners_of(mesh.shape);
+  const int* nodes = mesh.connectivity.data() + element * nodes_of(mesh.shape);
   double sum = 0;
   for (int k = 0; k < count; ++k) {
     // from the first node, so that a body far from the origin loses no digits
@@ -56,10 +63,17 @@ Side side_of_segments(const std::vector<Edge>& segments) {
   auto follow = [&](std::size_t i) {
     for (std::optional<std::size_t> next = i; next && !used[*next];) {
       used[*next] = true;
-      const auto [a, b] = segments[*next];
+      const auto [a, b, middle] = segments[*next];
       list(a);
+      if (middle >= 0) {
+        list(middle);
+        side.facets.push_back({a, middle});
+        side.facets.push_back({middle, b});
+        side.quadratic.push_back({a, b, middle});
+      } else {
+        side.facets.push_back({a, b});
+      }
       list(b);
-      side.facets.push_back({a, b});
       next.reset();
       for (auto [it, last] = from.equal_range(b); it != last && !next; ++it)
         if (!used[it->second]) next = it->second;
@@ -121,7 +135,7 @@ class Import {
     body.mesh.shape = elements.front()->shape;
     for (const MshElement* element : elements)
       if (element->shape != body.mesh.shape) {
-        fault(element, "body \"" + body.body + "\" mixes triangles and quadrangles, from element " +
+        fault(element, "body \"" + body.body + "\" mixes elements of unlike kinds, from element " +
                            std::to_string(element->tag) + " on");
         return std::nullopt;
       }
@@ -174,8 +188,11 @@ class Import {
     int clockwise = 0;
     for (int e = 0; e < all; ++e) clockwise += twice_area(mesh, body.points, e) < 0;
     const bool mostly_clockwise = 2 * clockwise > all;
-    for (int e = 0; e < all && mostly_clockwise; ++e)
-      std::reverse(mesh.connectivity.begin() + e * count + 1, mesh.connectivity.begin() + (e + 1) * count);
+    for (int e = 0; e < all && mostly_clockwise; ++e) {
+      const auto first = mesh.connectivity.begin() + e * count;
+      std::reverse(first + 1, first + corners_of(mesh.shape));
+      std::reverse(first + corners_of(mesh.shape), first + count);  // the last side is now the first
+    }
     const auto bad = first_inverted_element(mesh, body.points);
     if (!bad) return true;
     const MshElement* element = elements[*bad];
@@ -188,11 +205,13 @@ class Import {
 
   void add_sides(ImportedMesh& body, const std::vector<int>& node) {
     const Mesh& mesh = body.mesh;
-    const int count = nodes_of(mesh.shape);
+    const int count = nodes_of(mesh.shape), corners = corners_of(mesh.shape);
     std::set<Edge> edges;  // directed as their element has them; an inner edge in both directions
     for (int e = 0; e < mesh.element_count(); ++e)
-      for (int k = 0; k < count; ++k)
-        edges.insert({mesh.connectivity[e * count + k], mesh.connectivity[e * count + (k + 1) % count]});
+      for (int k = 0; k < corners; ++k) {
+        const int* nodes = mesh.connectivity.data() + e * count;
+        edges.insert({nodes[k], nodes[(k + 1) % corners], is_quadratic(mesh.shape) ? nodes[corners + k] : -1});
+      }
     for (const auto& [group, elements] : groups_) {
       if (group.first == 2) continue;
       std::vector<Edge> segments;
@@ -203,7 +222,7 @@ class Import {
           if (first < 0) continue;
           side.nodes.push_back(first);
         } else {
-          const Edge edge{first, node[element->nodes[1]]};
+          const Edge edge{first, node[element->nodes[1]], element->node_count == 3 ? node[element->nodes[2]] : -1};
           if (!edges.count(edge) && !edges.count(turned(edge))) continue;
           segments.push_back(edges.count(edge) ? edge : turned(edge));
         }

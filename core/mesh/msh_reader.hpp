@@ -12,16 +12,16 @@ namespace stickslip {
 
 struct ImportResult {
   /// One per physical surface, by its number. Each has nodes of its own, in the order of the file, without those that
-  /// none of its elements has; triangles or quadrangles, counter-clockwise. The nodes and facets of a side run along
-  /// it with the solid on the left (piece after piece where it has several; a curve inside a body as the file directs
-  /// it).
+  /// none of its elements has; triangles or quadrangles, linear or quadratic, counter-clockwise. The nodes and facets
+  /// of a side run along it with the solid on the left (piece after piece where it has several; a curve inside a body
+  /// as the file directs it).
   std::vector<ImportedMesh> bodies;
   std::vector<std::string> errors;  ///< "FILE:LINE:COL: what is wrong"; if there is one, `bodies` may lack some
   std::vector<std::string> notes;   ///< what the file holds and no body uses
 };
 
 /// Reads a stream to its end. Never throws on a bad file, however broken; errors say what is wrong with it:
-/// an unknown version, binary, truncated, wrong counts, other elements than triangles or quadrangles, elements of a
+/// an unknown version, binary, truncated, wrong counts, other elements than these, elements of a
 /// body that are mixed, degenerate or turned against each other, no physical surface, two groups of one name, not
 /// plane.
 ImportResult read_msh(std::istream&, const std::string& file_name);

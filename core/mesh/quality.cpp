@@ -5,12 +5,19 @@
 namespace stickslip {
 namespace {
 
-/// Whether the corners of a polygon all turn left.
-bool is_convex(const int* nodes, int count, const Points<double>& points) {
+/// Whether all corners turn left. The sides of a quadratic element leave a corner along 4 (middle - corner) - (next
+/// corner - corner).
+bool is_convex(const int* nodes, ElementShape shape, const Points<double>& points) {
+  const int count = corners_of(shape);
+  auto at = [&](int k) -> Vec<double, 2> { return points.col(nodes[k]).head<2>(); };
   for (int corner = 0; corner < count; ++corner) {
-    const Vec<double, 2> here = points.col(nodes[corner]).head<2>();
-    const Vec<double, 2> out = points.col(nodes[(corner + 1) % count]).head<2>() - here;
-    const Vec<double, 2> back = points.col(nodes[(corner + count - 1) % count]).head<2>() - here;
+    const int next = (corner + 1) % count, last = (corner + count - 1) % count;
+    const Vec<double, 2> here = at(corner);
+    Vec<double, 2> out = at(next) - here, back = at(last) - here;
+    if (is_quadratic(shape)) {
+      out = 4 * (at(count + corner) - here) - out;
+      back = 4 * (at(count + last) - here) - back;
+    }
     // coordinates are known to their own rounding, which is what a difference of them may hide
     const double rounding = std::numeric_limits<double>::epsilon() * (here.norm() + out.norm() + back.norm());
     if (!(out[0] * back[1] - out[1] * back[0] > rounding * (out.norm() + back.norm()))) return false;
@@ -26,7 +33,7 @@ std::optional<int> first_inverted_element(const Mesh& mesh, const Points<double>
     const int* nodes = mesh.connectivity.data() + element * count;
     if (mesh.shape == ElementShape::bar2) {
       if (!((points.col(nodes[1]) - points.col(nodes[0])).norm() > 0)) return element;
-    } else if (mesh.shape != ElementShape::point && !is_convex(nodes, count, points)) {
+    } else if (mesh.shape != ElementShape::point && !is_convex(nodes, mesh.shape, points)) {
       return element;
     }
   }

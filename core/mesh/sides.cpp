@@ -73,11 +73,15 @@ Side apply(const Mesh& mesh, const SideExpression& expression) {
     const bool keep = operation == SideOperation::intersect;
     std::erase_if(result.nodes, [&](int node) { return (others.count(node) == 1) != keep; });
     const std::set<int> left(result.nodes.begin(), result.nodes.end());
-    const std::set<std::vector<int>> shared(other.facets.begin(), other.facets.end());
-    std::erase_if(result.facets, [&](const std::vector<int>& facet) {
-      if (keep) return shared.count(facet) == 0;
-      return std::none_of(facet.begin(), facet.end(), [&](int node) { return left.count(node) == 1; });
-    });
+    auto restrict_to = [&](std::vector<std::vector<int>>& facets, const std::vector<std::vector<int>>& of_other) {
+      const std::set<std::vector<int>> shared(of_other.begin(), of_other.end());
+      std::erase_if(facets, [&](const std::vector<int>& facet) {
+        if (keep) return shared.count(facet) == 0;
+        return std::none_of(facet.begin(), facet.end(), [&](int node) { return left.count(node) == 1; });
+      });
+    };
+    restrict_to(result.facets, other.facets);
+    restrict_to(result.quadratic, other.quadratic);
   }
   return result;
 }

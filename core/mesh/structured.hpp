@@ -30,9 +30,35 @@ std::vector<T> graded_fractions(const T& ratio, int cells) {
   return fractions;
 }
 
-/// Shape an element name stands for in a structured 2D mesh: "T3", or "Q4", also meant by "".
+/// Shape of the corners of an element in a generated plane mesh: a triangle for "T3" and "T6", else a quadrilateral;
+/// "" means "Q4". Middles of T6 and Q8 come later (core/mesh/middles.hpp).
 inline ElementShape structured_shape(const std::string& element) {
-  return element == "T3" ? ElementShape::tri3 : ElementShape::quad4;
+  return element == "T3" || element == "T6" ? ElementShape::tri3 : ElementShape::quad4;
+}
+
+/// Whether a generated mesh of this element gets middles.
+inline bool is_quadratic(const std::string& element) { return element == "T6" || element == "Q8"; }
+
+/// Whether the element's dilatation is its mean.
+inline bool has_mean_dilatation(const std::string& element) { return element == "Q4_mean_dilatation"; }
+
+/// What is wrong with an element of a generated plane mesh, or "". `what`: "a box".
+inline std::string element_fault(const std::string& what, const std::string& element) {
+  for (const char* name : {"", "Q4", "Q4_mean_dilatation", "Q8", "T3", "T6"})
+    if (element == name) return "";
+  return what + " has elements Q4, Q4_mean_dilatation, Q8, T3 or T6, not " + element;
+}
+
+/// What is wrong with the grading towards a side, or "".
+inline std::string grade_fault(const std::string& towards, double ratio, const std::vector<std::string>& sides) {
+  if (!(ratio > 0)) return "grade must be greater than 0";
+  if (towards.empty()) return "";
+  std::string all;
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    if (towards == sides[i]) return "";
+    all += (i == 0 ? "" : i + 1 == sides.size() ? " or " : ", ") + sides[i];
+  }
+  return "grade_towards is " + all + ", not " + towards;
 }
 
 /// Diagonal that splits a cell into triangles: from its first node to its third, or from its second to its fourth.
@@ -57,8 +83,15 @@ inline void append_cell(Mesh& mesh, const std::array<int, 4>& n, Diagonal diagon
 
 /// Side made of the segments between consecutive nodes.
 inline Side side_along(std::vector<int> nodes) {
-  Side side{std::move(nodes), {}};
+  Side side{std::move(nodes), {}, {}};
   for (std::size_t i = 1; i < side.nodes.size(); ++i) side.facets.push_back({side.nodes[i - 1], side.nodes[i]});
+  return side;
+}
+
+/// The same, and the segment from the last node to the first.
+inline Side closed_side(std::vector<int> nodes) {
+  Side side = side_along(std::move(nodes));
+  side.facets.push_back({side.nodes.back(), side.nodes.front()});
   return side;
 }
 

@@ -11,23 +11,23 @@ inline bool is_of(const SideSet& side, int node) {
   return std::find(side.nodes.begin(), side.nodes.end(), node) != side.nodes.end();
 }
 
-/// Half of each facet at either of its nodes, as far as they belong to the side: force per area, or along the inward
-/// normal where it is a pressure (solid on the left of a facet, whose length the vector below has).
+/// Consistent shares of each edge for its nodes, as far as they belong to the side: force per area, or along the inward
+/// normal where it is a pressure (solid on the left of an edge).
 template <class T>
 void add_surface_load(const Load& load, const SideSet& side, const Slots<T>& slots, int D, Vector<T>& forces) {
-  for (const auto& facet : side.facets) {
-    Vector<T> force(D);
-    if (load.kind == Load::Kind::pressure) {
-      const Vec<T, 2> tau = point2(slots.points, facet[1]) - point2(slots.points, facet[0]);
-      force << -tau[1], tau[0];
-      force *= slots.numbers(load.vector[0]);
-    } else {
-      const T length = distance(slots.points, facet[0], facet[1]);
-      for (int i = 0; i < D; ++i) force[i] = length * slots.numbers(load.vector[i]);
-    }
-    for (int node : facet)
-      for (int i = 0; i < D && is_of(side, node); ++i) forces[node * D + i] += T(0.5) * force[i];
-  }
+  for (const auto& edge : side.edges)
+    for_each_edge_point(slots.points, edge, slots.depths[side.body], [&](const auto& values, const auto& tau) {
+      Vector<T> force(D);
+      if (load.kind == Load::Kind::pressure) {
+        force << -tau[1], tau[0];
+        force *= slots.numbers(load.vector[0]);
+      } else {
+        const T area = norm(tau);
+        for (int i = 0; i < D; ++i) force[i] = area * slots.numbers(load.vector[i]);
+      }
+      for (std::size_t a = 0; a < edge.size(); ++a)
+        for (int i = 0; i < D && is_of(side, edge[a]); ++i) forces[edge[a] * D + i] += T(values[a]) * force[i];
+    });
 }
 
 /// A total force, shared by tributary area; in equal shares among single nodes. A traction takes their area as 1.
@@ -35,15 +35,15 @@ template <class T>
 void add_total_force(const Load& load, const SideSet& side, const Slots<T>& slots, int D, Vector<T>& forces) {
   std::vector<std::pair<int, T>> share;
   T total{};
-  for (const auto& facet : side.facets) {
-    const T half = T(0.5) * distance(slots.points, facet[0], facet[1]);
-    for (int node : facet)
-      if (is_of(side, node)) {
-        share.emplace_back(node, half);
-        total += half;
+  for (const auto& edge : side.edges) {
+    const auto shares = edge_shares(slots.points, edge, slots.depths[side.body]);
+    for (std::size_t a = 0; a < edge.size(); ++a)
+      if (is_of(side, edge[a])) {
+        share.emplace_back(edge[a], shares[a]);
+        total += shares[a];
       }
   }
-  if (side.facets.empty()) {
+  if (side.edges.empty()) {
     for (int node : side.nodes) share.emplace_back(node, T(1));
     total = T(load.kind == Load::Kind::force ? static_cast<double>(side.nodes.size()) : 1.0);
   }
@@ -70,7 +70,8 @@ void add_body_force(const Model& model, const Load& load, const Slots<T>& slots,
     with_shape(body.mesh.shape, [&]<class Shape>(Shape) {
       const auto X = gather_coordinates<T, Shape>(slots.points, nodes.data());
       for (const auto& point : Shape::quadrature()) {
-        const T volume = Gradient<T, Shape>(point, X).volume;
+        const T volume = slots.depths[b].of_revolution ? Gradient<T, Shape, Kinematics::revolution>(point, X).volume
+                                                       : Gradient<T, Shape>(point, X, slots.depths[b].thickness).volume;
         for (int a = 0; a < Shape::nodes; ++a) add(nodes[a], T(point.value[a]) * volume);
       }
     });
@@ -87,7 +88,7 @@ Vector<T> load_vector(const Model& model, const Load& load, const Slots<T>& slot
     return forces;
   }
   const SideSet side = model.side(load.on);
-  if (load.kind == Load::Kind::force || side.facets.empty())
+  if (load.kind == Load::Kind::force || side.edges.empty())
     detail::add_total_force(load, side, slots, model.dimension, forces);
   else
     detail::add_surface_load(load, side, slots, model.dimension, forces);

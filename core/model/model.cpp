@@ -124,10 +124,14 @@ ContactPoint slave_point(const Model& model, const Points<double>& points, const
   point.slave_body = pairing.slave.body;
   for (const auto& facet : pairing.slave.facets)
     if (facet[0] == node || facet[1] == node) point.area_facets.emplace_back(facet[0], facet[1]);
+  for (const auto& edge : pairing.slave.edges)
+    if (std::find(edge.begin(), edge.end(), node) != edge.end()) point.area_edges.push_back(edge);
   point.area_of_bar = shape == ElementShape::bar2 && pairing.slave.nodes.size() == 1 && point.area_facets.empty();
   point.mesh_size = local_size(points, point.area_facets);
   point.tie_length = tie_band * point.mesh_size + 4e-16 * points.col(node).cwiseAbs().maxCoeff();
-  point.tangents = model.scene.contacts[pairing.index].friction ? model.dimension - 1 : 0;
+  // what is on the axis of revolution cannot slide
+  const bool slides = model.scene.contacts[pairing.index].friction && !model.is_on_axis(points, node);
+  point.tangents = slides ? model.dimension - 1 : 0;
   return point;
 }
 
@@ -135,6 +139,7 @@ ContactPoint slave_point(const Model& model, const Points<double>& points, const
 void pair_nodes(Model& model, const Points<double>& points, const Pairing& pairing) {
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
   for (int node : pairing.slave.nodes) {
+    if (is_quadratic(shape) && model.is_on_axis(points, node)) continue;  // it has no tributary area
     ContactPoint point = slave_point(model, points, pairing, node);
     point.shares_normal = pairing.obstacle < 0 && is_continuum(shape) && !point.area_facets.empty();
     const bool faces = pairing.obstacle >= 0 ? find_on_obstacle(points, model.scene, point)
@@ -189,6 +194,9 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
   }
   if (!contact.segment) return pair_nodes(model, points, pairing);
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
+  const bool quadratic_master = pairing.obstacle < 0 && is_quadratic(model.bodies[pairing.master.body].mesh.shape);
+  if (is_quadratic(shape) || quadratic_master)
+    throw ModelError("segment integration needs linear elements on both sides", where);
   if (model.dimension == 3 || pairing.slave.facets.empty() || !is_continuum(shape))
     throw ModelError("segment integration needs a slave side of facets of a solid body", where);
   if (pairing.obstacle >= 0 && std::holds_alternative<Polyline>(model.scene.obstacles[pairing.obstacle].shape))
@@ -228,6 +236,32 @@ std::vector<double> step_ends(const Scene& scene) {
   return {ends.begin(), ends.end()};
 }
 
+/// Shape function values at x of a plane element, if it holds x (to rounding).
+template <class Shape>
+std::optional<std::vector<double>> weights_in(Shape, const Points<double>& points, const std::vector<int>& nodes,
+                                              const Eigen::Vector2d& x) {
+  constexpr double band = 1e-9;
+  constexpr bool triangle = Shape::corners == 3;
+  Eigen::Vector2d xi = triangle ? Eigen::Vector2d(1.0 / 3, 1.0 / 3) : Eigen::Vector2d(0, 0);
+  for (int iteration = 0; iteration < 20; ++iteration) {  // Newton for the natural coordinates
+    const auto at = Shape::at(xi[0], xi[1], 1);
+    Eigen::Vector2d defect = -x;
+    Eigen::Matrix2d J = Eigen::Matrix2d::Zero();
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+      defect += at.value[a] * points.col(nodes[a]);
+      J += points.col(nodes[a]) * at.gradient.col(a).transpose();
+    }
+    const Eigen::Vector2d step = J.partialPivLu().solve(defect);
+    xi -= step;
+    if (!(xi.norm() < 1e3)) return std::nullopt;
+    if (step.norm() < 1e-14) break;
+  }
+  const bool inside = triangle ? xi.minCoeff() > -band && xi.sum() < 1 + band : xi.cwiseAbs().maxCoeff() < 1 + band;
+  if (!inside) return std::nullopt;
+  const auto N = Shape::at(xi[0], xi[1], 1).value;
+  return std::vector<double>(N.data(), N.data() + N.size());
+}
+
 /// Shape function values at x of an element, if it holds x (to rounding).
 std::optional<std::vector<double>> weights_at(ElementShape shape, const Points<double>& points,
                                               const std::vector<int>& nodes, const Eigen::VectorXd& x) {
@@ -242,33 +276,9 @@ std::optional<std::vector<double>> weights_at(ElementShape shape, const Points<d
     if (s < -band || s > 1 + band || (x - a - s * tau).norm() > band * tau.norm()) return std::nullopt;
     return std::vector<double>{1 - s, s};
   }
-  const bool tri = shape == ElementShape::tri3;
-  Eigen::Vector2d xi = tri ? Eigen::Vector2d(1.0 / 3, 1.0 / 3) : Eigen::Vector2d(0, 0);
-  Eigen::VectorXd N;
-  for (int iteration = 0; iteration < 20; ++iteration) {  // Newton for the natural coordinates; one step for T3
-    Mat<double, 2, Eigen::Dynamic> dN;
-    if (tri) {
-      N = Eigen::Vector3d(1 - xi[0] - xi[1], xi[0], xi[1]);
-      dN = Tri3::quadrature()[0].gradient;
-    } else {
-      const auto q = Quad4::at(xi[0], xi[1], 1);
-      N = q.value;
-      dN = q.gradient;
-    }
-    Eigen::Vector2d defect = -x;
-    Eigen::Matrix2d J = Eigen::Matrix2d::Zero();
-    for (std::size_t a = 0; a < nodes.size(); ++a) {
-      defect += N[a] * points.col(nodes[a]);
-      J += points.col(nodes[a]) * dN.col(a).transpose();
-    }
-    const Eigen::Vector2d step = J.partialPivLu().solve(defect);
-    xi -= step;
-    if (!(xi.norm() < 1e3)) return std::nullopt;
-    if (step.norm() < 1e-14) break;
-  }
-  const bool inside = tri ? xi.minCoeff() > -band && xi.sum() < 1 + band : xi.cwiseAbs().maxCoeff() < 1 + band;
-  if (!inside) return std::nullopt;
-  return std::vector<double>(N.data(), N.data() + N.size());
+  std::optional<std::vector<double>> weights;
+  with_shape(shape, [&](auto kind) { weights = weights_in(kind, points, nodes, x); });
+  return weights;
 }
 
 /// Finds where a response with `at` is taken. Throws ModelError where no element holds the point.
@@ -324,13 +334,36 @@ SideSet resolve_side(const Scene& scene, const std::vector<BodyMesh>& bodies, co
   const Side side = evaluate_side(body.mesh, expression);
   set.nodes = side.nodes;
   set.facets = side.facets;
+  set.edges = side.edges();
   for (int& node : set.nodes) node += body.first_node;
-  for (auto& facet : set.facets)
-    for (int& node : facet) node += body.first_node;
+  for (auto* list : {&set.facets, &set.edges})
+    for (auto& facet : *list)
+      for (int& node : facet) node += body.first_node;
   return set;
 }
 
 SideSet Model::side(const std::string& expression) const { return resolve_side(scene, bodies, expression); }
+
+bool Model::is_on_axis(const Points<double>& points, int node) const {
+  return scene.space == Space::axisymmetric && std::abs(points(0, node)) <= 1e-12 * points.cwiseAbs().maxCoeff();
+}
+
+std::string space_fault(Space space, const Body& body) {
+  const bool lumped = std::holds_alternative<PointMesh>(body.mesh) || std::holds_alternative<LineMesh>(body.mesh) ||
+                      std::holds_alternative<ArcMesh>(body.mesh);
+  if (space == Space::axisymmetric && lumped) return "an axisymmetric space has no points and no bars";
+  if (space == Space::plane_stress && has_mean_dilatation(body.element))
+    return "Q4_mean_dilatation is for plane_strain and axisymmetric: in plane stress the thickness gives way";
+  return "";
+}
+
+std::string radius_fault(Space space, const Points<double>& points, const BodyMesh& body) {
+  if (space != Space::axisymmetric) return "";
+  const auto radii = points.row(0).segment(body.first_node, body.mesh.node_count);
+  if (radii.minCoeff() >= -1e-12 * points.cwiseAbs().maxCoeff()) return "";
+  return "reaches to x = " + std::to_string(radii.minCoeff()) +
+         "; in an axisymmetric space x is the radius, and must not be negative";
+}
 
 int Model::contact_index(const std::string& name) const {
   for (std::size_t c = 0; c < scene.contacts.size(); ++c)
@@ -343,16 +376,21 @@ Model make_model(const Scene& scene) {
   model.scene = scene;
   model.dimension = scene.dimension();
   for (const auto& body : scene.bodies) {
-    const std::string fault = mesh_fault(body.mesh, body.element, model.dimension);
+    std::string fault = mesh_fault(body.mesh, body.element, model.dimension);
+    if (fault.empty()) fault = space_fault(scene.space, body);
     if (!fault.empty()) throw ModelError(fault, "/bodies/" + body.name + "/mesh");
-    model.bodies.push_back({make_mesh(body.mesh, body.element, model.dimension), model.node_count});
+    model.bodies.push_back({make_mesh(body.mesh, body.element, model.dimension), model.node_count,
+                            kinematics_of(scene.space, has_mean_dilatation(body.element))});
     model.node_count += model.bodies.back().mesh.node_count;
   }
   Points<double> points(model.dimension, model.node_count);
   const auto numbers = scene.as<double>();
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     points.middleCols(model.bodies[b].first_node, model.bodies[b].mesh.node_count) =
-        make_points<double>(scene.bodies[b].mesh, numbers, model.dimension);
+        make_points<double>(scene.bodies[b].mesh, model.bodies[b].mesh, numbers);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    if (const auto fault = radius_fault(scene.space, points, model.bodies[b]); !fault.empty())
+      throw ModelError(fault, "/bodies/" + scene.bodies[b].name + "/mesh");
   number_dofs(model, points);
   for (std::size_t c = 0; c < scene.contacts.size(); ++c) pair_contact(model, points, static_cast<int>(c));
   std::set<int> nodes;

@@ -11,6 +11,7 @@
 #include "core/contact/segments.hpp"
 #include "core/mesh/mesh.hpp"
 #include "core/model/scene.hpp"
+#include "core/solids/continuum.hpp"
 
 namespace stickslip {
 
@@ -26,6 +27,7 @@ struct ModelError : std::runtime_error {
 struct BodyMesh {
   Mesh mesh;
   int first_node = 0;
+  Kinematics kinematics = Kinematics::plane;
 };
 
 /// One slave node and what it can touch. Fixed for small strain.
@@ -39,7 +41,8 @@ struct ContactPoint {
   std::vector<int> places;       ///< of `nodes` in Model::contact_nodes
   std::vector<int> neighbours;   ///< vertex: the vertices before and after it, whose facets share the normal
   std::vector<int> of_polyline;  ///< points of the polyline: the facet's two, or the vertex between its neighbours
-  std::vector<std::pair<int, int>> area_facets;  ///< facets of the slave side at the node; half of each is tributary
+  std::vector<std::pair<int, int>> area_facets;  ///< facets of the slave side at the node
+  std::vector<std::vector<int>> area_edges;      ///< sides of elements there, of which a share is tributary to the node
   std::vector<Piece> pieces;                     ///< segment-integrated: what the multiplier of nodes[0] acts on
   bool area_of_bar = false;    ///< tributary area is the bar's cross-section; with no facets either: 1
   bool shares_normal = false;  ///< deformable continua on both sides: the normal is the bisector of the two
@@ -82,6 +85,7 @@ struct SideSet {
   int body = 0;
   std::vector<int> nodes;
   std::vector<std::vector<int>> facets;
+  std::vector<std::vector<int>> edges;  ///< Side::edges
 };
 
 /// Where a response is taken that names a point: nodes and weights of the element that holds it (fixed: the point is
@@ -111,7 +115,14 @@ struct Model {
   /// The nodes and facets of "body.side", "body.a & body.b", "body.a - body.b". Throws ModelError.
   SideSet side(const std::string& expression) const;
   int contact_index(const std::string& name) const;
+  /// Whether a node lies on the axis of revolution, to the rounding of the coordinates: it is held there.
+  bool is_on_axis(const Points<double>& points, int node) const;
 };
+
+/// What is wrong with a body in this space, apart from its mesh; "" if nothing.
+std::string space_fault(Space space, const Body& body);
+/// What is wrong with where its nodes lie in this space; "" if nothing. `points`: of the whole model.
+std::string radius_fault(Space space, const Points<double>& points, const BodyMesh& body);
 
 /// Makes meshes, finds contact pairs, numbers the dofs. Throws ModelError where the scene makes no sense as a whole
 /// (what a single entry may hold was checked when it was read).

@@ -98,7 +98,15 @@ T contact_response(const Model& model, const Slots<T>& slots, const Response& re
       return value(state.contact.traction[model.points[p].multiplier]) < 0;
     });
     if (closed < 2 || !(value(force) > 0)) return T(0);  // one point alone has no width
-    Vector<T> normal = Vector<T>::Constant(2, T(0));     // of the contact as a whole: arms are measured across it
+    using std::sqrt;
+    if (model.scene.space == Space::axisymmetric) {  // radius of a disk: exactly that of Hertz's p0 sqrt(1 - r^2/a^2)
+      for (int p : of_contact) {
+        const T r = slots.points(0, model.points[p].nodes[0]);
+        second_moment -= slots.geometry[p].area * state.contact.traction[model.points[p].multiplier] * r * r;
+      }
+      return sqrt(T(2.5) * second_moment / force);
+    }
+    Vector<T> normal = Vector<T>::Constant(2, T(0));  // of the contact as a whole: arms are measured across it
     for (int p : of_contact) {
       const T weight = -slots.geometry[p].area * state.contact.traction[model.points[p].multiplier];
       for (int i = 0; i < 2; ++i) normal[i] += weight * slots.geometry[p].normal[i];
@@ -112,7 +120,6 @@ T contact_response(const Model& model, const Slots<T>& slots, const Response& re
                     length;
       second_moment += weight * arm * arm;
     }
-    using std::sqrt;
     return T(2) * sqrt(second_moment / force);
   }
   return samples.empty() ? T(0) : take_of(response.take, samples, weights);

@@ -92,6 +92,29 @@ struct HalfDiskMesh {
   Number grade = 1.0;              ///< largest / smallest cell along the arc, smallest at the pole
   std::string facing = "down";
 };
+/// Quadrilateral by its corners, counter-clockwise; sides and grading as a box, bottom from corner 0 to corner 1.
+struct QuadMesh {
+  std::array<std::array<Number, 2>, 4> corners;
+  std::array<int, 2> cells{1, 1};
+  std::string grade_towards;
+  Number grade = 1.0;
+};
+/// Ring between two circles, angles in degrees from +x, counter-clockwise; closed where they span 360. Sides inner,
+/// outer, and start, end of an open one. `grade`: as in a box, towards inner or outer.
+struct RingMesh {
+  std::array<Number, 2> center;
+  Number inner, outer, from_angle = 0.0, to_angle = 360.0;
+  std::array<int, 2> cells{1, 8};  ///< [along the radius, around]
+  std::string grade_towards;
+  Number grade = 1.0;
+};
+/// Disk with a square core. Side: arc.
+struct DiskMesh {
+  std::array<Number, 2> center;
+  Number radius;
+  std::array<int, 2> cells{4, 2};  ///< [along a quarter of the arc, rings around the core]
+  Number grade = 1.0;              ///< innermost / outermost ring
+};
 /// One node and the anchor of its spring, at the same place. Sides NAME.node, NAME.anchor (grounded_spring).
 struct PointMesh {
   std::vector<Number> at;  ///< 2 or 3 coordinates
@@ -113,7 +136,8 @@ struct ImportedMesh {
   Mesh mesh;
   Points<double> points;
 };
-using MeshDescription = std::variant<BoxMesh, HalfDiskMesh, PointMesh, LineMesh, ArcMesh, ImportedMesh>;
+using MeshDescription =
+    std::variant<BoxMesh, QuadMesh, HalfDiskMesh, DiskMesh, RingMesh, PointMesh, LineMesh, ArcMesh, ImportedMesh>;
 
 // --- bodies ------------------------------------------------------------------------------------------------------
 
@@ -130,8 +154,9 @@ struct Body {
   std::string name;
   MeshDescription mesh;
   Material material;
-  std::string element;  ///< "T3", "Q4", "bar" or "" (follows from the mesh and material)
-  Number area = 1.0;    ///< of a bar's cross-section
+  std::string element;     ///< "T3", "Q4", "Q4_mean_dilatation", "T6", "Q8", "bar" or "" (follows from the mesh)
+  Number area = 1.0;       ///< of a bar's cross-section
+  Number thickness = 1.0;  ///< of a continuum in a plane space
 };
 
 /// Rigid half-space behind a point; normal points out of it, into the free space (need not be a unit vector).
@@ -234,11 +259,11 @@ struct Leg {
   int steps = 1;
 };
 
-enum class Space { plane_strain, plane_stress, solid };
+enum class Space { plane_strain, plane_stress, axisymmetric, solid };
 
 struct Scene {
   std::string title;
-  Space space = Space::plane_strain;
+  Space space = Space::plane_strain;  ///< axisymmetric: x is the radius, y the axis; all is of the full revolution
   std::vector<Body> bodies;
   std::vector<Obstacle> obstacles;
   std::vector<Contact> contacts;

@@ -13,6 +13,7 @@
 #include "core/model/supports.hpp"
 #include "core/solids/bar.hpp"
 #include "core/solids/continuum.hpp"
+#include "core/solids/edges.hpp"
 #include "core/solids/linear_elastic.hpp"
 
 namespace stickslip {
@@ -35,6 +36,7 @@ struct Slots {
   Numbers<T> numbers;
   Points<T> points;                        ///< D x nodes
   std::vector<Law<T>> laws;                ///< per body
+  std::vector<Depth<T>> depths;            ///< per body
   std::vector<PointGeometry<T>> geometry;  ///< per contact point
   std::vector<T> stiffness;                ///< per contact point: local nodal stiffness k_i (force per length)
   std::vector<T> friction;                 ///< per contact; zero, and unread, where frictionless
@@ -66,18 +68,16 @@ Law<T> make_law(const Scene& scene, const Body& body, const Mesh& mesh, const Nu
   return LinearElasticLaw<T>(E, numbers(elastic.nu), scene.space);
 }
 
-/// Length of the line between two nodes, any dimension.
-template <class T>
-T distance(const Points<T>& points, int a, int b) {
-  return norm((points.col(a) - points.col(b)).eval());
-}
-
 template <class T>
 T tributary_area(const ContactPoint& point, const Slots<T>& slots) {
   if (point.area_of_bar) return std::get<BarLaw<T>>(slots.laws[point.slave_body]).area;
-  if (point.area_facets.empty()) return T(1);
+  if (point.area_edges.empty()) return T(1);
   T area{};
-  for (const auto& [a, b] : point.area_facets) area += T(0.5) * distance(slots.points, a, b);
+  for (const auto& edge : point.area_edges) {
+    const auto shares = edge_shares(slots.points, edge, slots.depths[point.slave_body]);
+    for (std::size_t a = 0; a < edge.size(); ++a)
+      if (edge[a] == point.nodes[0]) area += shares[a];
+  }
   return area;
 }
 
@@ -102,15 +102,18 @@ PointGeometry<T> against_obstacle(const Obstacle& obstacle, const Place& x, cons
 /// Geometry of a segment-integrated point, its area included.
 template <class T>
 PointGeometry<T> integrated_geometry(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
-  return against_pieces<T>(slots.points, point.pieces, point.nodes, [&](const Vec<T, 2>& x) {
-    const auto g = against_obstacle<T>(model.scene.obstacles[point.obstacle], x, slots.numbers);
-    Foot<T> foot;
-    for (int i = 0; i < 2; ++i) {
-      foot.normal[i] = g.normal[i];
-      foot.at[i] = x[i] - g.gap * g.normal[i];
-    }
-    return foot;
-  });
+  return against_pieces<T>(
+      slots.points, point.pieces, point.nodes,
+      [&](const Vec<T, 2>& x) {
+        const auto g = against_obstacle<T>(model.scene.obstacles[point.obstacle], x, slots.numbers);
+        Foot<T> foot;
+        for (int i = 0; i < 2; ++i) {
+          foot.normal[i] = g.normal[i];
+          foot.at[i] = x[i] - g.gap * g.normal[i];
+        }
+        return foot;
+      },
+      slots.depths[point.slave_body]);
 }
 
 /// Vertex of the polyline that a point faces, in the order of ContactPoint::of_polyline.

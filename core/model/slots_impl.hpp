@@ -7,13 +7,6 @@ namespace stickslip {
 
 namespace detail {
 
-/// Calls f(Shape{}) with the continuum shape of a mesh.
-template <class F>
-void with_shape(ElementShape shape, F&& f) {
-  if (shape == ElementShape::tri3) f(Tri3{});
-  if (shape == ElementShape::quad4) f(Quad4{});
-}
-
 template <class T, class Shape>
 Mat<T, 2, Shape::nodes> gather_coordinates(const Points<T>& points, const int* nodes) {
   Mat<T, 2, Shape::nodes> X;
@@ -55,6 +48,15 @@ Matrix<T> lumped_tangent(const Model& model, const Slots<T>& slots, int b, const
   });
 }
 
+/// Calls f.template operator()<Shape, kinematics>() with what the elements of a continuum are.
+template <class F>
+void with_element(const BodyMesh& body, F&& f) {
+  with_shape(body.mesh.shape, [&]<class Shape>(Shape) {
+    with_kinematics<Shape>(body.kinematics,
+                           [&]<Kinematics kinematics>() { f.template operator()<Shape, kinematics>(); });
+  });
+}
+
 }  // namespace detail
 
 template <class T>
@@ -65,13 +67,15 @@ Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>
     const auto& body = model.bodies[b];
     if (is_continuum(body.mesh.shape)) {
       const auto& law = std::get<LinearElasticLaw<T>>(slots.laws[b]);
-      detail::with_shape(body.mesh.shape, [&]<class Shape>(Shape) {
+      const T& thickness = slots.depths[b].thickness;
+      detail::with_element(body, [&]<class Shape, Kinematics kinematics>() {
         std::array<int, Shape::nodes> nodes;
         for (int e = 0; e < body.mesh.element_count(); ++e) {
           for (int a = 0; a < Shape::nodes; ++a)
             nodes[a] = body.first_node + body.mesh.connectivity[e * Shape::nodes + a];
-          const auto f = element_forces<T, Shape>(law, detail::gather_coordinates<T, Shape>(slots.points, nodes.data()),
-                                                  detail::gather_displacements<T, Shape>(u, nodes.data()));
+          const auto f = element_forces<T, Shape, kinematics>(
+              law, detail::gather_coordinates<T, Shape>(slots.points, nodes.data()),
+              detail::gather_displacements<T, Shape>(u, nodes.data()), thickness);
           for (int a = 0; a < Shape::nodes; ++a)
             for (int i = 0; i < 2; ++i) forces[nodes[a] * 2 + i] += f(i, a);
         }
@@ -103,10 +107,10 @@ void for_each_element_tangent(const Model& model, const Slots<T>& slots, int b, 
       continue;
     }
     const auto& law = std::get<LinearElasticLaw<T>>(slots.laws[b]);
-    detail::with_shape(body.mesh.shape, [&]<class Shape>(Shape) {
+    detail::with_element(body, [&]<class Shape, Kinematics kinematics>() {
       const Mat<T, 2, Shape::nodes> rest = Mat<T, 2, Shape::nodes>::Constant(T(0));
-      sink(nodes,
-           element_tangent<T, Shape>(law, detail::gather_coordinates<T, Shape>(slots.points, nodes.data()), rest));
+      const auto X = detail::gather_coordinates<T, Shape>(slots.points, nodes.data());
+      sink(nodes, element_tangent<T, Shape, kinematics>(law, X, rest, slots.depths[b].thickness));
     });
   }
 }
@@ -178,8 +182,11 @@ Slots<T> make_slots(const Model& model, const Numbers<T>& numbers) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const auto& body = model.bodies[b];
     slots.points.middleCols(body.first_node, body.mesh.node_count) =
-        make_points<T>(model.scene.bodies[b].mesh, numbers, model.dimension);
+        make_points<T>(model.scene.bodies[b].mesh, body.mesh, numbers);
     slots.laws.push_back(detail::make_law(model.scene, model.scene.bodies[b], body.mesh, numbers));
+    const bool plane = is_continuum(body.mesh.shape) && model.scene.space != Space::axisymmetric;
+    slots.depths.push_back(
+        {model.scene.space == Space::axisymmetric, plane ? numbers(model.scene.bodies[b].thickness) : T(1)});
   }
   for (const auto& contact : model.scene.contacts)
     slots.friction.push_back(contact.friction ? numbers(*contact.friction) : T(0));

@@ -44,6 +44,16 @@ std::vector<Constraint> constraints_of(const Scene& scene, int support) {
   return all;
 }
 
+/// A support may say of the axis of revolution only what holds there anyway.
+void check_axis(const Scene& scene, const Constraint& constraint) {
+  const Support& support = scene.supports[constraint.support];
+  bool stays = constraint.axis != Constraint::inclined && !support.rotate;
+  if (const auto table = support.move.find('x'); table != support.move.end())
+    for (const auto& point : table->second.points) stays &= point.second.value == 0;
+  if (!stays)
+    throw ModelError("moves a node of the axis of revolution off it; x must be 0 there", pointer_of(scene, constraint));
+}
+
 /// The constraints of one node so far, whose directions are independent.
 struct Held {
   std::vector<Constraint> by;
@@ -84,15 +94,25 @@ void number_dofs(Model& model, const Points<double>& points) {
   const auto numbers = scene.as<double>();
   const int D = model.dimension;
   std::map<int, Held> held;
+  std::set<int> axis;  // of revolution: its nodes have no radial direction to move in
+  for (int node = 0; node < model.node_count; ++node)
+    if (model.is_on_axis(points, node)) axis.insert(node);
   for (int s = 0; s < static_cast<int>(scene.supports.size()); ++s) {
     const auto constraints = constraints_of(scene, s);
     for (int node : model.side(scene.supports[s].on).nodes)
-      for (const auto& constraint : constraints) held[node].add(scene, numbers, constraint, points.col(node));
+      for (const auto& constraint : constraints) {
+        const bool radial = axis.count(node) > 0 && constraint.axis != 'y';
+        if (radial)
+          check_axis(scene, constraint);
+        else
+          held[node].add(scene, numbers, constraint, points.col(node));
+      }
   }
   std::set<int> anchors;  // an anchor stays where nobody moves it
   for (const auto& body : model.bodies)
     if (body.mesh.shape == ElementShape::point) anchors.insert(body.first_node + 1);
   for (int anchor : anchors) held[anchor];
+  for (int node : axis) held[node].by.push_back({0, -1, 'x'});
   for (auto& [node, of] : held) {
     const bool framed =
         std::any_of(of.by.begin(), of.by.end(), [](const auto& c) { return c.axis == Constraint::inclined; });

@@ -1,35 +1,64 @@
-/// Shape functions and quadrature of the continuum elements: one small struct an element.
+/// Shape functions and quadrature of the continuum elements: one small struct an element. Nodes are numbered
+/// counter-clockwise, corners first, then the middles of the sides in turn (0-1, 1-2, ...).
+///
+/// Rules: all stiffness rows that are no rigid motion have rank (tests: continuum_test). Three-node triangles have one
+/// point in the plane and three where the circumference turns with r (one would leave a rotation about its point free);
+/// eight-node quadrilaterals have 3 x 3: with 2 x 2 a single one has a mode of zero energy.
 #pragma once
 
 #include <array>
 
 #include "core/algebra/scalar.hpp"
+#include "core/mesh/mesh.hpp"
 
 namespace stickslip {
 
+/// Shape functions at a natural coordinate: their weight in the quadrature, gradients with respect to the natural
+/// coordinates (one column a node) and values.
+template <int n>
+struct ShapePoint {
+  double weight = 0;
+  Mat<double, 2, n> gradient;
+  Vec<double, n> value;
+};
+
+namespace detail {
+
+/// A rule of natural coordinates and weights, evaluated for a shape.
+template <class Shape, std::size_t points>
+std::array<ShapePoint<Shape::nodes>, points> evaluated(const std::array<std::array<double, 3>, points>& rule) {
+  std::array<ShapePoint<Shape::nodes>, points> all;
+  for (std::size_t i = 0; i < points; ++i) all[i] = Shape::at(rule[i][0], rule[i][1], rule[i][2]);
+  return all;
+}
+
+/// Three inner points, exact for polynomials of degree 2.
+inline std::array<std::array<double, 3>, 3> three_points() {
+  constexpr double a = 1.0 / 6, b = 2.0 / 3;
+  return {{{a, a, a}, {b, a, a}, {a, b, a}}};
+}
+
+}  // namespace detail
+
 /// Three-node triangle, one point (exact for a constant strain).
 struct Tri3 {
-  static constexpr int nodes = 3, dimension = 2, points = 1;
-  struct Point {
-    double weight;
-    Mat<double, 2, 3> gradient;  ///< dN_a/dxi, one column a node
-    Eigen::Vector3d value;       ///< N_a
-  };
-  static std::array<Point, points> quadrature() {
-    Mat<double, 2, 3> g;
-    g << -1, 1, 0, -1, 0, 1;
-    return {{{0.5, g, Eigen::Vector3d::Constant(1.0 / 3)}}};
+  static constexpr int nodes = 3, corners = 3, dimension = 2;
+  using Point = ShapePoint<nodes>;
+  static Point at(double x, double y, double weight) {
+    Point p;
+    p.weight = weight;
+    p.gradient << -1, 1, 0, -1, 0, 1;
+    p.value << 1 - x - y, x, y;
+    return p;
   }
+  static std::array<Point, 1> quadrature() { return {at(1.0 / 3, 1.0 / 3, 0.5)}; }
+  static std::array<Point, 3> quadrature_of_revolution() { return detail::evaluated<Tri3>(detail::three_points()); }
 };
 
 /// Four-node quadrilateral, 2 x 2 points.
 struct Quad4 {
-  static constexpr int nodes = 4, dimension = 2, points = 4;
-  struct Point {
-    double weight;
-    Mat<double, 2, 4> gradient;
-    Eigen::Vector4d value;
-  };
+  static constexpr int nodes = 4, corners = 4, dimension = 2;
+  using Point = ShapePoint<nodes>;
   static Point at(double x, double y, double weight) {
     static constexpr double sx[4] = {-1, 1, 1, -1}, sy[4] = {-1, -1, 1, 1};
     Point p;
@@ -41,10 +70,83 @@ struct Quad4 {
     }
     return p;
   }
-  static std::array<Point, points> quadrature() {
+  static std::array<Point, 4> quadrature() {
     const double g = 1 / std::sqrt(3.0);
     return {{at(-g, -g, 1), at(g, -g, 1), at(g, g, 1), at(-g, g, 1)}};
   }
+  static std::array<Point, 4> quadrature_of_revolution() { return quadrature(); }
 };
+
+/// Six-node triangle, three points.
+struct Tri6 {
+  static constexpr int nodes = 6, corners = 3, dimension = 2;
+  using Point = ShapePoint<nodes>;
+  static Point at(double x, double y, double weight) {
+    const double l[3] = {1 - x - y, x, y}, dx[3] = {-1, 1, 0}, dy[3] = {-1, 0, 1};
+    Point p;
+    p.weight = weight;
+    for (int a = 0; a < 3; ++a) {
+      const int b = (a + 1) % 3;
+      p.value[a] = l[a] * (2 * l[a] - 1);
+      p.gradient(0, a) = (4 * l[a] - 1) * dx[a];
+      p.gradient(1, a) = (4 * l[a] - 1) * dy[a];
+      p.value[3 + a] = 4 * l[a] * l[b];
+      p.gradient(0, 3 + a) = 4 * (l[a] * dx[b] + l[b] * dx[a]);
+      p.gradient(1, 3 + a) = 4 * (l[a] * dy[b] + l[b] * dy[a]);
+    }
+    return p;
+  }
+  static std::array<Point, 3> quadrature() { return detail::evaluated<Tri6>(detail::three_points()); }
+  static std::array<Point, 3> quadrature_of_revolution() { return quadrature(); }
+};
+
+/// Eight-node quadrilateral (serendipity), 3 x 3 points.
+struct Quad8 {
+  static constexpr int nodes = 8, corners = 4, dimension = 2;
+  using Point = ShapePoint<nodes>;
+  static Point at(double x, double y, double weight) {
+    static constexpr double sx[4] = {-1, 1, 1, -1}, sy[4] = {-1, -1, 1, 1};
+    Point p;
+    p.weight = weight;
+    for (int a = 0; a < 4; ++a) {
+      const double u = 1 + sx[a] * x, v = 1 + sy[a] * y;
+      p.value[a] = 0.25 * u * v * (u + v - 3);
+      p.gradient(0, a) = 0.25 * sx[a] * v * (2 * u + v - 3);
+      p.gradient(1, a) = 0.25 * sy[a] * u * (u + 2 * v - 3);
+      const bool along_x = a % 2 == 0;  // sides 0 and 2 run along x, at y = sy
+      const double side = along_x ? sy[a] : sx[(a + 1) % 4], s = along_x ? x : y, t = along_x ? y : x;
+      p.value[4 + a] = 0.5 * (1 - s * s) * (1 + side * t);
+      p.gradient(along_x ? 0 : 1, 4 + a) = -s * (1 + side * t);
+      p.gradient(along_x ? 1 : 0, 4 + a) = 0.5 * side * (1 - s * s);
+    }
+    return p;
+  }
+  static std::array<Point, 9> quadrature() {
+    const double at[3] = {-std::sqrt(0.6), 0, std::sqrt(0.6)}, weight[3] = {5.0 / 9, 8.0 / 9, 5.0 / 9};
+    std::array<std::array<double, 3>, 9> rule;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) rule[3 * i + j] = {at[i], at[j], weight[i] * weight[j]};
+    return detail::evaluated<Quad8>(rule);
+  }
+  static std::array<Point, 9> quadrature_of_revolution() { return quadrature(); }
+};
+
+/// Calls f(Shape{}) with the continuum shape of a mesh; not at all for points and bars.
+template <class F>
+void with_shape(ElementShape shape, F&& f) {
+  switch (shape) {
+    case ElementShape::point:
+    case ElementShape::bar2:
+      return;
+    case ElementShape::tri3:
+      return f(Tri3{});
+    case ElementShape::quad4:
+      return f(Quad4{});
+    case ElementShape::tri6:
+      return f(Tri6{});
+    case ElementShape::quad8:
+      return f(Quad8{});
+  }
+}
 
 }  // namespace stickslip

@@ -57,8 +57,35 @@ std::vector<Scene> scenes_to_check() {
           scenes::turned_point()};
 }
 
+/// One for each kinematics and each kind of element.
+std::vector<Scene> scenes_of_elements() {
+  Scene segments = scenes::two_drums(4, 3, "Q4"), slices = scenes::segment_boxes(4, 3);
+  segments.contacts[0].segment = true;
+  slices.bodies[0].thickness = scenes::parameter(slices, "thin", 0.7);
+  return {scenes::two_drums(4, 3, "Q4"),
+          scenes::two_drums(4, 3, "Q4_mean_dilatation"),
+          scenes::two_drums(3, 2, "T6"),
+          scenes::two_slices(3, 4, "Q8"),
+          scenes::two_slices(4, 4, "T3"),
+          scenes::fitted_rings("Q8"),
+          scenes::fitted_rings("Q4_mean_dilatation"),
+          segments,
+          slices};
+}
+
 TEST(Oracle, MonolithicSchemeIsExact) {
   for (const auto& scene : scenes_to_check()) EXPECT_LE(worst_error(scene, MonolithicAL{}), 1);
+}
+
+TEST(Oracle, EverySchemeIsExactForEveryElementAndSpace) {
+  UzawaAL truncated;
+  truncated.sensitivity = UzawaAL::Sensitivity::truncated;
+  truncated.max_augmentations = 3;
+  for (const auto& scene : scenes_of_elements()) {
+    EXPECT_LE(worst_error(scene, MonolithicAL{}), 1);
+    EXPECT_LE(worst_error(scene, Penalty{scenes::relative(10)}), 1);
+    EXPECT_LE(worst_error(scene, truncated), 1);
+  }
 }
 
 TEST(Oracle, MonolithicSchemeIsExactForTheOtherCone) {

@@ -401,6 +401,50 @@ TEST(SceneReader, MissesTheKeysThatEverySceneHas) {
   EXPECT_THAT(diagnostics.text(), HasSubstr("scene.json:2:1: the key \"method\" is missing; allowed: penalty"));
 }
 
+TEST(SceneReader, ReadsRingsDisksQuadsThicknessAndElements) {
+  const auto input = valid(R"({
+    "space": "plane_stress",
+    "bodies": {
+      "ring": {"mesh": {"ring": {"center": [1, 2], "inner": 3, "outer": 4, "cells": [2, 9], "grade": {"outer": 5}}},
+               "material": {"linear_elastic": {"E": 1, "nu": 0}}, "element": "Q8", "thickness": 0.5},
+      "sector": {"mesh": {"ring": {"center": [0, 0], "inner": 3, "outer": 4, "cells": [2, 9], "from_angle": -20,
+                                   "to_angle": 70}}, "material": {"linear_elastic": {"E": 1, "nu": 0}}},
+      "disk": {"mesh": {"disk": {"center": [1, 2], "radius": 3, "cells": [2, 4], "grade": 2}},
+               "material": {"linear_elastic": {"E": 1, "nu": 0}}, "element": "T6"},
+      "quad": {"mesh": {"quad": {"corners": [[0, 0], [2, 0], [3, 4], [0, 1]], "cells": [2, 4], "grade": {"top": 2}}},
+               "material": {"linear_elastic": {"E": 1, "nu": 0}}}
+    },
+    "time": {"end": 1, "steps": 1},
+    "parameters": {"a": "/bodies/ring/thickness", "b": "/bodies/sector/mesh/ring/to_angle",
+                   "c": "/bodies/disk/thickness", "d": "/bodies/quad/mesh/quad/corners/2/1",
+                   "e": "/bodies/ring/mesh/ring/from_angle"},
+    "method": {"monolithic_al": {}}
+  })");
+  const auto& bodies = input.scene.bodies;
+  const auto &ring = std::get<RingMesh>(bodies[0].mesh), &sector = std::get<RingMesh>(bodies[1].mesh);
+  EXPECT_EQ(ring.center[1].value, 2);
+  EXPECT_EQ(ring.inner.value, 3);
+  EXPECT_EQ(ring.outer.value, 4);
+  EXPECT_EQ(ring.cells, (std::array{2, 9}));
+  EXPECT_EQ(ring.grade_towards, "outer");
+  EXPECT_EQ(ring.grade.value, 5);
+  EXPECT_EQ(ring.to_angle.value, 360);
+  EXPECT_EQ(bodies[0].element, "Q8");
+  EXPECT_EQ(bodies[0].thickness.value, 0.5);
+  EXPECT_EQ(sector.from_angle.value, -20);
+  EXPECT_EQ(sector.to_angle.value, 70);
+  const auto& disk = std::get<DiskMesh>(bodies[2].mesh);
+  EXPECT_EQ(disk.radius.value, 3);
+  EXPECT_EQ(disk.grade.value, 2);
+  EXPECT_EQ(bodies[2].thickness.value, 1);
+  const auto& quad = std::get<QuadMesh>(bodies[3].mesh);
+  EXPECT_EQ(quad.corners[2][1].value, 4);
+  EXPECT_EQ(quad.grade_towards, "top");
+  std::vector<double> values;
+  for (const auto& parameter : input.scene.parameters) values.push_back(parameter.value);
+  EXPECT_THAT(values, ElementsAre(0.5, 70, 1, 4, 0));
+}
+
 /// A scene with one edit: `from` becomes `to`, in which @ marks the place that the fault must name.
 struct Broken {
   const char* name;
@@ -450,17 +494,23 @@ std::vector<Broken> broken_bodies() {
        "is not available in this version"},
       {"title_number", b, R"("block pushed over a floor")", "@7", "/title", "is 7; must be a text"},
       {"unknown_space", b, R"("plane_strain")", R"(@"plane_strin")", "/space", R"(did you mean "plane_strain"?)"},
-      {"axisymmetric", b, R"("plane_strain")", R"(@"axisymmetric")", "/space",
-       "is not available in this version; allowed: plane_strain"},
+      {"left_of_the_axis", b, R"("space": "plane_strain",
+  "bodies": {
+    "block": {
+      "mesh": {"box": {"min": [0, 0])",
+       R"("space": "axisymmetric",
+  "bodies": {
+    "block": {
+      "mesh": @{"box": {"min": [-1, 0])",
+       "/bodies/block/mesh", "reaches to x = -1"},
       {"finite_strain", b, R"("space": "plane_strain")", R"("strain": @"finite")", "/strain",
        "is not available in this version; allowed: small"},
       {"bodies_list", b, R"("element": "Q4")", R"("element": @4)", "/bodies/block/element",
-       "must be one of T3, Q4, bar, point"},
+       "must be one of Q4, Q4_mean_dilatation, Q8, T3, T6, bar, point"},
       {"bar_in_a_box", b, R"("element": "Q4")", R"("element": @"bar")", "/bodies/block/element",
-       "a box has elements T3 or Q4, not bar"},
+       "a box has elements Q4, Q4_mean_dilatation, Q8, T3 or T6, not bar"},
       {"area_of_a_box", b, R"("element": "Q4")", R"(@"area": 2)", "/bodies/block/area", "only bars"},
-      {"thickness", b, R"("element": "Q4")", R"(@"thickness": 2)", "/bodies/block/thickness",
-       "is not available in this version"},
+      {"no_thickness", b, R"("element": "Q4")", R"("thickness": @0)", "/bodies/block/thickness", "a number > 0"},
       {"negative_E", b, R"("E": 1000)", R"("E": @-1000)", "/bodies/block/material/linear_elastic/E",
        "is -1000; must be a number > 0"},
       {"nu_too_large", b, R"("nu": 0.25)", R"("nu": @0.5)", "/bodies/block/material/linear_elastic/nu",
@@ -479,8 +529,22 @@ std::vector<Broken> broken_bodies() {
       {"two_meshes", b, R"({"box": {)", R"({@"point": {"at": [0, 0]}, "box": {)", "/bodies/block/mesh/point",
        "only one is allowed"},
       {"no_mesh", b, box, "@{}", "/bodies/block/mesh", "one of the keys is missing: box"},
-      {"ring", b, box, R"({@"ring": {}})", "/bodies/block/mesh/ring",
-       "is not available in this version; allowed: box, half_disk"},
+      {"sphere", b, box, R"({@"sphere": {}})", "/bodies/block/mesh/sphere",
+       "is not available in this version; allowed: box, quad, ring, disk, half_disk"},
+      {"ring_without_a_hole", b, box, R"({"ring": {"center": [0, 0], "inner": @0, "outer": 2, "cells": [2, 8]}})",
+       "/bodies/block/mesh/ring/inner", "a number > 0"},
+      {"ring_of_more_than_a_turn", b, box,
+       R"(@{"ring": {"center": [0, 0], "inner": 1, "outer": 2, "cells": [2, 8], "to_angle": 400}})",
+       "/bodies/block/mesh", "by 360 degrees at most"},
+      {"ring_graded_to_the_left", b, box,
+       R"({"ring": {"center": [0, 0], "inner": 1, "outer": 2, "cells": [2, 8], "grade": {@"left": 2}}})",
+       "/bodies/block/mesh/ring/grade/left", "allowed: inner, outer"},
+      {"quad_of_three_corners", b, box, R"({"quad": {"corners": @[[0, 0], [1, 0], [1, 1]], "cells": [1, 1]}})",
+       "/bodies/block/mesh/quad/corners", "four corners"},
+      {"quad_turned_over", b, box, R"(@{"quad": {"corners": [[0, 0], [0, 1], [1, 1], [1, 0]], "cells": [1, 1]}})",
+       "/bodies/block/mesh", "counter-clockwise"},
+      {"disk_without_cells", b, box, R"({"disk": @{"center": [0, 0], "radius": 1}})", "/bodies/block/mesh/disk",
+       "\"cells\" is missing"},
       {"box_turned_over", b, R"("max": [4, 2])", R"("max": [4, @0])", "/bodies/block/mesh/box/max/1",
        "is 0; must be greater than min, which is 0"},
       {"box_in_one_dimension", b, R"("max": [4, 2])", R"("max": @[4])", "/bodies/block/mesh/box/max",

@@ -293,6 +293,53 @@ inline Scene turned_point() {
   return s;
 }
 
+/// two_boxes as bodies of revolution, the lower one on the axis; or as slices of unlike thickness.
+inline Scene two_drums(int slave, int master, const std::string& element) {
+  Scene s = two_boxes(slave, master, element);
+  s.space = Space::axisymmetric;
+  return s;
+}
+inline Scene two_slices(int slave, int master, const std::string& element) {
+  Scene s = two_boxes(slave, master, element);
+  s.bodies[0].thickness = parameter(s, "thin", 0.7);
+  s.bodies[1].thickness = parameter(s, "thick", 1.3);
+  return s;
+}
+
+/// A quarter of a disk-like ring pushed with an interference into a graded quarter ring, which then turns: curved
+/// sides, every number of both meshes.
+inline Scene fitted_rings(const std::string& element) {
+  Scene s;
+  s.legs = {{2, 4}};
+  const Number mu = parameter(s, "mu", 0.2), offset = parameter(s, "offset", -0.01), hole = parameter(s, "hole", 1),
+               radius = parameter(s, "radius", 2), rim = parameter(s, "rim", 4), x = parameter(s, "x", 0.5),
+               end = parameter(s, "end", 90), grade = parameter(s, "grade", 2), nu = parameter(s, "nu", 0.3);
+  RingMesh inner, outer;
+  inner.center = outer.center = {x, 0.0};
+  inner.inner = hole;
+  inner.outer = outer.inner = radius;
+  outer.outer = rim;
+  inner.to_angle = outer.to_angle = end;
+  inner.cells = {2, 7};
+  outer.cells = {3, 9};
+  outer.grade_towards = "inner";
+  outer.grade = grade;
+  s.bodies = {{"inner", inner, LinearElastic{1000.0, nu}, element, 1.0},
+              {"outer", outer, LinearElastic{1500.0, 0.3}, element, 1.0}};
+  s.contacts = {contact("fit", "outer.inner", "inner.outer")};
+  s.contacts[0].friction = mu;
+  s.contacts[0].offset = offset;
+  s.supports = {support("inner.inner", {{'x', table({{0, 0.0}})}, {'y', table({{0, 0.0}})}}),
+                support("outer.outer",
+                        {{'x', table({{0, 0.0}, {1, -0.004}, {2, 0.003}})}, {'y', table({{0, 0.0}, {2, 0.004}})}})};
+  s.responses = {response("press", Response::Kind::contact_force, "fit", "normal"),
+                 response("shear", Response::Kind::contact_force, "fit", "x"),
+                 response("peak", Response::Kind::contact_pressure, "fit", "", Response::Take::max),
+                 response("heat", Response::Kind::dissipation, "fit"),
+                 response("pull", Response::Kind::reaction, "outer.outer", "y")};
+  return s;
+}
+
 /// A solved scene with its derivatives.
 struct Solved {
   Model model;

@@ -261,12 +261,15 @@ void expect_exact_derivatives(const MeshDescription& description, const std::vec
   ASSERT_EQ(numbers.size(), static_cast<std::size_t>(N));
   Numbers<Dual<N>> seeded;
   for (int i = 0; i < N; ++i) seeded.at_slot.push_back(Dual<N>::seed(numbers[i], i));
-  const Points<Dual<N>> dual = make_points(description, seeded, 2);
+  const bool chain = std::holds_alternative<LineMesh>(description) || std::holds_alternative<ArcMesh>(description) ||
+                     std::holds_alternative<PointMesh>(description);
+  const Mesh mesh = make_mesh(description, chain ? "" : "Q8", 2);  // its middles move too
+  const Points<Dual<N>> dual = make_points(description, mesh, seeded);
   for (int i = 0; i < N; ++i) {
     const double step = 1e-30;  // so small that its square is lost: the complex step has no truncation error
     Numbers<std::complex<double>> moved{{numbers.begin(), numbers.end()}};
     moved.at_slot[i] += std::complex<double>(0, step);
-    const Points<std::complex<double>> oracle = make_points(description, moved, 2);
+    const Points<std::complex<double>> oracle = make_points(description, mesh, moved);
     double largest = 0;
     for (Eigen::Index k = 0; k < dual.size(); ++k) {
       const double derivative = dual.data()[k].d[i], expected = oracle.data()[k].imag() / step;
@@ -320,13 +323,253 @@ TEST(Coordinates, OfChainsAndPointsHaveExactDerivatives) {
   expect_exact_derivatives<2>(point, {1, 2});
 }
 
+QuadMesh quad(int along, int up) {
+  QuadMesh mesh;
+  mesh.corners = {{{0.1, -0.2}, {3.0, 0.3}, {2.5, 2.0}, {-0.4, 1.5}}};
+  mesh.cells = {along, up};
+  return mesh;
+}
+
+RingMesh ring(int radial, int around, double from = 0, double to = 360) {
+  RingMesh mesh;
+  mesh.center = {0.3, -0.7};
+  mesh.inner = 1.0;
+  mesh.outer = 2.5;
+  mesh.cells = {radial, around};
+  mesh.from_angle = from;
+  mesh.to_angle = to;
+  return mesh;
+}
+
+DiskMesh disk(int along, int rings, double grade = 1) {
+  DiskMesh mesh;
+  mesh.center = {0.3, -0.7};
+  mesh.radius = 2.5;
+  mesh.cells = {along, rings};
+  mesh.grade = grade;
+  return mesh;
+}
+
+TEST(Quad, IsABoxWhereItsCornersAre) {
+  QuadMesh same = quad(5, 4);
+  same.corners = {{{1.0, -0.5}, {4.3, -0.5}, {4.3, 1.7}, {1.0, 1.7}}};
+  for (const char* towards : {"", "left", "top"}) {
+    BoxMesh reference = box();
+    reference.grade_towards = same.grade_towards = towards;
+    reference.grade = same.grade = 3.0;
+    // the two weigh the corners by products of different order
+    EXPECT_LE((points_of(same) - points_of(reference)).cwiseAbs().maxCoeff(), 8 * eps * 4.3);
+  }
+  const Mesh mesh = make_mesh(same, "Q4", 2), reference = make_mesh(box(), "Q4", 2);
+  EXPECT_EQ(mesh.connectivity, reference.connectivity);
+  for (const auto& [name, side] : reference.sides) EXPECT_EQ(mesh.sides.at(name).facets, side.facets);
+}
+
+TEST(Quad, HasItsAreaItsCornersAndStraightSides) {
+  const QuadMesh description = quad(4, 3);
+  const Mesh mesh = make_mesh(description, "Q4", 2);
+  const Points<double> points = points_of(description);
+  double polygon = 0;
+  for (int k = 0; k < 4; ++k) {
+    const auto &a = description.corners[k], &b = description.corners[(k + 1) % 4];
+    polygon += (a[0].value * b[1].value - b[0].value * a[1].value) / 2;
+  }
+  EXPECT_NEAR(area(mesh, points), polygon, 1000 * eps);
+  EXPECT_NEAR(enclosed(mesh, points), polygon, 1000 * eps);
+  expect_sides_cover_boundary(mesh);
+  const char* from[] = {"bottom", "right", "top", "left"};
+  for (int k = 0; k < 4; ++k) {
+    const int node = mesh.sides.at(from[k]).nodes.front();
+    EXPECT_EQ(points(0, node), description.corners[k][0].value);
+    EXPECT_EQ(points(1, node), description.corners[k][1].value);
+  }
+}
+
+TEST(Ring, IsClosedWithoutDuplicateNodesWhereItSpansAFullTurn) {
+  const Mesh mesh = make_mesh(ring(3, 10), "Q4", 2);
+  const Points<double> points = points_of(ring(3, 10));
+  EXPECT_EQ(mesh.node_count, 40);
+  EXPECT_EQ(points.cols(), 40);
+  EXPECT_EQ(mesh.element_count(), 30);
+  EXPECT_EQ(mesh.sides.size(), 2u);
+  for (const char* name : {"inner", "outer"}) {
+    const Side& side = mesh.sides.at(name);
+    EXPECT_EQ(std::set<int>(side.nodes.begin(), side.nodes.end()).size(), 10u);
+    EXPECT_EQ(side.nodes.size(), 10u);
+    EXPECT_EQ(side.facets.size(), 10u);
+  }
+  for (int a = 0; a < 40; ++a)
+    for (int b = 0; b < a; ++b) EXPECT_GT((points.col(a) - points.col(b)).norm(), 0.1);
+}
+
+TEST(Ring, HasItsSidesOnItsCirclesAndTheAreaOfItsPolygonsOpenAndClosed) {
+  for (double to : {360.0, 120.0})
+    for (const char* element : {"Q4", "T3"}) {
+      const RingMesh description = ring(3, 12, 0, to);
+      const Mesh mesh = make_mesh(description, element, 2);
+      const Points<double> points = points_of(description);
+      const double step = to / 12 * std::acos(-1.0) / 180;
+      const double polygons = 0.5 * 12 * std::sin(step) * (2.5 * 2.5 - 1);
+      EXPECT_NEAR(area(mesh, points), polygons, 1000 * eps * polygons);
+      EXPECT_NEAR(enclosed(mesh, points), polygons, 1000 * eps * polygons);
+      expect_sides_cover_boundary(mesh);
+      EXPECT_FALSE(first_inverted_element(mesh, points));
+      for (const auto& [name, radius] : {std::pair{"inner", 1.0}, std::pair{"outer", 2.5}})
+        for (int node : mesh.sides.at(name).nodes)
+          EXPECT_NEAR((points.col(node) - Vec<double, 2>(0.3, -0.7)).norm(), radius, 8 * eps);
+      if (to < 360) {
+        for (int node : mesh.sides.at("start").nodes) EXPECT_EQ(points(1, node), -0.7);
+        EXPECT_EQ(mesh.sides.at("end").nodes.size(), 4u);
+      }
+    }
+}
+
+TEST(Disk, HasItsArcOnTheCircleItsAreaAndCellsOfGoodShape) {
+  for (int along = 1; along <= 8; ++along)
+    for (int rings = 1; rings <= 8; ++rings)
+      for (double grade : {1.0, 10.0})
+        for (const char* element : {"Q4", "T3"}) {
+          const DiskMesh description = disk(along, rings, grade);
+          const Mesh mesh = make_mesh(description, element, 2);
+          const Points<double> points = points_of(description);
+          const double polygon = 0.5 * 4 * along * std::sin(std::acos(0.0) / along) * 2.5 * 2.5;
+          EXPECT_NEAR(area(mesh, points), polygon, 1000 * eps * polygon) << along << " " << rings;
+          EXPECT_NEAR(enclosed(mesh, points), polygon, 1000 * eps * polygon);
+          expect_sides_cover_boundary(mesh);
+          EXPECT_FALSE(first_inverted_element(mesh, points));
+          EXPECT_EQ(mesh.sides.at("arc").nodes.size(), 4u * along);
+          for (int node : mesh.sides.at("arc").nodes)
+            EXPECT_NEAR((points.col(node) - Vec<double, 2>(0.3, -0.7)).norm(), 2.5, 8 * eps);
+          if (mesh.shape == ElementShape::quad4) {
+            EXPECT_GT(worst_corner(mesh, points), 0.5) << along << " " << rings << " " << grade;  // 30 degrees
+          }
+        }
+}
+
+/// Area of quadratic elements by Green's theorem over their curved edges (Simpson's rule is exact for a parabola).
+double quadratic_area(const Mesh& mesh, const Points<double>& points) {
+  const int count = nodes_of(mesh.shape), corners = corners_of(mesh.shape);
+  double sum = 0;
+  for (int e = 0; e < mesh.element_count(); ++e)
+    for (int k = 0; k < corners; ++k) {
+      const int* n = mesh.connectivity.data() + e * count;
+      const Vec<double, 2> a = points.col(n[k]), b = points.col(n[(k + 1) % corners]), m = points.col(n[corners + k]);
+      const Vec<double, 2> bow = m - 0.5 * (a + b), chord = b - a;
+      sum += 0.5 * (a[0] * b[1] - b[0] * a[1]) - (chord[0] * bow[1] - chord[1] * bow[0]) * 2 / 3;
+    }
+  return sum;
+}
+
+TEST(QuadraticMeshes, HaveOneNodeInTheMiddleOfEachEdgeAndItsHalvesForFacets) {
+  const std::vector<MeshDescription> all = {box(),      quad(3, 2),        ring(2, 8), ring(2, 8, 10, 100),
+                                            disk(3, 2), half_disk(4, 5, 3)};
+  for (const auto& description : all)
+    for (const char* element : {"Q8", "T6"}) {
+      const Mesh mesh = make_mesh(description, element, 2),
+                 linear = make_mesh(description, element[0] == 'Q' ? "Q4" : "T3", 2);
+      const Points<double> points = make_points(description, mesh, Numbers<double>{});
+      EXPECT_EQ(points.cols(), mesh.node_count);
+      EXPECT_EQ(mesh.element_count(), linear.element_count());
+      EXPECT_FALSE(first_inverted_element(mesh, points));
+      const int corners = corners_of(mesh.shape);
+      std::set<int> used(mesh.connectivity.begin(), mesh.connectivity.end());
+      EXPECT_EQ(static_cast<int>(used.size()), mesh.node_count);
+      // Euler: nodes of a linear mesh, and one more for each edge
+      const int holes = std::holds_alternative<RingMesh>(description) && !linear.sides.count("start") ? 1 : 0;
+      EXPECT_EQ(mesh.node_count - linear.node_count, linear.node_count + linear.element_count() - 1 + holes);
+      for (int e = 0; e < mesh.element_count(); ++e)
+        for (int k = 0; k < corners; ++k) {
+          const int* n = mesh.connectivity.data() + e * nodes_of(mesh.shape);
+          const Vec<double, 2> a = points.col(n[k]), b = points.col(n[(k + 1) % corners]),
+                               m = points.col(n[corners + k]);
+          EXPECT_LT((m - 0.5 * (a + b)).norm(), 0.25 * (b - a).norm());
+        }
+      for (const auto& [name, side] : mesh.sides) {
+        const Side& coarse = linear.sides.at(name);
+        ASSERT_EQ(side.facets.size(), 2 * coarse.facets.size());
+        ASSERT_EQ(side.quadratic.size(), coarse.facets.size());
+        EXPECT_EQ(side.nodes.size(), coarse.nodes.size() + coarse.facets.size());
+        for (std::size_t f = 0; f < coarse.facets.size(); ++f) {
+          const int a = coarse.facets[f][0], b = coarse.facets[f][1], m = side.quadratic[f][2];
+          EXPECT_EQ(side.quadratic[f], (std::vector<int>{a, b, m}));
+          EXPECT_EQ(side.facets[2 * f], (std::vector<int>{a, m}));
+          EXPECT_EQ(side.facets[2 * f + 1], (std::vector<int>{m, b}));
+        }
+      }
+    }
+}
+
+TEST(QuadraticMeshes, FollowTheirCirclesToFourthOrder) {
+  const double pi = std::acos(-1.0);
+  auto order = [](auto&& relative_error) { return std::log2(relative_error(1) / relative_error(2)); };
+  auto error = [&](const MeshDescription& description, const char* element, double exact) {
+    const Mesh mesh = make_mesh(description, element, 2);
+    return std::abs(quadratic_area(mesh, make_points(description, mesh, Numbers<double>{})) / exact - 1);
+  };
+  for (const char* element : {"Q8", "T6"}) {
+    EXPECT_NEAR(order([&](int k) { return error(disk(2 * k, k), element, pi * 2.5 * 2.5); }), 4, 0.2);
+    EXPECT_NEAR(order([&](int k) { return error(ring(k, 8 * k), element, pi * (2.5 * 2.5 - 1)); }), 4, 0.2);
+    EXPECT_NEAR(order([&](int k) { return error(half_disk(2 * k, 2 * k, 1), element, pi * 64 / 2); }), 4, 0.2);
+  }
+}
+
+TEST(QuadraticMeshes, OfARingHaveTheMiddlesOfItsArcsOnTheirOwnCircles) {
+  const RingMesh description = ring(3, 8, 10, 100);
+  const Mesh mesh = make_mesh(description, "Q8", 2);
+  const Points<double> points = make_points<double>(description, mesh, Numbers<double>{});
+  int around = 0;
+  for (std::size_t k = 0; k < mesh.middles.size(); ++k) {
+    auto radius = [&](int node) { return (points.col(node) - Vec<double, 2>(0.3, -0.7)).norm(); };
+    const auto [a, b] = mesh.middles[k];
+    const int middle = mesh.node_count - static_cast<int>(mesh.middles.size() - k);
+    EXPECT_NEAR(radius(middle), 0.5 * (radius(a) + radius(b)), 16 * eps);  // along a ray, or on the circle
+    around += std::abs(radius(a) - radius(b)) < 0.1;
+  }
+  EXPECT_EQ(around, 8 * 4);
+}
+
+TEST(Coordinates, OfQuadsRingsAndDisksHaveExactDerivatives) {
+  QuadMesh q = quad(3, 4);
+  std::vector<double> numbers;
+  for (auto& corner : q.corners)
+    for (auto& x : corner) {
+      x.slot = static_cast<int>(numbers.size());
+      numbers.push_back(x.value);
+    }
+  q.grade_towards = "top";
+  q.grade = Number(2.5, 8);
+  numbers.push_back(2.5);
+  expect_exact_derivatives<9>(q, numbers);
+  for (const char* towards : {"inner", "outer"}) {
+    RingMesh open = ring(3, 7, 20, 130);
+    open.center = {Number(0.3, 0), Number(-0.7, 1)};
+    open.inner = Number(1, 2);
+    open.outer = Number(2.5, 3);
+    open.from_angle = Number(20, 4);
+    open.to_angle = Number(130, 5);
+    open.grade_towards = towards;
+    open.grade = Number(3, 6);
+    expect_exact_derivatives<7>(open, {0.3, -0.7, 1, 2.5, 20, 130, 3});
+    RingMesh closed = open;
+    closed.from_angle = Number(20, 4);
+    closed.to_angle = 380.0;
+    closed.grade.slot = 5;
+    expect_exact_derivatives<6>(closed, {0.3, -0.7, 1, 2.5, 20, 3});
+  }
+  DiskMesh d = disk(3, 2);
+  d.center = {Number(0.3, 0), Number(-0.7, 1)};
+  d.radius = Number(2.5, 2);
+  d.grade = Number(1, 3);
+  expect_exact_derivatives<4>(d, {0.3, -0.7, 2.5, 1});
+}
+
 TEST(Descriptions, ThatMakeNoMeshAreRefusedWithAReason) {
   auto expect_fault = [](const MeshDescription& description, const char* element, int dimension, const char* part) {
     EXPECT_NE(mesh_fault(description, element, dimension).find(part), std::string::npos)
         << mesh_fault(description, element, dimension);
     EXPECT_THROW(make_mesh(description, element, dimension), std::invalid_argument);
   };
-  expect_fault(box(), "bar", 2, "T3 or Q4, not bar");
+  expect_fault(box(), "bar", 2, "T3 or T6, not bar");
   expect_fault(box(), "Q4", 3, "plane");
   BoxMesh bad = box();
   bad.max[1] = -0.5;
@@ -340,6 +583,21 @@ TEST(Descriptions, ThatMakeNoMeshAreRefusedWithAReason) {
   expect_fault(half_disk(4, 9, 1), "Q4", 2, "factor 2");
   expect_fault(half_disk(4, 4, 1, "left"), "Q4", 2, "not left");
   expect_fault(half_disk(4, 4, 0), "Q4", 2, "grade");
+  expect_fault(ring(2, 8, 0, 400), "Q4", 2, "360 degrees at most");
+  expect_fault(ring(2, 8, 90, 10), "Q4", 2, "exceed");
+  expect_fault(ring(2, 2), "Q4", 2, "less than 180");
+  expect_fault(ring(0, 8), "Q4", 2, "at least 1");
+  RingMesh thin = ring(2, 8);
+  thin.outer = 1.0;
+  expect_fault(thin, "Q4", 2, "greater than inner");
+  thin = ring(2, 8);
+  thin.grade_towards = "left";
+  expect_fault(thin, "Q4", 2, "inner or outer, not left");
+  expect_fault(disk(0, 1), "Q4", 2, "at least 1");
+  expect_fault(disk(2, 2, -1), "Q4", 2, "grade");
+  QuadMesh turned = quad(2, 2);
+  std::swap(turned.corners[1], turned.corners[3]);
+  expect_fault(turned, "Q4", 2, "counter-clockwise");
   LineMesh line;
   line.from = line.to = {1.0, 1.0};
   expect_fault(line, "bar", 2, "same point");

@@ -90,6 +90,75 @@ TEST(MshReader, GivesBodiesAndSidesOfASmallFile) {
   EXPECT_NE(body_error(result, "plaet").find("did you mean \"plate\""), std::string::npos);
 }
 
+TEST(MshReader, ReadsQuadraticElementsWithTheMiddlesOfTheirSides) {
+  for (const char* version : {"22", "41"}) {
+    const ImportResult result = read(content(std::string("tests/support/meshes/quadratic_ring_") + version + ".msh"));
+    ASSERT_TRUE(result.errors.empty()) << result.errors.front();
+    ASSERT_EQ(result.bodies.size(), 2u);
+    const ImportedMesh &quads = result.bodies[0], &triangles = result.bodies[1];
+    EXPECT_EQ(quads.mesh.shape, ElementShape::quad8);
+    EXPECT_EQ(triangles.mesh.shape, ElementShape::tri6);
+    EXPECT_EQ(quads.mesh.element_count(), 8);
+    EXPECT_EQ(triangles.mesh.element_count(), 16);
+    EXPECT_EQ(quads.mesh.node_count, 15 + 22);  // corners and edges of 2 x 4 cells
+    for (const ImportedMesh& body : result.bodies) {
+      EXPECT_FALSE(first_inverted_element(body.mesh, body.points));
+      const int count = nodes_of(body.mesh.shape), corners = corners_of(body.mesh.shape);
+      for (int e = 0; e < body.mesh.element_count(); ++e)
+        for (int k = 0; k < corners; ++k) {
+          auto at = [&](int i) -> Vec<double, 2> { return body.points.col(body.mesh.connectivity[e * count + i]); };
+          const Vec<double, 2> a = at(k), b = at((k + 1) % corners);
+          EXPECT_LT((at(corners + k) - 0.5 * (a + b)).norm(), 0.1 * (b - a).norm());  // an arc of 22.5 degrees bows 5 %
+        }
+      for (const auto& [name, side] : body.mesh.sides) {
+        EXPECT_EQ(side.nodes.size(), 9u);
+        EXPECT_EQ(side.facets.size(), 8u);
+        ASSERT_EQ(side.quadratic.size(), 4u);
+        const double radius = name == "inside" ? 1 : name == "between" ? 2 : 3;
+        for (int node : side.nodes) EXPECT_NEAR(body.points.col(node).norm(), radius, 1e-9);  // as Gmsh writes them
+        const int sign = name == "outside" || (name == "between" && body.body == "quads") ? 1 : -1;
+        for (const auto& facet : side.facets) {  // the solid on its left
+          const Vec<double, 2> a = body.points.col(facet[0]), b = body.points.col(facet[1]);
+          EXPECT_GT(sign * (a[0] * b[1] - a[1] * b[0]), 0);
+        }
+      }
+    }
+  }
+}
+
+TEST(MshReader, TurnsQuadraticElementsWithTheirMiddles) {
+  const std::string six = R"($MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+6
+1 0 0 0
+2 2 0 0
+3 0 2 0
+4 1 0 0
+5 1 1 0
+6 0 1 0
+$EndNodes
+$Elements
+2
+1 8 2 7 1 1 2 4
+2 9 2 9 1 NODES
+$EndElements
+)";
+  const ImportResult left = read(replaced(six, "NODES", "1 2 3 4 5 6")),
+                     right = read(replaced(six, "NODES", "1 3 2 6 5 4"));
+  ASSERT_TRUE(left.errors.empty() && right.errors.empty());
+  EXPECT_EQ(left.bodies[0].mesh.connectivity, (std::vector<int>{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(right.bodies[0].mesh.connectivity, left.bodies[0].mesh.connectivity);
+  EXPECT_EQ(right.bodies[0].mesh.sides.at("7").quadratic, (std::vector<std::vector<int>>{{0, 1, 3}}));
+  // a side without the middle, or with another, is no side of the element
+  for (const char* line : {"1 1 2 7 1 1 2", "1 8 2 7 1 1 2 5"}) {
+    const ImportResult wrong = read(replaced(replaced(six, "NODES", "1 2 3 4 5 6"), "1 8 2 7 1 1 2 4", line));
+    EXPECT_TRUE(wrong.bodies.empty() || wrong.bodies[0].mesh.sides.empty());
+    EXPECT_FALSE(wrong.errors.empty() && wrong.notes.empty());
+  }
+}
+
 TEST(MshReader, GivesTheSameFromBothVersions) {
   const ImportResult a = read(two_blocks("22")), b = read(two_blocks("41"));
   ASSERT_TRUE(a.errors.empty()) << a.errors.front();
@@ -190,9 +259,9 @@ TEST(MshReader, SaysWhereAndWhatIsWrongWithABrokenFile) {
       {"500 1 0 0", "500 inf 0 0", "12:5", "not finite"},
       {"30 1 1 0", "500 1 1 0", "13:1", "node 500 appears twice"},
       {"10 500 30", "10 500 31", "20:18", "element 2 has node 31"},
-      {"2 2 2 9 1 10 500 30", "2 9 2 9 1 10 500 30 1 1 1", "20:3", "type 9 (6-node triangle)"},
+      {"2 2 2 9 1 10 500 30", "2 10 2 9 1 10 500 30 1 1 1 1 1 1", "20:3", "type 10 (9-node quadrangle)"},
       {"2 2 2 9 1 10 500 30", "2 4 2 9 1 10 500 30 4", "20:3", "type 4 (4-node tetrahedron)"},
-      {"3 2 2 9 1 10 30 4", "3 3 2 9 1 10 500 30 4", "21:1", "mixes triangles and quadrangles, from element 3"},
+      {"3 2 2 9 1 10 30 4", "3 3 2 9 1 10 500 30 4", "21:1", "mixes elements of unlike kinds, from element 3"},
       {"10 30 4\n", "10 4 30\n", "21:1", "element 3 of body \"plate\" is turned against the others"},
       {"10 30 4\n", "10 30 10\n", "21:1", "element 3 of body \"plate\" is degenerate"},
       {"30 1 1 0", "30 1 1 0.5", "20:1", "plane z = constant"},

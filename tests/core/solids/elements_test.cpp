@@ -1,0 +1,293 @@
+/// Every element in every kinematics: tangent, rigid motions, rank, patch test, volumes; and the shares of their edges.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <complex>
+#include <limits>
+
+#include "core/mesh/generators.hpp"
+#include "core/mesh/quality.hpp"
+#include "core/solids/continuum.hpp"
+#include "core/solids/edges.hpp"
+#include "core/solids/linear_elastic.hpp"
+
+namespace stickslip {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double E = 1000, nu = 0.3;
+const double pi = std::acos(-1.0);
+
+template <class S, Kinematics k>
+struct Setting {
+  using Shape = S;
+  static constexpr Kinematics kinematics = k;
+};
+
+/// An element away from the axis with no two edges alike; the middles of its sides lie off their chords.
+template <class Shape>
+Mat<double, 2, Shape::nodes> distorted() {
+  Mat<double, 2, Shape::corners> corners;
+  if constexpr (Shape::corners == 3)
+    corners << 2.1, 3.3, 2.4, -0.2, 0.3, 1.1;
+  else
+    corners << 2.1, 3.3, 3.0, 1.8, -0.2, 0.1, 1.4, 0.9;
+  Mat<double, 2, Shape::nodes> X;
+  X.template leftCols<Shape::corners>() = corners;
+  for (int a = Shape::corners; a < Shape::nodes; ++a) {
+    const int first = a - Shape::corners, second = (first + 1) % Shape::corners;
+    X.col(a) = 0.5 * (corners.col(first) + corners.col(second)) + 0.03 * (first + 1) * Vec<double, 2>(1, -0.5);
+  }
+  return X;
+}
+
+template <class T>
+LinearElasticLaw<T> law(Kinematics kinematics) {
+  return {T(E), T(nu), is_of_revolution(kinematics) ? Space::axisymmetric : Space::plane_strain};
+}
+
+/// Displacements that are no special case.
+template <class Shape>
+Mat<double, 2, Shape::nodes> arbitrary() {
+  Mat<double, 2, Shape::nodes> u;
+  for (int k = 0; k < u.size(); ++k) u.data()[k] = std::sin(1.7 * k + 0.3);
+  return u;
+}
+
+template <class S>
+class Elements : public testing::Test {
+ protected:
+  using Shape = typename S::Shape;
+  static constexpr Kinematics kinematics = S::kinematics;
+  static constexpr int n = Shape::nodes;
+  static constexpr bool revolved = is_of_revolution(kinematics);
+  using Local = Mat<double, 2, n>;
+  const Local X = distorted<Shape>();
+
+  template <class T>
+  static Mat<T, 2, n> forces(const Mat<T, 2, n>& at, const Mat<T, 2, n>& u, const T& depth = T(1)) {
+    return element_forces<T, Shape, kinematics>(law<T>(kinematics), at, u, depth);
+  }
+  static Mat<double, 2 * n> tangent(const Local& at) {
+    return element_tangent<double, Shape, kinematics>(law<double>(kinematics), at, Local::Zero());
+  }
+};
+using Settings = testing::Types<
+    Setting<Tri3, Kinematics::plane>, Setting<Quad4, Kinematics::plane>, Setting<Tri6, Kinematics::plane>,
+    Setting<Quad8, Kinematics::plane>, Setting<Tri3, Kinematics::revolution>, Setting<Quad4, Kinematics::revolution>,
+    Setting<Tri6, Kinematics::revolution>, Setting<Quad8, Kinematics::revolution>,
+    Setting<Quad4, Kinematics::plane_mean_dilatation>, Setting<Quad4, Kinematics::revolution_mean_dilatation>>;
+TYPED_TEST_SUITE(Elements, Settings);
+
+TYPED_TEST(Elements, HaveTheTangentThatIsTheDualOfTheWholeElement) {
+  constexpr int n = TestFixture::n;
+  using D = Dual<2 * n>;
+  const auto u = arbitrary<typename TestFixture::Shape>();
+  Mat<D, 2, n> seeded, at = this->X.unaryExpr([](double x) { return D(x); });
+  for (int k = 0; k < 2 * n; ++k) seeded.data()[k] = D::seed(u.data()[k], k);
+  const auto forces = TestFixture::template forces<D>(at, seeded);
+  const auto K = this->tangent(this->X);
+  const double rounding = 50 * epsilon * K.cwiseAbs().maxCoeff();  // sums of up to some hundred products
+  for (int k = 0; k < 2 * n; ++k)
+    for (int l = 0; l < 2 * n; ++l) EXPECT_NEAR(K(k, l), forces.data()[k].d[l], rounding);
+  // linear: the forces are the tangent times the displacements
+  for (int k = 0; k < 2 * n; ++k)
+    EXPECT_NEAR(forces.data()[k].v, K.row(k).dot(u.reshaped()), rounding * std::sqrt(2.0 * n));
+  EXPECT_LE((K - K.transpose()).cwiseAbs().maxCoeff(), rounding);
+}
+
+TYPED_TEST(Elements, HaveTheirRigidMotionsAndNoOtherMotionWithoutEnergy) {
+  constexpr int n = TestFixture::n;
+  const auto K = this->tangent(this->X);
+  const double largest = K.cwiseAbs().maxCoeff();
+  std::vector<Mat<double, 2, n>> rigid(TestFixture::revolved ? 1 : 3, Mat<double, 2, n>::Zero());
+  rigid[0].row(1).setConstant(1);
+  if (!TestFixture::revolved) {
+    rigid[1].row(0).setConstant(1);
+    rigid[2] << -this->X.row(1), this->X.row(0);
+  }
+  for (const auto& mode : rigid)
+    EXPECT_LE((K * mode.reshaped()).cwiseAbs().maxCoeff(), 100 * epsilon * largest);  // sums that cancel, of lengths 3
+  const auto values = Eigen::SelfAdjointEigenSolver<Matrix<double>>(K).eigenvalues();
+  EXPECT_LE(values[rigid.size() - 1], 200 * epsilon * largest);
+  EXPECT_GE(values[rigid.size()], 1e-3 * largest);  // far from rounding: no hourglass
+}
+
+/// What the eight-node quadrilateral would be with 2 x 2 points.
+struct Quad8Reduced : Quad8 {
+  static std::array<Point, 4> quadrature() {
+    const double g = 1 / std::sqrt(3.0);
+    return {{at(-g, -g, 1), at(g, -g, 1), at(g, g, 1), at(-g, g, 1)}};
+  }
+};
+/// What the three-node triangle of revolution would be with one point.
+struct Tri3Reduced : Tri3 {
+  static std::array<Point, 1> quadrature_of_revolution() { return quadrature(); }
+};
+
+TEST(Quadrature, WithFewerPointsWouldLeaveMotionsWithoutEnergy) {
+  const auto plane = element_tangent<double, Quad8Reduced>(law<double>(Kinematics::plane), distorted<Quad8>(),
+                                                           Mat<double, 2, 8>::Zero());
+  const auto revolved = element_tangent<double, Tri3Reduced, Kinematics::revolution>(
+      law<double>(Kinematics::revolution), distorted<Tri3>(), Mat<double, 2, 3>::Zero());
+  auto zeros = [](const Matrix<double>& K) {
+    return (Eigen::SelfAdjointEigenSolver<Matrix<double>>(K).eigenvalues().array() < 1e-12 * K.cwiseAbs().maxCoeff())
+        .count();
+  };
+  EXPECT_EQ(zeros(plane), 4);     // three rigid, one hourglass
+  EXPECT_EQ(zeros(revolved), 2);  // one rigid, a rotation about the point
+}
+
+TYPED_TEST(Elements, HaveTheDerivativesOfTheComplexStepWithRespectToShapeAndThickness) {
+  constexpr int n = TestFixture::n;
+  using Complex = std::complex<double>;
+  using D = Dual<1>;
+  const auto u = arbitrary<typename TestFixture::Shape>();
+  for (int k = 0; k <= 2 * n; ++k) {
+    Mat<D, 2, n> X = this->X.unaryExpr([](double x) { return D(x); }), v = u.unaryExpr([](double x) { return D(x); });
+    Mat<Complex, 2, n> Z = this->X.template cast<Complex>(), w = u.template cast<Complex>();
+    D thickness(0.7);
+    Complex depth(0.7);
+    (k < 2 * n ? X.data()[k] : thickness).d[0] = 1;
+    (k < 2 * n ? Z.data()[k] : depth) += Complex(0, 1e-30);  // its square is lost beside one
+    const auto dual = TestFixture::template forces<D>(X, v, thickness);
+    const auto oracle = TestFixture::template forces<Complex>(Z, w, depth);
+    double largest = 0;
+    for (int i = 0; i < 2 * n; ++i) largest = std::max(largest, std::abs(oracle.data()[i].imag() / 1e-30));
+    for (int i = 0; i < 2 * n; ++i)  // some hundred operations
+      EXPECT_NEAR(dual.data()[i].d[0], oracle.data()[i].imag() / 1e-30, 1000 * epsilon * (largest + E));
+    EXPECT_EQ(largest > 0, k < 2 * n || !TestFixture::revolved) << k;  // of revolution the thickness is not read
+  }
+}
+
+template <class Shape, Kinematics kinematics>
+std::string element_name() {
+  if (has_mean_dilatation(kinematics)) return "Q4_mean_dilatation";
+  return Shape::nodes == 3 ? "T3" : Shape::nodes == 4 ? "Q4" : Shape::nodes == 6 ? "T6" : "Q8";
+}
+
+/// A box of 5 x 4 cells, [1, 6] x [0, 4], whose inner corners are moved by up to a quarter of a cell.
+struct Patch {
+  Mesh mesh;
+  Points<double> points;
+  bool inner(int node) const {
+    const auto x = points.col(node);
+    return x[0] > 1 && x[0] < 6 && x[1] > 0 && x[1] < 4;
+  }
+};
+Patch irregular_patch(const std::string& element) {
+  BoxMesh box;
+  box.min = {1.0, 0.0};
+  box.max = {6.0, 4.0};
+  box.cells = {5, 4};
+  Patch patch{make_mesh(box, element, 2), make_points<double>(box, Numbers<double>{}, 2)};
+  const auto regular = patch;
+  for (int node = 0; node < patch.points.cols(); ++node)
+    if (regular.inner(node))
+      patch.points.col(node) += 0.25 * Vec<double, 2>(std::sin(3.1 * node), std::cos(2.3 * node));
+  if (!patch.mesh.middles.empty()) patch.points = with_middles(patch.mesh, patch.points);
+  return patch;
+}
+
+TYPED_TEST(Elements, PassThePatchTestOnAnIrregularMesh) {
+  using Shape = typename TestFixture::Shape;
+  constexpr int n = TestFixture::n;
+  const Patch patch = irregular_patch(element_name<Shape, TestFixture::kinematics>());
+  ASSERT_FALSE(first_inverted_element(patch.mesh, patch.points));
+  const int nodes = patch.mesh.node_count;
+  // of revolution constant strain means u_r = a r, u_y = b y: a shear or a constant u_r would need body forces
+  Mat<double, 2> H;
+  H << 0.003, -0.007, 0.002, 0.011;
+  if (TestFixture::revolved) H(0, 1) = H(1, 0) = 0;
+  const Matrix<double> linear = H * patch.points;
+  Matrix<double> K = Matrix<double>::Zero(2 * nodes, 2 * nodes), forces = Matrix<double>::Zero(2, nodes);
+  for (int e = 0; e < patch.mesh.element_count(); ++e) {
+    const int* list = patch.mesh.connectivity.data() + e * n;
+    Mat<double, 2, n> X, u;
+    for (int a = 0; a < n; ++a) X.col(a) = patch.points.col(list[a]), u.col(a) = linear.col(list[a]);
+    const auto f = TestFixture::template forces<double>(X, u);
+    const auto k = this->tangent(X);
+    for (int a = 0; a < n; ++a) {
+      forces.col(list[a]) += f.col(a);
+      for (int b = 0; b < n; ++b) K.block<2, 2>(2 * list[a], 2 * list[b]) += k.template block<2, 2>(2 * a, 2 * b);
+    }
+  }
+  std::vector<int> inner, edge;
+  for (int dof = 0; dof < 2 * nodes; ++dof) (patch.inner(dof / 2) ? inner : edge).push_back(dof);
+  const double largest = forces.cwiseAbs().maxCoeff();
+  double unbalanced = 0;
+  for (int node = 0; node < nodes; ++node)
+    if (patch.inner(node)) unbalanced = std::max(unbalanced, forces.col(node).norm());
+  EXPECT_LE(unbalanced, 200 * epsilon * largest);  // sums of some hundred products
+  // the inner nodes find the linear field from the boundary alone; the condition of the patch is some 100
+  const Vector<double> exact = linear.reshaped();
+  const Vector<double> solved = K(inner, inner).ldlt().solve(-K(inner, edge) * exact(edge));
+  EXPECT_LE((solved - exact(inner)).cwiseAbs().maxCoeff(), 1e-13 * exact.cwiseAbs().maxCoeff());
+}
+
+TYPED_TEST(Elements, FillTheVolumeOfTheirBody) {
+  using Shape = typename TestFixture::Shape;
+  const Patch patch = irregular_patch(element_name<Shape, TestFixture::kinematics>());
+  double volume = 0;
+  for (int e = 0; e < patch.mesh.element_count(); ++e) {
+    Mat<double, 2, TestFixture::n> X;
+    for (int a = 0; a < TestFixture::n; ++a)
+      X.col(a) = patch.points.col(patch.mesh.connectivity[e * TestFixture::n + a]);
+    for_each_gradient<double, Shape, TestFixture::kinematics>(X, 0.5,
+                                                              [&](const auto& gradient) { volume += gradient.volume; });
+  }
+  const double exact = TestFixture::revolved ? pi * (36 - 1) * 4 : 5 * 4 * 0.5;
+  EXPECT_NEAR(volume, exact, 200 * epsilon * exact);  // a sum of some hundred products
+}
+
+TEST(MeanDilatation, IsTheSameAtAllPointsAndThatOfTheElementsVolume) {
+  const auto X = distorted<Quad4>();
+  const auto u = arbitrary<Quad4>();
+  auto traces = [&]<Kinematics kinematics>() {
+    std::vector<std::pair<double, double>> all;
+    for_each_gradient<double, Quad4, kinematics>(X, 1,
+                                                 [&](const auto& g) { all.emplace_back(g.of(u).trace(), g.volume); });
+    return all;
+  };
+  auto expect_mean = [](const auto& plain, const auto& averaged) {
+    double mean = 0, volume = 0;
+    for (const auto& [trace, v] : plain) mean += trace * v, volume += v;
+    for (const auto& [trace, v] : averaged) EXPECT_NEAR(trace, mean / volume, 50 * epsilon);  // some twenty operations
+  };
+  expect_mean(traces.operator()<Kinematics::plane>(), traces.operator()<Kinematics::plane_mean_dilatation>());
+  expect_mean(traces.operator()<Kinematics::revolution>(), traces.operator()<Kinematics::revolution_mean_dilatation>());
+}
+
+TEST(EdgeShares, AreConsistent) {
+  Points<double> X(2, 3);
+  X << 1, 4, 2.5, 2, 6, 4;  // from (1, 2) to (4, 6), length 5, and its middle
+  const Depth<double> slice{false, 0.5}, turn{true, 1};
+  const double L = 5, rounding = 100 * epsilon;  // some ten operations on numbers up to 100
+  const auto linear = edge_shares(X, {0, 1}, slice), quadratic = edge_shares(X, {0, 1, 2}, slice);
+  EXPECT_NEAR(linear[0], 0.5 * L / 2, rounding);
+  EXPECT_NEAR(linear[1], 0.5 * L / 2, rounding);
+  EXPECT_NEAR(quadratic[0], 0.5 * L / 6, rounding);
+  EXPECT_NEAR(quadratic[1], 0.5 * L / 6, rounding);
+  EXPECT_NEAR(quadratic[2], 0.5 * L * 4 / 6, rounding);
+  // int N_a 2 pi r ds, r from 1 to 4
+  const auto cone = edge_shares(X, {0, 1}, turn), fine = edge_shares(X, {0, 1, 2}, turn);
+  EXPECT_NEAR(cone[0], 2 * pi * L * (2 * 1 + 4) / 6, rounding);
+  EXPECT_NEAR(cone[1], 2 * pi * L * (1 + 2 * 4) / 6, rounding);
+  EXPECT_NEAR(fine[0], 2 * pi * L * 1 / 6, rounding);
+  EXPECT_NEAR(fine[1], 2 * pi * L * 4 / 6, rounding);
+  EXPECT_NEAR(fine[2], 2 * pi * L * 4 * 2.5 / 6, rounding);
+}
+
+TEST(EdgeShares, OfAQuadraticEdgeSumUpToTheArcItFollowsToFourthOrder) {
+  auto error = [](double half) {
+    Points<double> X(2, 3);
+    X << std::sin(half), std::sin(-half), 0, std::cos(half), std::cos(half), 1;
+    const auto shares = edge_shares(X, {0, 1, 2}, Depth<double>{});
+    return std::abs((shares[0] + shares[1] + shares[2]) / (2 * half) - 1);
+  };
+  EXPECT_LT(error(0.2), 1e-4);
+  EXPECT_NEAR(std::log2(error(0.2) / error(0.1)), 4, 0.2);  // next order: 4 % of half a radian squared
+}
+
+}  // namespace
+}  // namespace stickslip
