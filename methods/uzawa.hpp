@@ -11,6 +11,9 @@
 /// Stops where update, violation and states have settled to `tolerance`. Options: methods/options.hpp. [SL92]
 #pragma once
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+
 #include "methods/increment.hpp"
 
 namespace stickslip {
@@ -39,22 +42,25 @@ void adapt(const Slots<T>& slots, const RegularisationField<T>& initial, const s
   }
 }
 
-/// Contraction of the updates d, A d, A^2 d of a linear iteration: the spectral radius of A on the plane of the first
-/// two (Arnoldi), whose error falls with the third mode's share. Where that plane is a line but for 2 %, of which
-/// rounding may be part, and with two updates, it is the ratio of their lengths.
+/// Contraction of the updates d, A d, A^2 d, ... of a linear iteration: the spectral radius of A on the space of all
+/// but the last (Arnoldi). Directions that are new by less than 2 %, of which rounding may be part, are left out of it;
+/// what is left at least is the ratio of the last two lengths. pre: two updates at least.
 inline double contraction(const std::vector<Vector<double>>& updates) {
-  const auto& d1 = updates[updates.size() - 1];
-  const auto& d0 = updates[updates.size() - 2];
-  if (updates.size() == 2) return d1.norm() / d0.norm();
-  const auto& d = updates[updates.size() - 3];
-  const Vector<double> v = d / d.norm(), along = d0 / d.norm();  // A v = along
-  const double h = v.dot(along);
-  const Vector<double> across = along - h * v;
-  if (across.norm() <= 0.02 * along.norm()) return d1.norm() / d0.norm();
-  const Vector<double> w = across / across.norm(), image = (d1 / d.norm() - h * along) / across.norm();  // A w = image
-  const double trace = h + w.dot(image), determinant = h * w.dot(image) - across.norm() * v.dot(image);
-  const double discriminant = trace * trace / 4 - determinant;
-  return discriminant < 0 ? std::sqrt(determinant) : std::abs(trace) / 2 + std::sqrt(discriminant);
+  const auto m = static_cast<Eigen::Index>(updates.size()) - 1;
+  Matrix<double> space(updates[0].size(), m), image(updates[0].size(), m);
+  for (Eigen::Index j = 0; j < m; ++j) {
+    space.col(j) = updates[j] / updates[j].norm();
+    image.col(j) = updates[j + 1] / updates[j].norm();
+  }
+  Eigen::ColPivHouseholderQR<Matrix<double>> qr;
+  qr.setThreshold(0.02);
+  qr.compute(space);
+  const Eigen::Index rank = qr.rank();
+  if (rank < 2) return updates[m].norm() / updates[m - 1].norm();
+  const Matrix<double> turned = qr.householderQ().adjoint() * (image * qr.colsPermutation());
+  const Matrix<double> R = qr.matrixQR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>();
+  const Matrix<double> A = R.transpose().partialPivLu().solve(turned.topLeftCorner(rank, rank).transpose());
+  return A.eigenvalues().cwiseAbs().maxCoeff();  // of A transposed, which has the same
 }
 
 /// Largest derivative that rides on the entries: the imaginary part of the oracle, nothing on a double.
@@ -75,7 +81,7 @@ Increment<T> solve_increment(const UzawaAL& method, Run<T, E>& run, const State<
   Vector<T> u = run.engine.begin(time, previous.displacement), lambda = previous.contact.traction;
   std::vector<double> violations;
   std::vector<ContactState> states;
-  std::vector<Vector<double>> updates;  // the last three, made in the same states
+  std::vector<Vector<double>> updates;  // the last five, made in the same states
   double last_update = 0, last_riding = std::numeric_limits<double>::infinity();
   NewtonOptions inner = method.newton;  // an inner residual above the outer tolerance would stall the updates
   inner.tolerance = std::min(inner.tolerance, 0.01 * method.tolerance);
@@ -105,7 +111,7 @@ Increment<T> solve_increment(const UzawaAL& method, Run<T, E>& run, const State<
     const bool settled = equilibrium.field.state == states;
     if (!settled) updates.clear();
     updates.push_back(values(change));
-    if (updates.size() > 3) updates.erase(updates.begin());
+    if (updates.size() > 5) updates.erase(updates.begin());
     if (updates.size() > 1 && last_update > 0) increment.contraction = detail::contraction(updates);
     // what is left of a geometric series after this update, not the update itself, is the error
     const double q = increment.contraction;

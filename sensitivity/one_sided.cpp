@@ -13,13 +13,15 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::infinity();
 
-/// Largest pressure, or k / A times the largest normal motion: contact that has only just begun is measured by that.
+/// Largest pressure, or k / A times the largest motion: contact that has only just begun is measured by that.
 double traction_scale(const Model& model, const Slots<double>& slots, const State<double>& state) {
   double largest = 0;
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const double elastic = slots.stiffness[p] / slots.geometry[p].area;
     largest = std::max({largest, -state.contact.traction[model.points[p].multiplier],
                         elastic * std::abs(state.contact.gap[p] - slots.geometry[p].gap)});
+    const int offset = tangential_offset(model, static_cast<int>(p));
+    largest = std::max(largest, elastic * state.contact.placement.segment(offset, model.points[p].tangents).norm());
   }
   return largest;
 }
@@ -79,7 +81,8 @@ Verdict judge(const Model& model, const ParameterBlock& block, const PointRegula
       tangential += z.d[0] * z.d[0];
     }
     const double bound = value(block.slots.friction[point.contact]) * std::abs(z_normal.d[0]);
-    const bool leaves_apex = point.tangents > 0 && size == 0 && std::sqrt(tangential) > bound;
+    const bool slides = tangential_norm(model, at.contact.slip, offset, weak.point) > 0;  // the direction of its slip
+    const bool leaves_apex = point.tangents > 0 && size == 0 && !slides && std::sqrt(tangential) > bound;
     return leaves_apex ? Verdict::unknown : Verdict::confirmed;
   }
   Vector<Direction> z(point.tangents);
@@ -89,12 +92,13 @@ Verdict judge(const Model& model, const ParameterBlock& block, const PointRegula
   return confirms(branch == ContactState::stick ? side * excess.d[0] <= 0 : side * excess.d[0] >= 0);
 }
 
-/// The branch on the other side of a tie.
-ContactState other_branch(const WeakPoint& weak, ContactState branch, const ContactPoint& point) {
-  if (weak.opens)
-    return branch != ContactState::open ? ContactState::open
-           : point.tangents > 0         ? ContactState::stick
-                                        : ContactState::slip;
+/// The branch on the other side of a tie. A point that slides while it touches slips when it closes.
+ContactState other_branch(const Model& model, const State<double>& at, const WeakPoint& weak, ContactState branch) {
+  if (weak.opens && branch != ContactState::open) return ContactState::open;
+  if (weak.opens) {
+    const bool slides = tangential_norm(model, at.contact.slip, tangential_offset(model, weak.point), weak.point) > 0;
+    return slides || model.points[weak.point].tangents == 0 ? ContactState::slip : ContactState::stick;
+  }
   return branch == ContactState::stick ? ContactState::slip : ContactState::stick;
 }
 
@@ -113,7 +117,7 @@ bool differentiate_side(const M& method, Differentiation<E>& problem, const Stat
       const auto verdict =
           judge(problem.model, problem.blocks[0], rho[w.point], w, increment.state, branches[w.point], side);
       if (verdict == Verdict::unknown) return false;
-      if (verdict == Verdict::flip) next[w.point] = other_branch(w, branches[w.point], problem.model.points[w.point]);
+      if (verdict == Verdict::flip) next[w.point] = other_branch(problem.model, increment.state, w, branches[w.point]);
     }
     if (next == branches) return true;
     branches = next;

@@ -20,7 +20,7 @@
 namespace stickslip {
 
 /// How far the nearest contact point is from a change of state: `open` between open and closed (pressure, or k g / A of
-/// an open point, over the largest pressure or k / A times the largest normal motion); `slip` between stick and slip
+/// an open point, over the largest pressure or k / A times the largest motion); `slip` between stick and slip
 /// (distance to the cone, or k |dg_T| / A of a slipping point, over the friction bound). Infinity where there is no
 /// such point.
 struct Margins {

@@ -34,7 +34,8 @@ constexpr const char* bodies = R"({
     "type": "object", "required": ["mesh", "material"], "additionalProperties": false, "properties": {
       "mesh": {"$ref": "#/$defs/mesh"},
       "material": {"$ref": "#/$defs/material"},
-      "element": {"enum": ["T3", "Q4", "bar", "point"]},
+      "element": {"enum": ["T3", "T6", "Q4", "Q4_mean_dilatation", "Q8", "bar", "point"]},
+      "thickness": {"description": "of a plane continuum", "$ref": "#/$defs/positive"},
       "area": {"description": "of the cross-section of bars", "$ref": "#/$defs/positive"}}}
 })";
 
@@ -46,6 +47,25 @@ constexpr const char* mesh = R"({
         "minProperties": 1, "maxProperties": 1, "additionalProperties": false, "properties": {
         "left": {"$ref": "#/$defs/positive"}, "right": {"$ref": "#/$defs/positive"},
         "bottom": {"$ref": "#/$defs/positive"}, "top": {"$ref": "#/$defs/positive"}}}}},
+    "quad": {"type": "object", "required": ["corners", "cells"], "additionalProperties": false, "properties": {
+      "corners": {"description": "counter-clockwise", "type": "array", "items": {"$ref": "#/$defs/pair"}, "minItems": 4,
+        "maxItems": 4}, "cells": {"$ref": "#/$defs/cells"},
+      "grade": {"description": "as of a box", "type": "object",
+        "minProperties": 1, "maxProperties": 1, "additionalProperties": false, "properties": {
+        "left": {"$ref": "#/$defs/positive"}, "right": {"$ref": "#/$defs/positive"},
+        "bottom": {"$ref": "#/$defs/positive"}, "top": {"$ref": "#/$defs/positive"}}}}},
+    "ring": {"type": "object", "required": ["center", "inner", "outer", "cells"], "additionalProperties": false,
+      "properties": {
+      "center": {"$ref": "#/$defs/pair"}, "inner": {"$ref": "#/$defs/positive"}, "outer": {"$ref": "#/$defs/positive"},
+      "cells": {"description": "radial, around", "$ref": "#/$defs/cells"},
+      "from_angle": {"type": "number", "default": 0}, "to_angle": {"type": "number", "default": 360},
+      "grade": {"type": "object",
+        "minProperties": 1, "maxProperties": 1, "additionalProperties": false, "properties": {
+        "inner": {"$ref": "#/$defs/positive"}, "outer": {"$ref": "#/$defs/positive"}}}}},
+    "disk": {"type": "object", "required": ["center", "radius", "cells"], "additionalProperties": false,
+      "properties": {
+      "center": {"$ref": "#/$defs/pair"}, "radius": {"$ref": "#/$defs/positive"}, "cells": {"$ref": "#/$defs/cells"},
+      "grade": {"$ref": "#/$defs/positive"}}},
     "half_disk": {"type": "object", "required": ["center", "radius", "cells"], "additionalProperties": false,
       "properties": {
       "center": {"$ref": "#/$defs/pair"}, "radius": {"$ref": "#/$defs/positive"}, "cells": {"$ref": "#/$defs/cells"},
@@ -60,7 +80,8 @@ constexpr const char* mesh = R"({
       "from_angle": {"type": "number"}, "to_angle": {"type": "number"}, "cells": {"$ref": "#/$defs/count"}}},
     "gmsh": {"description": "an MSH file, beside the scene", "type": "string"},
     "body": {"description": "of gmsh: a physical name", "type": "string"}},
-  "oneOf": [{"required": ["box"]}, {"required": ["half_disk"]}, {"required": ["point"]}, {"required": ["line"]},
+  "oneOf": [{"required": ["box"]}, {"required": ["quad"]}, {"required": ["ring"]}, {"required": ["disk"]},
+            {"required": ["half_disk"]}, {"required": ["point"]}, {"required": ["line"]},
             {"required": ["arc"]}, {"required": ["gmsh", "body"]}]
 })";
 
@@ -86,7 +107,7 @@ constexpr const char* motion = R"({
 constexpr const char* scene_parts = R"({
   "$schema": {"type": "string"},
   "title": {"type": "string"},
-  "space": {"enum": ["plane_strain", "plane_stress", "solid"], "default": "plane_strain"},
+  "space": {"enum": ["plane_strain", "plane_stress", "axisymmetric", "solid"], "default": "plane_strain"},
   "strain": {"enum": ["small"], "default": "small"},
   "bodies": {"$ref": "#/$defs/bodies"},
   "obstacles": {"type": "object", "additionalProperties": {

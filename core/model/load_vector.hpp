@@ -64,7 +64,8 @@ void add_body_force(const Model& model, const Load& load, const Slots<T>& slots,
   for (int e = 0; e < body.mesh.element_count(); ++e) {
     const auto nodes = element_nodes(body, e);
     if (body.mesh.shape == ElementShape::bar2) {
-      const T half = T(0.5) * distance(slots.points, nodes[0], nodes[1]) * std::get<BarLaw<T>>(slots.laws[b]).area;
+      const T length = norm((slots.points.col(nodes[1]) - slots.points.col(nodes[0])).eval());
+      const T half = T(0.5) * length * std::get<BarLaw<T>>(slots.laws[b]).area;
       for (int node : nodes) add(node, half);
     }
     with_shape(body.mesh.shape, [&]<class Shape>(Shape) {

@@ -202,7 +202,7 @@ TEST(UzawaRate, IsTheSpectralRadiusThatTheFinalStatesPredict) {
         UzawaAL method;
         method.scale = scenes::absolute(rho);
         method.adapt = false;
-        method.tolerance = 1e-12;  // many updates, so that the last two show the asymptotic ratio
+        method.tolerance = 1e-12;  // many updates, so that the last show the asymptotic ratio
         method.max_augmentations = 3000;
         const auto s = run(scenes::greco_plate(n, mu), method);
         ASSERT_TRUE(is_converged(s.trajectory.status));

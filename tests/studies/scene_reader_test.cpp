@@ -420,8 +420,8 @@ TEST(SceneReader, ReadsRingsDisksQuadsThicknessAndElements) {
                    "e": "/bodies/ring/mesh/ring/from_angle"},
     "method": {"monolithic_al": {}}
   })");
-  const auto& bodies = input.scene.bodies;
-  const auto &ring = std::get<RingMesh>(bodies[0].mesh), &sector = std::get<RingMesh>(bodies[1].mesh);
+  const auto& bodies = input.scene.bodies;  // by name: disk, quad, ring, sector
+  const auto &ring = std::get<RingMesh>(bodies[2].mesh), &sector = std::get<RingMesh>(bodies[3].mesh);
   EXPECT_EQ(ring.center[1].value, 2);
   EXPECT_EQ(ring.inner.value, 3);
   EXPECT_EQ(ring.outer.value, 4);
@@ -429,15 +429,15 @@ TEST(SceneReader, ReadsRingsDisksQuadsThicknessAndElements) {
   EXPECT_EQ(ring.grade_towards, "outer");
   EXPECT_EQ(ring.grade.value, 5);
   EXPECT_EQ(ring.to_angle.value, 360);
-  EXPECT_EQ(bodies[0].element, "Q8");
-  EXPECT_EQ(bodies[0].thickness.value, 0.5);
+  EXPECT_EQ(bodies[2].element, "Q8");
+  EXPECT_EQ(bodies[2].thickness.value, 0.5);
   EXPECT_EQ(sector.from_angle.value, -20);
   EXPECT_EQ(sector.to_angle.value, 70);
-  const auto& disk = std::get<DiskMesh>(bodies[2].mesh);
+  const auto& disk = std::get<DiskMesh>(bodies[0].mesh);
   EXPECT_EQ(disk.radius.value, 3);
   EXPECT_EQ(disk.grade.value, 2);
-  EXPECT_EQ(bodies[2].thickness.value, 1);
-  const auto& quad = std::get<QuadMesh>(bodies[3].mesh);
+  EXPECT_EQ(bodies[0].thickness.value, 1);
+  const auto& quad = std::get<QuadMesh>(bodies[1].mesh);
   EXPECT_EQ(quad.corners[2][1].value, 4);
   EXPECT_EQ(quad.grade_towards, "top");
   std::vector<double> values;
