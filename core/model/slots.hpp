@@ -140,13 +140,15 @@ Vector<T> spin(const Model& model, int p, const Slots<T>& slots) {
   Vector<T> foot = Vector<T>::Constant(model.dimension, T(0));
   if (point.obstacle < 0 || !model.scene.obstacles[point.obstacle].rotate) return foot;
   const T gap = geometry.gap - slots.numbers(model.scene.contacts[point.contact].offset);
-  if (!point.of_polyline.empty() && point.master == ContactPoint::Master::vertex)
-    foot = polyline_vertex(model, point, 1, slots.numbers);
-  else
-    for (int i = 0; i < model.dimension; ++i) {
-      for (int n = 0; n < point.slave_nodes; ++n) foot[i] += geometry.weights[n] * slots.points(i, point.nodes[n]);
-      foot[i] -= gap * geometry.normal[i];
+  const bool at_vertex = !point.of_polyline.empty() && point.master == ContactPoint::Master::vertex;
+  for (int i = 0; i < model.dimension; ++i) {
+    if (at_vertex) {
+      foot[i] = polyline_vertex(model, point, 1, slots.numbers)[i];
+      continue;
     }
+    for (int n = 0; n < point.slave_nodes; ++n) foot[i] += geometry.weights[n] * slots.points(i, point.nodes[n]);
+    foot[i] -= gap * geometry.normal[i];
+  }
   return displacement_per_degree(*model.scene.obstacles[point.obstacle].rotate, foot, slots.numbers);
 }
 
