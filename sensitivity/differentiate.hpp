@@ -14,6 +14,7 @@ struct Gradients {
   std::string message;
   /// Per increment of the trajectory: responses x parameters. Ends where the scheme failed.
   std::vector<Matrix<double>> of;
+  Matrix<double> of_objectives;      ///< objectives x parameters; empty where it failed
   Matrix<double> last_displacement;  ///< of the last differentiated increment: all dofs x parameters
   Counters counters;
   double seconds = 0;

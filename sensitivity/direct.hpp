@@ -11,6 +11,7 @@
 #pragma once
 
 #include "methods/method.hpp"
+#include "sensitivity/tangent.hpp"
 
 namespace stickslip {
 
@@ -140,19 +141,8 @@ LinearisedEquilibrium<E>::LinearisedEquilibrium(Differentiation<E>& problem, con
       unknown_(unknown) {
   const Model& model = problem.model;
   const ContactInput<double> primal{model, problem.slots, rho, previous_placement, cone, time};
-  const Vector<double> compact = to_compact(model, at.displacement);
-  std::vector<PointTangent<double>> tangents;
-  for (int p = 0; p < static_cast<int>(model.points.size()); ++p)
-    tangents.push_back(point_tangent<double>(primal, p, compact, at.multiplier, at.contact.state[p]));
-  const long before = problem.counters.factorizations;
-  valid_ = unknown ? factorise_sharing(problem.engine, model, decided_elsewhere(model, problem.slots),
-                                       std::move(tangents), redundant_, problem.counters)
-                   : problem.engine.factorise(tangents, problem.counters);
-  problem.counters.sensitivity_factorizations += problem.counters.factorizations - before;
-  if (!valid_) {
-    problem.message = "the tangent of the converged state is singular: " + problem.engine.message();
-    return;
-  }
+  valid_ = factorise_converged(problem, primal, at, unknown, redundant_);
+  if (!valid_) return;
   std::vector<Vector<Direction>> rows;
   for (auto& block : problem.blocks) {
     Vector<Direction> u = lift(at.displacement), prescribed = u;

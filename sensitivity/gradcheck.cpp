@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/model/response.hpp"
+#include "sensitivity/adjoint.hpp"
 
 namespace stickslip {
 namespace {
@@ -13,9 +14,9 @@ namespace {
 constexpr double relative_steps[] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7};
 constexpr double base_tolerance = 1e-8;
 
-/// Responses of one run, one column an increment, and what it takes to compare its path with another.
+/// What is checked: the responses, then the objectives, which have a value in the last column alone.
 struct Path {
-  Matrix<double> responses;
+  Matrix<double> values;  ///< one column an increment
   std::vector<std::vector<ContactState>> states;
   bool usable = false;
 };
@@ -23,14 +24,18 @@ struct Path {
 Path run(const Model& model, const Numbers<double>& numbers, const Method& method, const RunOptions& options) {
   const auto slots = make_slots<double>(model, numbers);
   const auto trajectory = solve(model, slots, method, options);
+  const auto responses = static_cast<Eigen::Index>(model.scene.responses.size());
+  const auto objectives = static_cast<Eigen::Index>(model.scene.objectives.size());
   Path path;
-  path.responses.resize(model.scene.responses.size(), trajectory.increments.size());
+  path.values = Matrix<double>::Zero(responses + objectives, trajectory.increments.size());
   for (std::size_t n = 0; n < trajectory.increments.size(); ++n) {
     const auto& increment = trajectory.increments[n];
-    path.responses.col(n) = evaluate_responses(model, slots, increment.state, increment.time);
+    path.values.col(n).head(responses) = evaluate_responses(model, slots, increment.state, increment.time);
     path.states.push_back(increment.state.contact.state);
   }
-  path.usable = trajectory.increments.size() == options.replay.size() && path.responses.allFinite() &&
+  if (path.values.cols() > 0)
+    path.values.rightCols(1).bottomRows(objectives) = objective_values(model, slots, trajectory);
+  path.usable = trajectory.increments.size() == options.replay.size() && path.values.allFinite() &&
                 (is_converged(trajectory.status) || trajectory.increments.back().augmentations > 0);
   return path;
 }
@@ -106,85 +111,127 @@ Method as_claimed(const Method& method) {
   return claimed;
 }
 
+namespace {
+
+/// Derivatives laid out as Path::values, a matrix of values x parameters an increment; those of the responses are zero
+/// where the mode does not give them. Empty where it failed.
+std::vector<Matrix<double>> computed_derivatives(const Model& model, const Slots<double>& slots, const Method& method,
+                                                 const Trajectory<double>& trajectory, Workspace<double>& workspace,
+                                                 GradientCheck& check) {
+  const auto& scene = model.scene;
+  const bool direct = scene.sensitivity_mode == SensitivityMode::direct;
+  auto gradients = direct ? differentiate(model, slots, method, trajectory, workspace)
+                          : adjoint(model, slots, method, trajectory, workspace);
+  if (direct) gradients.of_objectives = objective_gradients(model, slots, trajectory, gradients);
+  const bool complete =
+      direct ? gradients.of.size() == trajectory.increments.size() : gradients.of_objectives.size() > 0;
+  if (!complete && !gradients.message.empty()) check.message = gradients.message;
+  if (!complete || scene.parameters.empty()) return {};
+  const auto responses = static_cast<Eigen::Index>(scene.responses.size());
+  const auto objectives = static_cast<Eigen::Index>(scene.objectives.size());
+  std::vector<Matrix<double>> computed(trajectory.increments.size(),
+                                       Matrix<double>::Zero(responses + objectives, scene.parameters.size()));
+  for (std::size_t n = 0; n < gradients.of.size(); ++n) computed[n].topRows(responses) = gradients.of[n];
+  if (objectives > 0) computed.back().bottomRows(objectives) = gradients.of_objectives;
+  return computed;
+}
+
+/// Central differences of parameter j at the steps whose runs pass through the states of the base run.
+Differences difference(const Model& model, const Method& method, const RunOptions& replay, const Path& base, int j,
+                       double size, const std::function<void(int, int)>& progress, GradientCheck& check) {
+  const Parameter& parameter = model.scene.parameters[j];
+  const int total = static_cast<int>(model.scene.parameters.size() * std::size(relative_steps)) * 2;
+  const auto numbers = model.scene.as<double>();
+  Differences differences;
+  for (double relative : relative_steps) {
+    const double h = relative * size;
+    Path side[2];
+    for (int s = 0; s < 2; ++s) {
+      auto shifted = numbers;
+      for (const auto& [slot, weight] : parameter.slots) shifted.at_slot[slot] += (s == 0 ? -h : h) * weight;
+      side[s] = run(model, shifted, method, replay);
+      if (progress) progress(++check.runs, total);
+    }
+    if (!side[0].usable || !side[1].usable || side[0].states != base.states || side[1].states != base.states) {
+      check.rejected += 2;
+      continue;
+    }
+    differences.step.push_back(h);
+    differences.values.push_back((side[1].values - side[0].values) / (2 * h));
+  }
+  return differences;
+}
+
+/// Holds row i against its differences at those increments that count for it; the worst is the entry's.
+void compare(const Differences& differences, const std::vector<Matrix<double>>& computed, int i, int j,
+             const std::vector<double>& times, double size, double largest, double scheme,
+             GradientCheck::Entry& worst) {
+  double excess = -1;
+  for (Eigen::Index n = 0; n < static_cast<Eigen::Index>(times.size()) && differences.step.size() >= 2; ++n) {
+    if (std::isnan(times[n])) continue;
+    const double rounding = std::max(1e-14 * largest, noise(differences, i));
+    const auto best = extrapolate(differences, i, n, rounding);
+    const double scale = worst.scale > 0 ? worst.scale : 1;
+    const double error = std::abs(computed[n](i, j) - best.value) / scale, estimate = best.estimate / scale;
+    const double allowed = std::max(scheme, estimate);
+    if (error / allowed <= excess) continue;
+    excess = error / allowed;
+    worst.time = times[n];
+    worst.computed = computed[n](i, j);
+    worst.difference = best.value;
+    worst.error = error;
+    worst.estimate = estimate;
+    worst.allowed = allowed;
+    worst.step = best.step / size;
+    // an estimate as large as the derivative itself checks nothing
+    worst.verdict = estimate > 1e-3    ? GradientCheck::Verdict::not_checked
+                    : error <= allowed ? GradientCheck::Verdict::agrees
+                                       : GradientCheck::Verdict::differs;
+  }
+}
+
+}  // namespace
+
 GradientCheck check_gradients(const Model& model, const Method& given, const RunOptions& options,
                               const std::function<void(int, int)>& progress) {
   GradientCheck check;
+  const Scene& scene = model.scene;
   const Method method = as_claimed(given);
-  const auto numbers = model.scene.as<double>();
+  const auto numbers = scene.as<double>();
   const auto slots = make_slots<double>(model, numbers);
   Workspace<double> workspace;
   const auto trajectory = solve(model, slots, method, options, workspace);
   check.status = trajectory.status;
   check.message = trajectory.message;
-  const auto gradients = differentiate(model, slots, method, trajectory, workspace);
-  const int parameters = static_cast<int>(model.scene.parameters.size());
-  const int responses = static_cast<int>(model.scene.responses.size());
-  const auto count = static_cast<Eigen::Index>(gradients.of.size());
-  if (count == 0 || count < static_cast<Eigen::Index>(trajectory.increments.size())) {
-    if (!gradients.message.empty()) check.message = gradients.message;
-    return check;
-  }
+  const auto computed = computed_derivatives(model, slots, method, trajectory, workspace, check);
+  if (computed.empty()) return check;
   RunOptions replay = options;
   replay.replay = trajectory.step_table();
   const Path base = run(model, numbers, method, replay);
 
-  Matrix<double> largest_response = base.responses.cwiseAbs().rowwise().maxCoeff();
-  Matrix<double> largest_derivative = Matrix<double>::Zero(responses, parameters);
-  for (const auto& g : gradients.of) largest_derivative = largest_derivative.cwiseMax(g.cwiseAbs());
-  const bool approximate = std::holds_alternative<UzawaAL>(method) &&
-                           std::get<UzawaAL>(method).sensitivity == UzawaAL::Sensitivity::oversized;
-  const int total = parameters * static_cast<int>(std::size(relative_steps)) * 2;
-  for (int j = 0; j < parameters; ++j) {
-    const Parameter& parameter = model.scene.parameters[j];
-    const double size = parameter_size(parameter, largest_response, largest_derivative, j);
-    Differences differences;
-    for (double relative : relative_steps) {
-      const double h = relative * size;
-      Path side[2];
-      for (int s = 0; s < 2; ++s) {
-        auto shifted = numbers;
-        for (const auto& [slot, weight] : parameter.slots) shifted.at_slot[slot] += (s == 0 ? -h : h) * weight;
-        side[s] = run(model, shifted, method, replay);
-        if (progress) progress(++check.runs, total);
-      }
-      const bool same =
-          side[0].usable && side[1].usable && side[0].states == base.states && side[1].states == base.states;
-      if (!same) {
-        check.rejected += 2;
-        continue;
-      }
-      differences.step.push_back(h);
-      differences.values.push_back((side[1].responses - side[0].responses) / (2 * h));
-    }
-    for (int i = 0; i < responses; ++i) {
-      GradientCheck::Entry worst;
-      worst.response = model.scene.responses[i].name;
-      worst.parameter = parameter.name;
-      worst.scale = std::max(largest_derivative(i, j), largest_response(i, 0) / size);
-      double excess = -1;
-      for (Eigen::Index n = 0; n < count && differences.step.size() >= 2; ++n) {
-        if (!trajectory.increments[n].requested) continue;
-        const double rounding = std::max(1e-14 * largest_response(i, 0), noise(differences, i));
-        const auto best = extrapolate(differences, i, n, rounding);
-        const double scale = worst.scale > 0 ? worst.scale : 1;
-        const double error = std::abs(gradients.of[n](i, j) - best.value) / scale, estimate = best.estimate / scale;
-        const double scheme = approximate ? 10 / std::get<UzawaAL>(method).oversize : base_tolerance;
-        const double allowed = std::max(scheme, estimate);
-        if (error / allowed <= excess) continue;
-        excess = error / allowed;
-        worst.time = trajectory.increments[n].time;
-        worst.computed = gradients.of[n](i, j);
-        worst.difference = best.value;
-        worst.error = error;
-        worst.estimate = estimate;
-        worst.allowed = allowed;
-        worst.step = best.step / size;
-        // an estimate as large as the derivative itself checks nothing
-        worst.verdict = estimate > 1e-3    ? GradientCheck::Verdict::not_checked
-                        : error <= allowed ? GradientCheck::Verdict::agrees
-                                           : GradientCheck::Verdict::differs;
-      }
-      check.entries.push_back(worst);
+  const Matrix<double> largest_value = base.values.cwiseAbs().rowwise().maxCoeff();
+  Matrix<double> largest_derivative = Matrix<double>::Zero(base.values.rows(), scene.parameters.size());
+  for (const auto& g : computed) largest_derivative = largest_derivative.cwiseMax(g.cwiseAbs());
+  std::vector<double> ends(trajectory.increments.size(), std::numeric_limits<double>::quiet_NaN()), last = ends;
+  for (std::size_t n = 0; n < ends.size(); ++n)
+    if (trajectory.increments[n].requested) ends[n] = trajectory.increments[n].time;
+  last.back() = ends.back();
+  const auto* uzawa = std::get_if<UzawaAL>(&method);
+  const bool approximate = uzawa && uzawa->sensitivity == UzawaAL::Sensitivity::oversized;
+  const double scheme = approximate ? 10 / uzawa->oversize : base_tolerance;
+  const int responses = static_cast<int>(scene.responses.size());
+  for (int j = 0; j < static_cast<int>(scene.parameters.size()); ++j) {
+    const double size = parameter_size(scene.parameters[j], largest_value, largest_derivative, j);
+    const auto differences = difference(model, method, replay, base, j, size, progress, check);
+    const int first = scene.sensitivity_mode == SensitivityMode::direct ? 0 : responses;
+    for (int i = first; i < static_cast<int>(base.values.rows()); ++i) {
+      const bool objective = i >= responses;
+      GradientCheck::Entry entry;
+      entry.response = objective ? scene.objectives[i - responses].name : scene.responses[i].name;
+      entry.parameter = scene.parameters[j].name;
+      entry.scale = std::max(largest_derivative(i, j), largest_value(i, 0) / size);
+      compare(differences, computed, i, j, objective ? last : ends, size, largest_value(i, 0), scheme, entry);
+      check.entries.push_back(entry);
     }
   }
   return check;

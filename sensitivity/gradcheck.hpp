@@ -17,15 +17,15 @@ namespace stickslip {
 struct GradientCheck {
   enum class Verdict { agrees, differs, not_checked };
   struct Entry {
-    std::string response, parameter;
-    double time = 0;        ///< step with the largest error
-    double computed = 0;    ///< derivative by the method's scheme, at that step
-    double difference = 0;  ///< by differences
-    double error = 0;       ///< |computed - difference| / scale
-    double estimate = 0;    ///< error estimate of the difference itself / scale
-    double allowed = 0;     ///< max(1e-8 (oversized: 10 / kappa_s), estimate)
-    double scale = 0;       ///< largest |derivative| of the run, or largest |response| / size of the parameter
-    double step = 0;        ///< relative step of the chosen difference
+    std::string response, parameter;  ///< or an objective
+    double time = 0;                  ///< step with the largest error
+    double computed = 0;              ///< derivative by the method's scheme, at that step
+    double difference = 0;            ///< by differences
+    double error = 0;                 ///< |computed - difference| / scale
+    double estimate = 0;              ///< error estimate of the difference itself / scale
+    double allowed = 0;               ///< max(1e-8 (oversized: 10 / kappa_s), estimate)
+    double scale = 0;  ///< largest |derivative| of the run, or largest |response| / size of the parameter
+    double step = 0;   ///< relative step of the chosen difference
     Verdict verdict = Verdict::not_checked;
   };
   std::vector<Entry> entries;
@@ -41,7 +41,8 @@ struct GradientCheck {
 /// the truncated one for the loop as it is.
 Method as_claimed(const Method& method);
 
-/// Checks all parameters and responses at every requested step. `progress(done, total)` is called after each run; it
+/// Checks all parameters and responses at every requested step, and all objectives; the objectives alone where the
+/// scene's mode is adjoint. `progress(done, total)` is called after each run; it
 /// may be empty.
 GradientCheck check_gradients(const Model& model, const Method& method, const RunOptions& options,
                               const std::function<void(int, int)>& progress = {});

@@ -1,10 +1,11 @@
 /// Monolithic augmented Lagrangian: exact and not iterative. lambda is part of p, so one back-solve a parameter with
 /// the tangent of the converged state gives Du and D lambda together, all parameters in one block. The only history is
 /// the slip placement; the last lambda is a start value and is not differentiated. The derivative with respect to rho
-/// vanishes at the solution. [SLK10]
+/// vanishes at the solution. Adjoint: one transposed solve. [SLK10]
 #pragma once
 
 #include "sensitivity/direct.hpp"
+#include "sensitivity/pull_back.hpp"
 
 namespace stickslip {
 
@@ -18,6 +19,21 @@ bool differentiate_increment(const MonolithicAL& method, Differentiation<E>& pro
   if (!linearised.valid()) return false;
   const auto fields = linearised.solve(lambda);
   linearised.settle(fields, lambda);
+  return true;
+}
+
+template <class E>
+bool pull_back_increment(const MonolithicAL& method, AdjointProblem<E>& problem, const State<double>& previous,
+                         const Increment<double>& increment) {
+  problem.tape.rewind(problem.slots_end);
+  RecordedEquilibrium<E> recorded(problem, previous, increment.state, initial_regularisation(problem.recorded, method),
+                                  cone_radius(method), increment.time, true, increment.requested);
+  if (!recorded.valid()) return false;
+  for (int j = 0; j < static_cast<int>(problem.objectives.size()); ++j) {
+    recorded.seed_outcome(j);
+    recorded.balance(j);
+    problem.objectives[j].history = recorded.finish(j);
+  }
   return true;
 }
 

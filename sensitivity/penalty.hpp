@@ -1,9 +1,11 @@
 /// Penalty: one linear solve a parameter, as for elastoplasticity. D lambda = (0, D t_T of the last increment): the
 /// stored traction is history, so its derivative travels from increment to increment. Exact for the penalised problem.
+/// Adjoint: one transposed solve; the derivative by lambda_T goes to the stored traction.
 /// [MTV94], [SLK10 sec. 3]
 #pragma once
 
 #include "sensitivity/direct.hpp"
+#include "sensitivity/pull_back.hpp"
 
 namespace stickslip {
 
@@ -17,6 +19,25 @@ bool differentiate_increment(const Penalty& method, Differentiation<E>& problem,
                                       ConeRadius::augmented, increment.time, false, previous.contact.placement);
   if (!linearised.valid()) return false;
   linearised.settle(linearised.solve(lambda), lambda);
+  return true;
+}
+
+template <class E>
+bool pull_back_increment(const Penalty& method, AdjointProblem<E>& problem, const State<double>& previous,
+                         const Increment<double>& increment) {
+  problem.tape.rewind(problem.slots_end);
+  RecordedEquilibrium<E> recorded(problem, previous, increment.state, initial_regularisation(problem.recorded, method),
+                                  ConeRadius::augmented, increment.time, false, increment.requested);
+  if (!recorded.valid()) return false;
+  for (int j = 0; j < static_cast<int>(problem.objectives.size()); ++j) {
+    recorded.seed_outcome(j);
+    recorded.balance(j);
+    auto& history = problem.objectives[j].history;
+    Vector<double> stored = recorded.take_multiplier(j);
+    for (const auto& point : problem.model.points) stored[point.multiplier] = 0;
+    history = recorded.finish(j);
+    history.traction = stored;
+  }
   return true;
 }
 

@@ -7,10 +7,13 @@
 ///              the truncated algorithm, for a loop that was cut off or stopped at a coarse tolerance
 ///   oversized  one pass with kappa_s rho in place of rho, states frozen: error O(1/kappa_s), no iteration [SZ00]
 ///
-/// All carry D lambda of the last increment in as D lambda^0. [SLK10 sec. 1], [CD20]
+/// All carry D lambda of the last increment in as D lambda^0. Adjoint: the same maps transposed. The derivative by t
+/// goes to lambda and back,  l <- l D t/D lambda,  until nothing is left (iterated), sweep by sweep (truncated), or
+/// once. [SLK10 sec. 1], [CD20]
 #pragma once
 
 #include "sensitivity/direct.hpp"
+#include "sensitivity/pull_back.hpp"
 
 namespace stickslip {
 
@@ -107,6 +110,103 @@ bool differentiate_increment(const UzawaAL& method, Differentiation<E>& problem,
   else if (!detail::iterate(problem, linearised, rho, lambda, fields))
     return false;
   linearised.settle(fields, lambda);
+  return true;
+}
+
+namespace detail {
+
+/// Records an equilibrium of the loop with rho times `oversize`.
+template <class E>
+RecordedEquilibrium<E> record(const UzawaAL& method, AdjointProblem<E>& problem, const State<double>& previous,
+                              const State<double>& at, std::vector<double> factor, double oversize, double time,
+                              bool objectives) {
+  for (double& f : factor) f *= oversize;
+  problem.tape.rewind(problem.slots_end);
+  return RecordedEquilibrium<E>(problem, previous, at,
+                                adapted(initial_regularisation(problem.recorded, method), factor),
+                                ConeRadius::augmented, time, false, objectives);
+}
+
+/// Moves the derivative by lambda on to the update before, again and again, until what is left of it is lost in
+/// rounding.
+template <class E>
+bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, int objective) {
+  constexpr double tolerance = 1e-13, rounding = 1e-16;
+  constexpr int limit = 20000;
+  double largest = 0, last = 0;
+  for (int pass = 1; pass <= limit; ++pass) {
+    recorded.balance(objective);
+    const Vector<double> left = recorded.take_multiplier(objective);
+    const double size = left.size() ? left.cwiseAbs().maxCoeff() : 0;
+    largest = std::max(largest, size);
+    const double q = last > 0 ? size / last : 1;
+    if (size <= 4 * rounding * largest || (q < 1 && pass > 2 && size / (1 - q) <= tolerance * largest)) return true;
+    last = size;
+    recorded.seed_traction(objective, left);
+  }
+  problem.message = "the iterated adjoint did not settle in 20000 passes; try a larger scale, or oversized";
+  return false;
+}
+
+/// All augmentations that were performed, the last one first.
+template <class E>
+bool pull_back_sweeps(const UzawaAL& method, AdjointProblem<E>& problem, const State<double>& previous,
+                      const Increment<double>& increment) {
+  const int objectives = static_cast<int>(problem.objectives.size());
+  std::vector<HistoryDerivative> gathered(objectives);
+  std::vector<Vector<double>> traction(objectives);
+  for (std::size_t k = increment.sweeps.size(); k-- > 0;) {
+    const auto& sweep = increment.sweeps[k];
+    const bool last = k + 1 == increment.sweeps.size();
+    auto recorded = record(method, problem, previous, sweep.state, sweep.rho_factor, 1, increment.time,
+                           last && increment.requested);
+    if (!recorded.valid()) return false;
+    for (int j = 0; j < objectives; ++j) {
+      if (last)
+        recorded.seed_outcome(j);
+      else
+        recorded.seed_traction(j, traction[j]);
+      recorded.balance(j);
+      traction[j] = recorded.take_multiplier(j);
+      const auto history = recorded.finish(j);
+      if (last) {
+        gathered[j] = history;
+      } else {
+        gathered[j].placement += history.placement;
+        gathered[j].dissipation += history.dissipation;
+      }
+    }
+  }
+  for (int j = 0; j < objectives; ++j) {
+    problem.objectives[j].history = gathered[j];
+    problem.objectives[j].history.traction = traction[j];
+  }
+  return true;
+}
+
+}  // namespace detail
+
+template <class E>
+bool pull_back_increment(const UzawaAL& method, AdjointProblem<E>& problem, const State<double>& previous,
+                         const Increment<double>& increment) {
+  if (method.sensitivity == UzawaAL::Sensitivity::truncated)
+    return detail::pull_back_sweeps(method, problem, previous, increment);
+  const bool oversized = method.sensitivity == UzawaAL::Sensitivity::oversized;
+  auto recorded = detail::record(method, problem, previous, increment.state, increment.rho_factor,
+                                 oversized ? method.oversize : 1, increment.time, increment.requested);
+  if (!recorded.valid()) return false;
+  for (int j = 0; j < static_cast<int>(problem.objectives.size()); ++j) {
+    recorded.seed_outcome(j);
+    Vector<double> carried = Vector<double>::Zero(problem.model.multiplier_count);
+    if (oversized) {
+      recorded.balance(j);
+      carried = recorded.take_multiplier(j);
+    } else if (!detail::iterate_back(problem, recorded, j)) {
+      return false;
+    }
+    problem.objectives[j].history = recorded.finish(j);
+    problem.objectives[j].history.traction = carried;
+  }
   return true;
 }
 

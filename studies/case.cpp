@@ -99,6 +99,31 @@ std::vector<StepResult> gather_steps(const CaseResult& result) {
   return steps;
 }
 
+void differentiate_case(Workspace<double>& workspace, CaseResult& result) {
+  const auto& [model, slots, unused] = *result.problem;
+  if (model.scene.sensitivity_mode == SensitivityMode::adjoint) {
+    result.gradients = adjoint(model, slots, result.method, result.trajectory, workspace);
+    return;
+  }
+  result.gradients = differentiate(model, slots, result.method, result.trajectory, workspace);
+  result.gradients.of_objectives = objective_gradients(model, slots, result.trajectory, result.gradients);
+  result.one_sided = one_sided_derivatives(model, slots, result.method, result.trajectory, workspace);
+  if (result.one_sided) result.gradients.counters += result.one_sided->counters;
+}
+
+/// {objective: {"value", "gradient": {parameter: derivative}}}.
+json objectives_json(const CaseResult& result) {
+  const auto& scene = result.problem->model.scene;
+  json out = json::object();
+  for (std::size_t i = 0; i < scene.objectives.size(); ++i) {
+    json& entry = out[scene.objectives[i].name];
+    entry["value"] = finite(result.objectives[i]);
+    for (std::size_t j = 0; result.gradients.of_objectives.size() && j < scene.parameters.size(); ++j)
+      entry["gradient"][scene.parameters[j].name] = finite(result.gradients.of_objectives(i, j));
+  }
+  return out;
+}
+
 }  // namespace
 
 Problem::Problem(const Scene& scene) {
@@ -128,11 +153,10 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
                       result.trajectory.status != Status::not_finite;
   if (solved) {
     result.condition_estimate = std::visit([](auto& engine) { return engine.condition_estimate(); }, *workspace.engine);
-    result.gradients = differentiate(problem->model, problem->slots, method, result.trajectory, workspace);
-    result.one_sided = one_sided_derivatives(problem->model, problem->slots, method, result.trajectory, workspace);
-    if (result.one_sided) result.gradients.counters += result.one_sided->counters;
+    differentiate_case(workspace, result);
   }
   result.steps = gather_steps(result);
+  result.objectives = objective_values(problem->model, problem->slots, result.trajectory);
   return result;
 }
 
@@ -214,7 +238,7 @@ json steps_json(const CaseResult& result) {
                   {"margins", {{"open", finite(step.margins.open)}, {"slip", finite(step.margins.slip)}}},
                   {"responses", responses}};
     if (!scene.parameters.empty()) {
-      entry["sensitivities"] = sensitivities;
+      if (scene.sensitivity_mode == SensitivityMode::direct) entry["sensitivities"] = sensitivities;
       entry["differentiable"] = step.differentiable;
       if (!step.differentiable) entry["one_sided"] = one_sided_json(step, scene);
     }
@@ -295,6 +319,7 @@ json result_json(const CaseResult& result, const std::string& scene_text) {
                     {"sensitivity", effects.sensitivity}};
   out["size"] = size_json(result);
   out["steps"] = steps_json(result);
+  if (!model.scene.objectives.empty()) out["objectives"] = objectives_json(result);
   out["cost"] = cost_json(result);
   out["provenance"] = provenance(1);
   return out;

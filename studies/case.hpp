@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sensitivity/adjoint.hpp"
 #include "sensitivity/one_sided.hpp"
 #include "studies/metrics.hpp"
 
@@ -39,6 +40,7 @@ struct CaseResult {
   Gradients gradients;
   std::optional<OneSided> one_sided;  ///< where a point was about to change state
   std::vector<StepResult> steps;
+  Vector<double> objectives;  ///< their values
   double condition_estimate = 0;
   long nonzeros = 0;
   Status status() const;  ///< of the trajectory, or of the derivatives where only they failed

@@ -90,9 +90,11 @@ std::string explain(const Input& input, const Problem& problem) {
   if (effects.contact) text += "  unilateral contact\n";
   if (effects.friction) text += "  Coulomb friction, path dependent (slip is remembered)\n";
   if (effects.deformable_master) text += "  contact between deformable bodies\n";
+  const bool adjoint = scene.sensitivity_mode == SensitivityMode::adjoint;
   if (effects.sensitivity)
-    text += fmt::format("  derivatives of {} responses with respect to {} parameters, direct\n", scene.responses.size(),
-                        scene.parameters.size());
+    text += fmt::format("  derivatives of {} {} with respect to {} parameters, {}\n",
+                        adjoint ? scene.objectives.size() : scene.responses.size(),
+                        adjoint ? "objectives" : "responses", scene.parameters.size(), adjoint ? "adjoint" : "direct");
   text += "left out (no unknowns, no storage, no code path):\n";
   if (!effects.contact) text += "  contact: no slave node faces a master\n";
   if (!effects.friction) text += "  friction: no contact has a coefficient\n";

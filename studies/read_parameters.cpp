@@ -57,8 +57,56 @@ struct Reader {
     }
   }
 
+  /// One parameter, or where `each` one a node of the side: NAME/0, NAME/1, ... along it.
+  void add_shapes(const std::string& name, const JsonNode& node, ShapeMotion motion, bool each, std::size_t nodes) {
+    for (std::size_t n = 0; n < (each ? nodes : 1); ++n) {
+      motion.node = each ? static_cast<int>(n) : -1;
+      const std::string suffix = each ? "/" + std::to_string(n) : "";
+      motion.slot = reading.extra_slot(node.pointer() + suffix);
+      Parameter parameter;
+      parameter.name = name + suffix;
+      parameter.slots = {{motion.slot, 1.0}};
+      parameter.pointer = node.pointer() + suffix;
+      reading.scene.parameters.push_back(std::move(parameter));
+      reading.scene.shapes.push_back(motion);
+    }
+  }
+
+  /// {"side", "direction"}, "fixed", "each".
+  void read_shape(const std::string& name, const JsonNode& node) {
+    if (!node.is_object({{"side", "direction"}, {"fixed", "each"}})) return;
+    const auto side_node = node.find("side"), direction = node.find("direction"), fixed = node.find("fixed"),
+               each = node.find("each");
+    const auto side = side_node ? reading.side(*side_node) : std::nullopt;
+    const auto stays = fixed ? reading.side(*fixed) : std::nullopt;
+    if (each) each->choice({"node"});
+    ShapeMotion motion;
+    const auto components =
+        direction ? direction->array(reading.dimension(),
+                                     "a direction of " + std::to_string(reading.dimension()) + " numbers, not all zero")
+                  : std::nullopt;
+    if (components)
+      for (const JsonNode& component : *components) {
+        reading.constants[component.pointer()] = "the direction of a shape parameter, not a part of the scene";
+        motion.direction.push_back(component.number(any_number).value_or(1));
+      }
+    if (components && std::all_of(motion.direction.begin(), motion.direction.end(), [](double x) { return x == 0; }))
+      direction->must_be("a direction, not all zero");
+    if (!side || !components || (fixed && !stays)) return;
+    if (!is_continuum(side->mesh->shape))
+      return side_node->error(
+          "is a side of a body without elements that fill it; its coordinates are parameters "
+          "themselves, by their pointers");
+    if (stays && stays->body != side->body) return fixed->must_be("a side of the same body, " + side->body);
+    motion.side = side_node->value();
+    if (fixed) motion.fixed = fixed->value();
+    while (reading.scene.bodies[motion.body].name != side->body) ++motion.body;
+    add_shapes(name, node, std::move(motion), each.has_value(), side->side.nodes.size());
+  }
+
   void read(const std::string& name, const JsonNode& node) {
-    constexpr const char* allowed = "a JSON pointer such as /contacts/sole/friction, or {pointer: weight, ...}";
+    constexpr const char* allowed =
+        R"(a JSON pointer such as /contacts/sole/friction, {pointer: weight, ...}, or {"shape": {...}})";
     Parameter parameter;
     parameter.name = name;
     if (node.value().is_string()) {
@@ -66,8 +114,8 @@ struct Reader {
     } else if (!node.value().is_object() || node.value().empty()) {
       return node.must_be(allowed);
     } else if (const auto shape = node.find("shape")) {
-      return shape->error_at_key("a shape parameter of an imported mesh is not available in this version; allowed: " +
-                                 std::string(allowed));
+      if (node.is_object({{"shape"}})) read_shape(name, *shape);
+      return;
     } else {
       for (const auto& [pointer, weight] : node.members()) {
         static constexpr Rule not_zero{"a number other than 0", [](double w) { return w != 0; }};

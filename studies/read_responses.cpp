@@ -125,11 +125,46 @@ void read_response(const std::string& name, const JsonNode& outer, SceneReading&
   reading.scene.responses.push_back(std::move(response));
 }
 
+/// The time of "at": within the run, whose end is known where "time" is right.
+void read_instant(const JsonNode& node, Objective& objective, SceneReading& reading) {
+  objective.at = reading.time(node, positive);
+  const auto& legs = reading.scene.legs;
+  if (objective.at && !legs.empty() && *objective.at > legs.back().end)
+    node.error("is " + shown(node.value()) + ", after the end of the run at " + shown(legs.back().end));
+}
+
+void read_objective(const std::string& name, const JsonNode& node, SceneReading& reading) {
+  if (!node.is_object({{"of"}, {"sum", "at", "target"}})) return;
+  Objective objective;
+  objective.name = name;
+  const auto of = node.find("of"), sum = node.find("sum"), at = node.find("at"), target = node.find("target");
+  std::vector<std::string> names;
+  for (const auto& response : reading.scene.responses) names.push_back(response.name);
+  if (const auto response = of ? of->text() : std::nullopt) {
+    const auto found = std::find(names.begin(), names.end(), *response);
+    objective.response = static_cast<int>(found - names.begin());
+    if (found == names.end() && !reading.diagnostics.has_error_in("/responses"))
+      of->error("is " + in_quotes(*response) + ": there is no such response;" + suggestion(*response, names) +
+                " allowed: " + listed(names));
+  }
+  if (sum && at) at->error_at_key(R"("at" is a single time, and "sum" adds up all steps: one of the two)");
+  if (!sum && !at) node.error(R"(one of the keys is missing: "sum": true, or "at": a time)");
+  if (sum && sum->value() != true) sum->must_be("true");
+  if (at) read_instant(*at, objective, reading);
+  if (target) objective.target = reading.table(*target);
+  reading.scene.objectives.push_back(std::move(objective));
+}
+
 }  // namespace
 
 void read_responses(const JsonNode& node, SceneReading& reading) {
   if (!node.is_map("responses by name")) return;
   for (const auto& [name, response] : node.members()) read_response(name, response, reading);
+}
+
+void read_objectives(const JsonNode& node, SceneReading& reading) {
+  if (!node.is_map("objectives by name")) return;
+  for (const auto& [name, objective] : node.members()) read_objective(name, objective, reading);
 }
 
 }  // namespace stickslip

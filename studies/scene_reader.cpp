@@ -54,6 +54,15 @@ void read_output(const JsonNode& node, OutputOptions& output) {
   }
 }
 
+void read_sensitivity(const JsonNode& node, SceneReading& reading) {
+  const auto mode = node.is_object({{}, {"mode"}}) ? node.find("mode") : std::nullopt;
+  if (!mode || mode->choice({"direct", "adjoint"}) != "adjoint") return;
+  reading.scene.sensitivity_mode = SensitivityMode::adjoint;
+  if (reading.scene.objectives.empty() && !reading.diagnostics.has_error_in("/objectives"))
+    mode->error(R"(is "adjoint", which differentiates the objectives, and the scene has none; add "objectives", )"
+                R"(or use "direct")");
+}
+
 /// Another method than the scene's: what the scene says of its own is checked, then replaced by the other's defaults.
 void select_method(JsonDocument& document, const std::optional<std::string>& name, Diagnostics& diagnostics,
                    MeshFiles& mesh_files) {
@@ -80,10 +89,10 @@ std::optional<Input> read_scene(const JsonDocument& given, const std::optional<s
   const std::filesystem::path folder = std::filesystem::path(given.file()).parent_path();
   JsonDocument document = given;
   const JsonNode file_root(given, diagnostics);
-  if (!file_root.is_object({{"bodies", "time"},
-                            {"$schema", "title", "space", "strain", "obstacles", "contacts", "supports", "loads",
-                             "responses", "parameters", "method", "linear_solver", "output", "sensitivity"},
-                            {"objectives"}}))
+  if (!file_root.is_object(
+          {{"bodies", "time"},
+           {"$schema", "title", "space", "strain", "obstacles", "contacts", "supports", "loads", "responses",
+            "objectives", "parameters", "method", "linear_solver", "output", "sensitivity"}}))
     return std::nullopt;
 
   const bool known = !method_name || default_method(*method_name);
@@ -106,10 +115,10 @@ std::optional<Input> read_scene(const JsonDocument& given, const std::optional<s
   part("loads", read_loads);
   part("time", read_time);
   part("responses", read_responses);
+  part("objectives", read_objectives);
   if (const auto node = root.find("linear_solver")) read_linear_solver(*node, input);
   if (const auto node = root.find("output")) read_output(*node, input.output);
-  if (const auto node = root.find("sensitivity"); node && node->is_object({{}, {"mode"}}))
-    if (const auto mode = node->find("mode")) mode->choice({"direct"}, {"adjoint"});
+  part("sensitivity", read_sensitivity);
 
   const auto method_node = root.find("method");
   if (!method_node && known) root.error(R"(the key "method" is missing; allowed: )" + listed(method_names()));

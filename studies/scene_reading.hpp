@@ -61,6 +61,9 @@ struct SceneReading {
   /// {"center", "angle"} and in space "axis".
   Rotation rotation(const JsonNode&);
 
+  /// Slot of a number 0 that the file does not write: a shape parameter's distance.
+  int extra_slot(const std::string& pointer) { return slot(pointer, 0); }
+
   // Numbers that cannot be parameters.
   std::optional<double> time(const JsonNode&, const Rule&);
   std::optional<int> count(const JsonNode&, int least);
@@ -86,6 +89,7 @@ void read_supports(const JsonNode&, SceneReading&);
 void read_loads(const JsonNode&, SceneReading&);
 void read_time(const JsonNode&, SceneReading&);
 void read_responses(const JsonNode&, SceneReading&);
+void read_objectives(const JsonNode&, SceneReading&);
 
 /// Parameters. `root`: the whole scene. A pointer to an option of a method other than `method`: a fault, or where
 /// `drop_others` a note; the pointers dropped are returned, as pointers of the file.

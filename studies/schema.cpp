@@ -154,16 +154,30 @@ constexpr const char* scene_parts = R"({
       "prefixItems": [{"$ref": "#/$defs/positive"}, {"$ref": "#/$defs/count"}]}}},
     "oneOf": [{"required": ["end", "steps"]}, {"required": ["legs"], "properties": {"end": false, "steps": false}}]},
   "responses": {"type": "object", "additionalProperties": {"$ref": "#/$defs/response"}},
+  "objectives": {"description": "scalars over time", "type": "object", "additionalProperties": {
+    "type": "object", "required": ["of"], "additionalProperties": false, "properties": {
+      "of": {"description": "a response", "type": "string"},
+      "sum": {"description": "over the steps", "const": true},
+      "at": {"description": "a time, which becomes the end of a step", "$ref": "#/$defs/positive"},
+      "target": {"description": "the squared distance to it is taken", "$ref": "#/$defs/value"}},
+    "oneOf": [{"required": ["sum"]}, {"required": ["at"]}]}},
   "parameters": {"description": "JSON pointers of numbers of the scene", "type": "object", "additionalProperties": {
     "anyOf": [{"type": "string"},
-              {"type": "object", "minProperties": 1, "additionalProperties": {"type": "number"}}]}},
+      {"type": "object", "required": ["shape"], "additionalProperties": false, "properties": {
+        "shape": {"description": "a side moves, the body follows", "type": "object",
+          "required": ["side", "direction"], "additionalProperties": false, "properties": {
+          "side": {"$ref": "#/$defs/side"}, "direction": {"$ref": "#/$defs/vector"},
+          "fixed": {"description": "what stays; left out: all other sides", "$ref": "#/$defs/side"},
+          "each": {"description": "one parameter a node", "enum": ["node"]}}}}},
+      {"type": "object", "minProperties": 1, "additionalProperties": {"type": "number"}}]}},
   "method": {"$ref": "#/$defs/method"},
   "linear_solver": {"type": "object", "additionalProperties": false, "properties": {
     "engine": {"enum": ["auto", "sparse", "condensed"]},
     "backend": {"enum": ["auto", "cholmod", "mumps", "umfpack", "eigen"]}}},
   "output": {"type": "object", "additionalProperties": false, "properties": {
     "fields": {"anyOf": [{"enum": ["last", "all"]}, {"$ref": "#/$defs/count"}]}}},
-  "sensitivity": {"type": "object", "additionalProperties": false, "properties": {"mode": {"enum": ["direct"]}}}
+  "sensitivity": {"type": "object", "additionalProperties": false, "properties": {
+    "mode": {"enum": ["direct", "adjoint"]}}}
 })";
 
 /// Keys of each kind of response.

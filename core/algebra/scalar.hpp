@@ -96,6 +96,14 @@ double value(const Dual<N, S>& x) {
   return value(x.v);
 }
 
+/// Whether x is zero with all its derivatives: what it multiplies may be left out.
+inline bool vanishes(double x) { return x == 0; }
+inline bool vanishes(const std::complex<double>& x) { return x == 0.0; }
+template <int N, class S>
+bool vanishes(const Dual<N, S>& x) {
+  return vanishes(x.v) && (x.d == S(0)).all();
+}
+
 template <class T>
 using Vector = Eigen::Matrix<T, Eigen::Dynamic, 1>;
 template <class T>

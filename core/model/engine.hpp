@@ -82,7 +82,8 @@ class SparseEngine {
   Vector<T> residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const;
   bool is_free(Eigen::Index row) const { return model_.free_index[row] >= 0; }
   bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters);
-  BlockVector<T> solve(const BlockVector<T>& rows);
+  /// K^T in place of K where `transposed`.
+  BlockVector<T> solve(const BlockVector<T>& rows, bool transposed = false);
   /// The bodies' stiffness times engine increments (engine rows).
   Matrix<T> apply_stiffness(const Matrix<T>& u) const;
   /// Rows over all dofs, in the frames -> engine rows, and the increment over all dofs, in the axes, that belongs to an
@@ -158,7 +159,8 @@ class CondensedEngine {
   Vector<T> residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const;
   bool is_free(Eigen::Index row) const { return free_[row]; }
   bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters);
-  BlockVector<T> solve(const BlockVector<T>& rows);
+  /// K^T in place of K where `transposed`.
+  BlockVector<T> solve(const BlockVector<T>& rows, bool transposed = false);
   Matrix<T> apply_stiffness(const Matrix<T>& u) const { return condensation_->schur() * u; }
   Matrix<T> reduce(const Matrix<T>& rows) { return condensation_->reduce(rows); }
   Matrix<T> expand(const Matrix<T>& u, const Matrix<T>& rows) {

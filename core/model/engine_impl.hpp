@@ -198,12 +198,12 @@ bool SparseEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents, Co
 }
 
 template <class T>
-BlockVector<T> SparseEngine<T>::solve(const BlockVector<T>& rows) {
+BlockVector<T> SparseEngine<T>::solve(const BlockVector<T>& rows, bool transposed) {
   const int free = static_cast<int>(model_.free_dofs.size());
   Matrix<T> b(size_, rows.u.cols());
   for (int i = 0; i < free; ++i) b.row(i) = rows.u.row(model_.free_dofs[i]);
   if (unknown_multipliers_) b.bottomRows(model_.multiplier_count) = rows.l;
-  const Matrix<T> x = solver_.solve(b);
+  const Matrix<T> x = solver_.solve(b, transposed);
   BlockVector<T> out{Matrix<T>::Zero(model_.dof_count(), b.cols()), Matrix<T>::Zero(model_.multiplier_count, b.cols())};
   for (int i = 0; i < free; ++i) out.u.row(model_.free_dofs[i]) = x.row(i);
   if (unknown_multipliers_) out.l = x.bottomRows(model_.multiplier_count);
@@ -297,6 +297,7 @@ Matrix<T> Condensation<T>::reduce(const Matrix<T>& rows) {
   if (interior_.empty()) return reduced;
   Matrix<T> inner(interior_.size(), rows.cols());
   for (std::size_t i = 0; i < interior_.size(); ++i) inner.row(i) = rows.row(interior_[i]);
+  if (inner.isZero(0)) return reduced;
   reduced -= interior_contact_.transpose() * solver_.solve(inner);
   return reduced;
 }
@@ -430,14 +431,17 @@ bool CondensedEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents,
 }
 
 template <class T>
-BlockVector<T> CondensedEngine<T>::solve(const BlockVector<T>& rows) {
+BlockVector<T> CondensedEngine<T>::solve(const BlockVector<T>& rows, bool transposed) {
   const int free = static_cast<int>(free_list_.size());
   const Eigen::Index columns = rows.u.cols();
   Matrix<T> b(free + active_.size(), columns);
   for (int i = 0; i < free; ++i) b.row(i) = rows.u.row(free_list_[i]);
   for (std::size_t a = 0; a < active_.size(); ++a) b.row(free + a) = rows.l.row(active_[a]);
   Matrix<T> x = b;
-  if (b.rows() > 0) x = cholesky_ ? Matrix<T>(llt_.solve(b)) : Matrix<T>(lu_.solve(b));
+  if (b.rows() > 0 && cholesky_)
+    x = llt_.solve(b);
+  else if (b.rows() > 0)
+    x = transposed ? Matrix<T>(lu_.transpose().solve(b)) : Matrix<T>(lu_.solve(b));
   BlockVector<T> out{Matrix<T>::Zero(free_.size(), columns), Matrix<T>::Zero(model_.multiplier_count, columns)};
   for (int i = 0; i < free; ++i) out.u.row(free_list_[i]) = x.row(i);
   if (unknown_multipliers_) {

@@ -213,14 +213,14 @@ std::vector<double> step_ends(const Scene& scene) {
     start = leg.end;
   }
   const double band = 1e-9 * start;
+  auto hit_time = [&](double t) {
+    const auto next = ends.lower_bound(t - band);
+    const bool there = next != ends.end() && *next <= t + band;
+    if (t > band && t < start && !there) ends.insert(t);
+  };
   auto hit = [&](const Table& table) {
     for (int n = 0; n < table.repeat; ++n)
-      for (std::size_t i = 0; i < table.points.size(); ++i) {
-        const double t = table.time(n, i);
-        const auto next = ends.lower_bound(t - band);
-        const bool there = next != ends.end() && *next <= t + band;
-        if (t > band && t < start && !there) ends.insert(t);
-      }
+      for (std::size_t i = 0; i < table.points.size(); ++i) hit_time(table.time(n, i));
   };
   auto hit_motion = [&](const auto& of) {
     for (const auto& [axis, table] : of.move) hit(table);
@@ -233,6 +233,8 @@ std::vector<double> step_ends(const Scene& scene) {
   for (const auto& obstacle : scene.obstacles) hit_motion(obstacle);
   for (const auto& load : scene.loads)
     if (load.history) hit(*load.history);
+  for (const auto& objective : scene.objectives)
+    if (objective.at) hit_time(*objective.at);
   return {ends.begin(), ends.end()};
 }
 
@@ -391,6 +393,11 @@ Model make_model(const Scene& scene) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     if (const auto fault = radius_fault(scene.space, points, model.bodies[b]); !fault.empty())
       throw ModelError(fault, "/bodies/" + scene.bodies[b].name + "/mesh");
+  for (int b = 0; !scene.shapes.empty() && b < static_cast<int>(model.bodies.size()); ++b) {
+    const auto& body = model.bodies[b];
+    auto of_body = design_velocities(scene, b, body.mesh, points.middleCols(body.first_node, body.mesh.node_count));
+    std::move(of_body.begin(), of_body.end(), std::back_inserter(model.velocities));
+  }
   number_dofs(model, points);
   for (std::size_t c = 0; c < scene.contacts.size(); ++c) pair_contact(model, points, static_cast<int>(c));
   std::set<int> nodes;

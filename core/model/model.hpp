@@ -10,6 +10,7 @@
 #include "core/contact/contact_point.hpp"
 #include "core/contact/segments.hpp"
 #include "core/mesh/mesh.hpp"
+#include "core/model/design_velocity.hpp"
 #include "core/model/scene.hpp"
 #include "core/solids/continuum.hpp"
 
@@ -107,6 +108,7 @@ struct Model {
   std::vector<int> free_index;          ///< per dof: index among the free ones, or -1
   std::vector<int> free_dofs;
   std::vector<int> contact_nodes;              ///< ascending; all nodes of all contact points
+  std::vector<DesignVelocity> velocities;      ///< one per shape motion
   std::vector<ResponsePlace> response_places;  ///< per response
   std::vector<double> times;                   ///< ends of the increments, breakpoints of every table included
   Effects effects;

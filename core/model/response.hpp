@@ -9,12 +9,17 @@
 namespace stickslip {
 
 /// f_int - f_ext + contact over all dofs, in the axes: zero along free dofs in equilibrium, the force of the support on
-/// the body along prescribed ones (support_forces).
+/// the body along prescribed ones (support_forces). `internal`: bulk_forces of the state.
 template <class T>
-Vector<T> nodal_balance(const Model& model, const Slots<T>& slots, const State<T>& state, double time) {
-  Vector<T> rows = bulk_forces(model, slots, state.displacement) - external_forces(model, slots, time);
+Vector<T> nodal_balance(const Model& model, const Slots<T>& slots, const State<T>& state, const Vector<T>& internal,
+                        double time) {
+  Vector<T> rows = internal - external_forces(model, slots, time);
   add_compact(model, contact_forces(model, slots, state.contact.traction), rows);
   return rows;
+}
+template <class T>
+Vector<T> nodal_balance(const Model& model, const Slots<T>& slots, const State<T>& state, double time) {
+  return nodal_balance(model, slots, state, bulk_forces(model, slots, state.displacement), time);
 }
 
 namespace detail {
@@ -127,18 +132,24 @@ T contact_response(const Model& model, const Slots<T>& slots, const Response& re
 
 }  // namespace detail
 
-/// Value of a response at a state. `held`: support_forces of the state; read by `reaction` alone, may be empty
-/// otherwise.
+/// Nodal forces of a state that some responses read, all dofs; empty where none does.
+template <class T>
+struct NodalForces {
+  Vector<T> internal;  ///< bulk_forces
+  Vector<T> held;      ///< support_forces
+};
+
+/// Value of a response at a state.
 template <class T>
 T evaluate_response(const Model& model, const Slots<T>& slots, int index, const State<T>& state,
-                    const Vector<T>& held) {
+                    const NodalForces<T>& forces) {
   const Response& response = model.scene.responses[index];
   const ResponsePlace& place = model.response_places[index];
   const int D = model.dimension, axis = response.component.empty() ? 0 : response.component[0] - 'x';
   if (response.kind == Response::Kind::reaction) {
     T sum{};
     for (int node : model.side(response.on).nodes)
-      sum += detail::component_of(response, held.segment(node * D, D), slots.points.col(node), slots.numbers);
+      sum += detail::component_of(response, forces.held.segment(node * D, D), slots.points.col(node), slots.numbers);
     return sum;
   }
   if (response.kind == Response::Kind::displacement) {
@@ -151,8 +162,7 @@ T evaluate_response(const Model& model, const Slots<T>& slots, int index, const 
     for (int node : model.side(response.on).nodes) samples.push_back(state.displacement[node * D + axis]);
     return detail::take_of(response.take, samples, std::vector<T>(samples.size(), T(1)));
   }
-  if (response.kind == Response::Kind::strain_energy)
-    return T(0.5) * dot(bulk_forces(model, slots, state.displacement), state.displacement);
+  if (response.kind == Response::Kind::strain_energy) return T(0.5) * dot(forces.internal, state.displacement);
   return detail::contact_response(model, slots, response, place, state);
 }
 
@@ -160,13 +170,16 @@ T evaluate_response(const Model& model, const Slots<T>& slots, int index, const 
 template <class T>
 Vector<T> evaluate_responses(const Model& model, const Slots<T>& slots, const State<T>& state, double time) {
   const auto& responses = model.scene.responses;
-  Vector<T> held;
-  for (const auto& response : responses)
-    if (response.kind == Response::Kind::reaction && held.size() == 0)
-      held = support_forces(model, slots, nodal_balance(model, slots, state, time));
+  auto asked = [&](Response::Kind kind) {
+    return std::any_of(responses.begin(), responses.end(), [&](const Response& r) { return r.kind == kind; });
+  };
+  const bool reaction = asked(Response::Kind::reaction);
+  NodalForces<T> forces;
+  if (reaction || asked(Response::Kind::strain_energy)) forces.internal = bulk_forces(model, slots, state.displacement);
+  if (reaction) forces.held = support_forces(model, slots, nodal_balance(model, slots, state, forces.internal, time));
   Vector<T> out(responses.size());
   for (std::size_t i = 0; i < responses.size(); ++i)
-    out[i] = evaluate_response(model, slots, static_cast<int>(i), state, held);
+    out[i] = evaluate_response(model, slots, static_cast<int>(i), state, forces);
   return out;
 }
 

@@ -245,6 +245,28 @@ struct Response {
   std::vector<Number> at;          ///< point of the initial configuration instead of `on`
 };
 
+/// A side of a body, or one node of it, moves along a direction: a shape parameter, whose slot holds the distance, 0.
+struct ShapeMotion {
+  int body = 0;
+  std::string side;   ///< side expression
+  std::string fixed;  ///< side expression of what stays; empty: all other sides of the body
+  std::vector<double> direction;
+  int node = -1;  ///< index along the side; -1: the whole side
+  int slot = 0;
+};
+
+/// A scalar over time: the sum over the requested steps, or the value at the end of one, of a response F, or of its
+/// squared distance (F - target)^2 to a target.
+struct Objective {
+  std::string name;
+  int response = 0;          ///< index in Scene::responses
+  std::optional<double> at;  ///< a time; none: the sum. It becomes the end of a step, as a breakpoint of a table does
+  std::optional<Table> target = {};
+};
+
+/// Derivatives of all responses, or of the objectives alone at a cost that does not grow with the parameters.
+enum class SensitivityMode { direct, adjoint };
+
 /// A parameter: weights on slots; its derivative is the sum of weight * d/d(slot).
 struct Parameter {
   std::string name;
@@ -271,6 +293,9 @@ struct Scene {
   std::vector<Load> loads;
   std::vector<Leg> legs;
   std::vector<Response> responses;
+  std::vector<ShapeMotion> shapes;
+  std::vector<Objective> objectives;
+  SensitivityMode sensitivity_mode = SensitivityMode::direct;
   std::vector<Parameter> parameters;
 
   std::vector<double> numbers;        ///< value of each slot

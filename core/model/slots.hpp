@@ -196,7 +196,13 @@ template <class T, class Sink>
 void for_each_element_tangent(const Model& model, const Slots<T>& slots, int b, const std::vector<int>* only,
                               Sink&& sink);
 
-/// All slots of a model in the scalar of `numbers`.
+/// Nodal coordinates, D x nodes: of the generators, moved by the shape parameters.
+template <class T>
+Points<T> initial_points(const Model& model, const Numbers<T>& numbers);
+
+/// All slots of a model in the scalar of `numbers`; `points`: initial_points, or variables in their place.
+template <class T>
+Slots<T> make_slots(const Model& model, const Numbers<T>& numbers, Points<T> points);
 template <class T>
 Slots<T> make_slots(const Model& model, const Numbers<T>& numbers);
 

@@ -175,14 +175,36 @@ std::vector<T> contact_stiffness(const Model& model, const Slots<T>& slots) {
 }
 
 template <class T>
-Slots<T> make_slots(const Model& model, const Numbers<T>& numbers) {
-  Slots<T> slots;
-  slots.numbers = numbers;
-  slots.points.resize(model.dimension, model.node_count);
+Points<T> initial_points(const Model& model, const Numbers<T>& numbers) {
+  Points<T> points(model.dimension, model.node_count);
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const auto& body = model.bodies[b];
-    slots.points.middleCols(body.first_node, body.mesh.node_count) =
+    points.middleCols(body.first_node, body.mesh.node_count) =
         make_points<T>(model.scene.bodies[b].mesh, body.mesh, numbers);
+  }
+  for (const auto& velocity : model.velocities) {
+    const T& distance = numbers.at_slot[velocity.slot];
+    if (vanishes(distance)) continue;
+    const int first = model.bodies[velocity.body].first_node;
+    for (Eigen::Index n = 0; n < velocity.share.size(); ++n)
+      for (int i = 0; i < model.dimension; ++i)
+        points(i, first + n) += T(velocity.share[n] * velocity.direction[i]) * distance;
+  }
+  return points;
+}
+
+template <class T>
+Slots<T> make_slots(const Model& model, const Numbers<T>& numbers) {
+  return make_slots(model, numbers, initial_points(model, numbers));
+}
+
+template <class T>
+Slots<T> make_slots(const Model& model, const Numbers<T>& numbers, Points<T> points) {
+  Slots<T> slots;
+  slots.numbers = numbers;
+  slots.points = std::move(points);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const auto& body = model.bodies[b];
     slots.laws.push_back(detail::make_law(model.scene, model.scene.bodies[b], body.mesh, numbers));
     const bool plane = is_continuum(body.mesh.shape) && model.scene.space != Space::axisymmetric;
     slots.depths.push_back(

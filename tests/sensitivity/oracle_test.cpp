@@ -41,47 +41,15 @@ double worst_error(const Scene& scene, const Method& method) {
   return worst;
 }
 
-std::vector<Scene> scenes_to_check() {
-  return {scenes::stop(),
-          scenes::slider({{0, 0}, {1, 0.1}, {2, -0.1}, {3, 0.04}}, 9),
-          scenes::dragged_point({{0, 0, 0}, {1, 0, -0.6}, {2, 0.7, -0.6}, {3, 0.2, 0.9}}, 24, 0.3),
-          scenes::greco_plate(8),
-          scenes::two_boxes(6, 9),
-          scenes::two_boxes(5, 4, "T3", 0.25),
-          scenes::two_boxes(4, 4, "Q4", 2),
-          scenes::segment_boxes(5, 7),
-          scenes::two_disks(8, false),
-          scenes::two_disks(8, true),
-          scenes::driven_block(),
-          scenes::driven_block("T3"),
-          scenes::turned_point()};
-}
-
-/// One for each kinematics and each kind of element.
-std::vector<Scene> scenes_of_elements() {
-  Scene segments = scenes::two_drums(4, 3, "Q4"), slices = scenes::segment_boxes(4, 3);
-  segments.contacts[0].segment = true;
-  slices.bodies[0].thickness = scenes::parameter(slices, "thin", 0.7);
-  return {scenes::two_drums(4, 3, "Q4"),
-          scenes::two_drums(4, 3, "Q4_mean_dilatation"),
-          scenes::two_drums(3, 2, "T6"),
-          scenes::two_slices(3, 4, "Q8"),
-          scenes::two_slices(4, 4, "T3"),
-          scenes::fitted_rings("Q8"),
-          scenes::fitted_rings("Q4_mean_dilatation"),
-          segments,
-          slices};
-}
-
 TEST(Oracle, MonolithicSchemeIsExact) {
-  for (const auto& scene : scenes_to_check()) EXPECT_LE(worst_error(scene, MonolithicAL{}), 1);
+  for (const auto& scene : scenes::of_every_kind()) EXPECT_LE(worst_error(scene, MonolithicAL{}), 1);
 }
 
 TEST(Oracle, EverySchemeIsExactForEveryElementAndSpace) {
   UzawaAL truncated;
   truncated.sensitivity = UzawaAL::Sensitivity::truncated;
   truncated.max_augmentations = 3;
-  for (const auto& scene : scenes_of_elements()) {
+  for (const auto& scene : scenes::of_every_element()) {
     EXPECT_LE(worst_error(scene, MonolithicAL{}), 1);
     EXPECT_LE(worst_error(scene, Penalty{scenes::relative(10)}), 1);
     EXPECT_LE(worst_error(scene, truncated), 1);
@@ -95,7 +63,7 @@ TEST(Oracle, MonolithicSchemeIsExactForTheOtherCone) {
 }
 
 TEST(Oracle, PenaltySchemeIsExactForThePenalisedProblem) {
-  for (const auto& scene : scenes_to_check())
+  for (const auto& scene : scenes::of_every_kind())
     for (double stiffness : {10.0, 1e3}) {
       Penalty method{scenes::relative(stiffness)};
       method.tangential_ratio = 0.4;
@@ -104,7 +72,7 @@ TEST(Oracle, PenaltySchemeIsExactForThePenalisedProblem) {
 }
 
 TEST(Oracle, TruncatedUzawaSchemeIsTheDerivativeOfTheTruncatedLoop) {
-  for (const auto& scene : scenes_to_check())
+  for (const auto& scene : scenes::of_every_kind())
     for (int cap : {1, 3}) {
       UzawaAL method;
       method.sensitivity = UzawaAL::Sensitivity::truncated;
@@ -117,7 +85,7 @@ TEST(Oracle, IteratedUzawaSchemeIsTheDerivativeOfTheConvergedSolution) {
   UzawaAL method;
   method.tolerance = 1e-13;
   method.max_augmentations = 5000;
-  for (const auto& scene : scenes_to_check()) EXPECT_LE(worst_error(scene, method), 1);
+  for (const auto& scene : scenes::of_every_kind()) EXPECT_LE(worst_error(scene, method), 1);
 }
 
 TEST(Oracle, AutomaticAndRelativeStiffnessCarryTheirDependenceOnTheScene) {

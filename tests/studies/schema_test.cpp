@@ -72,9 +72,11 @@ std::vector<json> rich_scenes() {
       "d": {"contact_pressure": {"contact": "sole"}}, "e": {"gap": {"contact": "sole", "at": [0, 0]}},
       "f": {"slip": {"contact": "sole"}}, "g": {"dissipation": {"contact": "sole"}}, "h": {"strain_energy": {}},
       "i": {"contact_half_width": {"contact": "sole"}}},
-    "parameters": {"mu": "/contacts/sole/friction", "E": {"/bodies/block/material/linear_elastic/E": 2}},
+    "parameters": {"top": {"shape": {"side": "block.top", "direction": [0, 1], "fixed": "block.bottom", "each": "node"}},
+      "mu": "/contacts/sole/friction", "E": {"/bodies/block/material/linear_elastic/E": 2}},
     "method": {"penalty": {"stiffness": {"absolute": 3}, "newton": {"tolerance": 1e-9}}},
-    "linear_solver": {"engine": "sparse"}, "output": {"fields": 2}, "sensitivity": {"mode": "direct"}
+    "linear_solver": {"engine": "sparse"}, "output": {"fields": 2}, "sensitivity": {"mode": "adjoint"},
+    "objectives": {"J": {"of": "a", "sum": true}, "K": {"of": "a", "at": 0.5, "target": [[0, 0], [1, 2]]}}
   })";
   const char* space = R"({
     "space": "solid",

@@ -204,6 +204,27 @@ inline Scene pull_out(int cells, const std::vector<double>& path, int steps) {
   return s;
 }
 
+/// Adds a shape parameter. Its derivatives are measured against a body of size one.
+inline void shape(Scene& scene, const std::string& name, ShapeMotion motion) {
+  motion.slot = static_cast<int>(scene.numbers.size());
+  scene.numbers.push_back(0);
+  scene.pointers.push_back("/parameters/" + name);
+  scene.parameters.push_back({name, {{motion.slot, 1.0}}, "/parameters/" + name, 1.0});
+  scene.shapes.push_back(std::move(motion));
+}
+
+/// two_boxes whose sides move: the slave surface as a whole and node by node, and a side away from the contact.
+inline Scene shaped_boxes(int slave, int master, const std::string& element, bool segment) {
+  Scene s = two_boxes(slave, master, element);
+  s.contacts[0].segment = segment;
+  std::get<BoxMesh>(s.bodies[0].mesh).min[0] = 0.31;  // no symmetry, or a peak has two places
+  shape(s, "lift", {0, "upper.bottom", "upper.top", {0, 1}, -1, 0});
+  shape(s, "bump", {0, "upper.bottom", "", {0.3, -1}, 2, 0});
+  shape(s, "floor", {1, "lower.top", "lower.bottom", {0.2, 1}, 1, 0});
+  shape(s, "flank", {1, "lower.right", "", {1, 0}, -1, 0});
+  return s;
+}
+
 /// two_boxes with segment-integrated contact; `edge`, the right end of the slave, moves the pieces.
 inline Scene segment_boxes(int slave, int master, double mu = 0.3) {
   Scene s = two_boxes(slave, master, "Q4", mu);
@@ -338,6 +359,42 @@ inline Scene fitted_rings(const std::string& element) {
                  response("heat", Response::Kind::dissipation, "fit"),
                  response("pull", Response::Kind::reaction, "outer.outer", "y")};
   return s;
+}
+
+/// Lumped points, bars, plates, boxes, disks: obstacles and deformable masters, nodes and segments, with and without
+/// friction, through reversals.
+inline std::vector<Scene> of_every_kind() {
+  return {stop(),
+          slider({{0, 0}, {1, 0.1}, {2, -0.1}, {3, 0.04}}, 9),
+          dragged_point({{0, 0, 0}, {1, 0, -0.6}, {2, 0.7, -0.6}, {3, 0.2, 0.9}}, 24, 0.3),
+          greco_plate(8),
+          two_boxes(6, 9),
+          two_boxes(5, 4, "T3", 0.25),
+          two_boxes(4, 4, "Q4", 2),
+          segment_boxes(5, 7),
+          two_disks(8, false),
+          two_disks(8, true),
+          driven_block(),
+          driven_block("T3"),
+          shaped_boxes(5, 4, "Q4", false),
+          shaped_boxes(4, 5, "T3", true),
+          turned_point()};
+}
+
+/// One for each kinematics and each kind of element.
+inline std::vector<Scene> of_every_element() {
+  Scene segments = two_drums(4, 3, "Q4"), slices = segment_boxes(4, 3);
+  segments.contacts[0].segment = true;
+  slices.bodies[0].thickness = parameter(slices, "thin", 0.7);
+  return {two_drums(4, 3, "Q4"),
+          two_drums(4, 3, "Q4_mean_dilatation"),
+          two_drums(3, 2, "T6"),
+          two_slices(3, 4, "Q8"),
+          two_slices(4, 4, "T3"),
+          fitted_rings("Q8"),
+          fitted_rings("Q4_mean_dilatation"),
+          segments,
+          slices};
 }
 
 /// A solved scene with its derivatives.

@@ -1,0 +1,182 @@
+#include "sensitivity/adjoint.hpp"
+
+#include "core/model/objective.hpp"
+#include "sensitivity/monolithic.hpp"
+#include "sensitivity/penalty.hpp"
+#include "sensitivity/uzawa.hpp"
+
+namespace stickslip {
+namespace {
+
+/// The slots of a scene on a tape. Nodal coordinates are variables of their own, so that thousands of shape parameters
+/// are as many scalar products with the derivatives by them.
+struct Recording {
+  Tape tape;
+  Numbers<Reverse> numbers;
+  Points<Reverse> made, points;  ///< by the generators; the same as variables
+  int points_end = 0;            ///< on the tape
+  Slots<Reverse> slots;
+
+  explicit Recording(const Model& model) {
+    for (double x : model.scene.numbers) numbers.at_slot.push_back(Reverse::leaf(x, tape));
+    Numbers<Reverse> unshaped = numbers;
+    for (const auto& velocity : model.velocities) unshaped.at_slot[velocity.slot] = 0;
+    made = initial_points(model, unshaped);
+    points = made;
+    for (Eigen::Index i = 0; i < points.size(); ++i) points.data()[i] = Reverse::leaf(made.data()[i].v, tape);
+    points_end = tape.size();
+    slots = make_slots(model, numbers, points);
+  }
+
+  /// Derivatives by all numbers of the scene out of those by the slots.
+  Vector<double> by_numbers(const Model& model, std::vector<double>& by) const {
+    tape.pull_back(by, points_end);
+    const Matrix<double> of_points = points.unaryExpr([&](const Reverse& x) { return by[x.at]; });
+    for (Eigen::Index i = 0; i < made.size(); ++i)
+      if (made.data()[i].at >= 0) by[made.data()[i].at] += of_points.data()[i];
+    tape.pull_back(by, 0);
+    Vector<double> out(numbers.at_slot.size());
+    for (std::size_t i = 0; i < numbers.at_slot.size(); ++i) out[i] = by[numbers.at_slot[i].at];
+    for (const auto& velocity : model.velocities) {
+      const auto of_body = of_points.middleCols(model.bodies[velocity.body].first_node, velocity.share.size());
+      for (int i = 0; i < model.dimension; ++i)
+        out[velocity.slot] += velocity.direction[i] * of_body.row(i).dot(velocity.share);
+    }
+    return out;
+  }
+};
+
+/// Rows of the dofs of an element out of a matrix over all dofs.
+Matrix<double> rows_of(const std::vector<int>& nodes, int D, const Matrix<double>& all) {
+  Matrix<double> rows(nodes.size() * D, all.cols());
+  for (std::size_t n = 0; n < nodes.size(); ++n) rows.middleRows(n * D, D) = all.middleRows(nodes[n] * D, D);
+  return rows;
+}
+
+/// Vectors as the columns of a matrix.
+Matrix<double> columns(const std::vector<Vector<double>>& vectors, Eigen::Index rows) {
+  Matrix<double> out(rows, vectors.size());
+  for (std::size_t i = 0; i < vectors.size(); ++i) out.col(i) = vectors[i];
+  return out;
+}
+
+/// The bodies' share: sum over the increments of a . dK/dslots . u, element by element.
+void pull_back_bodies(const Model& model, const Slots<Reverse>& slots, Tape& tape, std::vector<Backward>& objectives) {
+  const int start = tape.size();
+  std::vector<Matrix<double>> weights, motions;
+  for (const auto& objective : objectives) {
+    weights.push_back(columns(objective.weights, model.dof_count()));
+    motions.push_back(columns(objective.motions, model.dof_count()));
+  }
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
+    for_each_element_tangent(model, slots, b, nullptr, [&](const auto& nodes, const auto& K) {
+      const std::vector<int> of_element(nodes.begin(), nodes.end());
+      for (std::size_t j = 0; j < objectives.size(); ++j) {
+        auto& by = objectives[j].by;
+        by.resize(tape.size(), 0);
+        const Matrix<double> share = rows_of(of_element, model.dimension, weights[j]) *
+                                     rows_of(of_element, model.dimension, motions[j]).transpose();
+        for (Eigen::Index c = 0; c < K.cols(); ++c)
+          for (Eigen::Index r = 0; r < K.rows(); ++r)
+            if (K(r, c).at >= 0) by[K(r, c).at] += share(r, c);
+        tape.pull_back(by, start);
+        by.resize(start);
+      }
+      tape.rewind(start);
+    });
+}
+
+template <class E, class M>
+bool run(const M& method, AdjointProblem<E>& problem, const Trajectory<double>& trajectory) {
+  const Model& model = problem.model;
+  const auto tangential = static_cast<Eigen::Index>(model.multiplier_count - model.points.size());
+  for (auto& objective : problem.objectives)
+    objective.history = {Vector<double>::Zero(tangential), Vector<double>::Zero(model.multiplier_count),
+                         Vector<double>::Zero(trajectory.initial.dissipation.size())};
+  const auto& increments = trajectory.increments;
+  for (std::size_t n = increments.size(); n-- > 0;) {
+    const auto& previous = n == 0 ? trajectory.initial : increments[n - 1].state;
+    if (!pull_back_increment(method, problem, previous, increments[n])) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Vector<double> objective_values(const Model& model, const Slots<double>& slots, const Trajectory<double>& trajectory) {
+  const auto& objectives = model.scene.objectives;
+  Vector<double> values = Vector<double>::Zero(objectives.size());
+  if (objectives.empty()) return values;
+  for (const auto& increment : trajectory.increments) {
+    if (!increment.requested) continue;
+    const auto responses = evaluate_responses(model, slots, increment.state, increment.time);
+    for (std::size_t j = 0; j < objectives.size(); ++j)
+      if (contributes(objectives[j], increment.time, model.times.back()))
+        values[j] += contribution(objectives[j], responses[objectives[j].response], increment.time, slots.numbers);
+  }
+  return values;
+}
+
+Matrix<double> objective_gradients(const Model& model, const Slots<double>& slots, const Trajectory<double>& trajectory,
+                                   const Gradients& gradients) {
+  const auto& objectives = model.scene.objectives;
+  const int parameters = static_cast<int>(model.scene.parameters.size());
+  if (objectives.empty() || parameters == 0 || gradients.of.size() < trajectory.increments.size()) return {};
+  Matrix<double> of = Matrix<double>::Zero(objectives.size(), parameters);
+  for (int first = 0; first < parameters; first += directions) {
+    std::vector<int> block;
+    for (int j = first; j < std::min(parameters, first + directions); ++j) block.push_back(j);
+    const auto numbers = seeded(model.scene, block);
+    for (std::size_t n = 0; n < trajectory.increments.size(); ++n) {
+      const auto& increment = trajectory.increments[n];
+      if (!increment.requested) continue;
+      const auto values = evaluate_responses(model, slots, increment.state, increment.time);
+      for (std::size_t i = 0; i < objectives.size(); ++i) {
+        const auto& objective = objectives[i];
+        if (!contributes(objective, increment.time, model.times.back())) continue;
+        Direction response(values[objective.response]);
+        for (std::size_t d = 0; d < block.size(); ++d) response.d[d] = gradients.of[n](objective.response, block[d]);
+        const Direction share = contribution(objective, response, increment.time, numbers);
+        for (std::size_t d = 0; d < block.size(); ++d) of(i, block[d]) += share.d[d];
+      }
+    }
+  }
+  return of;
+}
+
+Gradients adjoint(const Model& model, const Slots<double>& slots, const Method& method,
+                  const Trajectory<double>& trajectory, Workspace<double>& workspace) {
+  Gradients gradients;
+  const auto& scene = model.scene;
+  if (scene.objectives.empty() || scene.parameters.empty()) return gradients;
+  const Stopwatch time(gradients.seconds);
+  Recording recording(model);
+  Tape& tape = recording.tape;
+  std::vector<Backward> objectives(scene.objectives.size());
+  for (auto& objective : objectives) objective.by.resize(tape.size(), 0);
+  bool done = false;
+  auto backward = [&](const auto& m, auto& engine) {
+    using E = std::decay_t<decltype(engine)>;
+    AdjointProblem<E> problem{model, slots, engine, tape, recording.slots, tape.size(), objectives, {}, {}};
+    done = run(m, problem, trajectory);
+    tape.rewind(problem.slots_end);
+    gradients.counters = problem.counters;
+    gradients.message = problem.message;
+  };
+  std::visit(backward, method, *workspace.engine);
+  if (!done) {
+    gradients.status = gradients.message.starts_with("the iterated") ? Status::cap : Status::singular;
+    return gradients;
+  }
+  for (auto& objective : objectives) objective.by.resize(tape.size());
+  pull_back_bodies(model, recording.slots, tape, objectives);
+  gradients.of_objectives = Matrix<double>::Zero(objectives.size(), scene.parameters.size());
+  for (std::size_t i = 0; i < objectives.size(); ++i) {
+    const Vector<double> by = recording.by_numbers(model, objectives[i].by);
+    for (std::size_t j = 0; j < scene.parameters.size(); ++j)
+      for (const auto& [slot, weight] : scene.parameters[j].slots) gradients.of_objectives(i, j) += weight * by[slot];
+  }
+  return gradients;
+}
+
+}  // namespace stickslip

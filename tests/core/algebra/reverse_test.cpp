@@ -1,0 +1,89 @@
+#include "core/algebra/reverse.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+namespace stickslip {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+static_assert(!std::is_convertible_v<Reverse, double>);
+static_assert(std::is_convertible_v<double, Reverse>);
+
+/// Every operation in one expression; positive where it meets log, sqrt and pow for x, y in (0.5, 2).
+template <class T>
+T everything(const T& x, const T& y) {
+  T z = x * y - y / x + T(2);
+  z += sqrt(x + T(1));
+  z -= exp(-y) * T(0.5);
+  z *= T(1) + sin(x * y) * T(0.1);
+  z /= log(y + T(2)) + cos(x);
+  return pow(z * z + T(1), 1.7) + -x;
+}
+
+TEST(Reverse, GivesTheDerivativesOfDual) {
+  for (double x : {0.6, 1.3, 1.9})
+    for (double y : {0.7, 1.1}) {
+      const auto forward = everything(Dual<2>::seed(x, 0), Dual<2>::seed(y, 1));
+      Tape tape;
+      const auto a = Reverse::leaf(x, tape), b = Reverse::leaf(y, tape);
+      const auto f = everything(a, b);
+      std::vector<double> by(tape.size());
+      by[f.at] = 1;
+      tape.pull_back(by, 0);
+      // a few dozen roundings, in another order
+      EXPECT_NEAR(f.v, forward.v, 30 * epsilon * std::abs(forward.v));
+      EXPECT_NEAR(by[a.at], forward.d[0], 60 * epsilon * std::abs(forward.d[0]));
+      EXPECT_NEAR(by[b.at], forward.d[1], 60 * epsilon * std::abs(forward.d[1]));
+    }
+}
+
+TEST(Reverse, ConstantsLeaveNothingOnTheTape) {
+  Tape tape;
+  const auto x = Reverse::leaf(2, tape);
+  EXPECT_EQ((Reverse(3) * Reverse(4) + sqrt(Reverse(2))).at, -1);
+  EXPECT_EQ(tape.size(), 1);
+  const auto y = x * Reverse(3);
+  EXPECT_EQ(tape.size(), 2);
+  EXPECT_EQ(y.v, 6);
+}
+
+TEST(Tape, GathersWhatSeveralSweepsSeed) {
+  Tape tape;
+  const auto x = Reverse::leaf(2, tape), y = Reverse::leaf(5, tape);
+  const auto product = x * y, sum = product + x;
+  std::vector<double> by(tape.size());
+  by[product.at] = 1;
+  tape.pull_back(by, 0);
+  EXPECT_EQ(by[x.at], 5);
+  EXPECT_EQ(by[y.at], 2);
+  EXPECT_EQ(by[product.at], 0);  // moved on, so that the next sweep does not move it again
+  by[sum.at] = 10;
+  tape.pull_back(by, 0);
+  EXPECT_EQ(by[x.at], 5 + 10 * 6);
+  EXPECT_EQ(by[y.at], 2 + 10 * 2);
+}
+
+TEST(Tape, StopsWhereASweepIsToStopAndForgetsWhatIsRewound) {
+  Tape tape;
+  const auto x = Reverse::leaf(2, tape);
+  const auto square = x * x;
+  const int start = tape.size();
+  const auto cube = square * x;
+  std::vector<double> by(tape.size());
+  by[cube.at] = 1;
+  tape.pull_back(by, start);
+  EXPECT_EQ(by[x.at], 4);
+  EXPECT_EQ(by[square.at], 2);
+  tape.rewind(start);
+  by.resize(start);
+  tape.pull_back(by, 0);
+  EXPECT_EQ(by[x.at], 12);
+}
+
+}  // namespace
+}  // namespace stickslip

@@ -1,0 +1,140 @@
+/// Derivatives of objectives: backward in time against those of the responses, method by method.
+#include "sensitivity/adjoint.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/scenes.hpp"
+
+namespace stickslip {
+namespace {
+
+/// Each response at the end, summed over the steps, and squared against a target that is a parameter itself.
+Scene with_objectives(Scene scene) {
+  const int responses = static_cast<int>(scene.responses.size());
+  const Number target = scenes::parameter(scene, "target", 0.3);
+  const double end = scene.legs.back().end;
+  for (int i = 0; i < responses; ++i) {
+    const std::string name = scene.responses[i].name;
+    scene.objectives.push_back({name + " at the end", i, end});
+    scene.objectives.push_back({"sum of " + name, i, {}});
+    scene.objectives.push_back({name + " on target", i, {}, scenes::table({{0, 0.0}, {end, target}})});
+  }
+  return scene;
+}
+
+struct Both {
+  Matrix<double> direct, adjoint, scale;
+  Gradients forward, backward;
+  double condition = 0;
+};
+
+Both both(const Scene& scene, const Method& method, LinearAlgebra::Engine engine = LinearAlgebra::Engine::automatic) {
+  const Model model = make_model(scene);
+  const auto slots = make_slots<double>(model, scene.as<double>());
+  Workspace<double> workspace;
+  RunOptions options;
+  options.linear_algebra.engine = engine;
+  const auto trajectory = solve(model, slots, method, options, workspace);
+  Both out;
+  out.forward = differentiate(model, slots, method, trajectory, workspace);
+  out.direct = objective_gradients(model, slots, trajectory, out.forward);
+  out.condition = std::visit([](auto& e) { return e.condition_estimate(); }, *workspace.engine);  // of the scheme's
+  out.backward = adjoint(model, slots, method, trajectory, workspace);
+  out.adjoint = out.backward.of_objectives;
+  // what an objective adds up: its size over that of the parameter, or its largest derivative
+  const Vector<double> values = objective_values(model, slots, trajectory);
+  out.scale = out.direct.cwiseAbs();
+  for (Eigen::Index i = 0; i < out.scale.rows(); ++i)
+    for (Eigen::Index j = 0; j < out.scale.cols(); ++j)
+      out.scale(i, j) =
+          std::max(out.direct.row(i).cwiseAbs().maxCoeff(), std::abs(values[i] / model.scene.parameters[j].value));
+  return out;
+}
+
+/// The two agree to rounding: 1e-11, or 50 u cond where the tangent lets more rounding through.
+void expect_agreement(const Scene& scene, const Method& method,
+                      LinearAlgebra::Engine engine = LinearAlgebra::Engine::automatic) {
+  const auto b = both(scene, method, engine);
+  const std::string what = scene.title + " " + std::string(name_of(method));
+  ASSERT_EQ(b.direct.rows(), static_cast<Eigen::Index>(scene.objectives.size())) << what << b.forward.message;
+  ASSERT_EQ(b.adjoint.rows(), b.direct.rows()) << what << b.backward.message;
+  const double allowed = std::max(1e-11, 50 * 1.1e-16 * b.condition);
+  bool something = false;
+  for (Eigen::Index i = 0; i < b.direct.rows(); ++i)
+    for (Eigen::Index j = 0; j < b.direct.cols(); ++j) {
+      something |= b.direct(i, j) != 0;
+      EXPECT_LE(std::abs(b.adjoint(i, j) - b.direct(i, j)), allowed * b.scale(i, j))
+          << what << ": " << scene.objectives[i].name << " / " << scene.parameters[j].name << " " << b.adjoint(i, j)
+          << " " << b.direct(i, j);
+    }
+  EXPECT_TRUE(something) << what;
+}
+
+std::vector<Scene> all_scenes() {
+  auto scenes = scenes::of_every_kind();
+  for (auto& scene : scenes::of_every_element()) scenes.push_back(std::move(scene));
+  for (auto& scene : scenes) scene = with_objectives(std::move(scene));
+  return scenes;
+}
+
+UzawaAL uzawa(UzawaAL::Sensitivity sensitivity, double tolerance, int cap) {
+  UzawaAL method;
+  method.sensitivity = sensitivity;
+  method.tolerance = tolerance;
+  method.max_augmentations = cap;
+  return method;
+}
+
+TEST(Adjoint, EqualsDirectForTheMonolithicMethod) {
+  for (const auto& scene : all_scenes()) expect_agreement(scene, MonolithicAL{});
+}
+
+TEST(Adjoint, EqualsDirectForThePenaltyWhoseHistoryIsTheTraction) {
+  for (const auto& scene : all_scenes()) {
+    Penalty method{scenes::relative(20)};
+    method.tangential_ratio = 0.4;
+    expect_agreement(scene, method);
+  }
+}
+
+TEST(Adjoint, EqualsDirectForTheFixedPointOfUzawa) {
+  for (const auto& scene : all_scenes()) expect_agreement(scene, uzawa(UzawaAL::Sensitivity::iterated, 1e-13, 5000));
+}
+
+TEST(Adjoint, EqualsDirectForTheTruncatedLoopOfUzawa) {
+  for (const auto& scene : all_scenes())
+    for (int cap : {1, 3}) expect_agreement(scene, uzawa(UzawaAL::Sensitivity::truncated, 1e-10, cap));
+}
+
+TEST(Adjoint, EqualsDirectForTheOversizedScheme) {
+  for (const auto& scene : all_scenes()) expect_agreement(scene, uzawa(UzawaAL::Sensitivity::oversized, 1e-13, 5000));
+}
+
+TEST(Adjoint, EqualsDirectInBothEnginesAndForTheOtherCone) {
+  MonolithicAL method;
+  method.cone = MonolithicAL::Cone::multiplier;
+  for (const auto& scene : {scenes::greco_plate(8), scenes::two_boxes(6, 9), scenes::driven_block()})
+    for (auto engine : {LinearAlgebra::Engine::sparse, LinearAlgebra::Engine::condensed})
+      expect_agreement(with_objectives(scene), method, engine);
+}
+
+TEST(Adjoint, TakesOneTransposedSolveAnObjectiveAndIncrementHoweverManyParameters) {
+  const auto scene = with_objectives(scenes::two_boxes(6, 9));
+  const auto b = both(scene, MonolithicAL{});
+  const long increments = static_cast<long>(b.forward.of.size());
+  // (the sparse solver's residual is at rounding: no pass more)
+  EXPECT_EQ(b.backward.counters.sensitivity_backsolves, increments * static_cast<long>(scene.objectives.size()));
+  EXPECT_LE(b.backward.counters.sensitivity_factorizations, increments);
+}
+
+TEST(Adjoint, DoesNotChangeTheSolutionAndNeedsObjectivesAndParameters) {
+  Scene scene = scenes::two_boxes(6, 9);
+  const Model model = make_model(scene);
+  const auto slots = make_slots<double>(model, scene.as<double>());
+  Workspace<double> workspace;
+  const auto trajectory = solve(model, slots, MonolithicAL{}, {}, workspace);
+  EXPECT_EQ(adjoint(model, slots, MonolithicAL{}, trajectory, workspace).of_objectives.size(), 0);
+}
+
+}  // namespace
+}  // namespace stickslip
