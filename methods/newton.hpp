@@ -19,6 +19,7 @@
 
 #include "core/model/engine.hpp"
 #include "methods/options.hpp"
+#include "methods/trace.hpp"
 
 namespace stickslip {
 
@@ -45,6 +46,7 @@ struct Account {
   RunScales scales;
   Counters counters;
   Seconds seconds;
+  Trace* trace = nullptr;  ///< not owned; gathers every iterate where it is there
 };
 
 template <class T>
@@ -259,6 +261,7 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
   for (int iteration = 0;; ++iteration) {
     result.history.push_back(detail::record(at, used, step_length));
     result.history.back().changed = iteration == 0 ? 0 : result.history.back().changed;
+    if (account.trace) account.trace->take(input, multiplier, at.field, result.history.back(), iteration);
     const bool unchanged = iteration == 0 || result.history.back().changed == 0;
     auto finish = [&](Status status, std::string message = "") {
       result.status = status;

@@ -18,6 +18,7 @@ struct RunOptions {
   Backend backend = Backend::automatic;
   std::vector<double> replay;     ///< ends of the increments to repeat, without cutting; empty: the model's own steps
   std::function<void()> on_step;  ///< called after each requested step; may be empty
+  Trace* trace = nullptr;         ///< not owned; gathers every iterate where it is there
 };
 
 namespace detail {
@@ -75,6 +76,7 @@ template <class T, class E, class M>
 void march(const M& method, const Model& model, const Slots<T>& slots, E& engine, const RunOptions& options,
            Trajectory<T>& trajectory) {
   Run<T, E> run{model, slots, engine, {}};
+  run.account.trace = options.trace;
   trajectory.initial = initial_state<T>(model);
   const auto& times = options.replay.empty() ? model.times : options.replay;
   for (double time : times) {

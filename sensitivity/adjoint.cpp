@@ -9,7 +9,7 @@ namespace stickslip {
 namespace {
 
 /// The slots of a scene on a tape. Nodal coordinates are variables of their own, so that thousands of shape parameters
-/// are as many scalar products with the derivatives by them.
+/// share one transposed extension.
 struct Recording {
   Tape tape;
   Numbers<Reverse> numbers;
@@ -37,10 +37,18 @@ struct Recording {
     tape.pull_back(by, 0);
     Vector<double> out(numbers.at_slot.size());
     for (std::size_t i = 0; i < numbers.at_slot.size(); ++i) out[i] = by[numbers.at_slot[i].at];
+    const ShapeExtension* extension = nullptr;
+    Matrix<double> of_given;  // by the motion of given nodes along each axis, for velocities that share the extension
     for (const auto& velocity : model.velocities) {
-      const auto of_body = of_points.middleCols(model.bodies[velocity.body].first_node, velocity.share.size());
-      for (int i = 0; i < model.dimension; ++i)
-        out[velocity.slot] += velocity.direction[i] * of_body.row(i).dot(velocity.share);
+      if (velocity.extension.get() != extension) {
+        extension = velocity.extension.get();
+        of_given.resize(model.dimension, extension->given().size());
+        for (int i = 0; i < model.dimension; ++i)
+          of_given.row(i) = extension->pull_back(
+              of_points.row(i).segment(model.bodies[velocity.body].first_node, of_given.cols()).transpose());
+      }
+      for (int node : velocity.moved)
+        for (int i = 0; i < model.dimension; ++i) out[velocity.slot] += velocity.direction[i] * of_given(i, node);
     }
     return out;
   }

@@ -13,12 +13,14 @@
 #include "studies/atomic_file.hpp"
 #include "studies/case.hpp"
 #include "studies/explain.hpp"
+#include "studies/export_system.hpp"
 #include "studies/fields.hpp"
 #include "studies/method_options.hpp"
 #include "studies/progress.hpp"
 #include "studies/report/report.hpp"
 #include "studies/scene_reader.hpp"
 #include "studies/schema.hpp"
+#include "studies/trace_table.hpp"
 
 namespace stickslip {
 namespace {
@@ -99,6 +101,14 @@ void print_summary(const CaseResult& result) {
       fmt::print("   d/d{} {: .6e}", scene.parameters[j].name, last.sensitivities(i, j));
     fmt::print("\n");
   }
+  for (std::size_t i = 0; i < scene.objectives.size(); ++i) {
+    fmt::print("  {:<20} {: .10e}", scene.objectives[i].name, result.objectives[i]);
+    const auto& gradient = result.gradients.of_objectives;
+    constexpr Eigen::Index shown = 8;
+    for (Eigen::Index j = 0; j < std::min(gradient.cols(), shown); ++j)
+      fmt::print("   d/d{} {: .6e}", scene.parameters[j].name, gradient(i, j));
+    fmt::print("{}\n", gradient.cols() > shown ? "   ..." : "");
+  }
   if (!scene.parameters.empty() && !last.differentiable)
     fmt::print("  a contact point is about to change state: these hold on one side only (result.json: one_sided)\n");
 }
@@ -141,6 +151,8 @@ int run_command(const RunArguments& arguments) {
                        static_cast<long>(loaded->problem->model.times.size()));
     progress->advance(std::exchange(pending, 0));
   };
+  Trace trace;
+  if (arguments.trace) options.trace = &trace;
   const auto result = run_case(loaded->problem, loaded->input.method, options, condensation);
   progress.reset();
   json document = result_json(result, canonical_text(loaded->input));
@@ -153,11 +165,14 @@ int run_command(const RunArguments& arguments) {
     }
     document["cost"]["seconds"]["output"] = seconds;
     write_file_atomically(directory / "result.json", document.dump(2) + "\n");
+    if (arguments.trace) write_file_atomically(directory / "trace.csv", trace_csv(*loaded->problem, trace));
     if (!arguments.json) {
+      if (arguments.trace) std::cout << trace_table(trace) << '\n';
       print_summary(result);
       fmt::print("\nwritten: {0}/result.json, {0}/fields.pvd\n", directory.string());
     }
   }
+  if (!arguments.export_to.empty() && !result.trajectory.increments.empty()) export_system(arguments.export_to, result);
   if (arguments.json) std::cout << document.dump(2) << '\n';
   if (is_converged(result.status())) return done;
   fmt::print(stderr, "{}: {}\n", name_of(result.status()), result.message());

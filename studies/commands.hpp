@@ -12,8 +12,10 @@ struct RunArguments {
   std::string scene;
   std::optional<std::string> method;
   std::vector<std::string> overrides;
-  std::string output;  ///< directory; empty: results/NAME OF THE SCENE (with `json`: nothing is written)
-  bool json = false;   ///< one JSON document on standard output and nothing else
+  std::string output;     ///< directory; empty: results/NAME OF THE SCENE (with `json`: nothing is written)
+  bool json = false;      ///< one JSON document on standard output and nothing else
+  bool trace = false;     ///< print every iterate, and write trace.csv
+  std::string export_to;  ///< directory for the linear system of the last step; empty: none
 };
 
 struct StudyArguments {

@@ -31,6 +31,8 @@ int main(int argc, char** argv) {
   auto& run_app = *app.add_subcommand("run", "simulate a scene");
   add_scene(run_app, run);
   run_app.add_option("-o,--output", run.output, "directory for result.json and fields");
+  run_app.add_flag("--trace", run.trace, "print every iterate of Newton's method; written to trace.csv too");
+  run_app.add_option("--export", run.export_to, "directory for K, G, lambda, ... of the last step (Matrix Market)");
   auto& study_app = *app.add_subcommand("study", "compare methods on a scene and write a report");
   study_app.add_option("STUDY", study.study, "study file (JSON)")->required();
   study_app.add_option("-o,--output", study.output, "directory for results.jsonl and report.html");

@@ -1,13 +1,10 @@
 #include "core/model/design_velocity.hpp"
 
-#include <Eigen/SparseCore>
-#include <memory>
-#include <optional>
+#include <Eigen/SparseCholesky>
 #include <stdexcept>
 
-#include "core/algebra/linear_solver.hpp"
 #include "core/mesh/sides.hpp"
-#include "core/model/slots.hpp"
+#include "core/solids/continuum.hpp"
 
 namespace stickslip {
 namespace {
@@ -46,84 +43,82 @@ std::vector<char> given_nodes(const ShapeMotion& motion, const Mesh& mesh) {
   return given;
 }
 
-/// Solves Laplace's equation for values given at nodes, one column a motion.
-class Extension {
- public:
-  Extension(const Eigen::SparseMatrix<double>& laplacian, std::vector<char> given) : given_(std::move(given)) {
-    std::vector<int> place(given_.size(), -1);
-    for (std::size_t i = 0; i < given_.size(); ++i)
-      if (!given_[i]) {
-        place[i] = static_cast<int>(free_.size());
-        free_.push_back(static_cast<int>(i));
-      }
-    std::vector<Eigen::Triplet<double>> inner, outer;
-    for (int column = 0; column < laplacian.cols(); ++column)
-      for (Eigen::SparseMatrix<double>::InnerIterator it(laplacian, column); it; ++it)
-        if (place[it.row()] >= 0 && place[column] >= 0)
-          inner.emplace_back(place[it.row()], place[column], it.value());
-        else if (place[it.row()] >= 0)
-          outer.emplace_back(place[it.row()], column, it.value());
-    const auto size = static_cast<Eigen::Index>(free_.size());
-    coupling_.resize(size, laplacian.cols());
-    coupling_.setFromTriplets(outer.begin(), outer.end());
-    if (size == 0) return;
-    Eigen::SparseMatrix<double> K(size, size);
-    K.setFromTriplets(inner.begin(), inner.end());
-    auto pattern = std::make_shared<Pattern>();
-    pattern->size = static_cast<int>(size);
-    pattern->column_start.assign(K.outerIndexPtr(), K.outerIndexPtr() + size + 1);
-    pattern->row.assign(K.innerIndexPtr(), K.innerIndexPtr() + K.nonZeros());
-    solver_.analyse(pattern, Symmetry::positive_definite);
-    if (!solver_.factorise(K.valuePtr())) throw std::runtime_error("a shape cannot be extended: " + solver_.message());
-  }
+}  // namespace
 
-  const std::vector<char>& given() const { return given_; }
-
-  Matrix<double> operator()(Matrix<double> values) {
-    if (free_.empty()) return values;
-    const Matrix<double> inner = solver_.solve(Matrix<double>(-(coupling_ * values)));
-    for (std::size_t i = 0; i < free_.size(); ++i) values.row(free_[i]) = inner.row(i);
-    return values;
-  }
-
- private:
-  std::vector<char> given_;
-  std::vector<int> free_;
-  Eigen::SparseMatrix<double> coupling_;
-  LinearSolver<double> solver_{Backend::automatic};
+struct ShapeExtension::Factor {
+  Eigen::SparseMatrix<double> coupling;  ///< free rows, all columns
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> inner;
 };
 
-}  // namespace
+ShapeExtension::ShapeExtension(const Mesh& mesh, const Points<double>& points, std::vector<char> given)
+    : given_(std::move(given)), factor_(std::make_unique<Factor>()) {
+  const auto matrix = laplacian(mesh, points);
+  std::vector<int> place(given_.size(), -1);
+  for (std::size_t i = 0; i < given_.size(); ++i)
+    if (!given_[i]) {
+      place[i] = static_cast<int>(free_.size());
+      free_.push_back(static_cast<int>(i));
+    }
+  if (free_.empty()) return;
+  std::vector<Eigen::Triplet<double>> inner, coupling;
+  for (int column = 0; column < matrix.cols(); ++column)
+    for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, column); it; ++it)
+      if (place[it.row()] >= 0 && place[column] >= 0)
+        inner.emplace_back(place[it.row()], place[column], it.value());
+      else if (place[it.row()] >= 0)
+        coupling.emplace_back(place[it.row()], column, it.value());
+  const auto size = static_cast<Eigen::Index>(free_.size());
+  factor_->coupling.resize(size, matrix.cols());
+  factor_->coupling.setFromTriplets(coupling.begin(), coupling.end());
+  Eigen::SparseMatrix<double> K(size, size);
+  K.setFromTriplets(inner.begin(), inner.end());
+  factor_->inner.compute(K);
+  // a part without given nodes leaves a pivot of nothing but rounding
+  const double least = 1e-10 * K.diagonal().maxCoeff();
+  if (factor_->inner.info() != Eigen::Success || factor_->inner.vectorD().minCoeff() <= least)
+    throw std::runtime_error("a part of the body has neither a side that moves nor one that stays");
+}
+
+ShapeExtension::~ShapeExtension() = default;
+
+Vector<double> ShapeExtension::extend(const Vector<double>& values) const {
+  Vector<double> field = values;
+  if (free_.empty()) return field;
+  const Vector<double> inner = factor_->inner.solve(Vector<double>(-(factor_->coupling * values)));
+  for (std::size_t i = 0; i < free_.size(); ++i) field[free_[i]] = inner[i];
+  return field;
+}
+
+Vector<double> ShapeExtension::pull_back(const Vector<double>& by_field) const {
+  Vector<double> by_values = by_field;
+  if (free_.empty()) return by_values;
+  Vector<double> inner(free_.size());
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    inner[i] = by_field[free_[i]];
+    by_values[free_[i]] = 0;
+  }
+  return by_values - factor_->coupling.transpose() * factor_->inner.solve(inner);
+}
+
+Vector<double> DesignVelocity::share() const {
+  Vector<double> values = Vector<double>::Zero(extension->given().size());
+  for (int node : moved) values[node] = 1;
+  return extension->extend(values);
+}
 
 std::vector<DesignVelocity> design_velocities(const Scene& scene, int body, const Mesh& mesh,
                                               const Points<double>& points) {
   std::vector<DesignVelocity> velocities;
-  std::optional<Eigen::SparseMatrix<double>> matrix;
-  std::unique_ptr<Extension> extension;
-  std::vector<const ShapeMotion*> alike;  // motions with the same given nodes share a factor
-  auto extend = [&] {
-    Matrix<double> values = Matrix<double>::Zero(mesh.node_count, alike.size());
-    for (std::size_t k = 0; k < alike.size(); ++k) {
-      const auto side = evaluate_side(mesh, parse_side_expression(alike[k]->side));
-      for (std::size_t n = 0; n < side.nodes.size(); ++n)
-        if (alike[k]->node < 0 || alike[k]->node == static_cast<int>(n)) values(side.nodes[n], k) = 1;
-    }
-    values = (*extension)(std::move(values));
-    for (std::size_t k = 0; k < alike.size(); ++k)
-      velocities.push_back({body, alike[k]->slot, values.col(k), alike[k]->direction});
-    alike.clear();
-  };
+  std::shared_ptr<const ShapeExtension> extension;
   for (const auto& motion : scene.shapes) {
     if (motion.body != body) continue;
-    if (!matrix) matrix = laplacian(mesh, points);
     auto given = given_nodes(motion, mesh);
-    if (!extension || given != extension->given()) {
-      if (!alike.empty()) extend();
-      extension = std::make_unique<Extension>(*matrix, std::move(given));
-    }
-    alike.push_back(&motion);
+    if (!extension || given != extension->given())
+      extension = std::make_shared<const ShapeExtension>(mesh, points, std::move(given));
+    auto moved = evaluate_side(mesh, parse_side_expression(motion.side)).nodes;
+    if (motion.node >= 0) moved = {moved[motion.node]};
+    velocities.push_back({body, motion.slot, std::move(moved), motion.direction, extension});
   }
-  if (!alike.empty()) extend();
   return velocities;
 }
 

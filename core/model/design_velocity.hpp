@@ -6,6 +6,7 @@
 /// discretised on the mesh itself, so that neighbouring nodes move alike and elements keep their shape.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "core/mesh/mesh.hpp"
@@ -13,16 +14,40 @@
 
 namespace stickslip {
 
-/// Of one shape motion of the scene: what each node of the body moves along the direction, per unit of the parameter.
-struct DesignVelocity {
-  int body = 0;
-  int slot = 0;  ///< of the parameter in Scene::numbers; its value is 0
-  Vector<double> share;
-  std::vector<double> direction;
+/// Solves the equation for one body and one set of nodes whose values are given; factorised once.
+class ShapeExtension {
+ public:
+  /// `points`: of the body, D x nodes; `given`: per node. Throws std::runtime_error where a part of the body has no
+  /// given node.
+  ShapeExtension(const Mesh& mesh, const Points<double>& points, std::vector<char> given);
+  ~ShapeExtension();
+
+  const std::vector<char>& given() const { return given_; }
+  /// The field with these values at the given nodes (zero elsewhere): linear in them.
+  Vector<double> extend(const Vector<double>& values) const;
+  /// Derivatives by the values at the given nodes out of those by the field: extend() transposed.
+  Vector<double> pull_back(const Vector<double>& by_field) const;
+
+ private:
+  struct Factor;
+  std::vector<char> given_;
+  std::vector<int> free_;
+  std::unique_ptr<Factor> factor_;
 };
 
-/// Design velocities of the shape motions of one body, in their order; one factorisation for all. `points`: of the
-/// body.
+/// Of one shape motion of the scene.
+struct DesignVelocity {
+  int body = 0;
+  int slot = 0;            ///< of the parameter in Scene::numbers; its value is 0
+  std::vector<int> moved;  ///< nodes of the body that move by the whole of it
+  std::vector<double> direction;
+  std::shared_ptr<const ShapeExtension> extension;
+
+  /// w: what each node of the body moves along the direction, per unit of the parameter. One solve.
+  Vector<double> share() const;
+};
+
+/// Design velocities of the shape motions of one body, in their order; motions alike share a factor.
 std::vector<DesignVelocity> design_velocities(const Scene& scene, int body, const Mesh& mesh,
                                               const Points<double>& points);
 

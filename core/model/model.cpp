@@ -395,8 +395,12 @@ Model make_model(const Scene& scene) {
       throw ModelError(fault, "/bodies/" + scene.bodies[b].name + "/mesh");
   for (int b = 0; !scene.shapes.empty() && b < static_cast<int>(model.bodies.size()); ++b) {
     const auto& body = model.bodies[b];
-    auto of_body = design_velocities(scene, b, body.mesh, points.middleCols(body.first_node, body.mesh.node_count));
-    std::move(of_body.begin(), of_body.end(), std::back_inserter(model.velocities));
+    try {
+      auto of_body = design_velocities(scene, b, body.mesh, points.middleCols(body.first_node, body.mesh.node_count));
+      std::move(of_body.begin(), of_body.end(), std::back_inserter(model.velocities));
+    } catch (const std::runtime_error& error) {
+      throw ModelError(scene.bodies[b].name + ": " + error.what(), "/parameters");
+    }
   }
   number_dofs(model, points);
   for (std::size_t c = 0; c < scene.contacts.size(); ++c) pair_contact(model, points, static_cast<int>(c));

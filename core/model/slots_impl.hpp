@@ -186,9 +186,9 @@ Points<T> initial_points(const Model& model, const Numbers<T>& numbers) {
     const T& distance = numbers.at_slot[velocity.slot];
     if (vanishes(distance)) continue;
     const int first = model.bodies[velocity.body].first_node;
-    for (Eigen::Index n = 0; n < velocity.share.size(); ++n)
-      for (int i = 0; i < model.dimension; ++i)
-        points(i, first + n) += T(velocity.share[n] * velocity.direction[i]) * distance;
+    const Vector<double> share = velocity.share();
+    for (Eigen::Index n = 0; n < share.size(); ++n)
+      for (int i = 0; i < model.dimension; ++i) points(i, first + n) += T(share[n] * velocity.direction[i]) * distance;
   }
   return points;
 }

@@ -1,0 +1,44 @@
+/// Every iterate of a run, kept where it is asked for (RunOptions::trace); otherwise nothing is done.
+#pragma once
+
+#include <vector>
+
+#include "core/model/contact_assembly.hpp"
+
+namespace stickslip {
+
+struct Iterate {
+  double time = 0;            ///< that the increment ends at
+  int solve = 0, number = 0;  ///< equilibrium of the run, counted from 1; iterate in it, from 0
+  IterationRecord record;
+  std::vector<ContactState> state;             ///< per contact point, by classification
+  Vector<double> multiplier, trial, traction;  ///< lambda, z and t, laid out as multipliers
+};
+
+struct Trace {
+  /// Tractions are kept of scenes with up to this many contact points.
+  static constexpr std::size_t most_points = 4;
+  std::vector<Iterate> iterates;
+
+  template <class T>
+  void take(const ContactInput<T>& input, const Vector<T>& multiplier, const ContactField<T>& field,
+            const IterationRecord& record, int number) {
+    const int solve = (iterates.empty() ? 0 : iterates.back().solve) + (number == 0 ? 1 : 0);
+    iterates.push_back({input.time, solve, number, record, field.state, {}, {}, {}});
+    const Model& model = input.model;
+    if (model.points.size() > most_points) return;
+    Iterate& now = iterates.back();
+    now.multiplier = values(multiplier);
+    now.traction = values(field.traction);
+    now.trial = now.multiplier;
+    for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+      const auto& point = model.points[p];
+      now.trial[point.multiplier] += value(input.rho[p].normal) * value(field.gap[p]);
+      for (int a = 0; a < point.tangents; ++a)
+        now.trial[point.multiplier + 1 + a] +=
+            value(input.rho[p].tangential) * value(field.slip[tangential_offset(model, p) + a]);
+    }
+  }
+};
+
+}  // namespace stickslip
