@@ -140,6 +140,12 @@ std::string CaseResult::message() const {
   return trajectory.status != Status::converged || gradients.message.empty() ? trajectory.message : gradients.message;
 }
 
+std::shared_ptr<Condensation<double>> condense(const Problem& problem, const RunOptions& options) {
+  Workspace<double> workspace;
+  make_engine<double>(problem.model, problem.slots, false, options, workspace);
+  return workspace.condensation;
+}
+
 CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method, const RunOptions& options,
                     std::shared_ptr<Condensation<double>>& condensation) {
   CaseResult result;

@@ -47,6 +47,10 @@ struct CaseResult {
   std::string message() const;
 };
 
+/// The condensation that a run with these options shares with others on the same numbers; null where it takes none. It
+/// refers to the problem, which must outlive it.
+std::shared_ptr<Condensation<double>> condense(const Problem& problem, const RunOptions& options);
+
 /// Runs a method. `condensation` may hold one of the same problem and is filled otherwise (see Workspace).
 CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method, const RunOptions& options,
                     std::shared_ptr<Condensation<double>>& condensation);

@@ -12,6 +12,7 @@
 #include "sensitivity/gradcheck.hpp"
 #include "studies/atomic_file.hpp"
 #include "studies/case.hpp"
+#include "studies/closed_forms.hpp"
 #include "studies/explain.hpp"
 #include "studies/export_system.hpp"
 #include "studies/fields.hpp"
@@ -231,6 +232,13 @@ int methods_command(bool as_json) {
   for (const auto& [name, options] : all.items()) {
     fmt::print("{}\n", name);
     for (const auto& [option, standard] : options.items()) fmt::print("  {:<18} {}\n", option, standard.dump());
+  }
+  fmt::print("\nclosed forms, as a study's reference (inputs -> what they give)\n");
+  for (const auto& form : closed_forms()) {
+    fmt::print("{}: {}\n", form.name, form.about);
+    for (const auto& [quantities, sign] : {std::pair{&form.inputs, ""}, {&form.outputs, "-> "}})
+      for (const auto& quantity : *quantities)
+        fmt::print("  {:<24} {}{}\n", sign + quantity.name, quantity.meaning, quantity.required ? "" : " (optional)");
   }
   return done;
 }

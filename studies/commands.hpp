@@ -22,7 +22,14 @@ struct StudyArguments {
   std::string study;
   std::string output;  ///< directory; empty: results/NAME OF THE STUDY
   bool resume = false;
-  std::vector<std::string> overrides;
+  std::string shard = "1/1";  ///< share of the cells, "i/N"
+  int jobs = 1;               ///< processes of the accuracy pass
+};
+
+struct CompareArguments {
+  std::string before, after;  ///< directories
+  double relative = 0.05, rounding = 1e-11;
+  bool json = false;
 };
 
 int run_command(const RunArguments& arguments);
@@ -31,6 +38,8 @@ int gradcheck_command(const RunArguments& arguments);
 int methods_command(bool json);
 int schema_command(const std::string& kind);  ///< "scene" or "study"
 int study_command(const StudyArguments& arguments);
+int merge_command(const std::vector<std::string>& directories, const std::string& output);
+int compare_command(const CompareArguments& arguments);
 int report_command(const std::string& directory);
 
 }  // namespace stickslip

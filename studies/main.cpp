@@ -26,7 +26,9 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", [] { return version_text(); });
   RunArguments run, explain, gradcheck;
   StudyArguments study;
-  std::string directory;
+  CompareArguments compare;
+  std::string directory, merged;
+  std::vector<std::string> shards;
   bool methods_json = false;
   auto& run_app = *app.add_subcommand("run", "simulate a scene");
   add_scene(run_app, run);
@@ -37,6 +39,18 @@ int main(int argc, char** argv) {
   study_app.add_option("STUDY", study.study, "study file (JSON)")->required();
   study_app.add_option("-o,--output", study.output, "directory for results.jsonl and report.html");
   study_app.add_flag("--resume", study.resume, "keep the cells that are there and run what is missing");
+  study_app.add_option("--shard", study.shard, "i/N: only every N-th cell, from the i-th on");
+  study_app.add_option("-j,--jobs", study.jobs, "processes that run cells at once; seconds are measured apart");
+  auto& merge_app = *app.add_subcommand("merge", "join the shards of a study and write their report");
+  merge_app.add_option("DIR", shards, "directories of the shards")->required();
+  merge_app.add_option("-o,--output", merged, "directory of the whole")->required();
+  auto& compare_app =
+      *app.add_subcommand("compare", "two recordings of a study, cell by cell; fails where one is worse");
+  compare_app.add_option("OLD", compare.before, "directory of a study")->required();
+  compare_app.add_option("NEW", compare.after, "directory of a study")->required();
+  compare_app.add_option("--relative", compare.relative, "share of itself that an error may grow by");
+  compare_app.add_option("--rounding", compare.rounding, "error that is put down to rounding");
+  compare_app.add_flag("--json", compare.json, "one JSON document on standard output and nothing else");
   auto& explain_app = *app.add_subcommand("explain", "say what would be simulated, and what would not");
   add_scene(explain_app, explain);
   auto& gradcheck_app = *app.add_subcommand("gradcheck", "hold every sensitivity against differences");
@@ -52,6 +66,8 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
     if (run_app) return run_command(run);
     if (study_app) return study_command(study);
+    if (merge_app) return merge_command(shards, merged);
+    if (compare_app) return compare_command(compare);
     if (explain_app) return explain_command(explain);
     if (gradcheck_app) return gradcheck_command(gradcheck);
     if (report_app) return report_command(directory);

@@ -3,87 +3,82 @@
 #include <cmath>
 #include <optional>
 
-#include "sensitivity/direct.hpp"
+#include "studies/closed_forms.hpp"
 
 namespace stickslip {
 namespace {
 
 using nlohmann::json;
+using D = Dual<1>;
 
-struct ClosedForm {
-  const char* name;
-  std::vector<std::string> inputs, outputs;
-};
-
-const std::vector<ClosedForm>& closed_forms() {
-  static const std::vector<ClosedForm> all = {
-      {"hertz_line", {"force"}, {"peak_pressure", "half_width"}},
-      {"cattaneo_mindlin", {"force", "tangential_force"}, {"peak_pressure", "half_width", "stick_half_width"}}};
-  return all;
-}
-
-const ClosedForm* find(const std::string& name) {
-  for (const auto& form : closed_forms())
-    if (name == form.name) return &form;
-  return nullptr;
-}
-
-/// The numbers of a line contact, in any scalar.
-template <class T>
-struct LineContact {
-  T half_width, peak_pressure, stick_half_width{};
-
-  LineContact(const T& force, const T& modulus, const T& radius) {
-    const T pi(std::acos(-1.0));
-    using std::sqrt;
-    half_width = sqrt(T(4.0) * force * radius / (pi * modulus));
-    peak_pressure = T(2.0) * force / (pi * half_width);
-  }
-  void shear(const T& force, const T& tangential, const T& friction) {
-    using std::sqrt;
-    const T share = T(1.0) - tangential / (friction * force);
-    stick_half_width = value(share) > 0 ? half_width * sqrt(share) : T(0.0);
-  }
-};
-
-/// 1/E* of a contact, from the bodies of its sides.
-template <class T>
-T compliance(const Model& model, const Numbers<T>& numbers, const Contact& contact) {
-  T sum{};
+/// 1/E* of a contact, from the elastic bodies of its sides (a rigid one adds nothing). In plane stress sum 1/E.
+D contact_modulus(const Scene& scene, const Numbers<D>& numbers, const Contact& contact) {
+  D compliance{};
   for (const auto& side : {contact.slave, contact.master})
-    for (const auto& body : model.scene.bodies)
-      if (side.rfind(body.name + ".", 0) == 0) {
-        const auto& elastic = std::get<LinearElastic>(body.material);
-        const T nu = numbers(elastic.nu);
-        sum += (T(1.0) - nu * nu) / numbers(elastic.E);
-      }
-  return sum;
+    for (const auto& body : scene.bodies) {
+      const auto* elastic = std::get_if<LinearElastic>(&body.material);
+      if (!elastic || side.rfind(body.name + ".", 0) != 0) continue;
+      const D nu = scene.space == Space::plane_stress ? D(0) : numbers(elastic->nu);
+      compliance += (D(1) - nu * nu) / numbers(elastic->E);
+    }
+  return D(1) / compliance;
 }
 
-/// Index of the response that plays `quantity` in the map; -1 if none does.
-int response_for(const json& map, const std::string& quantity, const Scene& scene) {
-  for (const auto& [response, role] : map.items())
-    if (role == quantity)
-      for (std::size_t i = 0; i < scene.responses.size(); ++i)
-        if (scene.responses[i].name == response) return static_cast<int>(i);
-  return -1;
+std::optional<std::size_t> index_of(const std::string& name, const auto& named) {
+  for (std::size_t i = 0; i < named.size(); ++i)
+    if (named[i].name == name) return i;
+  return std::nullopt;
 }
 
-template <class T>
-std::map<std::string, T> quantities(const std::string& form, const Model& model, const Numbers<T>& numbers,
-                                    const Contact& contact, double radius, const T& force, const T& tangential) {
-  LineContact<T> line(force, T(1.0) / compliance(model, numbers, contact), T(radius));
-  std::map<std::string, T> out{{"peak_pressure", line.peak_pressure}, {"half_width", line.half_width}};
-  if (form == "cattaneo_mindlin") {
-    line.shear(force, tangential, contact.friction ? numbers(*contact.friction) : T(0.0));
-    out["stick_half_width"] = line.stick_half_width;
+/// A parameter as a quantity: its number over its weight; the derivative is 1 along itself.
+D parameter_quantity(const Parameter& parameter, const Numbers<D>& numbers) {
+  const auto& [slot, weight] = parameter.slots.front();
+  return numbers.at_slot[static_cast<std::size_t>(slot)] / D(weight);
+}
+
+/// Inputs of the closed form; their derivatives are along `parameter` (none: zero).
+Quantities<D> inputs_of(const ClosedForm& form, const json& entry, const CaseResult& result,
+                        std::optional<std::size_t> parameter) {
+  const auto& scene = result.problem->model.scene;
+  const auto& step = result.steps.back();
+  auto numbers = scene.as<D>();
+  if (parameter)
+    for (const auto& [slot, weight] : scene.parameters[*parameter].slots)
+      numbers.at_slot[static_cast<std::size_t>(slot)].d[0] += weight;
+  Quantities<D> in;
+  const json map = entry.value("map", json::object()), inputs = entry.value("inputs", json::object());
+  for (const auto& [response, role] : map.items()) {
+    const auto i = index_of(response, scene.responses);
+    if (!i || !form.has_input(role)) continue;
+    const auto row = static_cast<Eigen::Index>(*i);
+    D measured(step.responses[row]);
+    if (parameter) measured.d[0] = step.sensitivities(row, static_cast<Eigen::Index>(*parameter));
+    in[role.get<std::string>()] = measured;
   }
-  return out;
+  for (const auto& [quantity, given] : inputs.items())
+    if (given.is_number())
+      in[quantity] = D(given.get<double>());
+    else if (const auto j = index_of(given.get<std::string>(), scene.parameters))
+      in[quantity] = parameter_quantity(scene.parameters[*j], numbers);
+  if (scene.contacts.empty()) return in;
+  const auto& contact = scene.contacts.front();
+  if (form.has_input("modulus") && !in.count("modulus")) in["modulus"] = contact_modulus(scene, numbers, contact);
+  if (form.has_input("friction") && !in.count("friction") && contact.friction)
+    in["friction"] = numbers(*contact.friction);
+  return in;
+}
+
+/// The outputs; empty where an input is missing.
+Quantities<D> outputs_of(const ClosedForm& form, const Quantities<D>& in, Space space) {
+  for (const auto& input : form.inputs)
+    if (input.required && !in.count(input.name)) return {};
+  return form.evaluate(in, space);
 }
 
 /// Initial abscissa of the centre of pressure of the first contact.
 double pressure_centre(const CaseResult& result) {
-  const auto& [model, slots, unused] = *result.problem;
+  const auto& model = result.problem->model;
+  const auto& slots = result.problem->slots;
   const auto& traction = result.steps.back().increment->state.contact.traction;
   double force = 0, moment = 0;
   for (std::size_t p = 0; p < model.points.size(); ++p) {
@@ -96,27 +91,6 @@ double pressure_centre(const CaseResult& result) {
   return moment / force;
 }
 
-/// Reference tractions along the contact, over its initial abscissa.
-json curves_of(const CaseResult& result, const std::map<std::string, double>& values, double friction, double sign) {
-  const double b = values.at("half_width"), p0 = values.at("peak_pressure");
-  const double c = values.count("stick_half_width") ? values.at("stick_half_width") : b;
-  const bool sheared = values.count("stick_half_width") > 0;
-  const double centre = pressure_centre(result);
-  json place = json::array(), normal = json::array(), tangential = json::array();
-  constexpr int samples = 400;
-  for (int i = 0; i <= samples; ++i) {
-    const double x = 1.3 * b * (2.0 * i / samples - 1);
-    const double p = std::abs(x) < b ? p0 * std::sqrt(1 - x * x / (b * b)) : 0;
-    double q = sheared ? friction * p : 0;
-    if (sheared && std::abs(x) < c) q -= friction * p0 * c / b * std::sqrt(1 - x * x / (c * c));
-    place.push_back(centre + x);
-    normal.push_back(-p);
-    tangential.push_back(sign * q);
-  }
-  return {{result.problem->model.scene.contacts.front().name,
-           {{"x", place}, {"normal", normal}, {"tangential", tangential}}}};
-}
-
 /// Sign of the sum of tangential components over the contact, to draw the curve on the side of the data.
 double tangential_sign(const CaseResult& result) {
   const auto& model = result.problem->model;
@@ -126,6 +100,22 @@ double tangential_sign(const CaseResult& result) {
       sum += result.problem->slots.geometry[p].area *
              result.steps.back().increment->state.contact.traction[model.points[p].multiplier + 1];
   return sum < 0 ? -1 : 1;
+}
+
+/// Reference tractions along the first contact, over its initial abscissa.
+json curves_of(const ClosedForm& form, const CaseResult& result, const Quantities<double>& all) {
+  const double centre = pressure_centre(result), sign = tangential_sign(result), b = all.at("half_width");
+  json place = json::array(), normal = json::array(), tangential = json::array();
+  constexpr int samples = 400;
+  for (int i = 0; i <= samples; ++i) {
+    const double x = 1.3 * b * (2.0 * i / samples - 1);
+    const auto at = form.tractions(all, x);
+    place.push_back(centre + x);
+    normal.push_back(-at.pressure);
+    tangential.push_back(sign * at.tangential);
+  }
+  return {{result.problem->model.scene.contacts.front().name,
+           {{"x", place}, {"normal", normal}, {"tangential", tangential}}}};
 }
 
 ReferenceValues from_values(const json& values) {
@@ -142,60 +132,46 @@ ReferenceValues from_values(const json& values) {
 
 }  // namespace
 
-std::vector<std::string> analytic_names() {
-  std::vector<std::string> names;
-  for (const auto& form : closed_forms()) names.push_back(form.name);
-  return names;
-}
-
-std::vector<std::string> analytic_quantities(const std::string& name) {
-  const auto* form = find(name);
-  if (!form) return {};
-  auto all = form->inputs;
-  all.insert(all.end(), form->outputs.begin(), form->outputs.end());
-  return all;
-}
-
-ReferenceValues reference_values(const json& entry, const CaseResult& result, std::string& error) {
+ReferenceValues reference_values(const json& entry, const CaseResult& result) {
   if (entry.contains("values")) return from_values(entry["values"]);
   ReferenceValues reference;
-  const std::string name = entry.value("analytic", "");
-  const auto& model = result.problem->model;
-  const auto& scene = model.scene;
-  if (!find(name) || result.steps.empty()) {
-    error = "there is no closed form \"" + name + "\"";
-    return reference;
-  }
+  const ClosedForm* const form = find_closed_form(entry.value("analytic", ""));
+  if (!form || result.steps.empty()) return reference;
+  const auto& scene = result.problem->model.scene;
   const json map = entry.value("map", json::object());
-  const int force = response_for(map, "force", scene), tangential = response_for(map, "tangential_force", scene);
-  const double radius = entry.value("radius", 0.0);
-  const bool sheared = name == "cattaneo_mindlin";
-  if (force < 0 || (sheared && tangential < 0) || !(radius > 0) || scene.contacts.empty()) {
-    error = name + " needs a response for force" + (sheared ? " and for tangential_force" : "") + ", and radius > 0";
-    return reference;
-  }
-  const auto& contact = scene.contacts.front();
-  const auto& step = result.steps.back();
-  const double P = step.responses[force], Q = tangential < 0 ? 0 : std::abs(step.responses[tangential]);
-  if (!(P > 0)) return reference;  // open: the closed form says nothing
-  const auto plain = quantities<double>(name, model, scene.as<double>(), contact, radius, P, Q);
-  reference.curves = curves_of(result, plain, contact.friction ? contact.friction->value : 0, tangential_sign(result));
+  const auto in = inputs_of(*form, entry, result, std::nullopt), out = outputs_of(*form, in, scene.space);
+  if (out.empty()) return reference;
   for (const auto& [response, role] : map.items())
-    if (plain.count(role)) reference.responses[response] = plain.at(role);
-  if (step.sensitivities.size() == 0) return reference;
-  for (std::size_t j = 0; j < scene.parameters.size(); ++j) {
-    using D = Dual<1>;
-    auto numbers = scene.as<D>();
-    for (const auto& [slot, weight] : scene.parameters[j].slots) numbers.at_slot[slot].d[0] += weight;
-    D measured_force(P), measured_tangential(Q);
-    measured_force.d[0] = step.sensitivities(force, j);
-    if (tangential >= 0)
-      measured_tangential.d[0] = (step.responses[tangential] < 0 ? -1 : 1) * step.sensitivities(tangential, j);
-    const auto dual = quantities<D>(name, model, numbers, contact, radius, measured_force, measured_tangential);
+    if (const auto quantity = out.find(role); quantity != out.end())
+      reference.responses[response] = value(quantity->second);
+  if (form->tractions && !scene.contacts.empty()) {
+    Quantities<double> all;
+    for (const auto* quantities : {&in, &out})
+      for (const auto& [name, quantity] : *quantities) all[name] = value(quantity);
+    reference.curves = curves_of(*form, result, all);
+  }
+  for (std::size_t j = 0; result.steps.back().sensitivities.size() > 0 && j < scene.parameters.size(); ++j) {
+    const auto along = outputs_of(*form, inputs_of(*form, entry, result, j), scene.space);
     for (const auto& [response, role] : map.items())
-      if (dual.count(role)) reference.sensitivities[response][scene.parameters[j].name] = dual.at(role).d[0];
+      if (const auto quantity = along.find(role); quantity != along.end())
+        reference.sensitivities[response][scene.parameters[j].name] = quantity->second.d[0];
   }
   return reference;
+}
+
+ReferenceValues values_of(const CaseResult& result) {
+  ReferenceValues values;
+  if (result.steps.empty()) return values;
+  const auto& scene = result.problem->model.scene;
+  const auto& last = result.steps.back();
+  for (std::size_t i = 0; i < scene.responses.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    values.responses[scene.responses[i].name] = last.responses[row];
+    for (std::size_t j = 0; last.sensitivities.size() > 0 && j < scene.parameters.size(); ++j)
+      values.sensitivities[scene.responses[i].name][scene.parameters[j].name] =
+          last.sensitivities(row, static_cast<Eigen::Index>(j));
+  }
+  return values;
 }
 
 }  // namespace stickslip

@@ -1,19 +1,9 @@
-/// Closed forms that a study's responses are held against. Each is written once, in any scalar: in dual numbers it
-/// gives the reference of the sensitivities too, with the derivatives of the measured inputs carried through.
-///
-/// hertz_line         [J85 4.2] two cylinders, force P per length: b = sqrt(4 P R/(pi E*)), p0 = 2 P/(pi b),
-///                    p(x) = p0 sqrt(1 - x^2/b^2). Inputs: force. Outputs: peak_pressure, half_width.
-/// cattaneo_mindlin   [J85 7.2] then sheared by Q < mu P: c = b sqrt(1 - Q/(mu P)),
-///                    q(x) = mu p(x) - (c/b) mu p0 sqrt(1 - x^2/c^2) where |x| < c. Inputs: force, tangential_force.
-///                    Outputs as hertz_line, and stick_half_width.
-/// In both 1/E* = sum (1 - nu^2)/E over the two bodies of the contact (none for a rigid one), R is `radius`, the
-/// relative radius 1/R = 1/R1 + 1/R2 (a length the mesh does not tell).
+/// What the results of a case are held against: closed forms, given values, another run.
 #pragma once
 
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 #include "studies/case.hpp"
 
@@ -26,13 +16,15 @@ struct ReferenceValues {
   nlohmann::json curves;  ///< per contact: {"x", "normal", "tangential"}; null where the closed form has none
 };
 
-/// One entry of a study's "reference": {"analytic": NAME, "map": {RESPONSE: QUANTITY}, "radius": R} or
-/// {"values": {RESPONSE: v, "RESPONSE/PARAMETER": v}}, at the last step of `result`. What is wrong with the entry
-/// comes back in `error`.
-ReferenceValues reference_values(const nlohmann::json& entry, const CaseResult& result, std::string& error);
+/// One entry of a study's "reference" at the last step of `result`:
+///   {"values": {RESPONSE: v, "RESPONSE/PARAMETER": v}}
+///   {"analytic": NAME, "map": {RESPONSE: QUANTITY}, "inputs": {QUANTITY: number or PARAMETER}}
+/// A response that the map gives an input's name is measured and goes into the closed form, with its derivatives; one
+/// with an output's name is held against it. `modulus` and `friction` that are not given are those of the first
+/// contact. Empty where the closed form says nothing (no force presses). pre: read_study found no fault in the entry.
+ReferenceValues reference_values(const nlohmann::json& entry, const CaseResult& result);
 
-/// Quantities a closed form knows, inputs first; empty for an unknown name.
-std::vector<std::string> analytic_quantities(const std::string& name);
-std::vector<std::string> analytic_names();
+/// Responses and sensitivities of the last step of another run.
+ReferenceValues values_of(const CaseResult& result);
 
 }  // namespace stickslip

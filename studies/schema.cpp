@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "studies/closed_forms.hpp"
 #include "studies/method_options.hpp"
-#include "studies/references.hpp"
 
 namespace stickslip {
 namespace {
@@ -205,9 +205,14 @@ constexpr const char* study_parts = R"({
     "type": "object", "additionalProperties": false, "properties": {
       "method": {"$ref": "#/$defs/method"},
       "map": {"type": "object", "additionalProperties": {"type": "string"}},
-      "radius": {"$ref": "#/$defs/positive"},
+      "inputs": {"description": "of the closed form: numbers, or names of parameters", "type": "object",
+        "additionalProperties": {"type": ["number", "string"]}},
+      "overkill": {"description": "the same cell on a mesh so many levels finer", "type": "object",
+        "required": ["refine"], "additionalProperties": false, "properties": {
+        "refine": {"type": "integer", "minimum": 1, "maximum": 10}}},
       "values": {"type": "object", "additionalProperties": {"type": "number"}}},
-    "oneOf": [{"required": ["method"]}, {"required": ["analytic", "map"]}, {"required": ["values"]}]}},
+    "oneOf": [{"required": ["method"]}, {"required": ["analytic", "map"]}, {"required": ["values"]},
+              {"required": ["overkill"]}]}},
   "errors": {"type": "array", "items": {"type": "string", "pattern": "^kkt$|^response:|^sensitivity:|^field:"}},
   "timing": {"type": "object", "additionalProperties": false, "properties": {"repeat": {"$ref": "#/$defs/count"}}}
 })";

@@ -6,9 +6,9 @@
 #include <set>
 #include <system_error>
 
+#include "studies/closed_forms.hpp"
 #include "studies/json_node.hpp"
 #include "studies/method_options.hpp"
-#include "studies/references.hpp"
 
 namespace stickslip {
 namespace {
@@ -83,25 +83,69 @@ void check_result_name(const JsonNode& node, const std::string& name, const std:
                       " allowed: " + listed(names));
 }
 
+/// Which inputs of the closed form a map of responses to quantities gives; none where it is at fault.
+std::optional<std::set<std::string>> read_map(const JsonNode& map, const ClosedForm& form, const json& scene) {
+  std::set<std::string> given;
+  bool sound = map.is_map("quantities by response");
+  for (const auto& [response, quantity] : sound ? map.members() : std::vector<std::pair<std::string, JsonNode>>{}) {
+    check_result_name(quantity, response, result_names(scene, false));
+    const auto role = quantity.choice(form.quantities());
+    sound = sound && role;
+    if (role && form.has_input(*role) && !given.insert(*role).second)
+      quantity.error("is " + in_quotes(*role) + ", which another response gives already");
+  }
+  if (!sound) return std::nullopt;
+  return given;
+}
+
+/// Adds the inputs that are given by a number, or as the parameter of the scene of this name.
+void read_inputs(const JsonNode& inputs, const ClosedForm& form, const json& scene, std::set<std::string>& given) {
+  if (!inputs.is_map("numbers, or names of parameters, by input of the closed form")) return;
+  const json parameters = scene.value("parameters", json::object());
+  for (const auto& [quantity, value] : inputs.members()) {
+    const auto names = form.input_names();
+    if (!form.has_input(quantity))
+      value.error_at_key("is no input of " + form.name + ";" + suggestion(quantity, names) +
+                         " allowed: " + listed(names));
+    else if (!given.insert(quantity).second)
+      value.error_at_key("is given by the map too");
+    const json& content = value.value();
+    if (content.is_string() && !parameters.contains(content.get<std::string>()))
+      value.error("is " + shown(content) + ", but the scene has no parameter of this name");
+    else if (!content.is_string() && !content.is_number())
+      value.must_be("a number, or the name of a parameter of the scene");
+  }
+}
+
+/// {"analytic": NAME, "map": {RESPONSE: QUANTITY}, "inputs": {QUANTITY: number or PARAMETER}}.
+void read_analytic(const JsonNode& node, const JsonNode& form_node, const json& scene) {
+  const auto name = form_node.choice(analytic_names());
+  const auto map = node.find("map");
+  if (!map) node.error(R"(the key "map" is missing: {RESPONSE: QUANTITY, ...})");
+  if (!name || !map) return;
+  const ClosedForm& form = *find_closed_form(*name);
+  auto given = read_map(*map, form, scene);
+  if (!given) return;
+  if (const auto inputs = node.find("inputs")) read_inputs(*inputs, form, scene, *given);
+  std::vector<std::string> missing;
+  for (const auto& input : form.inputs)
+    if (input.required && !input.of_contact && given->count(input.name) == 0) missing.push_back(input.name);
+  if (!missing.empty())
+    node.error(form.name + " lacks " + listed(missing) +
+               R"(, each to be given by a response in "map", or in "inputs")");
+}
+
 std::optional<Reference> read_reference(const JsonNode& node, const json& scene) {
-  const auto kind = node.kind({"analytic", "values", "method"}, {"overkill"}, {"map", "radius"});
+  const auto kind = node.kind({"analytic", "values", "method", "overkill"}, {}, {"map", "inputs"});
   if (!kind) return std::nullopt;
   const auto& [name, value] = *kind;
   Reference reference;
   reference.entry = node.value();
   if (name != "analytic")
-    for (const char* key : {"map", "radius"})
+    for (const char* key : {"map", "inputs"})
       if (const auto other = node.find(key)) other->error_at_key("belongs to analytic, not to " + name);
   if (name == "analytic") {
-    const auto form = value.choice(analytic_names());
-    const auto map = node.find("map");
-    if (!map) node.error(R"(the key "map" is missing: {RESPONSE: QUANTITY, ...})");
-    if (map && map->is_map("quantities by response"))
-      for (const auto& [response, quantity] : map->members()) {
-        check_result_name(quantity, response, result_names(scene, false));
-        if (form) quantity.choice(analytic_quantities(*form));
-      }
-    if (const auto radius = node.find("radius")) radius->number(positive);
+    read_analytic(node, value, scene);
   } else if (name == "values") {
     reference.kind = Reference::Kind::values;
     if (value.is_map("numbers by response, or by RESPONSE/PARAMETER"))
@@ -109,6 +153,14 @@ std::optional<Reference> read_reference(const JsonNode& node, const json& scene)
         check_result_name(number, result, result_names(scene, true));
         number.number(any_number);
       }
+  } else if (name == "overkill") {
+    reference.kind = Reference::Kind::overkill;
+    reference.method = {"monolithic_al", node.place(), {}};
+    constexpr int most = 10;
+    if (const auto level = value.is_object({{"refine"}}) ? value.find("refine") : std::nullopt) {
+      reference.refine = level->count(1).value_or(1);
+      if (reference.refine > most) level->must_be("a number of levels from 1 to 10");
+    }
   } else {
     reference.kind = Reference::Kind::method;
     const auto sweep = read_method_sweep(value, Lists::refused);
@@ -188,11 +240,12 @@ void set_method(CellInput& cell, const MethodSweep& method, const std::vector<co
   }
 }
 
-/// Puts the method of a reference into the cell.
-void set_reference(CellInput& cell, const Reference& reference) {
+/// Puts the method of a reference into the cell, and its mesh level; false where an imported mesh has no finer one.
+bool set_reference(CellInput& cell, const Reference& reference, Diagnostics& diagnostics) {
   std::vector<const PlacedValue*> chosen;
   for (const Knob& option : reference.method.options) chosen.push_back(&option.values.front());
   set_method(cell, reference.method, chosen);
+  return refine_meshes(cell.document, reference.refine, reference.method.place, diagnostics);
 }
 
 /// Reads the cell's document and fills in what follows from it; false where it is at fault.
@@ -313,7 +366,7 @@ std::optional<Study> read_study(const std::string& file, Diagnostics& diagnostic
     read_errors(*errors, study.errors);
   }
   if (const auto timing = root.find("timing"); timing && timing->is_object({{}, {"repeat"}}))
-    if (const auto repeat = timing->find("repeat")) study.repeat = repeat->count(1).value_or(1);
+    if (const auto repeat = timing->find("repeat")) study.repeat = repeat->count(1).value_or(0);
   if (diagnostics.error_count() > faults) return std::nullopt;
   return study;
 }
@@ -346,10 +399,10 @@ std::vector<CellInput> expand(const Study& study, const std::string& program_ver
   // a reference with faulty options would be found only when it is run
   if (!cells.empty())
     for (const Reference& reference : study.references)
-      if (reference.kind == Reference::Kind::method) {
+      if (reference.kind == Reference::Kind::method || reference.kind == Reference::Kind::overkill) {
         CellInput cell = cells.front();
-        set_reference(cell, reference);
-        complete(cell, reference.method.method, program_version, diagnostics, mesh_files);
+        if (set_reference(cell, reference, diagnostics))
+          complete(cell, reference.method.method, program_version, diagnostics, mesh_files);
       }
   if (diagnostics.error_count() > faults) cells.clear();
   return cells;
@@ -358,8 +411,8 @@ std::vector<CellInput> expand(const Study& study, const std::string& program_ver
 CellInput reference_cell(const CellInput& cell, const Reference& reference, const std::string& program_version,
                          MeshFiles& mesh_files) {
   CellInput other = cell;
-  set_reference(other, reference);
   Diagnostics none;
+  set_reference(other, reference, none);
   complete(other, reference.method.method, program_version, none, mesh_files);
   return other;
 }

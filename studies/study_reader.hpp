@@ -34,10 +34,11 @@ struct MethodSweep {
 };
 
 struct Reference {
-  enum class Kind { analytic, values, method };
+  enum class Kind { analytic, values, method, overkill };
   Kind kind = Kind::analytic;
   nlohmann::json entry;  ///< as given
-  MethodSweep method;    ///< method: one value each
+  MethodSweep method;    ///< method, overkill (then monolithic_al): one value each
+  int refine = 0;        ///< overkill: levels finer than the cell
 };
 
 struct Study {
@@ -49,7 +50,7 @@ struct Study {
   std::vector<PlacedValue> refine;  ///< levels, at least one
   std::vector<Reference> references;
   std::vector<std::string> errors;  ///< patterns: "response:*", "sensitivity:NAME/PARAMETER", "kkt"
-  int repeat = 1;                   ///< of the timing
+  int repeat = 0;                   ///< rounds of the timing pass; 0: there is none
 };
 
 /// One run of a study.
@@ -71,8 +72,8 @@ std::optional<Study> read_study(const std::string& file, Diagnostics&);
 /// of their options, the last varying fastest. Inputs that are the same come once. Empty where there is a fault.
 std::vector<CellInput> expand(const Study&, const std::string& program_version, Diagnostics&, MeshFiles&);
 
-/// The cell with the method of a reference instead of its own: what its enforcement error is measured against.
-/// pre: the reference is a method.
+/// The cell with the method of a reference instead of its own, on its own mesh or a finer one: what its enforcement or
+/// its discretisation error is measured against. pre: the reference is a method, or overkill.
 CellInput reference_cell(const CellInput&, const Reference&, const std::string& program_version, MeshFiles&);
 
 /// 16 hexadecimal digits that name the result of this input by this version of the program.

@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "studies/report/drawing.hpp"
 #include "studies/report/html.hpp"
 #include "studies/report/records.hpp"
+#include "studies/report/settings.hpp"
 
 namespace stickslip::report {
 
@@ -46,8 +48,14 @@ struct Figure {
   Table table;
 };
 
+/// A drawing that needs no script, and the table of the same numbers.
+struct Plate {
+  std::string id, title, text;
+  Drawing drawing;
+  Table table;
+};
+
 enum class Against { same_mesh, closed_form, coulomb };  ///< enforcement, discretisation, the KKT measures
-enum class Of { responses, sensitivities };
 
 /// Error against work (factorisations and weighted back-solves), seconds and back-solves; one curve per method and
 /// constant option, joined along its swept knob. Nothing where no cell has such an error.
@@ -69,6 +77,19 @@ std::optional<Figure> convergence_histories(const Study& study);
 /// Pressure and tangential traction along the interface at the last step with the closed form, and the difference from
 /// the most accurate cell, main variant.
 std::optional<Figure> tractions(const Study& study);
+
+/// Share of the problems (scene variants, each with several accuracies) that each method solves within a factor of the
+/// least work, and within a given work: default, tuned and strict settings side by side. Nothing where fewer than two
+/// problems, or two settings, can be told apart.
+std::optional<Figure> profiles(const Study& study, Of of);
+
+/// For each setting and scene variant the range of the knob in which it converges, as a bar; failures as crosses.
+/// `knobs` share the axis. Nothing where none of them is swept.
+std::optional<Plate> robustness_windows(const Study& study, const std::vector<std::string>& knobs);
+
+/// States of the contact points over the steps, main variant, for the telling cells side by side. Nothing where no run
+/// recorded more than one step of more than one point.
+std::optional<Plate> film_of_states(const Study& study);
 
 /// Groups of knobs that share an axis: stiffness and scale, both multiples of the local nodal stiffness, are one.
 std::vector<std::vector<std::string>> knob_groups(const Study& study);

@@ -87,7 +87,8 @@ std::string cost_sentence(const Study& study, const Measure& measure) {
     } else {
       const double factor = cell.*measure.work / (reached.front()->*measure.work);
       out += fmt::format("; {} needs {}", label_in_words(cell), spent(cell, measure));
-      if (std::isfinite(factor)) out += fmt::format(", {} times the work", number(factor, 2));
+      if (const std::string times = number(factor, 2); std::isfinite(factor))
+        out += times == "1" ? ", about the same work" : fmt::format(", {} times the work", times);
     }
     if (*worst(cell.enforcement, measure.prefix) == 0) out += " (its error is exactly 0: it is the reference itself)";
   }

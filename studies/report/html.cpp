@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 
@@ -55,6 +56,19 @@ std::string embed(const nlohmann::json& value) {
 
 std::string embed_script(std::string_view code) {
   return replace_all(replace_all(std::string(code), "</script", "<\\/script"), "<!--", "<\\!--");
+}
+
+std::string slug(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::isalnum(byte))
+      out += static_cast<char>(std::tolower(byte));
+    else if (!out.empty() && out.back() != '-')
+      out += '-';
+  }
+  if (!out.empty() && out.back() == '-') out.pop_back();
+  return out;
 }
 
 std::string number(double value, int digits) {

@@ -19,6 +19,9 @@ std::string embed(const nlohmann::json& value);
 /// literal and no regular expression.
 std::string embed_script(std::string_view code);
 
+/// `text` as an HTML id or a file's name: small letters and digits; what else stands between them becomes one '-'.
+std::string slug(std::string_view text);
+
 /// Shortest usual form with `digits` significant digits; not finite: "".
 std::string number(double value, int digits = 3);
 

@@ -126,7 +126,7 @@ std::vector<int> outline(const std::vector<int>& nodes) {
 }
 
 /// Sides that belong to one element of a body alone: the outlines of the bodies.
-std::string draw_outlines(const Mesh& mesh, const std::vector<Point>& at, const Frame& frame) {
+void draw_outlines(const Mesh& mesh, const std::vector<Point>& at, const Frame& frame, Drawing& drawing) {
   std::map<std::array<int, 3>, int> uses;  // body, lower node, higher node
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
     const auto nodes = outline(mesh.elements[e]);
@@ -136,114 +136,120 @@ std::string draw_outlines(const Mesh& mesh, const std::vector<Point>& at, const 
       ++uses[{mesh.body[e], a, b}];
     }
   }
-  std::string path;
+  Path path;
   for (const auto& [side, n] : uses) {
     const Point a = at[side[1]], b = at[side[2]];
     Box box;
     box.add(a);
     box.add(b);
-    if (n == 1 && box.overlaps(frame.window()))
-      path += fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}", frame.x(a.x), frame.y(a.y), frame.x(b.x), frame.y(b.y));
+    if (n == 1 && box.overlaps(frame.window())) path.move(frame.x(a.x), frame.y(a.y)).line(frame.x(b.x), frame.y(b.y));
   }
-  return path.empty() ? path : fmt::format("<path d=\"{}\" class=\"ink\" fill=\"none\"/>\n", path);
+  drawing.path(std::move(path), {"ink"});
 }
 
 /// Elements inside the frame's window, one path a colour: 20 000 elements stay a light page.
-std::string draw_elements(const Mesh& mesh, const std::vector<Point>& at, const Frame& frame, double peak,
-                          bool mesh_lines) {
-  std::array<std::string, colors.size()> paths;
-  std::string lines;
+void draw_elements(const Mesh& mesh, const std::vector<Point>& at, const Frame& frame, double peak, bool mesh_lines,
+                   Drawing& drawing) {
+  std::array<Path, colors.size()> paths;
+  Path lines;
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
     const auto nodes = outline(mesh.elements[e]);
     Box box;
     for (const int i : nodes) box.add(at[i]);
     if (!box.overlaps(frame.window())) continue;
-    std::string path;
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-      path += fmt::format("{}{:.1f} {:.1f}", i == 0 ? "M" : "L", frame.x(at[nodes[i]].x), frame.y(at[nodes[i]].y));
-    if (nodes.size() == 2) {
-      lines += path;
-      continue;
-    }
     const double share = peak > 0 ? mesh.stress[e] / peak : 0;
     const auto bin = static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * (colors.size() - 1) + 0.5);
-    paths[bin] += path + "Z";
+    Path& path = nodes.size() == 2 ? lines : paths[bin];
+    path.move(frame.x(at[nodes[0]].x), frame.y(at[nodes[0]].y));
+    for (std::size_t i = 1; i < nodes.size(); ++i) path.line(frame.x(at[nodes[i]].x), frame.y(at[nodes[i]].y));
+    if (nodes.size() > 2) path.close();
   }
-  std::string out;
   for (std::size_t i = 0; i < colors.size(); ++i)
-    if (!paths[i].empty())
-      // Without mesh lines a stroke of the fill's own colour closes the hairlines between neighbours.
-      out += fmt::format("<path d=\"{0}\" fill=\"{1}\" stroke=\"{2}\" stroke-width=\"{3}\"/>\n", paths[i], colors[i],
-                         mesh_lines ? "#00000055" : colors[i], mesh_lines ? "0.5" : "0.3");
-  if (!lines.empty()) out += fmt::format("<path d=\"{}\" class=\"ink\" fill=\"none\" stroke-width=\"2\"/>\n", lines);
-  return out;
+    // Without mesh lines a stroke of the fill's own colour closes the hairlines between neighbours.
+    drawing.path(std::move(paths[i]), {mesh_lines ? "#5f6670" : colors[i], colors[i], 0.3, {}});
+  drawing.path(std::move(lines), {"ink", "", 2, {}});
 }
 
-std::string draw_obstacles(const json& obstacles, const Frame& frame) {
-  std::string out;
+/// The stretch of a plane that covers the window, whichever of its points is named.
+Path plane_shape(Point p, Point n, const Frame& frame) {
+  const double length = std::hypot(n.x, n.y);
+  if (length == 0) return {};
+  n = {n.x / length, n.y / length};
   const double reach = 2 * (frame.window().width() + frame.window().height());
+  const Point middle{(frame.window().min.x + frame.window().max.x) / 2,
+                     (frame.window().min.y + frame.window().max.y) / 2};
+  const double off = (middle.x - p.x) * n.x + (middle.y - p.y) * n.y;
+  p = {middle.x - off * n.x, middle.y - off * n.y};
+  Path path;
+  for (const auto& [along, across] : {std::pair{-1, 0}, {1, 0}, {1, 1}, {-1, 1}}) {
+    const double x = p.x + reach * (along * n.y - across * n.x), y = p.y - reach * (along * n.x + across * n.y);
+    path.empty() ? path.move(frame.x(x), frame.y(y)) : path.line(frame.x(x), frame.y(y));
+  }
+  return path.close();
+}
+
+/// A solid: hatched, in grey print too.
+void hatch(const Path& shape, const Frame& frame, Drawing& drawing) {
+  const Box& w = frame.window();
+  const double x1 = frame.x(w.min.x), x2 = frame.x(w.max.x), y1 = frame.y(w.max.y), y2 = frame.y(w.min.y);
+  Path lines;
+  for (double x = x1 - (y2 - y1); x < x2; x += 9) lines.move(x, y2).line(x + (y2 - y1), y1);
+  drawing.clip(shape);
+  drawing.path(std::move(lines), {"soft", "", 1, {}});
+  drawing.unclip();
+}
+
+void draw_obstacles(const json& obstacles, const Frame& frame, Drawing& drawing) {
+  const Style edge{"ink", "", 1.2, {}};
   for (const auto& obstacle : obstacles) {
     if (!obstacle.is_object() || obstacle.empty()) continue;
     const std::string kind = obstacle.begin().key();
     const json& data = obstacle.begin().value();
+    Path shape;
+    bool solid = true;
     if (kind == "plane" && is_point(at(data, "point")) && is_point(at(data, "normal"))) {
-      Point p = to_point(data["point"]), n = to_point(data["normal"]);
-      const double length = std::hypot(n.x, n.y);
-      if (length == 0) continue;
-      n = {n.x / length, n.y / length};
-      // The foot of the window's middle, so that the drawn stretch covers the window wherever the point lies.
-      const Point middle{(frame.window().min.x + frame.window().max.x) / 2,
-                         (frame.window().min.y + frame.window().max.y) / 2};
-      const double off = (middle.x - p.x) * n.x + (middle.y - p.y) * n.y;
-      p = {middle.x - off * n.x, middle.y - off * n.y};
-      const std::array<Point, 4> corners = {Point{p.x - reach * n.y, p.y + reach * n.x},
-                                            Point{p.x + reach * n.y, p.y - reach * n.x},
-                                            Point{p.x + reach * (n.y - n.x), p.y - reach * (n.x + n.y)},
-                                            Point{p.x - reach * (n.y + n.x), p.y + reach * (n.x - n.y)}};
-      std::string shape;
-      for (const auto& c : corners)
-        shape += fmt::format("{}{:.1f} {:.1f}", shape.empty() ? "M" : "L", frame.x(c.x), frame.y(c.y));
-      out += fmt::format("<path d=\"{}Z\" class=\"obstacle\"/>\n", shape);
+      shape = plane_shape(to_point(data["point"]), to_point(data["normal"]), frame);
     } else if ((kind == "circle" || kind == "cylinder") && is_point(at(data, "center")) &&
                at(data, "radius").is_number()) {
       const Point c = to_point(data["center"]);
-      const bool cup = at(data, "inside") == true;
-      out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\" class=\"obstacle\"{}/>\n", frame.x(c.x),
-                         frame.y(c.y), frame.length(data["radius"]), cup ? " style=\"fill:none\"" : "");
+      shape.circle(frame.x(c.x), frame.y(c.y), frame.length(data["radius"]));
+      solid = at(data, "inside") != true;
     } else if (kind == "polyline") {
-      const json& points = data.is_array() ? data : array_at(data, "points");
-      std::string shape;
-      for (const auto& p : points)
+      solid = false;
+      for (const auto& p : data.is_array() ? data : array_at(data, "points"))
         if (is_point(p))
-          shape += fmt::format("{}{:.1f} {:.1f}", shape.empty() ? "M" : "L", frame.x(p[0]), frame.y(p[1]));
-      out += fmt::format("<path d=\"{}\" class=\"obstacle\" style=\"fill:none\"/>\n", shape);
+          shape.empty() ? shape.move(frame.x(p[0]), frame.y(p[1])) : shape.line(frame.x(p[0]), frame.y(p[1]));
     }
+    if (shape.empty()) continue;
+    if (solid) hatch(shape, frame, drawing);
+    drawing.path(std::move(shape), edge);
   }
-  return out;
 }
 
-std::string marker(const std::string& state, double x, double y) {
+void draw_state(const std::string& state, double x, double y, const std::string& tooltip, Drawing& drawing) {
   if (state == "stick")
-    return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"7\" height=\"7\" class=\"stick\"/>", x - 3.5, y - 3.5);
-  if (state == "slip") return fmt::format("<path d=\"M{:.1f} {:.1f}l4.5 8h-9Z\" class=\"slip\"/>", x, y - 5);
-  return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" class=\"open\"/>", x, y);
+    drawing.path(Path().rectangle(x - 3.5, y - 3.5, 7, 7), {"#ffffff", "#0072B2", 0.8, {}}, tooltip);
+  else if (state == "slip")
+    drawing.path(Path().move(x, y - 5).line(x + 4.5, y + 3).line(x - 4.5, y + 3).close(),
+                 {"#000000", "#E69F00", 0.8, {}}, tooltip);
+  else
+    drawing.path(Path().circle(x, y, 3), {"#333333", "#ffffff", 1, {}}, tooltip);
 }
 
 /// Contact points of `contact` inside the window, with the state and tractions as a tooltip. `contact` gives deformed
 /// positions.
-std::string draw_contact(const json& contact, const Frame& frame) {
-  std::string out;
+void draw_contact(const json& contact, const Frame& frame, Drawing& drawing) {
   const Box& w = frame.window();
   for (const auto& c : contact) {
     if (!at(c, "x").is_number() || !at(c, "y").is_number()) continue;
     const double x = c["x"], y = c["y"];
-    const std::string state = plain(at(c, "state"));
     if (x < w.min.x || x > w.max.x || y < w.min.y || y > w.max.y) continue;
-    out += fmt::format("<g>{}<title>{}: {}, normal traction {}, tangential {}</title></g>\n",
-                       marker(state, frame.x(x), frame.y(y)), escape(plain(at(c, "name"))), escape(state),
-                       escape(plain(at(c, "normal"))), escape(plain(at(c, "tangential"))));
+    const std::string state = plain(at(c, "state"));
+    draw_state(state, frame.x(x), frame.y(y),
+               fmt::format("{}: {}, normal traction {}, tangential {}", plain(at(c, "name")), state,
+                           plain(at(c, "normal")), plain(at(c, "tangential"))),
+               drawing);
   }
-  return out;
 }
 
 /// A square around the contact points that touch (around all where none does), and some room; empty without points.
@@ -272,92 +278,96 @@ Box padded(Box box, double share) {
   return box;
 }
 
-std::string legend(double peak, double y) {
-  std::string out = fmt::format("<g class=\"text\" transform=\"translate(10 {:.0f})\">", y);
+void draw_legend(double peak, double y, Drawing& drawing) {
   if (peak > 0) {
-    out += "<text y=\"12\">equivalent stress</text>";
+    drawing.text(10, y + 12, "equivalent stress");
     for (std::size_t i = 0; i < colors.size(); ++i)
-      out += fmt::format("<rect x=\"{}\" y=\"2\" width=\"22\" height=\"12\" fill=\"{}\"/>", 135 + 22 * i, colors[i]);
-    out += fmt::format("<text x=\"135\" y=\"28\">0</text><text x=\"333\" y=\"28\" text-anchor=\"end\">{}</text>",
-                       number(peak));
+      drawing.path(Path().rectangle(145 + 22.0 * static_cast<double>(i), y + 2, 22, 12), {"", colors[i], 1, {}});
+    drawing.text(145, y + 28, "0");
+    drawing.text(343, y + 28, number(peak), {Anchor::end});
   }
-  double x = 390;
+  double x = 400;
   for (const auto& [state, words] : {std::pair{"stick", "sticks"}, {"slip", "slips"}, {"open", "open"}}) {
-    out += marker(state, x, 8) + fmt::format("<text x=\"{:.0f}\" y=\"12\">{}</text>", x + 10, words);
+    draw_state(state, x, y + 8, "", drawing);
+    drawing.text(x + 10, y + 12, words);
     x += 80;
   }
-  return out + "</g>\n";
+}
+
+/// What is drawn: the mesh, what came of it, and how it is laid out.
+struct Scene {
+  Mesh mesh;
+  double scale, peak = 0;  ///< exaggeration; largest stress
+  Box whole, zoom;         ///< windows; no zoom: empty
+  bool zooms;
+};
+
+std::optional<Scene> lay_out(const json& picture) {
+  Scene scene{read_mesh(picture), 1, 0, {}, {}, false};
+  if (scene.mesh.elements.empty()) return std::nullopt;
+  Box reference;
+  for (const auto& p : scene.mesh.points) reference.add(p);
+  const double extent = std::max(reference.width(), reference.height());
+  if (!(extent > 0)) return std::nullopt;
+  scene.scale = scale_of(scene.mesh, extent);
+  for (const auto& p : deformed(scene.mesh, scene.scale)) scene.whole.add(p);
+  scene.whole = padded(scene.whole, 0.03);
+  for (const double s : scene.mesh.stress) scene.peak = std::max(scene.peak, s);
+  scene.zoom = close_up(array_at(picture, "contact"));
+  // A close-up of most of the picture would show the same thing twice.
+  scene.zooms = scene.zoom.width() > 0 && scene.zoom.width() < 0.8 * extent;
+  return scene;
+}
+
+std::string in_words(const Scene& scene, std::size_t points) {
+  const std::string scale =
+      scene.scale == 1
+          ? std::string("displacements at true scale")
+          : fmt::format("displacements {} times enlarged (bodies that touch may seem to overlap)", number(scene.scale));
+  return fmt::format("Reference solution at the last step: {} elements, {} contact points; {}.{}",
+                     scene.mesh.elements.size(), points, scale,
+                     scene.zooms ? " Right: the contact at true scale." : "");
 }
 
 }  // namespace
 
-std::string draw_picture(const json& picture) {
-  if (!picture.is_object()) return {};
-  const Mesh mesh = read_mesh(picture);
-  if (mesh.elements.empty()) return {};
-  Box reference;
-  for (const auto& p : mesh.points) reference.add(p);
-  const double extent = std::max(reference.width(), reference.height());
-  if (!(extent > 0)) return {};
-
-  const double scale = scale_of(mesh, extent);
-  const auto exaggerated = deformed(mesh, scale), actual = deformed(mesh, 1);
-  Box whole;
-  for (const auto& p : exaggerated) whole.add(p);
-  whole = padded(whole, 0.03);
-  double peak = 0;
-  for (const double s : mesh.stress) peak = std::max(peak, s);
-  const json& contact = array_at(picture, "contact");
-  const json& obstacles = array_at(picture, "obstacles");
-  const Box zoom = close_up(contact);
-  // A close-up of most of the picture would show the same thing twice.
-  const bool zooms = zoom.width() > 0 && zoom.width() < 0.8 * extent;
-
-  const double gap = 24, wide = zooms ? 560 : 1000, inset = 416;
-  const double tall = std::clamp(wide * whole.height() / whole.width(), 120.0, 520.0);
-  const double height = zooms ? std::max(tall, inset) : tall;
-  const Frame main(whole, wide, height, 0);
+std::optional<Drawing> draw_picture(const json& picture) {
+  if (!picture.is_object()) return std::nullopt;
+  const auto scene = lay_out(picture);
+  if (!scene) return std::nullopt;
+  const json &contact = array_at(picture, "contact"), &obstacles = array_at(picture, "obstacles");
+  const double gap = 24, wide = scene->zooms ? 560 : 1000, inset = 416;
+  const double tall = std::clamp(wide * scene->whole.height() / scene->whole.width(), 120.0, 520.0);
+  const double height = scene->zooms ? std::max(tall, inset) : tall;
+  Drawing drawing(1000, height + 44, "Deformed bodies and contact states", in_words(*scene, contact.size()));
   constexpr std::size_t lines_up_to = 4000;  // more mesh lines than that are one grey
 
-  const std::string scale_text =
-      scale == 1
-          ? std::string("displacements at true scale")
-          : fmt::format("displacements {} times enlarged (bodies that touch may seem to overlap)", number(scale));
-  const std::string description =
-      fmt::format("Reference solution at the last step: {} elements, {} contact points; {}.{}", mesh.elements.size(),
-                  contact.size(), scale_text, zooms ? " Right: the contact at true scale." : "");
-  std::string out = fmt::format(
-      "<svg class=\"picture\" viewBox=\"0 0 1000 {:.0f}\" role=\"img\" aria-labelledby=\"picture-title "
-      "picture-desc\">\n"
-      "<title id=\"picture-title\">Deformed bodies and contact states</title>"
-      "<desc id=\"picture-desc\">{}</desc>\n",
-      height + 44, escape(description));
-  out += fmt::format(
-      "<defs><clipPath id=\"main-clip\"><rect width=\"{:.0f}\" height=\"{:.0f}\"/></clipPath>"
-      "<clipPath id=\"zoom-clip\"><rect x=\"{:.0f}\" width=\"{:.0f}\" height=\"{:.0f}\"/></clipPath>"
-      "<pattern id=\"hatch\" width=\"7\" height=\"7\" patternUnits=\"userSpaceOnUse\" "
-      "patternTransform=\"rotate(45)\"><path d=\"M0 0V7\" class=\"ink\" stroke-width=\"1\"/></pattern>"
-      "</defs>\n",
-      wide, height, wide + gap, inset, inset);
-  out += "<g clip-path=\"url(#main-clip)\">\n" + draw_obstacles(obstacles, main) +
-         draw_elements(mesh, exaggerated, main, peak, mesh.elements.size() <= lines_up_to) +
-         draw_outlines(mesh, exaggerated, main);
+  const Frame main(scene->whole, wide, height, 0);
+  const auto exaggerated = deformed(scene->mesh, scene->scale);
+  drawing.clip(Path().rectangle(0, 0, wide, height));
+  draw_obstacles(obstacles, main, drawing);
+  draw_elements(scene->mesh, exaggerated, main, scene->peak, scene->mesh.elements.size() <= lines_up_to, drawing);
+  draw_outlines(scene->mesh, exaggerated, main, drawing);
   // Contact points are recorded at their true place, which an enlarged picture does not show.
-  if (!zooms && scale == 1) out += draw_contact(contact, main);
-  if (zooms)
-    out += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" class=\"frame\"/>\n",
-                       main.x(zoom.min.x), main.y(zoom.max.y), main.length(zoom.width()), main.length(zoom.height()));
-  out += "</g>\n";
-  if (zooms) {
-    const Frame close(zoom, inset, inset, wide + gap);
-    out += "<g clip-path=\"url(#zoom-clip)\">\n" + draw_obstacles(obstacles, close) +
-           draw_elements(mesh, actual, close, peak, true) + draw_outlines(mesh, actual, close) +
-           draw_contact(contact, close) + "</g>\n";
-    out += fmt::format("<rect x=\"{:.0f}\" y=\"0.5\" width=\"{:.0f}\" height=\"{:.0f}\" class=\"frame\"/>\n",
-                       wide + gap, inset - 1, inset - 1);
+  if (!scene->zooms && scene->scale == 1) draw_contact(contact, main, drawing);
+  if (scene->zooms)
+    drawing.path(Path().rectangle(main.x(scene->zoom.min.x), main.y(scene->zoom.max.y),
+                                  main.length(scene->zoom.width()), main.length(scene->zoom.height())),
+                 {"ink"});
+  drawing.unclip();
+  if (scene->zooms) {
+    const Frame close(scene->zoom, inset, inset, wide + gap);
+    const auto actual = deformed(scene->mesh, 1);
+    drawing.clip(Path().rectangle(wide + gap, 0, inset, inset));
+    draw_obstacles(obstacles, close, drawing);
+    draw_elements(scene->mesh, actual, close, scene->peak, true, drawing);
+    draw_outlines(scene->mesh, actual, close, drawing);
+    draw_contact(contact, close, drawing);
+    drawing.unclip();
+    drawing.path(Path().rectangle(wide + gap, 0.5, inset - 1, inset - 1), {"ink"});
   }
-  out += legend(peak, height + 12) + "</svg>\n";
-  return out + "<p class=\"note\">" + escape(description) + "</p>\n";
+  draw_legend(scene->peak, height + 12, drawing);
+  return drawing;
 }
 
 }  // namespace stickslip::report

@@ -1,14 +1,32 @@
-/// A panel as a plain SVG, for readers and printers without scripts.
+/// A panel as a line drawing: for readers and printers without scripts, and for the files in DIR/figures.
 #pragma once
 
-#include <string>
+#include <optional>
 
 #include "studies/report/charts.hpp"
+#include "studies/report/drawing.hpp"
 
 namespace stickslip::report {
 
-/// Inline SVG of the rows that are chosen at first in one panel of a figure: curves, markers, crosses for failed runs,
-/// ticks at round numbers, a legend. "" where no row can be drawn.
-std::string draw_plot(const Figure& figure, const Panel& panel);
+/// The rows that are chosen at first in one panel of a figure: curves, markers, crosses for failed runs, ticks at round
+/// numbers, a legend. Nothing where no row can be drawn.
+std::optional<Drawing> draw_plot(const Figure& figure, const Panel& panel);
+
+/// One axis: values onto pixels, linear or logarithmic, with some room at both ends.
+class Axis {
+ public:
+  Axis(double low, double high, bool logarithmic, double from, double to);
+  double operator()(double value) const;
+  /// Some four to eight round values inside the axis.
+  std::vector<double> ticks() const;
+
+ private:
+  double scaled(double value) const;
+  bool log_;
+  double from_, to_, low_, high_;
+};
+
+/// Looks of a series.
+Style style_of(const Series& series, bool dashed);
 
 }  // namespace stickslip::report

@@ -9,12 +9,14 @@
 #include "studies/atomic_file.hpp"
 #include "studies/report/charts.hpp"
 #include "studies/report/embedded.hpp"
+#include "studies/report/figure_files.hpp"
 #include "studies/report/headline.hpp"
 #include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
 #include "studies/report/picture.hpp"
 #include "studies/report/plot.hpp"
 #include "studies/report/records.hpp"
+#include "studies/report/tables.hpp"
 
 namespace stickslip {
 
@@ -45,6 +47,12 @@ std::string control(const Choice& choice) {
                      escape(choice.label), data, out);
 }
 
+/// The panel for readers without scripts; "" where it has nothing to draw.
+std::string plain_picture(const Figure& figure, const Panel& panel) {
+  const auto drawing = draw_plot(figure, panel);
+  return drawing ? drawing->inline_svg() : std::string();
+}
+
 std::string to_html(const Figure& figure) {
   std::string open, folded_panels;
   json specs = json::array();
@@ -56,7 +64,7 @@ std::string to_html(const Figure& figure) {
         specs.push_back(spec);
         (folded ? folded_panels : open) += fmt::format(
             "<div class=\"panel\"><h4>{}</h4><div class=\"vega\"></div><div class=\"static\">{}</div></div>\n",
-            escape(panel.title), draw_plot(figure, panel));
+            escape(panel.title), plain_picture(figure, panel));
       }
   json series = json::array();
   for (const auto& s : figure.series)
@@ -86,6 +94,15 @@ std::string to_html(const Figure& figure) {
   out += folded("Data of this chart", report::to_html(figure.table, figure.title));
   return out + fmt::format("<script type=\"application/json\" id=\"{}-data\">{}</script>\n</figure>\n", figure.id,
                            embed({{"fields", fields}, {"rows", rows}, {"series", series}, {"panels", specs}}));
+}
+
+std::string to_html(const Plate& plate) {
+  return fmt::format(
+      "<figure class=\"plate\" id=\"{0}\" aria-labelledby=\"{0}-title\">\n<figcaption><h3 id=\"{0}-title\">{1}</h3>"
+      "<p>{2}</p></figcaption>\n<div class=\"drawn\" role=\"region\" tabindex=\"0\" aria-label=\"{1}\">{3}</div>\n{4}"
+      "</figure>\n",
+      plate.id, escape(plate.title), escape(plate.text), plate.drawing.inline_svg(),
+      folded("Data of this chart", report::to_html(plate.table, plate.title)));
 }
 
 // --- sections ------------------------------------------------------------------------------------------------------
@@ -135,104 +152,6 @@ std::string how_to_read(const Study& study) {
          "machine named at the end. Error and cost axes are logarithmic: a grid line is usually a factor of ten. Runs "
          "that failed stay, as crosses and as rows. " +
          escape(ratio_text(study)) + "</p>\n";
-}
-
-/// Settings against variants of the scene: the windows in which each setting works.
-std::string robustness(const Study& study) {
-  if (study.variants.size() < 2) return {};
-  Table table;
-  table.header = {"method"};
-  for (const auto& variant : study.variants) table.header.push_back(variant);
-  std::vector<std::string> labels;
-  std::map<std::pair<std::string, std::string>, const Cell*> at;
-  for (const auto& cell : study.cells) {
-    if (std::find(labels.begin(), labels.end(), cell.label) == labels.end()) labels.push_back(cell.label);
-    at[{cell.label, cell.variant}] = &cell;
-  }
-  for (const auto& label : labels) {
-    std::vector<std::string> row = {label};
-    bool failed = false;
-    for (const auto& variant : study.variants) {
-      const auto found = at.find({label, variant});
-      if (found == at.end()) {
-        row.emplace_back("not run");
-        continue;
-      }
-      const Cell& cell = *found->second;
-      failed = failed || !cell.converged;
-      row.push_back(cell.converged ? fmt::format("ok, {} Newton", number(cell.count("newton"), 9))
-                                   : (cell.status.empty() ? "no status" : cell.status));
-    }
-    table.rows.push_back(row);
-    table.row_classes.emplace_back(failed ? "failed" : "");
-  }
-  return "<h3>Which setting works where</h3>\n" + report::to_html(table, "Status by setting and scene");
-}
-
-std::string results_table(const Study& study) {
-  Table table;
-  table.header = {"method",
-                  "scene",
-                  "status",
-                  "worst response error",
-                  "worst sensitivity error",
-                  "response error to closed form",
-                  "sensitivity error to closed form",
-                  "worst KKT measure",
-                  "Newton",
-                  "augmentations",
-                  "cutbacks",
-                  "factorisations",
-                  "back-solves",
-                  "sensitivity back-solves",
-                  "seconds",
-                  "of these sensitivities",
-                  "memory MB",
-                  "condition",
-                  "message"};
-  const auto shown = [](const std::optional<double>& v) { return v ? number(*v) : std::string(); };
-  for (const auto& cell : study.cells) {
-    const json &cost = at(cell.record, "cost"), &seconds = at(cost, "seconds");
-    const auto count = [&](const char* name) { return number(cell.count(name), 9); };
-    const auto recorded = [](const json& v) { return v.is_number() ? number(v.get<double>()) : std::string(); };
-    table.rows.push_back({cell.label, cell.variant, cell.status.empty() ? "no status" : cell.status,
-                          shown(worst(cell.enforcement, "response:")), shown(worst(cell.enforcement, "sensitivity:")),
-                          shown(worst(cell.discretization, "response:")),
-                          shown(worst(cell.discretization, "sensitivity:")), shown(worst(cell.kkt, "")),
-                          count("newton"), count("augmentations"), count("cutbacks"), count("factorizations"),
-                          count("backsolves"), count("sensitivity_backsolves"), recorded(at(seconds, "total")),
-                          recorded(at(seconds, "sensitivity")), recorded(at(cost, "peak_memory_mb")),
-                          recorded(at(cost, "condition_estimate")), plain(at(cell.record, "message"))});
-    table.row_classes.emplace_back(cell.converged ? "" : "failed");
-  }
-  return report::to_html(table, "All runs");
-}
-
-/// Responses and sensitivities at the last step, ten digits: enough to see where two runs part.
-std::string values_table(const Study& study) {
-  std::set<std::pair<std::string, std::string>> columns;  // response, parameter or ""
-  for (const auto& cell : study.cells) {
-    for (const auto& [name, value] : object_at(cell.record, "responses").items()) columns.emplace(name, "");
-    for (const auto& [name, by] : object_at(cell.record, "sensitivities").items())
-      if (by.is_object())
-        for (const auto& [parameter, value] : by.items()) columns.emplace(name, parameter);
-  }
-  if (columns.empty()) return {};
-  Table table;
-  table.header = {"method", "scene", "status"};
-  for (const auto& [name, by] : columns) table.header.push_back(by.empty() ? name : "d " + name + " / d " + by);
-  for (const auto& cell : study.cells) {
-    std::vector<std::string> row = {cell.label, cell.variant, cell.status};
-    for (const auto& [name, by] : columns) {
-      const json& v =
-          by.empty() ? at(at(cell.record, "responses"), name) : at(at(at(cell.record, "sensitivities"), name), by);
-      row.push_back(v.is_number() ? number(v.get<double>(), 10) : plain(v));
-    }
-    table.rows.push_back(row);
-    table.row_classes.emplace_back(cell.converged ? "" : "failed");
-  }
-  return folded("Values of responses and sensitivities at the last step",
-                report::to_html(table, "Responses and sensitivities at the last step"));
 }
 
 std::string provenance(const Study& study) {
@@ -285,39 +204,79 @@ std::string the_study(const Study& study) {
                       "<pre>" + escape(given.dump(2, ' ', false, json::error_handler_t::replace)) + "</pre>\n");
 }
 
-template <class... Maybe>
-std::string join(const Maybe&... figures) {
+/// What the page shows, kept for the files beside it.
+class Figures {
+ public:
+  std::string show(std::optional<Figure> figure) {
+    if (!figure) return {};
+    figures.push_back(*std::move(figure));
+    return to_html(figures.back());
+  }
+  std::string show(std::optional<Plate> plate) {
+    if (!plate) return {};
+    plates.push_back(*std::move(plate));
+    return to_html(plates.back());
+  }
+
+  std::vector<Figure> figures;
+  std::vector<Plate> plates;
+  std::vector<std::pair<std::string, Drawing>> drawings;  ///< those without numbers of their own, by name
+};
+
+std::string findings(const Study& study) {
+  std::string out = "<ul class=\"headline\">";
+  for (const auto& sentence : headline(study)) out += "<li>" + escape(sentence) + "</li>\n";
+  out += "</ul>\n";
+  if (study.unreadable_lines > 0)
+    out += fmt::format("<p class=\"warning\">{} line(s) of results.jsonl could not be read and are missing here.</p>\n",
+                       study.unreadable_lines);
+  return out + settings_table(study);
+}
+
+std::string of_errors(const Study& study, Of of, Figures& figures) {
+  std::string out = figures.show(work_precision(study, Against::same_mesh, of));
+  out += figures.show(work_precision(study, Against::closed_form, of));
+  if (of == Of::responses) out += figures.show(mesh_convergence(study));
+  return out + figures.show(profiles(study, of));
+}
+
+std::string of_knobs(const Study& study, Figures& figures) {
   std::string out;
-  ((out += figures ? to_html(*figures) : std::string()), ...);
+  for (const auto& group : knob_groups(study)) {
+    out += figures.show(error_against_knob(study, group));
+    out += figures.show(iterations_against_knob(study, group));
+    out += figures.show(robustness_windows(study, group));
+  }
   return out;
 }
 
-std::vector<Section> sections_of(const Study& study) {
-  std::string findings = "<ul class=\"headline\">";
-  for (const auto& sentence : headline(study)) findings += "<li>" + escape(sentence) + "</li>\n";
-  findings += "</ul>\n";
-  if (study.unreadable_lines > 0)
-    findings +=
-        fmt::format("<p class=\"warning\">{} line(s) of results.jsonl could not be read and are missing here.</p>\n",
-                    study.unreadable_lines);
-  std::string knobs;
-  for (const auto& group : knob_groups(study))
-    knobs += join(error_against_knob(study, group), iterations_against_knob(study, group));
+std::string of_solution(const Study& study, Figures& figures) {
+  std::string out;
+  if (const auto picture = draw_picture(study.picture)) {
+    out = "<div class=\"drawn picture\">" + picture->inline_svg() + "</div>\n<p class=\"note\">" +
+          escape(picture->description()) + "</p>\n";
+    figures.drawings.emplace_back("picture", *picture);
+  }
+  out += figures.show(tractions(study));
+  return out + figures.show(film_of_states(study));
+}
+
+std::string of_solver(const Study& study, Figures& figures) {
+  const std::string out = figures.show(convergence_histories(study));
+  return out + figures.show(work_precision(study, Against::coulomb, Of::responses));
+}
+
+std::vector<Section> sections_of(const Study& study, Figures& figures) {
   return {
-      {"findings", "What came out", findings},
+      {"findings", "What came out", findings(study)},
       {"reading", "How to read this", how_to_read(study)},
-      {"responses", "Accuracy against cost: responses",
-       join(work_precision(study, Against::same_mesh, Of::responses),
-            work_precision(study, Against::closed_form, Of::responses), mesh_convergence(study))},
-      {"sensitivities", "Accuracy against cost: sensitivities",
-       join(work_precision(study, Against::same_mesh, Of::sensitivities),
-            work_precision(study, Against::closed_form, Of::sensitivities))},
-      {"knobs", "Turning the knobs", knobs},
-      {"solution", "The solution", draw_picture(study.picture) + join(tractions(study))},
-      {"solver", "The solver at work",
-       join(convergence_histories(study), work_precision(study, Against::coulomb, Of::responses))},
+      {"responses", "Accuracy against cost: responses", of_errors(study, Of::responses, figures)},
+      {"sensitivities", "Accuracy against cost: sensitivities", of_errors(study, Of::sensitivities, figures)},
+      {"knobs", "Turning the knobs", of_knobs(study, figures)},
+      {"solution", "The solution", of_solution(study, figures)},
+      {"solver", "The solver at work", of_solver(study, figures)},
       {"results", "All results",
-       study.cells.empty() ? std::string() : results_table(study) + values_table(study) + robustness(study)},
+       study.cells.empty() ? std::string() : results_table(study) + values_table(study) + status_table(study)},
       {"study", "What was simulated", the_study(study)},
       {"provenance", "Provenance",
        provenance(study) + folded("Licences of the chart library in this file",
@@ -348,10 +307,10 @@ std::string fill(std::string_view page, const std::map<std::string, std::string,
   }
 }
 
-std::string page_of(const Study& study) {
+std::string page_of(const Study& study, Figures& figures) {
   const std::string title = text_at(study.description, "title");
   std::string navigation, content;
-  for (const auto& section : sections_of(study)) {
+  for (const auto& section : sections_of(study, figures)) {
     if (section.content.empty()) continue;
     navigation += fmt::format("<a href=\"#{}\">{}</a>\n", section.id, section.title);
     content +=
@@ -371,7 +330,10 @@ std::string page_of(const Study& study) {
 }  // namespace
 
 void write_report(const std::filesystem::path& directory) {
-  write_file_atomically(directory / "report.html", page_of(read_study(directory)));
+  const Study study = read_study(directory);
+  Figures figures;
+  write_file_atomically(directory / "report.html", page_of(study, figures));
+  write_figures(directory, figures.figures, figures.plates, figures.drawings);
 }
 
 }  // namespace stickslip

@@ -48,7 +48,7 @@ constexpr const char* study_text = R"({
               {"monolithic_al": {}}],
   "vary": {"/contacts/sole/friction": [0, 0.3]},
   "refine": [0, 1],
-  "reference": [{"analytic": "hertz_line", "map": {"press": "force"}, "radius": 2},
+  "reference": [{"analytic": "hertz_line", "map": {"press": "force"}, "inputs": {"radius": 2}},
                 {"values": {"press": 1.5, "press/mu": 0}},
                 {"method": {"monolithic_al": {"scale": 5}}}],
   "errors": ["response:*", "kkt"],
@@ -279,12 +279,28 @@ INSTANTIATE_TEST_SUITE_P(
                     "must be a whole number from 0"},
         BrokenStudy{"refine_far", R"("refine": [0, 1])", R"("refine": [0, @11])", "/refine/1",
                     "must be a level from 0 to 10"},
-        BrokenStudy{"overkill", R"({"analytic": "hertz_line", "map": {"press": "force"}, "radius": 2})",
-                    R"({@"overkill": {"refine": 2}})", "/reference/0/overkill",
-                    "is not available in this version; allowed: analytic, values, method"},
+        BrokenStudy{"overkill", R"({"analytic": "hertz_line", "map": {"press": "force"}, "inputs": {"radius": 2}})",
+                    R"({"overkill": {"refine": @0}})", "/reference/0/overkill/refine", "must be a whole number from 1"},
+        BrokenStudy{"overkill_far", R"({"analytic": "hertz_line", "map": {"press": "force"}, "inputs": {"radius": 2}})",
+                    R"({"overkill": {"refine": @11}})", "/reference/0/overkill/refine",
+                    "must be a number of levels from 1 to 10"},
+        BrokenStudy{"no_such_input", R"("inputs": {"radius": 2})", R"("inputs": {"radius": 2, @"radios": 2})",
+                    "/reference/0/inputs/radios", R"(did you mean "radius"?)"},
+        BrokenStudy{"input_twice", R"("inputs": {"radius": 2})", R"("inputs": {"radius": 2, @"force": 2})",
+                    "/reference/0/inputs/force", "is given by the map too"},
+        BrokenStudy{"input_of_nothing", R"("inputs": {"radius": 2})", R"("inputs": {"radius": @"R"})",
+                    "/reference/0/inputs/radius", "the scene has no parameter of this name"},
+        BrokenStudy{"input_list", R"("inputs": {"radius": 2})", R"("inputs": {"radius": @[2]})",
+                    "/reference/0/inputs/radius", "must be a number, or the name of a parameter"},
+        BrokenStudy{
+            "input_missing", R"({"analytic": "hertz_line", "map": {"press": "force"}, "inputs": {"radius": 2}})",
+            R"(@{"analytic": "hertz_line", "map": {"press": "force"}})", "/reference/0", "hertz_line lacks radius"},
+        BrokenStudy{"inputs_of_values", R"({"values": {"press": 1.5, "press/mu": 0}})",
+                    R"({"values": {"press": 1.5, "press/mu": 0}, @"inputs": {}})", "/reference/1/inputs",
+                    "belongs to analytic"},
         BrokenStudy{"unknown_form", R"("hertz_line")", R"(@"hertz_lin")", "/reference/0/analytic",
                     R"(did you mean "hertz_line"?)"},
-        BrokenStudy{"no_map", R"({"analytic": "hertz_line", "map": {"press": "force"}, "radius": 2})",
+        BrokenStudy{"no_map", R"({"analytic": "hertz_line", "map": {"press": "force"}, "inputs": {"radius": 2}})",
                     R"(@{"analytic": "hertz_line"})", "/reference/0", R"("map" is missing)"},
         BrokenStudy{"map_of_nothing", R"({"press": "force"})", R"({@"pres": "force"})", "/reference/0/map/pres",
                     R"(did you mean "press"?)"},
@@ -302,6 +318,31 @@ INSTANTIATE_TEST_SUITE_P(
                     "must be \"kkt\", or begin with response:"},
         BrokenStudy{"repeat", R"("repeat": 4)", R"("repeat": @0)", "/timing/repeat", "must be a whole number from 1"}),
     [](const auto& info) { return std::string(info.param.name); });
+
+TEST_F(StudyReader, TakesAnOverkillReferenceFromAFinerMeshOfTheSameCell) {
+  const auto text =
+      edited(study_text, R"({"analytic": "hertz_line", "map": {"press": "force"}, "inputs": {"radius": 2}})",
+             R"({"overkill": {"refine": 2}})");
+  const auto all = cells(text);
+  const auto study = read(text);
+  ASSERT_EQ(study->references[0].kind, Reference::Kind::overkill);
+  const CellInput fine = reference_cell(all.back(), study->references[0], "1.0", mesh_files_);  // of level 1
+  EXPECT_EQ(name_of(fine.method), "monolithic_al");
+  EXPECT_EQ(fine.document.root()["bodies"]["block"]["mesh"]["box"]["cells"], (nlohmann::json{4 * 8, 2 * 8}));
+  EXPECT_EQ(fine.document.root()["bodies"]["rod"]["mesh"]["line"]["cells"], 3 * 8);
+  EXPECT_EQ(fine.vary, all.back().vary);
+}
+
+TEST_F(StudyReader, CannotTakeAnOverkillReferenceOfAnImportedMesh) {
+  std::filesystem::copy_file(STICKSLIP_SOURCE_DIR "/studies/meshes/half_disk_coarse.msh", folder_ / "disk.msh");
+  const auto scene = R"({"bodies": {"disk": {"mesh": {"gmsh": "disk.msh", "body": "disk"},
+      "material": {"linear_elastic": {"E": 1, "nu": 0}}}}, "time": {"end": 1, "steps": 1}})";
+  EXPECT_THAT(cells("{\"scene\": \"scene.json\", \"methods\": [{\"penalty\": {}}],\n"
+                    " \"reference\": [{\"overkill\": {\"refine\": 1}}]}",
+                    scene),
+              IsEmpty());
+  EXPECT_THAT(diagnostics_.text(), HasSubstr("cost.study.json:2:16: /bodies/disk/mesh: an imported mesh cannot"));
+}
 
 TEST_F(StudyReader, CannotRefineAnImportedMesh) {
   std::filesystem::copy_file(STICKSLIP_SOURCE_DIR "/studies/meshes/half_disk_coarse.msh", folder_ / "disk.msh");

@@ -1,0 +1,28 @@
+/// One process at a time in a directory of results.
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+
+namespace stickslip {
+
+/// Another process holds the directory; what() names it.
+struct DirectoryInUse : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Holds DIR/.lock, which is made where it is missing, until the end of the scope or of the process, however it ends:
+/// the kernel drops the lock of a process that is killed. A child made by fork() does not hold it. POSIX record lock,
+/// so it works over NFS too. Throws DirectoryInUse, or std::system_error where the disk refuses.
+class DirectoryLock {
+ public:
+  explicit DirectoryLock(const std::filesystem::path& directory);
+  ~DirectoryLock();
+  DirectoryLock(const DirectoryLock&) = delete;
+  DirectoryLock& operator=(const DirectoryLock&) = delete;
+
+ private:
+  int file_;
+};
+
+}  // namespace stickslip

@@ -1,0 +1,147 @@
+/// The merge command: the shards of a study, joined.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "studies/atomic_file.hpp"
+#include "studies/commands.hpp"
+#include "studies/directory_lock.hpp"
+#include "studies/report/report.hpp"
+#include "studies/result_rows.hpp"
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+constexpr int done = 0, bad_input = 2, not_solved = 3;
+
+/// A directory to join: its study.json and rows.
+struct Part {
+  fs::path directory;
+  json description;
+  StoredRows stored;
+  Timings timings;
+};
+
+Part read_part(const fs::path& directory) {
+  Part part{directory, read_description(directory), read_rows(directory), read_timings(directory)};
+  for (const char* key : {"program", "cells"})
+    if (!part.description.contains(key))
+      throw std::runtime_error((directory / "study.json").string() + ": has no \"" + key +
+                               "\"; was it recorded by another version?");
+  return part;
+}
+
+/// The study alone, without what differs from shard to shard.
+json identity(json description) {
+  for (const char* own : {"command", "shard", "size", "analytic"}) description.erase(own);
+  return description;
+}
+
+/// Why the two are not shards of one study; "" where they are.
+std::string difference(const Part& a, const Part& b) {
+  const json first = identity(a.description), second = identity(b.description);
+  if (first == second) return {};
+  const auto& program = first["program"];
+  if (program != second["program"])
+    return fmt::format("{} was run by stickslip {}, {} by {}: run all shards with one version", a.directory.string(),
+                       program.dump(), b.directory.string(), second["program"].dump());
+  for (const auto& [key, value] : first.items())
+    if (!second.contains(key) || second[key] != value)
+      return fmt::format("{} and {} are of different studies: their \"{}\" differ", a.directory.string(),
+                         b.directory.string(), key);
+  return fmt::format("{} and {} are of different studies", a.directory.string(), b.directory.string());
+}
+
+/// Copies what one shard drew: the picture and the fields of the last variant.
+void copy_drawings(const std::vector<Part>& parts, const fs::path& output) {
+  const auto drawn = std::find_if(parts.begin(), parts.end(),
+                                  [](const Part& part) { return fs::exists(part.directory / "picture.json"); });
+  if (drawn == parts.end() || fs::equivalent(drawn->directory, output)) return;
+  for (const auto& entry : fs::directory_iterator(drawn->directory)) {
+    const std::string name = entry.path().filename();
+    if (name == "picture.json" || name.starts_with("fields"))
+      fs::copy_file(entry.path(), output / name, fs::copy_options::overwrite_existing);
+  }
+}
+
+/// "label" of a missing cell is not recorded anywhere: its place in the study's order tells it.
+std::string places(const std::vector<std::size_t>& missing) {
+  constexpr std::size_t most = 12;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(missing.size(), most); ++i)
+    text += (i ? ", " : "") + std::to_string(missing[i] + 1);
+  return missing.size() > most ? text + ", ..." : text;
+}
+
+json merged_description(const std::vector<Part>& parts, const std::string& output) {
+  json out = parts.front().description;
+  out["shard"] = "1/1";
+  out["command"] = "stickslip merge";
+  for (const auto& part : parts) {
+    out["command"] = out["command"].get<std::string>() + " " + part.directory.string();
+    for (const char* drawn : {"size", "analytic"})
+      if (out.value(drawn, json()).is_null() && part.description.contains(drawn)) out[drawn] = part.description[drawn];
+  }
+  out["command"] = out["command"].get<std::string>() + " -o " + output;
+  return out;
+}
+
+int join(const std::vector<Part>& parts, const fs::path& output) {
+  const DirectoryLock lock(output);
+  const std::vector<std::string> ids = parts.front().description["cells"];
+  RowsById rows;
+  int doubles = 0, failed = 0;
+  for (const auto& part : parts)
+    for (const auto& [id, row] : part.stored.rows) {
+      if (std::find(ids.begin(), ids.end(), id) == ids.end()) continue;
+      const auto [place, is_new] = rows.emplace(id, row);
+      doubles += !is_new;
+      failed += is_new && !converged(row);
+      if (!is_new && row["cost"].contains("timing")) place->second = row;  // the one that was timed
+    }
+  std::vector<std::size_t> missing;
+  for (std::size_t i = 0; i < ids.size(); ++i)
+    if (rows.count(ids[i]) == 0) missing.push_back(i);
+  fs::remove(output / "timings.jsonl");
+  for (const auto& part : parts)
+    for (const auto& [id, rounds] : part.timings)
+      for (const auto& [round, seconds] : rounds) append_timing(output, id, round, seconds);
+  copy_drawings(parts, output);
+  write_file_atomically(output / "study.json", merged_description(parts, output.string()).dump(2) + "\n");
+  write_rows(output, ids, rows);
+  write_report(output);
+  fmt::print("{} of {} cells from {} directories, {} of these without a converged result (kept as rows), {} double\n",
+             rows.size(), ids.size(), parts.size(), failed, doubles);
+  fmt::print("report: {}\n", (output / "report.html").string());
+  if (missing.empty()) return done;
+  fmt::print(stderr, "{} cells are still missing, in the study's order: {}\n", missing.size(), places(missing));
+  return not_solved;
+}
+
+}  // namespace
+
+int merge_command(const std::vector<std::string>& directories, const std::string& output) {
+  try {
+    std::vector<Part> parts;
+    std::string faults;
+    for (const auto& directory : directories) {
+      parts.push_back(read_part(directory));
+      if (const auto& part = parts.back(); !part.stored.sound())
+        std::cerr << "note: " << directory << ": " << part.stored.faults() << '\n';
+      if (const std::string fault = difference(parts.front(), parts.back()); !fault.empty()) faults += fault + "\n";
+    }
+    if (faults.empty()) return join(parts, output);
+    std::cerr << faults;
+  } catch (const std::runtime_error& error) {  // a directory that is none of ours, or in use
+    std::cerr << error.what() << '\n';
+  }
+  return bad_input;
+}
+
+}  // namespace stickslip

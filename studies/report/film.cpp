@@ -1,0 +1,129 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "studies/report/chart_parts.hpp"
+#include "studies/report/look_up.hpp"
+
+namespace stickslip::report {
+
+using nlohmann::json;
+
+namespace {
+
+/// States of one contact in one run: a text a step, a letter a point.
+struct Strip {
+  const Cell* cell;
+  std::string contact;
+  std::vector<std::string> steps;
+  std::vector<double> times;
+};
+
+/// Those of a cell that tell something: more than one step, more than one point.
+void add_strips(const Cell& cell, std::vector<Strip>& strips) {
+  const json& film = object_at(cell.record, "film");
+  std::vector<double> times;
+  for (const auto& time : array_at(film, "times")) times.push_back(time.is_number() ? time.get<double>() : 0);
+  for (const auto& [contact, states] : object_at(film, "contacts").items()) {
+    Strip strip{&cell, contact, {}, times};
+    for (const auto& state : states)
+      if (state.is_string()) strip.steps.push_back(state);
+    const bool even = std::all_of(strip.steps.begin(), strip.steps.end(),
+                                  [&](const auto& step) { return step.size() == strip.steps.front().size(); });
+    if (strip.steps.size() > 1 && strip.steps.size() == times.size() && even && strip.steps.front().size() > 1)
+      strips.push_back(std::move(strip));
+  }
+}
+
+struct Look {
+  char letter;
+  const char *words, *fill;
+};
+/// Dark, middle and light, so that grey print tells them apart.
+constexpr std::array<Look, 3> looks = {
+    {{'k', "sticks", "#0072B2"}, {'s', "slips", "#E69F00"}, {'o', "open", "#ffffff"}}};
+
+constexpr double strip_width = 292, strip_height = 170, gap = 40, head = 20, foot = 30, indent = 34;
+
+/// The strip as a grid, steps downwards, points to the right; one path a state.
+void draw_strip(const Strip& strip, double left, double top, Drawing& drawing) {
+  drawing.text(left, top - 6, in_words(*strip.cell) + ", " + strip.contact, {Anchor::start, 11});
+  const double width = strip_width / static_cast<double>(strip.steps.front().size());
+  const double height = strip_height / static_cast<double>(strip.steps.size());
+  for (const auto& look : looks) {
+    Path path;
+    for (std::size_t n = 0; n < strip.steps.size(); ++n) {
+      const auto& step = strip.steps[n];
+      for (std::size_t begin = step.find(look.letter); begin != std::string::npos;) {
+        const std::size_t end = std::min(step.find_first_not_of(look.letter, begin), step.size());
+        path.rectangle(left + width * static_cast<double>(begin), top + height * static_cast<double>(n),
+                       width * static_cast<double>(end - begin), height);
+        begin = step.find(look.letter, end);
+      }
+    }
+    drawing.path(path, {"", look.fill, 1, {}});
+  }
+  drawing.path(Path().rectangle(left, top, strip_width, strip_height), {"ink"});
+  for (const std::size_t n : {std::size_t(0), strip.steps.size() - 1})
+    drawing.text(left - 5, top + height * (static_cast<double>(n) + 0.5) + 4, number(strip.times[n]),
+                 {Anchor::end, 10, "soft"});
+  drawing.text(left, top + strip_height + 14, "point 1", {Anchor::start, 10, "soft"});
+  drawing.text(left + strip_width, top + strip_height + 14, std::to_string(strip.steps.front().size()),
+               {Anchor::end, 10, "soft"});
+}
+
+void draw_legend(double y, Drawing& drawing) {
+  double x = indent;
+  for (const auto& look : looks) {
+    drawing.path(Path().rectangle(x, y, 16, 12), {"ink", look.fill, 1, {}});
+    drawing.text(x + 22, y + 10, look.words);
+    x += 90;
+  }
+  drawing.text(x, y + 10, "down: time; across: contact points");
+}
+
+Table tabulate(const std::vector<Strip>& strips) {
+  Table table;
+  table.header = {"method", "contact", "time", "stick", "slip", "open"};
+  for (const auto& strip : strips)
+    for (std::size_t n = 0; n < strip.steps.size(); ++n) {
+      std::vector<std::string> row = {strip.cell->label, strip.contact, number(strip.times[n], 6)};
+      for (const auto& look : looks)
+        row.push_back(std::to_string(std::count(strip.steps[n].begin(), strip.steps[n].end(), look.letter)));
+      table.rows.push_back(row);
+    }
+  return table;
+}
+
+}  // namespace
+
+std::optional<Plate> film_of_states(const Study& study) {
+  const auto shown = telling_cells(study, Furthest::added);
+  std::vector<Strip> strips;
+  for (const auto& cell : study.cells)
+    if (cell.variant == study.main_variant && std::find(shown.begin(), shown.end(), cell.label) != shown.end())
+      add_strips(cell, strips);
+  if (strips.empty()) return std::nullopt;
+  constexpr std::size_t most = 12;
+  if (strips.size() > most) strips.erase(strips.begin() + most, strips.end());
+  const std::string title = "Film of the contact: what sticks, slips and is open, step by step";
+  const std::string text =
+      "Time runs downwards, the contact points stand side by side in the order of their numbers; the most accurate run "
+      "of "
+      "each method and the one furthest off. Where two pictures differ, the methods disagree on the state of a point.";
+  const std::size_t columns = std::min<std::size_t>(strips.size(), 2);
+  const double cell_width = indent + strip_width + gap / 2, cell_height = head + strip_height + foot;
+  const std::size_t lines = (strips.size() + columns - 1) / columns;
+  const double bottom = cell_height * static_cast<double>(lines) + 6;
+  Plate plate{"film", title, text,
+              Drawing(cell_width * static_cast<double>(std::max<std::size_t>(columns, 2)), bottom + 20, title, text),
+              tabulate(strips)};
+  for (std::size_t i = 0; i < strips.size(); ++i)
+    draw_strip(strips[i], indent + cell_width * static_cast<double>(i % columns),
+               head + cell_height * static_cast<double>(i / columns), plate.drawing);
+  draw_legend(bottom, plate.drawing);
+  return plate;
+}
+
+}  // namespace stickslip::report

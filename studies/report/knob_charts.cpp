@@ -1,0 +1,197 @@
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "studies/report/chart_parts.hpp"
+#include "studies/report/look_up.hpp"
+
+namespace stickslip::report {
+
+using nlohmann::json;
+
+namespace {
+
+/// A row per cell and value for each that has one of `knobs`; for families that have none, their best cell as a level
+/// line over the whole range. `add` is called with the row to complete and its cell.
+template <class Add>
+void rows_along(const Study& study, const std::vector<std::string>& knobs, SeriesList& series, Add add) {
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+  std::set<std::string> with_knob;
+  for (const auto& cell : study.cells)
+    for (const auto& name : knobs)
+      if (const Knob* knob = find_knob(cell, name); knob && knob->value && *knob->value > 0) {
+        low = std::min(low, *knob->value);
+        high = std::max(high, *knob->value);
+        with_knob.insert(cell.family);
+      }
+  for (const auto& cell : study.cells) {
+    const Knob* knob = nullptr;
+    std::string name;
+    for (const auto& candidate : knobs)
+      if (const Knob* found = find_knob(cell, candidate); found && found->value && *found->value > 0) {
+        knob = found;
+        name = candidate;
+      }
+    json r = row_of(cell);
+    r["scene"] = cell.variant;
+    if (knob) {
+      r["series"] = series_of(cell, name);
+      r["line"] = r["series"];
+      r["knob"] = r["order"] = *knob->value;
+      r["knob_name"] = name;
+      series.add(r["series"], cell.family);
+      add(r, cell);
+    } else if (with_knob.count(cell.family) == 0 && &cell == best_cell(study, cell.family)) {
+      r["series"] = r["line"] = family_name(cell.family) + " (has no such option)";
+      r["unmarked"] = true;
+      series.add(r["series"], cell.family);
+      for (const double x : {low, high}) {
+        r["knob"] = r["order"] = x;
+        add(r, cell);
+      }
+    }
+  }
+}
+
+/// A grey line of slope -1 through the middle of the penalty's falling branch: the rate theory gives.
+void add_guides(json& rows) {
+  std::map<std::tuple<std::string, std::string, std::string, std::string>, std::vector<std::pair<double, double>>> runs;
+  for (const auto& r : rows)
+    if (r["family"] == "penalty" && r.value("knob_name", "") == "stiffness" && !r["failed"].get<bool>() &&
+        r["error"].get<double>() > 0)
+      runs[{r["panel"], r["quantity"], r["scene"], r["series"]}].emplace_back(r["knob"], r["error"]);
+  for (auto& [key, points] : runs) {
+    std::sort(points.begin(), points.end());
+    const auto least = std::min_element(points.begin(), points.end(),
+                                        [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (least - points.begin() < 2) continue;
+    const auto& middle = points[static_cast<std::size_t>(least - points.begin()) / 2];
+    for (const auto& end : {points.front(), *least}) {
+      json r = {{"panel", std::get<0>(key)}, {"quantity", std::get<1>(key)}, {"scene", std::get<2>(key)}};
+      r["family"] = "penalty";
+      r["guide"] = true;
+      r["failed"] = false;
+      r["line"] = "guide " + std::get<3>(key);
+      r["knob"] = r["order"] = end.first;
+      // Set off by a factor of 3, so that a curve that follows it is not hidden.
+      r["error"] = middle.second * middle.first / end.first / 3;
+      r["guide_tag"] = end.first == least->first ? "slope -1" : "";
+      rows.push_back(r);
+    }
+  }
+}
+
+json with_guides(json spec, const json& x, const json& y) {
+  json guide = {
+      {"transform", only_if("datum.guide")},
+      {"encoding", {{"x", x}, {"y", y}, {"detail", {{"field", "line"}}}}},
+      {"layer",
+       json::array(
+           {{{"mark", {{"type", "line"}, {"strokeDash", {3, 3}}, {"strokeWidth", 1}, {"color", "$ink"}}}},
+            {{"transform", only_if("datum.guide_tag != ''")},
+             {"mark",
+              {{"type", "text"}, {"align", "right"}, {"dx", -6}, {"dy", 6}, {"color", "$ink"}, {"fontSize", 11}}},
+             {"encoding", {{"text", {{"field", "guide_tag"}}}}}}})}};
+  spec["layer"].insert(spec["layer"].begin(), guide);
+  return spec;
+}
+
+}  // namespace
+
+std::vector<std::vector<std::string>> knob_groups(const Study& study) {
+  std::vector<std::vector<std::string>> groups;
+  std::vector<std::string> regularisation;
+  for (const auto& name : knob_names(study)) {
+    if (name == "stiffness" || name == "scale")
+      regularisation.push_back(name);
+    else
+      groups.push_back({name});
+  }
+  if (!regularisation.empty()) groups.insert(groups.begin(), regularisation);
+  return groups;
+}
+
+std::optional<Figure> error_against_knob(const Study& study, const std::vector<std::string>& knobs) {
+  Figure figure;
+  SeriesList series(study);
+  figure.id = slug("error-" + knobs.front());
+  figure.title = "Error against " + knob_title(knobs);
+  figure.table.header = {"method", "scene", "option", "value", "quantity", "error", "status"};
+  rows_along(study, knobs, series, [&](json r, const Cell& cell) {
+    for (const auto& [panel, prefix, worst_name] : {std::tuple{"responses", "response:", "worst response"},
+                                                    std::tuple{"sensitivities", "sensitivity:", "worst sensitivity"}})
+      for (const auto& [quantity, error] : quantities(cell.enforcement, {prefix}, worst_name)) {
+        r["panel"] = panel;
+        r["quantity"] = quantity;
+        r["error"] = error;
+        figure.rows.push_back(r);
+        figure.table.rows.push_back({cell.label, cell.variant, r.value("knob_name", "none"),
+                                     r.contains("knob_name") ? number(r["knob"], 6) : "", quantity, number(error),
+                                     cell.status});
+      }
+  });
+  if (figure.rows.empty()) return std::nullopt;
+  add_guides(figure.rows);
+  show_zeros(figure.rows, "error");
+  figure.series = series.list;
+  const bool penalty = std::find(knobs.begin(), knobs.end(), "stiffness") != knobs.end();
+  figure.text = "Enforcement error (same mesh) as the option is turned. ";
+  figure.text += penalty ? "Penalty lets bodies penetrate and creep by an amount proportional to 1/stiffness, so its "
+                           "error falls with slope -1, until rounding, which grows with the stiffness, lifts it again. "
+                           "An augmented Lagrangian's answer does not depend on its scale: its line is flat. "
+                         : "";
+  figure.text += "Crosses are runs that did not converge.";
+  const json tips = tooltip({{"label", "method"}, {"knob", "option"}, {"error", "error"}, {"status", "status"}});
+  for (const std::string panel : {"responses", "sensitivities"}) {
+    if (distinct(figure.rows, "quantity", panel).empty()) continue;
+    const bool derivative = panel == "sensitivities";
+    const json x = channel("knob", knob_title(knobs), true);
+    const json y =
+        channel("shown", derivative ? "relative error of the sensitivity" : "relative error of the response", true);
+    json spec = with_guides(curves(figure.title + ", " + panel, x, y, tips), x, y);
+    spec["transform"] = only_if("datum.panel == '" + panel + "'");
+    figure.panels.push_back({panel, spec, "knob", "shown", true, true, panel, false});
+    offer(figure, derivative ? "Sensitivity" : "Response", "quantity", "", panel);
+  }
+  offer(figure, "Scene", "scene", study.main_variant);
+  return figure;
+}
+
+std::optional<Figure> iterations_against_knob(const Study& study, const std::vector<std::string>& knobs) {
+  Figure figure;
+  SeriesList series(study);
+  figure.id = slug("iterations-" + knobs.front());
+  figure.title = "Iterations against " + knob_title(knobs);
+  figure.text = "Totals of the whole run. Crosses are runs that did not converge, at what they had spent by then.";
+  figure.table.header = {"method",        "scene",    "option", "value", "Newton iterations",
+                         "augmentations", "cutbacks", "status"};
+  rows_along(study, knobs, series, [&](json r, const Cell& cell) {
+    for (const auto& [panel, count] :
+         {std::pair{"Newton iterations", "newton"}, std::pair{"augmentations", "augmentations"}})
+      if (cell.count(count) > 0) {
+        r["panel"] = panel;
+        r["shown"] = cell.count(count);
+        figure.rows.push_back(r);
+      }
+    figure.table.rows.push_back({cell.label, cell.variant, r.value("knob_name", "none"),
+                                 r.contains("knob_name") ? number(r["knob"], 6) : "", number(cell.count("newton"), 9),
+                                 number(cell.count("augmentations"), 9), number(cell.count("cutbacks"), 9),
+                                 cell.status});
+  });
+  if (figure.rows.empty()) return std::nullopt;
+  figure.series = series.list;
+  const json tips = tooltip({{"label", "method"}, {"knob", "option"}, {"shown", "iterations"}, {"status", "status"}});
+  for (const std::string panel : {"Newton iterations", "augmentations"}) {
+    if (distinct(figure.rows, "label", panel).empty()) continue;
+    json spec = curves(figure.title + ", " + panel, channel("knob", knob_title(knobs), true),
+                       channel("shown", panel, true), tips);
+    spec["transform"] = only_if("datum.panel == '" + panel + "'");
+    figure.panels.push_back({panel, spec, "knob", "shown", true, true, panel, false});
+  }
+  offer(figure, "Scene", "scene", study.main_variant);
+  return figure;
+}
+
+}  // namespace stickslip::report

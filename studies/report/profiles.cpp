@@ -1,0 +1,149 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "studies/report/chart_parts.hpp"
+#include "studies/report/settings.hpp"
+
+namespace stickslip::report {
+
+using nlohmann::json;
+
+namespace {
+
+/// Every scene variant with every accuracy that some run reaches there, from a hundredth down to 1e-10.
+std::vector<Problem> problems_of(const Study& study, Of of) {
+  std::vector<Problem> out;
+  for (const auto& variant : study.variants)
+    for (const double target : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10})
+      if (std::any_of(study.cells.begin(), study.cells.end(), [&](const Cell& cell) {
+            return cell.variant == variant && cell.converged && accuracy(cell, of).value_or(1) <= target;
+          }))
+        out.push_back({variant, target});
+  return out;
+}
+
+std::string name_of(const Contestant& contestant) {
+  return family_name(contestant.family) + ", " + name_of(contestant.setting);
+}
+
+/// A staircase over `places` (where one more problem is solved) up to `end`, as rows of a panel.
+void add_stairs(Figure& figure, const json& base, std::vector<double> places, std::size_t problems, double begin,
+                double end) {
+  std::sort(places.begin(), places.end());
+  double share = 0;
+  int order = 0;
+  const auto add = [&](double x, double y, bool corner) {
+    json r = base;
+    r["x"] = rounded(x);
+    r["shown"] = rounded(y);
+    r["order"] = order++;
+    r["unmarked"] = !corner;
+    figure.rows.push_back(r);
+  };
+  add(begin, 0, false);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    add(places[i], share, false);
+    share = static_cast<double>(i + 1) / static_cast<double>(problems);
+    add(places[i], share, i + 1 == places.size() || places[i + 1] > places[i]);
+  }
+  add(end, share, false);
+}
+
+/// Works of one contestant, and how many times the least each is.
+struct Solved {
+  std::vector<double> work, factor;
+};
+
+std::vector<Solved> solve_all(const std::vector<Contestant>& all, const std::vector<Problem>& problems, Of of) {
+  std::vector<Solved> out(all.size());
+  for (std::size_t i = 0; i < problems.size(); ++i) {
+    double least = INFINITY;
+    for (const auto& each : all) least = std::min(least, each.work(i, problems, of).value_or(INFINITY));
+    for (std::size_t c = 0; c < all.size(); ++c)
+      if (const auto work = all[c].work(i, problems, of); work && *work > 0) {
+        out[c].work.push_back(*work);
+        out[c].factor.push_back(*work / least);
+      }
+  }
+  return out;
+}
+
+void describe(Figure& figure, const Study& study, Of of, std::size_t problems) {
+  const bool derivative = of == Of::sensitivities;
+  figure.id = derivative ? "profiles-sensitivities" : "profiles";
+  figure.title =
+      derivative ? "Profiles: sensitivities solved for a given work" : "Profiles: problems solved for a given work";
+  figure.text = fmt::format(
+      "{} problems: each of the {} scenes with each accuracy asked for, from 1e-2 down to 1e-10, that some run reaches "
+      "there. The first chart shows the share of them that a method solves within a factor of the least work any of "
+      "the methods needs (Dolan and More's performance profile): left is fast, high is dependable. The second shows "
+      "the "
+      "share solved with a given work (data profile). A line that stays below 1 has lost the rest: runs that failed or "
+      "missed the accuracy. Default: no option given. Tuned: the cheapest of the settings tried for each problem, as "
+      "one knows it only afterwards. Strict: the most accurate setting of each scene.",
+      problems, study.variants.size());
+}
+
+/// What stands behind every step of the staircases.
+void tabulate(Figure& figure, const std::vector<Contestant>& all, const std::vector<Problem>& problems, Of of) {
+  figure.table.header = {"method", "setting", "scene", "accuracy asked for", "run", "its error", "work", "solved"};
+  for (const auto& each : all)
+    for (std::size_t i = 0; i < problems.size(); ++i) {
+      const Cell* cell = each.cells[i];
+      const bool solved = each.work(i, problems, of).has_value();
+      const auto error = cell ? accuracy(*cell, of) : std::nullopt;
+      figure.table.rows.push_back({family_name(each.family), name_of(each.setting), problems[i].variant,
+                                   number(problems[i].target), cell ? cell->label : "none", error ? number(*error) : "",
+                                   cell ? number(work_of(*cell, of)) : "",
+                                   solved                     ? "yes"
+                                   : cell && !cell->converged ? cell->status
+                                                              : "no"});
+      figure.table.row_classes.emplace_back(solved ? "" : "failed");
+    }
+}
+
+}  // namespace
+
+std::optional<Figure> profiles(const Study& study, Of of) {
+  const auto problems = problems_of(study, of);
+  const auto all = contestants(study, problems, of);
+  if (problems.size() < 2 || all.size() < 2) return std::nullopt;
+  Figure figure;
+  describe(figure, study, of, problems.size());
+  tabulate(figure, all, problems, of);
+  const auto solved = solve_all(all, problems, of);
+  double largest_factor = 1, least = INFINITY, largest = 0;
+  for (const auto& each : solved) {
+    for (const double factor : each.factor) largest_factor = std::max(largest_factor, factor);
+    for (const double work : each.work) {
+      least = std::min(least, work);
+      largest = std::max(largest, work);
+    }
+  }
+  if (largest == 0) return std::nullopt;
+  SeriesList series(study);
+  for (std::size_t c = 0; c < all.size(); ++c) {
+    const std::string name = name_of(all[c]);
+    series.add(name, all[c].family);
+    json base = {{"series", name}, {"line", name}, {"family", all[c].family}, {"failed", false}, {"zero", false}};
+    base["panel"] = "factor";
+    add_stairs(figure, base, solved[c].factor, problems.size(), 1, 1.3 * largest_factor);
+    base["panel"] = "work";
+    add_stairs(figure, base, solved[c].work, problems.size(), least / 1.3, 1.3 * largest);
+  }
+  figure.series = series.list;
+  const auto panel = [&](const std::string& name, const std::string& title, const std::string& x_title) {
+    const json tips = tooltip({{"series", "method"}, {"x", x_title}, {"shown", "share solved"}});
+    json spec = curves(figure.title + ", " + title, channel("x", x_title, true),
+                       channel("shown", "share of the problems solved", false), tips);
+    spec["transform"] = only_if("datum.panel == '" + name + "'");
+    figure.panels.push_back({title, spec, "x", "shown", true, false, name, false});
+  };
+  panel("factor", "performance profile", "work over the least work for the problem");
+  panel("work", "data profile", "work (factorisations and weighted back-solves)");
+  return figure;
+}
+
+}  // namespace stickslip::report

@@ -1,0 +1,157 @@
+#include "studies/report/tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "studies/report/html.hpp"
+#include "studies/report/look_up.hpp"
+#include "studies/report/settings.hpp"
+
+namespace stickslip::report {
+
+using nlohmann::json;
+
+std::string settings_table(const Study& study) {
+  const auto target = target_error(study, Of::responses);
+  if (!target) return {};
+  std::vector<Problem> problems;
+  for (const auto& variant : study.variants) problems.push_back({variant, *target});
+  const auto all = contestants(study, problems, Of::responses);
+  Table table;
+  table.header = {"scene",
+                  "method",
+                  "setting",
+                  "run",
+                  "worst response error",
+                  "worst sensitivity error",
+                  "Newton",
+                  "augmentations",
+                  "work",
+                  "with sensitivities",
+                  "seconds",
+                  "status",
+                  "accurate enough"};
+  const auto shown = [](const std::optional<double>& v) { return v ? number(*v) : std::string(); };
+  for (std::size_t i = 0; i < problems.size(); ++i)
+    for (const auto& each : all) {
+      const Cell* cell = each.cells[i];
+      if (!cell) continue;
+      table.rows.push_back({problems[i].variant, family_name(each.family), name_of(each.setting), cell->label,
+                            shown(worst(cell->enforcement, "response:")),
+                            shown(worst(cell->enforcement, "sensitivity:")), number(cell->count("newton"), 9),
+                            number(cell->count("augmentations"), 9), number(cell->work), number(cell->sensitivity_work),
+                            number(cell->seconds), cell->status});
+      const bool solved = each.work(i, problems, Of::responses).has_value();
+      table.rows.back().push_back(solved ? "yes" : "no");
+      table.row_classes.emplace_back(solved ? "" : "failed");
+    }
+  if (table.rows.empty()) return {};
+  return fmt::format(
+             "<h3>Default, tuned and strict</h3>\n<p class=\"note\">Default: no option given. Tuned: the cheapest of "
+             "the "
+             "settings tried whose worst response is within {} of the exact contact conditions, known only afterwards. "
+             "Strict: the most accurate setting tried. The last column says what failed or missed that accuracy.</p>\n",
+             number(*target)) +
+         to_html(table, "Default, tuned and strict settings");
+}
+
+std::string status_table(const Study& study) {
+  if (study.variants.size() < 2) return {};
+  Table table;
+  table.header = {"method"};
+  for (const auto& variant : study.variants) table.header.push_back(variant);
+  std::vector<std::string> labels;
+  std::map<std::pair<std::string, std::string>, const Cell*> at;
+  for (const auto& cell : study.cells) {
+    if (std::find(labels.begin(), labels.end(), cell.label) == labels.end()) labels.push_back(cell.label);
+    at[{cell.label, cell.variant}] = &cell;
+  }
+  for (const auto& label : labels) {
+    std::vector<std::string> row = {label};
+    bool failed = false;
+    for (const auto& variant : study.variants) {
+      const auto found = at.find({label, variant});
+      if (found == at.end()) {
+        row.emplace_back("not run");
+        continue;
+      }
+      const Cell& cell = *found->second;
+      failed = failed || !cell.converged;
+      row.push_back(cell.converged ? fmt::format("ok, {} Newton", number(cell.count("newton"), 9))
+                                   : (cell.status.empty() ? "no status" : cell.status));
+    }
+    table.rows.push_back(row);
+    table.row_classes.emplace_back(failed ? "failed" : "");
+  }
+  return "<h3>Which setting works where</h3>\n" + to_html(table, "Status by setting and scene");
+}
+
+std::string results_table(const Study& study) {
+  Table table;
+  table.header = {"method",
+                  "scene",
+                  "status",
+                  "worst response error",
+                  "worst sensitivity error",
+                  "response error to closed form",
+                  "sensitivity error to closed form",
+                  "worst KKT measure",
+                  "Newton",
+                  "augmentations",
+                  "cutbacks",
+                  "factorisations",
+                  "back-solves",
+                  "sensitivity back-solves",
+                  "seconds",
+                  "of these sensitivities",
+                  "memory MB",
+                  "condition",
+                  "message"};
+  const auto shown = [](const std::optional<double>& v) { return v ? number(*v) : std::string(); };
+  for (const auto& cell : study.cells) {
+    const json &cost = at(cell.record, "cost"), &seconds = at(cost, "seconds");
+    const auto count = [&](const char* name) { return number(cell.count(name), 9); };
+    const auto recorded = [](const json& v) { return v.is_number() ? number(v.get<double>()) : std::string(); };
+    table.rows.push_back({cell.label, cell.variant, cell.status.empty() ? "no status" : cell.status,
+                          shown(worst(cell.enforcement, "response:")), shown(worst(cell.enforcement, "sensitivity:")),
+                          shown(worst(cell.discretization, "response:")),
+                          shown(worst(cell.discretization, "sensitivity:")), shown(worst(cell.kkt, "")),
+                          count("newton"), count("augmentations"), count("cutbacks"), count("factorizations"),
+                          count("backsolves"), count("sensitivity_backsolves"), recorded(at(seconds, "total")),
+                          recorded(at(seconds, "sensitivity")), recorded(at(cost, "peak_memory_mb")),
+                          recorded(at(cost, "condition_estimate")), plain(at(cell.record, "message"))});
+    table.row_classes.emplace_back(cell.converged ? "" : "failed");
+  }
+  return to_html(table, "All runs");
+}
+
+std::string values_table(const Study& study) {
+  std::set<std::pair<std::string, std::string>> columns;  // response, parameter or ""
+  for (const auto& cell : study.cells) {
+    for (const auto& [name, value] : object_at(cell.record, "responses").items()) columns.emplace(name, "");
+    for (const auto& [name, by] : object_at(cell.record, "sensitivities").items())
+      if (by.is_object())
+        for (const auto& [parameter, value] : by.items()) columns.emplace(name, parameter);
+  }
+  if (columns.empty()) return {};
+  Table table;
+  table.header = {"method", "scene", "status"};
+  for (const auto& [name, by] : columns) table.header.push_back(by.empty() ? name : "d " + name + " / d " + by);
+  for (const auto& cell : study.cells) {
+    std::vector<std::string> row = {cell.label, cell.variant, cell.status};
+    for (const auto& [name, by] : columns) {
+      const json& v =
+          by.empty() ? at(at(cell.record, "responses"), name) : at(at(at(cell.record, "sensitivities"), name), by);
+      row.push_back(v.is_number() ? number(v.get<double>(), 10) : plain(v));
+    }
+    table.rows.push_back(row);
+    table.row_classes.emplace_back(cell.converged ? "" : "failed");
+  }
+  return folded("Values of responses and sensitivities at the last step",
+                to_html(table, "Responses and sensitivities at the last step"));
+}
+
+}  // namespace stickslip::report

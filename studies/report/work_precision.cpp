@@ -1,0 +1,117 @@
+#include <algorithm>
+
+#include "studies/report/chart_parts.hpp"
+#include "studies/report/look_up.hpp"
+
+namespace stickslip::report {
+
+using nlohmann::json;
+
+namespace {
+
+const std::map<std::string, double>& errors_of(const Cell& cell, Against against) {
+  if (against == Against::same_mesh) return cell.enforcement;
+  return against == Against::closed_form ? cell.discretization : cell.kkt;
+}
+
+}  // namespace
+
+std::optional<Figure> work_precision(const Study& study, Against against, Of of) {
+  const bool derivative = of == Of::sensitivities;
+  std::vector<std::string> prefixes =
+      derivative ? std::vector<std::string>{"sensitivity:"} : std::vector<std::string>{"response:", "field:"};
+  if (against == Against::coulomb) prefixes = {""};
+  const std::string worst_name = against == Against::coulomb ? "worst of all"
+                                 : derivative                ? "worst sensitivity"
+                                                             : "worst response";
+  Figure figure;
+  SeriesList series(study);
+  figure.table.header = {"method",         "scene",       "quantity", "error", "work",
+                         "factorisations", "back-solves", "seconds",  "status"};
+  for (const auto& cell : study.cells) {
+    const std::string knob = running_knob(study, cell.family);
+    const std::string name = series_of(cell, knob) + (knob.empty() ? "" : ", along " + knob);
+    const double factorizations =
+        cell.count("factorizations") - (derivative ? 0 : cell.count("sensitivity_factorizations"));
+    const double backsolves = cell.count("backsolves") + (derivative ? cell.count("sensitivity_backsolves") : 0);
+    const double work = derivative ? cell.sensitivity_work : cell.work;
+    const double seconds = derivative ? cell.sensitivity_seconds : cell.seconds;
+    for (const auto& [quantity, error] : quantities(errors_of(cell, against), prefixes, worst_name)) {
+      json r = row_of(cell);
+      r["series"] = r["line"] = name;
+      r["scene"] = cell.variant;
+      r["quantity"] = quantity;
+      r["error"] = error;
+      r["work"] = rounded(work);
+      r["backsolves"] = backsolves;
+      r["seconds"] = rounded(seconds);
+      const Knob* value = find_knob(cell, knob);
+      r["order"] = value && value->value ? *value->value : 0;
+      if (value) r["knob"] = value->text;
+      figure.rows.push_back(r);
+      series.add(name, cell.family);
+      figure.table.rows.push_back({cell.label, cell.variant, quantity, number(error), number(work, 4),
+                                   number(factorizations, 9), number(backsolves, 9), number(seconds), cell.status});
+    }
+  }
+  if (figure.rows.empty()) return std::nullopt;
+  show_zeros(figure.rows, "error");
+  tag_ends(figure.rows, "knob");
+  figure.series = series.list;
+
+  const std::string what = derivative ? "sensitivities" : "responses";
+  const std::string joined =
+      "A curve joins the runs of one method along the option that is swept; its ends carry the option's value.";
+  std::string y_title = derivative ? "relative error of the sensitivity" : "relative error of the response";
+  if (against == Against::same_mesh) {
+    figure.id = "enforcement-" + what;
+    figure.title = derivative ? "Sensitivities: what enforcing contact exactly costs"
+                              : "Responses: what enforcing contact exactly costs";
+    figure.text =
+        "Enforcement error: the distance from the reference solution on the same mesh, so what is seen is "
+        "the method alone. Lower left is better. " +
+        joined +
+        " A method that is the reference itself "
+        "stands on the line of exact zeros. ";
+  } else if (against == Against::closed_form) {
+    figure.id = "discretization-" + what;
+    figure.title =
+        derivative ? "Sensitivities: error against the closed form" : "Responses: error against the closed form";
+    figure.text =
+        "Discretisation error: the distance from the closed-form solution, mesh and method together. Where "
+        "curves lie on one level, the mesh decides and a stricter method buys nothing. " +
+        joined + " ";
+  } else {
+    figure.id = "kkt";
+    figure.title = "How well equilibrium and Coulomb's law are met";
+    figure.text =
+        "Computed from the final state alone by code that does not know which method ran; every measure is "
+        "dimensionless. " +
+        joined + " ";
+    y_title = "measure";
+  }
+  figure.text += derivative ? "Costs are those of the solution and its derivatives together." : "";
+  const json y = channel("shown", y_title, true);
+  const json tips = tooltip({{"label", "method"},
+                             {"error", "error"},
+                             {"work", "work"},
+                             {"seconds", "seconds"},
+                             {"backsolves", "back-solves"},
+                             {"status", "status"}});
+  const auto panel = [&](const std::string& field, const std::string& title, bool folded) {
+    const auto positive = [&](const json& r) { return r[field].get<double>() > 0; };
+    if (std::none_of(figure.rows.begin(), figure.rows.end(), positive)) return;
+    json spec = curves(figure.title + ", against " + title, channel(field, title, true), y, tips);
+    spec["transform"] = only_if("datum." + field + " > 0");
+    figure.panels.push_back({"against " + title, spec, field, "shown", true, true, "", folded});
+  };
+  panel("work", "work (factorisations)", false);
+  panel("seconds", "seconds", false);
+  panel("backsolves", "back-solves", true);
+  if (figure.panels.empty()) return std::nullopt;
+  offer(figure, "Quantity", "quantity", worst_name);
+  offer(figure, "Scene", "scene", study.main_variant);
+  return figure;
+}
+
+}  // namespace stickslip::report

@@ -1,0 +1,57 @@
+/// What a study has recorded in its directory: a line per cell in results.jsonl, a line per timed run in timings.jsonl,
+/// and study.json, which says which cells there are. Lines are only ever appended; the file is put in order at the end.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace stickslip {
+
+/// Rows by the id of their cell; of an id recorded twice, the last.
+using RowsById = std::map<std::string, nlohmann::json>;
+
+/// results.jsonl as it was found, with what was wrong with it.
+struct StoredRows {
+  RowsById rows;
+  std::size_t torn_bytes = 0;  ///< of a last line that a killed process left
+  int unreadable = 0;          ///< whole lines that are no rows
+  int doubles = 0;             ///< rows of an id that a later line repeats
+
+  bool sound() const { return torn_bytes == 0 && unreadable == 0 && doubles == 0; }
+  /// "a torn last line (12 bytes) was dropped; ...", or "".
+  std::string faults() const;
+};
+
+/// Empty where there is no file. Throws std::system_error where it cannot be read.
+StoredRows read_rows(const std::filesystem::path& directory);
+
+/// Takes the rows in `directory` up again for the cells of `ids`: what read_rows() mends is mended on the disk, and
+/// rows of other cells (of another study, or of another version of the program) go to results.stale.jsonl. What was
+/// done is told in `notes`, a sentence each.
+RowsById resume_rows(const std::filesystem::path& directory, const std::vector<std::string>& ids,
+                     std::vector<std::string>& notes);
+
+/// Adds a row. On the disk when it returns.
+void append_row(const std::filesystem::path& directory, const nlohmann::json& row);
+
+/// Writes results.jsonl anew, whole or not at all: the rows there are, in the order of `ids`.
+void write_rows(const std::filesystem::path& directory, const std::vector<std::string>& ids, const RowsById& rows);
+
+/// Seconds of each timed run, by cell id and round (from 1).
+using Timings = std::map<std::string, std::map<int, nlohmann::json>>;
+
+Timings read_timings(const std::filesystem::path& directory);
+void append_timing(const std::filesystem::path& directory, const std::string& id, int round,
+                   const nlohmann::json& seconds);
+
+/// study.json of a directory. Throws std::runtime_error where it is missing or no JSON object.
+nlohmann::json read_description(const std::filesystem::path& directory);
+
+/// Whether a row's status is converged, or converged_at_roundoff.
+bool converged(const nlohmann::json& row);
+
+}  // namespace stickslip

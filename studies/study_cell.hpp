@@ -1,0 +1,61 @@
+/// One cell of a study run and measured: cell to row.
+#pragma once
+
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "studies/case.hpp"
+#include "studies/references.hpp"
+#include "studies/study_reader.hpp"
+
+namespace stickslip {
+
+/// Cells with the same key share a variant of the scene: its problem, condensation and references.
+std::string variant_key(const CellInput& cell);
+
+/// What a cell's id says of the program: a build of another commit does not take its results for its own.
+std::string program_version();
+
+/// A valid cell as input, and its problem. pre: read_study and expand found no fault.
+Input input_of(const CellInput& cell, MeshFiles& meshes);
+/// Options of a method may hold slots of the scene, so each method has a scene of its own. Throws ModelError.
+std::shared_ptr<const Problem> problem_of(const Input& input);
+
+/// Runs cells, keeping what the cells of one variant share until a cell of another variant comes. Everything it gives
+/// but seconds is a function of the cell alone, whatever ran before.
+class CellRunner {
+ public:
+  CellRunner(const Study& study, const std::vector<CellInput>& cells, MeshFiles& meshes)
+      : study_(study), cells_(cells), meshes_(meshes) {}
+
+  /// The line of results.jsonl (README, "What a run leaves").
+  nlohmann::json row(std::size_t cell);
+  /// Seconds of one more run, as in cost.seconds.
+  nlohmann::json seconds(std::size_t cell);
+  /// The run that the report draws: the first reference on the cell's mesh, or else the cell itself.
+  CaseResult showcase(std::size_t cell);
+
+ private:
+  struct Variant {
+    std::string key;
+    std::shared_ptr<const Problem> problem;  ///< the condensation refers to its model
+    std::shared_ptr<Condensation<double>> condensation;
+    double setup_seconds = 0;
+    std::vector<CaseResult> same_mesh;      ///< of Reference::Kind::method, in order
+    std::vector<ReferenceValues> overkill;  ///< of Reference::Kind::overkill, in order; empty values: did not converge
+  };
+
+  void enter(const CellInput& cell);
+  CaseResult run(const CellInput& cell);
+  nlohmann::json errors(const CaseResult& result) const;
+  nlohmann::json seconds_of(const CaseResult& result) const;
+
+  const Study& study_;
+  const std::vector<CellInput>& cells_;
+  MeshFiles& meshes_;
+  Variant variant_;
+};
+
+}  // namespace stickslip

@@ -1,0 +1,141 @@
+/// Values: the catalogue's numbers, computed there by another program. Derivatives: central differences.
+#include "studies/closed_forms.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace stickslip {
+namespace {
+
+using D = Dual<1>;
+
+struct Example {
+  const char* form;
+  Quantities<double> in, out;
+  Space space = Space::plane_strain;
+};
+
+const double modulus = 200 / (2 * (1 - 0.09));  // two cylinders of E = 200, nu = 0.3
+
+const std::vector<Example>& examples() {
+  static const std::vector<Example> all = {
+      {"hertz_line",
+       {{"force", 10}, {"radius", 4}, {"modulus", modulus}},
+       {{"half_width", 0.6807783738}, {"peak_pressure", 9.3513512890}}},
+      {"cattaneo_mindlin",
+       {{"force", 10}, {"tangential_force", -0.93616}, {"radius", 4}, {"modulus", modulus}, {"friction", 0.2}},
+       {{"half_width", 0.6807783738}, {"stick_half_width", 0.4965110418}}},
+      {"flat_punch",
+       {{"force", 21.97802198}, {"half_width", 1}},
+       {{"centre_pressure", 21.97802198 / std::acos(-1.0)}, {"mean_pressure", 10.98901099}}},
+      {"press_fit",
+       {{"inner", 1},
+        {"interface", 2},
+        {"outer", 4},
+        {"interference", 0.01},
+        {"E", 1000},
+        {"nu", 0.3},
+        {"friction", 0.2}},
+       {{"pressure", 1.6483516484},
+        {"u_outer", 0.0062857143},
+        {"u_inner", -0.0037142857},
+        {"u_rim", 0.004},
+        {"slip_torque", 8.2855190864}}},
+      {"press_fit",
+       {{"inner", 1}, {"interface", 2}, {"outer", 4}, {"interference", 0.01}, {"E", 1000}, {"nu", 0.3}},
+       {{"pressure", 1.5}, {"u_rim", 0.004}},
+       Space::plane_stress},
+      {"belt", {{"slack", 1}, {"friction", 0.3}, {"angle", 180}}, {{"tight", 2.5663323952}, {"ratio", 2.5663323952}}},
+      {"belt",
+       {{"slack", 2}, {"friction", 0.3}, {"angle", 180}, {"nodes", 8}},
+       {{"tight", 2 * 2.6010497114}, {"ratio", 2.6010497114}}},
+      {"pull_out",
+       {{"force", 20}, {"stiffness", 1000}, {"friction_per_length", 30}},
+       {{"slip_length", 2.0 / 3},
+        {"end_displacement", 6.666666667e-3},
+        {"dissipation", 0.0444444444},
+        {"residual_displacement", 3.333333333e-3},
+        {"cycle_dissipation", 0.1777777778}}},
+      {"cantilever_stop",
+       {{"load", 0.01}, {"gap", 0.05}, {"length", 10}, {"height", 1}, {"E", 1000}, {"nu", 0.3}},
+       {{"free_tip", 0.15156}, {"stiffness", 0.2480650923}, {"reaction", 0.0251934908}},
+       Space::plane_stress},
+      {"cantilever_floor",
+       {{"load", 0.01}, {"gap", 0.002}, {"height", 1}, {"E", 1000}, {"nu", 0.3}},
+       {{"lift_off", 5.8856619128}, {"line_reaction", 0.0196188730}},
+       Space::plane_stress}};
+  return all;
+}
+
+Quantities<D> evaluate(const Example& example, const std::string& along = "", double shift = 0) {
+  Quantities<D> in;
+  for (const auto& [name, value] : example.in) in[name] = D(value);
+  if (!along.empty()) in[along] = D::seed(value(in[along]) + shift, 0);
+  return find_closed_form(example.form)->evaluate(in, example.space);
+}
+
+TEST(ClosedForms, GiveTheNumbersOfTheCatalogue) {
+  for (const auto& example : examples()) {
+    const auto out = evaluate(example);
+    // The catalogue prints ten decimals, and some inputs have ten digits.
+    for (const auto& [name, expected] : example.out)
+      EXPECT_NEAR(value(out.at(name)), expected, 1e-10 + 1e-9 * std::abs(expected)) << example.form << " " << name;
+  }
+}
+
+TEST(ClosedForms, HaveTheDerivativesThatDifferencesFind) {
+  for (const auto& example : examples())
+    for (const auto& [along, at] : example.in) {
+      const double h = 1e-5 * std::abs(at);  // error h^2 f'''/f' of 1e-10, rounding eps/1e-5 of 2e-11
+      const auto exact = evaluate(example, along);
+      const auto more = evaluate(example, along, h), less = evaluate(example, along, -h);
+      for (const auto& [name, quantity] : exact) {
+        const double difference = (value(more.at(name)) - value(less.at(name))) / (2 * h);
+        const double scale = std::max(std::abs(difference), std::abs(value(quantity) / at));
+        EXPECT_NEAR(quantity.d[0], difference, 1e-8 * scale) << example.form << " d " << name << " / d " << along;
+      }
+    }
+}
+
+TEST(ClosedForms, GiveAllTheOutputsTheyListFromTheInputsTheyList) {
+  for (const auto& form : closed_forms()) {
+    const auto example =
+        std::find_if(examples().begin(), examples().end(), [&](const Example& each) { return form.name == each.form; });
+    ASSERT_NE(example, examples().end()) << form.name;
+    for (const auto& input : form.inputs)
+      EXPECT_TRUE(!input.required || example->in.count(input.name)) << form.name << " " << input.name;
+    for (const auto& [name, unused] : example->in) EXPECT_TRUE(form.has_input(name)) << form.name << " " << name;
+    const auto out = evaluate(*example);
+    EXPECT_EQ(out.size(), form.outputs.size()) << form.name;
+    for (const auto& output : form.outputs) EXPECT_TRUE(out.count(output.name)) << form.name << " " << output.name;
+  }
+}
+
+TEST(ClosedForms, SayNothingOfAnOpenContact) {
+  Example open = examples().front();
+  open.in["force"] = 0;
+  EXPECT_TRUE(evaluate(open).empty());
+}
+
+/// The curves integrate to the forces that made them.
+TEST(ClosedForms, CarryTheForcesInTheirTractions) {
+  const Example& example = examples()[1];
+  const auto* form = find_closed_form(example.form);
+  Quantities<double> all = example.in;
+  for (const auto& [name, quantity] : evaluate(example)) all[name] = value(quantity);
+  constexpr int n = 20000;
+  const double b = all.at("half_width");
+  double normal = 0, tangential = 0;
+  for (int i = 0; i < n; ++i) {
+    const auto at = form->tractions(all, b * ((2.0 * i + 1) / n - 1));
+    normal += at.pressure * 2 * b / n;
+    tangential += at.tangential * 2 * b / n;
+  }
+  EXPECT_NEAR(normal, 10, 1e-4);  // the midpoint rule at square roots: n^-1.5 = 4e-7 of 10, and as much at each kink
+  EXPECT_NEAR(tangential, 0.93616, 1e-4);
+}
+
+}  // namespace
+}  // namespace stickslip

@@ -1,0 +1,91 @@
+#include "studies/compare_studies.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+
+json row(const std::string& id, const std::string& label, double error, int newton) {
+  return {{"id", id},
+          {"label", label},
+          {"vary", json::object()},
+          {"refine", 0},
+          {"status", "converged"},
+          {"errors", {{"enforcement", {{"response:press", error}}}}},
+          {"cost", {{"counts", {{"newton", newton}}}, {"seconds", {{"total", 1.0}}}}}};
+}
+
+const RowsById before = {{"1", row("1", "penalty", 1e-3, 10)}, {"2", row("2", "uzawa_al", 1e-9, 20)}};
+
+/// `before` by another version of the program, with another value somewhere.
+RowsById after(const std::string& label, const std::string& pointer, const json& value) {
+  RowsById rows;
+  for (const auto& [id, old] : before) {
+    rows["new " + id] = old;
+    if (old["label"] == label) rows["new " + id][json::json_pointer(pointer)] = value;
+  }
+  return rows;
+}
+
+bool any_worse(const std::vector<CellComparison>& cells) {
+  return std::any_of(cells.begin(), cells.end(), [](const auto& cell) { return cell.worse(); });
+}
+
+TEST(CompareStudies, FindsNothingInEqualRowsOfAnotherVersion) {
+  const auto cells = compare_rows(before, after("", "", 0), {});
+  EXPECT_EQ(cells.size(), 2u);
+  for (const auto& cell : cells) EXPECT_TRUE(cell.changes.empty());
+}
+
+TEST(CompareStudies, HoldsOneMoreIterationAgainstTheNewRows) {
+  const auto cells = compare_rows(before, after("uzawa_al", "/cost/counts/newton", 21), {});
+  EXPECT_TRUE(any_worse(cells));
+  EXPECT_EQ(cells.front().label, "uzawa_al");
+  EXPECT_EQ(cells.front().changes.front().quantity, "count newton");
+}
+
+TEST(CompareStudies, TakesFewerIterationsAsABetterChange) {
+  const auto cells = compare_rows(before, after("uzawa_al", "/cost/counts/newton", 12), {});
+  EXPECT_FALSE(any_worse(cells));
+  EXPECT_EQ(cells.front().changes.size(), 1u);
+}
+
+TEST(CompareStudies, PassesOverRoundingAndSmallShares) {
+  EXPECT_TRUE(compare_rows(before, after("uzawa_al", "/errors/enforcement/response:press", 9e-12), {})[0]
+                  .changes.front()
+                  .quantity == "enforcement response:press");  // 1e-9 to 9e-12 is a change, for the better
+  for (const double error : {1.04e-3, 0.96e-3})
+    EXPECT_TRUE(
+        compare_rows(before, after("penalty", "/errors/enforcement/response:press", error), {})[0].changes.empty());
+  EXPECT_TRUE(compare_rows(before, after("uzawa_al", "/errors/enforcement/response:press", 1e-9 + 9e-12), {})[0]
+                  .changes.empty());
+}
+
+TEST(CompareStudies, HoldsLargerErrorsAgainstTheNewRows) {
+  EXPECT_TRUE(any_worse(compare_rows(before, after("penalty", "/errors/enforcement/response:press", 1.1e-3), {})));
+  EXPECT_TRUE(any_worse(compare_rows(before, after("penalty", "/errors/enforcement/response:press", nullptr), {})));
+}
+
+TEST(CompareStudies, PutsACellThatNoLongerConvergesFirst) {
+  auto rows = after("uzawa_al", "/status", "cap");
+  rows["new 1"]["cost"]["counts"]["newton"] = 1000;
+  const auto cells = compare_rows(before, rows, {});
+  EXPECT_EQ(cells.front().label, "uzawa_al");
+  EXPECT_TRUE(cells.front().worse());
+  EXPECT_FALSE(any_worse(compare_rows(rows, after("uzawa_al", "/cost/counts/newton", 20), {})));  // and back again
+}
+
+TEST(CompareStudies, MissesACellThatIsGone) {
+  auto rows = before;
+  rows.erase("2");
+  EXPECT_TRUE(any_worse(compare_rows(before, rows, {})));
+  const auto cells = compare_rows(rows, before, {});
+  EXPECT_FALSE(any_worse(cells));
+  EXPECT_TRUE(cells.front().only_after);
+}
+
+}  // namespace
+}  // namespace stickslip

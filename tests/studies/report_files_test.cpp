@@ -1,0 +1,202 @@
+/// Drawings that need no script, and the files beside the report.
+#include <gmock/gmock.h>
+
+#include <set>
+
+#include "studies/report/charts.hpp"
+#include "studies/report/figure_files.hpp"
+#include "tests/studies/recorded_study.hpp"
+
+namespace stickslip {
+namespace {
+
+using recorded::cell;
+using recorded::description;
+using recorded::json;
+using recorded::three_methods;
+using report::Contestant;
+using report::Of;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+class ReportCharts : public recorded::StudyOnDisk {
+ protected:
+  std::string file(const std::string& name) {
+    std::ifstream in(directory_ / "figures" / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+};
+
+/// The three methods; penalty at 1e3 as the default, and failed at 1e7.
+std::vector<json> with_failure() {
+  auto cells = three_methods();
+  cells[0]["default"] = true;
+  cells[2]["status"] = "not_finite";
+  return cells;
+}
+
+// --- robustness windows --------------------------------------------------------------------------------------------
+
+TEST_F(ReportCharts, WindowsEndWhereARunFailed) {
+  record(description(), with_failure());
+  const auto plate = report::robustness_windows(study(), {"stiffness"});
+  ASSERT_TRUE(plate);
+  ASSERT_EQ(plate->table.rows.size(), 1u);
+  EXPECT_THAT(plate->table.rows[0], ElementsAre("Penalty", "4", "1e3 to 1e5, 1e9", "1e7 (not_finite)"));
+}
+
+TEST_F(ReportCharts, WindowsAreOneForEachSettingAndScene) {
+  auto cells = three_methods();
+  for (auto& c : cells) c["vary"] = {{"/contacts/sole/friction", 0.1}};
+  auto more = three_methods();
+  for (auto& c : more) c["vary"] = {{"/contacts/sole/friction", 0.3}};
+  cells.insert(cells.end(), more.begin(), more.end());
+  record(description(), cells);
+  EXPECT_EQ(report::robustness_windows(study(), {"stiffness"})->table.rows.size(), 2u);
+  EXPECT_EQ(report::robustness_windows(study(), {"tolerance"})->table.rows.size(), 2u);
+  EXPECT_FALSE(report::robustness_windows(study(), {"scale"}));
+}
+
+// --- settings and profiles -----------------------------------------------------------------------------------------
+
+TEST_F(ReportCharts, TunedIsTheCheapestThatIsAccurateEnoughAndStrictTheMostAccurate) {
+  auto cells = three_methods();
+  cells[0]["default"] = true;
+  record(description(), cells);
+  const auto s = study();
+  const auto all = report::contestants(s, {{"", 1e-4}}, Of::responses);
+  std::map<std::pair<std::string, std::string>, const Contestant*> by_name;
+  for (const auto& each : all) by_name[{each.family, name_of(each.setting)}] = &each;
+  const auto stiffness = [&](const char* setting) {
+    return by_name.at({"penalty", setting})->cells[0]->record["knobs"]["stiffness"].get<double>();
+  };
+  EXPECT_EQ(stiffness("default"), 1e3);  // misses the accuracy, and stays in the comparison
+  EXPECT_FALSE(by_name.at({"penalty", "default"})->work(0, {{"", 1e-4}}, Of::responses));
+  EXPECT_EQ(stiffness("tuned"), 1e5);  // as cheap as 1e7, and found first
+  EXPECT_EQ(stiffness("strict"), 1e9);
+  EXPECT_EQ(by_name.count({"uzawa_al", "default"}), 0u);  // not run
+}
+
+TEST_F(ReportCharts, ProfilesAreStaircasesOfSharesSolved) {
+  record(description(), three_methods());
+  const auto figure = report::profiles(study(), Of::responses);
+  ASSERT_TRUE(figure);
+  // Accuracies 1e-2 ... 1e-10, all reached by the monolithic run, the last by it alone, and always for the least work.
+  std::map<std::string, double> last, before;
+  for (const auto& row : figure->rows) {
+    if (row["panel"] != "factor") continue;
+    const std::string name = row["series"];
+    EXPECT_GE(row["shown"].get<double>(), before[name]) << name;
+    before[name] = last[name] = row["shown"];
+    EXPECT_GE(row["x"].get<double>(), 1);
+  }
+  EXPECT_EQ(last.at("Monolithic AL, tuned"), 1);
+  EXPECT_EQ(last.at("Penalty, tuned"), 0.8);
+  for (const auto& row : figure->rows)
+    if (row["series"] == "Monolithic AL, tuned" && row["panel"] == "factor" && !row["unmarked"].get<bool>()) {
+      EXPECT_EQ(row["x"], 1);
+    }
+}
+
+TEST_F(ReportCharts, ProfilesKeepAMethodThatSolvesNothing) {
+  auto cells = three_methods();
+  for (auto& c : cells)
+    if (c["method"].contains("uzawa_al")) c["status"] = "cap";
+  record(description(), cells);
+  const auto figure = report::profiles(study(), Of::responses);
+  ASSERT_TRUE(figure);
+  double most = -1;
+  for (const auto& row : figure->rows)
+    if (row["series"] == "Uzawa AL, tuned") most = std::max(most, row["shown"].get<double>());
+  EXPECT_EQ(most, 0);
+}
+
+// --- the film ------------------------------------------------------------------------------------------------------
+
+TEST_F(ReportCharts, FilmCountsStatesAtEveryStep) {
+  auto cells = three_methods();
+  for (auto& c : cells) c["film"] = {{"times", {0.5, 1}}, {"contacts", {{"sole", {"okk", "sko"}}}}};
+  record(description(), cells);
+  const auto plate = report::film_of_states(study());
+  ASSERT_TRUE(plate);
+  EXPECT_THAT(plate->table.header, ElementsAre("method", "contact", "time", "stick", "slip", "open"));
+  EXPECT_THAT(plate->table.rows[0], ElementsAre(cells[0]["label"].get<std::string>(), "sole", "0.5", "2", "0", "1"));
+  EXPECT_THAT(plate->table.rows[1], ElementsAre(cells[0]["label"].get<std::string>(), "sole", "1", "1", "1", "1"));
+}
+
+TEST_F(ReportCharts, ThereIsNoFilmOfOnePointOrOneStepOrOfABrokenRecord) {
+  auto cells = three_methods();
+  for (const json& film : {json{{"times", {1}}, {"contacts", {{"sole", {"okk"}}}}},
+                           json{{"times", {0.5, 1}}, {"contacts", {{"sole", {"o", "k"}}}}},
+                           json{{"times", {0.5, 1}}, {"contacts", {{"sole", {"ok", "k"}}}}}, json("film")}) {
+    for (auto& c : cells) c["film"] = film;
+    record(description(), cells);
+    EXPECT_FALSE(report::film_of_states(study())) << film;
+  }
+}
+
+// --- files ---------------------------------------------------------------------------------------------------------
+
+TEST_F(ReportCharts, EveryFigureIsAFileInThreeFormats) {
+  record(description(), with_failure());
+  page();
+  std::set<std::string> stems;
+  for (const auto& entry : std::filesystem::directory_iterator(directory_ / "figures"))
+    if (entry.path().extension() == ".svg") stems.insert(entry.path().stem().string());
+  EXPECT_TRUE(stems.count("windows-stiffness"));
+  EXPECT_TRUE(stems.count("profiles-data-profile"));
+  for (const auto& stem : stems) {
+    const std::string svg = file(stem + ".svg"), pdf = file(stem + ".pdf");
+    EXPECT_THAT(svg, testing::StartsWith("<?xml")) << stem;
+    EXPECT_THAT(svg, HasSubstr("<title>")) << stem;
+    EXPECT_THAT(svg, HasSubstr("<desc>")) << stem;
+    EXPECT_THAT(svg, Not(HasSubstr("var(--"))) << stem << ": a file has no page to take its colours from";
+    EXPECT_THAT(svg, Not(HasSubstr("nan"))) << stem;
+    EXPECT_THAT(pdf, testing::StartsWith("%PDF-1.4")) << stem;
+    EXPECT_THAT(pdf, testing::EndsWith("%%EOF\n")) << stem;
+  }
+  EXPECT_THAT(file("windows-stiffness.csv"), HasSubstr("Penalty,4,\"1e3 to 1e5, 1e9\",1e7 (not_finite)\r\n"));
+}
+
+/// The places in the table at the end of a PDF are those of its objects: else a reader has to repair it.
+TEST_F(ReportCharts, PdfObjectsStandWhereItsTableSays) {
+  record(description(), three_methods());
+  page();
+  const std::string pdf = file("profiles-data-profile.pdf");
+  const std::size_t start = pdf.rfind("startxref\n");
+  ASSERT_NE(start, std::string::npos);
+  std::istringstream table(pdf.substr(std::stoul(pdf.substr(start + 10))));
+  std::string word, free_entry;
+  std::size_t first = 0, count = 0;
+  table >> word >> first >> count;
+  EXPECT_EQ(word, "xref");
+  std::getline(table, free_entry);
+  std::getline(table, free_entry);
+  ASSERT_GE(count, 7u);
+  for (std::size_t i = 1; i < count; ++i) {
+    std::size_t place = 0;
+    std::string generation, kind;
+    table >> place >> generation >> kind;
+    EXPECT_EQ(pdf.substr(place, std::to_string(i).size() + 6), std::to_string(i) + " 0 obj");
+  }
+}
+
+TEST_F(ReportCharts, FiguresOfAFormerReportDoNotStay) {
+  record(description(), three_methods());
+  page();
+  const auto folder = directory_ / "figures";
+  std::ofstream(folder / "old.svg") << "<svg/>";
+  std::ofstream(folder / "notes.txt") << "mine";
+  page();
+  EXPECT_FALSE(std::filesystem::exists(folder / "old.svg"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "notes.txt"));
+}
+
+TEST(ReportCsv, QuotesWhatHoldsCommasQuotesOrLineBreaks) {
+  EXPECT_EQ(report::to_csv({{"a", "b"}, {{"1,5", "say \"x\""}, {"plain", "two\nlines"}}, {}}),
+            "a,b\r\n\"1,5\",\"say \"\"x\"\"\"\r\nplain,\"two\nlines\"\r\n");
+}
+
+}  // namespace
+}  // namespace stickslip

@@ -1,0 +1,136 @@
+#include "studies/study_cell.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+
+class StudyCell : public testing::Test {
+ protected:
+  ~StudyCell() override { std::filesystem::remove_all(folder_); }
+
+  /// The study and its cells; a fault of either fails the test.
+  std::pair<Study, std::vector<CellInput>> read(const json& scene, json study) {
+    std::filesystem::create_directories(folder_);
+    std::ofstream(folder_ / "scene.json") << scene.dump();
+    study["scene"] = "scene.json";
+    std::ofstream(folder_ / "a.study.json") << study.dump();
+    Diagnostics diagnostics;
+    auto valid = read_study((folder_ / "a.study.json").string(), diagnostics);
+    auto cells = valid ? expand(*valid, "1.0", diagnostics, meshes_) : std::vector<CellInput>();
+    EXPECT_FALSE(diagnostics.has_errors()) << diagnostics.text();
+    return {valid.value_or(Study{}), cells};
+  }
+
+  const std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) /
+      ("stickslip_cell_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  MeshFiles meshes_;
+};
+
+TEST_F(StudyCell, ALevelHalvesTheCellsOfEveryGenerator) {
+  const json material = {{"linear_elastic", {{"E", 1000}, {"nu", 0.3}}}};
+  const std::vector<std::pair<json, int>> generators = {
+      // and how many elements become of one
+      {{{"box", {{"min", {0, 0}}, {"max", {4, 2}}, {"cells", {4, 2}}}}}, 4},
+      {{{"quad", {{"corners", {{0, 0}, {2, 0}, {3, 1}, {0, 1}}}, {"cells", {2, 3}}}}}, 4},
+      {{{"ring", {{"center", {0, 0}}, {"inner", 1}, {"outer", 2}, {"to_angle", 90}, {"cells", {2, 5}}}}}, 4},
+      {{{"disk", {{"center", {0, 0}}, {"radius", 1}, {"cells", {2, 4}}}}}, 4},
+      {{{"half_disk", {{"center", {0, 0}}, {"radius", 1}, {"cells", {4, 4}}}}}, 4},
+      {{{"line", {{"from", {0, 0}}, {"to", {1, 0}}, {"cells", 3}}}}, 2},
+      {{{"arc", {{"center", {0, 0}}, {"radius", 1}, {"from_angle", 0}, {"to_angle", 90}, {"cells", 3}}}}, 2},
+      {{{"point", {{"at", {0, 0}}}}}, 1}};
+  for (const auto& [mesh, factor] : generators) {
+    json body = {{"mesh", mesh}, {"material", material}};
+    if (mesh.contains("point")) body["material"] = {{"grounded_spring", {{"stiffness", {{1, 0}, {0, 1}}}}}};
+    const auto [study, cells] = read({{"bodies", {{"body", body}}}, {"time", {{"end", 1}, {"steps", 1}}}},
+                                     {{"methods", {{{"monolithic_al", json::object()}}}}, {"refine", {0, 1}}});
+    if (factor == 1) {
+      EXPECT_EQ(cells.size(), 1u) << "a point has no levels, and cells that are the same come once";
+      continue;
+    }
+    ASSERT_EQ(cells.size(), 2u) << mesh;
+    int elements[2];
+    for (int level = 0; level < 2; ++level)
+      elements[level] = problem_of(input_of(cells[level], meshes_))->model.bodies[0].mesh.element_count();
+    EXPECT_EQ(elements[1], factor * elements[0]) << mesh;
+  }
+}
+
+/// A block that is pressed on a floor and pulled along it.
+json block() {
+  return {{"bodies",
+           {{"block",
+             {{"mesh", {{"box", {{"min", {0, 0}}, {"max", {4, 2}}, {"cells", {4, 2}}}}}},
+              {"material", {{"linear_elastic", {{"E", 1000}, {"nu", 0.3}}}}}}}}},
+          {"obstacles", {{"floor", {{"plane", {{"point", {0, 0}}, {"normal", {0, 1}}}}}}}},
+          {"contacts", {{"sole", {{"slave", "block.bottom"}, {"master", "floor"}, {"friction", 0.3}}}}},
+          {"loads", {{{"on", "block.top"}, {"traction", {1, -5}}, {"history", {{0, 0}, {1, 1}}}}}},
+          {"time", {{"end", 1}, {"steps", 2}}},
+          {"responses", {{"shift", {{"displacement", {{"on", "block.top"}, {"component", "x"}}}}}}},
+          {"parameters", {{"E", "/bodies/block/material/linear_elastic/E"}}}};
+}
+
+TEST_F(StudyCell, ErrorsAgainstAFinerMeshFallWithTheMesh) {
+  const auto [study, cells] = read(block(), {{"methods", {{{"monolithic_al", json::object()}}}},
+                                             {"refine", {0, 1, 2}},
+                                             {"reference", {{{"overkill", {{"refine", 2}}}}}}});
+  ASSERT_EQ(cells.size(), 3u);
+  CellRunner runner(study, cells, meshes_);
+  double last = 1;
+  for (std::size_t level = 0; level < cells.size(); ++level) {
+    const json errors = runner.row(level)["errors"];
+    for (const char* name : {"response:shift", "sensitivity:shift/E"}) {
+      EXPECT_GT(errors["discretization"].value(name, 0.0), 0) << name;
+      EXPECT_LT(errors["discretization"].value(name, 1.0), 0.1) << name;  // a coarse mesh of a stout block
+    }
+    EXPECT_LT(errors["discretization"].value("response:shift", 1.0), last);
+    EXPECT_TRUE(errors["enforcement"].empty());
+    last = errors["discretization"]["response:shift"];
+  }
+}
+
+TEST_F(StudyCell, KeepsTheErrorsOfEveryReferenceAndTheFirstOfEachName) {
+  const auto [study, cells] = read(block(), {{"methods", {{{"penalty", {{"stiffness", 100}}}}}},
+                                             {"reference",
+                                              {{{"values", {{"shift", 1}}}},
+                                               {{"overkill", {{"refine", 1}}}},
+                                               {{"method", {{"monolithic_al", json::object()}}}}}}});
+  ASSERT_EQ(cells.size(), 1u);
+  CellRunner runner(study, cells, meshes_);
+  const json errors = runner.row(0)["errors"];
+  ASSERT_EQ(errors["by_reference"].size(), 3u);
+  EXPECT_EQ(errors["discretization"]["response:shift"], errors["by_reference"][0]["errors"]["response:shift"]);
+  EXPECT_NE(errors["discretization"]["response:shift"], errors["by_reference"][1]["errors"]["response:shift"]);
+  EXPECT_EQ(errors["enforcement"]["response:shift"], errors["by_reference"][2]["errors"]["response:shift"]);
+}
+
+/// What a worker of another process gives is what this one gives, so it must not depend on the cells before.
+TEST_F(StudyCell, ARowDoesNotDependOnWhatRanBefore) {
+  const auto [study, cells] =
+      read(block(), {{"methods", {{{"penalty", {{"stiffness", {10, 1000}}}}}, {{"uzawa_al", json::object()}}}},
+                     {"vary", {{"/contacts/sole/friction", {0.1, 0.3}}}},
+                     {"reference", {{{"method", {{"monolithic_al", json::object()}}}}}}});
+  const auto row = [](CellRunner& runner, std::size_t cell) {
+    json out = runner.row(cell);
+    out.erase("provenance");
+    out["cost"].erase("seconds");
+    out["cost"].erase("peak_memory_mb");
+    return out;
+  };
+  CellRunner forwards(study, cells, meshes_);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const json after_others = row(forwards, i);
+    CellRunner fresh(study, cells, meshes_);
+    EXPECT_EQ(after_others, row(fresh, i)) << i;
+  }
+}
+
+}  // namespace
+}  // namespace stickslip

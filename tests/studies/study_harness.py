@@ -1,0 +1,204 @@
+#!/usr/bin/env python3
+"""Treats the study command as people and schedulers do: kills it, resumes it, runs it in parallel and in shards, starts
+it twice at once. Each time the rows must be those of one undisturbed run, apart from seconds and provenance.
+
+    study_harness.py STICKSLIP SOURCE_DIR [SEED]
+"""
+import json
+import os
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+PROGRAM, SOURCE = sys.argv[1], Path(sys.argv[2])
+SEED = int(sys.argv[3]) if len(sys.argv) > 3 else random.randrange(10**6)
+
+STUDY = {
+    "title": "a study to be disturbed",
+    "scene": "scene.json",
+    "methods": [
+        {"penalty": {"stiffness": [1, 10, 100, 1e3, 1e12]}},
+        {"uzawa_al": {"scale": [1, 10], "tolerance": [1e-4, 1e-8]}},
+        {"monolithic_al": {"scale": [1e-2, 1]}},
+    ],
+    "vary": {"/contacts/sole/friction": [0.2, 0.4, 1]},
+    "reference": [{"method": {"monolithic_al": {}}}],
+    "errors": ["response:*", "sensitivity:*", "kkt"],
+}
+
+
+def run(*arguments, check=True, **options):
+    result = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, **options)
+    if check and result.returncode != 0:
+        sys.exit(f"{arguments}: exit code {result.returncode}\n{result.stdout}{result.stderr}")
+    return result
+
+
+def rows(directory):
+    """The rows in order, without what no two runs share."""
+    out = []
+    for line in (directory / "results.jsonl").read_text().splitlines():
+        row = json.loads(line)
+        del row["provenance"], row["cost"]["seconds"], row["cost"]["peak_memory_mb"]
+        row["cost"].pop("timing", None)
+        out.append(row)
+    return out
+
+
+def same(directory, reference, what):
+    if rows(directory) != rows(reference):
+        ours, theirs = ({row["id"]: row for row in rows(d)} for d in (directory, reference))
+        differing = [theirs[i]["label"] for i in theirs if ours.get(i) != theirs[i]]
+        sys.exit(f"{what}: the rows differ from those of one run (seed {SEED}): {differing or 'in their order'}")
+    print(f"{what}: {len(rows(directory))} rows, as those of one run", flush=True)
+
+
+def killed_and_resumed(study, whole, work):
+    """20 kills, each while cells are missing; a study that got through all the same starts anew."""
+    directory, seconds, chance = work / "killed", duration(study, work), random.Random(SEED)
+    finished, through, all_cells = 0, 0, len(rows(whole))
+    for attempt in range(20):
+        if finished == all_cells:
+            run("study", study, "-o", directory, "--resume")  # puts the rows in order
+            same(directory, whole, f"killed {attempt} times")
+            shutil.rmtree(directory)
+            finished, through = 0, through + 1
+        process = subprocess.Popen([PROGRAM, "study", study, "-o", directory, "--resume", "--jobs",
+                                    chance.choice("12")], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        time.sleep(chance.uniform(0, 0.2 * seconds))
+        process.kill()
+        process.wait()
+        path = directory / "results.jsonl"
+        lines = path.read_text().split("\n")[:-1] if path.exists() else []
+        ids = [json.loads(line)["id"] for line in lines]
+        if len(set(ids)) != len(ids):
+            sys.exit(f"kill {attempt}: a cell was recorded twice (seed {SEED})")
+        if len(ids) < finished:
+            sys.exit(f"kill {attempt}: {finished - len(ids)} finished cells were lost (seed {SEED})")
+        finished = len(ids)
+    print(f"20 kills, {through} times through, {finished} of {all_cells} cells in the end", flush=True)
+    directory.mkdir(exist_ok=True)
+    with open(directory / "results.jsonl", "a") as file:
+        file.write('{"id": "torn')
+    said = run("study", study, "-o", directory, "--resume").stderr
+    if "a torn last line (12 bytes) was dropped" not in said:
+        sys.exit(f"the torn line was dropped in silence: {said}")
+    same(directory, whole, "killed and resumed")
+    if any(directory.glob("*.part")):
+        sys.exit("a temporary file was left behind")
+    again = run("study", study, "-o", directory, "--resume").stdout
+    if " 0 run now" not in again:
+        sys.exit(f"a finished study ran again: {again}")
+    same(directory, whole, "resumed with nothing to do")
+
+
+def duration(study, work):
+    start = time.monotonic()
+    run("study", study, "-o", work / "timed")
+    return time.monotonic() - start
+
+
+def one_at_a_time(study, work):
+    directory = work / "shared"
+    first = subprocess.Popen([PROGRAM, "study", study, "-o", directory], stdout=subprocess.DEVNULL,
+                             stderr=subprocess.DEVNULL)
+    while not (directory / "study.json").exists():
+        time.sleep(0.005)
+    second = run("study", study, "-o", directory, "--resume", check=False)
+    running = first.poll() is None
+    if not running or second.returncode != 2 or f"another stickslip writes here (process {first.pid})" not in second.stderr:
+        sys.exit(f"two at once: first running: {running}, exit code {second.returncode}: {second.stderr}")
+    if first.wait() != 0:
+        sys.exit("the first of two did not finish")
+    print("a second process is refused: " + second.stderr.strip(), flush=True)
+
+
+def in_parallel(study, whole, work):
+    run("study", study, "-o", work / "parallel", "--jobs", 3)
+    same(work / "parallel", whole, "three jobs")
+
+
+def in_shards(study, whole, work):
+    parts = [work / f"part{i}" for i in range(1, 9)]
+    for i, part in enumerate(parts, 1):
+        run("study", study, "-o", part, "--shard", f"{i}/8")
+    run("merge", *parts, "-o", work / "merged")
+    same(work / "merged", whole, "eight shards merged")
+    incomplete = run("merge", *parts[1:], "-o", work / "incomplete", check=False)
+    if incomplete.returncode != 3 or "cells are still missing, in the study's order: 1, 9, 17" not in incomplete.stderr:
+        sys.exit(f"a missing shard: {incomplete.returncode} {incomplete.stderr}")
+    other = dict(STUDY, vary={"/contacts/sole/friction": [0.5]})
+    (work / "other.study.json").write_text(json.dumps(other))
+    run("study", work / "other.study.json", "-o", work / "other")
+    refused = run("merge", parts[0], work / "other", "-o", work / "nothing", check=False)
+    if refused.returncode != 2 or "are of different studies" not in refused.stderr or (work / "nothing").exists():
+        sys.exit(f"another study: {refused.returncode} {refused.stderr}")
+    print("another study is refused: " + refused.stderr.strip(), flush=True)
+
+
+def compared(whole, work):
+    if run("compare", whole, work / "merged").returncode != 0:
+        sys.exit("equal rows are found to be worse")
+    worse = work / "worse"
+    shutil.copytree(whole, worse)
+    lines = [json.loads(line) for line in (worse / "results.jsonl").read_text().splitlines()]
+    lines[3]["cost"]["counts"]["newton"] += 1
+    (worse / "results.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
+    told = run("compare", whole, worse, "--json", check=False)
+    found = json.loads(told.stdout)
+    if told.returncode != 3 or found["worse"] != 1 or found["cells"][0]["label"] != lines[3]["label"]:
+        sys.exit(f"one more iteration: exit code {told.returncode}: {told.stdout}")
+    if run("compare", worse, whole).returncode != 0:
+        sys.exit("one iteration less is found to be worse")
+    print("one more iteration is found", flush=True)
+
+
+def timed(study, whole, work):
+    """A timing pass that is killed goes on where it was, and leaves the rows as they were."""
+    path = work / "timed.study.json"
+    path.write_text(json.dumps(dict(STUDY, timing={"repeat": 3})))
+    directory = work / "clocked"
+    process = subprocess.Popen([PROGRAM, "study", path, "-o", directory], stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL)
+    while not (directory / "timings.jsonl").exists() or (directory / "timings.jsonl").read_text().count("\n") < 5:
+        time.sleep(0.005)
+    process.kill()
+    process.wait()
+    before = (directory / "timings.jsonl").read_text().split("\n")[:-1]
+    run("study", path, "-o", directory, "--resume")
+    after = (directory / "timings.jsonl").read_text().split("\n")[:-1]
+    runs = [(json.loads(line)["id"], json.loads(line)["round"]) for line in after]
+    converged = [row for row in rows(directory) if row["status"].startswith("converged")]
+    if after[:len(before)] != before or len(set(runs)) != len(runs) or len(runs) != 3 * len(converged):
+        sys.exit(f"{len(before)} timed runs, then {len(runs)} of {3 * len(converged)}")
+    for line in (directory / "results.jsonl").read_text().splitlines():
+        row = json.loads(line)
+        if row["status"].startswith("converged") and row["cost"]["timing"]["repeat"] != 3:
+            sys.exit(f"{row['label']} lacks its timing")
+    same(directory, whole, f"timed, killed after {len(before)} of {len(runs)} runs")
+
+
+def main():
+    print(f"seed {SEED}")
+    with tempfile.TemporaryDirectory() as folder:
+        work = Path(folder)
+        shutil.copy(SOURCE / "studies" / "scenes" / "greco_plate.json", work / "scene.json")
+        study = work / "some.study.json"
+        study.write_text(json.dumps(STUDY))
+        whole = work / "whole"
+        run("study", study, "-o", whole)
+        killed_and_resumed(study, whole, work)
+        one_at_a_time(study, work)
+        in_parallel(study, whole, work)
+        in_shards(study, whole, work)
+        compared(whole, work)
+        timed(study, whole, work)
+
+
+if __name__ == "__main__":
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    main()

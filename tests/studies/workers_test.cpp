@@ -1,0 +1,65 @@
+#include "studies/workers.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <map>
+#include <set>
+#include <stdexcept>
+
+namespace stickslip {
+namespace {
+
+using testing::HasSubstr;
+
+std::string message_of(int jobs, const std::function<std::string(std::size_t)>& work) {
+  try {
+    run_in_processes(jobs, 8, work, [](std::size_t, const std::string&) {});
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(Workers, DoEachPieceOnceWithAnyNumberOfJobs) {
+  for (const int jobs : {1, 2, 3, 40}) {
+    std::map<std::size_t, std::string> results;
+    run_in_processes(
+        jobs, 25, [](std::size_t i) { return std::string(i * 20000, 'x'); },  // beyond what a pipe takes at once
+        [&](std::size_t i, const std::string& text) { EXPECT_TRUE(results.emplace(i, text).second) << i; });
+    ASSERT_EQ(results.size(), 25u);
+    for (const auto& [i, text] : results) EXPECT_EQ(text, std::string(i * 20000, 'x'));
+  }
+}
+
+TEST(Workers, AreProcessesOfTheirOwnUnlessThereIsOneJob) {
+  std::set<std::string> processes;
+  const auto process = [](std::size_t) { return std::to_string(::getpid()); };
+  run_in_processes(1, 3, process, [&](std::size_t, const std::string& text) { processes.insert(text); });
+  EXPECT_THAT(processes, testing::ElementsAre(std::to_string(::getpid())));
+  processes.clear();
+  run_in_processes(2, 3, process, [&](std::size_t, const std::string& text) { processes.insert(text); });
+  EXPECT_EQ(processes.count(std::to_string(::getpid())), 0u);
+}
+
+TEST(Workers, HandOnWhatAPieceThrows) {
+  const auto work = [](std::size_t i) -> std::string {
+    if (i == 3) throw std::runtime_error("piece three\nis bad");
+    return "";
+  };
+  EXPECT_THAT(message_of(1, work), HasSubstr("piece three"));
+  EXPECT_EQ(message_of(2, work), "piece three is bad");
+}
+
+TEST(Workers, SayThatAProcessWasKilled) {
+  const auto work = [](std::size_t i) -> std::string {
+    if (i == 5) ::kill(::getpid(), SIGKILL);
+    return "";
+  };
+  EXPECT_THAT(message_of(2, work), HasSubstr("ended by signal 9"));
+}
+
+}  // namespace
+}  // namespace stickslip
