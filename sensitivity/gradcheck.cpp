@@ -168,7 +168,9 @@ GradientCheck check_gradients(const Model& model, const Method& given, const Run
         const auto best = extrapolate(differences, i, n, rounding);
         const double scale = worst.scale > 0 ? worst.scale : 1;
         const double error = std::abs(gradients.of[n](i, j) - best.value) / scale, estimate = best.estimate / scale;
-        const double scheme = approximate ? 10 / std::get<UzawaAL>(method).oversize : base_tolerance;
+        const double scheme = approximate
+                                  ? 10 / std::get<UzawaAL>(method).oversize.value_or(UzawaAL::automatic_oversize)
+                                  : base_tolerance;
         const double allowed = std::max(scheme, estimate);
         if (error / allowed <= excess) continue;
         excess = error / allowed;

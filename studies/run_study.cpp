@@ -122,13 +122,14 @@ json row_of(const Study& study, const CellInput& cell, Variant& variant, MeshFil
   }
   row["errors"] = errors;
   row["steps"] = json::array();
-  for (const auto& step : steps)
-    row["steps"].push_back({{"time", step["time"]},
-                            {"status", step["status"]},
-                            {"newton", step["newton"]},
-                            {"augmentations", step["augmentations"]},
-                            {"cutbacks", step["cutbacks"]},
-                            {"history", step["history"]}});
+  for (const auto& step : steps) {
+    json kept = {{"time", step["time"]},         {"status", step["status"]},
+                 {"newton", step["newton"]},     {"augmentations", step["augmentations"]},
+                 {"cutbacks", step["cutbacks"]}, {"history", step["history"]}};
+    for (const char* name : {"contraction", "sensitivity_scheme"})
+      if (step.contains(name)) kept[name] = step[name];
+    row["steps"].push_back(std::move(kept));
+  }
   row["interface"] = interface_json(result);
   row["size"] = size_json(result);
   row["cost"] = timed_cost(result, input, variant, study.repeat);

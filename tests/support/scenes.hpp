@@ -340,6 +340,39 @@ inline Scene fitted_rings(const std::string& element) {
   return s;
 }
 
+/// A point on a spring whose tangential and normal parts are coupled, pushed along a rough floor: the further it slips,
+/// the harder it is pressed, by 1/s of the tangential force, s = k / coupling.
+inline Scene wedge(double mu, double push = 100, double press = 10, double k = 100, double coupling = 50) {
+  Scene s;
+  s.legs = {{1, 1}};
+  const Number friction = parameter(s, "mu", mu), load = parameter(s, "push", push), stiffness = parameter(s, "k", k);
+  s.bodies = {{"point", PointMesh{{0.0, 0.0}}, GroundedSpring{{{stiffness, coupling}, {coupling, k}}}, "", 1.0}};
+  s.obstacles = {{"floor", Plane{{0.0, 0.0}, {0.0, 1.0}}, {}}};
+  s.contacts = {contact("sole", "point.node", "floor")};
+  s.contacts[0].friction = friction;
+  s.loads = {force("point.node", {load, -press})};
+  s.responses = {response("u", Response::Kind::displacement, "point.node", "x"),
+                 response("press", Response::Kind::contact_force, "sole", "normal")};
+  return s;
+}
+
+/// Scenes of all kinds: open, stick and slip, one step and a path, the plane and space, conforming meshes and others.
+inline std::vector<Scene> all() {
+  return {stop(),
+          slider({{0, 0}, {1, 0.1}, {2, -0.1}, {3, 0.04}}, 9),
+          dragged_point({{0, 0, 0}, {1, 0, -0.6}, {2, 0.7, -0.6}, {3, 0.2, 0.9}}, 24, 0.3),
+          greco_plate(8),
+          two_boxes(6, 9),
+          two_boxes(5, 4, "T3", 0.25),
+          two_boxes(4, 4, "Q4", 2),
+          segment_boxes(5, 7),
+          two_disks(8, false),
+          two_disks(8, true),
+          driven_block(),
+          driven_block("T3"),
+          turned_point()};
+}
+
 /// A solved scene with its derivatives.
 struct Solved {
   Model model;
