@@ -15,7 +15,9 @@
 /// constraints, S = B K^-1 B^T A), so a large rho needs few augmentations of harder inner problems. Slip is always
 /// measured from the last converged increment, never from the last augmentation. Start: the last increment's lambda.
 /// Stops where update, violation and states have settled to `tolerance`; gives up where the updates undo each other
-/// (cycle) or a constraint does not yield (infeasible). Options: methods/options.hpp. [SL92]
+/// (cycle) or a constraint does not yield (infeasible). Inner solves on the way go to a hundredth of the residual they
+/// start from (the truncated scheme differentiates each of them, and takes them exact); the last is exact. Options:
+/// methods/options.hpp. [SL92]
 #pragma once
 
 #include "methods/augmentation.hpp"
@@ -59,29 +61,10 @@ Vector<T> into_cones(const Model& model, const Slots<T>& slots, Vector<T> multip
   return multiplier;
 }
 
-/// How the augmentations stand: the status they could end with, if `done`.
-struct Standing {
-  Status status = Status::converged;
-  bool done = false;
-  std::string message;
-};
-
-/// What counts as nothing: a violation that the tolerance allows; rounding of a gap and of a traction.
-struct Negligible {
-  double violation = 0, gap = 0, traction = 0;
-};
-
-template <class T>
-Negligible negligible(const UzawaAL& method, const Slots<T>& slots, const RegularisationField<T>& rho, double reach,
-                      const RunScales& scales) {
-  const double gap = 10 * unit_roundoff * reach;
-  double stiffest = 0, friction = 0;
-  for (const auto& r : rho) stiffest = std::max(stiffest, value(r.normal));
-  for (const auto& mu : slots.friction) friction = std::max(friction, value(mu));
-  // in slip the bound passes the rounding of the pressure on
-  return {method.tolerance * scales.length, gap,
-          (1 + friction) * (stiffest * gap + 10 * unit_roundoff * scales.traction)};
-}
+/// Share of its first residual, which the last update of lambda leaves, to which an inner solve goes while more
+/// augmentations follow. Points that hardly slip would change their states in it down to rounding, each time anew; at a
+/// hundredth the augmentations do not notice, and the contraction they show is off by as little.
+inline constexpr double forcing = 0.01;
 
 /// An inner residual above the error that the outer tolerance allows would stall the updates: the last of them are by
 /// 1 - q smaller than that error.
@@ -94,25 +77,53 @@ inline NewtonOptions inner_options(const UzawaAL& method, double contraction) {
   return inner;
 }
 
-/// `traction`: largest of the run.
+/// How the augmentations stand: the status they could end with, if `done`.
+struct Standing {
+  Status status = Status::converged;
+  bool done = false;
+  std::string message;
+  double negligible = 0;  ///< a violation that counts as none: that of the tolerance, or of rounding
+};
+
+/// `reach`: largest displacement of a contact node.
 template <class T>
-Standing judge(const UzawaAL& method, const Augmentations<T>& progress, const Negligible& negligible, double traction) {
-  const bool small = progress.error_left() <= method.tolerance * traction;
-  const bool at_roundoff =
-      progress.stalled() && progress.violation() <= negligible.gap && progress.update() <= negligible.traction;
-  if ((progress.settled() || progress.update() == 0) &&
-      ((small && progress.violation() <= negligible.violation) || at_roundoff))
-    return {small ? Status::converged : Status::converged_at_roundoff, true, ""};
-  if (progress.violation() <= negligible.gap) return {};
-  if (const std::string point = progress.unyielding(negligible.violation); !point.empty())
-    return {Status::infeasible, true, point};
-  if (progress.alternates())
-    return {Status::cycle, true,
-            method.cone == UzawaAL::Cone::frozen
-                ? "the augmentations go to and fro between two multipliers, as a frozen cone does where the friction "
-                  "coefficient exceeds the slope of the load path; use the augmented cone"
-                : "the augmentations go to and fro between two multipliers; try more steps"};
-  return {};
+Standing judge(const UzawaAL& method, const Slots<T>& slots, const RegularisationField<T>& rho, double reach,
+               const RunScales& scales, const Augmentations<T>& progress) {
+  const double gap = 10 * unit_roundoff * reach, violation = method.tolerance * scales.length;
+  double stiffest = 0, friction = 0;
+  for (const auto& r : rho) stiffest = std::max(stiffest, value(r.normal));
+  for (const auto& mu : slots.friction) friction = std::max(friction, value(mu));
+  // in slip the bound passes the rounding of the pressure on
+  const double traction = (1 + friction) * (stiffest * gap + 10 * unit_roundoff * scales.traction);
+  const bool small = progress.error_left() <= method.tolerance * scales.traction;
+  const bool at_roundoff = progress.stalled() && progress.violation() <= gap && progress.update() <= traction;
+  Standing now;
+  now.negligible = std::max(violation, gap);
+  auto end = [&](Status status, std::string message = "") {
+    now.status = status;
+    now.done = true;
+    now.message = std::move(message);
+    return now;
+  };
+  if ((progress.settled() || progress.update() == 0) && ((small && progress.violation() <= violation) || at_roundoff))
+    return end(small ? Status::converged : Status::converged_at_roundoff);
+  if (progress.violation() <= gap) return now;
+  if (const std::string point = progress.unyielding(violation); !point.empty()) return end(Status::infeasible, point);
+  if (!progress.alternates()) return now;
+  const std::string cycle = "the augmentations go to and fro between two multipliers";
+  return end(Status::cycle, cycle + (method.cone == UzawaAL::Cone::frozen
+                                         ? ", as a frozen cone does where the friction coefficient exceeds the slope "
+                                           "of the load path; use the augmented cone"
+                                         : "; try more steps"));
+}
+
+/// Status and message as things stand: the outer tolerance decides, not the stricter one of the inner solves.
+template <class T>
+void conclude(const Standing& now, bool at_limit, Increment<T>& increment) {
+  if (!now.done && !at_limit) return;
+  increment.status = now.done ? now.status : Status::cap;
+  increment.message =
+      now.done ? now.message : "max_augmentations reached; try a larger scale, adapt, or an acceleration";
 }
 
 }  // namespace detail
@@ -127,15 +138,18 @@ Increment<T> solve_increment(const UzawaAL& method, Run<T, E>& run, const State<
   increment.rho_factor = previous_factor.empty() ? std::vector<double>(model.points.size(), 1.0) : previous_factor;
   const auto initial = initial_regularisation(run.slots, method);
   Vector<T> u = run.engine.begin(time, previous.displacement), lambda = previous.contact.traction;
+  std::vector<ContactState> last = previous.contact.state;  // resumed at the first augmentation
   Augmentations<T> progress(model, run.slots, method.acceleration);
   Accelerator<T> accelerator(method.acceleration);
   const auto cones = [&](Vector<T> x) { return detail::into_cones(model, run.slots, std::move(x)); };
+  bool rough = !truncated;  // whether the next inner solve may end short of its tolerance
   while (true) {
+    rough &= increment.augmentations + 1 < limit;
     const auto rho = adapted(initial, increment.rho_factor);
     const ContactInput<T> input{model, run.slots, rho, previous.contact.placement, cone_radius(method), time};
-    const auto& start = increment.augmentations == 0 ? previous.contact.state : std::vector<ContactState>{};
-    const auto equilibrium = newton(run.engine, input, u, lambda, false, start,
-                                    detail::inner_options(method, progress.contraction()), run.account);
+    const auto equilibrium =
+        newton(run.engine, input, u, lambda, false, last, detail::inner_options(method, progress.contraction()),
+               run.account, rough ? detail::forcing : 0);
     account_for(increment, equilibrium, ++increment.augmentations);
     ++run.account.counters.augmentations;
     auto keep = [&] {
@@ -149,26 +163,20 @@ Increment<T> solve_increment(const UzawaAL& method, Run<T, E>& run, const State<
     const double reach = largest_nodal_norm(run.engine.compact(equilibrium.u), model.dimension);
     progress.record(lambda, equilibrium.field, reach);
     increment.contraction = progress.contraction();
-    const auto negligible = detail::negligible(method, run.slots, rho, reach, run.account.scales);
-    const auto now = detail::judge(method, progress, negligible, run.account.scales.traction);
-    if (now.done) {  // the outer tolerance decides, not the stricter one of the inner solves
-      increment.status = now.status;
-      increment.message = now.message;
-    }
+    const auto now = detail::judge(method, run.slots, rho, reach, run.account.scales, progress);
     const bool at_limit = increment.augmentations >= limit;
-    if (now.done && (!is_converged(now.status) || truncated || at_limit || !progress.derivative_moves())) return keep();
-    if (at_limit) {
-      increment.status = Status::cap;
-      increment.message = "max_augmentations reached; try a larger scale, adapt, or an acceleration";
-      return keep();
-    }
+    detail::conclude(now, at_limit, increment);
+    const bool over = now.done && !equilibrium.rough;
+    if (at_limit || (over && (!is_converged(now.status) || truncated || !progress.derivative_moves()))) return keep();
+    rough &= !now.done;
     const bool raised = method.adapt && progress.settled() && !now.done &&
                         detail::adapt(run.slots, initial, progress.last_violations(), progress.violations(),
-                                      std::max(negligible.violation, negligible.gap), increment.rho_factor);
+                                      now.negligible, increment.rho_factor);
     if (raised) {  // it is another map now
       accelerator = Accelerator<T>(method.acceleration);
       progress.change_map();
     }
+    last.clear();
     u = equilibrium.u;
     lambda = raised || now.done ? equilibrium.field.traction
                                 : accelerator.next(lambda, equilibrium.field.traction, progress.settled(),
