@@ -1,7 +1,9 @@
 /// What the augmentations of one increment tell of themselves: how far they are from their fixed point, how fast they
 /// get there, and whether they ever will.
 ///
-///   contraction   of the map lambda -> t(u(lambda), lambda), from differences of its values in the same contact states
+///   contraction   of the map lambda -> t(u(lambda), lambda), from differences of its values in the same contact
+///   states,
+///                 as far as they are above rounding
 ///   error left    q / (1 - q) times the last update, the rest of its geometric series
 ///   two-cycle     three updates in a row undo each other, but for 1e-6
 ///   infeasible    a constraint that does not yield: its multiplier grows by enough to close a gap of 1e-8 of the
@@ -129,7 +131,7 @@ void Augmentations<T>::record_rate(const Vector<T>& multiplier, const ContactFie
   same_map_ = true;
   if (!comparable) return;
   const Vector<double> moved = values(multiplier - multiplier_);
-  if (moved.norm() == 0) return;
+  if (moved.norm() <= 1e3 * detail::unit_roundoff * values(field.traction).norm()) return;  // rounding has no rate
   secants_.push_back({moved, values(field.traction - field_.traction)});
   if (secants_.size() > kept_secants) secants_.erase(secants_.begin());
   const double q = stickslip::contraction(secants_);
