@@ -57,6 +57,7 @@ struct Equilibrium {
   Vector<T> multiplier;  ///< lambda
   ContactField<T> field;
   int iterations = 0;
+  bool rough = false;  ///< ended by `forcing`, short of the tolerance
   std::vector<IterationRecord> history;
 };
 
@@ -243,10 +244,12 @@ constexpr int extra_iterations() {
 
 /// Solves one equilibrium from the start values `u` (engine dofs) and `multiplier`. `unknown`: lambda is solved for;
 /// otherwise it stays as it is. `last`: states of the last increment, which points resume that start on their cone;
-/// empty where none is to.
+/// empty where none is to. `forcing`: share of its first residual at which a solve that is one of many may also end,
+/// while states still change; 0: it does not.
 template <class T, class E>
 Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vector<T> multiplier, bool unknown,
-                      const std::vector<ContactState>& last, const NewtonOptions& options, Account& account) {
+                      const std::vector<ContactState>& last, const NewtonOptions& options, Account& account,
+                      double forcing = 0) {
   const Model& model = input.model;
   constexpr double shortest_step = 1.0 / 128;
   Equilibrium<T> result;
@@ -281,6 +284,9 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
                2 * at.residuals.largest() > result.history[iteration - 1].residual) {
       if (extra-- == 0)
         return finish(Status::converged_at_roundoff, "the residual stopped falling at the level of rounding");
+    } else if (iteration > 0 && at.residuals.within(forcing * result.history[0].residual)) {
+      result.rough = true;
+      return finish(Status::converged);
     }
     if (iteration >= options.max_iterations)
       return finish(damped ? Status::cycle : Status::cap,

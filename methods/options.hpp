@@ -1,6 +1,7 @@
 /// Options of the methods, with their defaults, meaning and range. One struct a method; `Method` is the closed set.
 #pragma once
 
+#include <optional>
 #include <string_view>
 #include <variant>
 
@@ -34,15 +35,43 @@ struct Penalty {
 struct UzawaAL {
   static constexpr std::string_view name = "uzawa_al";
   static constexpr double automatic_multiple = 10;
-  enum class Sensitivity { iterated, truncated, oversized };
+  static constexpr double automatic_oversize = 1e3;  ///< of the oversized scheme
+  enum class Acceleration { none, aitken, anderson };
+  enum class Cone { augmented, frozen };
+  enum class Sensitivity { iterated, truncated, oversized, preconditioned };
   Regularisation scale;
   double tolerance = 1e-10;     ///< error left in the multiplier (relative), and violation; 0 < tolerance < 1
-  int max_augmentations = 200;  ///< per increment; >= 1
+  int max_augmentations = 200;  ///< inner solves per increment; >= 1
   bool adapt = true;            ///< multiply rho by 4 where an augmentation did not shrink the violation by 4
+  Acceleration acceleration = Acceleration::none;  ///< of the updates of lambda (methods/acceleration.hpp)
+  Cone cone = Cone::augmented;  ///< radius -mu z_N (augmented), or -mu lambda_N of the last augmentation (frozen)
   Sensitivity sensitivity = Sensitivity::iterated;
-  double oversize = 1e3;  ///< kappa_s of the oversized scheme; > 1
+  std::optional<double> oversize;  ///< kappa_s of the oversized and the preconditioned scheme, > 1; none: automatic
   NewtonOptions newton;
 };
+
+/// Options of a method that do not go together: the name of the one to change, and why; empty where all do.
+struct OptionConflict {
+  std::string_view option, reason;
+};
+inline OptionConflict conflict(const UzawaAL& m) {
+  using Sensitivity = UzawaAL::Sensitivity;
+  if (m.acceleration != UzawaAL::Acceleration::none && m.sensitivity == Sensitivity::truncated)
+    return {
+        "sensitivity",
+        "is \"truncated\", which differentiates every update as it was made; the weights of an acceleration are not "
+        "differentiated; allowed with it: iterated, oversized, preconditioned"};
+  const bool stiffened = m.sensitivity == Sensitivity::oversized || m.sensitivity == Sensitivity::preconditioned;
+  if (m.cone == UzawaAL::Cone::frozen && stiffened)
+    return {"sensitivity",
+            "relies on a stiffer factor, which leaves the error of a frozen cone as it is (it shrinks by mu/s a pass "
+            "whatever the scale); allowed with it: iterated, truncated"};
+  return {};
+}
+template <class M>
+OptionConflict conflict(const M&) {
+  return {};
+}
 
 struct MonolithicAL {
   static constexpr std::string_view name = "monolithic_al";

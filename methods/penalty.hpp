@@ -21,12 +21,14 @@ Vector<T> stored_traction(const Model& model, const State<T>& previous) {
   return lambda;
 }
 
+inline ConeRadius cone_radius(const Penalty&) { return ConeRadius::augmented; }
+
 template <class T, class E>
 Increment<T> solve_increment(const Penalty& method, Run<T, E>& run, const State<T>& previous,
                              const std::vector<double>&, double time) {
   Increment<T> increment;
   const auto rho = initial_regularisation(run.slots, method);
-  const ContactInput<T> input{run.model, run.slots, rho, previous.contact.placement, ConeRadius::augmented, time};
+  const ContactInput<T> input{run.model, run.slots, rho, previous.contact.placement, cone_radius(method), time};
   const auto equilibrium =
       newton(run.engine, input, run.engine.begin(time, previous.displacement), stored_traction(run.model, previous),
              false, previous.contact.state, method.newton, run.account);

@@ -3,6 +3,7 @@
 /// is its use in double.
 #pragma once
 
+#include <cassert>
 #include <functional>
 
 #include "methods/diagnosis.hpp"
@@ -123,31 +124,37 @@ struct Workspace {
 
 /// Builds the engine a run asks for: condensed where the bodies are linear and it pays (or it is demanded).
 template <class T>
-void make_engine(const Model& model, const Slots<T>& slots, bool unknown_multipliers, const RunOptions& options,
+void make_engine(const Model& model, const Slots<T>& slots, const Method& method, const RunOptions& options,
                  Workspace<T>& workspace) {
+  const bool unknown_multipliers = std::holds_alternative<MonolithicAL>(method);
+  const ConeRadius cone = std::visit([](const auto& m) { return cone_radius(m); }, method);
   using Kind = LinearAlgebra::Engine;
   const Kind kind = options.linear_algebra.engine;
   auto& condensation = workspace.condensation;
   if (kind == Kind::condensed || (kind == Kind::automatic && detail::condensed_pays(model))) {
     if (!condensation) condensation = std::make_shared<Condensation<T>>(model, slots, options.backend);
     if (condensation->valid()) {
-      workspace.engine.emplace(std::in_place_type<CondensedEngine<T>>, model, slots, unknown_multipliers, condensation);
+      workspace.engine.emplace(std::in_place_type<CondensedEngine<T>>, model, slots, unknown_multipliers, cone,
+                               condensation);
       return;
     }
   }
-  workspace.engine.emplace(std::in_place_type<SparseEngine<T>>, model, slots, unknown_multipliers, options.backend);
+  workspace.engine.emplace(std::in_place_type<SparseEngine<T>>, model, slots, unknown_multipliers, cone,
+                           options.backend);
 }
 
-/// Runs a method through a model. `model` and `slots` must outlive the workspace's engine.
+/// Runs a method through a model. pre: its options go together (`conflict`). `model` and `slots` must outlive the
+/// workspace's engine.
 template <class T>
 Trajectory<T> solve_in(const Model& model, const Slots<T>& slots, const Method& method, const RunOptions& options,
                        Workspace<T>& workspace) {
+  assert(std::visit([](const auto& m) { return conflict(m).option.empty(); }, method));
   Trajectory<T> trajectory;
   const Stopwatch total(trajectory.seconds.total);
   const bool reused = workspace.condensation != nullptr;
   {
     const Stopwatch setup(trajectory.seconds.setup);
-    make_engine<T>(model, slots, std::holds_alternative<MonolithicAL>(method), options, workspace);
+    make_engine<T>(model, slots, method, options, workspace);
   }
   if (workspace.condensation && !reused) trajectory.counters += workspace.condensation->counters;
   std::visit(

@@ -3,69 +3,128 @@
 ///   repeat  solve  R(u) = f_int - f_ext + sum A t dg = 0,   t = P_mu(lambda + rho g)     (lambda fixed)
 ///           lambda <- t
 ///
-///   rho  scale, force per length cubed; adapt: times 4 where an augmentation left more than 1/4 of the violation
+///   rho           scale, force per length cubed; adapt: times 4 where an augmentation left more than 1/4 of the
+///                 violation
+///   acceleration  lambda <- an extrapolation of the last t, put back onto the cone (methods/acceleration.hpp)
+///   cone          augmented: radius -mu z_N, the tangent of slip is unsymmetric
+///                 frozen: radius -mu lambda_N of the last augmentation. The tangent is symmetric, but the radius is
+///                 one more fixed point iteration, whose error changes by -mu/s an augmentation where the load path has
+///                 the slope s (tangential over normal stiffness of the unloading): beyond s it ends in a two-cycle
 ///
 /// The error shrinks by 1/(1 + rho s_min) an augmentation (s_min: smallest stiffness-free compliance of the active
 /// constraints, S = B K^-1 B^T A), so a large rho needs few augmentations of harder inner problems. Slip is always
 /// measured from the last converged increment, never from the last augmentation. Start: the last increment's lambda.
-/// Stops where update, violation and states have settled to `tolerance`. Options: methods/options.hpp. [SL92]
+/// Stops where update, violation and states have settled to `tolerance`; gives up where the updates undo each other
+/// (cycle) or a constraint does not yield (infeasible). Inner solves on the way go to a hundredth of the residual they
+/// start from (the truncated scheme differentiates each of them, and takes them exact); the last is exact. Options:
+/// methods/options.hpp. [SL92]
 #pragma once
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-
-#include "methods/increment.hpp"
+#include "methods/augmentation.hpp"
 
 namespace stickslip {
 
+inline ConeRadius cone_radius(const UzawaAL& method) {
+  return method.cone == UzawaAL::Cone::augmented ? ConeRadius::augmented : ConeRadius::multiplier;
+}
+
 namespace detail {
 
-/// Violation of the constraint that point p should meet: |g_N| if closed, |dg_T| too if it sticks (length).
+/// Raises the factor of the points whose violation did not fall to a quarter; capped at 1e3 nodal stiffnesses. True
+/// where one was raised.
 template <class T>
-double violation(const Model& model, const ContactField<T>& field, int p) {
-  if (field.state[p] == ContactState::open) return 0;
-  double worst = std::abs(value(field.gap[p]));
-  if (field.state[p] == ContactState::stick)
-    for (int a = 0; a < model.points[p].tangents; ++a)
-      worst = std::max(worst, std::abs(value(field.slip[tangential_offset(model, p) + a])));
-  return worst;
-}
-
-/// Raises the factor of the points whose violation did not fall to a quarter; capped at 1e3 nodal stiffnesses.
-template <class T>
-void adapt(const Slots<T>& slots, const RegularisationField<T>& initial, const std::vector<double>& before,
+bool adapt(const Slots<T>& slots, const RegularisationField<T>& initial, const std::vector<double>& before,
            const std::vector<double>& now, double negligible, std::vector<double>& factor) {
-  for (std::size_t p = 0; p < now.size(); ++p) {
+  bool raised = false;
+  for (std::size_t p = 0; p < before.size(); ++p) {
     if (now[p] <= negligible || now[p] <= 0.25 * before[p]) continue;
     const double cap = 1e3 * value(slots.stiffness[p]) / value(slots.geometry[p].area) / value(initial[p].normal);
-    factor[p] = std::max(factor[p], std::min(4 * factor[p], cap));
+    const double wanted = std::min(4 * factor[p], cap);
+    raised |= wanted > factor[p];
+    factor[p] = std::max(factor[p], wanted);
   }
+  return raised;
 }
 
-/// Contraction of the updates d, A d, A^2 d, ... of a linear iteration: the spectral radius of A on the space of all
-/// but the last (Arnoldi). Directions that are new by less than 2 %, of which rounding may be part, are left out of it;
-/// what is left at least is the ratio of the last two lengths. pre: two updates at least.
-inline double contraction(const std::vector<Vector<double>>& updates) {
-  const auto m = static_cast<Eigen::Index>(updates.size()) - 1;
-  Matrix<double> space(updates[0].size(), m), image(updates[0].size(), m);
-  for (Eigen::Index j = 0; j < m; ++j) {
-    space.col(j) = updates[j] / updates[j].norm();
-    image.col(j) = updates[j + 1] / updates[j].norm();
+/// The nearest multiplier in the cones, along their axes: pressure kept, or none where it would be tension, and the
+/// tangential part cut down to the bound.
+template <class T>
+Vector<T> into_cones(const Model& model, const Slots<T>& slots, Vector<T> multiplier) {
+  for (const auto& point : model.points) {
+    T& normal = multiplier[point.multiplier];
+    if (value(normal) > 0) normal = T(0);
+    if (point.tangents == 0) continue;
+    auto tangential = multiplier.segment(point.multiplier + 1, point.tangents);
+    const double bound = -value(slots.friction[point.contact]) * value(normal), length = values(tangential).norm();
+    if (length > bound) tangential *= -slots.friction[point.contact] * normal / norm(tangential);
   }
-  Eigen::ColPivHouseholderQR<Matrix<double>> qr;
-  qr.setThreshold(0.02);
-  qr.compute(space);
-  const Eigen::Index rank = qr.rank();
-  if (rank < 2) return updates[m].norm() / updates[m - 1].norm();
-  const Matrix<double> turned = qr.householderQ().adjoint() * (image * qr.colsPermutation());
-  const Matrix<double> R = qr.matrixQR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>();
-  const Matrix<double> A = R.transpose().partialPivLu().solve(turned.topLeftCorner(rank, rank).transpose());
-  return A.eigenvalues().cwiseAbs().maxCoeff();  // of A transposed, which has the same
+  return multiplier;
 }
 
-/// Largest derivative that rides on the entries: the imaginary part of the oracle, nothing on a double.
-inline double riding(const Vector<double>&) { return 0; }
-inline double riding(const Vector<std::complex<double>>& v) { return v.size() ? v.imag().cwiseAbs().maxCoeff() : 0; }
+/// Share of its first residual, which the last update of lambda leaves, to which an inner solve goes while more
+/// augmentations follow. Points that hardly slip would change their states in it down to rounding, each time anew; at a
+/// hundredth the augmentations do not notice, and the contraction they show is off by as little.
+inline constexpr double forcing = 0.01;
+
+/// An inner residual above the error that the outer tolerance allows would stall the updates: the last of them are by
+/// 1 - q smaller than that error.
+inline NewtonOptions inner_options(const UzawaAL& method, double contraction) {
+  constexpr double least = 1e-15;
+  NewtonOptions inner = method.newton;
+  const double rest = contraction < 1 ? 1 - contraction : 1;
+  inner.tolerance =
+      std::max(std::min(inner.tolerance, 0.01 * method.tolerance * rest), std::min(inner.tolerance, least));
+  return inner;
+}
+
+/// How the augmentations stand: the status they could end with, if `done`.
+struct Standing {
+  Status status = Status::converged;
+  bool done = false;
+  std::string message;
+  double negligible = 0;  ///< a violation that counts as none: that of the tolerance, or of rounding
+};
+
+/// `reach`: largest displacement of a contact node.
+template <class T>
+Standing judge(const UzawaAL& method, const Slots<T>& slots, const RegularisationField<T>& rho, double reach,
+               const RunScales& scales, const Augmentations<T>& progress) {
+  const double gap = 10 * unit_roundoff * reach, violation = method.tolerance * scales.length;
+  double stiffest = 0, friction = 0;
+  for (const auto& r : rho) stiffest = std::max(stiffest, value(r.normal));
+  for (const auto& mu : slots.friction) friction = std::max(friction, value(mu));
+  // in slip the bound passes the rounding of the pressure on
+  const double traction = (1 + friction) * (stiffest * gap + 10 * unit_roundoff * scales.traction);
+  const bool small = progress.error_left() <= method.tolerance * scales.traction;
+  const bool at_roundoff = progress.stalled() && progress.violation() <= gap && progress.update() <= traction;
+  Standing now;
+  now.negligible = std::max(violation, gap);
+  auto end = [&](Status status, std::string message = "") {
+    now.status = status;
+    now.done = true;
+    now.message = std::move(message);
+    return now;
+  };
+  if ((progress.settled() || progress.update() == 0) && ((small && progress.violation() <= violation) || at_roundoff))
+    return end(small ? Status::converged : Status::converged_at_roundoff);
+  if (progress.violation() <= gap) return now;
+  if (const std::string point = progress.unyielding(violation); !point.empty()) return end(Status::infeasible, point);
+  if (!progress.alternates()) return now;
+  const std::string cycle = "the augmentations go to and fro between two multipliers";
+  return end(Status::cycle, cycle + (method.cone == UzawaAL::Cone::frozen
+                                         ? ", as a frozen cone does where the friction coefficient exceeds the slope "
+                                           "of the load path; use the augmented cone"
+                                         : "; try more steps"));
+}
+
+/// Status and message as things stand: the outer tolerance decides, not the stricter one of the inner solves.
+template <class T>
+void conclude(const Standing& now, bool at_limit, Increment<T>& increment) {
+  if (!now.done && !at_limit) return;
+  increment.status = now.done ? now.status : Status::cap;
+  increment.message =
+      now.done ? now.message : "max_augmentations reached; try a larger scale, adapt, or an acceleration";
+}
 
 }  // namespace detail
 
@@ -73,26 +132,25 @@ template <class T, class E>
 Increment<T> solve_increment(const UzawaAL& method, Run<T, E>& run, const State<T>& previous,
                              const std::vector<double>& previous_factor, double time) {
   const Model& model = run.model;
-  const int points = static_cast<int>(model.points.size());
   const bool truncated = method.sensitivity == UzawaAL::Sensitivity::truncated;
+  const int limit = method.max_augmentations * (std::is_same_v<T, double> || truncated ? 1 : 20);
   Increment<T> increment;
-  increment.rho_factor = previous_factor.empty() ? std::vector<double>(points, 1.0) : previous_factor;
+  increment.rho_factor = previous_factor.empty() ? std::vector<double>(model.points.size(), 1.0) : previous_factor;
   const auto initial = initial_regularisation(run.slots, method);
   Vector<T> u = run.engine.begin(time, previous.displacement), lambda = previous.contact.traction;
-  std::vector<double> violations;
-  std::vector<ContactState> states;
-  std::vector<Vector<double>> updates;  // the last five, made in the same states
-  double last_update = 0, last_riding = std::numeric_limits<double>::infinity();
-  NewtonOptions inner = method.newton;  // an inner residual above the outer tolerance would stall the updates
-  inner.tolerance = std::min(inner.tolerance, 0.01 * method.tolerance);
-  for (int sweep = 1;; ++sweep) {
+  std::vector<ContactState> last = previous.contact.state;  // resumed at the first augmentation
+  Augmentations<T> progress(model, run.slots, method.acceleration);
+  Accelerator<T> accelerator(method.acceleration);
+  const auto cones = [&](Vector<T> x) { return detail::into_cones(model, run.slots, std::move(x)); };
+  bool rough = !truncated;  // whether the next inner solve may end short of its tolerance
+  while (true) {
+    rough &= increment.augmentations + 1 < limit;
     const auto rho = adapted(initial, increment.rho_factor);
-    const ContactInput<T> input{model, run.slots, rho, previous.contact.placement, ConeRadius::augmented, time};
+    const ContactInput<T> input{model, run.slots, rho, previous.contact.placement, cone_radius(method), time};
     const auto equilibrium =
-        newton(run.engine, input, u, lambda, false, sweep == 1 ? previous.contact.state : std::vector<ContactState>{},
-               inner, run.account);
-    account_for(increment, equilibrium, sweep);
-    increment.augmentations = sweep;
+        newton(run.engine, input, u, lambda, false, last, detail::inner_options(method, progress.contraction()),
+               run.account, rough ? detail::forcing : 0);
+    account_for(increment, equilibrium, ++increment.augmentations);
     ++run.account.counters.augmentations;
     auto keep = [&] {
       increment.state = settle(run, input, equilibrium, previous.dissipation);
@@ -102,47 +160,27 @@ Increment<T> solve_increment(const UzawaAL& method, Run<T, E>& run, const State<
     if (truncated)
       increment.sweeps.push_back({settle(run, input, equilibrium, previous.dissipation), increment.rho_factor});
 
-    const Vector<T> change = equilibrium.field.traction - lambda;
-    const double update = values(change).norm();
-    const double largest_update = change.size() ? values(change).cwiseAbs().maxCoeff() : 0;
-    std::vector<double> now(points);
-    for (int p = 0; p < points; ++p) now[p] = detail::violation(model, equilibrium.field, p);
-    const double worst = points ? *std::max_element(now.begin(), now.end()) : 0;
-    const bool settled = equilibrium.field.state == states;
-    if (!settled) updates.clear();
-    updates.push_back(values(change));
-    if (updates.size() > 5) updates.erase(updates.begin());
-    if (updates.size() > 1 && last_update > 0) increment.contraction = detail::contraction(updates);
-    // what is left of a geometric series after this update, not the update itself, is the error
-    const double q = increment.contraction;
-    const double left = settled && q > 0 && q < 1 ? largest_update * std::max(1.0, q / (1 - q)) : largest_update;
-    const double negligible = method.tolerance * run.account.scales.length;
     const double reach = largest_nodal_norm(run.engine.compact(equilibrium.u), model.dimension);
-    const double rounding = 10 * detail::unit_roundoff * reach;  // of a gap
-    const bool at_roundoff = settled && worst <= rounding && last_update > 0 && 2 * update > last_update;
-    const bool done = (settled || largest_update == 0) &&
-                      ((left <= method.tolerance * run.account.scales.traction && worst <= negligible) || at_roundoff);
-    const double riding = truncated ? 0 : detail::riding(change);
-    const bool still_riding = riding > 1e-13 * detail::riding(equilibrium.field.traction) && !(riding >= last_riding);
-    const int limit = method.max_augmentations * (std::is_same_v<T, double> || truncated ? 1 : 20);
-    if (done)  // the outer tolerance decides, not the stricter one of the inner solves
-      increment.status = at_roundoff && left > method.tolerance * run.account.scales.traction
-                             ? Status::converged_at_roundoff
-                             : Status::converged;
-    if (done && !(still_riding && sweep < limit)) return keep();
-    if (sweep >= limit) {
-      increment.status = Status::cap;
-      increment.message = "max_augmentations reached; try a larger scale, or adapt";
-      return keep();
+    progress.record(lambda, equilibrium.field, reach);
+    increment.contraction = progress.contraction();
+    const auto now = detail::judge(method, run.slots, rho, reach, run.account.scales, progress);
+    const bool at_limit = increment.augmentations >= limit;
+    detail::conclude(now, at_limit, increment);
+    const bool over = now.done && !equilibrium.rough;
+    if (at_limit || (over && (!is_converged(now.status) || truncated || !progress.derivative_moves()))) return keep();
+    rough &= !now.done;
+    const bool raised = method.adapt && progress.settled() && !now.done &&
+                        detail::adapt(run.slots, initial, progress.last_violations(), progress.violations(),
+                                      now.negligible, increment.rho_factor);
+    if (raised) {  // it is another map now
+      accelerator = Accelerator<T>(method.acceleration);
+      progress.change_map();
     }
-    if (method.adapt && settled && !done)
-      detail::adapt(run.slots, initial, violations, now, std::max(negligible, rounding), increment.rho_factor);
-    violations = now;
-    states = equilibrium.field.state;
-    last_update = update;
-    last_riding = done ? riding : std::numeric_limits<double>::infinity();
+    last.clear();
     u = equilibrium.u;
-    lambda = equilibrium.field.traction;
+    lambda = raised || now.done ? equilibrium.field.traction
+                                : accelerator.next(lambda, equilibrium.field.traction, progress.settled(),
+                                                   progress.contraction(), cones);
   }
 }
 

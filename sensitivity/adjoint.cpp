@@ -165,17 +165,15 @@ Gradients adjoint(const Model& model, const Slots<double>& slots, const Method& 
   bool done = false;
   auto backward = [&](const auto& m, auto& engine) {
     using E = std::decay_t<decltype(engine)>;
-    AdjointProblem<E> problem{model, slots, engine, tape, recording.slots, tape.size(), objectives, {}, {}};
+    AdjointProblem<E> problem{model, slots, engine, tape, recording.slots, tape.size(), objectives, {}};
     done = run(m, problem, trajectory);
     tape.rewind(problem.slots_end);
     gradients.counters = problem.counters;
     gradients.message = problem.message;
+    if (!done) gradients.status = problem.status;
   };
   std::visit(backward, method, *workspace.engine);
-  if (!done) {
-    gradients.status = gradients.message.starts_with("the iterated") ? Status::cap : Status::singular;
-    return gradients;
-  }
+  if (!done) return gradients;
   for (auto& objective : objectives) objective.by.resize(tape.size());
   pull_back_bodies(model, recording.slots, tape, objectives);
   gradients.of_objectives = Matrix<double>::Zero(objectives.size(), scene.parameters.size());

@@ -14,10 +14,11 @@ void run(const M& method, Differentiation<E>& problem, const Trajectory<double>&
   const State<double>* previous = &trajectory.initial;
   for (const auto& increment : trajectory.increments) {
     if (!differentiate_increment(method, problem, *previous, increment)) {
-      gradients.status = problem.message.starts_with("the iterated") ? Status::cap : Status::singular;
+      gradients.status = problem.status;
       gradients.message = problem.message;
       return;
     }
+    if (problem.record) gradients.records.push_back(*problem.record);
     std::vector<Vector<Direction>> responses;
     for (auto& block : problem.blocks)
       responses.push_back(evaluate_responses(model, block.slots, block.current, increment.time));
@@ -53,7 +54,7 @@ Gradients differentiate(const Model& model, const Slots<double>& slots, const Me
         std::visit(
             [&](auto& engine) {
               using E = std::decay_t<decltype(engine)>;
-              Differentiation<E> problem{model, slots, engine, blocks, parameters, {}, {}};
+              Differentiation<E> problem{model, slots, engine, blocks, parameters, {}};
               run(m, problem, trajectory, gradients);
               gradients.counters = problem.counters;
             },

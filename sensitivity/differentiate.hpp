@@ -9,13 +9,21 @@
 
 namespace stickslip {
 
+/// What a scheme did in one increment, where it iterates; Uzawa's do.
+struct SchemeRecord {
+  int passes = 0;          ///< back-solves a parameter
+  double oversize = 1;     ///< kappa_s, the factor on rho in the factorised tangent
+  double contraction = 0;  ///< largest last ratio of the changes of D lambda from pass to pass; 0: not measured
+};
+
 struct Gradients {
   Status status = Status::converged;  ///< singular: the tangent of an increment; cap: an iterated scheme did not settle
   std::string message;
   /// Per increment of the trajectory: responses x parameters. Ends where the scheme failed.
   std::vector<Matrix<double>> of;
-  Matrix<double> of_objectives;      ///< objectives x parameters; empty where it failed
-  Matrix<double> last_displacement;  ///< of the last differentiated increment: all dofs x parameters
+  Matrix<double> of_objectives;       ///< objectives x parameters; empty where it failed
+  std::vector<SchemeRecord> records;  ///< per increment; empty but for Uzawa
+  Matrix<double> last_displacement;   ///< of the last differentiated increment: all dofs x parameters
   Counters counters;
   double seconds = 0;
 };

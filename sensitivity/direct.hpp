@@ -10,7 +10,9 @@
 /// [MTV94], [SLK10]
 #pragma once
 
-#include "methods/method.hpp"
+#include <optional>
+
+#include "sensitivity/differentiate.hpp"
 #include "sensitivity/tangent.hpp"
 
 namespace stickslip {
@@ -42,7 +44,9 @@ struct Differentiation {
   std::vector<ParameterBlock>& blocks;
   int parameters = 0;
   Counters counters;
+  Status status = Status::singular;  ///< where a scheme fails: that it could not factorise, or cap
   std::string message;
+  std::optional<SchemeRecord> record;  ///< of the last increment
 };
 
 /// A vector as dual numbers without derivative.

@@ -218,7 +218,7 @@ GradientCheck check_gradients(const Model& model, const Method& given, const Run
   last.back() = ends.back();
   const auto* uzawa = std::get_if<UzawaAL>(&method);
   const bool approximate = uzawa && uzawa->sensitivity == UzawaAL::Sensitivity::oversized;
-  const double scheme = approximate ? 10 / uzawa->oversize : base_tolerance;
+  const double scheme = approximate ? 10 / uzawa->oversize.value_or(UzawaAL::automatic_oversize) : base_tolerance;
   const int responses = static_cast<int>(scene.responses.size());
   for (int j = 0; j < static_cast<int>(scene.parameters.size()); ++j) {
     const double size = parameter_size(scene.parameters[j], largest_value, largest_derivative, j);

@@ -37,8 +37,8 @@ struct GradientCheck {
 };
 
 /// The method whose derivative a scheme claims to be, solved to rounding (converged_at_roundoff ends it), for what a
-/// tolerance leaves is noise in a difference. Uzawa's iterated and oversized schemes stand for the converged solution,
-/// the truncated one for the loop as it is.
+/// tolerance leaves is noise in a difference. Uzawa's schemes stand for the converged solution, but for the truncated
+/// one, which stands for the loop as it is.
 Method as_claimed(const Method& method);
 
 /// Checks all parameters and responses at every requested step, and all objectives; the objectives alone where the

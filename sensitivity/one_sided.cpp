@@ -133,7 +133,7 @@ void run_side(const M& method, E& engine, const Model& model, const Slots<double
   std::vector<ParameterBlock> blocks{
       {make_slots<Direction>(model, seeded(model.scene, {parameter})), initial_state<Direction>(model), {}}};
   blocks[0].current = blocks[0].previous;
-  Differentiation<E> problem{model, slots, engine, blocks, 1, {}, {}};
+  Differentiation<E> problem{model, slots, engine, blocks, 1, {}};
   const State<double>* previous = &trajectory.initial;
   for (std::size_t n = 0; n < out.size(); ++n) {
     const auto& increment = trajectory.increments[n];

@@ -42,6 +42,7 @@ struct AdjointProblem {
   int slots_end = 0;  ///< on the tape
   std::vector<Backward>& objectives;
   Counters counters;
+  Status status = Status::singular;  ///< why a scheme gave up
   std::string message;
 };
 

@@ -1,11 +1,19 @@
 /// Uzawa: the derivative of  lambda <- t(u(lambda), lambda)  mirrors the updates.
 ///
-///   iterated   (two-phase) lambda first converges, then  D lambda <- D t(Du(D lambda), D lambda)  with one
-///   factorisation,
-///              a back-solve a parameter and pass, until settled: error q^m, q the contraction of the updates
-///   truncated  (piggyback) one pass per augmentation that was performed, with its own tangent: the exact derivative of
-///              the truncated algorithm, for a loop that was cut off or stopped at a coarse tolerance
-///   oversized  one pass with kappa_s rho in place of rho, states frozen: error O(1/kappa_s), no iteration [SZ00]
+///   iterated        (two-phase) lambda first converges, then  D lambda <- D t(Du(D lambda), D lambda)  with one
+///                   factorisation, a back-solve a parameter and pass, until settled: error q^m, q the contraction of
+///                   the updates
+///   truncated       (piggyback) one pass per augmentation that was performed, with its own tangent: the exact
+///   derivative
+///                   of the truncated algorithm, for a loop that was cut off or stopped at a coarse tolerance
+///   oversized       one pass with kappa_s rho in place of rho, states frozen: error O(1/kappa_s), no iteration [SZ00]
+///   preconditioned  the iterated scheme with kappa_s rho in place of rho: the fixed point is that of rho, for it is
+///                   Dg = 0 and D t_T = D(bound m), where rho stands nowhere; the error shrinks by
+///                   1 / (1 + kappa_s rho s_min) a pass, so that three or four passes reach rounding whatever q was
+///
+/// kappa_s is `oversize`. Automatic it is 1e3 for the oversized scheme. The preconditioned one takes q / (1 - q) /
+/// 1e-4, which makes the measured contraction q one of 1e-4, and at least 1e3 nodal stiffnesses, for directions that
+/// the updates did not excite; at most 1e6 of them, since rounding of D lambda grows as kappa_s rho.
 ///
 /// All carry D lambda of the last increment in as D lambda^0. Adjoint: the same maps transposed. The derivative by t
 /// goes to lambda and back,  l <- l D t/D lambda,  until nothing is left (iterated), sweep by sweep (truncated), or
@@ -42,8 +50,39 @@ LinearisedEquilibrium<E> linearise(const UzawaAL& method, Differentiation<E>& pr
                                    RegularisationField<double>& rho) {
   for (double& f : factor) f *= oversize;
   rho = adapted(initial_regularisation(problem.slots, method), factor);
-  return LinearisedEquilibrium<E>(problem, at, rho, regularisation_blocks(method, problem, factor),
-                                  ConeRadius::augmented, time, false, previous.contact.placement);
+  return LinearisedEquilibrium<E>(problem, at, rho, regularisation_blocks(method, problem, factor), cone_radius(method),
+                                  time, false, previous.contact.placement);
+}
+
+/// kappa_s of the preconditioned scheme, from the contraction of the updates (0: not measured).
+inline double chosen_oversize(const UzawaAL& method, const Slots<double>& slots, const RegularisationField<double>& rho,
+                              double contraction) {
+  constexpr double target = 1e-4, least = 1e3, most = 1e6;  // a pass; nodal stiffnesses
+  if (method.oversize) return *method.oversize;
+  double smallest = std::numeric_limits<double>::infinity(), largest = 0;
+  for (std::size_t p = 0; p < rho.size(); ++p) {
+    const double multiple = rho[p].normal * slots.geometry[p].area / slots.stiffness[p];
+    smallest = std::min(smallest, multiple);
+    largest = std::max(largest, multiple);
+  }
+  if (largest == 0) return 1;
+  const double q = contraction, measured = q > 0 && q < 1 ? q / (1 - q) / target : 0;
+  return std::max(1.0, std::min(std::max(measured, least / smallest), most / largest));
+}
+
+/// The state with the multiplier that has, with kappa_s rho, the traction that was found as its trial: the violation
+/// left by the augmentations is then not magnified. A slipping point has it on the edge of its cone.
+inline State<double> restated(const Model& model, State<double> at, const RegularisationField<double>& rho) {
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    if (at.contact.state[p] == ContactState::open) continue;
+    const int k = model.points[p].multiplier, offset = tangential_offset(model, p);
+    at.multiplier[k] = at.contact.traction[k] - rho[p].normal * at.contact.gap[p];
+    const bool stick = at.contact.state[p] == ContactState::stick;
+    for (int a = 0; a < model.points[p].tangents; ++a)
+      at.multiplier[k + 1 + a] =
+          at.contact.traction[k + 1 + a] - (stick ? rho[p].tangential * at.contact.slip[offset + a] : 0.0);
+  }
+  return at;
 }
 
 /// Iterates D lambda until the change, extrapolated by its own contraction, is below `tolerance` of D lambda or at the
@@ -57,12 +96,14 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
   for (const auto& r : rho) stiffest = std::max(stiffest, r.normal);
   Eigen::ArrayXd last = Eigen::ArrayXd::Zero(problem.parameters);
   auto columns = [&](auto&& pick) { return gather(problem.blocks, problem.parameters, pick); };
+  auto& record = problem.record.emplace();
   for (int pass = 1; pass <= limit; ++pass) {
     const Matrix<double> before = columns([&](auto&, int b) -> auto& { return lambda[b]; });
     fields = linearised.solve(lambda);
     const Matrix<double> after = columns([&](auto&, int b) -> auto& { return fields[b].traction; });
     update(lambda, fields);
     bool settled = true;
+    record = {pass, 1, 0};
     for (int j = 0; j < problem.parameters && after.rows() > 0; ++j) {
       const double change = (after.col(j) - before.col(j)).cwiseAbs().maxCoeff();
       const double size = after.col(j).cwiseAbs().maxCoeff();
@@ -71,12 +112,55 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
       const double left = q < 1 ? change * q / (1 - q) : change;
       const bool stalled = pass > 3 && change <= std::max(floor, 4 * rounding * size);
       settled &= change == 0 || stalled || (q < 1 && pass > 2 && left <= tolerance * size);
+      if (last[j] > 0 && change > floor) record.contraction = std::max(record.contraction, q);
       last[j] = change;
     }
     if (settled) return true;
   }
-  problem.message = "the iterated sensitivity did not settle in 20000 passes; try a larger scale, or oversized";
+  problem.status = Status::cap;
+  problem.message = "the derivatives did not settle in 20000 passes; try a larger scale, or the preconditioned scheme";
   return false;
+}
+
+/// One pass for each augmentation that was made.
+template <class E>
+bool differentiate_augmentations(const UzawaAL& method, Differentiation<E>& problem, const State<double>& previous,
+                                 const Increment<double>& increment) {
+  RegularisationField<double> rho;
+  auto lambda = carried_multiplier(problem, previous.contact.traction);
+  for (const auto& sweep : increment.sweeps) {
+    auto linearised = linearise(method, problem, previous, sweep.state, sweep.rho_factor, 1, increment.time, rho);
+    if (!linearised.valid()) return false;
+    for (std::size_t b = 0; b < lambda.size(); ++b)
+      for (Eigen::Index k = 0; k < lambda[b].size(); ++k) lambda[b][k].v = sweep.state.multiplier[k];
+    const auto fields = linearised.solve(lambda);
+    linearised.settle(fields, lambda);
+    update(lambda, fields);
+  }
+  problem.record = {static_cast<int>(increment.sweeps.size()), 1, 0};
+  return true;
+}
+
+/// The fixed point of the recursion, with the factor of kappa_s rho.
+template <class E>
+bool differentiate_preconditioned(const UzawaAL& method, Differentiation<E>& problem, const State<double>& previous,
+                                  const Increment<double>& increment) {
+  const auto own = adapted(initial_regularisation(problem.slots, method), increment.rho_factor);
+  const double oversize = chosen_oversize(method, problem.slots, own, increment.contraction);
+  const auto rho = adapted(own, std::vector<double>(own.size(), oversize));
+  RegularisationField<Direction> fixed;  // the fixed point does not depend on rho
+  for (const auto& r : rho) fixed.push_back({Direction(r.normal), Direction(r.tangential)});
+  const std::vector<RegularisationField<Direction>> blocks(problem.blocks.size(), fixed);
+  const State<double> at = restated(problem.model, increment.state, rho);
+  LinearisedEquilibrium<E> linearised(problem, at, rho, blocks, cone_radius(method), increment.time, false,
+                                      previous.contact.placement);
+  if (!linearised.valid()) return false;
+  auto lambda = carried_multiplier(problem, at.multiplier);
+  std::vector<ContactField<Direction>> fields;
+  if (!iterate(problem, linearised, rho, lambda, fields)) return false;
+  problem.record->oversize = oversize;
+  linearised.settle(fields, lambda);
+  return true;
 }
 
 }  // namespace detail
@@ -84,47 +168,38 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
 template <class E>
 bool differentiate_increment(const UzawaAL& method, Differentiation<E>& problem, const State<double>& previous,
                              const Increment<double>& increment) {
+  using Sensitivity = UzawaAL::Sensitivity;
+  if (method.sensitivity == Sensitivity::truncated)
+    return detail::differentiate_augmentations(method, problem, previous, increment);
+  if (method.sensitivity == Sensitivity::preconditioned)
+    return detail::differentiate_preconditioned(method, problem, previous, increment);
+  const bool oversized = method.sensitivity == Sensitivity::oversized;
+  const double oversize = oversized ? method.oversize.value_or(UzawaAL::automatic_oversize) : 1;
   RegularisationField<double> rho;
-  if (method.sensitivity == UzawaAL::Sensitivity::truncated) {
-    auto lambda = detail::carried_multiplier(problem, previous.contact.traction);
-    for (const auto& sweep : increment.sweeps) {
-      auto linearised =
-          detail::linearise(method, problem, previous, sweep.state, sweep.rho_factor, 1, increment.time, rho);
-      if (!linearised.valid()) return false;
-      for (std::size_t b = 0; b < lambda.size(); ++b)
-        for (Eigen::Index k = 0; k < lambda[b].size(); ++k) lambda[b][k].v = sweep.state.multiplier[k];
-      const auto fields = linearised.solve(lambda);
-      linearised.settle(fields, lambda);
-      detail::update(lambda, fields);
-    }
-    return true;
-  }
-  const bool oversized = method.sensitivity == UzawaAL::Sensitivity::oversized;
-  auto linearised = detail::linearise(method, problem, previous, increment.state, increment.rho_factor,
-                                      oversized ? method.oversize : 1, increment.time, rho);
+  auto linearised = detail::linearise(method, problem, previous, increment.state, increment.rho_factor, oversize,
+                                      increment.time, rho);
   if (!linearised.valid()) return false;
   auto lambda = detail::carried_multiplier(problem, increment.state.multiplier);
   std::vector<ContactField<Direction>> fields;
-  if (oversized)
+  if (oversized) {
     fields = linearised.solve(lambda);
-  else if (!detail::iterate(problem, linearised, rho, lambda, fields))
+    problem.record = {1, oversize, 0};
+  } else if (!detail::iterate(problem, linearised, rho, lambda, fields)) {
     return false;
+  }
   linearised.settle(fields, lambda);
   return true;
 }
 
 namespace detail {
 
-/// Records an equilibrium of the loop with rho times `oversize`.
+/// rho of the loop times `oversize`, on a tape that is rewound.
 template <class E>
-RecordedEquilibrium<E> record(const UzawaAL& method, AdjointProblem<E>& problem, const State<double>& previous,
-                              const State<double>& at, std::vector<double> factor, double oversize, double time,
-                              bool objectives) {
+RegularisationField<Reverse> recorded_regularisation(const UzawaAL& method, AdjointProblem<E>& problem,
+                                                     std::vector<double> factor, double oversize) {
   for (double& f : factor) f *= oversize;
   problem.tape.rewind(problem.slots_end);
-  return RecordedEquilibrium<E>(problem, previous, at,
-                                adapted(initial_regularisation(problem.recorded, method), factor),
-                                ConeRadius::augmented, time, false, objectives);
+  return adapted(initial_regularisation(problem.recorded, method), factor);
 }
 
 /// Moves the derivative by lambda on to the update before, again and again, until what is left of it is lost in
@@ -144,7 +219,8 @@ bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, 
     last = size;
     recorded.seed_traction(objective, left);
   }
-  problem.message = "the iterated adjoint did not settle in 20000 passes; try a larger scale, or oversized";
+  problem.status = Status::cap;
+  problem.message = "the adjoint did not settle in 20000 passes; try a larger scale, or the preconditioned scheme";
   return false;
 }
 
@@ -158,8 +234,9 @@ bool pull_back_sweeps(const UzawaAL& method, AdjointProblem<E>& problem, const S
   for (std::size_t k = increment.sweeps.size(); k-- > 0;) {
     const auto& sweep = increment.sweeps[k];
     const bool last = k + 1 == increment.sweeps.size();
-    auto recorded = record(method, problem, previous, sweep.state, sweep.rho_factor, 1, increment.time,
-                           last && increment.requested);
+    RecordedEquilibrium<E> recorded(problem, previous, sweep.state,
+                                    recorded_regularisation(method, problem, sweep.rho_factor, 1), cone_radius(method),
+                                    increment.time, false, last && increment.requested);
     if (!recorded.valid()) return false;
     for (int j = 0; j < objectives; ++j) {
       if (last)
@@ -184,30 +261,57 @@ bool pull_back_sweeps(const UzawaAL& method, AdjointProblem<E>& problem, const S
   return true;
 }
 
-}  // namespace detail
-
+/// The fixed point, or one pass, from an equilibrium recorded with a scheme's rho.
 template <class E>
-bool pull_back_increment(const UzawaAL& method, AdjointProblem<E>& problem, const State<double>& previous,
-                         const Increment<double>& increment) {
-  if (method.sensitivity == UzawaAL::Sensitivity::truncated)
-    return detail::pull_back_sweeps(method, problem, previous, increment);
-  const bool oversized = method.sensitivity == UzawaAL::Sensitivity::oversized;
-  auto recorded = detail::record(method, problem, previous, increment.state, increment.rho_factor,
-                                 oversized ? method.oversize : 1, increment.time, increment.requested);
+bool pull_back_fixed_point(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, bool once) {
   if (!recorded.valid()) return false;
   for (int j = 0; j < static_cast<int>(problem.objectives.size()); ++j) {
     recorded.seed_outcome(j);
     Vector<double> carried = Vector<double>::Zero(problem.model.multiplier_count);
-    if (oversized) {
+    if (once) {
       recorded.balance(j);
       carried = recorded.take_multiplier(j);
-    } else if (!detail::iterate_back(problem, recorded, j)) {
+    } else if (!iterate_back(problem, recorded, j)) {
       return false;
     }
     problem.objectives[j].history = recorded.finish(j);
     problem.objectives[j].history.traction = carried;
   }
   return true;
+}
+
+/// The fixed point with the factor of kappa_s rho, which is no function of the scene in it.
+template <class E>
+bool pull_back_preconditioned(const UzawaAL& method, AdjointProblem<E>& problem, const State<double>& previous,
+                              const Increment<double>& increment) {
+  const auto own = adapted(initial_regularisation(problem.slots, method), increment.rho_factor);
+  const double oversize = chosen_oversize(method, problem.slots, own, increment.contraction);
+  const auto rho = adapted(own, std::vector<double>(own.size(), oversize));
+  const State<double> at = restated(problem.model, increment.state, rho);
+  problem.tape.rewind(problem.slots_end);
+  RegularisationField<Reverse> fixed;
+  for (const auto& r : rho) fixed.push_back({Reverse(r.normal), Reverse(r.tangential)});
+  RecordedEquilibrium<E> recorded(problem, previous, at, fixed, cone_radius(method), increment.time, false,
+                                  increment.requested);
+  return pull_back_fixed_point(problem, recorded, false);
+}
+
+}  // namespace detail
+
+template <class E>
+bool pull_back_increment(const UzawaAL& method, AdjointProblem<E>& problem, const State<double>& previous,
+                         const Increment<double>& increment) {
+  using Sensitivity = UzawaAL::Sensitivity;
+  if (method.sensitivity == Sensitivity::truncated)
+    return detail::pull_back_sweeps(method, problem, previous, increment);
+  if (method.sensitivity == Sensitivity::preconditioned)
+    return detail::pull_back_preconditioned(method, problem, previous, increment);
+  const bool oversized = method.sensitivity == Sensitivity::oversized;
+  const double oversize = oversized ? method.oversize.value_or(UzawaAL::automatic_oversize) : 1;
+  RecordedEquilibrium<E> recorded(problem, previous, increment.state,
+                                  detail::recorded_regularisation(method, problem, increment.rho_factor, oversize),
+                                  cone_radius(method), increment.time, false, increment.requested);
+  return detail::pull_back_fixed_point(problem, recorded, oversized);
 }
 
 }  // namespace stickslip

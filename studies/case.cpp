@@ -92,6 +92,7 @@ std::vector<StepResult> gather_steps(const CaseResult& result) {
     step.margins = margins(model, slots, increment.state);
     step.responses = evaluate_responses(model, slots, increment.state, increment.time);
     if (n < result.gradients.of.size()) step.sensitivities = result.gradients.of[n];
+    if (n < result.gradients.records.size()) step.scheme = result.gradients.records[n];
     take_sides(result, n, step);
     steps.push_back(std::move(step));
     step = {};
@@ -215,6 +216,12 @@ json cost_json(const CaseResult& result) {
           {"condition_estimate", finite(result.condition_estimate)}};
 }
 
+json scheme_json(const SchemeRecord& record) {
+  json out = {{"passes", record.passes}, {"oversize", record.oversize}};
+  if (record.contraction > 0) out["contraction"] = finite(record.contraction);
+  return out;
+}
+
 json steps_json(const CaseResult& result) {
   const auto& scene = result.problem->model.scene;
   json steps = json::array();
@@ -249,6 +256,7 @@ json steps_json(const CaseResult& result) {
       if (!step.differentiable) entry["one_sided"] = one_sided_json(step, scene);
     }
     if (step.increment->contraction > 0) entry["contraction"] = step.increment->contraction;
+    if (step.scheme) entry["sensitivity_scheme"] = scheme_json(*step.scheme);
     if (!step.increment->message.empty()) entry["message"] = step.increment->message;
     steps.push_back(std::move(entry));
   }

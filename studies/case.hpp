@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,9 +29,10 @@ struct StepResult {
   KktError kkt;
   Margins margins;
   Vector<double> responses;
-  Matrix<double> sensitivities;      ///< responses x parameters; empty where there are none
-  bool differentiable = true;        ///< both one-sided derivatives agree
-  Matrix<double> backward, forward;  ///< one-sided sensitivities, where they are known; else empty
+  std::optional<SchemeRecord> scheme;  ///< of the increment; only where the scheme iterates
+  Matrix<double> sensitivities;        ///< responses x parameters; empty where there are none
+  bool differentiable = true;          ///< both one-sided derivatives agree
+  Matrix<double> backward, forward;    ///< one-sided sensitivities, where they are known; else empty
 };
 
 struct CaseResult {

@@ -14,15 +14,11 @@ using nlohmann::json;
 constexpr Rule below_one{"a number > 0 and < 1", [](double x) { return x > 0 && x < 1; }};
 constexpr Rule above_one{"a number > 1", [](double x) { return x > 1; }};
 
-/// Values of an enumeration by name; `later`: names of the format that this version does not have.
+/// Values of an enumeration by name.
 template <class E>
 struct Words {
   std::vector<std::pair<std::string, E>> values;
-  std::vector<std::string> later = {};
 };
-/// For options with one value so far.
-enum class Only { one };
-
 // One list of options a method; it serves reading, writing and the names in messages. A number with a slot is a
 // Number, one that only steers the iteration a double.
 
@@ -42,18 +38,22 @@ void visit_options(Penalty& method, Visitor&& visit) {
 
 template <class Visitor>
 void visit_options(UzawaAL& method, Visitor&& visit) {
+  using Acceleration = UzawaAL::Acceleration;
+  using Cone = UzawaAL::Cone;
   using Sensitivity = UzawaAL::Sensitivity;
-  Only none = Only::one, augmented = Only::one;
   visit("scale", method.scale);
   visit("tolerance", method.tolerance, below_one);
   visit("max_augmentations", method.max_augmentations);
   visit("adapt", method.adapt);
-  visit("acceleration", none, Words<Only>{{{"none", Only::one}}, {"aitken", "anderson"}});
-  visit("cone", augmented, Words<Only>{{{"augmented", Only::one}}, {"frozen"}});
+  visit("acceleration", method.acceleration,
+        Words<Acceleration>{
+            {{"none", Acceleration::none}, {"aitken", Acceleration::aitken}, {"anderson", Acceleration::anderson}}});
+  visit("cone", method.cone, Words<Cone>{{{"augmented", Cone::augmented}, {"frozen", Cone::frozen}}});
   visit("sensitivity", method.sensitivity,
         Words<Sensitivity>{{{"iterated", Sensitivity::iterated},
                             {"truncated", Sensitivity::truncated},
-                            {"oversized", Sensitivity::oversized}}});
+                            {"oversized", Sensitivity::oversized},
+                            {"preconditioned", Sensitivity::preconditioned}}});
   visit("oversize", method.oversize, above_one);
   visit("newton", method.newton);
 }
@@ -108,6 +108,14 @@ struct Reader {
   void operator()(const char* name, double& option, const Rule& rule) {
     if (const auto given = node.find(name)) option = reading.setting(*given, rule).value_or(option);
   }
+  void operator()(const char* name, std::optional<double>& option, const Rule& rule) {
+    const auto given = node.find(name);
+    if (!given || given->value() == "auto") return;
+    if (given->value().is_number())
+      option = reading.setting(*given, rule);
+    else
+      given->must_be("\"auto\" or " + std::string(rule.text));
+  }
   void operator()(const char* name, int& option) {
     if (const auto given = node.find(name)) option = reading.count(*given, 1).value_or(option);
   }
@@ -120,7 +128,7 @@ struct Reader {
     if (!given) return;
     std::vector<std::string> allowed;
     for (const auto& [word, unused] : words.values) allowed.push_back(word);
-    const auto choice = given->choice(allowed, words.later);
+    const auto choice = given->choice(allowed);
     for (const auto& [word, value] : words.values)
       if (word == choice) option = value;
   }
@@ -149,6 +157,9 @@ struct Writer {
   }
   void operator()(const char* name, const Number& option) { object[name] = option.value; }
   void operator()(const char* name, double option, const Rule&) { object[name] = option; }
+  void operator()(const char* name, const std::optional<double>& option, const Rule&) {
+    object[name] = option ? json(*option) : json("auto");
+  }
   void operator()(const char* name, int option) { object[name] = option; }
   void operator()(const char* name, bool option) { object[name] = option; }
   template <class E>
@@ -188,6 +199,12 @@ struct Describer {
     json schema{{"type", "number"}, {"description", rule.text}, {"exclusiveMinimum", rule.holds(0.5) ? 0 : 1}};
     if (!rule.holds(1.5)) schema["exclusiveMaximum"] = 1;
     add(name, schema, option);
+  }
+  void operator()(const char* name, const std::optional<double>& option, const Rule& rule) {
+    json own = json::object();
+    Describer{own, OptionLists::refused}(name, option.value_or(2), rule);
+    own[name].erase("default");
+    add(name, {{"anyOf", {{{"const", "auto"}}, own[name]}}}, option ? json(*option) : json("auto"));
   }
   void operator()(const char* name, int option) { add(name, {{"type", "integer"}, {"minimum", 1}}, option); }
   void operator()(const char* name, bool option) { add(name, {{"type", "boolean"}}, option); }
@@ -257,6 +274,9 @@ std::optional<Method> read_method(const JsonNode& node, SceneReading& reading) {
       [&, &name = name, &options = options]<class M>(M& chosen) {
         check_option_names(options, name, option_names<M>());
         visit_options(chosen, Reader{options, reading});
+        if (reading.diagnostics.error_count() > faults) return;
+        if (const auto [option, reason] = conflict(chosen); !option.empty())
+          options.find(std::string(option))->error(std::string(reason));
       },
       method);
   if (reading.diagnostics.error_count() > faults) return std::nullopt;

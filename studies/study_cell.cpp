@@ -48,16 +48,16 @@ void fill_in(json& errors, const json& more) {
     if (!errors.contains(name)) errors[name] = error;
 }
 
-/// The last step without its bulk.
+/// The steps without their bulk.
 json brief(const json& steps) {
   json out = json::array();
-  for (const auto& step : steps)
-    out.push_back({{"time", step["time"]},
-                   {"status", step["status"]},
-                   {"newton", step["newton"]},
-                   {"augmentations", step["augmentations"]},
-                   {"cutbacks", step["cutbacks"]},
-                   {"history", step["history"]}});
+  for (const auto& step : steps) {
+    json kept = json::object();
+    for (const char* name :
+         {"time", "status", "newton", "augmentations", "cutbacks", "history", "contraction", "sensitivity_scheme"})
+      if (step.contains(name)) kept[name] = step[name];
+    out.push_back(std::move(kept));
+  }
   return out;
 }
 

@@ -70,8 +70,8 @@ bool same_tangents(const std::vector<PointTangent<T>>& a, const std::vector<Poin
 template <class T>
 class SparseEngine {
  public:
-  /// `unknown_multipliers`: the monolithic method's layout, [free dofs; multipliers].
-  SparseEngine(const Model& model, const Slots<T>& slots, bool unknown_multipliers, Backend backend);
+  /// `unknown_multipliers`: the monolithic method's layout, [free dofs; multipliers]. `cone`: of all its systems.
+  SparseEngine(const Model& model, const Slots<T>& slots, bool unknown_multipliers, ConeRadius cone, Backend backend);
 
   Vector<T> begin(double time, const Vector<T>& displacement);  ///< all dofs, prescribed values at `time` set
   Vector<T> compact(const Vector<T>& u) const {
@@ -106,6 +106,7 @@ class SparseEngine {
   const Model& model_;
   const Slots<T>& slots_;
   bool unknown_multipliers_;
+  Symmetry symmetry_;
   int size_;
   Vector<T> external_;  ///< in the frames
   std::shared_ptr<Pattern> pattern_;
@@ -150,7 +151,7 @@ class Condensation {
 template <class T>
 class CondensedEngine {
  public:
-  CondensedEngine(const Model& model, const Slots<T>& slots, bool unknown_multipliers,
+  CondensedEngine(const Model& model, const Slots<T>& slots, bool unknown_multipliers, ConeRadius cone,
                   std::shared_ptr<Condensation<T>> condensation);
 
   Vector<T> begin(double time, const Vector<T>& displacement);

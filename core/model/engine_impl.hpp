@@ -100,8 +100,11 @@ void for_each_framed_tangent(const Model& model, const Slots<T>& slots, int b, S
   });
 }
 
-inline Symmetry symmetry_of(const Model& model, bool unknown_multipliers) {
-  if (model.effects.friction) return Symmetry::general;
+/// Slip couples the normal into the tangential rows, not the other way round; with the radius of the cone fixed while
+/// the system is solved (that of known multipliers) nothing couples them.
+inline Symmetry symmetry_of(const Model& model, bool unknown_multipliers, ConeRadius cone) {
+  const bool fixed_radius = cone == ConeRadius::multiplier && !unknown_multipliers;
+  if (model.effects.friction && !fixed_radius) return Symmetry::general;
   return unknown_multipliers ? Symmetry::indefinite : Symmetry::positive_definite;
 }
 
@@ -110,10 +113,12 @@ inline Symmetry symmetry_of(const Model& model, bool unknown_multipliers) {
 // --- SparseEngine ----------------------------------------------------------------------------------------------------
 
 template <class T>
-SparseEngine<T>::SparseEngine(const Model& model, const Slots<T>& slots, bool unknown_multipliers, Backend backend)
+SparseEngine<T>::SparseEngine(const Model& model, const Slots<T>& slots, bool unknown_multipliers, ConeRadius cone,
+                              Backend backend)
     : model_(model),
       slots_(slots),
       unknown_multipliers_(unknown_multipliers),
+      symmetry_(detail::symmetry_of(model, unknown_multipliers, cone)),
       size_(static_cast<int>(model.free_dofs.size()) + (unknown_multipliers ? model.multiplier_count : 0)),
       solver_(backend) {
   auto lists = detail::element_row_lists<T>(model);
@@ -186,7 +191,7 @@ bool SparseEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents, Co
   }
   ++counters.assemblies;
   if (!analysed_) {
-    solver_.analyse(pattern_, detail::symmetry_of(model_, unknown_multipliers_));
+    solver_.analyse(pattern_, symmetry_);
     ++counters.analyses;
     analysed_ = true;
   }
@@ -321,12 +326,12 @@ Matrix<T> Condensation<T>::expand(const Matrix<T>& compact, const Matrix<T>& row
 
 template <class T>
 CondensedEngine<T>::CondensedEngine(const Model& model, const Slots<T>& slots, bool unknown_multipliers,
-                                    std::shared_ptr<Condensation<T>> condensation)
+                                    ConeRadius cone, std::shared_ptr<Condensation<T>> condensation)
     : model_(model),
       slots_(slots),
       unknown_multipliers_(unknown_multipliers),
       condensation_(std::move(condensation)),
-      symmetric_(detail::symmetry_of(model, unknown_multipliers) == Symmetry::positive_definite) {
+      symmetric_(detail::symmetry_of(model, unknown_multipliers, cone) == Symmetry::positive_definite) {
   const int D = model.dimension;
   for (int node : model.contact_nodes)
     for (int i = 0; i < D; ++i) {

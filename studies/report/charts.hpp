@@ -68,7 +68,8 @@ std::optional<Figure> mesh_convergence(const Study& study);
 /// `knobs` share the axis.
 std::optional<Figure> error_against_knob(const Study& study, const std::vector<std::string>& knobs);
 
-/// Newton iterations and augmentations of a whole run against the same knob; failed runs are crosses.
+/// Newton iterations, augmentations and back-solves for derivatives of a whole run against the same knob; failed runs
+/// are crosses.
 std::optional<Figure> iterations_against_knob(const Study& study, const std::vector<std::string>& knobs);
 
 /// Residual per iteration of the step that took most iterations (of a failed run, the last), main variant.

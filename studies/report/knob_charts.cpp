@@ -159,31 +159,37 @@ std::optional<Figure> error_against_knob(const Study& study, const std::vector<s
   return figure;
 }
 
+/// Panels of iterations_against_knob, each with the count it shows.
+const std::pair<std::string, std::string> counted_along_knobs[] = {
+    {"Newton iterations", "newton"},
+    {"augmentations", "augmentations"},
+    {"back-solves for derivatives", "sensitivity_backsolves"}};
+
 std::optional<Figure> iterations_against_knob(const Study& study, const std::vector<std::string>& knobs) {
   Figure figure;
   SeriesList series(study);
   figure.id = slug("iterations-" + knobs.front());
   figure.title = "Iterations against " + knob_title(knobs);
   figure.text = "Totals of the whole run. Crosses are runs that did not converge, at what they had spent by then.";
-  figure.table.header = {"method",        "scene",    "option", "value", "Newton iterations",
-                         "augmentations", "cutbacks", "status"};
+  figure.table.header = {
+      "method",   "scene", "option", "value", "Newton iterations", "augmentations", "back-solves for derivatives",
+      "cutbacks", "status"};
   rows_along(study, knobs, series, [&](json r, const Cell& cell) {
-    for (const auto& [panel, count] :
-         {std::pair{"Newton iterations", "newton"}, std::pair{"augmentations", "augmentations"}})
+    for (const auto& [panel, count] : counted_along_knobs)
       if (cell.count(count) > 0) {
         r["panel"] = panel;
         r["shown"] = cell.count(count);
         figure.rows.push_back(r);
       }
-    figure.table.rows.push_back({cell.label, cell.variant, r.value("knob_name", "none"),
-                                 r.contains("knob_name") ? number(r["knob"], 6) : "", number(cell.count("newton"), 9),
-                                 number(cell.count("augmentations"), 9), number(cell.count("cutbacks"), 9),
-                                 cell.status});
+    figure.table.rows.push_back(
+        {cell.label, cell.variant, r.value("knob_name", "none"), r.contains("knob_name") ? number(r["knob"], 6) : "",
+         number(cell.count("newton"), 9), number(cell.count("augmentations"), 9),
+         number(cell.count("sensitivity_backsolves"), 9), number(cell.count("cutbacks"), 9), cell.status});
   });
   if (figure.rows.empty()) return std::nullopt;
   figure.series = series.list;
   const json tips = tooltip({{"label", "method"}, {"knob", "option"}, {"shown", "iterations"}, {"status", "status"}});
-  for (const std::string panel : {"Newton iterations", "augmentations"}) {
+  for (const auto& [panel, unused] : counted_along_knobs) {
     if (distinct(figure.rows, "label", panel).empty()) continue;
     json spec = curves(figure.title + ", " + panel, channel("knob", knob_title(knobs), true),
                        channel("shown", panel, true), tips);

@@ -71,7 +71,7 @@ void expect_agreement(const Scene& scene, const Method& method,
 }
 
 std::vector<Scene> all_scenes() {
-  auto scenes = scenes::of_every_kind();
+  auto scenes = scenes::all();
   for (auto& scene : scenes::of_every_element()) scenes.push_back(std::move(scene));
   for (auto& scene : scenes) scene = with_objectives(std::move(scene));
   return scenes;
@@ -108,6 +108,20 @@ TEST(Adjoint, EqualsDirectForTheTruncatedLoopOfUzawa) {
 
 TEST(Adjoint, EqualsDirectForTheOversizedScheme) {
   for (const auto& scene : all_scenes()) expect_agreement(scene, uzawa(UzawaAL::Sensitivity::oversized, 1e-13, 5000));
+}
+
+TEST(Adjoint, EqualsDirectForThePreconditionedScheme) {
+  for (const auto& scene : all_scenes())
+    expect_agreement(scene, uzawa(UzawaAL::Sensitivity::preconditioned, 1e-13, 5000));
+}
+
+TEST(Adjoint, EqualsDirectForAFrozenConeAndForAcceleratedUpdates) {
+  UzawaAL frozen = uzawa(UzawaAL::Sensitivity::iterated, 1e-13, 5000), anderson = frozen;
+  frozen.cone = UzawaAL::Cone::frozen;
+  anderson.acceleration = UzawaAL::Acceleration::anderson;
+  for (const auto& scene :
+       {scenes::greco_plate(8, 0.2), scenes::two_boxes(6, 9), scenes::shaped_boxes(5, 4, "Q4", false)})
+    for (const auto& method : {frozen, anderson}) expect_agreement(with_objectives(scene), method);
 }
 
 TEST(Adjoint, EqualsDirectInBothEnginesAndForTheOtherCone) {

@@ -42,7 +42,7 @@ double worst_error(const Scene& scene, const Method& method) {
 }
 
 TEST(Oracle, MonolithicSchemeIsExact) {
-  for (const auto& scene : scenes::of_every_kind()) EXPECT_LE(worst_error(scene, MonolithicAL{}), 1);
+  for (const auto& scene : scenes::all()) EXPECT_LE(worst_error(scene, MonolithicAL{}), 1);
 }
 
 TEST(Oracle, EverySchemeIsExactForEveryElementAndSpace) {
@@ -63,7 +63,7 @@ TEST(Oracle, MonolithicSchemeIsExactForTheOtherCone) {
 }
 
 TEST(Oracle, PenaltySchemeIsExactForThePenalisedProblem) {
-  for (const auto& scene : scenes::of_every_kind())
+  for (const auto& scene : scenes::all())
     for (double stiffness : {10.0, 1e3}) {
       Penalty method{scenes::relative(stiffness)};
       method.tangential_ratio = 0.4;
@@ -72,7 +72,7 @@ TEST(Oracle, PenaltySchemeIsExactForThePenalisedProblem) {
 }
 
 TEST(Oracle, TruncatedUzawaSchemeIsTheDerivativeOfTheTruncatedLoop) {
-  for (const auto& scene : scenes::of_every_kind())
+  for (const auto& scene : scenes::all())
     for (int cap : {1, 3}) {
       UzawaAL method;
       method.sensitivity = UzawaAL::Sensitivity::truncated;
@@ -85,7 +85,7 @@ TEST(Oracle, IteratedUzawaSchemeIsTheDerivativeOfTheConvergedSolution) {
   UzawaAL method;
   method.tolerance = 1e-13;
   method.max_augmentations = 5000;
-  for (const auto& scene : scenes::of_every_kind()) EXPECT_LE(worst_error(scene, method), 1);
+  for (const auto& scene : scenes::all()) EXPECT_LE(worst_error(scene, method), 1);
 }
 
 TEST(Oracle, AutomaticAndRelativeStiffnessCarryTheirDependenceOnTheScene) {
@@ -112,6 +112,105 @@ TEST(Oracle, OversizedSchemeErrorFallsWithItsFactor) {
       EXPECT_NEAR(std::log10(before / error), 1, 0.1) << kappa;
     }
     before = error;
+  }
+}
+
+UzawaAL uzawa(double multiple, UzawaAL::Sensitivity sensitivity,
+              UzawaAL::Acceleration acceleration = UzawaAL::Acceleration::none) {
+  UzawaAL method;
+  method.scale = scenes::relative(multiple);
+  method.adapt = false;
+  method.tolerance = 1e-12;
+  method.max_augmentations = 20000;
+  method.sensitivity = sensitivity;
+  method.acceleration = acceleration;
+  return method;
+}
+
+TEST(Oracle, DerivativesOfAcceleratedUpdatesAreThoseOfTheSolution) {
+  using Sensitivity = UzawaAL::Sensitivity;
+  for (const auto& scene : scenes::all())
+    for (auto acceleration : {UzawaAL::Acceleration::aitken, UzawaAL::Acceleration::anderson})
+      for (auto sensitivity : {Sensitivity::iterated, Sensitivity::preconditioned})
+        // of the oracle the derivative follows by plain updates once the solution is there, so the scale is not small
+        EXPECT_LE(worst_error(scene, uzawa(3, sensitivity, acceleration)), 1);
+}
+
+/// Largest contraction of the updates, largest passes of the scheme, largest error against the monolithic derivatives.
+struct Preconditioned {
+  double contraction = 0, error = 0;
+  int passes = 0;
+};
+
+Preconditioned preconditioned(const Scene& scene, const scenes::Solved& exact, double multiple) {
+  const auto s = run(scene, uzawa(multiple, UzawaAL::Sensitivity::preconditioned, UzawaAL::Acceleration::anderson));
+  Preconditioned out;
+  const auto increments = static_cast<long>(s.trajectory.increments.size());
+  EXPECT_EQ(s.gradients.of.size(), exact.gradients.of.size());
+  EXPECT_LE(s.gradients.counters.sensitivity_factorizations, increments);
+  long passes = 0;
+  for (long n = 0; n < increments; ++n) {
+    out.contraction = std::max(out.contraction, s.trajectory.increments[n].contraction);
+    out.passes = std::max(out.passes, s.gradients.records[n].passes);
+    passes += s.gradients.records[n].passes;
+  }
+  EXPECT_EQ(s.gradients.counters.sensitivity_backsolves, passes * static_cast<long>(scene.parameters.size()));
+  for (std::size_t i = 0; i < scene.responses.size(); ++i)
+    for (std::size_t j = 0; j < scene.parameters.size(); ++j) {
+      double scale = 0, error = 0;
+      for (std::size_t n = 0; n < exact.gradients.of.size(); ++n) {
+        const double response = exact.value(scene.responses[i].name, static_cast<int>(n));
+        scale =
+            std::max({scale, std::abs(exact.gradients.of[n](i, j)), std::abs(response / scene.parameters[j].value)});
+        error = std::max(error, std::abs(s.gradients.of[n](i, j) - exact.gradients.of[n](i, j)));
+      }
+      if (scale > 0) out.error = std::max(out.error, error / scale);
+    }
+  return out;
+}
+
+TEST(Oracle, PreconditionedSchemeTakesAtMostSixBacksolvesAParameterWhateverTheContraction) {
+  double least = 1, most = 0;
+  for (const auto& scene : scenes::all()) {
+    const auto exact = run(scene, MonolithicAL{});
+    for (double multiple : {0.01, 0.1, 1.0, 10.0}) {
+      const auto result = preconditioned(scene, exact, multiple);
+      EXPECT_LE(result.passes, 6) << multiple;
+      // rounding, or the 1e-12 of the solution that is differentiated, which a path of 24 increments adds up
+      EXPECT_LE(result.error, std::max(1e-10, 50 * 1.1e-16 * exact.condition)) << multiple;
+      least = std::min(least, result.contraction);
+      most = std::max(most, result.contraction);
+    }
+  }
+  EXPECT_LE(least, 0.12);
+  EXPECT_GE(most, 0.98);
+}
+
+TEST(Oracle, PreconditionedSchemeTakesAnyOversizeAndMoreOfItTakesFewerPasses) {
+  const auto scene = scenes::greco_plate(8);
+  int before = 100;
+  for (double oversize : {10.0, 1e2, 1e3, 1e5}) {
+    auto method = uzawa(0.1, UzawaAL::Sensitivity::preconditioned);
+    method.oversize = oversize;
+    EXPECT_LE(worst_error(scene, method), 1);
+    const auto s = run(scene, method);
+    EXPECT_EQ(s.gradients.records.back().oversize, oversize);
+    EXPECT_LT(s.gradients.records.back().passes, before);
+    before = s.gradients.records.back().passes;
+  }
+}
+
+TEST(Oracle, FrozenConeHasTheDerivativesOfItsOwnMap) {
+  for (const auto& scene : {scenes::wedge(1), scenes::slider({{0, 0}, {1, 0.1}, {2, -0.1}, {3, 0.04}}, 9),
+                            scenes::two_boxes(6, 9), scenes::greco_plate(8, 0.3)}) {
+    auto method = uzawa(10, UzawaAL::Sensitivity::iterated);
+    method.cone = UzawaAL::Cone::frozen;
+    EXPECT_LE(worst_error(scene, method), 1);
+    method.sensitivity = UzawaAL::Sensitivity::truncated;
+    for (int cap : {2, 4}) {
+      method.max_augmentations = cap;
+      EXPECT_LE(worst_error(scene, method), 1) << cap;
+    }
   }
 }
 

@@ -276,6 +276,9 @@ TEST(SceneReader, WritesTheOptionsOfAMethodSoThatTheyReadTheSame) {
   for (const std::string text :
        {R"({"penalty": {"stiffness": {"absolute": 2400.5}, "tangential_ratio": 0.3, "newton": {"max_iterations": 3}}})",
         R"({"uzawa_al": {"scale": 0.1, "sensitivity": "truncated", "adapt": false, "tolerance": 1e-05}})",
+        R"({"uzawa_al": {"acceleration": "anderson", "sensitivity": "preconditioned", "oversize": 30.5}})",
+        R"({"uzawa_al": {"acceleration": "aitken", "sensitivity": "iterated", "oversize": "auto"}})",
+        R"({"uzawa_al": {"cone": "frozen", "sensitivity": "truncated"}})",
         R"({"monolithic_al": {"cone": "multiplier", "newton": {"line_search": false}}})"}) {
     const auto written = to_json(valid(edited(block_scene, R"({"monolithic_al": {"scale": 2}})", text)).method);
     const auto flat = written.flatten(), given = nlohmann::json::parse(text).flatten();
@@ -801,8 +804,19 @@ std::vector<Broken> broken_methods() {
        "/method/monolithic_al/scale/absolute", "must be a number > 0"},
       {"unknown_cone", b, R"("scale": 2)", R"("cone": @"frozen")", "/method/monolithic_al/cone",
        "allowed: augmented, multiplier"},
-      {"acceleration", b, method, R"({"uzawa_al": {"acceleration": @"aitken"}})", "/method/uzawa_al/acceleration",
-       "is not available in this version; allowed: none"},
+      {"acceleration", b, method, R"({"uzawa_al": {"acceleration": @"atken"}})", "/method/uzawa_al/acceleration",
+       R"(did you mean "aitken"? allowed: none, aitken, anderson)"},
+      {"truncated_and_accelerated", b, method,
+       R"({"uzawa_al": {"acceleration": "anderson", "sensitivity": @"truncated"}})", "/method/uzawa_al/sensitivity",
+       "the weights of an acceleration are not differentiated; allowed with it: iterated, oversized, preconditioned"},
+      {"frozen_and_oversized", b, method, R"({"uzawa_al": {"sensitivity": @"oversized", "cone": "frozen"}})",
+       "/method/uzawa_al/sensitivity", "leaves the error of a frozen cone as it is"},
+      {"frozen_and_preconditioned", b, method, R"({"uzawa_al": {"sensitivity": @"preconditioned", "cone": "frozen"}})",
+       "/method/uzawa_al/sensitivity", "allowed with it: iterated, truncated"},
+      {"oversize_of_one", b, method, R"({"uzawa_al": {"oversize": @1}})", "/method/uzawa_al/oversize",
+       "must be a number > 1"},
+      {"oversize_text", b, method, R"({"uzawa_al": {"oversize": @"large"}})", "/method/uzawa_al/oversize",
+       R"(must be "auto" or a number > 1)"},
       {"tolerance_of_one", b, method, R"({"uzawa_al": {"tolerance": @1}})", "/method/uzawa_al/tolerance",
        "must be a number > 0 and < 1"},
       {"newton_of_none", b, R"("scale": 2)", R"("newton": {"max_iterations": @0})",

@@ -361,9 +361,24 @@ inline Scene fitted_rings(const std::string& element) {
   return s;
 }
 
-/// Lumped points, bars, plates, boxes, disks: obstacles and deformable masters, nodes and segments, with and without
-/// friction, through reversals.
-inline std::vector<Scene> of_every_kind() {
+/// A point on a spring whose tangential and normal parts are coupled, pushed along a rough floor: the further it slips,
+/// the harder it is pressed, by 1/s of the tangential force, s = k / coupling.
+inline Scene wedge(double mu, double push = 100, double press = 10, double k = 100, double coupling = 50) {
+  Scene s;
+  s.legs = {{1, 1}};
+  const Number friction = parameter(s, "mu", mu), load = parameter(s, "push", push), stiffness = parameter(s, "k", k);
+  s.bodies = {{"point", PointMesh{{0.0, 0.0}}, GroundedSpring{{{stiffness, coupling}, {coupling, k}}}, "", 1.0}};
+  s.obstacles = {{"floor", Plane{{0.0, 0.0}, {0.0, 1.0}}, {}}};
+  s.contacts = {contact("sole", "point.node", "floor")};
+  s.contacts[0].friction = friction;
+  s.loads = {force("point.node", {load, -press})};
+  s.responses = {response("u", Response::Kind::displacement, "point.node", "x"),
+                 response("press", Response::Kind::contact_force, "sole", "normal")};
+  return s;
+}
+
+/// Scenes of all kinds: open, stick and slip, one step and a path, the plane and space, conforming meshes and others.
+inline std::vector<Scene> all() {
   return {stop(),
           slider({{0, 0}, {1, 0.1}, {2, -0.1}, {3, 0.04}}, 9),
           dragged_point({{0, 0, 0}, {1, 0, -0.6}, {2, 0.7, -0.6}, {3, 0.2, 0.9}}, 24, 0.3),

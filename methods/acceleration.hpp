@@ -1,0 +1,137 @@
+/// Acceleration of a fixed point iteration x <- f(x) from the values it has produced, and its contraction.
+///
+///   r = f(x) - x
+///   Aitken     x <- x + w r,  w <- -w r_last . (r - r_last) / |r - r_last|^2, kept in [0.1, 10]
+///   Anderson   x <- f(x) - sum gamma_i (f_i+1 - f_i),  gamma: least squares of r - sum gamma_i (r_i+1 - r_i)  over the
+///              last m = 5 differences; QR, the oldest dropped while the condition of the scaled columns is above 1e8
+///
+/// Weights are numbers of the iteration, not of the scene: they are formed from the primal parts and not
+/// differentiated, which the fixed point does not notice. An extrapolated x is on trial: where its residual is not
+/// below 0.9 of the last one, the plain step from there is taken in its place, which has cost one evaluation. Two of
+/// these are free; more must have been earned, one each by an extrapolation worth two plain steps, so that an iteration
+/// is never much worse than plain. [IT69], [WN11]
+#pragma once
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <optional>
+#include <vector>
+
+#include "core/algebra/scalar.hpp"
+#include "methods/options.hpp"
+
+namespace stickslip {
+
+/// Differences of two arguments of one map, and of their images.
+struct Secant {
+  Vector<double> argument, image;
+};
+
+/// Contraction of a linear map A out of some of its secants: its spectral radius on the space of their arguments
+/// (Arnoldi, where they are successive). Directions that are new by less than 2 %, of which rounding may be part, are
+/// left out of it; what is left at least is the ratio of the lengths of the last. pre: no argument is zero.
+inline double contraction(const std::vector<Secant>& secants) {
+  const Secant& last = secants.back();
+  const auto m = static_cast<Eigen::Index>(secants.size());
+  Matrix<double> space(last.argument.size(), m), image(last.argument.size(), m);
+  for (Eigen::Index j = 0; j < m; ++j) {
+    const double length = secants[j].argument.norm();
+    space.col(j) = secants[j].argument / length;
+    image.col(j) = secants[j].image / length;
+  }
+  Eigen::ColPivHouseholderQR<Matrix<double>> qr;
+  qr.setThreshold(0.02);
+  qr.compute(space);
+  const Eigen::Index rank = qr.rank();
+  if (rank < 2) return last.image.norm() / last.argument.norm();
+  const Matrix<double> turned = qr.householderQ().adjoint() * (image * qr.colsPermutation());
+  const Matrix<double> R = qr.matrixQR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>();
+  const Matrix<double> A = R.transpose().partialPivLu().solve(turned.topLeftCorner(rank, rank).transpose());
+  return A.eigenvalues().cwiseAbs().maxCoeff();  // of A transposed, which has the same
+}
+
+/// What the next argument of an accelerated iteration is made from: the last evaluations of one map.
+template <class T>
+class Accelerator {
+ public:
+  explicit Accelerator(UzawaAL::Acceleration kind) : kind_(kind) {}
+
+  /// The next x after f(x) = image. `same_map`: f is what it was at the last call (otherwise the past is forgotten).
+  /// `contraction` of the plain iteration as known so far (0: unknown). `admissible(x)` puts an extrapolated x back
+  /// into the set that images lie in.
+  template <class Admissible>
+  Vector<T> next(const Vector<T>& x, const Vector<T>& image, bool same_map, double contraction,
+                 Admissible&& admissible) {
+    if (kind_ == UzawaAL::Acceleration::none) return image;
+    const double residual = values(image - x).norm();
+    const double allowed = contraction < 1 ? std::max(0.9, contraction) : 0.9;
+    if (on_trial_ && !(residual < allowed * last_residual_)) {
+      on_trial_ = false;
+      past_.clear();
+      --credit_;
+      return plain_;
+    }
+    if (on_trial_ && residual < contraction * contraction * last_residual_) ++credit_;
+    if (!same_map) past_.clear();
+    past_.push_back({x, image});
+    if (past_.size() > kept + 1) past_.erase(past_.begin());
+    last_residual_ = residual;
+    plain_ = image;
+    on_trial_ = past_.size() > 1 && credit_ > 0 && residual > 0;
+    if (past_.size() == 1) weight_ = 1;
+    if (!on_trial_) return image;
+    return admissible(kind_ == UzawaAL::Acceleration::aitken ? aitken() : anderson());
+  }
+
+ private:
+  static constexpr std::size_t kept = 5;
+  struct Evaluation {
+    Vector<T> x, image;
+    Vector<double> residual() const { return values(image - x); }
+  };
+
+  Vector<T> aitken() {
+    const auto &now = past_[past_.size() - 1], &last = past_[past_.size() - 2];
+    const Vector<double> before = last.residual(), change = now.residual() - before;
+    if (change.squaredNorm() > 0) weight_ *= -before.dot(change) / change.squaredNorm();
+    weight_ = std::min(std::max(weight_, 0.1), 10.0);
+    return now.x + T(weight_) * (now.image - now.x);
+  }
+
+  Vector<T> anderson() {
+    const Vector<double> residual = past_.back().residual();
+    Matrix<double> columns(residual.size(), past_.size() - 1);
+    Vector<double> lengths(columns.cols());
+    for (Eigen::Index i = 0; i < columns.cols(); ++i) {
+      columns.col(i) = past_[i + 1].residual() - past_[i].residual();
+      lengths[i] = columns.col(i).norm();
+      if (lengths[i] > 0) columns.col(i) /= lengths[i];
+    }
+    Vector<T> x = past_.back().image;
+    for (Eigen::Index dropped = 0; dropped < columns.cols(); ++dropped) {
+      const Matrix<double> used = columns.rightCols(columns.cols() - dropped);
+      const Eigen::HouseholderQR<Matrix<double>> qr(used);
+      const Eigen::Index rank = std::min(used.rows(), used.cols());
+      const Matrix<double> R = qr.matrixQR().topRows(rank).template triangularView<Eigen::Upper>();
+      const auto singular = Eigen::JacobiSVD<Matrix<double>>(R).singularValues();
+      if (rank < used.cols() || singular[0] > 1e8 * singular[rank - 1]) continue;
+      const Vector<double> gamma = qr.solve(residual);
+      for (Eigen::Index i = 0; i < used.cols(); ++i) {
+        const Eigen::Index j = dropped + i;
+        x -= T(gamma[i] / lengths[j]) * (past_[j + 1].image - past_[j].image);
+      }
+      break;
+    }
+    return x;
+  }
+
+  UzawaAL::Acceleration kind_;
+  std::vector<Evaluation> past_;
+  Vector<T> plain_;  ///< image of the last x that was not refused
+  double last_residual_ = 0, weight_ = 1;
+  bool on_trial_ = false;
+  int credit_ = 2;
+};
+
+}  // namespace stickslip

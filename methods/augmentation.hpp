@@ -1,0 +1,175 @@
+/// What the augmentations of one increment tell of themselves: how far they are from their fixed point, how fast they
+/// get there, and whether they ever will.
+///
+///   contraction   of the map lambda -> t(u(lambda), lambda), from differences of its values in the same contact
+///   states,
+///                 as far as they are above rounding
+///   error left    q / (1 - q) times the last update, the rest of its geometric series
+///   two-cycle     three updates in a row undo each other, but for 1e-6
+///   infeasible    a constraint that does not yield: its multiplier grows by enough to close a gap of 1e-8 of the
+///                 displacements through the local stiffness k, and the gap moves by less than 1e-6 of that, three
+///                 times in a row. Against a body of stiffness k it would move by about the whole, whatever rho is
+#pragma once
+
+#include <cstdio>
+#include <string>
+
+#include "methods/acceleration.hpp"
+#include "methods/increment.hpp"
+
+namespace stickslip {
+
+namespace detail {
+
+/// Largest derivative that rides on the entries: the imaginary part of the oracle, nothing on a double.
+inline double riding(const Vector<double>&) { return 0; }
+inline double riding(const Vector<std::complex<double>>& v) { return v.size() ? v.imag().cwiseAbs().maxCoeff() : 0; }
+
+/// Component c of the constraint that a closed point should meet: g_N, or in stick dg_T (length).
+template <class T>
+double constraint(const Model& model, const ContactField<T>& field, int p, int c) {
+  return value(c == 0 ? field.gap[p] : field.slip[tangential_offset(model, p) + c - 1]);
+}
+
+/// Number of constraints of a point in its state.
+template <class T>
+int constraints(const Model& model, const ContactField<T>& field, int p) {
+  if (field.state[p] == ContactState::open) return 0;
+  return field.state[p] == ContactState::stick ? model.points[p].components() : 1;
+}
+
+}  // namespace detail
+
+template <class T>
+class Augmentations {
+ public:
+  Augmentations(const Model& model, const Slots<T>& slots, UzawaAL::Acceleration acceleration)
+      : model_(model), slots_(slots), acceleration_(acceleration), stuck_(model.points.size(), 0) {}
+
+  /// Takes in the map's value at `multiplier`; `reach`: largest displacement of a contact node.
+  void record(const Vector<T>& multiplier, const ContactField<T>& field, double reach);
+
+  bool settled() const { return settled_; }            ///< no state changed since the last augmentation
+  double contraction() const { return contraction_; }  ///< 0: not measured yet
+  double update() const { return values_or_zero(update_); }
+  double last_update() const { return last_update_; }  ///< 0 at the first
+  double error_left() const {
+    constexpr double not_falling = 1e3;  // a ratio of 1 and more is that of updates too small to tell it
+    const double q = contraction_;
+    if (!settled_ || q == 0) return update();
+    return update() * (q < 1 ? std::max(1.0, q / (1 - q)) : not_falling);
+  }
+  bool stalled() const { return settled_ && last_update_ > 0 && 2 * update_.norm() > last_update_; }
+  const std::vector<double>& violations() const { return violations_; }  ///< per point, length
+  const std::vector<double>& last_violations() const { return last_violations_; }
+  double violation() const {
+    return violations_.empty() ? 0 : *std::max_element(violations_.begin(), violations_.end());
+  }
+  bool alternates() const { return undone_ >= patience; }
+  /// Whether the derivative that rides on the scalar (the oracle's) still falls, asked once the primal has settled.
+  bool derivative_moves() {
+    const bool moves = riding_ > 1e-13 * detail::riding(field_.traction) && riding_ < settled_riding_;
+    settled_riding_ = riding_;
+    return moves;
+  }
+  /// The next value is that of another map: rho has changed.
+  void change_map() { same_map_ = false; }
+  /// The point with the largest violation that does not yield, in words of the scene; empty where none has more than
+  /// `negligible`.
+  std::string unyielding(double negligible) const;
+
+ private:
+  static constexpr int patience = 3;
+  static constexpr std::size_t kept_secants = 4;
+  static double values_or_zero(const Vector<double>& v) { return v.size() ? v.cwiseAbs().maxCoeff() : 0; }
+  void record_rate(const Vector<T>& multiplier, const ContactField<T>& field);
+  bool yields(const Vector<T>& multiplier, const ContactField<T>& field, int p, double reach) const;
+
+  const Model& model_;
+  const Slots<T>& slots_;
+  UzawaAL::Acceleration acceleration_;
+  bool settled_ = false, same_map_ = true;
+  double contraction_ = 0, last_update_ = 0, riding_ = 0;
+  double settled_riding_ = std::numeric_limits<double>::infinity();
+  Vector<double> update_;
+  std::vector<double> violations_, last_violations_;
+  std::vector<Secant> secants_;  ///< the last few, of the same map in the same states
+  std::vector<int> stuck_;       ///< per point: augmentations in a row that it has not yielded to
+  int undone_ = 0;
+  Vector<T> multiplier_;
+  ContactField<T> field_;
+};
+
+template <class T>
+void Augmentations<T>::record(const Vector<T>& multiplier, const ContactField<T>& field, double reach) {
+  const int points = static_cast<int>(model_.points.size());
+  settled_ = field.state == field_.state;
+  const Vector<T> change = field.traction - multiplier;
+  riding_ = detail::riding(change);
+  const Vector<double> update = values(change);
+  const bool undone = update_.size() && update.norm() > 0 && (update + update_).norm() <= 1e-6 * update.norm();
+  undone_ = undone ? undone_ + 1 : 0;
+  last_update_ = update_.size() ? update_.norm() : 0;
+  update_ = update;
+  record_rate(multiplier, field);
+  last_violations_ = std::move(violations_);
+  violations_.assign(points, 0.0);
+  for (int p = 0; p < points; ++p) {
+    for (int c = 0; c < detail::constraints(model_, field, p); ++c)
+      violations_[p] = std::max(violations_[p], std::abs(detail::constraint(model_, field, p, c)));
+    stuck_[p] = multiplier_.size() && !yields(multiplier, field, p, reach) ? stuck_[p] + 1 : 0;
+  }
+  multiplier_ = multiplier;
+  field_ = field;
+}
+
+template <class T>
+void Augmentations<T>::record_rate(const Vector<T>& multiplier, const ContactField<T>& field) {
+  if (!settled_ || !same_map_) secants_.clear();
+  if (!same_map_) contraction_ = 0;
+  const bool comparable = settled_ && same_map_ && last_update_ > 0;
+  same_map_ = true;
+  if (!comparable) return;
+  const Vector<double> moved = values(multiplier - multiplier_);
+  if (moved.norm() <= 1e3 * detail::unit_roundoff * values(field.traction).norm()) return;  // rounding has no rate
+  secants_.push_back({moved, values(field.traction - field_.traction)});
+  if (secants_.size() > kept_secants) secants_.erase(secants_.begin());
+  const double q = stickslip::contraction(secants_);
+  // plain updates turn into the slowest mode, which accelerated ones suppress once they have shown it
+  const bool plain = acceleration_ == UzawaAL::Acceleration::none || secants_.size() == 1;
+  if (plain || q < 1) contraction_ = plain ? q : std::max(contraction_, q);
+}
+
+template <class T>
+bool Augmentations<T>::yields(const Vector<T>& multiplier, const ContactField<T>& field, int p, double reach) const {
+  constexpr double telling = 1e-8, nothing = 1e-6;
+  const double compliance = value(slots_.geometry[p].area) / value(slots_.stiffness[p]);
+  const int common = std::min(detail::constraints(model_, field, p), detail::constraints(model_, field_, p));
+  for (int c = 0; c < common; ++c) {
+    const int k = model_.points[p].multiplier + c;
+    const double pushed = compliance * std::abs(value(multiplier[k]) - value(multiplier_[k]));
+    const double before = detail::constraint(model_, field_, p, c), now = detail::constraint(model_, field, p, c);
+    if (pushed > telling * reach && std::abs(now - before) <= nothing * pushed) return false;
+  }
+  return true;
+}
+
+template <class T>
+std::string Augmentations<T>::unyielding(double negligible) const {
+  int worst = -1;
+  for (int p = 0; p < static_cast<int>(stuck_.size()); ++p)
+    if (stuck_[p] >= patience && (worst < 0 || violations_[p] > violations_[worst])) worst = p;
+  if (worst < 0 || violations_[worst] <= negligible) return "";
+  const auto& point = model_.points[worst];
+  std::string place;
+  char text[40];
+  for (int i = 0; i < model_.dimension; ++i) {
+    std::snprintf(text, sizeof text, "%s%.6g", i ? ", " : "", value(slots_.points(i, point.nodes[0])));
+    place += text;
+  }
+  std::snprintf(text, sizeof text, "%.6g", violations_[worst]);
+  return "the contact point of " + model_.scene.contacts[point.contact].name + " at (" + place + ") violates its " +
+         "constraint by " + text + " and does not yield, however large its multiplier; is its motion prescribed?";
+}
+
+}  // namespace stickslip
