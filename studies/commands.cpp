@@ -134,6 +134,16 @@ json check_json(const GradientCheck& check) {
           {"rejected", check.rejected},      {"entries", entries}};
 }
 
+/// trace.csv, and of scenes with few contact points cones.svg.
+void write_trace(const std::filesystem::path& directory, const Problem& problem, const Trace& trace) {
+  write_file_atomically(directory / "trace.csv", trace_csv(problem, trace));
+  const auto paths = cone_paths(problem, trace);
+  if (paths.empty()) return;
+  const std::string& title = problem.model.scene.title;
+  write_file_atomically(directory / "cones.svg",
+                        report::draw_cones(paths, title.empty() ? "Friction cones" : title).svg_file());
+}
+
 }  // namespace
 
 int run_command(const RunArguments& arguments) {
@@ -166,7 +176,7 @@ int run_command(const RunArguments& arguments) {
     }
     document["cost"]["seconds"]["output"] = seconds;
     write_file_atomically(directory / "result.json", document.dump(2) + "\n");
-    if (arguments.trace) write_file_atomically(directory / "trace.csv", trace_csv(*loaded->problem, trace));
+    if (arguments.trace) write_trace(directory, *loaded->problem, trace);
     if (!arguments.json) {
       if (arguments.trace) std::cout << trace_table(trace) << '\n';
       print_summary(result);

@@ -42,4 +42,29 @@ std::string trace_csv(const Problem& problem, const Trace& trace) {
   return text;
 }
 
+std::vector<report::ConePath> cone_paths(const Problem& problem, const Trace& trace) {
+  const auto& [model, slots, unused] = problem;
+  std::vector<report::ConePath> paths;
+  for (std::size_t p = 0; p < model.points.size() && model.points.size() <= Trace::most_points; ++p) {
+    const auto& point = model.points[p];
+    if (point.tangents == 0) continue;
+    auto tangential = [&](const Vector<double>& of) {
+      const auto t = of.segment(point.multiplier + 1, point.tangents);
+      return point.tangents == 1 ? t[0] : t.norm();
+    };
+    report::ConePath path{fmt::format("{}, point {}", model.scene.contacts[point.contact].name, p),
+                          slots.friction[point.contact],
+                          point.tangents > 1,
+                          {}};
+    for (std::size_t i = 0; i < trace.iterates.size(); ++i) {
+      const auto& now = trace.iterates[i];
+      const bool last = i + 1 == trace.iterates.size() || trace.iterates[i + 1].solve != now.solve;
+      path.iterates.push_back({-now.trial[point.multiplier], tangential(now.trial), -now.traction[point.multiplier],
+                               tangential(now.traction), last, now.time});
+    }
+    paths.push_back(std::move(path));
+  }
+  return paths;
+}
+
 }  // namespace stickslip

@@ -5,6 +5,7 @@
 
 #include "methods/trace.hpp"
 #include "studies/case.hpp"
+#include "studies/report/cone_picture.hpp"
 
 namespace stickslip {
 
@@ -13,5 +14,8 @@ std::string trace_table(const Trace& trace);
 
 /// The same with all digits, and of scenes with few contact points lambda, trial and traction of each.
 std::string trace_csv(const Problem& problem, const Trace& trace);
+
+/// Friction cones of a scene with few contact points; empty where it has many, or none with friction.
+std::vector<report::ConePath> cone_paths(const Problem& problem, const Trace& trace);
 
 }  // namespace stickslip
