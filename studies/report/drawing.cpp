@@ -217,9 +217,10 @@ class Drawing::PdfWriter {
 };
 
 std::string Drawing::inline_svg() const {
-  std::string out =
-      fmt::format("<svg class=\"plot text\" viewBox=\"0 0 {} {}\" role=\"img\"><title>{}</title><desc>{}</desc>\n",
-                  short_number(width_), short_number(height_), escape(title_), escape(description_));
+  std::string out = fmt::format(
+      "<svg class=\"plot text\" viewBox=\"0 0 {0} {1}\" style=\"max-width:{0}px\" role=\"img\"><title>{2}</title>"
+      "<desc>{3}</desc>\n",
+      short_number(width_), short_number(height_), escape(title_), escape(description_));
   SvgWriter write(in_page, slug(title_) + "-clip-");
   for (const auto& item : items_) out += std::visit(write, item);
   return out + "</svg>\n";
@@ -238,7 +239,7 @@ std::string Drawing::svg_file() const {
 
 std::string Drawing::pdf() const {
   constexpr double points = 0.75;  // a pixel of CSS is 1/96 inch, a point 1/72
-  std::string content = fmt::format("{} 0 0 {} 0 {} cm 1 j 1 J\n", points, -points, short_number(points * height_));
+  std::string content = fmt::format("{} 0 0 {} 0 {} cm 1 j\n", points, -points, short_number(points * height_));
   for (const auto& item : items_) content += std::visit(PdfWriter(), item);
   const auto font = [](const char* name) {
     return fmt::format("<< /Type /Font /Subtype /Type1 /BaseFont /{} /Encoding /WinAnsiEncoding >>", name);

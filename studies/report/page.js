@@ -62,7 +62,7 @@
       background: 'transparent',
       font: 'system-ui, sans-serif',
       axis: {labelColor: ink, titleColor: ink, gridColor: line, domainColor: soft, tickColor: soft, labelFontSize: 12,
-             titleFontSize: 12, titleFontWeight: 'normal', titleLimit: 420},
+             titleFontSize: 12, titleFontWeight: 'normal', titleLimit: Math.min(420, innerWidth - 110)},
       legend: {columns: innerWidth < 560 ? 1 : 2, labelColor: ink, titleColor: ink, labelFontSize: 12, symbolStrokeWidth: 2},
       view: {stroke: line},
     };

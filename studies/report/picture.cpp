@@ -188,12 +188,12 @@ Path plane_shape(Point p, Point n, const Frame& frame) {
   return path.close();
 }
 
+constexpr double canvas = 1000, tallest = 520;  // of the picture; the legend comes below
+
 /// A solid: hatched, in grey print too.
-void hatch(const Path& shape, const Frame& frame, Drawing& drawing) {
-  const Box& w = frame.window();
-  const double x1 = frame.x(w.min.x), x2 = frame.x(w.max.x), y1 = frame.y(w.max.y), y2 = frame.y(w.min.y);
+void hatch(const Path& shape, Drawing& drawing) {
   Path lines;
-  for (double x = x1 - (y2 - y1); x < x2; x += 9) lines.move(x, y2).line(x + (y2 - y1), y1);
+  for (double x = -tallest; x < canvas; x += 9) lines.move(x, tallest).line(x + tallest, 0);
   drawing.clip(shape);
   drawing.path(std::move(lines), {"soft", "", 1, {}});
   drawing.unclip();
@@ -221,7 +221,7 @@ void draw_obstacles(const json& obstacles, const Frame& frame, Drawing& drawing)
           shape.empty() ? shape.move(frame.x(p[0]), frame.y(p[1])) : shape.line(frame.x(p[0]), frame.y(p[1]));
     }
     if (shape.empty()) continue;
-    if (solid) hatch(shape, frame, drawing);
+    if (solid) hatch(shape, drawing);
     drawing.path(std::move(shape), edge);
   }
 }
@@ -336,10 +336,10 @@ std::optional<Drawing> draw_picture(const json& picture) {
   const auto scene = lay_out(picture);
   if (!scene) return std::nullopt;
   const json &contact = array_at(picture, "contact"), &obstacles = array_at(picture, "obstacles");
-  const double gap = 24, wide = scene->zooms ? 560 : 1000, inset = 416;
-  const double tall = std::clamp(wide * scene->whole.height() / scene->whole.width(), 120.0, 520.0);
+  const double gap = 24, wide = scene->zooms ? 560 : canvas, inset = 416;
+  const double tall = std::clamp(wide * scene->whole.height() / scene->whole.width(), 120.0, tallest);
   const double height = scene->zooms ? std::max(tall, inset) : tall;
-  Drawing drawing(1000, height + 44, "Deformed bodies and contact states", in_words(*scene, contact.size()));
+  Drawing drawing(canvas, height + 44, "Deformed bodies and contact states", in_words(*scene, contact.size()));
   constexpr std::size_t lines_up_to = 4000;  // more mesh lines than that are one grey
 
   const Frame main(scene->whole, wide, height, 0);
