@@ -143,7 +143,7 @@ std::string CaseResult::message() const {
 
 std::shared_ptr<Condensation<double>> condense(const Problem& problem, const RunOptions& options) {
   Workspace<double> workspace;
-  make_engine<double>(problem.model, problem.slots, false, options, workspace);
+  make_engine<double>(problem.model, problem.slots, Penalty{}, options, workspace);
   return workspace.condensation;
 }
 
