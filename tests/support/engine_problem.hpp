@@ -52,11 +52,15 @@ struct EngineProblem {
     open.states.assign(states.size(), ContactState::open);
     return open.tangents();
   }
-  SparseEngine<double> sparse(bool unknown) const { return {model, slots, unknown, Backend::automatic}; }
+  SparseEngine<double> sparse(bool unknown) const {
+    return {model, slots, unknown, ConeRadius::augmented, Backend::automatic};
+  }
   std::shared_ptr<Condensation<double>> condensation() const {
     return std::make_shared<Condensation<double>>(model, slots, Backend::automatic);
   }
-  CondensedEngine<double> condensed(bool unknown) const { return {model, slots, unknown, condensation()}; }
+  CondensedEngine<double> condensed(bool unknown) const {
+    return {model, slots, unknown, ConeRadius::augmented, condensation()};
+  }
   /// Rows with zeros at prescribed dofs.
   Matrix<double> rows(int columns) const {
     Matrix<double> r(model.dof_count(), columns);
