@@ -94,7 +94,7 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
   constexpr int limit = 20000;
   double stiffest = 0;
   for (const auto& r : rho) stiffest = std::max(stiffest, r.normal);
-  Eigen::ArrayXd last = Eigen::ArrayXd::Zero(problem.parameters);
+  Eigen::ArrayXd last = Eigen::ArrayXd::Zero(problem.parameters), carried = last;
   auto columns = [&](auto&& pick) { return gather(problem.blocks, problem.parameters, pick); };
   auto& record = problem.record.emplace();
   for (int pass = 1; pass <= limit; ++pass) {
@@ -106,7 +106,9 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
     record = {pass, 1, 0};
     for (int j = 0; j < problem.parameters && after.rows() > 0; ++j) {
       const double change = (after.col(j) - before.col(j)).cwiseAbs().maxCoeff();
-      const double size = after.col(j).cwiseAbs().maxCoeff();
+      // where the derivative is zero, what the last increment left of it says how small that is
+      if (pass == 1) carried[j] = before.col(j).cwiseAbs().maxCoeff();
+      const double size = std::max(carried[j], after.col(j).cwiseAbs().maxCoeff());
       const double floor = 8 * rounding * stiffest * linearised.relative_reach().col(j).cwiseAbs().maxCoeff();
       const double q = last[j] > 0 ? change / last[j] : 1;
       const double left = q < 1 ? change * q / (1 - q) : change;

@@ -1,33 +1,19 @@
 /// What a scene does not call for costs nothing: allocations counted (cases.md D6), not timed.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
-
 #include "sensitivity/one_sided.hpp"
+#include "tests/support/allocations.hpp"
 #include "tests/support/scenes.hpp"
-
-namespace {
-long allocations = 0;
-}
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size ? size : 1)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace stickslip {
 namespace {
 
-/// Eigen's own vectors pass by operator new; every std::vector and std::function of ours does not.
+/// (Eigen's vectors call malloc themselves; those in a std::vector, and all else of ours, pass through operator new.)
 template <class F>
 long allocations_of(F&& f) {
-  const long before = allocations;
+  const long before = allocations();
   f();
-  return allocations - before;
+  return allocations() - before;
 }
 
 TEST(Effects, RunsAllocateTheSameWhetherOrNotThereAreParameters) {
@@ -37,7 +23,7 @@ TEST(Effects, RunsAllocateTheSameWhetherOrNotThereAreParameters) {
     without.parameters.clear();
     long count[2];
     int i = 0;
-    for (const Scene* scene : {&with, &without}) {
+    for (const Scene* scene : std::initializer_list<const Scene*>{&with, &without}) {
       const Model model = make_model(*scene);
       const auto slots = make_slots<double>(model, scene->as<double>());
       solve(model, slots, method);  // what the libraries keep for good is there from here on

@@ -34,6 +34,7 @@ Scene cylinders(int cells, double mu, double shear) {
                 scenes::support("upper.flat", {{'x', scenes::table({{1, 0.0}, {2, shear}})},
                                                {'y', scenes::table({{0, 0.0}, {1, down}})}})};
   s.responses = {scenes::response("press", Response::Kind::contact_force, "touch", "normal"),
+                 scenes::response("up", Response::Kind::contact_force, "touch", "y"),
                  scenes::response("held", Response::Kind::reaction, "upper.flat", "y"),
                  scenes::response("shear", Response::Kind::reaction, "upper.flat", "x"),
                  scenes::response("peak", Response::Kind::contact_pressure, "touch", "", Response::Take::max),
@@ -71,7 +72,7 @@ TEST(HertzLine, PeakAndHalfWidthFollowTheForce) {
 
 TEST(HertzLine, PressureConvergesWithTheMesh) {
   double before = 0;
-  for (int cells : {20, 40, 80}) {
+  for (int cells : {10, 20, 40}) {  // beyond, what half disks are short of half-spaces shows
     const auto s = scenes::run(cylinders(cells, 0, 0), MonolithicAL{});
     const double P = s.value("press"), b = half_width(P), p0 = 2 * P / (pi * b);
     const auto& state = s.trajectory.increments.back().state;
@@ -84,10 +85,12 @@ TEST(HertzLine, PressureConvergesWithTheMesh) {
     }
     error = std::sqrt(error / size);
     // order about one: the edge of the contact lies inside a cell
-    if (before > 0) EXPECT_LT(error, 0.7 * before) << cells;
+    if (before > 0) {
+      EXPECT_LT(error, 0.7 * before) << cells;
+    }
     before = error;
   }
-  EXPECT_LT(before, 0.03);
+  EXPECT_LT(before, 0.01);
 }
 
 TEST(CattaneoMindlin, StickZoneAndTractionFollowTheForces) {

@@ -56,7 +56,7 @@ void expect_agreement(const Scene& scene, const Method& method,
                       LinearAlgebra::Engine engine = LinearAlgebra::Engine::automatic) {
   const auto b = both(scene, method, engine);
   const std::string what = scene.title + " " + std::string(name_of(method));
-  ASSERT_EQ(b.direct.rows(), static_cast<Eigen::Index>(scene.objectives.size())) << what << b.forward.message;
+  ASSERT_EQ(b.direct.rows(), static_cast<Eigen::Index>(scene.objectives.size())) << what << ": " << b.forward.message;
   ASSERT_EQ(b.adjoint.rows(), b.direct.rows()) << what << b.backward.message;
   const double allowed = std::max(1e-11, 50 * 1.1e-16 * b.condition);
   bool something = false;
@@ -73,7 +73,10 @@ void expect_agreement(const Scene& scene, const Method& method,
 std::vector<Scene> all_scenes() {
   auto scenes = scenes::all();
   for (auto& scene : scenes::of_every_element()) scenes.push_back(std::move(scene));
-  for (auto& scene : scenes) scene = with_objectives(std::move(scene));
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    scenes[i] = with_objectives(std::move(scenes[i]));
+    scenes[i].title = "scene " + std::to_string(i);
+  }
   return scenes;
 }
 
