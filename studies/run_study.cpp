@@ -15,6 +15,7 @@
 #include "studies/progress.hpp"
 #include "studies/provenance.hpp"
 #include "studies/report/report.hpp"
+#include "studies/simulation.hpp"
 #include "studies/study.hpp"
 #include "studies/study_reader.hpp"
 #include "studies/version.hpp"
@@ -47,8 +48,6 @@ Input input_of(const CellInput& cell, MeshFiles& meshes) {
   return *std::move(input);
 }
 
-RunOptions options_of(const Input& input) { return {input.linear_algebra, input.backend, {}, {}}; }
-
 /// Options of a method may hold slots of the scene, so each method has a scene of its own; they share meshes and
 /// condensation, which do not depend on it.
 std::shared_ptr<const Problem> problem_of(const Input& input) { return std::make_shared<const Problem>(input.scene); }
@@ -60,7 +59,7 @@ Variant make_variant(const Study& study, const CellInput& cell, MeshFiles& meshe
     if (reference.kind != Reference::Kind::method) continue;
     const auto input = input_of(reference_cell(cell, reference, program_version(), meshes), meshes);
     const auto problem = problem_of(input);
-    variant.references.push_back(run_case(problem, input.method, options_of(input), variant.condensation));
+    variant.references.push_back(run_case(problem, input.method, run_options(input), variant.condensation));
   }
   if (!variant.references.empty()) {
     variant.problem = variant.references.front().problem;
@@ -73,7 +72,7 @@ Variant make_variant(const Study& study, const CellInput& cell, MeshFiles& meshe
 json timed_cost(const CaseResult& first, const Input& input, Variant& variant, int repeat) {
   json cost = cost_json(first);
   for (int i = 1; i < repeat; ++i) {
-    const auto again = run_case(first.problem, input.method, options_of(input), variant.condensation);
+    const auto again = run_case(first.problem, input.method, run_options(input), variant.condensation);
     const json other = cost_json(again);
     for (auto& [name, seconds] : cost["seconds"].items())
       seconds = std::min(seconds.get<double>(), other["seconds"][name].get<double>());
@@ -92,7 +91,7 @@ json only_asked(const Errors& errors, const std::vector<std::string>& patterns) 
 
 json row_of(const Study& study, const CellInput& cell, Variant& variant, MeshFiles& meshes, json& analytic) {
   const Input input = input_of(cell, meshes);
-  const auto result = run_case(problem_of(input), input.method, options_of(input), variant.condensation);
+  const auto result = run_case(problem_of(input), input.method, run_options(input), variant.condensation);
   json errors = {{"enforcement", json::object()}, {"discretization", json::object()}};
   for (const auto& reference : variant.references)
     if (is_converged(reference.status()))
