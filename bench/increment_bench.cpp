@@ -1,6 +1,8 @@
 /// One increment of the GRECO plate by each method, engine and backend: seconds per Newton iteration, of them the
-/// numeric factorisation; and one sensitivity sweep. `iteration_over_factorisation` is what an iteration costs beside
-/// the factor it cannot do without.
+/// numeric factorisation (`iteration_over_factorisation`: what an iteration costs beside the factor it cannot do
+/// without); the same without friction, which must cost no more than the unknowns it has; and one sensitivity sweep by
+/// each scheme (`parameter_over_iteration`: one parameter against one Newton iteration). The argument is the cells
+/// along a side.
 #include <benchmark/benchmark.h>
 
 #include "sensitivity/differentiate.hpp"
@@ -9,71 +11,111 @@
 namespace stickslip {
 namespace {
 
-void increment(benchmark::State& state, const Method& method, LinearAlgebra::Engine engine, Backend backend) {
+using Kind = LinearAlgebra::Engine;
+
+struct Plate {
+  Model model;
+  Slots<double> slots;
+  Plate(int cells, bool friction) {
+    auto scene = scenes::greco_plate(cells);
+    if (!friction) {
+      scene.contacts[0].friction.reset();
+      scene.supports = {scenes::support("plate.right", {{'x', scenes::table({{0, 0.0}})}})};
+      scene.responses.clear();
+      scene.parameters.clear();
+    }
+    model = make_model(scene);
+    slots = make_slots<double>(model, scene.as<double>());
+  }
+};
+
+/// What an iteration of some runs took, by part.
+struct Iterations {
+  Seconds seconds;
+  Counters counters;
+  void add(const Trajectory<double>& trajectory) {
+    seconds.assembly += trajectory.seconds.assembly;
+    seconds.factorization += trajectory.seconds.factorization;
+    seconds.backsolve += trajectory.seconds.backsolve;
+    counters += trajectory.counters;
+  }
+  double factorisation() const { return seconds.factorization / counters.factorizations; }
+  double one() const { return (seconds.assembly + seconds.factorization + seconds.backsolve) / counters.newton; }
+};
+
+void increment(benchmark::State& state, const Method& method, Kind engine, Backend backend, bool friction = true) {
   if (!has_backend(backend)) {
     state.SkipWithError("this backend is not built in");
     return;
   }
-  const auto scene = scenes::greco_plate(static_cast<int>(state.range(0)));
-  const Model model = make_model(scene);
-  const auto slots = make_slots<double>(model, scene.as<double>());
+  const Plate plate(static_cast<int>(state.range(0)), friction);
   RunOptions options;
   options.linear_algebra.engine = engine;
   options.backend = backend;
-  Seconds seconds;
-  long iterations = 0, factorizations = 0;
+  Iterations iterations;
+  long nonzeros = 0;
   for (auto _ : state) {
     Workspace<double> workspace;
-    const auto trajectory = solve(model, slots, method, options, workspace);
-    seconds.assembly += trajectory.seconds.assembly;
-    seconds.factorization += trajectory.seconds.factorization;
-    seconds.backsolve += trajectory.seconds.backsolve;
-    iterations += trajectory.counters.newton;
-    factorizations += trajectory.counters.factorizations;
+    const auto trajectory = solve(plate.model, plate.slots, method, options, workspace);
+    if (!is_converged(trajectory.status)) state.SkipWithError(trajectory.message.c_str());
+    iterations.add(trajectory);
+    nonzeros = std::visit([](const auto& e) { return e.nonzeros(); }, *workspace.engine);
   }
-  const double factor = seconds.factorization / factorizations;
-  const double iteration = (seconds.assembly + seconds.factorization + seconds.backsolve) / iterations;
-  state.counters["dofs"] = static_cast<double>(model.free_dofs.size());
-  state.counters["newton"] = static_cast<double>(iterations) / state.iterations();
-  state.counters["s_factorisation"] = factor;
-  state.counters["s_iteration"] = iteration;
-  state.counters["iteration_over_factorisation"] = iteration / factor;
+  state.counters["dofs"] = static_cast<double>(plate.model.free_dofs.size());
+  state.counters["multipliers"] = plate.model.multiplier_count;
+  state.counters["nonzeros"] = static_cast<double>(nonzeros);
+  state.counters["newton"] = static_cast<double>(iterations.counters.newton) / state.iterations();
+  state.counters["s_factorisation"] = iterations.factorisation();
+  state.counters["s_iteration"] = iterations.one();
+  state.counters["iteration_over_factorisation"] = iterations.one() / iterations.factorisation();
 }
 
-void sensitivity(benchmark::State& state, const Method& method) {
-  const auto scene = scenes::greco_plate(static_cast<int>(state.range(0)));
-  const Model model = make_model(scene);
-  const auto slots = make_slots<double>(model, scene.as<double>());
+void sensitivity(benchmark::State& state, const Method& method, Kind engine) {
+  const Plate plate(static_cast<int>(state.range(0)), true);
+  RunOptions options;
+  options.linear_algebra.engine = engine;
   Workspace<double> workspace;
-  const auto trajectory = solve(model, slots, method, {}, workspace);
-  for (auto _ : state) benchmark::DoNotOptimize(differentiate(model, slots, method, trajectory, workspace));
-  state.counters["parameters"] = static_cast<double>(scene.parameters.size());
+  const auto trajectory = solve(plate.model, plate.slots, method, options, workspace);
+  Iterations iterations;
+  iterations.add(trajectory);
+  double seconds = 0;
+  for (auto _ : state) {
+    const auto gradients = differentiate(plate.model, plate.slots, method, trajectory, workspace);
+    seconds += gradients.seconds;
+  }
+  const auto parameters = static_cast<double>(plate.model.scene.parameters.size());
+  state.counters["dofs"] = static_cast<double>(plate.model.free_dofs.size());
+  state.counters["parameters"] = parameters;
   state.counters["s_solve"] = trajectory.seconds.total;
+  state.counters["parameter_over_iteration"] = seconds / state.iterations() / parameters / iterations.one();
 }
 
-using Engine = LinearAlgebra::Engine;
-BENCHMARK_CAPTURE(increment, monolithic_sparse_mumps, MonolithicAL{}, Engine::sparse, Backend::mumps)
-    ->Arg(100)
-    ->Arg(224)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(increment, monolithic_sparse_umfpack, MonolithicAL{}, Engine::sparse, Backend::umfpack)
-    ->Arg(100)
-    ->Arg(224)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(increment, monolithic_condensed, MonolithicAL{}, Engine::condensed, Backend::automatic)
-    ->Arg(100)
-    ->Arg(224)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(increment, penalty_sparse_mumps, Penalty{}, Engine::sparse, Backend::mumps)
-    ->Arg(100)
-    ->Arg(224)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(increment, uzawa_condensed, UzawaAL{}, Engine::condensed, Backend::automatic)
-    ->Arg(100)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(sensitivity, penalty, Penalty{})->Arg(100)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(sensitivity, uzawa, UzawaAL{})->Arg(100)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(sensitivity, monolithic, MonolithicAL{})->Arg(100)->Unit(benchmark::kMillisecond);
+void register_all() {
+  auto add = [](const std::string& name, auto&& run, std::vector<int> cells) {
+    auto* one = benchmark::RegisterBenchmark(name.c_str(), run)->Unit(benchmark::kMillisecond);
+    for (int n : cells) one->Arg(n);
+  };
+  const std::vector<std::pair<const char*, Method>> methods{
+      {"penalty", Penalty{}}, {"uzawa", UzawaAL{}}, {"monolithic", MonolithicAL{}}};
+  for (const auto& [name, method] : methods) {
+    auto by = [&, method = method](const char* how, Kind kind, Backend backend, bool friction, std::vector<int> cells) {
+      add(
+          std::string("increment/") + name + "/" + how,
+          [=](benchmark::State& s) { increment(s, method, kind, backend, friction); }, cells);
+    };
+    by("sparse_mumps", Kind::sparse, Backend::mumps, true, {100, 224});
+    by("sparse_umfpack", Kind::sparse, Backend::umfpack, true, {100});
+    by("condensed", Kind::condensed, Backend::automatic, true, {100, 224});
+    by("sparse_frictionless", Kind::sparse, Backend::automatic, false, {100});
+    by("condensed_frictionless", Kind::condensed, Backend::automatic, false, {100});
+    for (const auto& [how, kind] : {std::pair{"sparse", Kind::sparse}, std::pair{"condensed", Kind::condensed}})
+      add(std::string("sensitivity/") + name + "/" + how,
+          [method = method, kind = kind](benchmark::State& s) { sensitivity(s, method, kind); }, {100});
+  }
+}
+
+const bool registered  // before main, as the BENCHMARK macros do
+    = (register_all(), true);
 
 }  // namespace
 }  // namespace stickslip

@@ -11,16 +11,14 @@
 
 #include "sensitivity/gradcheck.hpp"
 #include "studies/atomic_file.hpp"
-#include "studies/case.hpp"
 #include "studies/closed_forms.hpp"
 #include "studies/explain.hpp"
 #include "studies/export_system.hpp"
-#include "studies/fields.hpp"
 #include "studies/method_options.hpp"
 #include "studies/progress.hpp"
 #include "studies/report/report.hpp"
-#include "studies/scene_reader.hpp"
 #include "studies/schema.hpp"
+#include "studies/simulation.hpp"
 #include "studies/trace_table.hpp"
 
 namespace stickslip {
@@ -30,53 +28,19 @@ using nlohmann::json;
 
 constexpr int done = 0, bad_input = 2, not_solved = 3;
 
-/// A scene read and made into a problem; on a fault everything known of it is on standard error.
-struct Loaded {
-  Input input;
-  std::shared_ptr<const Problem> problem;
-};
-
-/// A fault of the scene as a whole, with the place of the entry it is about.
-Diagnostic located(const ModelError& error, const std::string& file) {
-  Diagnostics unused;
-  const auto document = JsonDocument::read(file, unused);
-  return {document ? document->place(error.pointer) : Place{file}, error.pointer, error.what()};
-}
-
-std::optional<Loaded> load(const RunArguments& arguments) {
+/// None where the scene has a fault; everything known of it is then on standard error.
+std::optional<Simulation> load(const RunArguments& arguments) {
   Diagnostics diagnostics;
-  auto input = read_scene(arguments.scene, arguments.overrides, arguments.method, diagnostics);
-  if (!input) {
-    std::cerr << diagnostics.text();
-    return std::nullopt;
-  }
-  for (const auto& note : diagnostics.notes()) std::cerr << "note: " << note.text() << '\n';
-  try {
-    auto problem = std::make_shared<const Problem>(input->scene);
-    return Loaded{std::move(*input), problem};
-  } catch (const ModelError& error) {
-    std::cerr << located(error, arguments.scene).text() << '\n';
-    return std::nullopt;
-  }
+  auto simulation = prepare(arguments.scene, arguments.overrides, arguments.method, diagnostics);
+  for (const auto& note : diagnostics.notes())
+    if (simulation) std::cerr << "note: " << note.text() << '\n';
+  std::cerr << diagnostics.text();
+  return simulation;
 }
-
-RunOptions options_of(const Input& input) { return {input.linear_algebra, input.backend, {}, {}}; }
 
 std::filesystem::path output_directory(const std::string& given, const std::string& input) {
   return given.empty() ? std::filesystem::path("results") / std::filesystem::path(input).stem()
                        : std::filesystem::path(given);
-}
-
-int fields_every(const OutputOptions& output) {
-  switch (output.fields) {
-    case OutputOptions::Fields::last:
-      return 0;
-    case OutputOptions::Fields::all:
-      return 1;
-    case OutputOptions::Fields::every:
-      return output.every;
-  }
-  return 0;
 }
 
 void print_summary(const CaseResult& result) {
@@ -149,12 +113,10 @@ void write_trace(const std::filesystem::path& directory, const Problem& problem,
 int run_command(const RunArguments& arguments) {
   const auto loaded = load(arguments);
   if (!loaded) return bad_input;
-  std::shared_ptr<Condensation<double>> condensation;
-  auto options = options_of(loaded->input);
   std::optional<Progress> progress;  // of long work only: a run of a second or two speaks for itself
   const auto start = std::chrono::steady_clock::now();
   long pending = 0;
-  options.on_step = [&] {
+  const auto on_step = [&] {
     ++pending;
     if (arguments.json || std::chrono::steady_clock::now() - start < std::chrono::seconds(2)) return;
     if (!progress)
@@ -163,19 +125,14 @@ int run_command(const RunArguments& arguments) {
     progress->advance(std::exchange(pending, 0));
   };
   Trace trace;
-  if (arguments.trace) options.trace = &trace;
-  const auto result = run_case(loaded->problem, loaded->input.method, options, condensation);
+  const auto result = simulate(*loaded, on_step, arguments.trace ? &trace : nullptr);
   progress.reset();
-  json document = result_json(result, canonical_text(loaded->input));
-  if (!arguments.json || !arguments.output.empty()) {
-    double seconds = 0;
+  json document;
+  if (arguments.json && arguments.output.empty()) {
+    document = result_json(result, canonical_text(loaded->input));
+  } else {
     const auto directory = output_directory(arguments.output, arguments.scene);
-    {
-      const Stopwatch time(seconds);
-      write_fields(directory, result, fields_every(loaded->input.output));
-    }
-    document["cost"]["seconds"]["output"] = seconds;
-    write_file_atomically(directory / "result.json", document.dump(2) + "\n");
+    document = write_result(directory, *loaded, result);
     if (arguments.trace) write_trace(directory, *loaded->problem, trace);
     if (!arguments.json) {
       if (arguments.trace) std::cout << trace_table(trace) << '\n';
@@ -209,7 +166,7 @@ int gradcheck_command(const RunArguments& arguments) {
   GradientCheck check;
   {
     std::optional<Progress> bar;
-    check = check_gradients(model, loaded->input.method, options_of(loaded->input), [&](int, int total) {
+    check = check_gradients(model, loaded->input.method, run_options(loaded->input), [&](int, int total) {
       if (!bar) bar.emplace(std::cerr, progress_style_of_stderr(), "difference runs", total);
       bar->advance();
     });

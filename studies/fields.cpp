@@ -59,16 +59,6 @@ Matrix<double> nodal(const Model& model, const Eigen::Ref<const Vector<double>>&
   return Eigen::Map<const Matrix<double>>(dofs.data(), model.dimension, model.node_count);
 }
 
-/// Force per area on the slave at point p.
-Vector<double> traction_vector(const Problem& problem, const State<double>& state, int p) {
-  const auto& point = problem.model.points[p];
-  const auto& geometry = problem.slots.geometry[p];
-  Vector<double> t = -state.contact.traction[point.multiplier] * geometry.normal;
-  for (int a = 0; a < point.tangents; ++a)
-    t -= state.contact.traction[point.multiplier + 1 + a] * geometry.tangents.col(a);
-  return t;
-}
-
 void append_contact_fields(VtuData& data, const Problem& problem, const State<double>& state) {
   const auto& model = problem.model;
   Matrix<double> code = Matrix<double>::Constant(1, model.node_count, -1),
@@ -128,6 +118,15 @@ json numbers_json(const std::vector<Number>& numbers) {
 }
 
 }  // namespace
+
+Vector<double> traction_vector(const Problem& problem, const State<double>& state, int p) {
+  const auto& point = problem.model.points[p];
+  const auto& geometry = problem.slots.geometry[p];
+  Vector<double> t = -state.contact.traction[point.multiplier] * geometry.normal;
+  for (int a = 0; a < point.tangents; ++a)
+    t -= state.contact.traction[point.multiplier + 1 + a] * geometry.tangents.col(a);
+  return t;
+}
 
 void write_fields(const std::filesystem::path& directory, const CaseResult& result, int every) {
   std::vector<PvdEntry> entries;

@@ -14,6 +14,9 @@ namespace stickslip {
 /// fields: body, and for continua stress (xx yy zz xy yz xz) and von_mises.
 void write_fields(const std::filesystem::path& directory, const CaseResult& result, int every);
 
+/// Force per area on the slave at contact point p.
+Vector<double> traction_vector(const Problem& problem, const State<double>& state, int p);
+
 /// The last step as the report's picture: points, elements, displacement, von Mises stress, contact points, obstacles.
 nlohmann::json picture_json(const CaseResult& result);
 

@@ -264,6 +264,13 @@ std::optional<JsonDocument> JsonDocument::parse(std::string_view text, const std
   return document;
 }
 
+JsonDocument JsonDocument::of(json value, const std::string& source) {
+  JsonDocument document;
+  document.file_ = source;
+  document.set("", std::move(value), {source});
+  return document;
+}
+
 std::optional<JsonDocument> JsonDocument::read(const std::string& file, Diagnostics& diagnostics) {
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;

@@ -56,6 +56,9 @@ class JsonDocument {
   /// twice. Numbers beyond the range of a double are faults, as are NaN and Infinity.
   static std::optional<JsonDocument> parse(std::string_view text, const std::string& file, Diagnostics&);
 
+  /// A document that no file holds. Faults in it name `source` and have no lines.
+  static JsonDocument of(nlohmann::json value, const std::string& source);
+
   /// The document of a file; a file that cannot be read is a fault.
   static std::optional<JsonDocument> read(const std::string& file, Diagnostics&);
 

@@ -137,16 +137,19 @@ std::optional<Input> read_scene(const JsonDocument& given, const std::optional<s
   return input;
 }
 
+std::optional<Input> read_scene(JsonDocument document, const Overrides& overrides,
+                                const std::optional<std::string>& method_name, Diagnostics& diagnostics) {
+  MeshFiles mesh_files;
+  if (method_name && default_method(*method_name)) select_method(document, method_name, diagnostics, mesh_files);
+  for (const std::string& assignment : overrides) document.override_value(assignment, diagnostics);
+  auto input = read_scene(document, method_name, diagnostics, mesh_files);
+  return diagnostics.has_errors() ? std::nullopt : std::move(input);
+}
+
 std::optional<Input> read_scene(const std::string& file, const Overrides& overrides,
                                 const std::optional<std::string>& method_name, Diagnostics& diagnostics) {
-  auto document = JsonDocument::read(file, diagnostics);
-  if (!document) return std::nullopt;
-  MeshFiles mesh_files;
-  if (method_name && default_method(*method_name))  // before the overrides, which may be about its options
-    select_method(*document, method_name, diagnostics, mesh_files);
-  for (const std::string& assignment : overrides) document->override_value(assignment, diagnostics);
-  auto input = read_scene(*document, method_name, diagnostics, mesh_files);
-  return diagnostics.has_errors() ? std::nullopt : std::move(input);
+  const auto document = JsonDocument::read(file, diagnostics);
+  return document ? read_scene(*document, overrides, method_name, diagnostics) : std::nullopt;
 }
 
 std::string canonical_text(const Input& input) {

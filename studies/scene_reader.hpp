@@ -53,6 +53,10 @@ using Overrides = std::vector<std::string>;
 std::optional<Input> read_scene(const JsonDocument&, const std::optional<std::string>& method_name, Diagnostics&,
                                 MeshFiles&);
 
+/// Reads a document with overrides, which are carried out after the method was replaced: they may be about its options.
+std::optional<Input> read_scene(JsonDocument, const Overrides&, const std::optional<std::string>& method_name,
+                                Diagnostics&);
+
 /// Reads a file.
 std::optional<Input> read_scene(const std::string& file, const Overrides&,
                                 const std::optional<std::string>& method_name, Diagnostics&);

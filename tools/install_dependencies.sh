@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# install_dependencies.sh [test]: installs what is missing of the Debian (12 or later) packages that the build needs,
-# and with `test` those of the tests. STICKSLIP_NO_APT=1 installs nothing.
+# install_dependencies.sh [test|python]: installs what is missing of the Debian (12 or later) packages that the build
+# needs, with `test` those of the tests, with `python` those of the Python module and its notebook.
+# STICKSLIP_NO_APT=1 installs nothing.
 set -euo pipefail
 
 # libopenblas0-serial is named because SuiteSparse would else bring the reference BLAS, which is 3 to 6 times slower;
@@ -9,8 +10,9 @@ packages=(g++ cmake ninja-build libeigen3-dev libsuitesparse-dev libopenblas0-se
   libmumps-headers-dev nlohmann-json3-dev libcli11-dev libfmt-dev)
 case "${1:-}" in
   "") ;;
-  test) packages+=(libgtest-dev libgmock-dev libbenchmark-dev python3-jsonschema) ;;
-  *) echo "usage: $0 [test]" >&2; exit 2 ;;
+  test) packages+=(libgtest-dev libgmock-dev libbenchmark-dev librapidcheck-dev python3-jsonschema) ;;
+  python) packages+=(pybind11-dev python3-dev python3-numpy python3-matplotlib jupyter-nbconvert python3-ipykernel) ;;
+  *) echo "usage: $0 [test|python]" >&2; exit 2 ;;
 esac
 
 if [ "${STICKSLIP_NO_APT:-0}" = 1 ]; then

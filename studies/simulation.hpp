@@ -1,0 +1,42 @@
+/// From a scene, as a file or in memory, to its result: the way that the command line, the Python module and the
+/// programs of others share.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "studies/case.hpp"
+#include "studies/scene_reader.hpp"
+
+namespace stickslip {
+
+/// A scene that was read without a fault, and the problem it makes.
+struct Simulation {
+  Input input;
+  std::shared_ptr<const Problem> problem;
+};
+
+/// Reads a scene and makes its problem: `overrides` are "POINTER=VALUE" each, `method` replaces the scene's. None where
+/// there is a fault; all of them are in the diagnostics, those of the scene as a whole too.
+std::optional<Simulation> prepare(const JsonDocument& document, const Overrides& overrides,
+                                  const std::optional<std::string>& method, Diagnostics& diagnostics);
+std::optional<Simulation> prepare(const std::string& file, const Overrides& overrides,
+                                  const std::optional<std::string>& method, Diagnostics& diagnostics);
+
+/// What the scene says of how to solve it.
+RunOptions run_options(const Input& input);
+
+/// Runs it. `on_step` is called after each step that the scene asks for; what it throws ends the run. `trace`, where it
+/// is there, gathers every iterate.
+CaseResult simulate(const Simulation& simulation, const std::function<void()>& on_step = {}, Trace* trace = nullptr);
+
+/// Writes DIR/result.json and DIR/fields.pvd with its .vtu files; returns the former (interface.md, section 3). Throws
+/// std::system_error where the disk refuses.
+nlohmann::json write_result(const std::filesystem::path& directory, const Simulation& simulation,
+                            const CaseResult& result);
+
+}  // namespace stickslip

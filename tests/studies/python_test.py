@@ -1,0 +1,285 @@
+"""The Python module: numbers of closed forms, arrays that are views into the result, faults, folders, Ctrl-C.
+
+PYTHONPATH=build/python/python STICKSLIP_SCENES=studies/scenes python3 tests/studies/python_test.py
+"""
+
+import gc
+import json
+import os
+import pathlib
+import signal
+import tempfile
+import threading
+import time
+import unittest
+import weakref
+
+import numpy as np
+
+import stickslip
+
+SCENES = pathlib.Path(os.environ["STICKSLIP_SCENES"])
+
+
+def plate(cells=6, steps=2):
+    """A block on a rough floor, pressed and pushed; friction 0.3."""
+    return {
+        "bodies": {
+            "block": {
+                "mesh": {"box": {"min": [0, 0], "max": [4, 2], "cells": [2 * cells, cells]}},
+                "material": {"linear_elastic": {"E": 1000, "nu": 0.3}},
+            }
+        },
+        "obstacles": {"floor": {"plane": {"point": [0, 0], "normal": [0, 1]}}},
+        "contacts": {"sole": {"slave": "block.bottom", "master": "floor", "friction": 0.3}},
+        "loads": [{"on": "block.top", "traction": [1.2, -5], "history": [[0, 0], [1, 1]]}],
+        "time": {"end": 1, "steps": steps},
+        "responses": {"press": {"contact_force": {"contact": "sole", "component": "normal"}},
+                      "shift": {"displacement": {"on": "block.top", "component": "x"}}},
+        "parameters": {"mu": "/contacts/sole/friction", "p": "/loads/0/traction/1"},
+        "method": {"monolithic_al": {}},
+    }
+
+
+class Values(unittest.TestCase):
+    def test_closed_form_of_the_stop_and_its_derivatives(self):
+        result = stickslip.run(SCENES / "stop.json")
+        self.assertTrue(result.converged)
+        self.assertEqual((result.status, result.message, result.notes), ("converged", "", []))
+        rounding = 1e-13  # a few roundings of the load of 15 against 5
+        np.testing.assert_allclose(result.responses["press"], [5], rtol=rounding)
+        np.testing.assert_allclose(result.sensitivities["press"]["F"], [1], rtol=rounding)
+        np.testing.assert_allclose(result.sensitivities["press"]["g0"], [-1000], rtol=rounding)
+
+    def test_steps_of_the_slider_and_what_it_dissipates(self):
+        result = stickslip.run(str(SCENES / "slider.json"))
+        self.assertEqual(result.times.shape, (60,))
+        turned = [11, 35, 59]  # ends of the legs
+        np.testing.assert_allclose(result.times[turned], [1, 2, 3], rtol=1e-15)
+        # 1e-12: 60 steps of roundings of the amplitude 0.1, relative to 0.07
+        np.testing.assert_allclose(result.responses["u"][turned], [0.07, -0.07, 0.07], rtol=1e-12)
+        np.testing.assert_allclose(result.responses["heat"][turned], [0.21, 0.63, 1.05], rtol=1e-12)
+        np.testing.assert_allclose(result.sensitivities["u"]["mu"][turned], [-0.1, 0.1, -0.1], rtol=1e-12)
+
+    def test_arrays_and_document_hold_the_same_numbers(self):
+        result = stickslip.run(plate())
+        for n, step in enumerate(result.document["steps"]):
+            self.assertEqual(result.times[n], step["time"])
+            for name, value in step["responses"].items():
+                self.assertEqual(result.responses[name][n], value)
+                for parameter, slope in step["sensitivities"][name].items():
+                    self.assertEqual(result.sensitivities[name][parameter][n], slope)
+
+    def test_tractions_add_up_to_the_load(self):
+        result = stickslip.run(plate())
+        sole = result.contact("sole")
+        total = (sole["traction"] * sole["area"][:, None]).sum(axis=0)
+        # the residual is converged to 1e-10 or better of the load of 20
+        np.testing.assert_allclose(total, [-4.8, 20], rtol=1e-9)
+        np.testing.assert_allclose(sole["traction"][:, 1], sole["pressure"], rtol=1e-15)
+        half = result.contact("sole", 0)
+        np.testing.assert_allclose((half["pressure"] * half["area"]).sum(), 10, rtol=1e-9)
+        self.assertTrue(np.all(result.coordinates[sole["nodes"], 1] == 0))
+        self.assertTrue(np.all(np.isin(sole["state"], [0, 1, 2])))
+
+    def test_the_derivative_of_the_displacements_is_that_of_the_response(self):
+        result = stickslip.run(plate())
+        top = np.isclose(result.coordinates[:, 1], 2)
+        for parameter in ("mu", "p"):
+            slope = result.displacement_derivative(parameter)[top, 0].mean()
+            np.testing.assert_allclose(slope, result.sensitivities["shift"][parameter][-1], rtol=1e-10)
+
+    def test_elements_fill_the_block(self):
+        result = stickslip.run(plate(3))
+        quads = result.elements["block"]
+        self.assertEqual(quads.shape, (18, 4))
+        x, y = result.coordinates[quads].transpose(2, 0, 1)
+        area = 0.5 * (x * np.roll(y, -1, 1) - np.roll(x, -1, 1) * y).sum()
+        self.assertAlmostEqual(area, 8, delta=1e-14 * 8 * 18)  # a rounding an element
+
+
+class Views(unittest.TestCase):
+    def setUp(self):
+        self.result = stickslip.run(plate())
+
+    def arrays(self):
+        sole = self.result.contact("sole")
+        return {
+            "times": self.result.times,
+            "response": self.result.responses["shift"],
+            "sensitivity": self.result.sensitivities["shift"]["p"],
+            "coordinates": self.result.coordinates,
+            "elements": self.result.elements["block"],
+            "displacement": self.result.displacement(),
+            "displacement_derivative": self.result.displacement_derivative("mu"),
+            **{key: sole[key] for key in sole},
+        }
+
+    def test_every_array_looks_into_the_result(self):
+        for (name, first), second in zip(self.arrays().items(), self.arrays().values()):
+            with self.subTest(name):
+                self.assertIs(first.base, self.result)
+                self.assertFalse(first.flags.owndata)
+                self.assertEqual(first.ctypes.data, second.ctypes.data)
+
+    def test_no_array_can_be_written_to(self):
+        for name, array in self.arrays().items():
+            with self.subTest(name), self.assertRaises(ValueError):
+                array[...] = 0
+
+    def test_steps_have_memory_of_their_own(self):
+        first, last = self.result.displacement(0), self.result.displacement(1)
+        self.assertFalse(np.shares_memory(first, last))
+        self.assertEqual(last.ctypes.data, self.result.displacement(-1).ctypes.data)
+
+    def test_an_array_outlives_the_name_of_its_result(self):
+        u = self.result.displacement()
+        copy = u.copy()
+        self.result = None
+        gc.collect()
+        others = [stickslip.run(plate()) for _ in range(3)]  # what would reuse memory that was freed
+        np.testing.assert_array_equal(u, copy)
+        self.assertEqual(len(others), 3)
+
+    def test_the_result_goes_with_its_last_array(self):
+        u = self.result.displacement()
+        gone = []
+        holder = u.base
+        self.assertIs(holder, self.result)
+        del holder
+        weakref.finalize(self.result, gone.append, True)
+        self.result = None
+        gc.collect()
+        self.assertEqual(gone, [])
+        del u
+        gc.collect()
+        self.assertEqual(gone, [True])
+
+    def test_a_step_or_name_that_is_not_there_is_an_error(self):
+        for step in (2, -3):
+            with self.assertRaises(IndexError):
+                self.result.displacement(step)
+        with self.assertRaises(KeyError):
+            self.result.contact("soul")
+        with self.assertRaises(KeyError):
+            self.result.displacement_derivative("nu")
+
+
+class Input(unittest.TestCase):
+    def test_method_and_set_change_the_scene(self):
+        result = stickslip.run(SCENES / "stop.json", method="penalty",
+                               set={"/method/penalty/stiffness": 9, "/loads/0/force/0": np.float64(25)})
+        self.assertEqual(result.document["method"]["penalty"]["stiffness"], 9)
+        # u = (F + 9 k g0) / 10 k, force = F - k u
+        np.testing.assert_allclose(result.responses["press"], [25 - (25 + 90) / 10], rtol=1e-13)
+
+    def test_numpy_numbers_and_arrays_are_taken(self):
+        scene = plate()
+        scene["loads"][0]["traction"] = np.array([1.2, -5])
+        scene["bodies"]["block"]["mesh"]["box"]["cells"] = [np.int64(12), np.int64(6)]
+        np.testing.assert_array_equal(stickslip.run(scene).displacement(), stickslip.run(plate()).displacement())
+
+    def test_all_faults_of_a_dict_are_named_without_lines(self):
+        scene = plate()
+        scene["contacts"]["sole"]["fricton"] = 1
+        scene["time"]["steps"] = 0
+        with self.assertRaises(stickslip.InputError) as caught:
+            stickslip.run(scene)
+        faults = caught.exception.faults
+        self.assertEqual(len(faults), 2)
+        self.assertTrue(any(f.startswith("scene: /contacts/sole/fricton: ") and "friction" in f for f in faults), faults)
+        self.assertTrue(any(f.startswith("scene: /time/steps: ") for f in faults), faults)
+        for fault in faults:
+            self.assertIn(fault, str(caught.exception))
+        self.assertIsInstance(caught.exception, ValueError)
+
+    def test_faults_of_a_file_have_their_lines(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "bad.json"
+            path.write_text('{"bodies": {},\n "time": {"end": 1, "stps": 3}}')
+            with self.assertRaises(stickslip.InputError) as caught:
+                stickslip.run(path, folder=folder)
+            self.assertTrue(any(":2:" in f and "/time/stps" in f for f in caught.exception.faults))
+            self.assertEqual(sorted(os.listdir(folder)), ["bad.json"])  # nothing is written
+
+    def test_faults_of_the_scene_as_a_whole_and_of_set_are_input_errors(self):
+        scene = plate()
+        scene["contacts"]["sole"]["slave"] = "block.sole"
+        with self.assertRaises(stickslip.InputError):
+            stickslip.run(scene)
+        with self.assertRaises(stickslip.InputError) as caught:
+            stickslip.run(plate(), set={"/contacts/heel/friction": 0.1})
+        self.assertIn("heel", caught.exception.faults[0])
+        with self.assertRaises(stickslip.InputError):
+            stickslip.run(plate(), method="magic")
+
+    def test_what_json_cannot_hold_is_refused(self):
+        with self.assertRaises(stickslip.InputError):
+            stickslip.run(plate(), set={"/contacts/sole/friction": float("nan")})
+        with self.assertRaises((TypeError, AttributeError)):
+            stickslip.run({"bodies": object()})
+
+    def test_a_failed_solve_is_a_status_and_keeps_what_there_is(self):
+        scene = plate(3)
+        scene["loads"][0]["traction"] = [2, -5]  # more than friction can hold
+        result = stickslip.run(scene)
+        self.assertFalse(result.converged)
+        self.assertNotEqual(result.message, "")
+        self.assertEqual(result.document["status"], result.status)
+        self.assertEqual(len(result.times), len(result.document["steps"]))
+
+
+class Surroundings(unittest.TestCase):
+    def test_a_folder_gets_the_result_and_the_fields(self):
+        with tempfile.TemporaryDirectory() as folder:
+            result = stickslip.run(plate(3), folder=pathlib.Path(folder) / "new")
+            written = json.loads((pathlib.Path(folder) / "new" / "result.json").read_text())
+            self.assertEqual(written, result.document)
+            self.assertTrue((pathlib.Path(folder) / "new" / "fields.pvd").exists())
+
+    def test_a_disk_that_refuses_is_an_os_error(self):
+        with tempfile.NamedTemporaryFile() as file, self.assertRaises(OSError):
+            stickslip.run(plate(3), folder=pathlib.Path(file.name) / "below_a_file")
+
+    def test_other_threads_run_while_it_solves(self):
+        count, stop = 0, threading.Event()
+
+        def work():
+            nonlocal count
+            while not stop.is_set():
+                count += 1
+                time.sleep(1e-3)
+
+        worker = threading.Thread(target=work)
+        worker.start()
+        before = count
+        start = time.monotonic()
+        stickslip.run(plate(40, 4))
+        during, elapsed = count - before, time.monotonic() - start
+        stop.set()
+        worker.join()
+        # With the GIL held it would be one or two. A busy machine wakes a sleeper late: one in 50 ms is asked for.
+        self.assertGreater(during, max(3, elapsed / 0.05), f"{elapsed} s")
+
+    @unittest.skipUnless(hasattr(signal, "setitimer"), "no interval timers here")
+    def test_an_interrupt_ends_the_solve(self):
+        def interrupt(number, frame):
+            raise KeyboardInterrupt
+
+        old = signal.signal(signal.SIGALRM, interrupt)
+        try:
+            signal.setitimer(signal.ITIMER_REAL, 0.3)
+            with self.assertRaises(KeyboardInterrupt):
+                stickslip.run(plate(20, 100000))  # minutes
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            signal.signal(signal.SIGALRM, old)
+
+    def test_the_same_scene_gives_the_same_bits(self):
+        first, second = stickslip.run(plate()), stickslip.run(plate())
+        np.testing.assert_array_equal(first.displacement(), second.displacement())
+        np.testing.assert_array_equal(first.sensitivities["shift"]["p"], second.sensitivities["shift"]["p"])
+
+
+if __name__ == "__main__":
+    unittest.main()
