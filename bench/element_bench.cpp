@@ -55,7 +55,7 @@ void assembly(benchmark::State& state, const std::string& element) {
   const Plate<double> plate(static_cast<int>(state.range(0)), element);
   long nonzeros = 0;
   for (auto _ : state) {
-    const SparseEngine<double> engine(plate.model, plate.slots, true, Backend::eigen);
+    const SparseEngine<double> engine(plate.model, plate.slots, true, ConeRadius::augmented, Backend::eigen);
     nonzeros = engine.nonzeros();
   }
   per_element(state, plate.model);
