@@ -106,13 +106,13 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
     record = {pass, 1, 0};
     for (int j = 0; j < problem.parameters && after.rows() > 0; ++j) {
       const double change = (after.col(j) - before.col(j)).cwiseAbs().maxCoeff();
-      // where the derivative is zero, what the last increment left of it says how small that is
+      const double size = after.col(j).cwiseAbs().maxCoeff();
+      // (where the derivative is zero, what the last increment left of it says how small that is)
       if (pass == 1) carried[j] = before.col(j).cwiseAbs().maxCoeff();
-      const double size = std::max(carried[j], after.col(j).cwiseAbs().maxCoeff());
       const double floor = 8 * rounding * stiffest * linearised.relative_reach().col(j).cwiseAbs().maxCoeff();
       const double q = last[j] > 0 ? change / last[j] : 1;
       const double left = q < 1 ? change * q / (1 - q) : change;
-      const bool stalled = pass > 3 && change <= std::max(floor, 4 * rounding * size);
+      const bool stalled = pass > 3 && change <= std::max(floor, 4 * rounding * std::max(size, carried[j]));
       settled &= change == 0 || stalled || (q < 1 && pass > 2 && left <= tolerance * size);
       if (last[j] > 0 && change > floor) record.contraction = std::max(record.contraction, q);
       last[j] = change;

@@ -100,7 +100,11 @@ struct Reader {
     if (stays && stays->body != side->body) return fixed->must_be("a side of the same body, " + side->body);
     motion.side = side_node->value();
     if (fixed) motion.fixed = fixed->value();
-    while (reading.scene.bodies[motion.body].name != side->body) ++motion.body;
+    const auto& bodies = reading.scene.bodies;
+    const auto found =
+        std::find_if(bodies.begin(), bodies.end(), [&](const Body& body) { return body.name == side->body; });
+    if (found == bodies.end()) return;  // the body is at fault, which is said
+    motion.body = static_cast<int>(found - bodies.begin());
     add_shapes(name, node, std::move(motion), each.has_value(), side->side.nodes.size());
   }
 

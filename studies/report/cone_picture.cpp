@@ -50,15 +50,14 @@ void draw_iterates(const ConePath& path, const Panel& at, Drawing& drawing) {
     drawing.path(Path().circle(x0, y0, 3.5), {"#1f6fb4", "paper", 1.4, {}}, tooltip);
     drawing.path(Path().circle(x1, y1, 2), {"", "ink", 1, {}}, tooltip);
   }
-  double labelled_x = -1e9, labelled_y = 0;
+  std::vector<double> labelled;  // heights; a step that would write over another's time goes without
   for (const auto& i : path.iterates) {
     if (!i.last) continue;
     const double x = at.x(i.pressure), y = at.y(i.tangential);
     drawing.path(marker("diamond", x, y), {"ink", "#d1495b", 1, {}}, fmt::format("solution at t = {:g}", i.time));
-    if (std::hypot(x - labelled_x, y - labelled_y) < 26) continue;  // steps that stay where they were say nothing new
-    drawing.text(x + 8, y - 6, fmt::format("t = {:g}", i.time), {Anchor::start, 11, "soft"});
-    labelled_x = x;
-    labelled_y = y;
+    if (std::any_of(labelled.begin(), labelled.end(), [&](double h) { return std::abs(h - y) < 13; })) continue;
+    drawing.text(x + 8, y + 4, fmt::format("t = {:.3g}", i.time), {Anchor::start, 11, "soft"});
+    labelled.push_back(y);
   }
 }
 
@@ -66,10 +65,10 @@ void draw_axes(const ConePath& path, const Panel& at, Drawing& drawing) {
   const double low = path.in_space ? at.zero : at.zero + side / 2;
   drawing.line(at.x(0), at.zero, at.x(0) + side, at.zero, {"ink", "", 1, {}});
   drawing.line(at.x(0), low, at.x(0), top, {"ink", "", 1, {}});
-  drawing.text(at.x(0) + side, at.zero + 16, fmt::format("pressure, to {:.3g}", side / at.scale), {Anchor::end, 12});
+  drawing.text(at.x(0) + side, top + side + 18, fmt::format("pressure, to {:.3g}", side / at.scale), {Anchor::end, 12});
   drawing.text(at.x(0) - 10, top + side / 2,
                path.in_space ? fmt::format("size of the tangential traction, to {:.3g}", side / at.scale)
-                             : fmt::format("tangential traction, +-{:.3g}", side / 2 / at.scale),
+                             : fmt::format("tangential traction, to \u00b1{:.3g}", side / 2 / at.scale),
                {Anchor::middle, 12, "ink", true});
   drawing.text(at.x(0), top - 12, path.title, {Anchor::start, 13, "ink", false, true});
 }
@@ -78,7 +77,7 @@ void draw_axes(const ConePath& path, const Panel& at, Drawing& drawing) {
 
 Drawing draw_cones(const std::vector<ConePath>& paths, const std::string& title) {
   const double width = margin + static_cast<double>(paths.size()) * (side + margin + gap);
-  Drawing drawing(width, top + side + 48, title,
+  Drawing drawing(width, top + side + 76, title,
                   "Friction cones: trial tractions of every iterate, joined to what they are projected to, and the "
                   "solutions of the steps.");
   drawing.text(margin, 24, title, {Anchor::start, 15, "ink", false, true});
@@ -92,9 +91,9 @@ Drawing draw_cones(const std::vector<ConePath>& paths, const std::string& title)
     draw_axes(path, at, drawing);
     left += side + margin + gap;
   }
-  drawing.text(margin, top + side + 40,
-               "hollow: trial traction; dot: its projection; diamond: solution of a step; shaded: stick",
+  drawing.text(margin, top + side + 44, "hollow: trial traction, joined to its projection (dot)",
                {Anchor::start, 12, "soft"});
+  drawing.text(margin, top + side + 62, "diamond: solution of a step; shaded: stick", {Anchor::start, 12, "soft"});
   return drawing;
 }
 

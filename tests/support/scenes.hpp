@@ -391,10 +391,11 @@ inline std::vector<Scene> all() {
           two_disks(8, true),
           driven_block(),
           driven_block("T3"),
-          shaped_boxes(5, 4, "Q4", false),
-          shaped_boxes(4, 5, "T3", true),
           turned_point()};
 }
+
+/// With shape parameters, whose derivatives move the gap as a whole.
+inline std::vector<Scene> shaped() { return {shaped_boxes(5, 4, "Q4", false), shaped_boxes(4, 5, "T3", true)}; }
 
 /// One for each kinematics and each kind of element.
 inline std::vector<Scene> of_every_element() {
