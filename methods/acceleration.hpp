@@ -3,7 +3,8 @@
 ///   r = f(x) - x
 ///   Aitken     x <- x + w r,  w <- -w r_last . (r - r_last) / |r - r_last|^2, kept in [0.1, 10]
 ///   Anderson   x <- f(x) - sum gamma_i (f_i+1 - f_i),  gamma: least squares of r - sum gamma_i (r_i+1 - r_i)  over the
-///              last m = 5 differences; QR, the oldest dropped while the condition of the scaled columns is above 1e8
+///              last m = 5 differences; QR, the oldest dropped while the condition of the scaled columns is above 1e8,
+///              or while one is rounding
 ///
 /// Weights are numbers of the iteration, not of the scene: they are formed from the primal parts and not
 /// differentiated, which the fixed point does not notice. An extrapolated x is on trial: where its residual is not
@@ -19,6 +20,7 @@
 #include <vector>
 
 #include "core/algebra/scalar.hpp"
+#include "core/model/engine.hpp"
 #include "methods/options.hpp"
 
 namespace stickslip {
@@ -109,7 +111,11 @@ class Accelerator {
       if (lengths[i] > 0) columns.col(i) /= lengths[i];
     }
     Vector<T> x = past_.back().image;
-    for (Eigen::Index dropped = 0; dropped < columns.cols(); ++dropped) {
+    const double noise = 1e2 * detail::unit_roundoff * values(x).norm();  // of a difference of residuals, and more
+    Eigen::Index dropped = 0;
+    for (Eigen::Index i = 0; i < columns.cols(); ++i)
+      if (lengths[i] <= noise) dropped = i + 1;
+    for (; dropped < columns.cols(); ++dropped) {
       const Matrix<double> used = columns.rightCols(columns.cols() - dropped);
       const Eigen::HouseholderQR<Matrix<double>> qr(used);
       const Eigen::Index rank = std::min(used.rows(), used.cols());

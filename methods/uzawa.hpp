@@ -137,6 +137,7 @@ Increment<T> solve_increment(const UzawaAL& method, Run<T, E>& run, const State<
   Increment<T> increment;
   increment.rho_factor = previous_factor.empty() ? std::vector<double>(model.points.size(), 1.0) : previous_factor;
   const auto initial = initial_regularisation(run.slots, method);
+  const RunScales before = run.account.scales;  // without what an extrapolated lambda may overshoot by
   Vector<T> u = run.engine.begin(time, previous.displacement), lambda = previous.contact.traction;
   std::vector<ContactState> last = previous.contact.state;  // resumed at the first augmentation
   Augmentations<T> progress(model, run.slots, method.acceleration);
@@ -147,6 +148,7 @@ Increment<T> solve_increment(const UzawaAL& method, Run<T, E>& run, const State<
     rough &= increment.augmentations + 1 < limit;
     const auto rho = adapted(initial, increment.rho_factor);
     const ContactInput<T> input{model, run.slots, rho, previous.contact.placement, cone_radius(method), time};
+    run.account.scales = before;
     const auto equilibrium =
         newton(run.engine, input, u, lambda, false, last, detail::inner_options(method, progress.contraction()),
                run.account, rough ? detail::forcing : 0);
