@@ -163,13 +163,13 @@ constexpr const char* scene_parts = R"({
     "oneOf": [{"required": ["sum"]}, {"required": ["at"]}]}},
   "parameters": {"description": "JSON pointers of numbers of the scene", "type": "object", "additionalProperties": {
     "anyOf": [{"type": "string"},
-      {"type": "object", "required": ["shape"], "additionalProperties": false, "properties": {
+      {"type": "object", "minProperties": 1, "additionalProperties": {"type": "number"}, "properties": {
         "shape": {"description": "a side moves, the body follows", "type": "object",
           "required": ["side", "direction"], "additionalProperties": false, "properties": {
           "side": {"$ref": "#/$defs/side"}, "direction": {"$ref": "#/$defs/vector"},
           "fixed": {"description": "what stays; left out: all other sides", "$ref": "#/$defs/side"},
-          "each": {"description": "one parameter a node", "enum": ["node"]}}}}},
-      {"type": "object", "minProperties": 1, "additionalProperties": {"type": "number"}}]}},
+          "each": {"description": "one parameter a node", "enum": ["node"]}}}},
+        "dependentSchemas": {"shape": {"maxProperties": 1}}}]}},
   "method": {"$ref": "#/$defs/method"},
   "linear_solver": {"type": "object", "additionalProperties": false, "properties": {
     "engine": {"enum": ["auto", "sparse", "condensed"]},

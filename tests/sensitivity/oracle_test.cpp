@@ -132,7 +132,7 @@ UzawaAL uzawa(double multiple, UzawaAL::Sensitivity sensitivity,
   UzawaAL method;
   method.scale = scenes::relative(multiple);
   method.adapt = false;
-  method.tolerance = 1e-12;
+  method.tolerance = 1e-13;
   method.max_augmentations = 20000;
   method.sensitivity = sensitivity;
   method.acceleration = acceleration;
@@ -145,7 +145,7 @@ TEST(Oracle, DerivativesOfAcceleratedUpdatesAreThoseOfTheSolution) {
     for (auto acceleration : {UzawaAL::Acceleration::aitken, UzawaAL::Acceleration::anderson})
       for (auto sensitivity : {Sensitivity::iterated, Sensitivity::preconditioned})
         // of the oracle the derivative follows by plain updates once the solution is there, so the scale is not small
-        EXPECT_LE(worst_error(scene, uzawa(3, sensitivity, acceleration)), 1);
+        EXPECT_LE(worst_error(scene, uzawa(3, sensitivity, acceleration)), 1) << scene.responses[0].name;
 }
 
 /// Largest contraction of the updates, largest passes of the scheme, largest error against the monolithic derivatives.
@@ -192,8 +192,9 @@ TEST(Oracle, PreconditionedSchemeTakesAtMostSixBacksolvesAParameterWhateverTheCo
       if (wedged && multiple < 1) continue;
       const auto result = preconditioned(scene, exact, multiple);
       EXPECT_LE(result.passes, 6) << multiple;
-      // rounding, or the 1e-12 of the solution that is differentiated, which a path of 24 increments adds up
-      EXPECT_LE(result.error, std::max(1e-10, 50 * 1.1e-16 * exact.condition)) << multiple;
+      // where 1 - q is 1e-5, a factor that makes up for it has rounding of its own
+      EXPECT_LE(result.error, std::max(result.contraction < 0.995 ? 1e-10 : 5e-10, 50 * 1.1e-16 * exact.condition))
+          << scene.responses[0].name << " " << multiple;
       least = std::min(least, result.contraction);
       most = std::max(most, result.contraction);
     }

@@ -195,9 +195,10 @@ TEST_P(ShippedStudy, IsReadWithoutFaultAndNamesWhatIsThere) {
   // the reader checks the names in references; a pattern of an error that nothing has would just be left out
   std::vector<std::string> errors = {"kkt"};
   const json& root = study->scene.root();
+  const json parameters = root.value("parameters", json::object());
   for (const auto& [response, unused] : root.at("responses").items()) {
     errors.push_back("response:" + response);
-    for (const auto& [parameter, unused_too] : root.value("parameters", json::object()).items())
+    for (const auto& [parameter, unused_too] : parameters.items())
       errors.push_back("sensitivity:" + response + "/" + parameter);
   }
   for (const auto& pattern : study->errors)
