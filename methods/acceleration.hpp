@@ -13,10 +13,6 @@
 /// is never much worse than plain. [IT69], [WN11]
 #pragma once
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-#include <Eigen/SVD>
-#include <optional>
 #include <vector>
 
 #include "core/algebra/scalar.hpp"
@@ -33,25 +29,11 @@ struct Secant {
 /// Contraction of a linear map A out of some of its secants: its spectral radius on the space of their arguments
 /// (Arnoldi, where they are successive). Directions that are new by less than 2 %, of which rounding may be part, are
 /// left out of it; what is left at least is the ratio of the lengths of the last. pre: no argument is zero.
-inline double contraction(const std::vector<Secant>& secants) {
-  const Secant& last = secants.back();
-  const auto m = static_cast<Eigen::Index>(secants.size());
-  Matrix<double> space(last.argument.size(), m), image(last.argument.size(), m);
-  for (Eigen::Index j = 0; j < m; ++j) {
-    const double length = secants[j].argument.norm();
-    space.col(j) = secants[j].argument / length;
-    image.col(j) = secants[j].image / length;
-  }
-  Eigen::ColPivHouseholderQR<Matrix<double>> qr;
-  qr.setThreshold(0.02);
-  qr.compute(space);
-  const Eigen::Index rank = qr.rank();
-  if (rank < 2) return last.image.norm() / last.argument.norm();
-  const Matrix<double> turned = qr.householderQ().adjoint() * (image * qr.colsPermutation());
-  const Matrix<double> R = qr.matrixQR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>();
-  const Matrix<double> A = R.transpose().partialPivLu().solve(turned.topLeftCorner(rank, rank).transpose());
-  return A.eigenvalues().cwiseAbs().maxCoeff();  // of A transposed, which has the same
-}
+double contraction(const std::vector<Secant>& secants);
+
+/// Anderson's gamma, one weight a difference of successive residuals, the oldest first; zero for those that are left
+/// out: lengths up to `noise` are rounding.
+Vector<double> anderson_weights(const Matrix<double>& differences, const Vector<double>& residual, double noise);
 
 /// What the next argument of an accelerated iteration is made from: the last evaluations of one map.
 template <class T>
@@ -103,32 +85,14 @@ class Accelerator {
 
   Vector<T> anderson() {
     const Vector<double> residual = past_.back().residual();
-    Matrix<double> columns(residual.size(), past_.size() - 1);
-    Vector<double> lengths(columns.cols());
-    for (Eigen::Index i = 0; i < columns.cols(); ++i) {
-      columns.col(i) = past_[i + 1].residual() - past_[i].residual();
-      lengths[i] = columns.col(i).norm();
-      if (lengths[i] > 0) columns.col(i) /= lengths[i];
-    }
+    Matrix<double> differences(residual.size(), past_.size() - 1);
+    for (Eigen::Index i = 0; i < differences.cols(); ++i)
+      differences.col(i) = past_[i + 1].residual() - past_[i].residual();
     Vector<T> x = past_.back().image;
     const double noise = 1e2 * detail::unit_roundoff * values(x).norm();  // of a difference of residuals, and more
-    Eigen::Index dropped = 0;
-    for (Eigen::Index i = 0; i < columns.cols(); ++i)
-      if (lengths[i] <= noise) dropped = i + 1;
-    for (; dropped < columns.cols(); ++dropped) {
-      const Matrix<double> used = columns.rightCols(columns.cols() - dropped);
-      const Eigen::HouseholderQR<Matrix<double>> qr(used);
-      const Eigen::Index rank = std::min(used.rows(), used.cols());
-      const Matrix<double> R = qr.matrixQR().topRows(rank).template triangularView<Eigen::Upper>();
-      const auto singular = Eigen::JacobiSVD<Matrix<double>>(R).singularValues();
-      if (rank < used.cols() || singular[0] > 1e8 * singular[rank - 1]) continue;
-      const Vector<double> gamma = qr.solve(residual);
-      for (Eigen::Index i = 0; i < used.cols(); ++i) {
-        const Eigen::Index j = dropped + i;
-        x -= T(gamma[i] / lengths[j]) * (past_[j + 1].image - past_[j].image);
-      }
-      break;
-    }
+    const Vector<double> gamma = anderson_weights(differences, residual, noise);
+    for (Eigen::Index i = 0; i < gamma.size(); ++i)
+      if (gamma[i] != 0) x -= T(gamma[i]) * (past_[i + 1].image - past_[i].image);
     return x;
   }
 

@@ -8,7 +8,8 @@
 ///   two-cycle     three updates in a row undo each other, but for 1e-6
 ///   infeasible    a constraint that does not yield: its multiplier grows by enough to close a gap of 1e-8 of the
 ///                 displacements through the local stiffness k, and the gap moves by less than 1e-6 of that, three
-///                 times in a row. Against a body of stiffness k it would move by about the whole, whatever rho is
+///                 times in a row. Against a body of stiffness k it would move by about the whole, whatever rho is.
+///                 Growth that leads out of the state's share of the cone ends in another state, and is left to go on
 #pragma once
 
 #include <cstdio>
@@ -83,6 +84,7 @@ class Augmentations {
   static constexpr std::size_t kept_secants = 4;
   static double values_or_zero(const Vector<double>& v) { return v.size() ? v.cwiseAbs().maxCoeff() : 0; }
   void record_rate(const Vector<T>& multiplier, const ContactField<T>& field);
+  bool keeps_state(const Vector<double>& by, const ContactField<T>& field, int p) const;
   bool yields(const Vector<T>& multiplier, const ContactField<T>& field, int p, double reach) const;
 
   const Model& model_;
@@ -140,14 +142,25 @@ void Augmentations<T>::record_rate(const Vector<T>& multiplier, const ContactFie
   if (plain || q < 1) contraction_ = plain ? q : std::max(contraction_, q);
 }
 
+/// Whether a multiplier that grows by `by` for ever stays closed, and sticking if it sticks.
+template <class T>
+bool Augmentations<T>::keeps_state(const Vector<double>& by, const ContactField<T>& field, int p) const {
+  const auto& point = model_.points[p];
+  if (by[0] > 0) return false;
+  if (field.state[p] != ContactState::stick) return true;
+  return by.tail(point.tangents).norm() <= -value(slots_.friction[point.contact]) * by[0];
+}
+
 template <class T>
 bool Augmentations<T>::yields(const Vector<T>& multiplier, const ContactField<T>& field, int p, double reach) const {
   constexpr double telling = 1e-8, nothing = 1e-6;
   const double compliance = value(slots_.geometry[p].area) / value(slots_.stiffness[p]);
   const int common = std::min(detail::constraints(model_, field, p), detail::constraints(model_, field_, p));
+  const int first = model_.points[p].multiplier, components = model_.points[p].components();
+  const Vector<double> by = values(multiplier.segment(first, components) - multiplier_.segment(first, components));
+  if (!keeps_state(by, field, p)) return true;
   for (int c = 0; c < common; ++c) {
-    const int k = model_.points[p].multiplier + c;
-    const double pushed = compliance * std::abs(value(multiplier[k]) - value(multiplier_[k]));
+    const double pushed = compliance * std::abs(by[c]);
     const double before = detail::constraint(model_, field_, p, c), now = detail::constraint(model_, field, p, c);
     if (pushed > telling * reach && std::abs(now - before) <= nothing * pushed) return false;
   }
