@@ -12,7 +12,6 @@
 ///                 Growth that leads out of the state's share of the cone ends in another state, and is left to go on
 #pragma once
 
-#include <cstdio>
 #include <string>
 
 #include "methods/acceleration.hpp"
@@ -173,16 +172,8 @@ std::string Augmentations<T>::unyielding(double negligible) const {
   for (int p = 0; p < static_cast<int>(stuck_.size()); ++p)
     if (stuck_[p] >= patience && (worst < 0 || violations_[p] > violations_[worst])) worst = p;
   if (worst < 0 || violations_[worst] <= negligible) return "";
-  const auto& point = model_.points[worst];
-  std::string place;
-  char text[40];
-  for (int i = 0; i < model_.dimension; ++i) {
-    std::snprintf(text, sizeof text, "%s%.6g", i ? ", " : "", value(slots_.points(i, point.nodes[0])));
-    place += text;
-  }
-  std::snprintf(text, sizeof text, "%.6g", violations_[worst]);
-  return "the contact point of " + model_.scene.contacts[point.contact].name + " at (" + place + ") violates its " +
-         "constraint by " + text + " and does not yield, however large its multiplier; is its motion prescribed?";
+  return name_of_point(model_, slots_, worst) + " violates its constraint by " + short_number(violations_[worst]) +
+         " and does not yield, however large its multiplier; is its motion prescribed?";
 }
 
 }  // namespace stickslip

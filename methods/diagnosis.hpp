@@ -5,8 +5,10 @@
 #include <cmath>
 #include <string>
 
+#include "core/model/contact_assembly.hpp"
 #include "core/model/loading.hpp"
 #include "core/model/state.hpp"
+#include "methods/increment.hpp"
 
 namespace stickslip {
 
@@ -45,12 +47,36 @@ bool cones_balance(const Model& model, const Slots<T>& slots, const NodeRange& b
   return left == 0 || right == 0 || left + right < pi - band;
 }
 
+/// The contact point that violates its constraint the most while supports prescribe the motion of all its nodes, in
+/// words of the scene; empty where there is none.
+template <class T>
+std::string prescribed_penetration(const Model& model, const Slots<T>& slots, const State<T>& state) {
+  constexpr double rounding = 1e-12;
+  const auto decided = decided_elsewhere(model, slots);
+  double worst = rounding * largest_nodal_norm(state.displacement, model.dimension);
+  int found = -1;
+  for (int p = 0; !decided.empty() && p < static_cast<int>(state.contact.gap.size()); ++p) {
+    if (!decided[model.points[p].multiplier] || -value(state.contact.gap[p]) <= worst) continue;
+    worst = -value(state.contact.gap[p]);
+    found = p;
+  }
+  if (found < 0) return "";
+  return name_of_point(model, slots, found) + " penetrates by " + short_number(worst) +
+         ", and supports prescribe its motion: no traction can prevent that";
+}
+
 }  // namespace detail
 
-/// Says where an increment to `time` failed for want of a hold: a body without a support, whose load no forces within
-/// its cones can balance, has no equilibrium; one of which no contact point sticks may move without resistance.
+/// Says why an increment to `time` failed. Supports may drive a point into its obstacle. A body without a support,
+/// whose load no forces within its cones can balance, has no equilibrium; one of which no contact point sticks may move
+/// without resistance, where the tangent is singular.
 template <class T>
 void diagnose(const Model& model, const Slots<T>& slots, double time, Increment<T>& failed) {
+  if (const std::string point = detail::prescribed_penetration(model, slots, failed.state); !point.empty()) {
+    failed.status = Status::infeasible;
+    failed.message = point;
+    return;
+  }
   const Vector<double> external = values(external_forces(model, slots, time));
   const auto& states = failed.state.contact.state;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
@@ -66,11 +92,11 @@ void diagnose(const Model& model, const Slots<T>& slots, double time, Increment<
       sticks |=
           states[p] == ContactState::stick && std::any_of(model.points[p].nodes.begin(), model.points[p].nodes.end(),
                                                           [&](int node) { return body.has(node); });
-    if (balanced && sticks) continue;
+    if (balanced && (sticks || failed.status != Status::singular)) continue;
     failed.message =
         model.scene.bodies[b].name + " is free to slide: no support holds it, and " +
-        (balanced ? "none of its contact points sticks" : "no friction of its contacts balances its load") + " (" +
-        failed.message + ")";
+        (balanced ? "none of its contact points sticks" : "no forces that its contacts can give balance its load") +
+        " (" + failed.message + ")";
     if (!balanced) failed.status = Status::no_equilibrium;
     return;
   }

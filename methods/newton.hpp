@@ -11,7 +11,9 @@
 /// Converged: all within the tolerance and no state changed since the last tangent. Where a residual stops falling at
 /// the level of its own rounding the status is converged_at_roundoff. The full step is taken when
 /// it lands in another active set, for that is how the set is found; within one set the residual must fall, and a
-/// repeated set without progress asks the same of every step: backtracking. [AC91], [HSW08]; theory: core/README.md.
+/// repeated set without progress asks the same of every step: backtracking. Where a tangent is singular while points
+/// are open, as of a body that nothing holds but the contact it is about to make, they are presumed closed for one
+/// step: those that should not be are in tension then, and open. [AC91], [HSW08]; theory: core/README.md.
 #pragma once
 
 #include <chrono>
@@ -195,8 +197,9 @@ void resume_on_cone(const ContactInput<T>& input, const Vector<T>& multiplier, c
 ///     generalised derivative there: a body that only friction holds then has a regular first tangent.
 ///   - A point that slipped in the last step and would now slip the other way sticks first. Far from the solution a
 ///     large rho turns any small overshoot of the slip into slip of the opposite sign, and points flip for ever; stick
-///     lies between the two.
-/// `last`: field and branches of the last step; empty at the first.
+///     lies between the two. Where nothing presses there is nothing between them: a set that still repeats halfway
+///     through max_iterations goes on without.
+/// `last`: field and branches of the last step; empty at the first, and where a reversal counts as none.
 template <class T>
 std::vector<ContactState> step_branches(const Model& model, const ContactInput<T>& input, const ContactField<T>& field,
                                         const Vector<T>& multiplier, const ContactField<T>& last) {
@@ -216,6 +219,18 @@ std::vector<ContactState> step_branches(const Model& model, const ContactInput<T
     }
     const bool reversed = !last.state.empty() && last.state[p] == ContactState::slip && along_last < 0;
     if (apex || reversed) branches[p] = ContactState::stick;
+  }
+  return branches;
+}
+
+/// Branches with all open points closed, and sticking where there is friction.
+template <class T>
+std::vector<ContactState> presume_contact(const ContactInput<T>& input, std::vector<ContactState> branches) {
+  for (std::size_t p = 0; p < branches.size(); ++p) {
+    const auto& point = input.model.points[p];
+    if (branches[p] != ContactState::open) continue;
+    const bool rough = point.tangents > 0 && value(input.slots.friction[point.contact]) > 0;
+    branches[p] = rough ? ContactState::stick : ContactState::slip;
   }
   return branches;
 }
@@ -258,7 +273,7 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
   std::unordered_map<std::size_t, double> seen;  // active set -> smallest residual met with it
   bool damped = false, redundant = false;        // redundant: constraints repeat one another
   const auto decided = unknown ? decided_elsewhere(model, input.slots) : std::vector<char>();
-  int extra = detail::extra_iterations<T>(), steady = 0;
+  int extra = detail::extra_iterations<T>(), steady = 0, presumptions = 3;
   double step_length = 1;
   auto at = detail::evaluate(engine, input, u, multiplier, unknown, account.scales);
   for (int iteration = 0;; ++iteration) {
@@ -300,12 +315,11 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
 
     const auto evaluated = at.field.state;
     if (iteration == 0 && !last.empty()) detail::resume_on_cone(input, multiplier, last, at.field);
-    const auto branch = detail::step_branches(model, input, at.field, multiplier, directed);
+    const bool without_reversals = damped && 2 * iteration > options.max_iterations;
+    auto branch = detail::step_branches(model, input, at.field, multiplier,
+                                        damped && iteration % 3 ? ContactField<T>{} : directed);
     used = at.field.state;
-    directed = at.field;
-    directed.state = branch;
-    BlockVector<T> step;
-    {
+    const auto factorise = [&] {
       std::vector<PointTangent<T>> tangents;
       {
         const Stopwatch time(account.seconds.assembly);
@@ -314,11 +328,18 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
           tangents.push_back(point_tangent<T>(input, p, compact, multiplier, branch[p]));
       }
       const Stopwatch time(account.seconds.factorization);
-      const bool regular =
-          unknown ? factorise_sharing(engine, model, decided, std::move(tangents), redundant, account.counters)
-                  : engine.factorise(tangents, account.counters);
-      if (!regular) return finish(Status::singular, engine.message());
+      return unknown ? factorise_sharing(engine, model, decided, std::move(tangents), redundant, account.counters)
+                     : engine.factorise(tangents, account.counters);
+    };
+    if (!factorise()) {
+      const auto closed = detail::presume_contact(input, branch);
+      if (closed == branch || presumptions-- == 0) return finish(Status::singular, engine.message());
+      branch = closed;
+      if (!factorise()) return finish(Status::singular, engine.message());
     }
+    directed = at.field;
+    directed.state = branch;
+    BlockVector<T> step;
     {
       const Stopwatch time(account.seconds.backsolve);
       if (branch != evaluated) detail::rows_in(engine, input, u, multiplier, unknown, branch, at);

@@ -99,10 +99,22 @@ class LinearisedEquilibrium {
   /// Completes the state of every block from the last solve.
   void settle(const std::vector<ContactField<Direction>>& fields, const std::vector<Vector<Direction>>& lambda);
 
-  const Matrix<double>& relative_reach() const { return compact_; }  ///< derivatives of the contact displacements
+  /// Largest derivatives, by parameter, of the contact displacements, then and now, and of the forces of bodies and
+  /// loads on the unknowns, whatever part of these cancels.
+  Vector<double> reach() const {
+    const Matrix<double> then = gather(
+        problem_.blocks,
+        problem_.parameters, [&](auto& block, int) -> auto& { return block.previous.contact.placement; });
+    return largest(compact_).cwiseMax(largest(then));
+  }
+  Vector<double> load() const { return largest(reduced_); }
 
  private:
   static constexpr int refinements = 2;
+  static Vector<double> largest(const Matrix<double>& columns) {
+    if (columns.rows() == 0) return Vector<double>::Zero(columns.cols());
+    return columns.cwiseAbs().colwise().maxCoeff();
+  }
   struct Rows {
     Matrix<double> u, l;
     std::vector<ContactField<Direction>> fields;

@@ -102,14 +102,16 @@ ContactState other_branch(const Model& model, const State<double>& at, const Wea
   return branch == ContactState::stick ? ContactState::slip : ContactState::stick;
 }
 
-/// Differentiates one increment along one parameter and side; false where no set of branches is confirmed.
+/// Differentiates one increment along one parameter and side; false where no set of branches is confirmed: one was
+/// tried twice, or as many as a search that gets there does not need.
 template <class M, class E>
 bool differentiate_side(const M& method, Differentiation<E>& problem, const State<double>& previous,
                         Increment<double> increment, double side) {
   const auto weak = weak_points(problem.model, problem.slots, increment.state);
   auto& branches = increment.state.contact.state;
+  constexpr std::size_t limit = 20;
   std::set<std::vector<ContactState>> tried;
-  while (tried.insert(branches).second) {
+  while (tried.size() < limit && tried.insert(branches).second) {
     if (!differentiate_increment(method, problem, previous, increment)) return false;
     const auto rho = regularisation_blocks(method, problem, increment.rho_factor)[0];
     auto next = branches;

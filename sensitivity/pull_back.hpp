@@ -65,6 +65,11 @@ class RecordedEquilibrium {
   void balance(int objective);
   /// Takes the derivative by lambda out.
   Vector<double> take_multiplier(int objective);
+  /// Largest derivative by a nodal force, of those that were added up on the way.
+  double force_weight(int objective) const {
+    const auto largest = [](const auto& m) { return m.size() ? m.cwiseAbs().maxCoeff() : 0.0; };
+    return std::max(largest(weights_[objective]), largest(aside_[objective].u));
+  }
   /// Moves all that is left to the slots; derivatives by the history that the increment started from.
   HistoryDerivative finish(int objective);
 

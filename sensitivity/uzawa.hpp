@@ -88,14 +88,18 @@ inline State<double> restated(const Model& model, State<double> at, const Regula
 }
 
 /// Iterates D lambda until the change, extrapolated by its own contraction, is below `tolerance` of D lambda or at the
-/// rounding of rho Dg, for every parameter.
+/// rounding of rho Dg, for every parameter. Dg is rounded as its terms are and as the forces are that balance in it: of
+/// a thickness, on which the tractions do not depend, nothing but that rounding is left.
 template <class E>
 bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, const RegularisationField<double>& rho,
              std::vector<Vector<Direction>>& lambda, std::vector<ContactField<Direction>>& fields) {
   constexpr double tolerance = 1e-12, rounding = 1e-16;
   constexpr int limit = 20000;
-  double stiffest = 0;
-  for (const auto& r : rho) stiffest = std::max(stiffest, r.normal);
+  double stiffest = 0, yielding = 0;  // rho; rho of a unit of force on the local stiffness
+  for (std::size_t p = 0; p < rho.size(); ++p) {
+    stiffest = std::max(stiffest, rho[p].normal);
+    yielding = std::max(yielding, rho[p].normal / problem.slots.stiffness[p]);
+  }
   Eigen::ArrayXd last = Eigen::ArrayXd::Zero(problem.parameters), carried = last;
   auto columns = [&](auto&& pick) { return gather(problem.blocks, problem.parameters, pick); };
   auto& record = problem.record.emplace();
@@ -104,6 +108,7 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
     fields = linearised.solve(lambda);
     const Matrix<double> after = columns([&](auto&, int b) -> auto& { return fields[b].traction; });
     update(lambda, fields);
+    const Vector<double> floors = 8 * rounding * (stiffest * linearised.reach() + yielding * linearised.load());
     bool settled = true;
     record = {pass, 1, 0};
     for (int j = 0; j < problem.parameters && after.rows() > 0; ++j) {
@@ -111,12 +116,11 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
       const double size = after.col(j).cwiseAbs().maxCoeff();
       // (where the derivative is zero, what the last increment left of it says how small that is)
       if (pass == 1) carried[j] = before.col(j).cwiseAbs().maxCoeff();
-      const double floor = 8 * rounding * stiffest * linearised.relative_reach().col(j).cwiseAbs().maxCoeff();
       const double q = last[j] > 0 ? change / last[j] : 1;
       const double left = q < 1 ? change * q / (1 - q) : change;
-      const bool stalled = pass > 3 && change <= std::max(floor, 4 * rounding * std::max(size, carried[j]));
-      settled &= change == 0 || stalled || (q < 1 && pass > 2 && left <= tolerance * size);
-      if (last[j] > 0 && change > floor) record.contraction = std::max(record.contraction, q);
+      const bool stalled = pass > 3 && change <= std::max(floors[j], 4 * rounding * std::max(size, carried[j]));
+      settled &= change == 0 || stalled || (q < 1 && pass > 2 && left <= std::max(tolerance * size, 8 * floors[j]));
+      if (last[j] > 0 && change > floors[j]) record.contraction = std::max(record.contraction, q);
       last[j] = change;
     }
     if (settled) return true;
@@ -206,21 +210,33 @@ RegularisationField<Reverse> recorded_regularisation(const UzawaAL& method, Adjo
   return adapted(initial_regularisation(problem.recorded, method), factor);
 }
 
-/// Moves the derivative by lambda on to the update before, again and again, until what is left of it is lost in
-/// rounding.
+/// Moves the derivative by lambda on to the update before, again and again, until it is lost in rounding or stays, and
+/// leaves what stays in `left`: the multiplier of a constraint that supports decide is whatever it started from, which
+/// is the last increment's.
 template <class E>
-bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, int objective) {
+bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, int objective, Vector<double>& left) {
   constexpr double tolerance = 1e-13, rounding = 1e-16;
+  constexpr double noise = 1e4 * rounding;  // changes below it that do not fall any more are rounding
   constexpr int limit = 20000;
-  double largest = 0, last = 0;
+  double largest = 0, last = 0, area = 0;
+  for (const auto& geometry : problem.slots.geometry) area = std::max(area, geometry.area);
+  left = Vector<double>::Zero(problem.model.multiplier_count);
+  if (left.size() == 0) {
+    recorded.balance(objective);
+    return true;
+  }
   for (int pass = 1; pass <= limit; ++pass) {
     recorded.balance(objective);
-    const Vector<double> left = recorded.take_multiplier(objective);
-    const double size = left.size() ? left.cwiseAbs().maxCoeff() : 0;
-    largest = std::max(largest, size);
-    const double q = last > 0 ? size / last : 1;
-    if (size <= 4 * rounding * largest || (q < 1 && pass > 2 && size / (1 - q) <= tolerance * largest)) return true;
-    last = size;
+    const Vector<double> next = recorded.take_multiplier(objective);
+    const double change = (next - left).cwiseAbs().maxCoeff();
+    left = next;
+    largest = std::max(largest, left.cwiseAbs().maxCoeff());
+    const double scale = std::max(largest, area * recorded.force_weight(objective));
+    const double q = last > 0 ? change / last : 1;
+    const bool small = q < 1 && pass > 2 && change / (1 - q) <= tolerance * largest;
+    const bool stalled = q >= 1 && pass > 2 && change <= noise * scale;
+    if (change <= 4 * rounding * largest || small || stalled) return true;
+    last = change;
     recorded.seed_traction(objective, left);
   }
   problem.status = Status::cap;
@@ -271,11 +287,11 @@ bool pull_back_fixed_point(AdjointProblem<E>& problem, RecordedEquilibrium<E>& r
   if (!recorded.valid()) return false;
   for (int j = 0; j < static_cast<int>(problem.objectives.size()); ++j) {
     recorded.seed_outcome(j);
-    Vector<double> carried = Vector<double>::Zero(problem.model.multiplier_count);
+    Vector<double> carried;
     if (once) {
       recorded.balance(j);
       carried = recorded.take_multiplier(j);
-    } else if (!iterate_back(problem, recorded, j)) {
+    } else if (!iterate_back(problem, recorded, j, carried)) {
       return false;
     }
     problem.objectives[j].history = recorded.finish(j);

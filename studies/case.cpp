@@ -108,6 +108,7 @@ void differentiate_case(Workspace<double>& workspace, CaseResult& result) {
   }
   result.gradients = differentiate(model, slots, result.method, result.trajectory, workspace);
   result.gradients.of_objectives = objective_gradients(model, slots, result.trajectory, result.gradients);
+  const Stopwatch time(result.gradients.seconds);
   result.one_sided = one_sided_derivatives(model, slots, result.method, result.trajectory, workspace);
   if (result.one_sided) result.gradients.counters += result.one_sided->counters;
 }

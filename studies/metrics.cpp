@@ -12,6 +12,9 @@ namespace {
 /// A point on the cone to within this share of its bound counts as on it.
 constexpr double on_cone = 1e-6;
 
+/// Relative rounding that some hundred terms leave.
+constexpr double rounding = 1e-13;
+
 /// Tangential parts of a point: traction, slip of the increment.
 struct Tangential {
   Eigen::VectorXd traction, slip;
@@ -38,6 +41,8 @@ void enlarge(const Model& model, const Slots<double>& slots, const State<double>
     scales.traction = std::max(scales.traction, traction);
     scales.length =
         std::max({scales.length, std::hypot(normal, along), slots.geometry[p].area * traction / slots.stiffness[p]});
+    // where nothing presses, what rounding of the displacements makes of the tractions is no scale for them
+    scales.traction = std::max(scales.traction, rounding * slots.stiffness[p] / slots.geometry[p].area * scales.length);
   }
   const int D = model.dimension;
   scales.force = std::max({scales.force, largest_nodal_norm(bulk_forces(model, slots, state.displacement), D),
@@ -78,7 +83,7 @@ std::vector<KktError> kkt_errors(const Model& model, const Slots<double>& slots,
       creep[p] = inside ? Eigen::VectorXd(creep[p] + slip) : Eigen::VectorXd::Zero(point.tangents);
       e.stick = std::max(e.stick, relative(creep[p].norm(), scales.length));
       const double moved = slip.norm();
-      if (!inside && size > 0 && moved > 1e-9 * scales.length)
+      if (!inside && size > rounding * scales.traction && moved > 1e-9 * scales.length)
         e.slip_direction = std::max(e.slip_direction, 1 - traction.dot(slip) / (size * moved));
     }
     errors.push_back(e);

@@ -432,5 +432,70 @@ TEST(HardCases, AWholeFaceThatLandsInOneStepLandsAtOnce) {  // (C33)
   }
 }
 
+TEST(HardCases, ABodyThatNothingHoldsButTheContactItIsAboutToMakeLands) {  // (C33, by its load)
+  for (double gap : {1e-12, 1e-3, 0.3})
+    for (const auto& method : all_methods()) {
+      Scene s;
+      s.legs = {{1, 1}};
+      s.bodies = {box_body("upper", {0, 1 + gap}, {1, 2 + gap}, {8, 4}), box_body("lower", {0, 0}, {1, 1}, {8, 4})};
+      s.contacts = {contact("touch", "upper.bottom", "lower.top")};
+      s.contacts[0].friction = 0.3;
+      s.supports = {support("lower.bottom", {{'y', table({{0, 0.0}})}}),
+                    support("lower.left", {{'x', table({{0, 0.0}})}})};
+      s.loads = {{"upper.top", Load::Kind::pressure, {10.0}, {}}};
+      s.responses = {response("P", Kind::contact_force, "touch", "normal"),
+                     response("fall", Kind::displacement, "upper.top", "y")};
+      const auto r = run(s, method);
+      const auto& last = r.trajectory.increments.back();
+      EXPECT_TRUE(is_converged(r.trajectory.status)) << name_of(method) << gap << r.trajectory.message;
+      EXPECT_EQ(last.cutbacks, 0);
+      EXPECT_LE(last.history[0].open, 9);
+      const auto first = std::count_if(last.history.begin(), last.history.end(),
+                                       [](const IterationRecord& i) { return i.augmentation <= 1; });
+      EXPECT_LE(first, 6) << name_of(method) << gap;  // with the start: one to land, one or two to stick, one to see it
+      for (ContactState state : last.state.contact.state) EXPECT_EQ(state, ContactState::stick);
+      EXPECT_NEAR(r.value("P"), 10, 1e-10 * 10);  // the load, whatever the method
+      // two blocks of height 1 in plane strain, free to widen alike
+      const double fall = gap + 2 * 10 * (1 - 0.09) / 1000;
+      EXPECT_NEAR(r.value("fall"), -fall, (std::holds_alternative<Penalty>(method) ? 1e-3 : 1e-9) * fall);
+    }
+}
+
+TEST(HardCases, ABodyThatNothingPressesSlidesWithoutTraction) {
+  for (const auto& method : all_methods())
+    for (int steps : {1, 2, 7}) {
+      Scene s;
+      s.legs = {{1, steps}};
+      s.bodies = {box_body("block", {0, 0}, {4, 2}, {4, 2})};
+      s.obstacles = {{"floor", Plane{{0.0, 0.0}, {0.0, 1.0}}, {}}};
+      s.contacts = {contact("sole", "block.bottom", "floor")};
+      s.contacts[0].friction = 0.3;
+      s.supports = {support("block.left", {{'x', ramp(0.001)}})};
+      s.responses = {response("press", Kind::contact_force, "sole", "normal"),
+                     response("u", Kind::displacement, "block.right", "x")};
+      const auto r = run(s, method);
+      EXPECT_TRUE(is_converged(r.trajectory.status)) << name_of(method) << steps << r.trajectory.message;
+      EXPECT_NEAR(r.value("press"), 0, 1e-10 * 1000 * 0.001) << "of E u, what a unit depth could bear";
+      EXPECT_NEAR(r.value("u"), 0.001, 1e-10);
+    }
+}
+
+TEST(HardCases, APointThatSupportsDriveIntoAnObstacleIsNamed) {  // (C8)
+  Scene s;
+  s.legs = {{1, 1}};
+  s.bodies = {box_body("block", {0, 0}, {4, 2}, {4, 2})};
+  s.obstacles = {{"floor", Plane{{0.0, 0.0}, {0.0, 1.0}}, {}}};
+  s.contacts = {contact("sole", "block.bottom", "floor")};
+  s.supports = {support("block.top", {{'x', table({{0, 0.0}})}}), support("block.bottom", {{'y', ramp(-0.001)}})};
+  s.responses = {response("press", Kind::contact_force, "sole", "normal")};
+  for (const auto& method : exact_methods()) {
+    const auto r = run(s, method);
+    EXPECT_EQ(r.trajectory.status, Status::infeasible) << name_of(method) << r.trajectory.message;
+    EXPECT_NE(r.trajectory.message.find("sole at (0, 0) penetrates by 0.001, and supports prescribe"),
+              std::string::npos)
+        << r.trajectory.message;
+  }
+}
+
 }  // namespace
 }  // namespace stickslip

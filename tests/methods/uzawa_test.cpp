@@ -250,7 +250,7 @@ TEST(Status, NamesThePointWhoseMotionIsPrescribedIntoTheObstacle) {
         method.acceleration = kind;
         const auto s = run(infeasible(1e-3), method);
         EXPECT_EQ(s.trajectory.status, Status::infeasible) << adapt << multiple << s.trajectory.message;
-        EXPECT_THAT(s.trajectory.message, testing::HasSubstr("sole at (0, 0) violates its constraint by 0.001 "));
+        EXPECT_THAT(s.trajectory.message, testing::HasSubstr("sole at (0, 0) penetrates by 0.001, and supports"));
         EXPECT_LE(s.trajectory.increments.back().augmentations, 12);
       }
 }

@@ -303,6 +303,35 @@ inline Scene driven_block(const std::string& element = "Q4") {
   return s;
 }
 
+/// A block on an inclined polyline, pressed on and pushed to and fro along it by its left side, whose corner's friction
+/// the support decides. Neither tractions nor displacements depend on its thickness.
+inline Scene pushed_block(double angle = 0.6) {
+  Scene s;
+  s.legs = {{2, 8}};
+  const double c = std::cos(angle), n = std::sin(angle);
+  const auto at = [&](double x, double y) { return std::array<Number, 2>{c * x - n * y, n * x + c * y}; };
+  const Number thickness = parameter(s, "thickness", 2.5), mu = parameter(s, "mu", 0.3),
+               push = parameter(s, "push", 0.02), press = parameter(s, "press", 5);
+  QuadMesh quad;
+  quad.corners = {at(0, 0), at(4, 0), at(4, 2), at(0, 2)};
+  quad.cells = {6, 3};
+  Body block{"block", quad, LinearElastic{1000.0, 0.3}, "Q4", 1.0};
+  block.thickness = thickness;
+  s.bodies = {block};
+  s.obstacles = {{"floor", Polyline{{at(-1, 0), at(1.3, 0), at(5, 0)}}, {}}};
+  s.contacts = {contact("sole", "block.bottom", "floor")};
+  s.contacts[0].friction = mu;
+  Support left = support("block.left", {});
+  left.inclined = Inclined{{c, n}, table({{0, 0.0}, {1, push}, {2, -0.02}})};
+  s.supports = {left};
+  s.loads = {{"block.top", Load::Kind::pressure, {press}, table({{0, 0.0}, {0.5, 1}})}};
+  s.responses = {response("press", Response::Kind::contact_force, "sole", "normal"),
+                 response("heat", Response::Kind::dissipation, "sole"), response("slip", Response::Kind::slip, "sole"),
+                 response("pull", Response::Kind::reaction, "block.left", "x"),
+                 response("u", Response::Kind::displacement, "block.right", "y")};
+  return s;
+}
+
 /// A3's point in space, whose anchor is held in an inclined direction and turned about a skew axis.
 inline Scene turned_point() {
   Scene s = dragged_point({{0, 0, 0}, {1, 0, 0}}, 6, 0.3);
@@ -391,6 +420,7 @@ inline std::vector<Scene> all() {
           two_disks(8, true),
           driven_block(),
           driven_block("T3"),
+          pushed_block(),
           turned_point()};
 }
 
