@@ -95,6 +95,15 @@ double slot_value(const Scene& scene, const std::string& pointer) {
   return scene.numbers.at(found - scene.pointers.begin());
 }
 
+TEST(SceneReader, NotesAnObstacleThatNoContactNames) {
+  Diagnostics diagnostics;
+  EXPECT_TRUE(read_text(edited(block_scene, R"("obstacles": {)",
+                               R"("obstacles": {"wall": {"plane": {"point": [9, 0], "normal": [-1, 0]}}, )"),
+                        diagnostics));
+  ASSERT_EQ(diagnostics.notes().size(), 1u);
+  EXPECT_EQ(diagnostics.notes()[0].pointer, "/obstacles/wall");
+}
+
 TEST(SceneReader, ReadsWhatDrivesAScene) {
   std::string text = edited(block_scene, R"("supports": [{)", R"("supports": [
     {"on": "block.right", "along": [3, 4], "value": {"table": [[0, 0], [1, 5], [2, 0]], "repeat": 7}},
@@ -493,6 +502,7 @@ std::vector<Broken> broken_bodies() {
   const char* b = block_scene;
   return {
       {"unknown_top_key", b, R"("title")", R"(@"titel")", "/titel", R"(did you mean "title"?)"},
+      {"schema_number", b, R"("title": "block pushed over a floor")", R"("$schema": @7)", "/$schema", "must be a text"},
       {"title_number", b, R"("block pushed over a floor")", "@7", "/title", "is 7; must be a text"},
       {"unknown_space", b, R"("plane_strain")", R"(@"plane_strin")", "/space", R"(did you mean "plane_strain"?)"},
       {"left_of_the_axis", b, R"("space": "plane_strain",
@@ -504,6 +514,9 @@ std::vector<Broken> broken_bodies() {
     "block": {
       "mesh": @{"box": {"min": [-1, 0])",
        "/bodies/block/mesh", "reaches to x = -1"},
+      {"ring_inside_out", b, R"({"box": {"min": [0, 0], "max": [4, 2], "cells": [4, 2]}})",
+       R"({"ring": {"center": [0, 0], "inner": 2, "outer": @1, "cells": [2, 8]}})", "/bodies/block/mesh/ring/outer",
+       "is 1; must be greater than inner, which is 2"},
       {"finite_strain", b, R"("space": "plane_strain")", R"("strain": @"finite")", "/strain",
        "is not available in this version; allowed: small"},
       {"bodies_list", b, R"("element": "Q4")", R"("element": @4)", "/bodies/block/element",
@@ -722,6 +735,8 @@ std::vector<Broken> broken_responses() {
        "unknown key"},
       {"displacement_nowhere", b, tip, R"({"displacement": @{"component": "y"}})", "/responses/tip/displacement",
        R"("on", a side BODY.SIDE, or "at", a point)"},
+      {"at_on_a_side", b, tip, R"({"displacement": {"on": "block.top", @"at": [0, 0], "component": "y"}})",
+       "/responses/tip/displacement/at", "one of the two"},
       {"take_at_a_point", b, tip, R"({"displacement": {"at": [0, 0], "component": "y", @"take": "max"}})",
        "/responses/tip/displacement/take", R"(has no meaning beside "at")"},
       {"at_in_space", b, tip, R"({"displacement": {"at": @[0, 0, 0], "component": "y"}})",
@@ -771,6 +786,9 @@ std::vector<Broken> broken_parameters() {
        "/parameters/mu/~1contacts~1sole~1friction", "unknown key"},
       {"shape_side", b, mu, R"("mu": {"shape": {"side": @"block.tip", "direction": [0, 1]}})",
        "/parameters/mu/shape/side", R"(did you mean "top"?)"},
+      {"shape_fixed_to_itself", b, mu,
+       R"("mu": {"shape": {"side": "block.top", "direction": [0, 1], "fixed": @"block.top"}})",
+       "/parameters/mu/shape/fixed", "holds all nodes of the side that is to move"},
       {"shape_direction", b, mu, R"("mu": {"shape": {"side": "block.top", "direction": @[0, 0]}})",
        "/parameters/mu/shape/direction", "not all zero"},
       {"shape_dimension", b, mu, R"("mu": {"shape": {"side": "block.top", "direction": @[0, 1, 0]}})",
@@ -809,6 +827,8 @@ std::vector<Broken> broken_methods() {
       {"truncated_and_accelerated", b, method,
        R"({"uzawa_al": {"acceleration": "anderson", "sensitivity": @"truncated"}})", "/method/uzawa_al/sensitivity",
        "the weights of an acceleration are not differentiated; allowed with it: iterated, oversized, preconditioned"},
+      {"oversize_of_iterated", b, method, R"({"uzawa_al": {"sensitivity": "iterated", @"oversize": 50}})",
+       "/method/uzawa_al/oversize", R"(belongs to the sensitivity "oversized" or "preconditioned")"},
       {"frozen_and_oversized", b, method, R"({"uzawa_al": {"sensitivity": @"oversized", "cone": "frozen"}})",
        "/method/uzawa_al/sensitivity", "leaves the error of a frozen cone as it is"},
       {"frozen_and_preconditioned", b, method, R"({"uzawa_al": {"sensitivity": @"preconditioned", "cone": "frozen"}})",
@@ -836,6 +856,11 @@ std::vector<Broken> broken_methods() {
        "/sensitivity/mode", R"(differentiates the objectives, and the scene has none; add "objectives")"},
       {"objective_array", b, R"("title": "block pushed over a floor")", R"("objectives": @[])", "/objectives",
        "must be an object, objectives by name"},
+      {"adjoint_without_parameters", b, R"("parameters": {"mu": "/contacts/sole/friction"})",
+       R"("objectives": {"J": {"of": "pull", "sum": true}}, "sensitivity": @{"mode": "adjoint"})", "/sensitivity",
+       "the scene has none; add \"parameters\""},
+      {"objective_named_as_a_response", b, R"("title": "block pushed over a floor")",
+       R"("objectives": {@"pull": {"of": "pull", "sum": true}})", "/objectives/pull", "a response has the name"},
       {"objective_key", b, R"("title": "block pushed over a floor")",
        R"("objectives": {"J": {"of": "pull", "sum": true, @"targett": 1}})", "/objectives/J/targett",
        R"(did you mean "target"?)"},
