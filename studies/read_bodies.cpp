@@ -245,12 +245,21 @@ std::optional<Material> read_material(const JsonNode& node, const MeshDescriptio
   return name == "grounded_spring" ? read_spring(material, reading) : read_elastic(material, reading);
 }
 
+/// Reports a fault of a generator, which begins with the key that it is about, at that key, with what it was given.
+void report_mesh_fault(const JsonNode& mesh, const std::string& fault) {
+  for (const auto& [kind, generator] : mesh.members())
+    if (const auto named =
+            generator.value().is_object() ? generator.find(fault.substr(0, fault.find(' '))) : std::nullopt)
+      return named->error("is " + shown(named->value()) + "; " + fault);
+  mesh.error(fault);
+}
+
 /// Makes the mesh and looks at it; none where it is at fault.
 std::optional<Mesh> check_mesh(const JsonNode& body, const JsonNode& node, const MeshDescription& description,
                                const std::string& element, SceneReading& reading) {
   if (reading.diagnostics.has_error_in(node.pointer())) return std::nullopt;
   if (const auto message = mesh_fault(description, "", reading.dimension()); !message.empty()) {
-    node.error(message);
+    report_mesh_fault(node, message);
     return std::nullopt;
   }
   if (const auto message = mesh_fault(description, element, reading.dimension()); !message.empty()) {
