@@ -1,6 +1,7 @@
 #include "studies/atomic_file.hpp"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -8,6 +9,8 @@
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
+
+#include "studies/input_fault.hpp"
 
 namespace stickslip {
 namespace {
@@ -69,7 +72,35 @@ off_t length_of_whole_lines(const Descriptor& file, const fs::path& path) {
   return 0;
 }
 
+/// Whether the process whose number ends the stem of a temporary file, "result.json.123", is gone.
+bool is_orphan(const fs::path& temporary) {
+  const std::string stem = temporary.stem(), digits = stem.substr(stem.rfind('.') + 1);
+  const bool number =
+      !digits.empty() && digits.size() < 10 && digits.find_first_not_of("0123456789") == std::string::npos;
+  return number && ::kill(std::stoi(digits), 0) != 0 && errno == ESRCH;
+}
+
+void prepare_folder(const fs::path& folder) {
+  std::error_code error;
+  if (fs::exists(folder, error) && !fs::is_directory(folder, error))
+    throw InputFault(folder.string() + ": is a file; must be a directory, or a name that is free");
+  if (!error) fs::create_directories(folder, error);
+  if (error) throw InputFault(folder.string() + ": cannot be made: " + error.message());
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) throw InputFault(folder.string() + ": cannot be written to");
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == ".part" && is_orphan(entry.path())) fs::remove(entry.path());
+}
+
 }  // namespace
+
+void prepare_directory(const fs::path& directory, const std::vector<std::string>& files,
+                       const std::vector<std::string>& folders) {
+  prepare_folder(directory);
+  for (const auto& folder : folders) prepare_folder(directory / folder);
+  for (const auto& file : files)
+    if (fs::is_directory(directory / file))
+      throw InputFault((directory / file).string() + ": is a directory; the file of this name goes there");
+}
 
 void write_file_atomically(const fs::path& path, std::string_view content) {
   make_folder_of(path);

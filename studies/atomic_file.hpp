@@ -12,6 +12,12 @@ namespace stickslip {
 /// sees the old file or the new one, whole. Throws std::system_error with the path where the disk refuses.
 void write_file_atomically(const std::filesystem::path& path, std::string_view content);
 
+/// Makes a directory for results ready, and `folders` in it: made where they are missing, rid of the temporary files of
+/// processes that are gone. Throws InputFault where it cannot be written to, or where one of `files`, which are to be
+/// written there, is a directory.
+void prepare_directory(const std::filesystem::path& directory, const std::vector<std::string>& files,
+                       const std::vector<std::string>& folders = {});
+
 /// Appends `line` and a newline in one write, and returns once they are on the disk (fsync). A torn last line, left by
 /// a process that was killed, is cut off first. pre: `line` holds no newline. Throws std::system_error.
 void append_line(const std::filesystem::path& path, std::string_view line);

@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -100,6 +101,37 @@ std::vector<StepResult> gather_steps(const CaseResult& result) {
   return steps;
 }
 
+/// A body that no support holds and no contact point touches: nothing determines where it is. nullptr where all are
+/// held.
+const Body* loose_body(const Model& model) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const auto in_body = [&, first = model.bodies[b].first_node](int node) {
+      return node >= first && node < first + model.bodies[b].mesh.node_count;
+    };
+    const bool held = std::any_of(model.constraints.begin(), model.constraints.end(),
+                                  [&](const Constraint& c) { return in_body(c.dof / model.dimension); });
+    const bool touched = std::any_of(model.contact_nodes.begin(), model.contact_nodes.end(), in_body);
+    if (!held && !touched) return &model.scene.bodies[b];
+  }
+  return nullptr;
+}
+
+/// Says of a run with a loose body why it has no answer, or where no load acts, none of its own.
+void name_loose_body(const Model& model, Trajectory<double>& trajectory) {
+  const Body* const loose = loose_body(model);
+  if (!loose) return;
+  if (is_converged(trajectory.status)) trajectory.status = Status::non_unique;
+  trajectory.message =
+      loose->name + " is free to move: no support holds it and no contact touches it; add a support or a contact";
+}
+
+/// Whether the run ended with a tangent that derivatives can be taken of.
+bool has_tangent(const Trajectory<double>& trajectory) {
+  const Status status = trajectory.status;
+  return !trajectory.increments.empty() && status != Status::singular && status != Status::not_finite &&
+         status != Status::no_equilibrium && status != Status::non_unique;
+}
+
 void differentiate_case(Workspace<double>& workspace, CaseResult& result) {
   const auto& [model, slots, unused] = *result.problem;
   if (model.scene.sensitivity_mode == SensitivityMode::adjoint) {
@@ -126,12 +158,42 @@ json objectives_json(const CaseResult& result) {
   return out;
 }
 
+/// Whether a support, or an anchor, holds a node of a side.
+bool is_held(const Model& model, const std::string& side) {
+  const auto nodes = model.side(side).nodes;
+  return std::any_of(model.constraints.begin(), model.constraints.end(), [&](const Constraint& constraint) {
+    return std::find(nodes.begin(), nodes.end(), constraint.dof / model.dimension) != nodes.end();
+  });
+}
+
+/// Throws ModelError where a response is taken of what is not there: a reaction without a support, a contact at a point
+/// that is farther from it than one of its facets is long.
+void check_responses(const Model& model, const Slots<double>& slots) {
+  for (std::size_t i = 0; i < model.scene.responses.size(); ++i) {
+    const auto& response = model.scene.responses[i];
+    const std::string pointer = child_pointer("/responses", response.name);
+    if (response.kind == Response::Kind::reaction && !is_held(model, response.on))
+      throw ModelError("no support acts on " + response.on + ", so there is no reaction", pointer + "/reaction/on");
+    const int p = model.response_places[i].contact_point;
+    if (p < 0) continue;
+    const auto& point = model.points[static_cast<std::size_t>(p)];
+    double squared = 0;
+    for (std::size_t k = 0; k < response.at.size(); ++k)
+      squared += std::pow(response.at[k].value - slots.points(static_cast<Eigen::Index>(k), point.nodes[0]), 2);
+    if (point.mesh_size > 0 && std::sqrt(squared) > point.mesh_size)
+      throw ModelError("the point of \"at\" is off the contact: " + shown(std::sqrt(squared)) +
+                           " from its nearest node, where its facets are " + shown(point.mesh_size) + " long",
+                       pointer);
+  }
+}
+
 }  // namespace
 
 Problem::Problem(const Scene& scene) {
   const Stopwatch time(seconds);
   model = make_model(scene);
   slots = make_slots<double>(model, scene.as<double>());
+  check_responses(model, slots);
 }
 
 Status CaseResult::status() const {
@@ -157,10 +219,11 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
   result.trajectory = solve(problem->model, problem->slots, method, options, workspace);
   condensation = workspace.condensation;
   std::visit([&](auto& engine) { result.nonzeros = engine.nonzeros(); }, *workspace.engine);
-  const bool solved = !result.trajectory.increments.empty() && result.trajectory.status != Status::singular &&
-                      result.trajectory.status != Status::not_finite;
-  if (solved) {
-    result.condition_estimate = std::visit([](auto& engine) { return engine.condition_estimate(); }, *workspace.engine);
+  name_loose_body(problem->model, result.trajectory);
+  if (has_tangent(result.trajectory)) {
+    if (result.trajectory.counters.newton > 0)  // otherwise nothing was factorised
+      result.condition_estimate =
+          std::visit([](auto& engine) { return engine.condition_estimate(); }, *workspace.engine);
     differentiate_case(workspace, result);
   }
   result.steps = gather_steps(result);

@@ -27,7 +27,6 @@ struct Plane2D {
 
 Out hertz_line(const In& in, Space) {
   const D& P = in.at("force");
-  if (!(value(P) > 0)) return {};
   const D b = sqrt(D(4) * P * in.at("radius") / (D(pi) * in.at("modulus")));
   return {{"half_width", b}, {"peak_pressure", D(2) * P / (D(pi) * b)}};
 }
@@ -38,7 +37,6 @@ ClosedForm::Tractions hertz_tractions(const Quantities<double>& all, double x) {
 
 Out cattaneo_mindlin(const In& in, Space space) {
   Out out = hertz_line(in, space);
-  if (out.empty()) return out;
   const D& Q = in.at("tangential_force");
   const D share = D(1) - (value(Q) < 0 ? -Q : Q) / (in.at("friction") * in.at("force"));
   out["stick_half_width"] = value(share) > 0 ? out.at("half_width") * sqrt(share) : D(0);
@@ -55,13 +53,13 @@ ClosedForm::Tractions cattaneo_tractions(const Quantities<double>& all, double x
 
 Out flat_punch(const In& in, Space) {
   const D &P = in.at("force"), &a = in.at("half_width");
-  if (!(value(P) > 0)) return {};
   return {{"centre_pressure", P / (D(pi) * a)}, {"mean_pressure", P / (D(2) * a)}};
 }
 
 Out press_fit(const In& in, Space space) {
   const Plane2D m(in, space);
   const D &Ri = in.at("inner"), &R = in.at("interface"), &Ro = in.at("outer"), &interference = in.at("interference");
+  if (!(value(Ri) < value(R) && value(R) < value(Ro))) return {};
   const D outer = (Ro * Ro + R * R) / (Ro * Ro - R * R), inner = (R * R + Ri * Ri) / (R * R - Ri * Ri);
   const D p = interference * m.E / (R * (outer + inner)), u = p * R / m.E;
   Out out{{"pressure", p},
@@ -114,12 +112,13 @@ Out cantilever_floor(const In& in, Space space) {
   return {{"lift_off", a}, {"line_reaction", q * a / D(3)}};
 }
 
-const ClosedForm::Quantity force{"force", "pressing force per length"}, E{"E", "Young's modulus"},
-    nu{"nu", "Poisson's ratio"}, radius{"radius", "relative radius, 1/R = 1/R1 + 1/R2"},
-    modulus{"modulus", "contact modulus E* [of the two bodies of the contact]", true, true},
-    friction{"friction", "coefficient [of the contact]", true, true},
+const ClosedForm::Quantity force{"force", "pressing force per length", positive}, E{"E", "Young's modulus", positive},
+    nu{"nu", "Poisson's ratio", poisson_ratio}, radius{"radius", "relative radius, 1/R = 1/R1 + 1/R2", positive},
+    modulus{"modulus", "contact modulus E* [of the two bodies of the contact]", positive, true, true},
+    friction{"friction", "coefficient [of the contact]", not_negative, true, true},
     half_width{"half_width", "half the width of the contact"}, peak{"peak_pressure", "largest pressure"},
-    load{"load", "load per length"}, gap{"gap", "distance at the start"};
+    load{"load", "load per length", positive}, gap{"gap", "distance at the start", positive},
+    height{"height", "of the beam", positive};
 
 }  // namespace
 
@@ -143,18 +142,18 @@ const std::vector<ClosedForm>& closed_forms() {
        cattaneo_tractions},
       {"flat_punch",
        "rigid flat punch on a half plane [J85 2.8]",
-       {force, {"half_width", "half the width of the punch"}},
+       {force, {"half_width", "half the width of the punch", positive}},
        {{"centre_pressure", "pressure at the middle"}, {"mean_pressure", "force over width"}},
        flat_punch},
       {"press_fit",
        "ring pressed into a ring of the same material [Lame]",
-       {{"inner", "bore of the inner ring"},
-        {"interface", "radius where they meet"},
-        {"outer", "rim of the outer ring"},
-        {"interference", "how much too large the inner one is"},
+       {{"inner", "bore of the inner ring", positive},
+        {"interface", "radius where they meet", positive},
+        {"outer", "rim of the outer ring", positive},
+        {"interference", "how much too large the inner one is", positive},
         E,
         nu,
-        {"friction", "coefficient", false}},
+        {"friction", "coefficient", not_negative, false}},
        {{"pressure", "between the rings"},
         {"u_outer", "radial displacement of the outer ring's bore"},
         {"u_inner", "of the inner ring's outside"},
@@ -163,17 +162,17 @@ const std::vector<ClosedForm>& closed_forms() {
        press_fit},
       {"belt",
        "belt on a drum, about to slip [Euler, Eytelwein]",
-       {{"slack", "tension of the slack end"},
+       {{"slack", "tension of the slack end", positive},
         friction,
-        {"angle", "wrapped, degrees"},
-        {"nodes", "of a polygonal belt [a smooth one]", false}},
+        {"angle", "wrapped, degrees", positive},
+        {"nodes", "of a polygonal belt [a smooth one]", positive, false}},
        {{"tight", "tension of the tight end"}, {"ratio", "tight over slack"}},
        belt},
       {"pull_out",
        "bar drawn against friction along it",
-       {{"force", "at the end"},
-        {"stiffness", "Young's modulus times cross-section"},
-        {"friction_per_length", "limit of the friction"}},
+       {{"force", "at the end", positive},
+        {"stiffness", "Young's modulus times cross-section", positive},
+        {"friction_per_length", "limit of the friction", positive}},
        {{"slip_length", "that slips under the force"},
         {"end_displacement", "under the force"},
         {"dissipation", "of the first loading"},
@@ -182,19 +181,32 @@ const std::vector<ClosedForm>& closed_forms() {
        pull_out},
       {"cantilever_stop",
        "loaded cantilever whose tip meets a stop [Timoshenko]",
-       {load, gap, {"length", "of the beam"}, {"height", "of the beam"}, E, nu},
+       {load, gap, {"length", "of the beam", positive}, height, E, nu},
        {{"reaction", "of the stop"}, {"free_tip", "deflection without it"}, {"stiffness", "of the tip"}},
        cantilever_stop},
       {"cantilever_floor",
        "loaded cantilever that comes to lie on a floor [Euler, Bernoulli]",
-       {load, gap, {"height", "of the beam"}, E, nu},
+       {load, gap, height, E, nu},
        {{"lift_off", "distance from the clamp to where it touches"}, {"line_reaction", "force there"}},
        cantilever_floor}};
   return all;
 }
 
-bool ClosedForm::has_input(const std::string& quantity) const {
-  return std::any_of(inputs.begin(), inputs.end(), [&](const auto& input) { return input.name == quantity; });
+Quantities<D> ClosedForm::outputs_of(const Quantities<D>& in, Space space) const {
+  for (const auto& input : inputs) {
+    const auto given = in.find(input.name);
+    if (given == in.end() ? input.required : !input.rule.holds(value(given->second))) return {};
+  }
+  Out out = evaluate(in, space);
+  const bool finite =
+      std::all_of(out.begin(), out.end(), [](const auto& each) { return std::isfinite(value(each.second)); });
+  return finite ? out : Out{};
+}
+
+const ClosedForm::Quantity* ClosedForm::find_input(const std::string& quantity) const {
+  const auto input =
+      std::find_if(inputs.begin(), inputs.end(), [&](const auto& each) { return each.name == quantity; });
+  return input == inputs.end() ? nullptr : &*input;
 }
 
 std::vector<std::string> ClosedForm::input_names() const {

@@ -31,6 +31,7 @@
 
 #include "core/algebra/scalar.hpp"
 #include "core/model/scene.hpp"
+#include "studies/json_node.hpp"
 
 namespace stickslip {
 
@@ -41,6 +42,7 @@ using Quantities = std::map<std::string, T>;
 struct ClosedForm {
   struct Quantity {
     std::string name, meaning;
+    Rule rule = any_number;   ///< of an input: what it must be
     bool required = true;     ///< of an input: without it there is no answer
     bool of_contact = false;  ///< of an input: taken from the scene's first contact where it is not given
   };
@@ -51,13 +53,18 @@ struct ClosedForm {
 
   std::string name, about;
   std::vector<Quantity> inputs, outputs;
-  /// The outputs; empty where the inputs are not those of the closed form (no pressing force, no wrap). `inputs` holds
-  /// all that are required.
+  /// The formula. pre: `inputs` holds all that are required, and each is as its rule says.
   Quantities<Dual<1>> (*evaluate)(const Quantities<Dual<1>>& inputs, Space space);
   /// Of inputs and outputs together, "half_width" among them; nullptr where the form has no curve.
   Tractions (*tractions)(const Quantities<double>& all, double x) = nullptr;
 
-  bool has_input(const std::string& quantity) const;
+  /// The outputs; empty where the inputs are not those of the closed form (one is missing or not as its rule says, as a
+  /// pressing force of an open contact) or where it has no finite answer.
+  Quantities<Dual<1>> outputs_of(const Quantities<Dual<1>>& inputs, Space space) const;
+
+  bool has_input(const std::string& quantity) const { return find_input(quantity) != nullptr; }
+  /// nullptr where there is none of this name.
+  const Quantity* find_input(const std::string& quantity) const;
   std::vector<std::string> input_names() const;
   /// Names of the inputs, then of the outputs.
   std::vector<std::string> quantities() const;

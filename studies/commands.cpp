@@ -17,6 +17,7 @@
 #include "studies/method_options.hpp"
 #include "studies/progress.hpp"
 #include "studies/report/report.hpp"
+#include "studies/result_rows.hpp"
 #include "studies/schema.hpp"
 #include "studies/simulation.hpp"
 #include "studies/trace_table.hpp"
@@ -113,6 +114,10 @@ void write_trace(const std::filesystem::path& directory, const Problem& problem,
 int run_command(const RunArguments& arguments) {
   const auto loaded = load(arguments);
   if (!loaded) return bad_input;
+  const bool writes = !arguments.json || !arguments.output.empty();
+  const auto directory = output_directory(arguments.output, arguments.scene);
+  if (writes) prepare_directory(directory, {"result.json", "fields.pvd"});
+  if (!arguments.export_to.empty()) prepare_directory(arguments.export_to, {"README"});
   std::optional<Progress> progress;  // of long work only: a run of a second or two speaks for itself
   const auto start = std::chrono::steady_clock::now();
   long pending = 0;
@@ -128,10 +133,9 @@ int run_command(const RunArguments& arguments) {
   const auto result = simulate(*loaded, on_step, arguments.trace ? &trace : nullptr);
   progress.reset();
   json document;
-  if (arguments.json && arguments.output.empty()) {
+  if (!writes) {
     document = result_json(result, canonical_text(loaded->input));
   } else {
-    const auto directory = output_directory(arguments.output, arguments.scene);
     document = write_result(directory, *loaded, result);
     if (arguments.trace) write_trace(directory, *loaded->problem, trace);
     if (!arguments.json) {
@@ -220,6 +224,10 @@ int report_command(const std::string& directory) {
     std::cerr << directory << ": there is no results.jsonl; run `stickslip study` first\n";
     return bad_input;
   }
+  prepare_directory(directory, {"report.html"}, {"figures"});
+  check_records(directory);
+  if (const auto stored = read_rows(directory); !stored.sound())
+    std::cerr << "note: " << directory << "/results.jsonl: " << stored.faults() << '\n';
   write_report(directory);
   fmt::print("{}\n", (std::filesystem::path(directory) / "report.html").string());
   return done;

@@ -20,8 +20,9 @@ struct RunArguments {
 
 struct StudyArguments {
   std::string study;
-  std::string output;  ///< directory; empty: results/NAME OF THE STUDY
-  bool resume = false;
+  std::string output;         ///< directory; empty: results/NAME OF THE STUDY
+  bool resume = false;        ///< keep the rows that are there
+  bool restart = false;       ///< delete them; with neither they are a fault
   std::string shard = "1/1";  ///< share of the cells, "i/N"
   int jobs = 1;               ///< processes of the accuracy pass
 };

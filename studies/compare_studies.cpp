@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "studies/commands.hpp"
+#include "studies/input_fault.hpp"
 
 namespace stickslip {
 namespace {
@@ -19,15 +20,7 @@ constexpr int done = 0, bad_input = 2, not_solved = 3;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// A cell by what it is.
-std::pair<std::string, std::string> name_of(const json& row) {
-  std::string variant;
-  const json vary = row.value("vary", json::object());
-  for (const auto& [pointer, value] : vary.items())
-    variant += (variant.empty() ? "" : ", ") + pointer + " = " + value.dump();
-  if (const int level = row.value("refine", 0))
-    variant += fmt::format("{}level {}", variant.empty() ? "" : ", ", level);
-  return {row.value("label", ""), variant};
-}
+std::pair<std::string, std::string> name_of(const json& row) { return {row.value("label", ""), variant_text(row)}; }
 
 std::map<std::pair<std::string, std::string>, const json*> by_name(const RowsById& rows) {
   std::map<std::pair<std::string, std::string>, const json*> out;
@@ -145,10 +138,14 @@ std::vector<CellComparison> compare_rows(const RowsById& before, const RowsById&
 }
 
 int compare_command(const CompareArguments& arguments) {
+  for (const auto& [option, band] : {std::pair{"--relative", arguments.relative}, {"--rounding", arguments.rounding}})
+    if (!(band >= 0 && band < infinite)) throw InputFault(fmt::format("{} {}: must be a number >= 0", option, band));
   RowsById rows[2];
   const std::string directories[] = {arguments.before, arguments.after};
   for (int i = 0; i < 2; ++i) {
-    rows[i] = read_rows(directories[i]).rows;
+    StoredRows stored = read_rows(directories[i]);
+    if (!stored.sound()) std::cerr << "note: " << directories[i] << "/results.jsonl: " << stored.faults() << '\n';
+    rows[i] = std::move(stored.rows);
     if (!rows[i].empty()) continue;
     std::cerr << directories[i] << ": there are no rows in results.jsonl\n";
     return bad_input;

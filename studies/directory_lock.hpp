@@ -2,13 +2,14 @@
 #pragma once
 
 #include <filesystem>
-#include <stdexcept>
+
+#include "studies/input_fault.hpp"
 
 namespace stickslip {
 
 /// Another process holds the directory; what() names it.
-struct DirectoryInUse : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct DirectoryInUse : InputFault {
+  using InputFault::InputFault;
 };
 
 /// Holds DIR/.lock, which is made where it is missing, until the end of the scope or of the process, however it ends:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <utility>
@@ -272,6 +273,10 @@ JsonDocument JsonDocument::of(json value, const std::string& source) {
 }
 
 std::optional<JsonDocument> JsonDocument::read(const std::string& file, Diagnostics& diagnostics) {
+  if (std::error_code none; std::filesystem::is_directory(file, none)) {
+    diagnostics.error({{file}, "", "is a directory; must be a file"});
+    return std::nullopt;
+  }
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   // an empty file sets failbit on the left of <<, which is no fault of reading
@@ -298,10 +303,11 @@ Place JsonDocument::place(const std::string& pointer) const {
   walk_up(pointer, [&](const std::string& each) {
     if (const auto origin = origins_.find(each); origin != origins_.end()) {
       place = origin->second;
+      place.pointer += pointer.substr(each.size());
       return true;
     }
     const auto value = values_.find(each);
-    if (value != values_.end()) place = {file_, value->second.first, value->second.second};
+    if (value != values_.end()) place = {file_, value->second.first, value->second.second, pointer};
     return value != values_.end();
   });
   return place;

@@ -19,6 +19,7 @@ struct Place {
   std::string source;  ///< file as the user named it, or "--set /a/b=1"
   int line = 0;        ///< from 1; 0: the source has no lines
   int column = 0;
+  std::string pointer = {};  ///< of the value in this source, where it is not the one of the document that holds it
 };
 
 struct Diagnostic {

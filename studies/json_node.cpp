@@ -119,13 +119,12 @@ std::optional<double> JsonNode::number(const Rule& rule) const {
   return std::nullopt;
 }
 
-std::optional<int> JsonNode::count(int least) const {
-  constexpr double most = 1e7;
+std::optional<int> JsonNode::count(int least, int most) const {
   if (value_->is_number()) {
     const double number = value_->get<double>();
     if (number >= least && number <= most && number == std::floor(number)) return static_cast<int>(number);
   }
-  must_be("a whole number from " + std::to_string(least) + " to 10000000");
+  must_be("a whole number from " + std::to_string(least) + " to " + std::to_string(most));
   return std::nullopt;
 }
 

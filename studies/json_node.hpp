@@ -19,6 +19,7 @@ struct Rule {
 inline constexpr Rule any_number{"a number", [](double) { return true; }};
 inline constexpr Rule positive{"a number > 0", [](double x) { return x > 0; }};
 inline constexpr Rule not_negative{"a number >= 0", [](double x) { return x >= 0; }};
+inline constexpr Rule poisson_ratio{"a number > -1 and < 0.5", [](double nu) { return nu > -1 && nu < 0.5; }};
 
 /// Keys of an object.
 struct Keys {
@@ -59,8 +60,8 @@ class JsonNode {
                                                        const std::vector<std::string>& others = {}) const;
 
   std::optional<double> number(const Rule& rule) const;
-  /// A whole number from `least` to ten million, the most that counts of anything may be.
-  std::optional<int> count(int least) const;
+  /// A whole number from `least` to `most`; ten million is the most that counts of anything may be.
+  std::optional<int> count(int least, int most = 10'000'000) const;
   std::optional<bool> boolean() const;
   std::optional<std::string> text() const;
   std::optional<std::string> choice(const std::vector<std::string>& allowed,

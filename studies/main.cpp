@@ -1,9 +1,12 @@
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <exception>
 #include <iostream>
+#include <system_error>
 
 #include "core/algebra/linear_solver.hpp"
 #include "studies/commands.hpp"
+#include "studies/input_fault.hpp"
 #include "studies/provenance.hpp"
 
 namespace {
@@ -16,10 +19,19 @@ void add_scene(CLI::App& command, stickslip::RunArguments& arguments) {
   command.add_flag("--json", arguments.json, "one JSON document on standard output and nothing else");
 }
 
+/// Exit code of a command, or 2 where what it printed was not taken: a full disk, a closed pipe.
+int finished(int code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.flush()) return code;
+  std::cerr << "stickslip: standard output cannot be written\n";
+  return 2;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   using namespace stickslip;
+  const CLI::Validator names_something(
+      [](const std::string& text) { return text.empty() ? "is empty; must be a name" : ""; }, "");
   set_blas_threads(1);
   CLI::App app{"stickslip: one frictional contact problem, three ways to enforce it, and their derivatives"};
   app.require_subcommand(1);
@@ -32,18 +44,21 @@ int main(int argc, char** argv) {
   bool methods_json = false;
   auto& run_app = *app.add_subcommand("run", "simulate a scene");
   add_scene(run_app, run);
-  run_app.add_option("-o,--output", run.output, "directory for result.json and fields");
+  run_app.add_option("-o,--output", run.output, "directory for result.json and fields")->check(names_something);
   run_app.add_flag("--trace", run.trace, "print every iterate of Newton's method; written to trace.csv too");
-  run_app.add_option("--export", run.export_to, "directory for K, G, lambda, ... of the last step (Matrix Market)");
+  run_app.add_option("--export", run.export_to, "directory for K, G, lambda, ... of the last step (Matrix Market)")
+      ->check(names_something);
   auto& study_app = *app.add_subcommand("study", "compare methods on a scene and write a report");
   study_app.add_option("STUDY", study.study, "study file (JSON)")->required();
-  study_app.add_option("-o,--output", study.output, "directory for results.jsonl and report.html");
-  study_app.add_flag("--resume", study.resume, "keep the cells that are there and run what is missing");
+  study_app.add_option("-o,--output", study.output, "directory for results.jsonl and report.html")
+      ->check(names_something);
+  auto& resume = *study_app.add_flag("--resume", study.resume, "keep the cells that are there and run what is missing");
+  study_app.add_flag("--restart", study.restart, "delete the cells that are there and run all")->excludes(&resume);
   study_app.add_option("--shard", study.shard, "i/N: only every N-th cell, from the i-th on");
   study_app.add_option("-j,--jobs", study.jobs, "processes that run cells at once; seconds are measured apart");
   auto& merge_app = *app.add_subcommand("merge", "join the shards of a study and write their report");
   merge_app.add_option("DIR", shards, "directories of the shards")->required();
-  merge_app.add_option("-o,--output", merged, "directory of the whole")->required();
+  merge_app.add_option("-o,--output", merged, "directory of the whole")->required()->check(names_something);
   auto& compare_app =
       *app.add_subcommand("compare", "two recordings of a study, cell by cell; fails where one is worse");
   compare_app.add_option("OLD", compare.before, "directory of a study")->required();
@@ -64,17 +79,23 @@ int main(int argc, char** argv) {
   schema_app.add_option("KIND", schema_of, "scene or study")->check(CLI::IsMember({"scene", "study"}));
   try {
     app.parse(argc, argv);
-    if (run_app) return run_command(run);
-    if (study_app) return study_command(study);
-    if (merge_app) return merge_command(shards, merged);
-    if (compare_app) return compare_command(compare);
-    if (explain_app) return explain_command(explain);
-    if (gradcheck_app) return gradcheck_command(gradcheck);
-    if (report_app) return report_command(directory);
-    if (schema_app) return schema_command(schema_of);
-    return methods_command(methods_json);
+    if (run_app) return finished(run_command(run));
+    if (study_app) return finished(study_command(study));
+    if (merge_app) return finished(merge_command(shards, merged));
+    if (compare_app) return finished(compare_command(compare));
+    if (explain_app) return finished(explain_command(explain));
+    if (gradcheck_app) return finished(gradcheck_command(gradcheck));
+    if (report_app) return finished(report_command(directory));
+    if (schema_app) return finished(schema_command(schema_of));
+    return finished(methods_command(methods_json));
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
+  } catch (const InputFault& fault) {
+    std::cerr << fault.what() << '\n';
+    return 2;
+  } catch (const std::system_error& error) {
+    std::cerr << "stickslip: " << error.what() << '\n';
+    return 2;
   } catch (const std::exception& error) {
     std::cerr << "stickslip: " << error.what() << "\nthis is a bug of ours: please report it with the scene\n";
     return 1;

@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "studies/atomic_file.hpp"
 #include "studies/commands.hpp"
 #include "studies/directory_lock.hpp"
+#include "studies/input_fault.hpp"
 #include "studies/report/report.hpp"
 #include "studies/result_rows.hpp"
 
@@ -32,8 +32,8 @@ Part read_part(const fs::path& directory) {
   Part part{directory, read_description(directory), read_rows(directory), read_timings(directory)};
   for (const char* key : {"program", "cells"})
     if (!part.description.contains(key))
-      throw std::runtime_error((directory / "study.json").string() + ": has no \"" + key +
-                               "\"; was it recorded by another version?");
+      throw InputFault((directory / "study.json").string() + ": has no \"" + key +
+                       "\"; was it recorded by another version?");
   return part;
 }
 
@@ -93,6 +93,7 @@ json merged_description(const std::vector<Part>& parts, const std::string& outpu
 }
 
 int join(const std::vector<Part>& parts, const fs::path& output) {
+  prepare_directory(output, {"results.jsonl", "study.json", "picture.json", "report.html"}, {"figures"});
   const DirectoryLock lock(output);
   const std::vector<std::string> ids = parts.front().description["cells"];
   RowsById rows;
@@ -127,20 +128,16 @@ int join(const std::vector<Part>& parts, const fs::path& output) {
 }  // namespace
 
 int merge_command(const std::vector<std::string>& directories, const std::string& output) {
-  try {
-    std::vector<Part> parts;
-    std::string faults;
-    for (const auto& directory : directories) {
-      parts.push_back(read_part(directory));
-      if (const auto& part = parts.back(); !part.stored.sound())
-        std::cerr << "note: " << directory << ": " << part.stored.faults() << '\n';
-      if (const std::string fault = difference(parts.front(), parts.back()); !fault.empty()) faults += fault + "\n";
-    }
-    if (faults.empty()) return join(parts, output);
-    std::cerr << faults;
-  } catch (const std::runtime_error& error) {  // a directory that is none of ours, or in use
-    std::cerr << error.what() << '\n';
+  std::vector<Part> parts;
+  std::string faults;
+  for (const auto& directory : directories) {
+    parts.push_back(read_part(directory));
+    if (const auto& part = parts.back(); !part.stored.sound())
+      std::cerr << "note: " << directory << "/results.jsonl: " << part.stored.faults() << '\n';
+    if (const std::string fault = difference(parts.front(), parts.back()); !fault.empty()) faults += fault + "\n";
   }
+  if (faults.empty()) return join(parts, output);
+  std::cerr << faults;
   return bad_input;
 }
 

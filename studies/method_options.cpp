@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <type_traits>
 #include <utility>
 
 #include "studies/scene_reading.hpp"
@@ -247,6 +248,14 @@ void check_option_names(const JsonNode& node, const std::string& method, const s
   }
 }
 
+/// Reports an oversize that the scheme of derivatives takes no notice of.
+void check_oversize(const JsonNode& options, const UzawaAL& method) {
+  const bool used = method.sensitivity == UzawaAL::Sensitivity::oversized ||
+                    method.sensitivity == UzawaAL::Sensitivity::preconditioned;
+  if (method.oversize && !used)
+    options.find("oversize")->error_at_key(R"(belongs to the sensitivity "oversized" or "preconditioned")");
+}
+
 }  // namespace
 
 std::vector<std::string> method_names() {
@@ -275,6 +284,7 @@ std::optional<Method> read_method(const JsonNode& node, SceneReading& reading) {
         check_option_names(options, name, option_names<M>());
         visit_options(chosen, Reader{options, reading});
         if (reading.diagnostics.error_count() > faults) return;
+        if constexpr (std::is_same_v<M, UzawaAL>) check_oversize(options, chosen);
         if (const auto [option, reason] = conflict(chosen); !option.empty())
           options.find(std::string(option))->error(std::string(reason));
       },

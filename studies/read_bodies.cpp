@@ -66,6 +66,8 @@ std::optional<RingMesh> read_ring(const JsonNode& node, SceneReading& reading) {
   ring.center = pair_of(reading.required_vector(node, "center", 2));
   ring.inner = reading.required(node, "inner", positive);
   ring.outer = reading.required(node, "outer", positive);
+  if (ring.outer.value <= ring.inner.value)
+    node.find("outer")->must_be("greater than inner, which is " + shown(ring.inner.value));
   ring.cells = cells_of(node, reading);
   ring.from_angle = reading.optional(node, "from_angle", 0, any_number);
   const auto to = node.find("to_angle");
@@ -196,9 +198,8 @@ std::optional<MeshDescription> read_mesh(const JsonNode& node, SceneReading& rea
 }
 
 std::optional<Material> read_elastic(const JsonNode& node, SceneReading& reading) {
-  static constexpr Rule between{"a number > -1 and < 0.5", [](double nu) { return nu > -1 && nu < 0.5; }};
   if (!node.is_object({{"E", "nu"}})) return std::nullopt;
-  return LinearElastic{reading.required(node, "E", positive), reading.required(node, "nu", between)};
+  return LinearElastic{reading.required(node, "E", positive), reading.required(node, "nu", poisson_ratio)};
 }
 
 std::optional<Material> read_spring(const JsonNode& node, SceneReading& reading) {
@@ -244,12 +245,21 @@ std::optional<Material> read_material(const JsonNode& node, const MeshDescriptio
   return name == "grounded_spring" ? read_spring(material, reading) : read_elastic(material, reading);
 }
 
+/// Reports a fault of a generator, which begins with the key that it is about, at that key, with what it was given.
+void report_mesh_fault(const JsonNode& mesh, const std::string& fault) {
+  for (const auto& [kind, generator] : mesh.members())
+    if (const auto named =
+            generator.value().is_object() ? generator.find(fault.substr(0, fault.find(' '))) : std::nullopt)
+      return named->error("is " + shown(named->value()) + "; " + fault);
+  mesh.error(fault);
+}
+
 /// Makes the mesh and looks at it; none where it is at fault.
 std::optional<Mesh> check_mesh(const JsonNode& body, const JsonNode& node, const MeshDescription& description,
                                const std::string& element, SceneReading& reading) {
   if (reading.diagnostics.has_error_in(node.pointer())) return std::nullopt;
   if (const auto message = mesh_fault(description, "", reading.dimension()); !message.empty()) {
-    node.error(message);
+    report_mesh_fault(node, message);
     return std::nullopt;
   }
   if (const auto message = mesh_fault(description, element, reading.dimension()); !message.empty()) {

@@ -98,6 +98,11 @@ struct Reader {
           "is a side of a body without elements that fill it; its coordinates are parameters "
           "themselves, by their pointers");
     if (stays && stays->body != side->body) return fixed->must_be("a side of the same body, " + side->body);
+    const auto stays_put = [&](int node) {
+      return std::find(stays->side.nodes.begin(), stays->side.nodes.end(), node) != stays->side.nodes.end();
+    };
+    if (stays && std::all_of(side->side.nodes.begin(), side->side.nodes.end(), stays_put))
+      return fixed->error("is " + shown(fixed->value()) + ", which holds all nodes of the side that is to move");
     motion.side = side_node->value();
     if (fixed) motion.fixed = fixed->value();
     const auto& bodies = reading.scene.bodies;

@@ -61,12 +61,10 @@ void read_contact_name(const JsonNode& node, const Kind& kind, Response& respons
                  "friction, which may be 0");
 }
 
-/// "on" of a displacement: a side; beside "at", a body will do.
-void read_on(const JsonNode& node, bool beside_at, Response& response, SceneReading& reading) {
+/// "on" of a displacement or a reaction: a side.
+void read_on(const JsonNode& node, Response& response, SceneReading& reading) {
   if (node.value().is_string()) response.on = node.value();
-  const auto& names = reading.body_names;
-  const bool body = std::find(names.begin(), names.end(), response.on) != names.end();
-  if (!(beside_at && body)) reading.side(node);
+  reading.side(node);
 }
 
 /// Coordinates that say where a response is taken: they are no parameters.
@@ -112,7 +110,8 @@ void read_response(const std::string& name, const JsonNode& outer, SceneReading&
   const auto on = node.find("on"), at = node.find("at"), take = node.find("take"), component = node.find("component");
   if (const auto contact = node.find("contact"); contact && kind.of_contact)
     read_contact_name(*contact, kind, response, reading);
-  if (on && !kind.of_contact) read_on(*on, at.has_value(), response, reading);
+  if (on && !kind.of_contact) read_on(*on, response, reading);
+  if (on && at) at->error_at_key(R"("at" is a single point, and "on" a whole side: one of the two)");
   if (kind.kind == Response::Kind::displacement && !on && !at)
     node.error(R"(one of the keys is missing: "on", a side BODY.SIDE, or "at", a point)");
   if (component && kind.component != Kind::Component::none) read_component(node, *component, kind, response, reading);
@@ -137,6 +136,9 @@ void read_objective(const std::string& name, const JsonNode& node, SceneReading&
   if (!node.is_object({{"of"}, {"sum", "at", "target"}})) return;
   Objective objective;
   objective.name = name;
+  const auto& responses = reading.scene.responses;
+  if (std::any_of(responses.begin(), responses.end(), [&](const Response& each) { return each.name == name; }))
+    node.error_at_key("a response has the name " + in_quotes(name) + " already");
   const auto of = node.find("of"), sum = node.find("sum"), at = node.find("at"), target = node.find("target");
   std::vector<std::string> names;
   for (const auto& response : reading.scene.responses) names.push_back(response.name);

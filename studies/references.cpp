@@ -68,13 +68,6 @@ Quantities<D> inputs_of(const ClosedForm& form, const json& entry, const CaseRes
   return in;
 }
 
-/// The outputs; empty where an input is missing.
-Quantities<D> outputs_of(const ClosedForm& form, const Quantities<D>& in, Space space) {
-  for (const auto& input : form.inputs)
-    if (input.required && !in.count(input.name)) return {};
-  return form.evaluate(in, space);
-}
-
 /// Initial abscissa of the centre of pressure of the first contact.
 double pressure_centre(const CaseResult& result) {
   const auto& model = result.problem->model;
@@ -102,9 +95,10 @@ double tangential_sign(const CaseResult& result) {
   return sum < 0 ? -1 : 1;
 }
 
-/// Reference tractions along the first contact, over its initial abscissa.
+/// Reference tractions along the first contact, over its initial abscissa; none where nothing presses there.
 json curves_of(const ClosedForm& form, const CaseResult& result, const Quantities<double>& all) {
   const double centre = pressure_centre(result), sign = tangential_sign(result), b = all.at("half_width");
+  if (!std::isfinite(centre)) return {};
   json place = json::array(), normal = json::array(), tangential = json::array();
   constexpr int samples = 400;
   for (int i = 0; i <= samples; ++i) {
@@ -139,7 +133,7 @@ ReferenceValues reference_values(const json& entry, const CaseResult& result) {
   if (!form || result.steps.empty()) return reference;
   const auto& scene = result.problem->model.scene;
   const json map = entry.value("map", json::object());
-  const auto in = inputs_of(*form, entry, result, std::nullopt), out = outputs_of(*form, in, scene.space);
+  const auto in = inputs_of(*form, entry, result, std::nullopt), out = form->outputs_of(in, scene.space);
   if (out.empty()) return reference;
   for (const auto& [response, role] : map.items())
     if (const auto quantity = out.find(role); quantity != out.end())
@@ -151,7 +145,7 @@ ReferenceValues reference_values(const json& entry, const CaseResult& result) {
     reference.curves = curves_of(*form, result, all);
   }
   for (std::size_t j = 0; result.steps.back().sensitivities.size() > 0 && j < scene.parameters.size(); ++j) {
-    const auto along = outputs_of(*form, inputs_of(*form, entry, result, j), scene.space);
+    const auto along = form->outputs_of(inputs_of(*form, entry, result, j), scene.space);
     for (const auto& [response, role] : map.items())
       if (const auto quantity = along.find(role); quantity != along.end())
         reference.sensitivities[response][scene.parameters[j].name] = quantity->second.d[0];

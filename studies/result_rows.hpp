@@ -17,16 +17,17 @@ using RowsById = std::map<std::string, nlohmann::json>;
 /// results.jsonl as it was found, with what was wrong with it.
 struct StoredRows {
   RowsById rows;
-  std::size_t torn_bytes = 0;  ///< of a last line that a killed process left
-  int unreadable = 0;          ///< whole lines that are no rows
-  int doubles = 0;             ///< rows of an id that a later line repeats
+  std::size_t torn_bytes = 0;        ///< of a last line that a killed process left
+  std::vector<std::string> damaged;  ///< whole lines that are no rows: "line 3 is no row: ..."
+  int doubles = 0;                   ///< rows of an id that a later line repeats
 
-  bool sound() const { return torn_bytes == 0 && unreadable == 0 && doubles == 0; }
-  /// "a torn last line (12 bytes) was dropped; ...", or "".
+  bool sound() const { return torn_bytes == 0 && damaged.empty() && doubles == 0; }
+  /// "a torn last line (12 bytes) was dropped; line 3 is no row: it has no "status"", or "".
   std::string faults() const;
 };
 
-/// Empty where there is no file. Throws std::system_error where it cannot be read.
+/// Empty where there is no file. A row has the texts "id" and "status", and what else the program writes of the kind
+/// that it writes; lines that are none are left out. Throws std::system_error where it cannot be read.
 StoredRows read_rows(const std::filesystem::path& directory);
 
 /// Takes the rows in `directory` up again for the cells of `ids`: what read_rows() mends is mended on the disk, and
@@ -48,8 +49,14 @@ Timings read_timings(const std::filesystem::path& directory);
 void append_timing(const std::filesystem::path& directory, const std::string& id, int round,
                    const nlohmann::json& seconds);
 
-/// study.json of a directory. Throws std::runtime_error where it is missing or no JSON object.
+/// study.json of a directory. Throws InputFault, with the place in the file, where it is missing or damaged.
 nlohmann::json read_description(const std::filesystem::path& directory);
+
+/// Throws InputFault where study.json or picture.json are there and damaged.
+void check_records(const std::filesystem::path& directory);
+
+/// What tells a cell from others of its label: "/contacts/sole/friction = 0.3, level 1"; "" where nothing is varied.
+std::string variant_text(const nlohmann::json& row);
 
 /// Whether a row's status is converged, or converged_at_roundoff.
 bool converged(const nlohmann::json& row);

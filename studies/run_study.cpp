@@ -11,6 +11,7 @@
 #include "studies/directory_lock.hpp"
 #include "studies/explain.hpp"
 #include "studies/fields.hpp"
+#include "studies/input_fault.hpp"
 #include "studies/progress.hpp"
 #include "studies/report/report.hpp"
 #include "studies/result_rows.hpp"
@@ -44,7 +45,8 @@ fs::path directory_of(const StudyArguments& arguments) {
 }
 
 /// Makes a model of every variant, so that a scene that makes no sense as a whole is found before anything is written.
-void check_models(const std::vector<CellInput>& cells, MeshFiles& meshes, Diagnostics& diagnostics) {
+void check_models(const Study& study, const std::vector<CellInput>& cells, MeshFiles& meshes,
+                  Diagnostics& diagnostics) {
   std::string checked;
   for (const auto& cell : cells) {
     if (variant_key(cell) == checked) continue;
@@ -52,7 +54,7 @@ void check_models(const std::vector<CellInput>& cells, MeshFiles& meshes, Diagno
     try {
       problem_of(input_of(cell, meshes));
     } catch (const ModelError& error) {
-      diagnostics.error({cell.document.place(error.pointer), error.pointer, error.what()});
+      diagnostics.error(in_study(study, {cell.document.place(error.pointer), error.pointer, error.what()}));
     }
   }
 }
@@ -72,7 +74,7 @@ std::optional<Plan> make_plan(const StudyArguments& arguments, MeshFiles& meshes
     plan.ids.push_back(plan.all[i].id);
     if (plan.shard.holds(i)) plan.cells.push_back(plan.all[i]);
   }
-  if (!diagnostics.has_errors()) check_models(plan.cells, meshes, diagnostics);
+  if (!diagnostics.has_errors()) check_models(plan.study, plan.cells, meshes, diagnostics);
   if (diagnostics.has_errors()) return std::nullopt;
   plan.directory = directory_of(arguments);
   return plan;
@@ -125,7 +127,9 @@ Tally run_missing(const Plan& plan, CellRunner& runner, int jobs, RowsById& rows
         ++tally.run;
         if (!converged(row)) {
           ++tally.failed;
-          progress.note(fmt::format("{}: {} ({})", row["label"].get<std::string>(), row["status"].get<std::string>(),
+          const std::string variant = variant_text(row);
+          progress.note(fmt::format("{}{}: {} ({})", row["label"].get<std::string>(),
+                                    variant.empty() ? "" : ", " + variant, row["status"].get<std::string>(),
                                     row["message"].get<std::string>()));
         }
         const std::string id = row["id"];
@@ -197,8 +201,16 @@ bool is_described(const fs::path& directory, const json& described) {
 }
 
 int carry_out(const Plan& plan, const StudyArguments& arguments, MeshFiles& meshes) {
+  prepare_directory(plan.directory, {"results.jsonl", "timings.jsonl", "study.json", "picture.json", "report.html"},
+                    {"figures"});
   const DirectoryLock lock(plan.directory);
-  if (!arguments.resume)
+  if (!arguments.restart) check_records(plan.directory);
+  if (const auto found = read_rows(plan.directory).rows.size(); found > 0 && !arguments.resume && !arguments.restart)
+    throw InputFault(
+        fmt::format("{}: holds {} finished cells; --resume keeps those of this study and runs what is "
+                    "missing, --restart deletes them, -o DIR writes to another directory",
+                    plan.directory.string(), found));
+  if (arguments.restart)
     for (const char* file : {"results.jsonl", "timings.jsonl", "study.json", "picture.json"})
       fs::remove(plan.directory / file);
   json described = description(plan, arguments, meshes);
@@ -230,12 +242,7 @@ int study_command(const StudyArguments& arguments) {
     std::cerr << diagnostics.text();
     return bad_input;
   }
-  try {
-    return carry_out(*plan, arguments, meshes);
-  } catch (const DirectoryInUse& error) {
-    std::cerr << error.what() << '\n';
-    return bad_input;
-  }
+  return carry_out(*plan, arguments, meshes);
 }
 
 }  // namespace stickslip

@@ -1,5 +1,6 @@
 #include "studies/scene_reader.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "studies/method_options.hpp"
@@ -54,6 +55,18 @@ void read_output(const JsonNode& node, OutputOptions& output) {
   }
 }
 
+/// Notes on obstacles that no contact names.
+void note_idle_obstacles(const JsonNode& node, SceneReading& reading) {
+  const auto& contacts = reading.scene.contacts;
+  for (const auto& [name, obstacle] : node.value().is_object() ? node.members() : decltype(node.members()){}) {
+    const bool used = std::any_of(contacts.begin(), contacts.end(),
+                                  [&, &name = name](const Contact& contact) { return contact.master == name; });
+    if (!used)
+      reading.diagnostics.note(
+          {obstacle.place(), obstacle.pointer(), "is an obstacle that no contact names as master"});
+  }
+}
+
 void read_sensitivity(const JsonNode& node, SceneReading& reading) {
   const auto mode = node.is_object({{}, {"mode"}}) ? node.find("mode") : std::nullopt;
   if (!mode || mode->choice({"direct", "adjoint"}) != "adjoint") return;
@@ -105,12 +118,14 @@ std::optional<Input> read_scene(const JsonDocument& given, const std::optional<s
   auto part = [&](const char* key, auto&& read) {
     if (const auto node = root.find(key)) read(*node, reading);
   };
+  if (const auto schema = root.find("$schema")) schema->text();
   if (const auto title = root.find("title")) reading.scene.title = title->text().value_or("");
   read_space(root, reading);
   if (const auto strain = root.find("strain")) strain->choice({"small"}, {"finite"});
   part("bodies", read_bodies);
   part("obstacles", read_obstacles);
   part("contacts", read_contacts);
+  part("obstacles", note_idle_obstacles);
   part("supports", read_supports);
   part("loads", read_loads);
   part("time", read_time);
@@ -127,6 +142,10 @@ std::optional<Input> read_scene(const JsonDocument& given, const std::optional<s
   if (const auto node = root.find("parameters"))
     dropped = read_parameters(*node, document.root(), method ? std::string(name_of(*method)) : "",
                               method_name.has_value(), reading);
+  if (const auto given = root.find("parameters");
+      reading.scene.sensitivity_mode == SensitivityMode::adjoint && (!given || given->value().empty()))
+    root.find("sensitivity")
+        ->error(R"(asks for derivatives by the parameters, and the scene has none; add "parameters")");
   if (diagnostics.error_count() > faults) return std::nullopt;
 
   for (const std::string& pointer : dropped) document.remove(pointer);

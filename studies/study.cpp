@@ -9,6 +9,11 @@ namespace {
 
 using nlohmann::json;
 
+/// The larger one; NaN where either is, so that what cannot be compared is never found equal.
+double larger(double a, double b) { return std::isnan(a) || a > b ? a : b; }
+
+double relative(double difference, double scale) { return difference == 0 ? 0 : difference / scale; }
+
 /// Relative L2 difference of component c (0 normal, 1 tangential) of all tractions, weighted by area.
 double traction_difference(const CaseResult& result, const CaseResult& reference, int c) {
   const auto& model = result.problem->model;
@@ -24,7 +29,7 @@ double traction_difference(const CaseResult& result, const CaseResult& reference
       size += area * exact[k] * exact[k];
     }
   }
-  return difference == 0 ? 0 : std::sqrt(difference / size);
+  return std::sqrt(relative(difference, size));
 }
 
 /// Linear interpolation in a curve of ascending x; 0 outside.
@@ -37,7 +42,8 @@ double at(const json& x, const json& y, double where) {
   return 0;
 }
 
-/// Relative L2 difference from a curve of the closed form over the points of its contact.
+/// Relative L2 difference from a curve of the closed form over the points of its contact; not finite where it is 0 at
+/// them all.
 double curve_difference(const CaseResult& result, const std::string& contact, const json& curve, bool normal) {
   const auto& model = result.problem->model;
   const auto& t = result.steps.back().increment->state.contact.traction;
@@ -53,10 +59,8 @@ double curve_difference(const CaseResult& result, const std::string& contact, co
     difference += area * d * d;
     size += area * exact * exact;
   }
-  return size > 0 ? std::sqrt(difference / size) : 0;
+  return std::sqrt(difference / size);
 }
-
-double relative(double difference, double scale) { return difference == 0 ? 0 : difference / scale; }
 
 }  // namespace
 
@@ -67,8 +71,8 @@ Errors enforcement_errors(const CaseResult& result, const CaseResult& reference)
   for (std::size_t i = 0; i < scene.responses.size(); ++i) {
     double difference = 0, size = 0;
     for (std::size_t n = 0; n < result.steps.size(); ++n) {
-      difference = std::max(difference, std::abs(result.steps[n].responses[i] - reference.steps[n].responses[i]));
-      size = std::max(size, std::abs(reference.steps[n].responses[i]));
+      difference = larger(difference, std::abs(result.steps[n].responses[i] - reference.steps[n].responses[i]));
+      size = larger(size, std::abs(reference.steps[n].responses[i]));
     }
     errors["response:" + scene.responses[i].name] = relative(difference, size);
     for (std::size_t j = 0; j < scene.parameters.size(); ++j) {
@@ -80,8 +84,8 @@ Errors enforcement_errors(const CaseResult& result, const CaseResult& reference)
         const auto& exact = reference.steps[n].sensitivities;
         complete = complete && computed.size() > 0 && exact.size() > 0;
         if (!complete) break;
-        worst = std::max(worst, std::abs(computed(i, j) - exact(i, j)));
-        scale = std::max(scale, std::abs(exact(i, j)));
+        worst = larger(worst, std::abs(computed(i, j) - exact(i, j)));
+        scale = larger(scale, std::abs(exact(i, j)));
       }
       if (complete)
         errors["sensitivity:" + scene.responses[i].name + "/" + scene.parameters[j].name] = relative(worst, scale);

@@ -1,5 +1,7 @@
 #include "studies/study_reader.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -9,6 +11,7 @@
 #include "studies/closed_forms.hpp"
 #include "studies/json_node.hpp"
 #include "studies/method_options.hpp"
+#include "studies/study.hpp"
 
 namespace stickslip {
 namespace {
@@ -19,6 +22,9 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+constexpr int finest = 10;              ///< mesh level: a thousand times the cells each way
+constexpr double most_cells = 100'000;  ///< of a study
+
 /// The values of a list, each once.
 std::vector<PlacedValue> values_of(const JsonNode& list) {
   std::vector<PlacedValue> values;
@@ -26,10 +32,9 @@ std::vector<PlacedValue> values_of(const JsonNode& list) {
     list.must_be("a list of values");
     return values;
   }
+  std::set<json> before;
   for (const JsonNode& element : list.elements()) {
-    const bool again =
-        std::any_of(values.begin(), values.end(), [&](const auto& v) { return v.value == element.value(); });
-    if (again)
+    if (!before.insert(element.value()).second)
       element.error("is " + shown(element.value()) + ", which the list has already");
     else
       values.push_back({element.value(), element.place()});
@@ -114,6 +119,8 @@ void read_inputs(const JsonNode& inputs, const ClosedForm& form, const json& sce
       value.error("is " + shown(content) + ", but the scene has no parameter of this name");
     else if (!content.is_string() && !content.is_number())
       value.must_be("a number, or the name of a parameter of the scene");
+    else if (const auto* input = form.find_input(quantity); input && content.is_number())
+      value.number(input->rule);
   }
 }
 
@@ -153,14 +160,12 @@ std::optional<Reference> read_reference(const JsonNode& node, const json& scene)
         check_result_name(number, result, result_names(scene, true));
         number.number(any_number);
       }
+    if (value.value().is_object() && value.value().empty()) value.error("is empty; must give a response its number");
   } else if (name == "overkill") {
     reference.kind = Reference::Kind::overkill;
     reference.method = {"monolithic_al", node.place(), {}};
-    constexpr int most = 10;
-    if (const auto level = value.is_object({{"refine"}}) ? value.find("refine") : std::nullopt) {
-      reference.refine = level->count(1).value_or(1);
-      if (reference.refine > most) level->must_be("a number of levels from 1 to 10");
-    }
+    if (const auto level = value.is_object({{"refine"}}) ? value.find("refine") : std::nullopt)
+      reference.refine = level->count(1, finest).value_or(1);
   } else {
     reference.kind = Reference::Kind::method;
     const auto sweep = read_method_sweep(value, Lists::refused);
@@ -186,14 +191,35 @@ std::vector<Knob> read_vary(const JsonNode& node, const json& scene) {
   return knobs;
 }
 
-void read_errors(const JsonNode& node, std::vector<std::string>& patterns) {
+/// All names that errors may have in the scene.
+std::vector<std::string> error_names(const json& scene) {
+  std::vector<std::string> names{"kkt", "field:normal_traction", "field:tangential_traction"};
+  for (const std::string& name : result_names(scene, true))
+    names.push_back((name.find('/') == std::string::npos ? "response:" : "sensitivity:") + name);
+  return names;
+}
+
+/// Whether a pattern says something of the scene: all of a kind, or some of the names. A parameter of each node of a
+/// side has several names below its own.
+bool matches_something(const std::string& pattern, const std::vector<std::string>& names) {
+  if (pattern == "response:*" || pattern == "sensitivity:*" || pattern == "field:*") return true;
+  return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+    return asked_for(name, {pattern}) || pattern.starts_with(name + "/");
+  });
+}
+
+void read_errors(const JsonNode& node, const json& scene, std::vector<std::string>& patterns) {
   if (!node.value().is_array()) return node.must_be("a list of patterns");
   for (const JsonNode& element : node.elements()) {
     const auto pattern = element.text();
     if (!pattern) continue;
     const bool known = *pattern == "kkt" || pattern->rfind("response:", 0) == 0 ||
                        pattern->rfind("sensitivity:", 0) == 0 || pattern->rfind("field:", 0) == 0;
-    if (!known) element.must_be("\"kkt\", or begin with response:, sensitivity: or field:, as in \"response:*\"");
+    if (!known)
+      element.must_be("\"kkt\", or begin with response:, sensitivity: or field:, as in \"response:*\"");
+    else if (const auto names = error_names(scene); !matches_something(*pattern, names))
+      element.error("is " + in_quotes(*pattern) + ", which matches nothing in the scene;" +
+                    suggestion(*pattern, names) + " allowed: " + listed(names) + ", or one of them cut short by a *");
     patterns.push_back(*pattern);
   }
 }
@@ -210,6 +236,19 @@ void for_each_combination(const std::vector<Knob>& sweeps, F&& f) {
     }
   };
   choose(choose, 0);
+}
+
+/// How many combinations there are, in a double, which does not overflow.
+double combinations(const std::vector<Knob>& sweeps) {
+  double count = 1;
+  for (const Knob& sweep : sweeps) count *= static_cast<double>(sweep.values.size());
+  return count;
+}
+
+double cell_count(const Study& study) {
+  double methods = 0;
+  for (const MethodSweep& method : study.methods) methods += combinations(method.options);
+  return static_cast<double>(study.refine.size()) * combinations(study.vary) * methods;
 }
 
 /// "/newton/tolerance" as "newton.tolerance".
@@ -286,7 +325,8 @@ bool refine_meshes(JsonDocument& scene, int level, const Place& origin, Diagnost
     if (!mesh || !mesh->is_object()) continue;
     const std::string pointer = child_pointer("/bodies", name) + "/mesh";
     if (mesh->contains("gmsh")) {
-      diagnostics.error({origin, pointer, "an imported mesh cannot be refined; allowed: level 0"});
+      diagnostics.error(
+          {origin, pointer, "refines " + pointer + ", an imported mesh, which cannot be; allowed: level 0"});
       possible = false;
     }
     for (const auto& [kind, generator] : mesh->items()) {
@@ -312,6 +352,7 @@ std::optional<Study> read_study(const std::string& file, Diagnostics& diagnostic
   const JsonNode root(study.document, diagnostics);
   if (!root.is_object({{"scene"}, {"$schema", "title", "methods", "vary", "refine", "reference", "errors", "timing"}}))
     return std::nullopt;
+  if (const auto schema = root.find("$schema")) schema->text();
   if (const auto title = root.find("title")) study.title = title->text().value_or("");
 
   // what the rest is checked against
@@ -349,31 +390,46 @@ std::optional<Study> read_study(const std::string& file, Diagnostics& diagnostic
   study.refine = {{0, study.document.place("")}};
   if (const auto refine = root.find("refine")) {
     study.refine = values_of(*refine);
-    constexpr double most = 10;  // a thousand times the cells each way
     for (const JsonNode& level : refine->value().is_array() ? refine->elements() : std::vector<JsonNode>{})
-      if (const auto number = level.count(0); number && *number > most) level.must_be("a level from 0 to 10");
+      level.count(0, finest);
   }
   if (const auto references = root.find("reference")) {
     if (!references->value().is_array())
       references->must_be("a list of references");
     else
-      for (const JsonNode& node : references->elements())
-        if (auto reference = read_reference(node, scene_root)) study.references.push_back(*std::move(reference));
+      for (const JsonNode& node : references->elements()) {
+        const bool again = std::any_of(study.references.begin(), study.references.end(),
+                                       [&](const auto& before) { return before.entry == node.value(); });
+        if (again)
+          node.error("is a reference that the list has already");
+        else if (auto reference = read_reference(node, scene_root))
+          study.references.push_back(*std::move(reference));
+      }
   }
   study.errors = {"response:*", "sensitivity:*", "kkt"};
   if (const auto errors = root.find("errors")) {
     study.errors.clear();
-    read_errors(*errors, study.errors);
+    read_errors(*errors, scene_root, study.errors);
   }
   if (const auto timing = root.find("timing"); timing && timing->is_object({{}, {"repeat"}}))
     if (const auto repeat = timing->find("repeat")) study.repeat = repeat->count(1).value_or(0);
+  if (const double count = cell_count(study); count > most_cells)
+    root.error(fmt::format("makes {:.0f} cells of all its lists; allowed: {:.0f} at most", count, most_cells));
   if (diagnostics.error_count() > faults) return std::nullopt;
   return study;
 }
 
-std::vector<CellInput> expand(const Study& study, const std::string& program_version, Diagnostics& diagnostics,
+Diagnostic in_study(const Study& study, Diagnostic fault) {
+  if (fault.place.source != study.document.file()) return fault;
+  fault.pointer = fault.place.pointer;  // a value may be deeper in the cell's scene than in the list that it comes from
+  while (!fault.pointer.empty() && !value_at(study.document.root(), fault.pointer))
+    fault.pointer.erase(fault.pointer.rfind('/'));
+  return fault;
+}
+
+std::vector<CellInput> expand(const Study& study, const std::string& program_version, Diagnostics& all_faults,
                               MeshFiles& mesh_files) {
-  const std::size_t faults = diagnostics.error_count();
+  Diagnostics diagnostics;
   std::vector<CellInput> cells;
   std::set<std::string> ids;
   for (const auto& [level, level_place] : study.refine) {
@@ -404,7 +460,8 @@ std::vector<CellInput> expand(const Study& study, const std::string& program_ver
         if (set_reference(cell, reference, diagnostics))
           complete(cell, reference.method.method, program_version, diagnostics, mesh_files);
       }
-  if (diagnostics.error_count() > faults) cells.clear();
+  for (const Diagnostic& fault : diagnostics.errors()) all_faults.error(in_study(study, fault));
+  if (diagnostics.has_errors()) cells.clear();
   return cells;
 }
 

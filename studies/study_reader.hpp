@@ -72,6 +72,9 @@ std::optional<Study> read_study(const std::string& file, Diagnostics&);
 /// of their options, the last varying fastest. Inputs that are the same come once. Empty where there is a fault.
 std::vector<CellInput> expand(const Study&, const std::string& program_version, Diagnostics&, MeshFiles&);
 
+/// A fault of a cell's scene as one of the study, where the study gives the value: with the pointer that it has there.
+Diagnostic in_study(const Study&, Diagnostic fault);
+
 /// The cell with the method of a reference instead of its own, on its own mesh or a finer one: what its enforcement or
 /// its discretisation error is measured against. pre: the reference is a method, or overkill.
 CellInput reference_cell(const CellInput&, const Reference&, const std::string& program_version, MeshFiles&);

@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "studies/input_fault.hpp"
+
 namespace stickslip {
 namespace {
 
@@ -104,6 +106,44 @@ TEST_F(AtomicFile, AppendedLinesComeBackInOrder) {
   append_line(path, "");
   append_line(path, R"({"id":"3"})");
   EXPECT_EQ(read_lines(path), (std::vector<std::string>{R"({"id":"1"})", "", R"({"id":"3"})"}));
+}
+
+TEST_F(AtomicFile, ADirectoryIsMadeReadyOrRefused) {
+  const fs::path directory = folder_ / "new" / "results", file = folder_ / "file";
+  prepare_directory(directory, {"a.json"}, {"figures"});
+  EXPECT_TRUE(fs::is_directory(directory / "figures"));
+  std::ofstream(file) << "text";
+  fs::create_directories(directory / "b.json");
+  std::ofstream(directory / "plots") << "text";
+  const auto refused = [](const fs::path& at, const std::string& file_in, const std::string& folder_in) {
+    try {
+      prepare_directory(at, {file_in}, {folder_in});
+    } catch (const InputFault& fault) {
+      return std::string(fault.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refused(file, "a", "b"), file.string() + ": is a file; must be a directory, or a name that is free");
+  EXPECT_EQ(refused(file / "in", "a", "b"), (file / "in").string() + ": cannot be made: Not a directory");
+  EXPECT_EQ(refused(folder_ / std::string(300, 'x'), "a", "b").substr((folder_ / "").string().size() + 300),
+            ": cannot be made: File name too long");
+  EXPECT_EQ(refused(directory, "b.json", "figures"),
+            (directory / "b.json").string() + ": is a directory; the file of this name goes there");
+  EXPECT_EQ(refused(directory, "a.json", "plots"),
+            (directory / "plots").string() + ": is a file; must be a directory, or a name that is free");
+}
+
+TEST_F(AtomicFile, WhatAKilledProcessLeftIsRemovedBeforeTheNextOneWrites) {
+  const pid_t gone = ::fork();
+  if (gone == 0) ::_exit(0);
+  ::waitpid(gone, nullptr, 0);
+  const fs::path stale = folder_ / ("a.vtu." + std::to_string(gone) + ".part"),
+                 own = folder_ / ("a.vtu." + std::to_string(::getpid()) + ".part"), foreign = folder_ / "a.part";
+  for (const auto& path : {stale, own, foreign}) std::ofstream(path) << "half";
+  prepare_directory(folder_, {});
+  EXPECT_FALSE(fs::exists(stale));
+  EXPECT_TRUE(fs::exists(own));
+  EXPECT_TRUE(fs::exists(foreign));
 }
 
 TEST_F(AtomicFile, ALineOfAFileThatIsNotThereIsNone) { EXPECT_TRUE(read_lines(folder_ / "absent").empty()); }

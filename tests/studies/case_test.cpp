@@ -47,5 +47,52 @@ TEST(Case, OfAMethodWithoutIteratedDerivativesRecordsNothingOfThem) {
   }
 }
 
+TEST(Case, RefusesResponsesOfWhatIsNotThere) {
+  const auto fault = [](const Response& response) {
+    Scene scene = scenes::greco_plate(8);
+    scene.responses = {response};
+    try {
+      const Problem problem(scene);
+    } catch (const ModelError& error) {
+      return error.pointer + ": " + error.what();
+    }
+    return std::string();
+  };
+  const auto plate = scenes::greco_plate(8);
+  const auto& contact = plate.contacts.front();
+  EXPECT_THAT(fault(scenes::response("R", Response::Kind::reaction, contact.slave, "x")),
+              testing::HasSubstr("/responses/R/reaction/on: no support acts on"));
+  auto gap = scenes::response("g", Response::Kind::gap, contact.name);
+  gap.at = {1e6, 0.0};
+  EXPECT_THAT(fault(gap), testing::HasSubstr("/responses/g: the point of \"at\" is off the contact"));
+}
+
+/// No support, no contact: with a load there is no equilibrium, without one there are many.
+TEST(Case, ABodyThatNothingHoldsIsNamed) {
+  for (const bool loaded : {false, true})
+    for (const Method& method : {Method(Penalty{}), Method(UzawaAL{}), Method(MonolithicAL{})}) {
+      Scene scene;
+      scene.bodies = {{"block", BoxMesh{{0.0, 0.0}, {2.0, 1.0}, {2, 1}}, LinearElastic{100, 0.3}}};
+      if (loaded) scene.loads = {scenes::traction("block.top", {0.0, -1.0})};
+      scene.legs = {{1, 1}};
+      std::shared_ptr<Condensation<double>> condensation;
+      const auto result = run_case(std::make_shared<const Problem>(scene), method, {}, condensation);
+      EXPECT_EQ(result.status(), loaded ? Status::no_equilibrium : Status::non_unique) << name_of(method);
+      EXPECT_EQ(result.message(),
+                "block is free to move: no support holds it and no contact touches it; add a support or a contact");
+    }
+}
+
+TEST(Case, AHeldBodyWithoutALoadRests) {
+  Scene scene;
+  scene.bodies = {{"block", BoxMesh{{0.0, 0.0}, {2.0, 1.0}, {2, 1}}, LinearElastic{100, 0.3}}};
+  scene.supports = {
+      scenes::support("block.left", {{'x', scenes::table({{0, 0.0}})}, {'y', scenes::table({{0, 0.0}})}})};
+  scene.legs = {{1, 1}};
+  std::shared_ptr<Condensation<double>> condensation;
+  const auto result = run_case(std::make_shared<const Problem>(scene), Penalty{}, {}, condensation);
+  EXPECT_EQ(result.status(), Status::converged) << result.message();
+}
+
 }  // namespace
 }  // namespace stickslip

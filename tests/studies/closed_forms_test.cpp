@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace stickslip {
 namespace {
@@ -73,7 +74,7 @@ Quantities<D> evaluate(const Example& example, const std::string& along = "", do
   Quantities<D> in;
   for (const auto& [name, value] : example.in) in[name] = D(value);
   if (!along.empty()) in[along] = D::seed(value(in[along]) + shift, 0);
-  return find_closed_form(example.form)->evaluate(in, example.space);
+  return find_closed_form(example.form)->outputs_of(in, example.space);
 }
 
 TEST(ClosedForms, GiveTheNumbersOfTheCatalogue) {
@@ -113,10 +114,21 @@ TEST(ClosedForms, GiveAllTheOutputsTheyListFromTheInputsTheyList) {
   }
 }
 
-TEST(ClosedForms, SayNothingOfAnOpenContact) {
-  Example open = examples().front();
-  open.in["force"] = 0;
-  EXPECT_TRUE(evaluate(open).empty());
+TEST(ClosedForms, SayNothingWhereAnInputIsNotWhatItMustBe) {
+  const double nothing = std::nan("");
+  for (const auto& [form, input, given] :
+       std::vector<std::tuple<std::string, std::string, double>>{{"hertz_line", "force", 0},  // an open contact
+                                                                 {"hertz_line", "radius", -1},
+                                                                 {"hertz_line", "modulus", nothing},
+                                                                 {"press_fit", "interface", 5},
+                                                                 {"press_fit", "nu", 0.5},
+                                                                 {"belt", "slack", -1},
+                                                                 {"cantilever_floor", "gap", 0}}) {
+    Example example = *std::find_if(examples().begin(), examples().end(),
+                                    [&, &form = form](const Example& each) { return form == each.form; });
+    example.in.at(input) = given;
+    EXPECT_TRUE(evaluate(example).empty()) << form << " " << input << " = " << given;
+  }
 }
 
 /// The curves integrate to the forces that made them.

@@ -112,6 +112,9 @@ TEST(JsonDocument, ReportsAFileThatCannotBeRead) {
   Diagnostics diagnostics;
   EXPECT_FALSE(JsonDocument::read("no/such/file.json", diagnostics).has_value());
   EXPECT_EQ(diagnostics.text(), "no/such/file.json: cannot be read\n");
+  Diagnostics of_directory;
+  EXPECT_FALSE(JsonDocument::read(".", of_directory).has_value());
+  EXPECT_EQ(of_directory.text(), ".: is a directory; must be a file\n");
 }
 
 TEST(JsonDocument, SurvivesEveryTruncationOfAText) {

@@ -5,9 +5,11 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <utility>
 
 #include "studies/atomic_file.hpp"
 #include "studies/directory_lock.hpp"
+#include "studies/input_fault.hpp"
 #include "studies/workers.hpp"
 
 namespace stickslip {
@@ -41,20 +43,20 @@ TEST_F(ResultRows, AreNoneInAnEmptyDirectory) {
 }
 
 TEST_F(ResultRows, AreLeftAloneWhereTheyAreSound) {
-  write("{\"id\":\"b\"}\n{\"id\":\"a\"}\n");
+  write("{\"id\":\"b\",\"status\":\"cap\"}\n{\"id\":\"a\",\"status\":\"cap\"}\n");
   const auto rows = resume_rows(directory_, {"a", "b"}, notes_);
   EXPECT_EQ(rows.size(), 2u);
   EXPECT_THAT(notes_, IsEmpty());
-  EXPECT_EQ(content(), "{\"id\":\"b\"}\n{\"id\":\"a\"}\n");
+  EXPECT_EQ(content(), "{\"id\":\"b\",\"status\":\"cap\"}\n{\"id\":\"a\",\"status\":\"cap\"}\n");
 }
 
 TEST_F(ResultRows, LoseATornLastLineAndSayIt) {
-  write("{\"id\":\"a\"}\n{\"id\":\"b\",\"sta");
+  write("{\"id\":\"a\",\"status\":\"cap\"}\n{\"id\":\"b\",\"sta");
   const auto rows = resume_rows(directory_, {"a", "b"}, notes_);
   EXPECT_EQ(rows.count("a"), 1u);
   EXPECT_EQ(rows.count("b"), 0u);
   EXPECT_THAT(notes_, ElementsAre("a torn last line (14 bytes) was dropped"));
-  EXPECT_EQ(content(), "{\"id\":\"a\"}\n");
+  EXPECT_EQ(content(), "{\"id\":\"a\",\"status\":\"cap\"}\n");
 }
 
 TEST_F(ResultRows, LoseATornFirstLine) {
@@ -64,24 +66,65 @@ TEST_F(ResultRows, LoseATornFirstLine) {
 }
 
 TEST_F(ResultRows, LoseDoublesAndLinesThatAreNoRows) {
-  write("{\"id\":\"a\",\"n\":1}\nnonsense\n[1]\n{\"id\":7}\n{\"id\":\"a\",\"n\":2}\n");
+  write(
+      "{\"id\":\"a\",\"n\":1,\"status\":\"cap\"}\nnonsense\n[1]\n{\"id\":7}\n{\"id\":\"a\",\"n\":2,\"status\":\"cap\"}"
+      "\n");
   const auto rows = resume_rows(directory_, {"a"}, notes_);
   EXPECT_EQ(rows.at("a")["n"], 2);
-  EXPECT_THAT(notes_, ElementsAre("3 unreadable line(s) were dropped; 1 double row(s) were dropped"));
-  EXPECT_EQ(content(), "{\"id\":\"a\",\"n\":2}\n");
+  EXPECT_THAT(notes_, ElementsAre("line 2 is no row and was dropped: it is not JSON; line 3 is no row and was dropped: "
+                                  "it is [1]; line 4 is no row and was dropped: it has no \"status\"; "
+                                  "1 double row(s) were dropped"));
+  EXPECT_EQ(content(), "{\"id\":\"a\",\"n\":2,\"status\":\"cap\"}\n");
+}
+
+/// A cell whose row is damaged is run again.
+TEST_F(ResultRows, LoseWhatTheProgramDoesNotWrite) {
+  for (const auto& [row, fault] : std::vector<std::pair<std::string, std::string>>{
+           {R"({"id":"a"})", R"(it has no "status")"},
+           {R"({"id":"a","status":7})", "/status is 7; must be a text"},
+           {R"({"id":"a","status":"cap","label":5})", "/label is 5; must be a text"},
+           {R"({"id":"a","status":"cap","errors":5})", "/errors is 5; must be an object"},
+           {R"({"id":"a","status":"cap","errors":{"kkt":[]}})", "/errors/kkt is []; must be an object"},
+           {R"({"id":"a","status":"cap","refine":0.5})", "/refine is 0.5; must be a whole number"}}) {
+    write(row + "\n");
+    const auto stored = read_rows(directory_);
+    EXPECT_THAT(stored.rows, IsEmpty()) << row;
+    EXPECT_EQ(stored.faults(), "line 1 is no row and was dropped: " + fault);
+  }
+}
+
+TEST_F(ResultRows, GoWithRecordsThatAreWholeOrNamed) {
+  EXPECT_NO_THROW(check_records(directory_));
+  const auto fault = [&](const std::string& name, const std::string& text) {
+    std::ofstream(directory_ / name) << text;
+    try {
+      check_records(directory_);
+    } catch (const InputFault& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(fault("study.json", R"({"program": "1", "cells": ["a"]})"), "");
+  EXPECT_EQ(fault("picture.json", "{}"), "");
+  EXPECT_THAT(fault("picture.json", "{\"a\":\n1"), HasSubstr("picture.json:2:2: is not JSON"));
+  EXPECT_THAT(fault("picture.json", "7"), HasSubstr("picture.json:1:1: is 7; must be an object"));
+  EXPECT_THAT(fault("study.json", ""), HasSubstr("study.json:1:1: is not JSON"));
+  EXPECT_THAT(fault("study.json", "{\n\"cells\": 5}"), HasSubstr("study.json:2:10: /cells: is 5; must be a list"));
+  EXPECT_THAT(fault("study.json", "{\"program\": 5}"), HasSubstr("study.json:1:13: /program: is 5; must be a text"));
 }
 
 TEST_F(ResultRows, PutThoseOfAnotherStudyAside) {
-  write("{\"id\":\"old\"}\n{\"id\":\"a\"}\n");
+  write("{\"id\":\"old\",\"status\":\"cap\"}\n{\"id\":\"a\",\"status\":\"cap\"}\n");
   EXPECT_EQ(resume_rows(directory_, {"a"}, notes_).size(), 1u);
   EXPECT_THAT(notes_, ElementsAre(HasSubstr("1 row(s) of another study")));
-  EXPECT_EQ(read_file(directory_ / "results.stale.jsonl"), "{\"id\":\"old\"}\n");
-  EXPECT_EQ(content(), "{\"id\":\"a\"}\n");
+  EXPECT_EQ(read_file(directory_ / "results.stale.jsonl"), "{\"id\":\"old\",\"status\":\"cap\"}\n");
+  EXPECT_EQ(content(), "{\"id\":\"a\",\"status\":\"cap\"}\n");
 }
 
 TEST_F(ResultRows, AreWrittenInTheOrderOfTheStudy) {
-  write_rows(directory_, {"b", "c", "a"}, {{"a", {{"id", "a"}}}, {"b", {{"id", "b"}}}});
-  EXPECT_EQ(content(), "{\"id\":\"b\"}\n{\"id\":\"a\"}\n");
+  write_rows(directory_, {"b", "c", "a"},
+             {{"a", {{"id", "a"}, {"status", "cap"}}}, {"b", {{"id", "b"}, {"status", "cap"}}}});
+  EXPECT_EQ(content(), "{\"id\":\"b\",\"status\":\"cap\"}\n{\"id\":\"a\",\"status\":\"cap\"}\n");
 }
 
 TEST_F(ResultRows, RememberEachTimedRun) {

@@ -95,6 +95,15 @@ double slot_value(const Scene& scene, const std::string& pointer) {
   return scene.numbers.at(found - scene.pointers.begin());
 }
 
+TEST(SceneReader, NotesAnObstacleThatNoContactNames) {
+  Diagnostics diagnostics;
+  EXPECT_TRUE(read_text(edited(block_scene, R"("obstacles": {)",
+                               R"("obstacles": {"wall": {"plane": {"point": [9, 0], "normal": [-1, 0]}}, )"),
+                        diagnostics));
+  ASSERT_EQ(diagnostics.notes().size(), 1u);
+  EXPECT_EQ(diagnostics.notes()[0].pointer, "/obstacles/wall");
+}
+
 TEST(SceneReader, ReadsWhatDrivesAScene) {
   std::string text = edited(block_scene, R"("supports": [{)", R"("supports": [
     {"on": "block.right", "along": [3, 4], "value": {"table": [[0, 0], [1, 5], [2, 0]], "repeat": 7}},
@@ -493,6 +502,7 @@ std::vector<Broken> broken_bodies() {
   const char* b = block_scene;
   return {
       {"unknown_top_key", b, R"("title")", R"(@"titel")", "/titel", R"(did you mean "title"?)"},
+      {"schema_number", b, R"("title": "block pushed over a floor")", R"("$schema": @7)", "/$schema", "must be a text"},
       {"title_number", b, R"("block pushed over a floor")", "@7", "/title", "is 7; must be a text"},
       {"unknown_space", b, R"("plane_strain")", R"(@"plane_strin")", "/space", R"(did you mean "plane_strain"?)"},
       {"left_of_the_axis", b, R"("space": "plane_strain",
@@ -504,6 +514,9 @@ std::vector<Broken> broken_bodies() {
     "block": {
       "mesh": @{"box": {"min": [-1, 0])",
        "/bodies/block/mesh", "reaches to x = -1"},
+      {"ring_inside_out", b, R"({"box": {"min": [0, 0], "max": [4, 2], "cells": [4, 2]}})",
+       R"({"ring": {"center": [0, 0], "inner": 2, "outer": @1, "cells": [2, 8]}})", "/bodies/block/mesh/ring/outer",
+       "is 1; must be greater than inner, which is 2"},
       {"finite_strain", b, R"("space": "plane_strain")", R"("strain": @"finite")", "/strain",
        "is not available in this version; allowed: small"},
       {"bodies_list", b, R"("element": "Q4")", R"("element": @4)", "/bodies/block/element",
@@ -535,15 +548,15 @@ std::vector<Broken> broken_bodies() {
       {"ring_without_a_hole", b, box, R"({"ring": {"center": [0, 0], "inner": @0, "outer": 2, "cells": [2, 8]}})",
        "/bodies/block/mesh/ring/inner", "a number > 0"},
       {"ring_of_more_than_a_turn", b, box,
-       R"(@{"ring": {"center": [0, 0], "inner": 1, "outer": 2, "cells": [2, 8], "to_angle": 400}})",
-       "/bodies/block/mesh", "by 360 degrees at most"},
+       R"({"ring": {"center": [0, 0], "inner": 1, "outer": 2, "cells": [2, 8], "to_angle": @400}})",
+       "/bodies/block/mesh/ring/to_angle", "is 400; to_angle must exceed from_angle, by 360 degrees at most"},
       {"ring_graded_to_the_left", b, box,
        R"({"ring": {"center": [0, 0], "inner": 1, "outer": 2, "cells": [2, 8], "grade": {@"left": 2}}})",
        "/bodies/block/mesh/ring/grade/left", "allowed: inner, outer"},
       {"quad_of_three_corners", b, box, R"({"quad": {"corners": @[[0, 0], [1, 0], [1, 1]], "cells": [1, 1]}})",
        "/bodies/block/mesh/quad/corners", "four corners"},
-      {"quad_turned_over", b, box, R"(@{"quad": {"corners": [[0, 0], [0, 1], [1, 1], [1, 0]], "cells": [1, 1]}})",
-       "/bodies/block/mesh", "counter-clockwise"},
+      {"quad_turned_over", b, box, R"({"quad": {"corners": @[[0, 0], [0, 1], [1, 1], [1, 0]], "cells": [1, 1]}})",
+       "/bodies/block/mesh/quad/corners", "counter-clockwise"},
       {"disk_without_cells", b, box, R"({"disk": @{"center": [0, 0], "radius": 1}})", "/bodies/block/mesh/disk",
        "\"cells\" is missing"},
       {"box_turned_over", b, R"("max": [4, 2])", R"("max": [4, @0])", "/bodies/block/mesh/box/max/1",
@@ -560,8 +573,8 @@ std::vector<Broken> broken_bodies() {
        "/bodies/block/mesh/box/grade/botom", R"(did you mean "bottom"?)"},
       {"grade_of_zero", b, R"("cells": [4, 2])", R"("cells": [4, 2], "grade": {"bottom": @0})",
        "/bodies/block/mesh/box/grade/bottom", "must be a number > 0"},
-      {"folded_half_disk", b, box, R"(@{"half_disk": {"center": [0, 0], "radius": 1, "cells": [2, 9]}})",
-       "/bodies/block/mesh", "must not differ"},
+      {"folded_half_disk", b, box, R"({"half_disk": {"center": [0, 0], "radius": 1, "cells": @[2, 9]}})",
+       "/bodies/block/mesh/half_disk/cells", "is [2,9]; cells of a half disk must not differ"},
       {"half_disk_facing_left", b, box,
        R"({"half_disk": {"center": [0, 0], "radius": 1, "cells": [4, 4], "facing": @"left"}})",
        "/bodies/block/mesh/half_disk/facing", "allowed: down, up"},
@@ -722,6 +735,8 @@ std::vector<Broken> broken_responses() {
        "unknown key"},
       {"displacement_nowhere", b, tip, R"({"displacement": @{"component": "y"}})", "/responses/tip/displacement",
        R"("on", a side BODY.SIDE, or "at", a point)"},
+      {"at_on_a_side", b, tip, R"({"displacement": {"on": "block.top", @"at": [0, 0], "component": "y"}})",
+       "/responses/tip/displacement/at", "one of the two"},
       {"take_at_a_point", b, tip, R"({"displacement": {"at": [0, 0], "component": "y", @"take": "max"}})",
        "/responses/tip/displacement/take", R"(has no meaning beside "at")"},
       {"at_in_space", b, tip, R"({"displacement": {"at": @[0, 0, 0], "component": "y"}})",
@@ -771,6 +786,9 @@ std::vector<Broken> broken_parameters() {
        "/parameters/mu/~1contacts~1sole~1friction", "unknown key"},
       {"shape_side", b, mu, R"("mu": {"shape": {"side": @"block.tip", "direction": [0, 1]}})",
        "/parameters/mu/shape/side", R"(did you mean "top"?)"},
+      {"shape_fixed_to_itself", b, mu,
+       R"("mu": {"shape": {"side": "block.top", "direction": [0, 1], "fixed": @"block.top"}})",
+       "/parameters/mu/shape/fixed", "holds all nodes of the side that is to move"},
       {"shape_direction", b, mu, R"("mu": {"shape": {"side": "block.top", "direction": @[0, 0]}})",
        "/parameters/mu/shape/direction", "not all zero"},
       {"shape_dimension", b, mu, R"("mu": {"shape": {"side": "block.top", "direction": @[0, 1, 0]}})",
@@ -809,6 +827,8 @@ std::vector<Broken> broken_methods() {
       {"truncated_and_accelerated", b, method,
        R"({"uzawa_al": {"acceleration": "anderson", "sensitivity": @"truncated"}})", "/method/uzawa_al/sensitivity",
        "the weights of an acceleration are not differentiated; allowed with it: iterated, oversized, preconditioned"},
+      {"oversize_of_iterated", b, method, R"({"uzawa_al": {"sensitivity": "iterated", @"oversize": 50}})",
+       "/method/uzawa_al/oversize", R"(belongs to the sensitivity "oversized" or "preconditioned")"},
       {"frozen_and_oversized", b, method, R"({"uzawa_al": {"sensitivity": @"oversized", "cone": "frozen"}})",
        "/method/uzawa_al/sensitivity", "leaves the error of a frozen cone as it is"},
       {"frozen_and_preconditioned", b, method, R"({"uzawa_al": {"sensitivity": @"preconditioned", "cone": "frozen"}})",
@@ -836,6 +856,11 @@ std::vector<Broken> broken_methods() {
        "/sensitivity/mode", R"(differentiates the objectives, and the scene has none; add "objectives")"},
       {"objective_array", b, R"("title": "block pushed over a floor")", R"("objectives": @[])", "/objectives",
        "must be an object, objectives by name"},
+      {"adjoint_without_parameters", b, R"("parameters": {"mu": "/contacts/sole/friction"})",
+       R"("objectives": {"J": {"of": "pull", "sum": true}}, "sensitivity": @{"mode": "adjoint"})", "/sensitivity",
+       "the scene has none; add \"parameters\""},
+      {"objective_named_as_a_response", b, R"("title": "block pushed over a floor")",
+       R"("objectives": {@"pull": {"of": "pull", "sum": true}})", "/objectives/pull", "a response has the name"},
       {"objective_key", b, R"("title": "block pushed over a floor")",
        R"("objectives": {"J": {"of": "pull", "sum": true, @"targett": 1}})", "/objectives/J/targett",
        R"(did you mean "target"?)"},
@@ -874,10 +899,10 @@ std::vector<Broken> broken_lumped() {
       {"area_of_zero", l, R"("area": 0.5)", R"("area": @0)", "/bodies/belt/area", "must be a number > 0"},
       {"arc_of_a_full_turn", l,
        R"({"arc": {"center": [0, 0], "radius": 1, "from_angle": 0, "to_angle": 90, "cells": 4}})",
-       R"(@{"arc": {"center": [0, 0], "radius": 1, "from_angle": 0, "to_angle": 360, "cells": 4}})",
-       "/bodies/belt/mesh", "less than 360 degrees"},
+       R"({"arc": {"center": [0, 0], "radius": 1, "from_angle": @0, "to_angle": 360, "cells": 4}})",
+       "/bodies/belt/mesh/arc/from_angle", "less than 360 degrees"},
       {"line_of_no_length", l, R"({"line": {"from": [2, 0], "to": [3, 0], "cells": 3}})",
-       R"(@{"line": {"from": [2, 0], "to": [2, 0], "cells": 3}})", "/bodies/rod/mesh", "the same point"},
+       R"({"line": {"from": @[2, 0], "to": [2, 0], "cells": 3}})", "/bodies/rod/mesh/line/from", "the same point"},
       // thirty bars within two roundings of their coordinates
       {"line_lost_to_rounding", l, R"({"line": {"from": [2, 0], "to": [3, 0], "cells": 3}})",
        R"(@{"line": {"from": [1e16, 0], "to": [10000000000000004, 0], "cells": 30}})", "/bodies/rod/mesh",

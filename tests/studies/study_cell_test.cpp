@@ -111,6 +111,21 @@ TEST_F(StudyCell, KeepsTheErrorsOfEveryReferenceAndTheFirstOfEachName) {
   EXPECT_EQ(errors["enforcement"]["response:shift"], errors["by_reference"][2]["errors"]["response:shift"]);
 }
 
+/// A radius that is a parameter is known when the cell is run.
+TEST_F(StudyCell, AClosedFormWithoutAnAnswerGivesNoErrors) {
+  json scene = block();
+  scene["responses"]["press"] = {{"contact_force", {{"contact", "sole"}, {"component", "normal"}}}};
+  scene["contacts"]["sole"]["offset"] = 0;
+  scene["parameters"]["R"] = "/contacts/sole/offset";
+  const auto [study, cells] = read(
+      scene,
+      {{"methods", {{{"monolithic_al", json::object()}}}},
+       {"reference", {{{"analytic", "hertz_line"}, {"map", {{"press", "force"}}}, {"inputs", {{"radius", "R"}}}}}}});
+  ASSERT_EQ(cells.size(), 1u);
+  const json errors = CellRunner(study, cells, meshes_).row(0)["errors"];
+  EXPECT_EQ(errors["discretization"], json::object());
+}
+
 /// What a worker of another process gives is what this one gives, so it must not depend on the cells before.
 TEST_F(StudyCell, ARowDoesNotDependOnWhatRanBefore) {
   const auto [study, cells] =

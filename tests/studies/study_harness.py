@@ -117,6 +117,47 @@ def one_at_a_time(study, work):
     print("a second process is refused: " + second.stderr.strip(), flush=True)
 
 
+def not_overwritten(study, whole, work):
+    """What cannot be written, or would be lost, is refused before anything runs: exit code 2 and a plain reason."""
+    (work / "file").write_text("mine")
+    folder = work / "folder"
+    (folder / "report.html").mkdir(parents=True)
+    scene = study.parent / json.loads(study.read_text())["scene"]
+    refusals = [
+        (("study", study, "-o", whole), "--restart deletes them"),
+        (("study", study, "-o", work / "file"), "is a file; must be a directory"),
+        (("study", study, "-o", folder), "report.html: is a directory"),
+        (("study", study, "-o", ""), "is empty; must be a name"),
+        (("run", scene, "-o", work / "file"), "is a file; must be a directory"),
+        (("run", scene, "-o", work / ("x" * 300)), "cannot be made: File name too long"),
+        (("run", scene, "--json", "--export", work / "file"), "is a file; must be a directory"),
+        (("merge", whole, "-o", work / "file"), "is a file; must be a directory"),
+        (("compare", whole, whole, "--relative", "-1"), "must be a number >= 0"),
+        (("compare", whole, whole, "--rounding", "nan"), "must be a number >= 0"),
+    ]
+    for arguments, reason in refusals:
+        refused = run(*arguments, check=False)
+        if refused.returncode != 2 or reason not in refused.stderr or "bug of ours" in refused.stderr:
+            sys.exit(f"{arguments}: {refused.returncode} {refused.stderr}")
+    with open("/dev/full", "w") as full:
+        lost = subprocess.run([PROGRAM, "run", scene, "--json"], stdout=full, stderr=subprocess.PIPE, text=True)
+    if lost.returncode != 2 or "standard output cannot be written" not in lost.stderr:
+        sys.exit(f"a full disk: {lost.returncode} {lost.stderr}")
+    again = work / "again"
+    shutil.copytree(whole, again)
+    run("study", study, "-o", again, "--restart")
+    same(again, whole, "restarted")
+    for name, text in (("study.json", ""), ("picture.json", '{"torn')):
+        damaged = work / "damaged"
+        shutil.copytree(whole, damaged)
+        (damaged / name).write_text(text)
+        for arguments in (("report", damaged), ("study", study, "-o", damaged, "--resume")):
+            refused = run(*arguments, check=False)
+            if refused.returncode != 2 or f"{name}:1:" not in refused.stderr:
+                sys.exit(f"{name}: {arguments}: {refused.returncode} {refused.stderr}")
+        shutil.rmtree(damaged)
+
+
 def in_parallel(study, whole, work):
     run("study", study, "-o", work / "parallel", "--jobs", 3)
     same(work / "parallel", whole, "three jobs")
@@ -193,6 +234,7 @@ def main():
         run("study", study, "-o", whole)
         killed_and_resumed(study, whole, work)
         one_at_a_time(study, work)
+        not_overwritten(study, whole, work)
         in_parallel(study, whole, work)
         in_shards(study, whole, work)
         compared(whole, work)

@@ -218,6 +218,17 @@ TEST_F(StudyReader, ReadsTheStudiesThatAreShipped) {
   EXPECT_GT(read, 0);
 }
 
+/// Two long lists; none of their combinations may be made.
+std::string many_cells() {
+  const auto list = [](int count) {
+    std::string text = "0";
+    for (int i = 1; i < count; ++i) text += ", " + std::to_string(i);
+    return "[" + text + "]";
+  };
+  return R"(@{"scene": "scene.json", "methods": [{"penalty": {"stiffness": )" + list(6993) +
+         R"(}}], "vary": {"/contacts/sole/friction": )" + list(1998) + "}}";
+}
+
 /// A study with one edit, whose fault stands in a line and column of the study file.
 struct BrokenStudy {
   const char* name;
@@ -260,9 +271,9 @@ INSTANTIATE_TEST_SUITE_P(
                     "/methods/2/monolitic_al", R"(did you mean "monolithic_al"?)"},
         BrokenStudy{"empty_sweep", "[10, 1000]", "@[]", "/methods/0/penalty/stiffness", "must be a list of values"},
         BrokenStudy{"value_twice", "[10, 1000]", "[10, @10]", "/methods/0/penalty/stiffness/1", "has already"},
-        BrokenStudy{"bad_option_value", "[10, 1000]", "[10, @-1]", "/method/penalty/stiffness",
+        BrokenStudy{"bad_option_value", "[10, 1000]", "[10, @-1]", "/methods/0/penalty/stiffness/1",
                     "is -1; must be a number > 0"},
-        BrokenStudy{"unknown_option", R"("adapt": false)", R"("adpt": @false)", "/method/uzawa_al/adpt",
+        BrokenStudy{"unknown_option", R"("adapt": false)", R"("adpt": @false)", "/methods/1/uzawa_al/adpt",
                     R"(did you mean "adapt"?)"},
         BrokenStudy{"vary_nothing", R"("/contacts/sole/friction": [0, 0.3])", R"(@"/contacts/soul/friction": [0, 0.3])",
                     "/vary/~1contacts~1soul~1friction", R"(did you mean "sole"?)"},
@@ -273,23 +284,28 @@ INSTANTIATE_TEST_SUITE_P(
                     "/vary/~1contacts~1sole", "names an object"},
         BrokenStudy{"vary_one_value", R"("/contacts/sole/friction": [0, 0.3])", R"("/contacts/sole/friction": @0.3)",
                     "/vary/~1contacts~1sole~1friction", "must be a list of values"},
-        BrokenStudy{"vary_beyond", "[0, 0.3]", "[0, @-0.3]", "/contacts/sole/friction",
+        BrokenStudy{"vary_beyond", "[0, 0.3]", "[0, @-0.3]", "/vary/~1contacts~1sole~1friction/1",
                     "is -0.3; must be a number >= 0"},
         BrokenStudy{"refine_below", R"("refine": [0, 1])", R"("refine": [@-1, 1])", "/refine/0",
-                    "must be a whole number from 0"},
+                    "must be a whole number from 0 to 10"},
         BrokenStudy{"refine_far", R"("refine": [0, 1])", R"("refine": [0, @11])", "/refine/1",
-                    "must be a level from 0 to 10"},
+                    "must be a whole number from 0 to 10"},
+        BrokenStudy{"refine_twice", R"("refine": [0, 1])", R"("refine": [0, @0])", "/refine/1", "has already"},
+        BrokenStudy{"schema_number", R"("title": "cost")", R"("$schema": @7)", "/$schema", "must be a text"},
+        BrokenStudy{"too_many_cells", study_text, many_cells(), "", "makes 13972014 cells of all its lists"},
         BrokenStudy{"overkill", R"({"analytic": "hertz_line", "map": {"press": "force"}, "inputs": {"radius": 2}})",
                     R"({"overkill": {"refine": @0}})", "/reference/0/overkill/refine", "must be a whole number from 1"},
         BrokenStudy{"overkill_far", R"({"analytic": "hertz_line", "map": {"press": "force"}, "inputs": {"radius": 2}})",
                     R"({"overkill": {"refine": @11}})", "/reference/0/overkill/refine",
-                    "must be a number of levels from 1 to 10"},
+                    "must be a whole number from 1 to 10"},
         BrokenStudy{"no_such_input", R"("inputs": {"radius": 2})", R"("inputs": {"radius": 2, @"radios": 2})",
                     "/reference/0/inputs/radios", R"(did you mean "radius"?)"},
         BrokenStudy{"input_twice", R"("inputs": {"radius": 2})", R"("inputs": {"radius": 2, @"force": 2})",
                     "/reference/0/inputs/force", "is given by the map too"},
         BrokenStudy{"input_of_nothing", R"("inputs": {"radius": 2})", R"("inputs": {"radius": @"R"})",
                     "/reference/0/inputs/radius", "the scene has no parameter of this name"},
+        BrokenStudy{"input_beyond", R"("inputs": {"radius": 2})", R"("inputs": {"radius": @0})",
+                    "/reference/0/inputs/radius", "is 0; must be a number > 0"},
         BrokenStudy{"input_list", R"("inputs": {"radius": 2})", R"("inputs": {"radius": @[2]})",
                     "/reference/0/inputs/radius", "must be a number, or the name of a parameter"},
         BrokenStudy{
@@ -313,9 +329,16 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenStudy{"reference_sweep", R"({"monolithic_al": {"scale": 5}})", R"({"monolithic_al": {"scale": @[5, 6]}})",
                     "/reference/2/method/monolithic_al/scale", "must be one value"},
         BrokenStudy{"reference_option", R"({"monolithic_al": {"scale": 5}})", R"({"monolithic_al": {"scale": @-5}})",
-                    "/method/monolithic_al/scale", "must be a number > 0"},
+                    "/reference/2/method/monolithic_al/scale", "must be a number > 0"},
+        BrokenStudy{"no_values", R"({"values": {"press": 1.5, "press/mu": 0}})", R"({"values": @{}})",
+                    "/reference/1/values", "is empty; must give a response its number"},
+        BrokenStudy{"reference_twice", R"({"method": {"monolithic_al": {"scale": 5}}}])",
+                    R"(@{"values": {"press": 1.5, "press/mu": 0}}])", "/reference/2", "that the list has already"},
         BrokenStudy{"pattern", R"(["response:*", "kkt"])", R"(["response:*", @"ktk"])", "/errors/1",
                     "must be \"kkt\", or begin with response:"},
+        BrokenStudy{"pattern_of_nothing", R"("response:*")", R"(@"response:pres")", "/errors/0",
+                    R"(matches nothing in the scene; did you mean "response:press"?)"},
+        BrokenStudy{"pattern_of_no_field", R"("response:*")", R"(@"field:x*")", "/errors/0", "matches nothing"},
         BrokenStudy{"repeat", R"("repeat": 4)", R"("repeat": @0)", "/timing/repeat", "must be a whole number from 1"}),
     [](const auto& info) { return std::string(info.param.name); });
 
@@ -341,7 +364,8 @@ TEST_F(StudyReader, CannotTakeAnOverkillReferenceOfAnImportedMesh) {
                     " \"reference\": [{\"overkill\": {\"refine\": 1}}]}",
                     scene),
               IsEmpty());
-  EXPECT_THAT(diagnostics_.text(), HasSubstr("cost.study.json:2:16: /bodies/disk/mesh: an imported mesh cannot"));
+  EXPECT_THAT(diagnostics_.text(),
+              HasSubstr("cost.study.json:2:16: /reference/0: refines /bodies/disk/mesh, an imported mesh"));
 }
 
 TEST_F(StudyReader, CannotRefineAnImportedMesh) {
@@ -351,8 +375,9 @@ TEST_F(StudyReader, CannotRefineAnImportedMesh) {
   EXPECT_EQ(cells(R"({"scene": "scene.json", "refine": [0], "methods": [{"penalty": {}}]})", scene).size(), 1u);
   EXPECT_THAT(cells("{\"scene\": \"scene.json\", \"methods\": [{\"penalty\": {}}],\n \"refine\": [0, 1]}", scene),
               IsEmpty());
-  EXPECT_THAT(diagnostics_.text(),
-              HasSubstr("cost.study.json:2:16: /bodies/disk/mesh: an imported mesh cannot be refined"));
+  EXPECT_THAT(
+      diagnostics_.text(),
+      HasSubstr("cost.study.json:2:16: /refine/1: refines /bodies/disk/mesh, an imported mesh, which cannot be"));
 }
 
 TEST_F(StudyReader, KnowsACellByTheContentOfItsMeshFile) {
