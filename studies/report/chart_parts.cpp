@@ -40,7 +40,7 @@ json series_channel(const char* range) {
           {"type", "nominal"},
           {"title", nullptr},
           {"scale", {{"domain", "$series"}, {"range", range}}},
-          {"legend", {{"orient", "top"}, {"labelLimit", 300}, {"symbolFillColor", "transparent"}}}};
+          {"legend", {{"orient", "bottom"}, {"symbolFillColor", "transparent"}}}};
 }
 
 /// Dash of a line or size of a marker, without a share in the legend, whose markers they would dash and resize: legends
@@ -76,8 +76,6 @@ std::size_t SeriesList::place(const std::string& name) const {
 json row_of(const Cell& cell) {
   return {{"label", cell.label}, {"family", cell.family}, {"status", cell.status}, {"failed", !cell.converged}};
 }
-
-double rounded(double value) { return std::stod(fmt::format("{:.6g}", value)); }
 
 void show_zeros(json& rows, const std::string& field) {
   const auto group = [](const json& r) {

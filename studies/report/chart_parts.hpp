@@ -31,9 +31,6 @@ class SeriesList {
 /// What every row of a cell has: label, family, status, failed.
 nlohmann::json row_of(const Cell& cell);
 
-/// Six digits are more than a chart shows; a third of the bytes.
-double rounded(double value);
-
 /// Adds `shown` to each row: `field` where it is positive. Where it is exactly 0, which no logarithmic axis can hold,
 /// a decade below the smallest other value of the same choice, with `zero` set, so that the point is kept and named.
 void show_zeros(nlohmann::json& rows, const std::string& field);

@@ -14,6 +14,16 @@ namespace stickslip::report {
 
 using nlohmann::json;
 
+namespace {
+
+/// The table without its constant columns, which a line above it names.
+std::string compact(Table table, const char* caption) {
+  const std::string constant = take_out_constant_columns(table);
+  return (constant.empty() ? "" : "<p class=\"note\">" + escape(constant) + "</p>\n") + to_html(table, caption);
+}
+
+}  // namespace
+
 std::string settings_table(const Study& study) {
   const auto target = target_error(study, Of::responses);
   if (!target) return {};
@@ -55,7 +65,7 @@ std::string settings_table(const Study& study) {
              "settings tried whose worst response is within {} of the exact contact conditions, known only afterwards. "
              "Strict: the most accurate setting tried. The last column says what failed or missed that accuracy.</p>\n",
              number(*target)) +
-         to_html(table, "Default, tuned and strict settings");
+         compact(table, "Default, tuned and strict settings");
 }
 
 std::string status_table(const Study& study) {
@@ -90,14 +100,15 @@ std::string status_table(const Study& study) {
 }
 
 std::string results_table(const Study& study) {
+  const std::string reference = discretization_reference(study);
   Table table;
   table.header = {"method",
                   "scene",
                   "status",
                   "worst response error",
                   "worst sensitivity error",
-                  "response error to closed form",
-                  "sensitivity error to closed form",
+                  "response error to " + reference,
+                  "sensitivity error to " + reference,
                   "worst KKT measure",
                   "Newton",
                   "augmentations",
@@ -125,7 +136,7 @@ std::string results_table(const Study& study) {
                           recorded(at(cost, "condition_estimate")), plain(at(cell.record, "message"))});
     table.row_classes.emplace_back(cell.converged ? "" : "failed");
   }
-  return to_html(table, "All runs");
+  return compact(table, "All runs");
 }
 
 std::string values_table(const Study& study) {
@@ -151,7 +162,7 @@ std::string values_table(const Study& study) {
     table.row_classes.emplace_back(cell.converged ? "" : "failed");
   }
   return folded("Values of responses and sensitivities at the last step",
-                to_html(table, "Responses and sensitivities at the last step"));
+                compact(table, "Responses and sensitivities at the last step"));
 }
 
 }  // namespace stickslip::report
