@@ -92,8 +92,8 @@ void draw_times(const ConePath& path, const Panel& at, Drawing& drawing) {
              std::none_of(marks.begin(), marks.end(), [&](const auto& m) { return label.covers(m.first, m.second); }) &&
              std::none_of(placed.begin(), placed.end(), [&](const Label& o) { return label.overlaps(o); });
     };
-    const double width = text_width(text, 11);
-    for (int n = 0; n < 48; ++n) {  // eight directions, ever further out
+    const double width = 1.2 * text_width(text, 11);  // where Helvetica is missing, others are wider
+    for (int n = 0; n < 48; ++n) {                    // eight directions, ever further out
       const double angle = n % 8 * std::numbers::pi / 4, distance = 18 + 14.0 * (n / 8);
       const double across = distance * std::cos(angle), down = distance * std::sin(angle);
       const Label label{x + across - (across < -1 ? width : across > 1 ? 0 : width / 2), y + down - 6, width};

@@ -48,13 +48,18 @@ void clear(const fs::path& directory) {
 
 }  // namespace
 
-std::string to_csv(const json& rows) {
+std::vector<std::string> columns_of(const json& rows) {
   std::set<std::string> texts, others;
   for (const auto& row : rows)
     for (const auto& [field, value] : row.items())
       if (!only_looks.count(field)) (value.is_string() ? texts : others).insert(field);
   std::vector<std::string> fields(texts.begin(), texts.end());
   std::copy_if(others.begin(), others.end(), std::back_inserter(fields), [&](auto& f) { return !texts.count(f); });
+  return fields;
+}
+
+std::string to_csv(const json& rows) {
+  const auto fields = columns_of(rows);
   std::string out;
   const auto add_line = [&](auto cell) {
     for (std::size_t i = 0; i < fields.size(); ++i) out += (i ? "," : "") + cell(fields[i]);

@@ -10,8 +10,10 @@
 
 namespace stickslip::report {
 
-/// Rows of a chart as comma-separated values (RFC 4180), the header first, texts before numbers; numbers read back to
-/// the same bits. Without fields that only say how a row looks.
+/// What rows of a chart say, as opposed to how they look: the columns of their CSV, texts before numbers.
+std::vector<std::string> columns_of(const nlohmann::json& rows);
+
+/// Rows of a chart as comma-separated values (RFC 4180), the header first; numbers read back to the same bits.
 std::string to_csv(const nlohmann::json& rows);
 
 /// Writes DIR/figures anew: NAME.svg and NAME.pdf of each panel with what the report shows at first, and the figure's

@@ -109,7 +109,7 @@
     place.querySelector('.wide')?.remove();
     if (!place.open) return;
     const data = dataOf(figure), rows = chosenRows(figure, data), table = document.createElement('table');
-    const fields = data.fields.filter((field) => rows.some((row) => field in row));
+    const fields = data.columns.filter((field) => rows.some((row) => row[field] ?? false));
     table.createCaption().textContent = `${rows.length} rows, six digits; all rows and digits: figures/${figure.id}.csv`;
     const line = (parent, kind, texts) => {
       const row = parent.appendChild(document.createElement('tr'));

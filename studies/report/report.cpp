@@ -99,7 +99,11 @@ std::string to_html(const Figure& figure) {
            "</div></details>\n";
   out += "<details class=\"data\"><summary>Data of this chart</summary></details>\n";
   return out + fmt::format("<script type=\"application/json\" id=\"{}-data\">{}</script>\n</figure>\n", figure.id,
-                           embed({{"fields", fields}, {"rows", rows}, {"series", series}, {"panels", specs}}));
+                           embed({{"fields", fields},
+                                  {"columns", columns_of(figure.rows)},
+                                  {"rows", rows},
+                                  {"series", series},
+                                  {"panels", specs}}));
 }
 
 std::string to_html(const Plate& plate) {

@@ -99,6 +99,28 @@ std::string status_table(const Study& study) {
   return "<h3>Which setting works where</h3>\n" + to_html(table, "Status by setting and scene");
 }
 
+namespace {
+
+/// A status with blanks, where a narrow column can break it.
+std::string status_in_words(const Cell& cell) {
+  std::string words = cell.status.empty() ? "no status" : cell.status;
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
+/// What runs said of themselves: too long for a column.
+std::string messages(const Study& study) {
+  Table table{{"method", "scene", "status", "message"}, {}, {}};
+  for (const auto& cell : study.cells)
+    if (const std::string message = plain(at(cell.record, "message")); !message.empty()) {
+      table.rows.push_back({cell.label, cell.variant, status_in_words(cell), message});
+      table.row_classes.emplace_back(cell.converged ? "" : "failed");
+    }
+  return table.rows.empty() ? "" : folded("Messages of the runs", to_html(table, "Messages"));
+}
+
+}  // namespace
+
 std::string results_table(const Study& study) {
   const std::string reference = discretization_reference(study);
   Table table;
@@ -119,24 +141,22 @@ std::string results_table(const Study& study) {
                   "seconds",
                   "of these sensitivities",
                   "memory MB",
-                  "condition",
-                  "message"};
+                  "condition"};
   const auto shown = [](const std::optional<double>& v) { return v ? number(*v) : std::string(); };
   for (const auto& cell : study.cells) {
     const json &cost = at(cell.record, "cost"), &seconds = at(cost, "seconds");
     const auto count = [&](const char* name) { return number(cell.count(name), 9); };
     const auto recorded = [](const json& v) { return v.is_number() ? number(v.get<double>()) : std::string(); };
-    table.rows.push_back({cell.label, cell.variant, cell.status.empty() ? "no status" : cell.status,
-                          shown(worst(cell.enforcement, "response:")), shown(worst(cell.enforcement, "sensitivity:")),
-                          shown(worst(cell.discretization, "response:")),
-                          shown(worst(cell.discretization, "sensitivity:")), shown(worst(cell.kkt, "")),
-                          count("newton"), count("augmentations"), count("cutbacks"), count("factorizations"),
-                          count("backsolves"), count("sensitivity_backsolves"), recorded(at(seconds, "total")),
-                          recorded(at(seconds, "sensitivity")), recorded(at(cost, "peak_memory_mb")),
-                          recorded(at(cost, "condition_estimate")), plain(at(cell.record, "message"))});
+    table.rows.push_back(
+        {cell.label, cell.variant, status_in_words(cell), shown(worst(cell.enforcement, "response:")),
+         shown(worst(cell.enforcement, "sensitivity:")), shown(worst(cell.discretization, "response:")),
+         shown(worst(cell.discretization, "sensitivity:")), shown(worst(cell.kkt, "")), count("newton"),
+         count("augmentations"), count("cutbacks"), count("factorizations"), count("backsolves"),
+         count("sensitivity_backsolves"), recorded(at(seconds, "total")), recorded(at(seconds, "sensitivity")),
+         recorded(at(cost, "peak_memory_mb")), recorded(at(cost, "condition_estimate"))});
     table.row_classes.emplace_back(cell.converged ? "" : "failed");
   }
-  return compact(table, "All runs");
+  return compact(table, "All runs") + messages(study);
 }
 
 std::string values_table(const Study& study) {

@@ -325,6 +325,29 @@ TEST_F(Report, LeavesOutOfNamesWhatTellsNoRunsApart) {
   EXPECT_THAT(page(), HasSubstr("tells none apart: Uzawa AL limit=50"));
 }
 
+TEST_F(Report, GivesEachMethodAMarkerOfItsOwn) {
+  std::vector<json> cells;
+  for (const double scale : {1, 10, 100, 1000})
+    for (const double tolerance : {1e-4, 1e-8})
+      cells.push_back(cell("uzawa_al", {{"scale", scale}, {"tolerance", tolerance}}, tolerance, 10));
+  for (const auto& c : three_methods())
+    if (!c["method"].contains("uzawa_al")) cells.push_back(c);
+  record(description(), cells);
+  const auto figure = report::work_precision(study(), Against::same_mesh, Of::responses);
+  std::set<std::string> shapes;
+  for (const auto& series : figure->series) shapes.insert(series.shape);
+  EXPECT_EQ(figure->series.size(), 6u);
+  EXPECT_EQ(shapes.size(), 6u);  // in grey the marker is all that tells
+}
+
+TEST_F(Report, KeepsLongMessagesOutOfTheTableOfAllRuns) {
+  auto cells = three_methods();
+  cells[0]["message"] = "a long story";
+  record(description(), cells);
+  const std::string html = page();
+  EXPECT_GT(html.find("<td>a long story</td>"), html.find("Messages of the runs"));
+}
+
 TEST_F(Report, SaysOfTheSceneWhatHoldsForEveryMethod) {
   json study_json = description();
   study_json["explain"] = "unknowns: 10 displacements, 4 multipliers\nmethod: {\"penalty\":{}}\nsimulated:\n";
