@@ -113,7 +113,11 @@
     table.createCaption().textContent = `${rows.length} rows, six digits; all rows and digits: figures/${figure.id}.csv`;
     const line = (parent, kind, texts) => {
       const row = parent.appendChild(document.createElement('tr'));
-      for (const text of texts) row.appendChild(document.createElement(kind)).textContent = text ?? '';
+      for (const text of texts) {
+        const cell = row.appendChild(document.createElement(kind));
+        cell.textContent = text ?? '';
+        if (typeof text === 'number') cell.className = 'n';
+      }
     };
     line(table.createTHead(), 'th', fields);
     const body = table.createTBody();

@@ -123,15 +123,19 @@ std::string messages(const Study& study) {
 
 std::string results_table(const Study& study) {
   const std::string reference = discretization_reference(study);
-  Table table;
-  table.header = {"method",
+  Table errors, costs;
+  errors.header = {"method",
+                   "scene",
+                   "status",
+                   "worst response error",
+                   "worst sensitivity error",
+                   "response error to " + reference,
+                   "sensitivity error to " + reference,
+                   "worst KKT measure",
+                   "condition"};
+  costs.header = {"method",
                   "scene",
                   "status",
-                  "worst response error",
-                  "worst sensitivity error",
-                  "response error to " + reference,
-                  "sensitivity error to " + reference,
-                  "worst KKT measure",
                   "Newton",
                   "augmentations",
                   "cutbacks",
@@ -140,23 +144,26 @@ std::string results_table(const Study& study) {
                   "sensitivity back-solves",
                   "seconds",
                   "of these sensitivities",
-                  "memory MB",
-                  "condition"};
+                  "memory MB"};
   const auto shown = [](const std::optional<double>& v) { return v ? number(*v) : std::string(); };
   for (const auto& cell : study.cells) {
     const json &cost = at(cell.record, "cost"), &seconds = at(cost, "seconds");
     const auto count = [&](const char* name) { return number(cell.count(name), 9); };
     const auto recorded = [](const json& v) { return v.is_number() ? number(v.get<double>()) : std::string(); };
-    table.rows.push_back(
-        {cell.label, cell.variant, status_in_words(cell), shown(worst(cell.enforcement, "response:")),
-         shown(worst(cell.enforcement, "sensitivity:")), shown(worst(cell.discretization, "response:")),
-         shown(worst(cell.discretization, "sensitivity:")), shown(worst(cell.kkt, "")), count("newton"),
-         count("augmentations"), count("cutbacks"), count("factorizations"), count("backsolves"),
-         count("sensitivity_backsolves"), recorded(at(seconds, "total")), recorded(at(seconds, "sensitivity")),
-         recorded(at(cost, "peak_memory_mb")), recorded(at(cost, "condition_estimate"))});
-    table.row_classes.emplace_back(cell.converged ? "" : "failed");
+    const std::string status = status_in_words(cell);
+    errors.rows.push_back({cell.label, cell.variant, status, shown(worst(cell.enforcement, "response:")),
+                           shown(worst(cell.enforcement, "sensitivity:")),
+                           shown(worst(cell.discretization, "response:")),
+                           shown(worst(cell.discretization, "sensitivity:")), shown(worst(cell.kkt, "")),
+                           recorded(at(cost, "condition_estimate"))});
+    costs.rows.push_back({cell.label, cell.variant, status, count("newton"), count("augmentations"), count("cutbacks"),
+                          count("factorizations"), count("backsolves"), count("sensitivity_backsolves"),
+                          recorded(at(seconds, "total")), recorded(at(seconds, "sensitivity")),
+                          recorded(at(cost, "peak_memory_mb"))});
+    errors.row_classes.emplace_back(cell.converged ? "" : "failed");
   }
-  return compact(table, "All runs") + messages(study);
+  costs.row_classes = errors.row_classes;
+  return compact(errors, "All runs: errors") + compact(costs, "All runs: costs") + messages(study);
 }
 
 std::string values_table(const Study& study) {

@@ -340,6 +340,15 @@ TEST_F(Report, GivesEachMethodAMarkerOfItsOwn) {
   EXPECT_EQ(shapes.size(), 6u);  // in grey the marker is all that tells
 }
 
+TEST_F(Report, KeepsErrorsAndCostsInTablesOfTheirOwn) {
+  record(description(), three_methods());
+  const std::string html = page();
+  const std::size_t errors = html.find("<caption>All runs: errors"), costs = html.find("<caption>All runs: costs");
+  ASSERT_LT(errors, costs);
+  EXPECT_THAT(html.substr(errors, costs - errors), AllOf(HasSubstr("KKT"), Not(HasSubstr(">seconds<"))));
+  EXPECT_THAT(html.substr(costs), HasSubstr(">seconds<"));
+}
+
 TEST_F(Report, KeepsLongMessagesOutOfTheTableOfAllRuns) {
   auto cells = three_methods();
   cells[0]["message"] = "a long story";
