@@ -40,7 +40,7 @@ json series_channel(const char* range) {
           {"type", "nominal"},
           {"title", nullptr},
           {"scale", {{"domain", "$series"}, {"range", range}}},
-          {"legend", {{"orient", "top"}, {"labelLimit", 300}, {"symbolFillColor", "transparent"}}}};
+          {"legend", {{"orient", "bottom"}, {"symbolFillColor", "transparent"}}}};
 }
 
 /// Dash of a line or size of a marker, without a share in the legend, whose markers they would dash and resize: legends
@@ -63,8 +63,10 @@ void SeriesList::add(const std::string& name, const std::string& family) {
   static const std::vector<std::vector<int>> dashes = {{1, 0}, {7, 3}, {2, 2}, {9, 3, 2, 3}, {4, 2}, {12, 4}};
   static const std::vector<int> sizes = {130, 70, 40, 90};
   const auto at = std::find(study_.families.begin(), study_.families.end(), family) - study_.families.begin();
-  const std::size_t place = static_cast<std::size_t>(at) + 3 * count_[family]++;
-  list.push_back({name, color_of(study_, family), shapes[place % shapes.size()], dashes[place % dashes.size()],
+  const auto method = static_cast<std::size_t>(at), own = std::min(study_.families.size(), shapes.size() - 1);
+  const std::size_t count = count_[family]++;
+  const std::size_t shape = count == 0 ? method % shapes.size() : own + further_++ % (shapes.size() - own);
+  list.push_back({name, color_of(study_, family), shapes[shape], dashes[(method + 3 * count) % dashes.size()],
                   sizes[static_cast<std::size_t>(at) % sizes.size()]});
 }
 
@@ -76,8 +78,6 @@ std::size_t SeriesList::place(const std::string& name) const {
 json row_of(const Cell& cell) {
   return {{"label", cell.label}, {"family", cell.family}, {"status", cell.status}, {"failed", !cell.converged}};
 }
-
-double rounded(double value) { return std::stod(fmt::format("{:.6g}", value)); }
 
 void show_zeros(json& rows, const std::string& field) {
   const auto group = [](const json& r) {

@@ -11,8 +11,9 @@
 
 namespace stickslip::report {
 
-/// The series of a figure, each once. Colour and size go by method; marker and dash by the place among the method's
-/// series, starting with another one for each method.
+/// The series of a figure, each once. Colour and size go by method, dash by the place among the method's series,
+/// starting with another one for each method. The first series of each method has a marker of its own; further ones
+/// share the others.
 class SeriesList {
  public:
   explicit SeriesList(const Study& study) : study_(study) {}
@@ -26,13 +27,11 @@ class SeriesList {
  private:
   const Study& study_;
   std::map<std::string, std::size_t> count_;
+  std::size_t further_ = 0;  ///< beyond the first of each method
 };
 
 /// What every row of a cell has: label, family, status, failed.
 nlohmann::json row_of(const Cell& cell);
-
-/// Six digits are more than a chart shows; a third of the bytes.
-double rounded(double value);
 
 /// Adds `shown` to each row: `field` where it is positive. Where it is exactly 0, which no logarithmic axis can hold,
 /// a decade below the smallest other value of the same choice, with `zero` set, so that the point is kept and named.

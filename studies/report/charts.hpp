@@ -1,4 +1,4 @@
-/// The charts: each is a set of rows, Vega-Lite panels over them, and the table of the same numbers.
+/// The charts: each is a set of rows and Vega-Lite panels over them.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -41,21 +41,21 @@ struct Choice {
 
 struct Figure {
   std::string id, title, text;
-  nlohmann::json rows = nlohmann::json::array();
+  nlohmann::json rows = nlohmann::json::array();  ///< what is drawn, and all that its CSV holds
   std::vector<Series> series;
   std::vector<Panel> panels;
   std::vector<Choice> choices;
-  Table table;
 };
 
-/// A drawing that needs no script, and the table of the same numbers.
+/// A drawing that needs no script.
 struct Plate {
   std::string id, title, text;
   Drawing drawing;
-  Table table;
+  Table table;                                    ///< a summary in words; may have no rows
+  nlohmann::json rows = nlohmann::json::array();  ///< what is drawn, and all that its CSV holds
 };
 
-enum class Against { same_mesh, closed_form, coulomb };  ///< enforcement, discretisation, the KKT measures
+enum class Against { same_mesh, discretization, coulomb };  ///< enforcement, discretisation, the KKT measures
 
 /// Error against work (factorisations and weighted back-solves), seconds and back-solves; one curve per method and
 /// constant option, joined along its swept knob. Nothing where no cell has such an error.

@@ -24,7 +24,8 @@ struct ConePath {
 };
 
 /// A panel each: the cone |t_T| <= mu p, hollow circles for trial tractions, joined to the tractions they are projected
-/// to (dots), and diamonds where an equilibrium ended, with the time. What lies far outside is cut off.
+/// to (dots), and diamonds where an equilibrium ended, with the time of the first, the last, and those whose state is
+/// new. What lies far outside is cut off.
 Drawing draw_cones(const std::vector<ConePath>& paths, const std::string& title);
 
 }  // namespace stickslip::report

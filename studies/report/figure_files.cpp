@@ -1,28 +1,37 @@
 #include "studies/report/figure_files.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
 #include "studies/atomic_file.hpp"
 #include "studies/report/chart_parts.hpp"
+#include "studies/report/look_up.hpp"
 #include "studies/report/plot.hpp"
 
 namespace stickslip::report {
 namespace {
 
 namespace fs = std::filesystem;
+using nlohmann::json;
 
-std::string csv_line(const std::vector<std::string>& cells) {
-  std::string out;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (i > 0) out += ',';
-    if (cells[i].find_first_of(",\"\r\n") == std::string::npos) {
-      out += cells[i];
-      continue;
-    }
-    out += '"';
-    for (const char c : cells[i]) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-    out += '"';
-  }
-  return out + "\r\n";
+/// A text as it stands between two commas.
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + '"';
 }
+
+std::string csv_cell(const json& value) {
+  if (value.is_null()) return {};
+  if (value.is_number_float()) return fmt::format("{}", value.get<double>());  // shortest that reads back the same
+  return quoted(value.is_string() ? value.get<std::string>() : value.dump());
+}
+
+/// How a row is drawn, as opposed to what it says.
+const std::set<std::string> only_looks = {"guide_tag", "line", "of_cell", "order", "tag", "unmarked"};
 
 void write_drawing(const fs::path& stem, const Drawing& drawing) {
   write_file_atomically(stem.string() + ".svg", drawing.svg_file());
@@ -39,14 +48,29 @@ void clear(const fs::path& directory) {
 
 }  // namespace
 
-std::string to_csv(const Table& table) {
-  std::string out = csv_line(table.header);
-  for (const auto& row : table.rows) out += csv_line(row);
+std::vector<std::string> columns_of(const json& rows) {
+  std::set<std::string> texts, others;
+  for (const auto& row : rows)
+    for (const auto& [field, value] : row.items())
+      if (!only_looks.count(field)) (value.is_string() ? texts : others).insert(field);
+  std::vector<std::string> fields(texts.begin(), texts.end());
+  std::copy_if(others.begin(), others.end(), std::back_inserter(fields), [&](auto& f) { return !texts.count(f); });
+  return fields;
+}
+
+std::string to_csv(const json& rows) {
+  const auto fields = columns_of(rows);
+  std::string out;
+  const auto add_line = [&](auto cell) {
+    for (std::size_t i = 0; i < fields.size(); ++i) out += (i ? "," : "") + cell(fields[i]);
+    out += "\r\n";
+  };
+  add_line(quoted);
+  for (const auto& row : rows) add_line([&](const std::string& field) { return csv_cell(at(row, field)); });
   return out;
 }
 
-void write_figures(const fs::path& directory, const std::vector<Figure>& figures, const std::vector<Plate>& plates,
-                   const std::vector<std::pair<std::string, Drawing>>& drawings) {
+void write_figures(const fs::path& directory, const std::vector<Figure>& figures, const std::vector<Plate>& plates) {
   const auto folder = directory / "figures";
   fs::create_directories(folder);
   clear(folder);
@@ -54,13 +78,12 @@ void write_figures(const fs::path& directory, const std::vector<Figure>& figures
     for (const auto& panel : figure.panels)
       if (const auto drawing = draw_plot(figure, panel))
         write_drawing(folder / (figure.id + (panel.title.empty() ? "" : "-" + slug(panel.title))), *drawing);
-    write_file_atomically(folder / (figure.id + ".csv"), to_csv(figure.table));
+    write_file_atomically(folder / (figure.id + ".csv"), to_csv(figure.rows));
   }
   for (const auto& plate : plates) {
     write_drawing(folder / plate.id, plate.drawing);
-    write_file_atomically(folder / (plate.id + ".csv"), to_csv(plate.table));
+    write_file_atomically(folder / (plate.id + ".csv"), to_csv(plate.rows));
   }
-  for (const auto& [name, drawing] : drawings) write_drawing(folder / name, drawing);
 }
 
 }  // namespace stickslip::report

@@ -10,13 +10,16 @@
 
 namespace stickslip::report {
 
-/// Comma-separated values (RFC 4180), the header first; all columns, empty ones too.
-std::string to_csv(const Table& table);
+/// What rows of a chart say, as opposed to how they look: the columns of their CSV, texts before numbers.
+std::vector<std::string> columns_of(const nlohmann::json& rows);
+
+/// Rows of a chart as comma-separated values (RFC 4180), the header first; numbers read back to the same bits.
+std::string to_csv(const nlohmann::json& rows);
 
 /// Writes DIR/figures anew: NAME.svg and NAME.pdf of each panel with what the report shows at first, and the figure's
-/// table as ID.csv; `drawings` by their names, which have no numbers of their own. Other files there stay; those of the
-/// three kinds go, since they are of a former report.
+/// rows, of all that can be chosen, as ID.csv. Other files there stay; those of the three kinds go, since they are of a
+/// former report.
 void write_figures(const std::filesystem::path& directory, const std::vector<Figure>& figures,
-                   const std::vector<Plate>& plates, const std::vector<std::pair<std::string, Drawing>>& drawings);
+                   const std::vector<Plate>& plates);
 
 }  // namespace stickslip::report

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "studies/report/chart_parts.hpp"
 #include "studies/report/look_up.hpp"
@@ -65,9 +66,16 @@ void draw_strip(const Strip& strip, double left, double top, Drawing& drawing) {
     drawing.path(path, {"", look.fill, 1, {}});
   }
   drawing.path(Path().rectangle(left, top, strip_width, strip_height), {"ink"});
-  for (const std::size_t n : {std::size_t(0), strip.steps.size() - 1})
-    drawing.text(left - 5, top + height * (static_cast<double>(n) + 0.5) + 4, number(strip.times[n]),
+  // Times from the last step upwards, as many as have room.
+  const auto stride = static_cast<std::size_t>(std::ceil(14 / height));
+  for (std::size_t n = strip.steps.size(); n > 0; n -= std::min(stride, n))
+    drawing.text(left - 5, top + height * (static_cast<double>(n) - 0.5) + 4, number(strip.times[n - 1]),
                  {Anchor::end, 10, "soft"});
+  if (height >= 8)
+    for (std::size_t n = 1; n < strip.steps.size(); ++n) {
+      const double y = top + height * static_cast<double>(n);
+      drawing.line(left, y, left + strip_width, y, {"line", "", 0.6, {}});
+    }
   drawing.text(left, top + strip_height + 14, "point 1", {Anchor::start, 10, "soft"});
   drawing.text(left + strip_width, top + strip_height + 14, std::to_string(strip.steps.front().size()),
                {Anchor::end, 10, "soft"});
@@ -96,6 +104,17 @@ Table tabulate(const std::vector<Strip>& strips) {
   return table;
 }
 
+json rows_of(const std::vector<Strip>& strips) {
+  json rows = json::array();
+  for (const auto& strip : strips)
+    for (std::size_t n = 0; n < strip.steps.size(); ++n)
+      rows.push_back({{"label", strip.cell->label},
+                      {"contact", strip.contact},
+                      {"time", strip.times[n]},
+                      {"states", strip.steps[n]}});
+  return rows;
+}
+
 }  // namespace
 
 std::optional<Plate> film_of_states(const Study& study) {
@@ -116,9 +135,12 @@ std::optional<Plate> film_of_states(const Study& study) {
   const double cell_width = indent + strip_width + gap / 2, cell_height = head + strip_height + foot;
   const std::size_t lines = (strips.size() + columns - 1) / columns;
   const double bottom = cell_height * static_cast<double>(lines) + 6;
-  Plate plate{"film", title, text,
+  Plate plate{"film",
+              title,
+              text,
               Drawing(cell_width * static_cast<double>(std::max<std::size_t>(columns, 2)), bottom + 20, title, text),
-              tabulate(strips)};
+              tabulate(strips),
+              rows_of(strips)};
   for (std::size_t i = 0; i < strips.size(); ++i)
     draw_strip(strips[i], indent + cell_width * static_cast<double>(i % columns),
                head + cell_height * static_cast<double>(i / columns), plate.drawing);

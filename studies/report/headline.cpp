@@ -103,7 +103,26 @@ std::string cost_sentence(const Study& study, const Measure& measure) {
   return out;
 }
 
-/// How penalty's error follows its stiffness up to the smallest error, and where rounding takes over.
+/// " for VARIANT"; "" where nothing is varied.
+std::string for_variant(const std::string& variant) { return variant.empty() ? "" : " for " + variant; }
+
+/// Where penalty fails, by variant: "It fails at 1e8 (cap) and 1e10 (singular) for friction = 0.3."
+std::string penalty_failures(const Study& study) {
+  std::string out;
+  for (const auto& variant : study.variants) {
+    std::string places;
+    for (const auto& cell : study.cells) {
+      const Knob* knob = find_knob(cell, "stiffness");
+      if (cell.family != "penalty" || cell.variant != variant || cell.converged || !knob) continue;
+      places += fmt::format("{}{} ({})", places.empty() ? "" : " and ", knob->value ? number(*knob->value) : knob->text,
+                            cell.status.empty() ? "no status" : cell.status);
+    }
+    if (!places.empty()) out += (out.empty() ? " It fails at " : ", at ") + places + for_variant(variant);
+  }
+  return out.empty() ? out : out + ".";
+}
+
+/// How penalty's error follows its stiffness up to the smallest error, where rounding takes over, and where it fails.
 std::string penalty_sentence(const Study& study) {
   std::vector<std::pair<double, double>> points;
   for (const Cell* cell : main_cells(study))
@@ -122,13 +141,13 @@ std::string penalty_sentence(const Study& study) {
       slopes.push_back(std::log((p + 1)->second / p->second) / std::log((p + 1)->first / p->first));
   if (slopes.empty()) return {};
   std::nth_element(slopes.begin(), slopes.begin() + static_cast<long>(slopes.size() / 2), slopes.end());
-  std::string out =
-      fmt::format("Penalty's error falls as stiffness to the power {} down to {} at stiffness {}",
-                  number(slopes[slopes.size() / 2], 2), number(least->second, 2), number(least->first, 3));
+  std::string out = fmt::format("Penalty's error{} falls as stiffness to the power {} down to {} at stiffness {}",
+                                for_variant(study.main_variant), number(slopes[slopes.size() / 2], 2),
+                                number(least->second, 2), number(least->first, 3));
   if (least + 1 != points.end())
     out += fmt::format(", and rises again beyond it, to {} at {}", number(points.back().second, 2),
                        number(points.back().first, 3));
-  return out + ".";
+  return out + "." + penalty_failures(study);
 }
 
 std::string mesh_sentence(const Study& study) {
@@ -141,8 +160,8 @@ std::string mesh_sentence(const Study& study) {
       best_method = std::min(best_method.value_or(*error), *error);
   }
   if (!best_mesh) return {};
-  std::string out =
-      fmt::format("Against the closed form the best run is off by {} in its worst response", number(*best_mesh, 2));
+  std::string out = fmt::format("Against {} the best run is off by {} in its worst response",
+                                discretization_reference(study), number(*best_mesh, 2));
   if (best_method && *best_method < *best_mesh)
     out += ": that is the mesh, and enforcing contact more strictly than this does not bring the answer nearer to it";
   return out + ".";

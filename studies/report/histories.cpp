@@ -16,8 +16,6 @@ std::optional<Figure> convergence_histories(const Study& study) {
       "For each run, the load step that took most iterations (of a run that failed, the last). The residual "
       "is the largest of equilibrium, normal and tangential contact, each relative to its own scale; an "
       "augmented run starts anew with each augmentation, which is the sawtooth.";
-  figure.table.header = {"method",         "step",          "time",          "iterations", "augmentations",
-                         "first residual", "last residual", "state changes", "status"};
   const auto shown = telling_cells(study, Furthest::left_out);
   add_first(series, study, shown);
   for (const auto& cell : study.cells) {
@@ -32,11 +30,9 @@ std::optional<Figure> convergence_histories(const Study& study) {
       }
     }
     if (hardest == steps.size()) continue;
-    const json& step = steps[hardest];
-    const json& history = step["history"];
+    const json& history = steps[hardest]["history"];
     const std::string name = in_words(cell);
     series.add(name, cell.family);
-    double changes = 0;
     for (std::size_t i = 0; i < history.size(); ++i) {
       const json& record = history[i];
       const json& residual = at(record, "residual");
@@ -45,20 +41,13 @@ std::optional<Figure> convergence_histories(const Study& study) {
       r["failed"] = false;  // the residuals of a failed run are a curve like any other; its name tells the status
       r["series"] = r["line"] = name;
       r["of_cell"] = "yes";
-      r["error"] = rounded(residual);
+      r["error"] = residual;
+      r["step"] = hardest + 1;
       r["iteration"] = r["order"] = i + 1;
       r["changed"] = number_at(record, "changed");
       r["augmentation"] = number_at(record, "augmentation");
-      changes += number_at(record, "changed");
       figure.rows.push_back(r);
     }
-    const auto residual_at = [&](const json& record) {
-      return at(record, "residual").is_number() ? number(record["residual"]) : std::string();
-    };
-    figure.table.rows.push_back({cell.label, std::to_string(hardest + 1), plain(at(step, "time")),
-                                 std::to_string(history.size()), plain(at(step, "augmentations")),
-                                 residual_at(history.front()), residual_at(history.back()), number(changes, 9),
-                                 cell.status});
   }
   if (figure.rows.empty()) return std::nullopt;
   show_zeros(figure.rows, "error");

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
@@ -112,6 +113,21 @@ std::string to_html(const Table& table, std::string_view caption) {
     out += "</tr>\n";
   }
   return out + "</tbody></table></div>\n";
+}
+
+std::string take_out_constant_columns(Table& table) {
+  if (table.rows.size() < 2) return {};
+  std::string out;
+  for (std::size_t column = table.header.size(); column-- > 1;) {
+    const std::string value = table.rows.front()[column];
+    if (std::any_of(table.rows.begin(), table.rows.end(), [&](const auto& row) { return row[column] != value; }))
+      continue;
+    if (!value.empty()) out = table.header[column] + " " + value + (out.empty() ? "" : ", " + out);
+    const auto at = static_cast<std::ptrdiff_t>(column);
+    table.header.erase(table.header.begin() + at);
+    for (auto& row : table.rows) row.erase(row.begin() + at);
+  }
+  return out.empty() ? out : "In every row: " + out + ".";
 }
 
 std::string folded(std::string_view summary, std::string_view content) {

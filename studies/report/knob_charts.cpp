@@ -118,7 +118,6 @@ std::optional<Figure> error_against_knob(const Study& study, const std::vector<s
   SeriesList series(study);
   figure.id = slug("error-" + knobs.front());
   figure.title = "Error against " + knob_title(knobs);
-  figure.table.header = {"method", "scene", "option", "value", "quantity", "error", "status"};
   rows_along(study, knobs, series, [&](json r, const Cell& cell) {
     for (const auto& [panel, prefix, worst_name] : {std::tuple{"responses", "response:", "worst response"},
                                                     std::tuple{"sensitivities", "sensitivity:", "worst sensitivity"}})
@@ -127,9 +126,6 @@ std::optional<Figure> error_against_knob(const Study& study, const std::vector<s
         r["quantity"] = quantity;
         r["error"] = error;
         figure.rows.push_back(r);
-        figure.table.rows.push_back({cell.label, cell.variant, r.value("knob_name", "none"),
-                                     r.contains("knob_name") ? number(r["knob"], 6) : "", quantity, number(error),
-                                     cell.status});
       }
   });
   if (figure.rows.empty()) return std::nullopt;
@@ -171,9 +167,6 @@ std::optional<Figure> iterations_against_knob(const Study& study, const std::vec
   figure.id = slug("iterations-" + knobs.front());
   figure.title = "Iterations against " + knob_title(knobs);
   figure.text = "Totals of the whole run. Crosses are runs that did not converge, at what they had spent by then.";
-  figure.table.header = {
-      "method",   "scene", "option", "value", "Newton iterations", "augmentations", "back-solves for derivatives",
-      "cutbacks", "status"};
   rows_along(study, knobs, series, [&](json r, const Cell& cell) {
     for (const auto& [panel, count] : counted_along_knobs)
       if (cell.count(count) > 0) {
@@ -181,10 +174,6 @@ std::optional<Figure> iterations_against_knob(const Study& study, const std::vec
         r["shown"] = cell.count(count);
         figure.rows.push_back(r);
       }
-    figure.table.rows.push_back(
-        {cell.label, cell.variant, r.value("knob_name", "none"), r.contains("knob_name") ? number(r["knob"], 6) : "",
-         number(cell.count("newton"), 9), number(cell.count("augmentations"), 9),
-         number(cell.count("sensitivity_backsolves"), 9), number(cell.count("cutbacks"), 9), cell.status});
   });
   if (figure.rows.empty()) return std::nullopt;
   figure.series = series.list;

@@ -40,6 +40,15 @@ struct Box {
 constexpr std::array<const char*, 9> colors = {"#f4f1de", "#d9e4a8", "#a8d483", "#6cbf80", "#3ba387",
                                                "#2a848c", "#31648c", "#3d4287", "#43176a"};
 
+struct ContactPoint {
+  Point place, displacement;  ///< deformed; of its node, 0 where that is not recorded
+  std::string name, state;
+  json normal, tangential;  ///< tractions
+  Point enlarged(double scale) const {
+    return {place.x + (scale - 1) * displacement.x, place.y + (scale - 1) * displacement.y};
+  }
+};
+
 struct Mesh {
   std::vector<Point> points;               ///< initial
   std::vector<Point> displacement;         ///< 0 where not recorded
@@ -74,6 +83,22 @@ Mesh read_mesh(const json& picture) {
     mesh.body.push_back(e < body.size() && body[e].is_number_integer() ? body[e].get<int>() : 0);
   }
   return mesh;
+}
+
+std::vector<ContactPoint> read_contact(const json& contact, const Mesh& mesh) {
+  std::vector<ContactPoint> out;
+  for (const auto& c : contact) {
+    if (!at(c, "x").is_number() || !at(c, "y").is_number()) continue;
+    const json& node = at(c, "node");
+    const bool known = node.is_number_integer() && node >= 0 && node < mesh.points.size();
+    out.push_back({{c["x"], c["y"]},
+                   known ? mesh.displacement[node.get<std::size_t>()] : Point{},
+                   plain(at(c, "name")),
+                   plain(at(c, "state")),
+                   at(c, "normal"),
+                   at(c, "tangential")});
+  }
+  return out;
 }
 
 /// Exaggeration: 1 where displacements show by themselves, else the round number that brings the largest to some 3 %
@@ -236,30 +261,25 @@ void draw_state(const std::string& state, double x, double y, const std::string&
     drawing.path(Path().circle(x, y, 3), {"#333333", "#ffffff", 1, {}}, tooltip);
 }
 
-/// Contact points of `contact` inside the window, with the state and tractions as a tooltip. `contact` gives deformed
-/// positions.
-void draw_contact(const json& contact, const Frame& frame, Drawing& drawing) {
+/// Contact points inside the window, at the mesh's scale, with the state and tractions as a tooltip.
+void draw_contact(const std::vector<ContactPoint>& contact, double scale, const Frame& frame, Drawing& drawing) {
   const Box& w = frame.window();
   for (const auto& c : contact) {
-    if (!at(c, "x").is_number() || !at(c, "y").is_number()) continue;
-    const double x = c["x"], y = c["y"];
-    if (x < w.min.x || x > w.max.x || y < w.min.y || y > w.max.y) continue;
-    const std::string state = plain(at(c, "state"));
-    draw_state(state, frame.x(x), frame.y(y),
-               fmt::format("{}: {}, normal traction {}, tangential {}", plain(at(c, "name")), state,
-                           plain(at(c, "normal")), plain(at(c, "tangential"))),
-               drawing);
+    const Point p = c.enlarged(scale);
+    if (p.x < w.min.x || p.x > w.max.x || p.y < w.min.y || p.y > w.max.y) continue;
+    draw_state(
+        c.state, frame.x(p.x), frame.y(p.y),
+        fmt::format("{}: {}, normal traction {}, tangential {}", c.name, c.state, plain(c.normal), plain(c.tangential)),
+        drawing);
   }
 }
 
 /// A square around the contact points that touch (around all where none does), and some room; empty without points.
-Box close_up(const json& contact) {
+Box close_up(const std::vector<ContactPoint>& contact, double scale) {
   Box touching, all;
   for (const auto& c : contact) {
-    if (!at(c, "x").is_number() || !at(c, "y").is_number()) continue;
-    const Point p{c["x"], c["y"]};
-    all.add(p);
-    if (plain(at(c, "state")) != "open") touching.add(p);
+    all.add(c.enlarged(scale));
+    if (c.state != "open") touching.add(c.enlarged(scale));
   }
   const Box& core = touching.width() >= 0 && std::max(touching.width(), touching.height()) > 0 ? touching : all;
   const double size = std::max(core.width(), core.height());
@@ -278,14 +298,16 @@ Box padded(Box box, double share) {
   return box;
 }
 
-void draw_legend(double peak, double y, Drawing& drawing) {
-  if (peak > 0) {
-    drawing.text(10, y + 12, "equivalent stress");
-    for (std::size_t i = 0; i < colors.size(); ++i)
-      drawing.path(Path().rectangle(145 + 22.0 * static_cast<double>(i), y + 2, 22, 12), {"", colors[i], 1, {}});
-    drawing.text(145, y + 28, "0");
-    drawing.text(343, y + 28, number(peak), {Anchor::end});
-  }
+void draw_stresses(double peak, double y, Drawing& drawing) {
+  if (!(peak > 0)) return;
+  drawing.text(10, y + 12, "equivalent stress");
+  for (std::size_t i = 0; i < colors.size(); ++i)
+    drawing.path(Path().rectangle(145 + 22.0 * static_cast<double>(i), y + 2, 22, 12), {"", colors[i], 1, {}});
+  drawing.text(145, y + 28, "0");
+  drawing.text(343, y + 28, number(peak), {Anchor::end});
+}
+
+void draw_states(double y, Drawing& drawing) {
   double x = 400;
   for (const auto& [state, words] : {std::pair{"stick", "sticks"}, {"slip", "slips"}, {"open", "open"}}) {
     draw_state(state, x, y + 8, "", drawing);
@@ -297,14 +319,16 @@ void draw_legend(double peak, double y, Drawing& drawing) {
 /// What is drawn: the mesh, what came of it, and how it is laid out.
 struct Scene {
   Mesh mesh;
+  std::vector<ContactPoint> contact;
   double scale, peak = 0;  ///< exaggeration; largest stress
   Box whole, zoom;         ///< windows; no zoom: empty
   bool zooms;
 };
 
 std::optional<Scene> lay_out(const json& picture) {
-  Scene scene{read_mesh(picture), 1, 0, {}, {}, false};
+  Scene scene{read_mesh(picture), {}, 1, 0, {}, {}, false};
   if (scene.mesh.elements.empty()) return std::nullopt;
+  scene.contact = read_contact(array_at(picture, "contact"), scene.mesh);
   Box reference;
   for (const auto& p : scene.mesh.points) reference.add(p);
   const double extent = std::max(reference.width(), reference.height());
@@ -313,33 +337,56 @@ std::optional<Scene> lay_out(const json& picture) {
   for (const auto& p : deformed(scene.mesh, scene.scale)) scene.whole.add(p);
   scene.whole = padded(scene.whole, 0.03);
   for (const double s : scene.mesh.stress) scene.peak = std::max(scene.peak, s);
-  scene.zoom = close_up(array_at(picture, "contact"));
+  scene.zoom = close_up(scene.contact, 1);
   // A close-up of most of the picture would show the same thing twice.
   scene.zooms = scene.zoom.width() > 0 && scene.zoom.width() < 0.8 * extent;
   return scene;
 }
 
-std::string in_words(const Scene& scene, std::size_t points) {
+std::string in_words(const Scene& scene) {
   const std::string scale =
       scene.scale == 1
           ? std::string("displacements at true scale")
           : fmt::format("displacements {} times enlarged (bodies that touch may seem to overlap)", number(scene.scale));
   return fmt::format("Reference solution at the last step: {} elements, {} contact points; {}.{}",
-                     scene.mesh.elements.size(), points, scale,
+                     scene.mesh.elements.size(), scene.contact.size(), scale,
                      scene.zooms ? " Right: the contact at true scale." : "");
+}
+
+/// Nodes and contact points where they are drawn, and elements by their nodes.
+json rows_of(const Scene& scene, const std::vector<Point>& nodes) {
+  json rows = json::array();
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    rows.push_back({{"what", "node"}, {"number", i}, {"x", nodes[i].x}, {"y", nodes[i].y}});
+  for (std::size_t e = 0; e < scene.mesh.elements.size(); ++e) {
+    std::string corners;
+    for (const int node : scene.mesh.elements[e]) corners += (corners.empty() ? "" : " ") + std::to_string(node);
+    rows.push_back({{"what", "element"}, {"number", e}, {"nodes", corners}, {"stress", scene.mesh.stress[e]}});
+  }
+  const double scale = scene.zooms ? 1 : scene.scale;
+  for (std::size_t i = 0; i < scene.contact.size(); ++i) {
+    const Point p = scene.contact[i].enlarged(scale);
+    rows.push_back({{"what", "contact point"}, {"number", i}, {"x", p.x}, {"y", p.y}});
+    rows.back().update({{"contact", scene.contact[i].name},
+                        {"state", scene.contact[i].state},
+                        {"normal", scene.contact[i].normal},
+                        {"tangential", scene.contact[i].tangential}});
+  }
+  return rows;
 }
 
 }  // namespace
 
-std::optional<Drawing> draw_picture(const json& picture) {
+std::optional<Plate> draw_picture(const json& picture) {
   if (!picture.is_object()) return std::nullopt;
   const auto scene = lay_out(picture);
   if (!scene) return std::nullopt;
-  const json &contact = array_at(picture, "contact"), &obstacles = array_at(picture, "obstacles");
+  const json& obstacles = array_at(picture, "obstacles");
   const double gap = 24, wide = scene->zooms ? 560 : canvas, inset = 416;
   const double tall = std::clamp(wide * scene->whole.height() / scene->whole.width(), 120.0, tallest);
   const double height = scene->zooms ? std::max(tall, inset) : tall;
-  Drawing drawing(canvas, height + 44, "Deformed bodies and contact states", in_words(*scene, contact.size()));
+  const std::string title = "Deformed bodies and contact states", text = in_words(*scene);
+  Drawing drawing(canvas, height + 44, title, text);
   constexpr std::size_t lines_up_to = 4000;  // more mesh lines than that are one grey
 
   const Frame main(scene->whole, wide, height, 0);
@@ -348,12 +395,14 @@ std::optional<Drawing> draw_picture(const json& picture) {
   draw_obstacles(obstacles, main, drawing);
   draw_elements(scene->mesh, exaggerated, main, scene->peak, scene->mesh.elements.size() <= lines_up_to, drawing);
   draw_outlines(scene->mesh, exaggerated, main, drawing);
-  // Contact points are recorded at their true place, which an enlarged picture does not show.
-  if (!scene->zooms && scene->scale == 1) draw_contact(contact, main, drawing);
-  if (scene->zooms)
-    drawing.path(Path().rectangle(main.x(scene->zoom.min.x), main.y(scene->zoom.max.y),
-                                  main.length(scene->zoom.width()), main.length(scene->zoom.height())),
-                 {"ink"});
+  if (scene->zooms) {
+    const Box box = close_up(scene->contact, scene->scale);
+    drawing.path(
+        Path().rectangle(main.x(box.min.x), main.y(box.max.y), main.length(box.width()), main.length(box.height())),
+        {"ink"});
+  } else {
+    draw_contact(scene->contact, scene->scale, main, drawing);
+  }
   drawing.unclip();
   if (scene->zooms) {
     const Frame close(scene->zoom, inset, inset, wide + gap);
@@ -362,12 +411,13 @@ std::optional<Drawing> draw_picture(const json& picture) {
     draw_obstacles(obstacles, close, drawing);
     draw_elements(scene->mesh, actual, close, scene->peak, true, drawing);
     draw_outlines(scene->mesh, actual, close, drawing);
-    draw_contact(contact, close, drawing);
+    draw_contact(scene->contact, 1, close, drawing);
     drawing.unclip();
     drawing.path(Path().rectangle(wide + gap, 0.5, inset - 1, inset - 1), {"ink"});
   }
-  draw_legend(scene->peak, height + 12, drawing);
-  return drawing;
+  draw_stresses(scene->peak, height + 12, drawing);
+  if (!scene->contact.empty()) draw_states(height + 12, drawing);
+  return Plate{"picture", title, text, drawing, {}, rows_of(*scene, exaggerated)};
 }
 
 }  // namespace stickslip::report

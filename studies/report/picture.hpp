@@ -4,13 +4,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "studies/report/drawing.hpp"
+#include "studies/report/charts.hpp"
 
 namespace stickslip::report {
 
-/// Bodies deformed and coloured by equivalent stress, obstacles, contact points by state, a close-up of the contact at
-/// true scale, and a legend. `picture` is picture.json. Nothing where there is no plane mesh to draw (one node, three
-/// dimensions, no picture).
-std::optional<Drawing> draw_picture(const nlohmann::json& picture);
+/// Bodies deformed and coloured by equivalent stress, obstacles, contact points by state (in a close-up of the contact
+/// at true scale, where that shows more), and a legend. `picture` is picture.json. Nothing where there is no plane mesh
+/// to draw (one node, three dimensions, no picture).
+std::optional<Plate> draw_picture(const nlohmann::json& picture);
 
 }  // namespace stickslip::report

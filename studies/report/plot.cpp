@@ -107,7 +107,12 @@ Axis::Axis(double low, double high, bool logarithmic, double from, double to)
     : log_(logarithmic), from_(from), to_(to) {
   low_ = scaled(low);
   high_ = scaled(high);
-  const double room = high_ > low_ ? 0.05 * (high_ - low_) : log_ ? 0.5 : std::max(std::abs(high_), 1.0) / 2;
+  if (log_ && high_ - low_ < 1) {  // a decade at least: rounding is no trend, and some tick has its place
+    const double middle = (low_ + high_) / 2;
+    low_ = middle - 0.5;
+    high_ = middle + 0.5;
+  }
+  const double room = high_ > low_ ? 0.05 * (high_ - low_) : std::max(std::abs(high_), 1.0) / 2;
   low_ -= room;
   high_ += room;
 }
@@ -122,9 +127,8 @@ std::vector<double> Axis::ticks() const {
     const double step = std::max(1.0, std::ceil((high_ - low_) / 7));
     for (double e = std::ceil(low_ / step) * step; e <= high_; e += step) out.push_back(std::pow(10, e));
   } else if (log_) {
-    const bool narrow = high_ - low_ < 0.8;  // less than a decade: two or three of 1 2 5 would be all
     for (double e = std::floor(low_); e <= high_; ++e)
-      for (const double m : narrow ? std::vector<double>{1, 1.5, 2, 3, 4, 5, 7} : std::vector<double>{1, 2, 5})
+      for (const double m : {1, 2, 5})
         if (const double v = m * std::pow(10, e); scaled(v) >= low_ && scaled(v) <= high_) out.push_back(v);
   } else {
     double step = std::pow(10, std::floor(std::log10((high_ - low_) / 5)));

@@ -12,7 +12,7 @@ namespace stickslip::report {
 /// numbers, a legend. Nothing where no row can be drawn.
 std::optional<Drawing> draw_plot(const Figure& figure, const Panel& panel);
 
-/// One axis: values onto pixels, linear or logarithmic, with some room at both ends.
+/// One axis: values onto pixels, linear or logarithmic (over a decade at least), with some room at both ends.
 class Axis {
  public:
   Axis(double low, double high, bool logarithmic, double from, double to);

@@ -36,8 +36,8 @@ void add_stairs(Figure& figure, const json& base, std::vector<double> places, st
   int order = 0;
   const auto add = [&](double x, double y, bool corner) {
     json r = base;
-    r["x"] = rounded(x);
-    r["shown"] = rounded(y);
+    r["x"] = x;
+    r["shown"] = y;
     r["order"] = order++;
     r["unmarked"] = !corner;
     figure.rows.push_back(r);
@@ -86,24 +86,6 @@ void describe(Figure& figure, const Study& study, Of of, std::size_t problems) {
       problems, study.variants.size());
 }
 
-/// What stands behind every step of the staircases.
-void tabulate(Figure& figure, const std::vector<Contestant>& all, const std::vector<Problem>& problems, Of of) {
-  figure.table.header = {"method", "setting", "scene", "accuracy asked for", "run", "its error", "work", "solved"};
-  for (const auto& each : all)
-    for (std::size_t i = 0; i < problems.size(); ++i) {
-      const Cell* cell = each.cells[i];
-      const bool solved = each.work(i, problems, of).has_value();
-      const auto error = cell ? accuracy(*cell, of) : std::nullopt;
-      figure.table.rows.push_back({family_name(each.family), name_of(each.setting), problems[i].variant,
-                                   number(problems[i].target), cell ? cell->label : "none", error ? number(*error) : "",
-                                   cell ? number(work_of(*cell, of)) : "",
-                                   solved                     ? "yes"
-                                   : cell && !cell->converged ? cell->status
-                                                              : "no"});
-      figure.table.row_classes.emplace_back(solved ? "" : "failed");
-    }
-}
-
 }  // namespace
 
 std::optional<Figure> profiles(const Study& study, Of of) {
@@ -112,7 +94,6 @@ std::optional<Figure> profiles(const Study& study, Of of) {
   if (problems.size() < 2 || all.size() < 2) return std::nullopt;
   Figure figure;
   describe(figure, study, of, problems.size());
-  tabulate(figure, all, problems, of);
   const auto solved = solve_all(all, problems, of);
   double largest_factor = 1, least = INFINITY, largest = 0;
   for (const auto& each : solved) {

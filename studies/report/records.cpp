@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 
 #include "studies/report/html.hpp"
@@ -118,6 +119,40 @@ std::string main_variant_of(const Study& study) {
   return best;
 }
 
+/// `label` without " NAME=VALUE" of a knob. An absolute value may be written in any form, so all up to the blank goes.
+std::string without(std::string label, const std::string& knob) {
+  const std::string key = " " + knob.substr(0, knob.find(" (")) + "=";
+  if (const std::size_t from = label.find(key); from != std::string::npos)
+    label.erase(from, std::min(label.find(' ', from + 1), label.size()) - from);
+  return label;
+}
+
+/// Takes out of the labels the options that have one value in all runs of a method that name them, as long as runs stay
+/// apart without.
+void shorten_labels(Study& study) {
+  for (const auto& family : study.families) {
+    std::map<std::string, std::set<std::string>> values;
+    std::set<std::string> labels;
+    for (const auto& cell : study.cells) {
+      if (cell.family != family || !labels.insert(cell.label).second) continue;
+      std::istringstream words(cell.label);
+      for (std::string word; words >> word;)
+        if (const std::size_t sign = word.find('='); sign != std::string::npos)
+          values[word.substr(0, sign)].insert(word.substr(sign + 1));
+    }
+    if (labels.size() < 2) continue;
+    for (const auto& [name, given] : values) {
+      std::set<std::string> shorter;
+      for (const auto& label : labels) shorter.insert(without(label, name));
+      if (given.size() > 1 || shorter.size() < labels.size()) continue;
+      labels = shorter;
+      study.shared.push_back(family_name(family) + " " + name + "=" + *given.begin());
+      for (auto& cell : study.cells)
+        if (cell.family == family) cell.label = without(cell.label, name);
+    }
+  }
+}
+
 json read_json(const std::filesystem::path& path) {
   std::ifstream in(path);
   if (!in) return nullptr;
@@ -168,6 +203,7 @@ Study read_study(const std::filesystem::path& directory) {
     measure_work(cell, ratio == study.ratio.end() ? 0 : ratio->second);
   }
   study.families = distinct(study.cells, [](const Cell& c) { return c.family; });
+  shorten_labels(study);
   study.variants = distinct(study.cells, [](const Cell& c) { return c.variant; });
   study.main_variant = main_variant_of(study);
   return study;
@@ -220,11 +256,16 @@ const Knob* find_knob(const Cell& cell, const std::string& name) {
 std::string series_of(const Cell& cell, const std::string& knob) {
   std::string rest = cell.label;
   if (rest.rfind(cell.family, 0) == 0) rest.erase(0, cell.family.size());
-  // The recorded label says NAME=VALUE; an absolute value may be written in any form, so all up to the blank goes.
-  const std::string key = " " + knob.substr(0, knob.find(" (")) + "=";
-  if (const std::size_t from = knob.empty() ? std::string::npos : rest.find(key); from != std::string::npos)
-    rest.erase(from, std::min(rest.find(' ', from + 1), rest.size()) - from);
-  return family_name(cell.family) + rest;
+  return family_name(cell.family) + (knob.empty() ? rest : without(rest, knob));
+}
+
+std::string discretization_reference(const Study& study) {
+  std::set<std::string> kinds;
+  for (const auto& entry : array_at(study.description, "reference"))
+    for (const auto& [key, words] :
+         {std::pair{"analytic", "the closed form"}, {"overkill", "the finer mesh"}, {"values", "the given values"}})
+      if (!at(entry, key).is_null()) kinds.insert(words);
+  return kinds.size() == 1 ? *kinds.begin() : "the references";
 }
 
 std::optional<double> worst(const std::map<std::string, double>& errors, const std::string& prefix) {

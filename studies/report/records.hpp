@@ -21,7 +21,7 @@ struct Knob {
 /// One cell of a study: a method with its options, on one variant of the scene.
 struct Cell {
   nlohmann::json record;  ///< the whole line
-  std::string label;      ///< method and swept options, as recorded or made up from them
+  std::string label;      ///< method and options, as recorded or made up from them, without Study::shared
   std::string family;     ///< key of the method: penalty, uzawa_al, monolithic_al, ...
   std::string status;
   bool converged = false;
@@ -30,7 +30,7 @@ struct Cell {
   std::string variant;  ///< scene and, where there are several, mesh level
   std::vector<Knob> knobs;
   std::map<std::string, double> enforcement;     ///< against the same mesh; keys response:* sensitivity:* field:*
-  std::map<std::string, double> discretization;  ///< against the closed form; same keys
+  std::map<std::string, double> discretization;  ///< against discretization_reference(); same keys
   std::map<std::string, double> kkt;             ///< method-blind measures
   double work = 0;              ///< flop equivalents in factorisations, the response alone (see Study::ratio)
   double sensitivity_work = 0;  ///< the same with the derivatives' share added
@@ -45,6 +45,7 @@ struct Study {
   std::vector<std::string> families;  ///< in order of appearance
   std::vector<std::string> variants;  ///< in order of appearance
   std::string main_variant;           ///< the one shown first: most cells converged, of equals the last
+  std::vector<std::string> shared;    ///< "METHOD OPTION=VALUE" that tells no two runs of the method apart
   std::map<int, double> ratio;        ///< cost of one back-solve over one factorisation, by refinement; measured
   bool refined = false;               ///< more than one mesh level
   int unreadable_lines = 0;
@@ -67,6 +68,10 @@ const Knob* find_knob(const Cell& cell, const std::string& name);
 
 /// Label without the part that says `knob`, and with the method's name in words: what is constant along a curve.
 std::string series_of(const Cell& cell, const std::string& knob);
+
+/// What the discretisation errors are against: "the closed form", "the finer mesh", "the given values", or, where the
+/// study has several of them or names none, "the references".
+std::string discretization_reference(const Study& study);
 
 /// Largest value of those whose key starts with `prefix`; nothing where there is none.
 std::optional<double> worst(const std::map<std::string, double>& errors, const std::string& prefix);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include "studies/atomic_file.hpp"
 #include "studies/report/charts.hpp"
@@ -53,6 +54,11 @@ std::string plain_picture(const Figure& figure, const Panel& panel) {
   return drawing ? drawing->inline_svg() : std::string();
 }
 
+/// Six digits are more than a chart shows, in a third of the bytes. The files beside the page hold all of them.
+json rounded(const json& value) {
+  return value.is_number_float() ? json(std::stod(fmt::format("{:.6g}", value.get<double>()))) : value;
+}
+
 std::string to_html(const Figure& figure) {
   std::string open, folded_panels;
   json specs = json::array();
@@ -76,7 +82,7 @@ std::string to_html(const Figure& figure) {
   json rows = json::array();
   for (const auto& row : figure.rows) {
     json values = json::array();
-    for (const auto& field : fields) values.push_back(at(row, field));
+    for (const auto& field : fields) values.push_back(rounded(at(row, field)));
     rows.push_back(values);
   }
   std::string controls;
@@ -91,9 +97,13 @@ std::string to_html(const Figure& figure) {
   if (!folded_panels.empty())
     out += "<details class=\"panels-folded\"><summary>More views</summary><div class=\"panels\">" + folded_panels +
            "</div></details>\n";
-  out += folded("Data of this chart", report::to_html(figure.table, figure.title));
+  out += "<details class=\"data\"><summary>Data of this chart</summary></details>\n";
   return out + fmt::format("<script type=\"application/json\" id=\"{}-data\">{}</script>\n</figure>\n", figure.id,
-                           embed({{"fields", fields}, {"rows", rows}, {"series", series}, {"panels", specs}}));
+                           embed({{"fields", fields},
+                                  {"columns", columns_of(figure.rows)},
+                                  {"rows", rows},
+                                  {"series", series},
+                                  {"panels", specs}}));
 }
 
 std::string to_html(const Plate& plate) {
@@ -102,7 +112,7 @@ std::string to_html(const Plate& plate) {
       "<p>{2}</p></figcaption>\n<div class=\"drawn\" role=\"region\" tabindex=\"0\" aria-label=\"{1}\">{3}</div>\n{4}"
       "</figure>\n",
       plate.id, escape(plate.title), escape(plate.text), plate.drawing.inline_svg(),
-      folded("Data of this chart", report::to_html(plate.table, plate.title)));
+      plate.table.rows.empty() ? "" : folded("Data of this chart", report::to_html(plate.table, plate.title)));
 }
 
 // --- sections ------------------------------------------------------------------------------------------------------
@@ -147,7 +157,8 @@ std::string how_to_read(const Study& study) {
          "<p>A <b>response</b> is a number the study asks for, such as a force. A <b>sensitivity</b> is the derivative "
          "of a response with respect to a parameter, computed the way that matches the method. The <b>enforcement "
          "error</b> compares with the exact contact conditions on the same mesh, so it blames the method alone; the "
-         "<b>discretisation error</b> compares with a closed form and blames mesh and method together. All errors are "
+         "<b>discretisation error</b> compares with a closed form, a finer mesh or given values and blames mesh and "
+         "method together. All errors are "
          "relative. <b>Counts</b> (factorisations, back-solves) are equal on every machine; <b>seconds</b> are of the "
          "machine named at the end. Error and cost axes are logarithmic: a grid line is usually a factor of ten. Runs "
          "that failed stay, as crosses and as rows. " +
@@ -183,12 +194,27 @@ std::string provenance(const Study& study) {
   return out + definitions(entries);
 }
 
+/// What `explain` says of a cell, without what its method alone makes so: the line "method: ..." and the multipliers.
+std::string scene_in_words(const std::string& explain) {
+  std::istringstream lines(explain);
+  std::string out;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("method: ")) continue;
+    if (line.starts_with("unknowns: ")) line.erase(std::min(line.find(','), line.size()));
+    out += line + "\n";
+  }
+  return out;
+}
+
 std::string the_study(const Study& study) {
   const json& d = study.description;
   if (!d.is_object()) return "<p>No study.json was recorded.</p>\n";
   std::string out;
   if (const std::string explain = text_at(d, "explain"); !explain.empty())
-    out += "<pre class=\"wrap\">" + escape(explain) + "</pre>\n";
+    out +=
+        "<p class=\"note\">The scene of the study's last run; what varies, and the methods, are in the study as "
+        "given.</p>\n<pre class=\"wrap\">" +
+        escape(scene_in_words(explain)) + "</pre>\n";
   std::vector<std::pair<std::string, json>> entries;
   for (const char* group : {"mesh", "size"})
     for (const auto& [key, value] : object_at(d, group).items()) {
@@ -220,7 +246,6 @@ class Figures {
 
   std::vector<Figure> figures;
   std::vector<Plate> plates;
-  std::vector<std::pair<std::string, Drawing>> drawings;  ///< those without numbers of their own, by name
 };
 
 std::string findings(const Study& study) {
@@ -235,7 +260,7 @@ std::string findings(const Study& study) {
 
 std::string of_errors(const Study& study, Of of, Figures& figures) {
   std::string out = figures.show(work_precision(study, Against::same_mesh, of));
-  out += figures.show(work_precision(study, Against::closed_form, of));
+  out += figures.show(work_precision(study, Against::discretization, of));
   if (of == Of::responses) out += figures.show(mesh_convergence(study));
   return out + figures.show(profiles(study, of));
 }
@@ -251,12 +276,7 @@ std::string of_knobs(const Study& study, Figures& figures) {
 }
 
 std::string of_solution(const Study& study, Figures& figures) {
-  std::string out;
-  if (const auto picture = draw_picture(study.picture)) {
-    out = "<div class=\"drawn picture\">" + picture->inline_svg() + "</div>\n<p class=\"note\">" +
-          escape(picture->description()) + "</p>\n";
-    figures.drawings.emplace_back("picture", *picture);
-  }
+  std::string out = figures.show(draw_picture(study.picture));
   out += figures.show(tractions(study));
   return out + figures.show(film_of_states(study));
 }
@@ -293,6 +313,10 @@ std::string intro(const Study& study) {
   if (!study.cells.empty())
     out += fmt::format("<p class=\"note\">Runs: {}. Methods: {}. Scene variants: {}.</p>\n", study.cells.size(),
                        escape(methods), study.variants.size());
+  std::string shared;
+  for (const auto& option : study.shared) shared += (shared.empty() ? "" : ", ") + option;
+  if (!shared.empty())
+    out += "<p class=\"note\">Left out of the names of runs, since it tells none apart: " + escape(shared) + ".</p>\n";
   return out;
 }
 
@@ -333,7 +357,7 @@ void write_report(const std::filesystem::path& directory) {
   const Study study = read_study(directory);
   Figures figures;
   write_file_atomically(directory / "report.html", page_of(study, figures));
-  write_figures(directory, figures.figures, figures.plates, figures.drawings);
+  write_figures(directory, figures.figures, figures.plates);
 }
 
 }  // namespace stickslip

@@ -14,6 +14,16 @@ namespace stickslip::report {
 
 using nlohmann::json;
 
+namespace {
+
+/// The table without its constant columns, which a line above it names.
+std::string compact(Table table, const char* caption) {
+  const std::string constant = take_out_constant_columns(table);
+  return (constant.empty() ? "" : "<p class=\"note\">" + escape(constant) + "</p>\n") + to_html(table, caption);
+}
+
+}  // namespace
+
 std::string settings_table(const Study& study) {
   const auto target = target_error(study, Of::responses);
   if (!target) return {};
@@ -55,7 +65,7 @@ std::string settings_table(const Study& study) {
              "settings tried whose worst response is within {} of the exact contact conditions, known only afterwards. "
              "Strict: the most accurate setting tried. The last column says what failed or missed that accuracy.</p>\n",
              number(*target)) +
-         to_html(table, "Default, tuned and strict settings");
+         compact(table, "Default, tuned and strict settings");
 }
 
 std::string status_table(const Study& study) {
@@ -89,16 +99,43 @@ std::string status_table(const Study& study) {
   return "<h3>Which setting works where</h3>\n" + to_html(table, "Status by setting and scene");
 }
 
+namespace {
+
+/// A status with blanks, where a narrow column can break it.
+std::string status_in_words(const Cell& cell) {
+  std::string words = cell.status.empty() ? "no status" : cell.status;
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
+/// What runs said of themselves: too long for a column.
+std::string messages(const Study& study) {
+  Table table{{"method", "scene", "status", "message"}, {}, {}};
+  for (const auto& cell : study.cells)
+    if (const std::string message = plain(at(cell.record, "message")); !message.empty()) {
+      table.rows.push_back({cell.label, cell.variant, status_in_words(cell), message});
+      table.row_classes.emplace_back(cell.converged ? "" : "failed");
+    }
+  return table.rows.empty() ? "" : folded("Messages of the runs", to_html(table, "Messages"));
+}
+
+}  // namespace
+
 std::string results_table(const Study& study) {
-  Table table;
-  table.header = {"method",
+  const std::string reference = discretization_reference(study);
+  Table errors, costs;
+  errors.header = {"method",
+                   "scene",
+                   "status",
+                   "worst response error",
+                   "worst sensitivity error",
+                   "response error to " + reference,
+                   "sensitivity error to " + reference,
+                   "worst KKT measure",
+                   "condition"};
+  costs.header = {"method",
                   "scene",
                   "status",
-                  "worst response error",
-                  "worst sensitivity error",
-                  "response error to closed form",
-                  "sensitivity error to closed form",
-                  "worst KKT measure",
                   "Newton",
                   "augmentations",
                   "cutbacks",
@@ -107,25 +144,26 @@ std::string results_table(const Study& study) {
                   "sensitivity back-solves",
                   "seconds",
                   "of these sensitivities",
-                  "memory MB",
-                  "condition",
-                  "message"};
+                  "memory MB"};
   const auto shown = [](const std::optional<double>& v) { return v ? number(*v) : std::string(); };
   for (const auto& cell : study.cells) {
     const json &cost = at(cell.record, "cost"), &seconds = at(cost, "seconds");
     const auto count = [&](const char* name) { return number(cell.count(name), 9); };
     const auto recorded = [](const json& v) { return v.is_number() ? number(v.get<double>()) : std::string(); };
-    table.rows.push_back({cell.label, cell.variant, cell.status.empty() ? "no status" : cell.status,
-                          shown(worst(cell.enforcement, "response:")), shown(worst(cell.enforcement, "sensitivity:")),
-                          shown(worst(cell.discretization, "response:")),
-                          shown(worst(cell.discretization, "sensitivity:")), shown(worst(cell.kkt, "")),
-                          count("newton"), count("augmentations"), count("cutbacks"), count("factorizations"),
-                          count("backsolves"), count("sensitivity_backsolves"), recorded(at(seconds, "total")),
-                          recorded(at(seconds, "sensitivity")), recorded(at(cost, "peak_memory_mb")),
-                          recorded(at(cost, "condition_estimate")), plain(at(cell.record, "message"))});
-    table.row_classes.emplace_back(cell.converged ? "" : "failed");
+    const std::string status = status_in_words(cell);
+    errors.rows.push_back({cell.label, cell.variant, status, shown(worst(cell.enforcement, "response:")),
+                           shown(worst(cell.enforcement, "sensitivity:")),
+                           shown(worst(cell.discretization, "response:")),
+                           shown(worst(cell.discretization, "sensitivity:")), shown(worst(cell.kkt, "")),
+                           recorded(at(cost, "condition_estimate"))});
+    costs.rows.push_back({cell.label, cell.variant, status, count("newton"), count("augmentations"), count("cutbacks"),
+                          count("factorizations"), count("backsolves"), count("sensitivity_backsolves"),
+                          recorded(at(seconds, "total")), recorded(at(seconds, "sensitivity")),
+                          recorded(at(cost, "peak_memory_mb"))});
+    errors.row_classes.emplace_back(cell.converged ? "" : "failed");
   }
-  return to_html(table, "All runs");
+  costs.row_classes = errors.row_classes;
+  return compact(errors, "All runs: errors") + compact(costs, "All runs: costs") + messages(study);
 }
 
 std::string values_table(const Study& study) {
@@ -151,7 +189,7 @@ std::string values_table(const Study& study) {
     table.row_classes.emplace_back(cell.converged ? "" : "failed");
   }
   return folded("Values of responses and sensitivities at the last step",
-                to_html(table, "Responses and sensitivities at the last step"));
+                compact(table, "Responses and sensitivities at the last step"));
 }
 
 }  // namespace stickslip::report

@@ -31,8 +31,8 @@ void add_traction(json& rows, const json& base, const char* panel, double s, dou
   if (!std::isfinite(s) || !std::isfinite(value)) return;
   json r = base;
   r["panel"] = panel;
-  r["s"] = r["order"] = rounded(s);
-  r["error"] = rounded(value);
+  r["s"] = r["order"] = s;
+  r["error"] = value;
   rows.push_back(r);
 }
 
@@ -52,8 +52,6 @@ std::optional<Figure> tractions(const Study& study) {
   SeriesList series(study);
   figure.id = "tractions";
   figure.title = "Tractions along the interface, last step";
-  figure.table.header = {"method", "contact",    "arc length",   "x",   "y",
-                         "state",  "pressure p", "tangential q", "gap", "slip"};
   const auto shown = telling_cells(study, Furthest::added);
   add_first(series, study, shown);
   const json& analytic = at(study.description, "analytic");
@@ -74,9 +72,8 @@ std::optional<Figure> tractions(const Study& study) {
     if (points > most_points && !chosen) continue;
     const std::string name = in_words(cell);
     for (const auto& [contact, face] : object_at(cell.record, "interface").items()) {
-      const auto arc = numbers_at(face, "arc"), x = numbers_at(face, "x"), y = numbers_at(face, "y");
+      const auto arc = numbers_at(face, "arc"), x = numbers_at(face, "x");
       const auto normal = numbers_at(face, "normal"), tangential = numbers_at(face, "tangential");
-      const auto gap = numbers_at(face, "gap"), slip = numbers_at(face, "slip");
       const json& twin = at(at(reference->record, "interface"), contact);
       const auto normal_of_reference = numbers_at(twin, "normal");
       const auto tangential_of_reference = numbers_at(twin, "tangential");
@@ -105,10 +102,6 @@ std::optional<Figure> tractions(const Study& study) {
             difference = std::max(difference, std::abs(tangential[i] - tangential_of_reference[i]) / scale_q);
           add_traction(figure.rows, base, "difference", s[i], difference);
         }
-        const auto value = [&](const std::vector<double>& v) { return i < v.size() ? number(v[i], 6) : ""; };
-        if (chosen)
-          figure.table.rows.push_back({cell.label, contact, value(arc), value(x), value(y), state,
-                                       number(-normal[i], 6), value(tangential), value(gap), value(slip)});
       }
     }
   }

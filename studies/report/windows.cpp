@@ -6,6 +6,9 @@
 #include "studies/report/plot.hpp"
 
 namespace stickslip::report {
+
+using nlohmann::json;
+
 namespace {
 
 struct Run {
@@ -103,6 +106,16 @@ std::string failures(const Window& window) {
   return out;
 }
 
+json rows_of(const std::vector<Window>& windows) {
+  json rows = json::array();
+  for (const auto& window : windows)
+    for (const auto& run : window.runs) {
+      rows.push_back({{"series", window.name}, {"knob", run.knob}, {"status", run.cell->status}});
+      if (const auto error = accuracy(*run.cell, Of::responses)) rows.back()["error"] = *error;
+    }
+  return rows;
+}
+
 }  // namespace
 
 std::optional<Plate> robustness_windows(const Study& study, const std::vector<std::string>& knobs) {
@@ -123,7 +136,7 @@ std::optional<Plate> robustness_windows(const Study& study, const std::vector<st
       number(target) + " of the exact contact conditions, an open one converged to something less accurate.";
   const Axis x(low, high, true, left, right);
   const double top = 8, bottom = top + row_height * static_cast<double>(windows.size()) + 4;
-  Plate plate{"windows-" + slug(knobs.front()), title, text, Drawing(width, bottom, title, text), {}};
+  Plate plate{"windows-" + slug(knobs.front()), title, text, Drawing(width, bottom, title, text), {}, rows_of(windows)};
   draw_scale(x, top, bottom, knob_title(knobs), plate.drawing);
   plate.table.header = {"method and scene", "runs", "converges from ... to", "fails at"};
   for (std::size_t i = 0; i < windows.size(); ++i) {

@@ -11,7 +11,7 @@ namespace {
 
 const std::map<std::string, double>& errors_of(const Cell& cell, Against against) {
   if (against == Against::same_mesh) return cell.enforcement;
-  return against == Against::closed_form ? cell.discretization : cell.kkt;
+  return against == Against::discretization ? cell.discretization : cell.kkt;
 }
 
 }  // namespace
@@ -26,13 +26,9 @@ std::optional<Figure> work_precision(const Study& study, Against against, Of of)
                                                              : "worst response";
   Figure figure;
   SeriesList series(study);
-  figure.table.header = {"method",         "scene",       "quantity", "error", "work",
-                         "factorisations", "back-solves", "seconds",  "status"};
   for (const auto& cell : study.cells) {
     const std::string knob = running_knob(study, cell.family);
-    const std::string name = series_of(cell, knob) + (knob.empty() ? "" : ", along " + knob);
-    const double factorizations =
-        cell.count("factorizations") - (derivative ? 0 : cell.count("sensitivity_factorizations"));
+    const std::string name = series_of(cell, knob);
     const double backsolves = cell.count("backsolves") + (derivative ? cell.count("sensitivity_backsolves") : 0);
     const double work = derivative ? cell.sensitivity_work : cell.work;
     const double seconds = derivative ? cell.sensitivity_seconds : cell.seconds;
@@ -42,16 +38,14 @@ std::optional<Figure> work_precision(const Study& study, Against against, Of of)
       r["scene"] = cell.variant;
       r["quantity"] = quantity;
       r["error"] = error;
-      r["work"] = rounded(work);
+      r["work"] = work;
       r["backsolves"] = backsolves;
-      r["seconds"] = rounded(seconds);
+      r["seconds"] = seconds;
       const Knob* value = find_knob(cell, knob);
       r["order"] = value && value->value ? *value->value : 0;
       if (value) r["knob"] = value->text;
       figure.rows.push_back(r);
       series.add(name, cell.family);
-      figure.table.rows.push_back({cell.label, cell.variant, quantity, number(error), number(work, 4),
-                                   number(factorizations, 9), number(backsolves, 9), number(seconds), cell.status});
     }
   }
   if (figure.rows.empty()) return std::nullopt;
@@ -60,8 +54,12 @@ std::optional<Figure> work_precision(const Study& study, Against against, Of of)
   figure.series = series.list;
 
   const std::string what = derivative ? "sensitivities" : "responses";
+  std::string along;
+  for (const auto& family : study.families)
+    if (const std::string knob = running_knob(study, family); !knob.empty())
+      along += (along.empty() ? "" : ", ") + family_name(family) + " along " + knob;
   const std::string joined =
-      "A curve joins the runs of one method along the option that is swept; its ends carry the option's value.";
+      along.empty() ? "" : "A curve joins the runs of one method: " + along + "; its ends carry the option's value.";
   std::string y_title = derivative ? "relative error of the sensitivity" : "relative error of the response";
   if (against == Against::same_mesh) {
     figure.id = "enforcement-" + what;
@@ -73,14 +71,14 @@ std::optional<Figure> work_precision(const Study& study, Against against, Of of)
         joined +
         " A method that is the reference itself "
         "stands on the line of exact zeros. ";
-  } else if (against == Against::closed_form) {
+  } else if (against == Against::discretization) {
+    const std::string reference = discretization_reference(study);
     figure.id = "discretization-" + what;
-    figure.title =
-        derivative ? "Sensitivities: error against the closed form" : "Responses: error against the closed form";
-    figure.text =
-        "Discretisation error: the distance from the closed-form solution, mesh and method together. Where "
-        "curves lie on one level, the mesh decides and a stricter method buys nothing. " +
-        joined + " ";
+    figure.title = (derivative ? "Sensitivities: error against " : "Responses: error against ") + reference;
+    figure.text = "Discretisation error: the distance from " + reference +
+                  ", mesh and method together. Where curves lie on one level, the mesh decides and a stricter method "
+                  "buys nothing. " +
+                  joined + " ";
   } else {
     figure.id = "kkt";
     figure.title = "How well equilibrium and Coulomb's law are met";

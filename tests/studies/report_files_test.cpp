@@ -4,7 +4,9 @@
 #include <set>
 
 #include "studies/report/charts.hpp"
+#include "studies/report/cone_picture.hpp"
 #include "studies/report/figure_files.hpp"
+#include "studies/report/plot.hpp"
 #include "tests/studies/recorded_study.hpp"
 
 namespace stickslip {
@@ -136,6 +138,40 @@ TEST_F(ReportCharts, ThereIsNoFilmOfOnePointOrOneStepOrOfABrokenRecord) {
   }
 }
 
+// --- axes and cones ------------------------------------------------------------------------------------------------
+
+TEST(ReportAxis, SpansADecadeAtLeastAndLabelsIt) {
+  const report::Axis axis(0.0111, 0.0112, true, 0, 100);
+  EXPECT_LT(std::abs(axis(0.0112) - axis(0.0111)), 1);  // a hundredth of a decade is a hundredth of the axis
+  EXPECT_GE(axis.ticks().size(), 3u);
+  for (const double tick : axis.ticks()) {
+    EXPECT_GE(axis(tick), 0);
+    EXPECT_LE(axis(tick), 100);
+  }
+}
+
+/// `steps` solutions that stick at one place, then as many that slip at another.
+std::string cones_of(int steps) {
+  report::ConePath path{"sole, point 0", 0.5, false, {}};
+  for (int i = 0; i < 2 * steps; ++i) {
+    const double tangential = i < steps ? 0.2 : 0.5;
+    path.iterates.push_back({1, tangential, 1, tangential, true, 1.0 + i});
+  }
+  return report::draw_cones({path}, "cones").svg_file();
+}
+
+TEST(ReportCones, SayTheTimesOfTheFirstTheLastAndEachNewState) {
+  const std::string svg = cones_of(10);
+  EXPECT_THAT(svg, HasSubstr(">t = 1<"));
+  EXPECT_THAT(svg, HasSubstr(">t = 11, 20<"));  // in one place
+  EXPECT_THAT(svg, Not(HasSubstr(">t = 2<")));
+}
+
+TEST(ReportCones, HaveNumbersAlongBothAxes) {
+  const std::string svg = cones_of(1);
+  for (const char* tick : {">0<", ">0.4<", ">1<", ">-0.4<"}) EXPECT_THAT(svg, HasSubstr(tick));
+}
+
 // --- files ---------------------------------------------------------------------------------------------------------
 
 TEST_F(ReportCharts, EveryFigureIsAFileInThreeFormats) {
@@ -156,7 +192,8 @@ TEST_F(ReportCharts, EveryFigureIsAFileInThreeFormats) {
     EXPECT_THAT(pdf, testing::StartsWith("%PDF-1.4")) << stem;
     EXPECT_THAT(pdf, testing::EndsWith("%%EOF\n")) << stem;
   }
-  EXPECT_THAT(file("windows-stiffness.csv"), HasSubstr("Penalty,4,\"1e3 to 1e5, 1e9\",1e7 (not_finite)\r\n"));
+  EXPECT_THAT(file("windows-stiffness.csv"),
+              testing::StartsWith("series,status,error,knob\r\nPenalty,converged,0.001,1000\r\n"));
 }
 
 /// The places in the table at the end of a PDF are those of its objects: else a reader has to repair it.
@@ -194,8 +231,39 @@ TEST_F(ReportCharts, FiguresOfAFormerReportDoNotStay) {
 }
 
 TEST(ReportCsv, QuotesWhatHoldsCommasQuotesOrLineBreaks) {
-  EXPECT_EQ(report::to_csv({{"a", "b"}, {{"1,5", "say \"x\""}, {"plain", "two\nlines"}}, {}}),
+  EXPECT_EQ(report::to_csv({{{"a", "1,5"}, {"b", "say \"x\""}}, {{"a", "plain"}, {"b", "two\nlines"}}}),
             "a,b\r\n\"1,5\",\"say \"\"x\"\"\"\r\nplain,\"two\nlines\"\r\n");
+}
+
+TEST(ReportCsv, KeepsEveryBitOfANumberAndLeavesOutLooks) {
+  EXPECT_EQ(report::to_csv({{{"a", 1.0 / 3}, {"label", "x"}, {"unmarked", true}}, {{"count", 7}}}),
+            "label,a,count\r\nx,0.3333333333333333,\r\n,,7\r\n");
+}
+
+/// The columns of a CSV without quotes.
+std::vector<std::vector<std::string>> cells_of(const std::string& csv) {
+  std::vector<std::vector<std::string>> out;
+  std::istringstream lines(csv);
+  for (std::string line; std::getline(lines, line);) {
+    out.emplace_back();
+    std::istringstream cells(line.substr(0, line.find('\r')));
+    for (std::string cell; std::getline(cells, cell, ',');) out.back().push_back(cell);
+  }
+  return out;
+}
+
+TEST_F(ReportCharts, ACsvHoldsEveryPointOfItsChart) {
+  auto cells = three_methods();
+  cells[0]["steps"][0]["history"][1]["residual"] = 1.0 / 3;
+  record(description(), cells);
+  page();
+  const auto figure = report::convergence_histories(study());
+  const auto csv = cells_of(file("histories.csv"));
+  ASSERT_EQ(csv.size(), figure->rows.size() + 1);
+  const auto column = std::find(csv[0].begin(), csv[0].end(), "error") - csv[0].begin();
+  for (std::size_t i = 0; i < figure->rows.size(); ++i)
+    EXPECT_EQ(std::stod(csv[i + 1].at(static_cast<std::size_t>(column))), figure->rows[i]["error"].get<double>());
+  EXPECT_THAT(file("histories.csv"), HasSubstr("0.3333333333333333"));
 }
 
 }  // namespace
