@@ -104,7 +104,7 @@ Evaluation<T> evaluate(E& engine, const ContactInput<T>& input, const Vector<T>&
   ForceScale force{scales.force, 0};
   at.rows_u = engine.residual(u, contact_forces(model, input.slots, at.field.traction), force);
   scales.force = force.force;
-  double contact_rounding = 0;
+  double contact_rounding = 0, elastic = 0;  // elastic: largest k / A
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
     const double area = value(input.slots.geometry[p].area), stiffness = value(input.slots.stiffness[p]);
@@ -122,6 +122,7 @@ Evaluation<T> evaluate(E& engine, const ContactInput<T>& input, const Vector<T>&
     scales.traction = std::max(scales.traction, traction);
     scales.length = std::max({scales.length, std::sqrt(moved), area * traction / stiffness});
     contact_rounding = std::max(contact_rounding, area * value(input.rho[p].normal));
+    elastic = std::max(elastic, stiffness / area);
   }
   const double reach = largest_nodal_norm(compact, model.dimension);
   for (Eigen::Index row = 0; row < at.rows_u.size(); ++row)
@@ -134,6 +135,8 @@ Evaluation<T> evaluate(E& engine, const ContactInput<T>& input, const Vector<T>&
   at.residuals.floor_length = rounding_factor * ratio(unit_roundoff * reach, scales.length);
   if (!unknown) return at;
   at.rows_l = multiplier_residual(model, input.slots, at.field.traction, multiplier);
+  // a body that slides where nothing presses: all its tractions are what rounding makes of its displacements
+  const bool presses = scales.traction > rounding_factor * unit_roundoff * elastic * reach;
   for (std::size_t p = 0; p < model.points.size(); ++p)
     for (int c = 0; c < model.points[p].components(); ++c) {
       const int k = model.points[p].multiplier + c;
@@ -142,7 +145,9 @@ Evaluation<T> evaluate(E& engine, const ContactInput<T>& input, const Vector<T>&
       const bool is_length = c == 0 ? state != ContactState::open : state == ContactState::stick;
       const double rho = value(c == 0 ? input.rho[p].normal : input.rho[p].tangential);
       const double traction_scale = scales.traction > 0 ? scales.traction : defect;  // all open, lambda not yet zero
-      const double relative = is_length ? ratio(defect / rho, scales.length) : ratio(defect, traction_scale);
+      const double relative = is_length ? ratio(defect / rho, scales.length)
+                              : presses ? ratio(defect, traction_scale)
+                                        : 0;
       double& worst = c == 0 ? at.residuals.normal : at.residuals.tangential;
       worst = std::max(worst, relative);
     }
@@ -197,9 +202,8 @@ void resume_on_cone(const ContactInput<T>& input, const Vector<T>& multiplier, c
 ///     generalised derivative there: a body that only friction holds then has a regular first tangent.
 ///   - A point that slipped in the last step and would now slip the other way sticks first. Far from the solution a
 ///     large rho turns any small overshoot of the slip into slip of the opposite sign, and points flip for ever; stick
-///     lies between the two. Where nothing presses there is nothing between them: a set that still repeats halfway
-///     through max_iterations goes on without.
-/// `last`: field and branches of the last step; empty at the first, and where a reversal counts as none.
+///     lies between the two.
+/// `last`: field and branches of the last step; empty at the first.
 template <class T>
 std::vector<ContactState> step_branches(const Model& model, const ContactInput<T>& input, const ContactField<T>& field,
                                         const Vector<T>& multiplier, const ContactField<T>& last) {
@@ -293,7 +297,8 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
     };
     if (!at.residuals.finite()) return finish(Status::not_finite, "the residual is not finite");
     steady = unchanged && iteration > 0 ? steady + 1 : 0;
-    if (unchanged && at.residuals.within(options.tolerance)) {
+    // (sets that repeat although nothing is left of the residuals are those of a tie)
+    if ((unchanged || damped) && at.residuals.within(options.tolerance)) {
       if (extra-- == 0) return finish(Status::converged, redundant ? detail::redundant_message : "");
     } else if (steady >= 2 && at.residuals.within_rounding(options.tolerance) &&
                2 * at.residuals.largest() > result.history[iteration - 1].residual) {
@@ -315,9 +320,7 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
 
     const auto evaluated = at.field.state;
     if (iteration == 0 && !last.empty()) detail::resume_on_cone(input, multiplier, last, at.field);
-    const bool without_reversals = damped && 2 * iteration > options.max_iterations;
-    auto branch = detail::step_branches(model, input, at.field, multiplier,
-                                        damped && iteration % 3 ? ContactField<T>{} : directed);
+    auto branch = detail::step_branches(model, input, at.field, multiplier, directed);
     used = at.field.state;
     const auto factorise = [&] {
       std::vector<PointTangent<T>> tangents;

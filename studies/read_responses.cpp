@@ -61,10 +61,14 @@ void read_contact_name(const JsonNode& node, const Kind& kind, Response& respons
                  "friction, which may be 0");
 }
 
-/// "on" of a displacement or a reaction: a side.
-void read_on(const JsonNode& node, Response& response, SceneReading& reading) {
+/// "on" of a displacement or a reaction: a side; beside "at", the body that the point is in.
+void read_on(const JsonNode& node, bool beside_at, Response& response, SceneReading& reading) {
   if (node.value().is_string()) response.on = node.value();
-  reading.side(node);
+  const auto& names = reading.body_names;
+  if (!beside_at)
+    reading.side(node);
+  else if (std::find(names.begin(), names.end(), response.on) == names.end())
+    node.error(R"(must be a body beside "at": a point is taken, and not a side; allowed: )" + listed(names));
 }
 
 /// Coordinates that say where a response is taken: they are no parameters.
@@ -110,8 +114,7 @@ void read_response(const std::string& name, const JsonNode& outer, SceneReading&
   const auto on = node.find("on"), at = node.find("at"), take = node.find("take"), component = node.find("component");
   if (const auto contact = node.find("contact"); contact && kind.of_contact)
     read_contact_name(*contact, kind, response, reading);
-  if (on && !kind.of_contact) read_on(*on, response, reading);
-  if (on && at) at->error_at_key(R"("at" is a single point, and "on" a whole side: one of the two)");
+  if (on && !kind.of_contact) read_on(*on, at.has_value(), response, reading);
   if (kind.kind == Response::Kind::displacement && !on && !at)
     node.error(R"(one of the keys is missing: "on", a side BODY.SIDE, or "at", a point)");
   if (component && kind.component != Kind::Component::none) read_component(node, *component, kind, response, reading);
