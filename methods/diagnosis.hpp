@@ -67,14 +67,16 @@ std::string prescribed_penetration(const Model& model, const Slots<T>& slots, co
 
 }  // namespace detail
 
-/// Says why an increment to `time` failed. Supports may drive a point into its obstacle. A body without a support,
+/// Says why an increment to `time` failed. Supports may drive a point into its obstacle, against
+/// a method that `prevents_penetration`. A body without a support,
 /// whose load no forces within its cones can balance, has no equilibrium; one of which no contact point sticks may move
 /// without resistance, where the tangent is singular.
 template <class T>
-void diagnose(const Model& model, const Slots<T>& slots, double time, Increment<T>& failed) {
-  if (const std::string point = detail::prescribed_penetration(model, slots, failed.state); !point.empty()) {
+void diagnose(const Model& model, const Slots<T>& slots, double time, bool prevents_penetration, Increment<T>& failed) {
+  const std::string driven_in = detail::prescribed_penetration(model, slots, failed.state);
+  if (prevents_penetration && !driven_in.empty()) {
     failed.status = Status::infeasible;
-    failed.message = point;
+    failed.message = driven_in;
     return;
   }
   const Vector<double> external = values(external_forces(model, slots, time));

@@ -16,6 +16,8 @@ namespace stickslip {
 inline ConeRadius cone_radius(const MonolithicAL& method) {
   return method.cone == MonolithicAL::Cone::augmented ? ConeRadius::augmented : ConeRadius::multiplier;
 }
+/// Whether a converged solution penetrates nothing.
+constexpr bool prevents_penetration(const MonolithicAL&) { return true; }
 
 template <class T, class E>
 Increment<T> solve_increment(const MonolithicAL& method, Run<T, E>& run, const State<T>& previous,

@@ -22,6 +22,8 @@ Vector<T> stored_traction(const Model& model, const State<T>& previous) {
 }
 
 inline ConeRadius cone_radius(const Penalty&) { return ConeRadius::augmented; }
+/// Whether a converged solution penetrates nothing.
+constexpr bool prevents_penetration(const Penalty&) { return false; }
 
 template <class T, class E>
 Increment<T> solve_increment(const Penalty& method, Run<T, E>& run, const State<T>& previous,

@@ -64,7 +64,7 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
     ++cutbacks;
     ++run.account.counters.cutbacks;
   }
-  diagnose(run.model, run.slots, target, *failed);
+  diagnose(run.model, run.slots, target, prevents_penetration(method), *failed);
   trajectory.increments.resize(start_count);
   failed->time = target;
   failed->requested = true;

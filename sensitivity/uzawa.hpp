@@ -92,8 +92,7 @@ inline State<double> restated(const Model& model, State<double> at, const Regula
 /// a thickness, on which the tractions do not depend, nothing but that rounding is left.
 template <class E>
 bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, const RegularisationField<double>& rho,
-             std::vector<Vector<Direction>>& lambda, std::vector<ContactField<Direction>>& fields) {
-  constexpr double tolerance = 1e-12, rounding = 1e-16;
+             std::vector<Vector<Direction>>& lambda, std::vector<ContactField<Direction>>& fields, double tolerance) {
   constexpr int limit = 20000;
   double stiffest = 0, yielding = 0;  // rho; rho of a unit of force on the local stiffness
   for (std::size_t p = 0; p < rho.size(); ++p) {
@@ -108,7 +107,7 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
     fields = linearised.solve(lambda);
     const Matrix<double> after = columns([&](auto&, int b) -> auto& { return fields[b].traction; });
     update(lambda, fields);
-    const Vector<double> floors = 8 * rounding * (stiffest * linearised.reach() + yielding * linearised.load());
+    const Vector<double> floors = 8 * unit_roundoff * (stiffest * linearised.reach() + yielding * linearised.load());
     bool settled = true;
     record = {pass, 1, 0};
     for (int j = 0; j < problem.parameters && after.rows() > 0; ++j) {
@@ -118,7 +117,7 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
       if (pass == 1) carried[j] = before.col(j).cwiseAbs().maxCoeff();
       const double q = last[j] > 0 ? change / last[j] : 1;
       const double left = q < 1 ? change * q / (1 - q) : change;
-      const bool stalled = pass > 3 && change <= std::max(floors[j], 4 * rounding * std::max(size, carried[j]));
+      const bool stalled = pass > 3 && change <= std::max(floors[j], 4 * unit_roundoff * std::max(size, carried[j]));
       settled &= change == 0 || stalled || (q < 1 && pass > 2 && left <= std::max(tolerance * size, 8 * floors[j]));
       if (last[j] > 0 && change > floors[j]) record.contraction = std::max(record.contraction, q);
       last[j] = change;
@@ -165,7 +164,8 @@ bool differentiate_preconditioned(const UzawaAL& method, Differentiation<E>& pro
   if (!linearised.valid()) return false;
   auto lambda = carried_multiplier(problem, at.multiplier);
   std::vector<ContactField<Direction>> fields;
-  if (!iterate(problem, linearised, rho, lambda, fields)) return false;
+  // (another pass divides what is left by some thousand: there is no need to see it below 1e-13)
+  if (!iterate(problem, linearised, rho, lambda, fields, 1e-12)) return false;
   problem.record->oversize = oversize;
   linearised.settle(fields, lambda);
   return true;
@@ -192,7 +192,7 @@ bool differentiate_increment(const UzawaAL& method, Differentiation<E>& problem,
   if (oversized) {
     fields = linearised.solve(lambda);
     problem.record = {1, oversize, 0};
-  } else if (!detail::iterate(problem, linearised, rho, lambda, fields)) {
+  } else if (!detail::iterate(problem, linearised, rho, lambda, fields, 1e-13)) {
     return false;
   }
   linearised.settle(fields, lambda);
@@ -215,8 +215,8 @@ RegularisationField<Reverse> recorded_regularisation(const UzawaAL& method, Adjo
 /// is the last increment's.
 template <class E>
 bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, int objective, Vector<double>& left) {
-  constexpr double tolerance = 1e-13, rounding = 1e-16;
-  constexpr double noise = 1e4 * rounding;  // changes below it that do not fall any more are rounding
+  constexpr double tolerance = 1e-13;
+  constexpr double noise = 1e4 * unit_roundoff;  // changes below it that do not fall any more are rounding
   constexpr int limit = 20000;
   double largest = 0, last = 0, area = 0;
   for (const auto& geometry : problem.slots.geometry) area = std::max(area, geometry.area);
@@ -235,7 +235,7 @@ bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, 
     const double q = last > 0 ? change / last : 1;
     const bool small = q < 1 && pass > 2 && change / (1 - q) <= tolerance * largest;
     const bool stalled = q >= 1 && pass > 2 && change <= noise * scale;
-    if (change <= 4 * rounding * largest || small || stalled) return true;
+    if (change <= 4 * unit_roundoff * largest || small || stalled) return true;
     last = change;
     recorded.seed_traction(objective, left);
   }

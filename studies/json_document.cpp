@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -11,48 +10,6 @@
 namespace stickslip {
 
 using nlohmann::json;
-
-// --- faults ------------------------------------------------------------------------------------------------------
-
-std::string Diagnostic::text() const {
-  std::string text = place.source;
-  if (place.line > 0) text += ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
-  if (!text.empty()) text += ": ";
-  if (!pointer.empty()) text += pointer + ": ";
-  return text + message;
-}
-
-void Diagnostics::error(Diagnostic diagnostic) {
-  const std::string text = diagnostic.text();
-  if (std::any_of(errors_.begin(), errors_.end(), [&](const auto& each) { return each.text() == text; })) return;
-  errors_.push_back(std::move(diagnostic));
-}
-void Diagnostics::note(Diagnostic diagnostic) { notes_.push_back(std::move(diagnostic)); }
-
-bool Diagnostics::has_error_in(const std::string& pointer) const {
-  return std::any_of(errors_.begin(), errors_.end(), [&](const Diagnostic& each) {
-    return each.pointer == pointer || each.pointer.rfind(pointer + "/", 0) == 0;
-  });
-}
-
-std::vector<Diagnostic> Diagnostics::errors() const {
-  std::map<std::string, std::size_t> met;
-  for (const auto& each : errors_) met.emplace(each.place.source, met.size());
-  std::vector<Diagnostic> sorted = errors_;
-  auto rank = [&](const Diagnostic& each) {
-    return std::make_tuple(met.at(each.place.source), each.place.line, each.place.column);
-  };
-  std::stable_sort(sorted.begin(), sorted.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
-  return sorted;
-}
-
-std::string Diagnostics::text() const {
-  std::string text;
-  for (const auto& each : errors()) text += each.text() + "\n";
-  return text;
-}
-
-// --- positions ---------------------------------------------------------------------------------------------------
 
 namespace {
 
@@ -350,148 +307,6 @@ void JsonDocument::override_value(const std::string& assignment, Diagnostics& di
     value = text;
   }
   set(pointer, std::move(value), origin);
-}
-
-// --- pointers ----------------------------------------------------------------------------------------------------
-
-std::string child_pointer(const std::string& parent, std::string_view key) {
-  std::string pointer = parent + "/";
-  for (char c : key) {
-    if (c == '~')
-      pointer += "~0";
-    else if (c == '/')
-      pointer += "~1";
-    else
-      pointer += c;
-  }
-  return pointer;
-}
-
-namespace {
-
-/// The keys of a pointer; none where it is no pointer.
-std::optional<std::vector<std::string>> keys_of(const std::string& pointer) {
-  std::vector<std::string> keys;
-  if (!pointer.empty() && pointer[0] != '/') return std::nullopt;
-  for (std::size_t i = 0; i < pointer.size(); ++i) {
-    if (pointer[i] == '/') {
-      keys.emplace_back();
-    } else if (pointer[i] == '~') {
-      if (++i == pointer.size() || (pointer[i] != '0' && pointer[i] != '1')) return std::nullopt;
-      keys.back() += pointer[i] == '0' ? '~' : '/';
-    } else {
-      keys.back() += pointer[i];
-    }
-  }
-  return keys;
-}
-
-const json* member(const json& parent, const std::string& key) {
-  if (parent.is_object()) {
-    const auto found = parent.find(key);
-    return found == parent.end() ? nullptr : &*found;
-  }
-  const bool index = !key.empty() && key.size() < 10 && key.find_first_not_of("0123456789") == std::string::npos &&
-                     (key == "0" || key[0] != '0');
-  if (!parent.is_array() || !index || std::stoul(key) >= parent.size()) return nullptr;
-  return &parent[std::stoul(key)];
-}
-
-std::vector<std::string> names_in(const json& object) {
-  std::vector<std::string> names;
-  for (const auto& [name, unused] : object.items()) names.push_back(name);
-  return names;
-}
-
-}  // namespace
-
-const json* value_at(const json& root, const std::string& pointer) {
-  const auto keys = keys_of(pointer);
-  const json* value = keys ? &root : nullptr;
-  for (std::size_t i = 0; value && i < keys->size(); ++i) value = member(*value, (*keys)[i]);
-  return value;
-}
-
-std::string pointer_fault(const json& root, const std::string& pointer) {
-  const auto keys = keys_of(pointer);
-  if (!keys || keys->empty())
-    return in_quotes(pointer) + " is no JSON pointer; must begin with / and name a value, such as /time/steps";
-  const json* value = &root;
-  std::string reached;
-  for (const std::string& key : *keys) {
-    const json* next = member(*value, key);
-    if (!next) {
-      std::string message = pointer + " names nothing: " + (reached.empty() ? "the file" : reached);
-      if (value->is_array()) return message + " has elements 0 to " + std::to_string(value->size() - 1);
-      if (!value->is_object()) return message + " is " + shown(*value) + " and holds no " + in_quotes(key);
-      const auto names = names_in(*value);
-      return message + " has no " + in_quotes(key) + ";" + suggestion(key, names) + " it has " + listed(names);
-    }
-    value = next;
-    reached = child_pointer(reached, key);
-  }
-  return "";
-}
-
-// --- words -------------------------------------------------------------------------------------------------------
-
-std::string shown(const json& value) {
-  constexpr std::size_t room = 40;
-  if (value.is_object() && value.size() > 2) return "an object of " + std::to_string(value.size()) + " keys";
-  if (value.is_number_float()) {
-    const double number = value.get<double>();
-    if (number == std::trunc(number) && std::abs(number) < 1e15) return std::to_string(static_cast<long long>(number));
-  }
-  std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
-  if (text.size() <= room) return text;
-  std::size_t end = room;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // not inside a character
-  return text.substr(0, end) + "...";
-}
-
-std::string in_quotes(std::string_view name) { return "\"" + std::string(name) + "\""; }
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list.empty() ? "nothing" : list;
-}
-
-namespace {
-
-/// Letters put in, left out, replaced or swapped with their neighbour that turn one text into the other.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i)
-    for (std::size_t j = 0; j <= b.size(); ++j) {
-      if (i == 0 || j == 0) {
-        d[i][j] = i + j;
-        continue;
-      }
-      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-    }
-  return d[a.size()][b.size()];
-}
-
-}  // namespace
-
-std::string suggestion(std::string_view name, const std::vector<std::string>& names) {
-  constexpr std::size_t farthest = 2;
-  std::size_t least = farthest + 1;
-  std::string nearest;
-  for (const std::string& candidate : names) {
-    // a longer difference in length alone is too far, and keeps the table small
-    if (std::max(name.size(), candidate.size()) > std::min(name.size(), candidate.size()) + farthest) continue;
-    const std::size_t distance = edit_distance(name, candidate);
-    // a name of two letters is within two edits of any other
-    if (distance < least && distance < candidate.size()) {
-      least = distance;
-      nearest = candidate;
-    }
-  }
-  return nearest.empty() ? "" : " did you mean " + in_quotes(nearest) + "?";
 }
 
 std::string fingerprint(std::string_view text) {

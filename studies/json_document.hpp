@@ -1,7 +1,4 @@
-/// A JSON text that remembers where each of its values stands, and the faults found in it.
-///
-/// Every fault is one line, `FILE:LINE:COL: POINTER: what is wrong`, and all of them are collected: a reader goes on
-/// after a fault. Columns count characters, from 1.
+/// A JSON text that remembers where each of its values stands.
 #pragma once
 
 #include <cstdint>
@@ -10,46 +7,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
+
+#include "studies/diagnostics.hpp"
+#include "studies/json_pointer.hpp"
+#include "studies/wording.hpp"
 
 namespace stickslip {
-
-/// Where a value was given: a place in a file, or an override (which has no lines).
-struct Place {
-  std::string source;  ///< file as the user named it, or "--set /a/b=1"
-  int line = 0;        ///< from 1; 0: the source has no lines
-  int column = 0;
-  std::string pointer = {};  ///< of the value in this source, where it is not the one of the document that holds it
-};
-
-struct Diagnostic {
-  Place place;
-  std::string pointer;  ///< JSON pointer of the value; empty: the whole file
-  std::string message;
-
-  /// "FILE:LINE:COL: POINTER: MESSAGE", each part where it is known.
-  std::string text() const;
-};
-
-/// Faults, which make the input invalid, and notes, which do not.
-class Diagnostics {
- public:
-  /// A fault that is there already, in the same words, is not added again.
-  void error(Diagnostic);
-  void note(Diagnostic);
-  bool has_errors() const { return !errors_.empty(); }
-  std::size_t error_count() const { return errors_.size(); }
-  /// True where a fault names this pointer or a value inside it.
-  bool has_error_in(const std::string& pointer) const;
-  /// Sources in the order they were met, each from its first line to its last.
-  std::vector<Diagnostic> errors() const;
-  const std::vector<Diagnostic>& notes() const { return notes_; }
-  /// errors() as text, one line each.
-  std::string text() const;
-
- private:
-  std::vector<Diagnostic> errors_, notes_;
-};
 
 class JsonDocument {
  public:
@@ -90,23 +53,6 @@ class JsonDocument {
 
   friend class PositionReader;
 };
-
-/// The pointer of a member or element: `/` in a key becomes `~1`, `~` becomes `~0` (RFC 6901).
-std::string child_pointer(const std::string& parent, std::string_view key);
-/// The value of a pointer; null where there is none or the text is no pointer.
-const nlohmann::json* value_at(const nlohmann::json& root, const std::string& pointer);
-/// What a pointer misses: "" where it names a value, else what is wrong with it and the nearest that exists.
-std::string pointer_fault(const nlohmann::json& root, const std::string& pointer);
-
-/// Text of a value for a message, at most about 40 characters.
-std::string shown(const nlohmann::json& value);
-/// "NAME" in quotes.
-std::string in_quotes(std::string_view name);
-/// Names as a list: "a, b, c".
-std::string listed(const std::vector<std::string>& names);
-/// ` did you mean "NAME"?` with the nearest of the names, where at most two letters differ (a swap counts
-/// as one); otherwise "".
-std::string suggestion(std::string_view name, const std::vector<std::string>& names);
 
 /// 64-bit FNV-1a hash of a text, 16 hexadecimal digits. [Fowler, Noll, Vo; RFC draft-eastlake-fnv]
 std::string fingerprint(std::string_view text);

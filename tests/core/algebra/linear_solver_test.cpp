@@ -115,10 +115,6 @@ double dense_condition(const MatrixXd& a) {
 
 class EveryBackend : public testing::TestWithParam<Backend> {
  protected:
-  void SetUp() override {
-    if (!has_backend(GetParam())) GTEST_SKIP() << "not built in";
-  }
-
   /// Solves with A and with A^T and compares both with dense LU.
   void expect_solves(const MatrixXd& a, Symmetry symmetry) {
     LinearSolver<double> solver(GetParam());
@@ -158,10 +154,15 @@ std::string name_of(const testing::TestParamInfo<Backend>& backend) {
   return names[static_cast<int>(backend.param)];
 }
 
-INSTANTIATE_TEST_SUITE_P(LinearSolver, EveryBackend,
-                         testing::Values(Backend::automatic, Backend::cholmod, Backend::umfpack, Backend::mumps,
-                                         Backend::eigen),
-                         name_of);
+/// Those of this build (the listing test holds them to what it says of itself).
+std::vector<Backend> built_backends() {
+  std::vector<Backend> built;
+  for (auto each : {Backend::automatic, Backend::cholmod, Backend::umfpack, Backend::mumps, Backend::eigen})
+    if (has_backend(each)) built.push_back(each);
+  return built;
+}
+
+INSTANTIATE_TEST_SUITE_P(LinearSolver, EveryBackend, testing::ValuesIn(built_backends()), name_of);
 
 TEST_P(EveryBackend, SolvesARandomSparseMatrixAndItsTranspose) {
   for (unsigned seed : {1u, 2u, 3u}) expect_solves(random_sparse(60, seed), Symmetry::general);

@@ -6,6 +6,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "tests/core/algebra/every_operation.hpp"
+
 namespace stickslip {
 namespace {
 
@@ -13,17 +15,6 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 static_assert(!std::is_convertible_v<Reverse, double>);
 static_assert(std::is_convertible_v<double, Reverse>);
-
-/// Every operation in one expression; positive where it meets log, sqrt and pow for x, y in (0.5, 2).
-template <class T>
-T everything(const T& x, const T& y) {
-  T z = x * y - y / x + T(2);
-  z += sqrt(x + T(1));
-  z -= exp(-y) * T(0.5);
-  z *= T(1) + sin(x * y) * T(0.1);
-  z /= log(y + T(2)) + cos(x);
-  return pow(z * z + T(1), 1.7) + -x;
-}
 
 TEST(Reverse, GivesTheDerivativesOfDual) {
   for (double x : {0.6, 1.3, 1.9})

@@ -7,6 +7,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "tests/core/algebra/every_operation.hpp"
+
 namespace stickslip {
 namespace {
 
@@ -21,18 +23,6 @@ static_assert(!std::is_convertible_v<Complex, double>);
 static_assert(std::is_convertible_v<double, Dual<2>>);
 static_assert(std::is_convertible_v<int, Dual<2>>);
 static_assert(std::is_convertible_v<double, Dual<2, Complex>>);
-
-/// Every operation of Dual in one expression; positive where it meets log, sqrt and pow for x, y in (0.5, 2).
-template <class T>
-T everything(const T& x, const T& y) {
-  using std::cos, std::exp, std::log, std::pow, std::sin, std::sqrt;
-  T z = x * y - y / x + T(2);
-  z += sqrt(x + T(1));
-  z -= exp(-y) * T(0.5);
-  z *= T(1) + sin(x * y) * T(0.1);
-  z /= log(y + T(2)) + cos(x);
-  return pow(z * z + T(1), 1.7) + -x;
-}
 
 TEST(Dual, HasTheKnownDerivativesOfEachFunction) {
   const double x = 1.3;

@@ -1,0 +1,21 @@
+/// Values and names in messages.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stickslip {
+
+/// Text of a value for a message, at most about 40 characters.
+std::string shown(const nlohmann::json& value);
+/// "NAME" in quotes.
+std::string in_quotes(std::string_view name);
+/// Names as a list: "a, b, c".
+std::string listed(const std::vector<std::string>& names);
+/// ` did you mean "NAME"?` with the nearest of the names, where at most two letters differ (a swap counts
+/// as one); otherwise "".
+std::string suggestion(std::string_view name, const std::vector<std::string>& names);
+
+}  // namespace stickslip
