@@ -4,27 +4,35 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
+#include <cmath>
 
 namespace stickslip {
 
 double contraction(const std::vector<Secant>& secants) {
-  const Secant& last = secants.back();
+  constexpr double tolerable = 0.02;
   const auto m = static_cast<Eigen::Index>(secants.size());
-  Matrix<double> space(last.argument.size(), m), image(last.argument.size(), m);
-  for (Eigen::Index j = 0; j < m; ++j) {
-    const double length = secants[j].argument.norm();
-    space.col(j) = secants[j].argument / length;
-    image.col(j) = secants[j].image / length;
+  Matrix<double> space(secants[0].argument.size(), m), image(space.rows(), m);
+  Vector<double> noise(m);
+  Eigen::Index rank = 0;
+  for (const Secant& secant : secants) {
+    const double length = secant.argument.norm();
+    Vector<double> direction = secant.argument / length, its_image = secant.image / length;
+    double squared = secant.noise * secant.noise;
+    for (int twice = 0; twice < 2; ++twice) {
+      const Vector<double> known = space.leftCols(rank).transpose() * direction;
+      direction -= space.leftCols(rank) * known;
+      its_image -= image.leftCols(rank) * known;
+      if (twice == 0) squared += known.cwiseProduct(noise.head(rank)).squaredNorm();
+    }
+    const double novel = direction.norm();
+    if (!(squared < std::pow(tolerable * novel, 2))) continue;
+    space.col(rank) = direction / novel;
+    image.col(rank) = its_image / novel;
+    noise[rank++] = std::sqrt(squared) / novel;
   }
-  Eigen::ColPivHouseholderQR<Matrix<double>> qr;
-  qr.setThreshold(0.02);
-  qr.compute(space);
-  const Eigen::Index rank = qr.rank();
-  if (rank < 2) return last.image.norm() / last.argument.norm();
-  const Matrix<double> turned = qr.householderQ().adjoint() * (image * qr.colsPermutation());
-  const Matrix<double> R = qr.matrixQR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>();
-  const Matrix<double> A = R.transpose().partialPivLu().solve(turned.topLeftCorner(rank, rank).transpose());
-  return A.eigenvalues().cwiseAbs().maxCoeff();  // of A transposed, which has the same
+  if (rank < 2) return secants.back().image.norm() / secants.back().argument.norm();
+  const Matrix<double> A = space.leftCols(rank).transpose() * image.leftCols(rank);
+  return A.eigenvalues().cwiseAbs().maxCoeff();
 }
 
 Vector<double> anderson_weights(const Matrix<double>& differences, const Vector<double>& residual, double noise) {

@@ -24,11 +24,13 @@ namespace stickslip {
 /// Differences of two arguments of one map, and of their images.
 struct Secant {
   Vector<double> argument, image;
+  double noise = 0;  ///< of the image, relative to the length of the argument
 };
 
-/// Contraction of a linear map A out of some of its secants: its spectral radius on the space of their arguments
-/// (Arnoldi, where they are successive). Directions that are new by less than 2 %, of which rounding may be part, are
-/// left out of it; what is left at least is the ratio of the lengths of the last. pre: no argument is zero.
+/// Contraction of a linear map A out of some of its secants, in the order in which they were met: its spectral radius
+/// on the space of their arguments (Arnoldi, where they are successive). A direction, new but for what the ones before
+/// it hold, of whose image more than 2 % may be noise is left out; where fewer than two are left, it is the ratio of
+/// the lengths of the last. pre: no argument is zero.
 double contraction(const std::vector<Secant>& secants);
 
 /// Anderson's gamma, one weight a difference of successive residuals, the oldest first; zero for those that are left

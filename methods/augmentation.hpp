@@ -2,8 +2,7 @@
 /// get there, and whether they ever will.
 ///
 ///   contraction   of the map lambda -> t(u(lambda), lambda), from differences of its values in the same contact
-///   states,
-///                 as far as they are above rounding
+///                 states, as far as they are above rounding and what the inner solves have left
 ///   error left    q / (1 - q) times the last update, the rest of its geometric series
 ///   two-cycle     three updates in a row undo each other, but for 1e-6
 ///   infeasible    a constraint that does not yield: its multiplier grows by enough to close a gap of 1e-8 of the
@@ -46,8 +45,9 @@ class Augmentations {
   Augmentations(const Model& model, const Slots<T>& slots, UzawaAL::Acceleration acceleration)
       : model_(model), slots_(slots), acceleration_(acceleration), stuck_(model.points.size(), 0) {}
 
-  /// Takes in the map's value at `multiplier`; `reach`: largest displacement of a contact node.
-  void record(const Vector<T>& multiplier, const ContactField<T>& field, double reach);
+  /// Takes in the map's value at `multiplier`; `reach`: largest displacement of a contact node; `left`: share of the
+  /// residual it started from that the inner solve has left.
+  void record(const Vector<T>& multiplier, const ContactField<T>& field, double reach, double left);
 
   bool settled() const { return settled_; }            ///< no state changed since the last augmentation
   double contraction() const { return contraction_; }  ///< 0: not measured yet
@@ -80,9 +80,9 @@ class Augmentations {
 
  private:
   static constexpr int patience = 3;
-  static constexpr std::size_t kept_secants = 4;
+  static constexpr std::size_t kept_secants = 8;
   static double values_or_zero(const Vector<double>& v) { return v.size() ? v.cwiseAbs().maxCoeff() : 0; }
-  void record_rate(const Vector<T>& multiplier, const ContactField<T>& field);
+  void record_rate(const Vector<T>& multiplier, const ContactField<T>& field, double left);
   bool keeps_state(const Vector<double>& by, const ContactField<T>& field, int p) const;
   bool yields(const Vector<T>& multiplier, const ContactField<T>& field, int p, double reach) const;
 
@@ -91,6 +91,7 @@ class Augmentations {
   UzawaAL::Acceleration acceleration_;
   bool settled_ = false, same_map_ = true;
   double contraction_ = 0, last_update_ = 0, riding_ = 0;
+  double inner_error_ = 0;  ///< of the last value, which the inner solve has left
   double settled_riding_ = std::numeric_limits<double>::infinity();
   Vector<double> update_;
   std::vector<double> violations_, last_violations_;
@@ -102,7 +103,7 @@ class Augmentations {
 };
 
 template <class T>
-void Augmentations<T>::record(const Vector<T>& multiplier, const ContactField<T>& field, double reach) {
+void Augmentations<T>::record(const Vector<T>& multiplier, const ContactField<T>& field, double reach, double left) {
   const int points = static_cast<int>(model_.points.size());
   settled_ = field.state == field_.state;
   const Vector<T> change = field.traction - multiplier;
@@ -112,7 +113,7 @@ void Augmentations<T>::record(const Vector<T>& multiplier, const ContactField<T>
   undone_ = undone ? undone_ + 1 : 0;
   last_update_ = update_.size() ? update_.norm() : 0;
   update_ = update;
-  record_rate(multiplier, field);
+  record_rate(multiplier, field, left);
   last_violations_ = std::move(violations_);
   violations_.assign(points, 0.0);
   for (int p = 0; p < points; ++p) {
@@ -125,15 +126,18 @@ void Augmentations<T>::record(const Vector<T>& multiplier, const ContactField<T>
 }
 
 template <class T>
-void Augmentations<T>::record_rate(const Vector<T>& multiplier, const ContactField<T>& field) {
+void Augmentations<T>::record_rate(const Vector<T>& multiplier, const ContactField<T>& field, double left) {
+  const double before = inner_error_;
+  inner_error_ = left * last_update_;
   if (!settled_ || !same_map_) secants_.clear();
   if (!same_map_) contraction_ = 0;
   const bool comparable = settled_ && same_map_ && last_update_ > 0;
   same_map_ = true;
   if (!comparable) return;
   const Vector<double> moved = values(multiplier - multiplier_);
-  if (moved.norm() <= 1e3 * detail::unit_roundoff * values(field.traction).norm()) return;  // rounding has no rate
-  secants_.push_back({moved, values(field.traction - field_.traction)});
+  const double length = moved.norm(), rounding = 8 * detail::unit_roundoff * values(field.traction).norm();
+  if (100 * rounding > length) return;  // rounding has no rate
+  secants_.push_back({moved, values(field.traction - field_.traction), (rounding + before + inner_error_) / length});
   if (secants_.size() > kept_secants) secants_.erase(secants_.begin());
   const double q = stickslip::contraction(secants_);
   // plain updates turn into the slowest mode, which accelerated ones suppress once they have shown it

@@ -27,6 +27,8 @@ namespace stickslip {
 inline ConeRadius cone_radius(const UzawaAL& method) {
   return method.cone == UzawaAL::Cone::augmented ? ConeRadius::augmented : ConeRadius::multiplier;
 }
+/// Whether a converged solution penetrates nothing.
+constexpr bool prevents_penetration(const UzawaAL&) { return true; }
 
 namespace detail {
 
@@ -163,7 +165,8 @@ Increment<T> solve_increment(const UzawaAL& method, Run<T, E>& run, const State<
       increment.sweeps.push_back({settle(run, input, equilibrium, previous.dissipation), increment.rho_factor});
 
     const double reach = largest_nodal_norm(run.engine.compact(equilibrium.u), model.dimension);
-    progress.record(lambda, equilibrium.field, reach);
+    const double first = equilibrium.history.front().residual, rest = equilibrium.history.back().residual;
+    progress.record(lambda, equilibrium.field, reach, first > 0 ? rest / first : 0);
     increment.contraction = progress.contraction();
     const auto now = detail::judge(method, run.slots, rho, reach, run.account.scales, progress);
     const bool at_limit = increment.augmentations >= limit;

@@ -238,9 +238,9 @@ double predicted_contraction(const scenes::Solved& s, double rho) {
 
 TEST(UzawaRate, IsTheSpectralRadiusThatTheFinalStatesPredict) {
   int compared = 0;
-  for (int n : {8, 16})
-    for (double mu : {0.0, 0.5, 1.0})
-      for (double multiple : {0.1, 0.5, 2.0, 8.0}) {
+  for (int n : {8, 16, 20})
+    for (double mu : {0.0, 0.1, 0.5, 1.0})
+      for (double multiple : {0.05, 0.1, 0.5, 2.0, 4.0, 6.0, 8.0}) {
         const double rho = multiple * 1.3e11 * n / 0.04;  // of the order of E / h
         UzawaAL method;
         method.scale = scenes::absolute(rho);
@@ -252,11 +252,10 @@ TEST(UzawaRate, IsTheSpectralRadiusThatTheFinalStatesPredict) {
         const double q = predicted_contraction(s, rho);
         if (q < 0.1 || q > 0.95) continue;
         ++compared;
-        // below 0.11 the slowest mode has no share in the ten updates that rounding leaves room for: 5.9 % measured
-        EXPECT_NEAR(s.trajectory.increments.back().contraction, q, (q > 0.11 ? 0.05 : 0.065) * q)
-            << n << " " << mu << " " << multiple;
+        // rounding leaves room for ten updates at q = 0.1, in which the slowest mode has little share
+        EXPECT_NEAR(s.trajectory.increments.back().contraction, q, 0.05 * q) << n << " " << mu << " " << multiple;
       }
-  EXPECT_GE(compared, 10);
+  EXPECT_GE(compared, 75);
 }
 
 }  // namespace
