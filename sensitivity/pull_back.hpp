@@ -70,6 +70,10 @@ class RecordedEquilibrium {
     const auto largest = [](const auto& m) { return m.size() ? m.cwiseAbs().maxCoeff() : 0.0; };
     return std::max(largest(weights_[objective]), largest(aside_[objective].u));
   }
+  /// All that an objective has gathered so far, to go back to it.
+  struct Gathered;
+  Gathered gathered(int objective) const;
+  void restore(int objective, const Gathered& gathered);
   /// Moves all that is left to the slots; derivatives by the history that the increment started from.
   HistoryDerivative finish(int objective);
 
@@ -105,6 +109,13 @@ class RecordedEquilibrium {
     Matrix<double> u, c;    ///< solutions, engine layout, and their right-hand sides
   };
   std::vector<Aside> aside_;  ///< per objective, where lambda is given
+};
+
+template <class E>
+struct RecordedEquilibrium<E>::Gathered {
+  std::vector<double> by;
+  Vector<double> weights;
+  Aside aside;
 };
 
 template <class E>
@@ -263,6 +274,18 @@ Vector<double> RecordedEquilibrium<E>::take_multiplier(int objective) {
   const Vector<double> derivative = gather(objective, multiplier_);
   for (const auto& x : multiplier_) by(objective)[x.at] = 0;
   return derivative;
+}
+
+template <class E>
+typename RecordedEquilibrium<E>::Gathered RecordedEquilibrium<E>::gathered(int objective) const {
+  return {problem_.objectives[objective].by, weights_[objective], aside_[objective]};
+}
+
+template <class E>
+void RecordedEquilibrium<E>::restore(int objective, const Gathered& gathered) {
+  by(objective) = gathered.by;
+  weights_[objective] = gathered.weights;
+  aside_[objective] = gathered.aside;
 }
 
 template <class E>

@@ -18,8 +18,8 @@
 /// 4e-10).
 ///
 /// All carry D lambda of the last increment in as D lambda^0. Adjoint: the same maps transposed. The derivative by t
-/// goes to lambda and back,  l <- l D t/D lambda,  until nothing is left (iterated), sweep by sweep (truncated), or
-/// once. [SLK10 sec. 1], [CD20]
+/// goes to lambda and back,  l <- l D t/D lambda,  until nothing is left (iterated; as a fixed point, accelerated),
+/// sweep by sweep (truncated), or once. [SLK10 sec. 1], [CD20]
 #pragma once
 
 #include "sensitivity/direct.hpp"
@@ -210,34 +210,45 @@ RegularisationField<Reverse> recorded_regularisation(const UzawaAL& method, Adjo
   return adapted(initial_regularisation(problem.recorded, method), factor);
 }
 
-/// Moves the derivative by lambda on to the update before, again and again, until it is lost in rounding or stays, and
-/// leaves what stays in `left`: the multiplier of a constraint that supports decide is whatever it started from, which
-/// is the last increment's.
+/// Moves c, the derivative by lambda that the outcome asks for, through all updates before: finds x = c + A^T x, A the
+/// linearised update, and moves x, with Anderson's extrapolation, which takes half the passes of the series sum (A^T)^k
+/// c or less. What the last pass has moved stays moved, what those before it have is put back. `left`, c + A^T x - x,
+/// settles at nothing, but for the multiplier of a constraint that supports decide: it is whatever it started from,
+/// which is the last increment's. `contraction` of A as far as it is known (0: not), for Anderson's changes hide it.
 template <class E>
-bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, int objective, Vector<double>& left) {
+bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, int objective, double contraction,
+                  Vector<double>& left) {
   constexpr double tolerance = 1e-13;
   constexpr double noise = 1e4 * unit_roundoff;  // changes below it that do not fall any more are rounding
   constexpr int limit = 20000;
-  double largest = 0, last = 0, area = 0;
+  recorded.balance(objective);
+  const Vector<double> asked = recorded.take_multiplier(objective);
+  left = asked;
+  if (left.size() == 0 || left.cwiseAbs().maxCoeff() == 0) return true;
+  double area = 0, largest = 0, last = 0;
   for (const auto& geometry : problem.slots.geometry) area = std::max(area, geometry.area);
-  left = Vector<double>::Zero(problem.model.multiplier_count);
-  if (left.size() == 0) {
-    recorded.balance(objective);
-    return true;
-  }
+  const auto start = recorded.gathered(objective);
+  Accelerator<double> accelerator(UzawaAL::Acceleration::anderson);
+  Vector<double> x = asked;
+  bool plain = true;  // whether x is the last image, so that `left` is a term of the series
   for (int pass = 1; pass <= limit; ++pass) {
+    recorded.seed_traction(objective, x);
     recorded.balance(objective);
-    const Vector<double> next = recorded.take_multiplier(objective);
-    const double change = (next - left).cwiseAbs().maxCoeff();
-    left = next;
-    largest = std::max(largest, left.cwiseAbs().maxCoeff());
+    const Vector<double> image = asked + recorded.take_multiplier(objective);
+    const double change = (image - x - left).cwiseAbs().maxCoeff();
+    left = image - x;
+    largest = std::max(largest, image.cwiseAbs().maxCoeff());
     const double scale = std::max(largest, area * recorded.force_weight(objective));
     const double q = last > 0 ? change / last : 1;
-    const bool small = q < 1 && pass > 2 && change / (1 - q) <= tolerance * largest;
+    const double enough = tolerance * (1 - std::max(q, contraction < 1 ? contraction : 0.0)) * largest;
+    const double negligible = std::max(enough, 4 * unit_roundoff * largest);
+    const bool settled = change <= (pass > 2 ? negligible : 4 * unit_roundoff * largest);
     const bool stalled = q >= 1 && pass > 2 && change <= noise * scale;
-    if (change <= 4 * unit_roundoff * largest || small || stalled) return true;
+    if (left.cwiseAbs().maxCoeff() <= negligible || (plain && (settled || stalled))) return true;
     last = change;
-    recorded.seed_traction(objective, left);
+    recorded.restore(objective, start);
+    x = accelerator.next(x, image, true, q, [](Vector<double> v) { return v; });
+    plain = x == image;
   }
   problem.status = Status::cap;
   problem.message = "the adjoint did not settle in 20000 passes; try a larger scale, or the preconditioned scheme";
@@ -283,7 +294,8 @@ bool pull_back_sweeps(const UzawaAL& method, AdjointProblem<E>& problem, const S
 
 /// The fixed point, or one pass, from an equilibrium recorded with a scheme's rho.
 template <class E>
-bool pull_back_fixed_point(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, bool once) {
+bool pull_back_fixed_point(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, bool once,
+                           double contraction) {
   if (!recorded.valid()) return false;
   for (int j = 0; j < static_cast<int>(problem.objectives.size()); ++j) {
     recorded.seed_outcome(j);
@@ -291,7 +303,7 @@ bool pull_back_fixed_point(AdjointProblem<E>& problem, RecordedEquilibrium<E>& r
     if (once) {
       recorded.balance(j);
       carried = recorded.take_multiplier(j);
-    } else if (!iterate_back(problem, recorded, j, carried)) {
+    } else if (!iterate_back(problem, recorded, j, contraction, carried)) {
       return false;
     }
     problem.objectives[j].history = recorded.finish(j);
@@ -313,7 +325,7 @@ bool pull_back_preconditioned(const UzawaAL& method, AdjointProblem<E>& problem,
   for (const auto& r : rho) fixed.push_back({Reverse(r.normal), Reverse(r.tangential)});
   RecordedEquilibrium<E> recorded(problem, previous, at, fixed, cone_radius(method), increment.time, false,
                                   increment.requested);
-  return pull_back_fixed_point(problem, recorded, false);
+  return pull_back_fixed_point(problem, recorded, false, 0);
 }
 
 }  // namespace detail
@@ -331,7 +343,7 @@ bool pull_back_increment(const UzawaAL& method, AdjointProblem<E>& problem, cons
   RecordedEquilibrium<E> recorded(problem, previous, increment.state,
                                   detail::recorded_regularisation(method, problem, increment.rho_factor, oversize),
                                   cone_radius(method), increment.time, false, increment.requested);
-  return detail::pull_back_fixed_point(problem, recorded, oversized);
+  return detail::pull_back_fixed_point(problem, recorded, oversized, increment.contraction);
 }
 
 }  // namespace stickslip
