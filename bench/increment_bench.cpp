@@ -98,7 +98,8 @@ void register_all() {
   const std::vector<std::pair<const char*, Method>> methods{
       {"penalty", Penalty{}}, {"uzawa", UzawaAL{}}, {"monolithic", MonolithicAL{}}};
   for (const auto& [name, method] : methods) {
-    auto by = [&, method = method](const char* how, Kind kind, Backend backend, bool friction, std::vector<int> cells) {
+    auto by = [&add, name = name, method = method](const char* how, Kind kind, Backend backend, bool friction,
+                                                   std::vector<int> cells) {
       add(
           std::string("increment/") + name + "/" + how,
           [=](benchmark::State& s) { increment(s, method, kind, backend, friction); }, cells);

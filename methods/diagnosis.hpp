@@ -1,6 +1,7 @@
 /// Why an increment found no solution, in words of the scene.
 #pragma once
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -65,12 +66,66 @@ std::string prescribed_penetration(const Model& model, const Slots<T>& slots, co
          ", and supports prescribe its motion: no traction can prevent that";
 }
 
+/// How an elastic body can move as a whole although its supports, and its contact points in these states, hold it, in
+/// 2D: "along (0, 1)" or "about (X, Y)"; empty where it cannot. What it touches counts as fixed.
+template <class T>
+std::string free_motion(const Model& model, const Slots<T>& slots, std::size_t b,
+                        const std::vector<ContactState>& states) {
+  constexpr double held = 1e-8, straight = 1e-6;
+  if (model.dimension != 2 || !std::holds_alternative<LinearElasticLaw<T>>(slots.laws[b])) return "";
+  const auto body = nodes_of_body(model, b);
+  const Matrix<double> points = slots.points.unaryExpr([](const T& x) { return value(x); });
+  const auto own = points.middleCols(body.first, body.end - body.first);
+  const Vec<double, 2> low = own.rowwise().minCoeff(), high = own.rowwise().maxCoeff(), centre = (low + high) / 2;
+  const double size = (high - low).norm();
+  // columns: along x, along y, about the centre by one over the size
+  const auto motions_at = [&](const Vec<double, 2>& x) {
+    Eigen::Matrix<double, 2, 3> motions;
+    motions << 1, 0, -(x[1] - centre[1]) / size, 0, 1, (x[0] - centre[0]) / size;
+    return motions;
+  };
+  Matrix<double> nodal = Matrix<double>::Zero(model.dof_count(), 3);
+  for (int node = body.first; node < body.end; ++node) nodal.middleRows(2 * node, 2) = motions_at(points.col(node));
+  std::vector<Matrix<double>> frames;
+  for (const auto& frame : slots.frames) frames.push_back(frame.unaryExpr([](const T& x) { return value(x); }));
+  nodal = into_frames(model, frames, Layout::all, std::move(nodal));
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();  // sum of what holds it: its null space is what is free
+  const auto hold = [&](const Eigen::RowVector3d& row) { squares += row.transpose() * row; };
+  if (model.scene.space == Space::axisymmetric) {  // only along the axis does a body of revolution move as a whole
+    hold(Eigen::RowVector3d::Unit(0));
+    hold(Eigen::RowVector3d::Unit(2));
+  }
+  for (int dof = 2 * body.first; dof < 2 * body.end; ++dof)
+    if (model.free_index[dof] < 0) hold(nodal.row(dof));
+  for (std::size_t p = 0; p < states.size(); ++p) {
+    const auto& point = model.points[p];
+    if (states[p] == ContactState::open || (!body.has(point.nodes[0]) && !body.has(point.nodes.back()))) continue;
+    const auto motions = motions_at(points.col(point.nodes[0]));
+    hold(values(slots.geometry[p].normal).transpose() * motions);
+    if (states[p] == ContactState::stick && point.tangents > 0)
+      hold(values(slots.geometry[p].tangents.col(0)).transpose() * motions);
+  }
+  const auto in_words = [](const Vec<double, 2>& x, double unit) {
+    const auto number = [&](double of) { return short_number(std::abs(of) <= straight * unit ? 0 : of); };
+    return "(" + number(x[0]) + ", " + number(x[1]) + ")";
+  };
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> modes(squares);
+  const Eigen::Vector3d least = modes.eigenvectors().col(0);
+  for (const Eigen::Vector3d& mode : {Eigen::Vector3d::Unit(0).eval(), Eigen::Vector3d::Unit(1).eval(), least}) {
+    if ((squares * mode).norm() > held * std::max(1.0, modes.eigenvalues()[2])) continue;
+    const Vec<double, 2> along = mode.head(2) * (mode[0] < 0 ? -1 : 1);
+    if (std::abs(mode[2]) <= straight) return "along " + in_words(along, 1);
+    return "about " + in_words(centre + Vec<double, 2>(-mode[1], mode[0]) * size / mode[2], size);
+  }
+  return "";
+}
+
 }  // namespace detail
 
 /// Says why an increment to `time` failed. Supports may drive a point into its obstacle, against
 /// a method that `prevents_penetration`. A body without a support,
 /// whose load no forces within its cones can balance, has no equilibrium; one of which no contact point sticks may move
-/// without resistance, where the tangent is singular.
+/// without resistance, where the tangent is singular, and so may one whose supports leave a motion free.
 template <class T>
 void diagnose(const Model& model, const Slots<T>& slots, double time, bool prevents_penetration, Increment<T>& failed) {
   const std::string driven_in = detail::prescribed_penetration(model, slots, failed.state);
@@ -85,7 +140,14 @@ void diagnose(const Model& model, const Slots<T>& slots, double time, bool preve
     const auto body = detail::nodes_of_body(model, b);
     const bool supported = std::any_of(model.constraints.begin(), model.constraints.end(),
                                        [&](const Constraint& c) { return body.has(c.dof / model.dimension); });
-    if (supported) continue;
+    if (supported) {
+      if (failed.status != Status::singular) continue;
+      const std::string motion = detail::free_motion(model, slots, b, states);
+      if (motion.empty()) continue;
+      failed.message = model.scene.bodies[b].name + " is free to move " + motion +
+                       ": neither its supports nor its closed contacts hold it there (" + failed.message + ")";
+      return;
+    }
     Vec<double, 2> force = Vec<double, 2>::Zero();
     for (int node = body.first; node < body.end; ++node) force += external.segment(node * model.dimension, 2);
     const bool balanced = model.dimension != 2 || force.norm() == 0 || detail::cones_balance(model, slots, body, force);

@@ -145,19 +145,6 @@ void differentiate_case(Workspace<double>& workspace, CaseResult& result) {
   if (result.one_sided) result.gradients.counters += result.one_sided->counters;
 }
 
-/// {objective: {"value", "gradient": {parameter: derivative}}}.
-json objectives_json(const CaseResult& result) {
-  const auto& scene = result.problem->model.scene;
-  json out = json::object();
-  for (std::size_t i = 0; i < scene.objectives.size(); ++i) {
-    json& entry = out[scene.objectives[i].name];
-    entry["value"] = finite(result.objectives[i]);
-    for (std::size_t j = 0; result.gradients.of_objectives.size() && j < scene.parameters.size(); ++j)
-      entry["gradient"][scene.parameters[j].name] = finite(result.gradients.of_objectives(i, j));
-  }
-  return out;
-}
-
 /// Whether a support, or an anchor, holds a node of a side.
 bool is_held(const Model& model, const std::string& side) {
   const auto nodes = model.side(side).nodes;
@@ -283,6 +270,18 @@ json cost_json(const CaseResult& result) {
 json scheme_json(const SchemeRecord& record) {
   json out = {{"passes", record.passes}, {"oversize", record.oversize}};
   if (record.contraction > 0) out["contraction"] = finite(record.contraction);
+  return out;
+}
+
+json objectives_json(const CaseResult& result) {
+  const auto& scene = result.problem->model.scene;
+  json out = json::object();
+  for (std::size_t i = 0; i < scene.objectives.size(); ++i) {
+    json& entry = out[scene.objectives[i].name];
+    entry["value"] = finite(result.objectives[i]);
+    for (std::size_t j = 0; result.gradients.of_objectives.size() && j < scene.parameters.size(); ++j)
+      entry["gradient"][scene.parameters[j].name] = finite(result.gradients.of_objectives(i, j));
+  }
   return out;
 }
 

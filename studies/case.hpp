@@ -62,6 +62,8 @@ nlohmann::json result_json(const CaseResult& result, const std::string& scene_te
 /// Parts of it that a study's row has too.
 nlohmann::json cost_json(const CaseResult& result);
 nlohmann::json steps_json(const CaseResult& result);
+/// {objective: {"value", "gradient": {parameter: derivative}}}.
+nlohmann::json objectives_json(const CaseResult& result);
 /// Penalty or scale of the contact points as used at the end (`auto` resolved, adaption included): smallest and
 /// largest, absolute (force per length cubed) and as multiples of the local nodal stiffness.
 nlohmann::json regularisation_json(const CaseResult& result);

@@ -165,6 +165,12 @@ ReferenceValues values_of(const CaseResult& result) {
       values.sensitivities[scene.responses[i].name][scene.parameters[j].name] =
           last.sensitivities(row, static_cast<Eigen::Index>(j));
   }
+  const auto& gradients = result.gradients.of_objectives;
+  for (std::size_t i = 0; i < scene.objectives.size(); ++i) {
+    values.responses[scene.objectives[i].name] = result.objectives[i];
+    for (std::size_t j = 0; gradients.size() > 0 && j < scene.parameters.size(); ++j)
+      values.sensitivities[scene.objectives[i].name][scene.parameters[j].name] = gradients(i, j);
+  }
   return values;
 }
 

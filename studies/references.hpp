@@ -9,7 +9,7 @@
 
 namespace stickslip {
 
-/// Reference values of a case by response name, and of its sensitivities.
+/// Reference values of a case by name of the response or objective, and of its sensitivities.
 struct ReferenceValues {
   std::map<std::string, double> responses;
   std::map<std::string, std::map<std::string, double>> sensitivities;  ///< response -> parameter
@@ -24,7 +24,7 @@ struct ReferenceValues {
 /// contact. Empty where the closed form says nothing (no force presses). pre: read_study found no fault in the entry.
 ReferenceValues reference_values(const nlohmann::json& entry, const CaseResult& result);
 
-/// Responses and sensitivities of the last step of another run.
+/// Responses and sensitivities of the last step of another run, its objectives and their gradients.
 ReferenceValues values_of(const CaseResult& result);
 
 }  // namespace stickslip

@@ -46,6 +46,12 @@ std::string row_fault(const json& row) {
     if (const json* value = value_at(row, pointer); value && value->type() != kind)
       return std::string(pointer) + " is " + shown(*value) + "; must be " +
              (kind == json::value_t::string ? "a text" : "an object");
+  for (const char* pointer :
+       {"/errors/enforcement", "/errors/discretization", "/errors/kkt", "/cost/counts", "/cost/seconds"})
+    if (const json* group = value_at(row, pointer))
+      for (const auto& [name, value] : group->items())
+        if (!value.is_number() && !value.is_null())
+          return child_pointer(pointer, name) + " is " + shown(value) + "; must be a number";
   if (const auto level = row.find("refine"); level != row.end() && !level->is_number_integer())
     return "/refine is " + shown(*level) + "; must be a whole number";
   return "";
@@ -101,7 +107,10 @@ StoredRows read_rows(const fs::path& directory) {
       continue;
     }
     const std::string id = row["id"];
-    stored.doubles += stored.rows.count(id) > 0;
+    if (stored.rows.count(id) == 0)
+      stored.order.push_back(id);
+    else
+      ++stored.doubles;
     stored.rows[id] = std::move(row);
   }
   return stored;

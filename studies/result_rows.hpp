@@ -17,6 +17,7 @@ using RowsById = std::map<std::string, nlohmann::json>;
 /// results.jsonl as it was found, with what was wrong with it.
 struct StoredRows {
   RowsById rows;
+  std::vector<std::string> order;    ///< their ids, as they first stand in the file
   std::size_t torn_bytes = 0;        ///< of a last line that a killed process left
   std::vector<std::string> damaged;  ///< whole lines that are no rows: "line 3 is no row: ..."
   int doubles = 0;                   ///< rows of an id that a later line repeats
@@ -26,8 +27,8 @@ struct StoredRows {
   std::string faults() const;
 };
 
-/// Empty where there is no file. A row has the texts "id" and "status", and what else the program writes of the kind
-/// that it writes; lines that are none are left out. Throws std::system_error where it cannot be read.
+/// Empty where there is no file. A row has the texts "id" and "status", and what else the program writes of the
+/// kind that it writes; lines that are none are left out. Throws std::system_error where it cannot be read.
 StoredRows read_rows(const std::filesystem::path& directory);
 
 /// Takes the rows in `directory` up again for the cells of `ids`: what read_rows() mends is mended on the disk, and

@@ -91,6 +91,17 @@ Errors enforcement_errors(const CaseResult& result, const CaseResult& reference)
         errors["sensitivity:" + scene.responses[i].name + "/" + scene.parameters[j].name] = relative(worst, scale);
     }
   }
+  const auto &computed = result.gradients.of_objectives, &exact = reference.gradients.of_objectives;
+  for (std::size_t i = 0; i < scene.objectives.size(); ++i) {
+    const auto& name = scene.objectives[i].name;
+    const double value = reference.objectives[i], size = std::abs(value);
+    errors["response:" + name] = relative(std::abs(result.objectives[i] - value), size);
+    for (std::size_t j = 0; computed.size() > 0 && exact.size() > 0 && j < scene.parameters.size(); ++j) {
+      const auto& parameter = scene.parameters[j];
+      const double scale = std::max(std::abs(exact(i, j)), parameter.value != 0 ? size / std::abs(parameter.value) : 0);
+      errors["sensitivity:" + name + "/" + parameter.name] = relative(std::abs(computed(i, j) - exact(i, j)), scale);
+    }
+  }
   if (result.problem->model.effects.contact)
     errors["field:normal_traction"] = traction_difference(result, reference, 0);
   if (result.problem->model.effects.friction)
@@ -103,26 +114,32 @@ Errors discretisation_errors(const CaseResult& result, const ReferenceValues& re
   if (result.steps.empty()) return errors;
   const auto& scene = result.problem->model.scene;
   const auto& last = result.steps.back();
-  for (std::size_t i = 0; i < scene.responses.size(); ++i) {
-    const auto& name = scene.responses[i].name;
+  const auto compare = [&](const std::string& name, double computed, const auto& gradient) {
     const auto exact = reference.responses.find(name);
-    double size = std::abs(last.responses[i]);
+    double size = std::abs(computed);
     if (exact != reference.responses.end()) {
       if (exact->second != 0) size = std::abs(exact->second);
-      errors["response:" + name] = relative(std::abs(last.responses[i] - exact->second), size);
+      errors["response:" + name] = relative(std::abs(computed - exact->second), size);
     }
     const auto derivatives = reference.sensitivities.find(name);
-    if (derivatives == reference.sensitivities.end() || last.sensitivities.size() == 0) continue;
-    for (std::size_t j = 0; j < scene.parameters.size(); ++j) {
-      const auto value = derivatives->second.find(scene.parameters[j].name);
+    if (derivatives == reference.sensitivities.end()) return;
+    for (Eigen::Index j = 0; j < gradient.size(); ++j) {
+      const auto& parameter = scene.parameters[j];
+      const auto value = derivatives->second.find(parameter.name);
       if (value == derivatives->second.end()) continue;
-      const double parameter = std::abs(scene.parameters[j].value);
       // a derivative that should vanish is measured by what the response over the parameter makes of its size
-      const double scale = std::max(std::abs(value->second), parameter > 0 ? size / parameter : 0);
-      errors["sensitivity:" + name + "/" + scene.parameters[j].name] =
-          relative(std::abs(last.sensitivities(i, j) - value->second), scale);
+      const double scale =
+          std::max(std::abs(value->second), parameter.value != 0 ? size / std::abs(parameter.value) : 0);
+      errors["sensitivity:" + name + "/" + parameter.name] = relative(std::abs(gradient[j] - value->second), scale);
     }
-  }
+  };
+  const auto row_of = [](const Matrix<double>& m, std::size_t i) {
+    return m.size() > 0 ? Vector<double>(m.row(static_cast<Eigen::Index>(i))) : Vector<double>();
+  };
+  for (std::size_t i = 0; i < scene.responses.size(); ++i)
+    compare(scene.responses[i].name, last.responses[i], row_of(last.sensitivities, i));
+  for (std::size_t i = 0; i < scene.objectives.size(); ++i)
+    compare(scene.objectives[i].name, result.objectives[i], row_of(result.gradients.of_objectives, i));
   for (const auto& [contact, curve] : reference.curves.items()) {
     errors["field:normal_traction"] = curve_difference(result, contact, curve, true);
     if (result.problem->model.effects.friction)

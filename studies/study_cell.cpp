@@ -163,6 +163,7 @@ json CellRunner::row(std::size_t index) {
     row["responses"] = steps.back()["responses"];
     if (steps.back().contains("sensitivities")) row["sensitivities"] = steps.back()["sensitivities"];
   }
+  if (const json objectives = objectives_json(result); !objectives.empty()) row["objectives"] = objectives;
   row["steps"] = brief(steps);
   row["film"] = film_json(result);
   row["interface"] = interface_json(result);

@@ -69,16 +69,26 @@ std::optional<MethodSweep> read_method_sweep(const JsonNode& node, Lists lists) 
   return sweep;
 }
 
-/// Names that responses, and where there are parameters derivatives "RESPONSE/PARAMETER", have in the scene.
-std::vector<std::string> result_names(const json& scene, bool with_derivatives) {
+/// Keys of an object in the scene; none where there is no such object.
+std::vector<std::string> names_in(const json& scene, const char* part) {
   std::vector<std::string> names;
-  const json none = json::object();
-  const auto part = [&](const char* key) -> const json& { return scene.contains(key) ? scene.at(key) : none; };
-  for (const auto& [response, unused] : part("responses").items()) names.push_back(response);
-  if (with_derivatives)
-    for (const auto& [response, unused] : part("responses").items())
-      for (const auto& [parameter, unused_too] : part("parameters").items())
-        names.push_back(response + "/" + parameter);
+  if (scene.contains(part))
+    for (const auto& [name, unused] : scene.at(part).items()) names.push_back(name);
+  return names;
+}
+
+/// Names that responses and objectives have in the scene, and their derivatives, "RESPONSE/PARAMETER"; in adjoint mode
+/// responses have none.
+std::vector<std::string> result_names(const json& scene) {
+  const bool adjoint = scene.value("sensitivity", json::object()).value("mode", "") == "adjoint";
+  std::vector<std::string> names, derivatives;
+  for (const char* part : {"responses", "objectives"})
+    for (const auto& name : names_in(scene, part)) {
+      names.push_back(name);
+      if (adjoint && std::string_view(part) == "responses") continue;
+      for (const auto& parameter : names_in(scene, "parameters")) derivatives.push_back(name + "/" + parameter);
+    }
+  names.insert(names.end(), derivatives.begin(), derivatives.end());
   return names;
 }
 
@@ -93,7 +103,7 @@ std::optional<std::set<std::string>> read_map(const JsonNode& map, const ClosedF
   std::set<std::string> given;
   bool sound = map.is_map("quantities by response");
   for (const auto& [response, quantity] : sound ? map.members() : std::vector<std::pair<std::string, JsonNode>>{}) {
-    check_result_name(quantity, response, result_names(scene, false));
+    check_result_name(quantity, response, names_in(scene, "responses"));
     const auto role = quantity.choice(form.quantities());
     sound = sound && role;
     if (role && form.has_input(*role) && !given.insert(*role).second)
@@ -157,7 +167,7 @@ std::optional<Reference> read_reference(const JsonNode& node, const json& scene)
     reference.kind = Reference::Kind::values;
     if (value.is_map("numbers by response, or by RESPONSE/PARAMETER"))
       for (const auto& [result, number] : value.members()) {
-        check_result_name(number, result, result_names(scene, true));
+        check_result_name(number, result, result_names(scene));
         number.number(any_number);
       }
     if (value.value().is_object() && value.value().empty()) value.error("is empty; must give a response its number");
@@ -194,7 +204,7 @@ std::vector<Knob> read_vary(const JsonNode& node, const json& scene) {
 /// All names that errors may have in the scene.
 std::vector<std::string> error_names(const json& scene) {
   std::vector<std::string> names{"kkt", "field:normal_traction", "field:tangential_traction"};
-  for (const std::string& name : result_names(scene, true))
+  for (const std::string& name : result_names(scene))
     names.push_back((name.find('/') == std::string::npos ? "response:" : "sensitivity:") + name);
   return names;
 }

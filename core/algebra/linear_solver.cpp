@@ -383,7 +383,7 @@ const SolverCounters& LinearSolver<T>::counters() const {
 template <class T>
 std::string LinearSolver<T>::name() const {
   const Implementation& s = *implementation_;
-  if (!s.last) return "none yet";
+  if (!s.last) return "";
   return std::visit([](const auto& factor) { return factor.name(); }, *s.last);
 }
 

@@ -67,7 +67,7 @@ class LinearSolver {
   double condition_estimate();
 
   const SolverCounters& counters() const;
-  std::string name() const;            ///< e.g. "MUMPS 5.5.1 LU, PORD"
+  std::string name() const;            ///< e.g. "MUMPS 5.5.1 LU, PORD"; empty before the first factorisation
   const std::string& message() const;  ///< why the last factorise() failed
   long factor_nonzeros() const;        ///< entries of the last factor; 0 where the backend does not tell
 

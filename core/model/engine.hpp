@@ -94,7 +94,7 @@ class SparseEngine {
   }
   Matrix<T> scatter(const Matrix<T>& compact) const;  ///< compact rows -> engine rows
   double condition_estimate() { return solver_.condition_estimate(); }
-  std::string name() const { return "sparse, " + solver_.name(); }
+  std::string name() const { return solver_.name().empty() ? "sparse" : "sparse, " + solver_.name(); }
   const std::string& message() const { return solver_.message(); }
   int unknowns() const { return size_; }
   long nonzeros() const { return pattern_->nonzeros(); }

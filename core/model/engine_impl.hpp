@@ -464,7 +464,9 @@ double CondensedEngine<T>::condition_estimate() {
 
 template <class T>
 std::string CondensedEngine<T>::name() const {
-  return std::string("condensed, dense ") + (symmetric_ ? "LL^T" : "LU") + " on " + condensation_->name();
+  const std::string of_bodies = condensation_->name();  // empty where no body has an inside
+  return std::string("condensed, dense ") + (symmetric_ ? "LL^T" : "LU") +
+         (of_bodies.empty() ? "" : " on " + of_bodies);
 }
 
 }  // namespace stickslip

@@ -255,21 +255,41 @@ json curves(const std::string& description, const json& x, const json& y, const 
 }
 
 void tag_ends(json& rows, const std::string& text_field) {
-  const auto apart = [](const json& a, const json& b, const char* field, double factor) {
-    const double u = a[field], v = b[field];
-    return std::max(u, v) > factor * std::min(u, v);
+  constexpr double word_width = 0.16, word_height = 0.05;  // of a word, in widths and heights of a chart
+  struct Place {
+    double x, y;
   };
+  const auto place = [](const json& r) {
+    return Place{std::log10(r["work"].get<double>()), std::log10(r["shown"].get<double>())};
+  };
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  Place least{infinite, infinite}, most{-infinite, -infinite};
   std::map<std::string, std::pair<json*, json*>> ends;
   for (auto& r : rows) {
     if (r.value("failed", false) || r.value(text_field, "").empty()) continue;
     auto& [first, last] = ends[r.value("line", "") + '\n' + r.value("quantity", "") + '\n' + r.value("scene", "")];
     if (!first || r["order"] < (*first)["order"]) first = &r;
     if (!last || r["order"] > (*last)["order"]) last = &r;
+    const Place at = place(r);
+    if (!std::isfinite(at.x) || !std::isfinite(at.y)) continue;
+    least = {std::min(least.x, at.x), std::min(least.y, at.y)};
+    most = {std::max(most.x, at.x), std::max(most.y, at.y)};
   }
-  for (auto& [key, pair] : ends)
-    if (pair.first != pair.second &&
-        (apart(*pair.first, *pair.second, "work", 1.5) || apart(*pair.first, *pair.second, "shown", 3)))
-      for (json* r : {pair.first, pair.second}) (*r)["tag"] = (*r)[text_field];
+  const double width = word_width * (most.x - least.x), height = word_height * (most.y - least.y);
+  std::map<std::string, std::vector<Place>> taken;  // by what is shown at once
+  for (auto& [key, pair] : ends) {
+    const auto apart = [&](const Place& a, const Place& b) {
+      return std::abs(a.x - b.x) > width || std::abs(a.y - b.y) > height;
+    };
+    if (pair.first == pair.second || !apart(place(*pair.first), place(*pair.second))) continue;
+    for (json* r : {pair.first, pair.second}) {
+      auto& others = taken[r->value("quantity", "") + '\n' + r->value("scene", "")];
+      const Place at = place(*r);
+      if (!std::all_of(others.begin(), others.end(), [&](const Place& other) { return apart(at, other); })) continue;
+      (*r)["tag"] = (*r)[text_field];
+      others.push_back(at);
+    }
+  }
 }
 
 const Cell* best_cell(const Study& study, const std::string& family) {

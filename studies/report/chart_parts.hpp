@@ -78,7 +78,7 @@ nlohmann::json curves(const std::string& description, const nlohmann::json& x, c
                       const nlohmann::json& tips);
 
 /// Marks the ends of each line with the knob's value there, so that a reader sees which way it runs. Not those of a
-/// line that stays in one place: the knob does nothing, and the two words would cover each other.
+/// line that stays in one place, where the knob does nothing; of words that would cover each other the first stays.
 void tag_ends(nlohmann::json& rows, const std::string& text_field);
 
 }  // namespace stickslip::report

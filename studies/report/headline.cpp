@@ -115,7 +115,7 @@ std::string penalty_failures(const Study& study) {
       const Knob* knob = find_knob(cell, "stiffness");
       if (cell.family != "penalty" || cell.variant != variant || cell.converged || !knob) continue;
       places += fmt::format("{}{} ({})", places.empty() ? "" : " and ", knob->value ? number(*knob->value) : knob->text,
-                            cell.status.empty() ? "no status" : cell.status);
+                            cell.status);
     }
     if (!places.empty()) out += (out.empty() ? " It fails at " : ", at ") + places + for_variant(variant);
   }
@@ -173,7 +173,7 @@ std::string failure_sentence(const Study& study) {
   for (const auto& cell : study.cells)
     if (!cell.converged) {
       ++failed;
-      ++by_status[cell.status.empty() ? "no status" : cell.status];
+      ++by_status[cell.status];
     }
   if (failed == 0) return study.cells.size() == 1 ? "The run converged." : "All runs converged.";
   std::string kinds;

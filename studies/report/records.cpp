@@ -11,6 +11,7 @@
 
 #include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
+#include "studies/result_rows.hpp"
 
 namespace stickslip::report {
 
@@ -172,25 +173,13 @@ Study read_study(const std::filesystem::path& directory) {
   study.description = read_json(directory / "study.json");
   study.picture = read_json(directory / "picture.json");
 
-  std::ifstream in(directory / "results.jsonl");
-  if (!in) throw std::runtime_error((directory / "results.jsonl").string() + ": cannot be opened");
-  std::map<std::string, std::size_t> at_id;
-  for (std::string line; std::getline(in, line);) {
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    const json record = json::parse(line, nullptr, false);
-    if (!record.is_object()) {
-      ++study.unreadable_lines;
-      continue;
-    }
-    const std::string id = text_at(record, "id");
-    const auto known = id.empty() ? at_id.end() : at_id.find(id);
-    if (known != at_id.end()) {
-      study.cells[known->second] = read_cell(record);
-      continue;
-    }
-    if (!id.empty()) at_id[id] = study.cells.size();
-    study.cells.push_back(read_cell(record));
-  }
+  if (!std::filesystem::exists(directory / "results.jsonl"))
+    throw std::runtime_error((directory / "results.jsonl").string() + ": there is no such file");
+  const StoredRows stored = read_rows(directory);
+  study.faults = stored.faults();
+  for (const auto& id : stored.order) study.cells.push_back(read_cell(stored.rows.at(id)));
+  for (const json& id : array_at(study.description, "cells"))
+    study.unrecorded += id.is_string() && stored.rows.count(id) == 0;
 
   std::set<int> levels;
   for (const auto& cell : study.cells) levels.insert(cell.refine);

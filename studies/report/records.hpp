@@ -1,5 +1,5 @@
 /// What a study left behind, as the report sees it: study.json, results.jsonl and picture.json, read tolerantly.
-/// A key that is missing leaves an empty value; a line that is no JSON is counted, not fatal.
+/// A key that is missing leaves an empty value; a line that is no row is told, not fatal.
 #pragma once
 
 #include <filesystem>
@@ -48,10 +48,11 @@ struct Study {
   std::vector<std::string> shared;    ///< "METHOD OPTION=VALUE" that tells no two runs of the method apart
   std::map<int, double> ratio;        ///< cost of one back-solve over one factorisation, by refinement; measured
   bool refined = false;               ///< more than one mesh level
-  int unreadable_lines = 0;
+  std::string faults;                 ///< of results.jsonl, in words
+  std::size_t unrecorded = 0;         ///< cells of the study without a row
 };
 
-/// Reads `directory`. Throws std::runtime_error where results.jsonl cannot be opened or study.json is no JSON.
+/// Reads `directory`. Throws std::runtime_error where there is no results.jsonl or study.json is no JSON.
 Study read_study(const std::filesystem::path& directory);
 
 /// "Penalty", "Uzawa AL", "Monolithic AL"; another key as it stands.

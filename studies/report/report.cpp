@@ -252,9 +252,12 @@ std::string findings(const Study& study) {
   std::string out = "<ul class=\"headline\">";
   for (const auto& sentence : headline(study)) out += "<li>" + escape(sentence) + "</li>\n";
   out += "</ul>\n";
-  if (study.unreadable_lines > 0)
-    out += fmt::format("<p class=\"warning\">{} line(s) of results.jsonl could not be read and are missing here.</p>\n",
-                       study.unreadable_lines);
+  if (!study.faults.empty()) out += fmt::format("<p class=\"warning\">results.jsonl: {}.</p>\n", escape(study.faults));
+  if (study.unrecorded > 0)
+    out += fmt::format(
+        "<p class=\"warning\">{} of the study's {} runs are not recorded, and missing here; the command "
+        "at the end runs them with <code>--resume</code>.</p>\n",
+        study.unrecorded, study.unrecorded + study.cells.size());
   return out + settings_table(study);
 }
 

@@ -90,8 +90,7 @@ std::string status_table(const Study& study) {
       }
       const Cell& cell = *found->second;
       failed = failed || !cell.converged;
-      row.push_back(cell.converged ? fmt::format("ok, {} Newton", number(cell.count("newton"), 9))
-                                   : (cell.status.empty() ? "no status" : cell.status));
+      row.push_back(cell.converged ? fmt::format("ok, {} Newton", number(cell.count("newton"), 9)) : cell.status);
     }
     table.rows.push_back(row);
     table.row_classes.emplace_back(failed ? "failed" : "");
@@ -103,7 +102,7 @@ namespace {
 
 /// A status with blanks, where a narrow column can break it.
 std::string status_in_words(const Cell& cell) {
-  std::string words = cell.status.empty() ? "no status" : cell.status;
+  std::string words = cell.status;
   std::replace(words.begin(), words.end(), '_', ' ');
   return words;
 }
@@ -166,30 +165,56 @@ std::string results_table(const Study& study) {
   return compact(errors, "All runs: errors") + compact(costs, "All runs: costs") + messages(study);
 }
 
-std::string values_table(const Study& study) {
-  std::set<std::pair<std::string, std::string>> columns;  // response, parameter or ""
-  for (const auto& cell : study.cells) {
-    for (const auto& [name, value] : object_at(cell.record, "responses").items()) columns.emplace(name, "");
-    for (const auto& [name, by] : object_at(cell.record, "sensitivities").items())
-      if (by.is_object())
-        for (const auto& [parameter, value] : by.items()) columns.emplace(name, parameter);
+namespace {
+
+/// A number of a run by its place in the record.
+struct Column {
+  std::vector<std::string> place;
+  std::string title;
+  auto operator<=>(const Column&) const = default;
+};
+
+/// Objectives and their gradients, responses and sensitivities of the last step.
+std::set<Column> value_columns(const json& record) {
+  std::set<Column> columns;
+  const auto add = [&](std::vector<std::string> place, const std::string& name, const json& by) {
+    for (const auto& [parameter, unused] : by.items()) {
+      auto of = place;
+      of.push_back(parameter);
+      columns.insert({of, "d " + name + " / d " + parameter});
+    }
+  };
+  for (const auto& [name, value] : object_at(record, "responses").items()) columns.insert({{"responses", name}, name});
+  for (const auto& [name, by] : object_at(record, "sensitivities").items())
+    if (by.is_object()) add({"sensitivities", name}, name, by);
+  for (const auto& [name, objective] : object_at(record, "objectives").items()) {
+    columns.insert({{"objectives", name, "value"}, name});
+    add({"objectives", name, "gradient"}, name, object_at(objective, "gradient"));
   }
+  return columns;
+}
+
+}  // namespace
+
+std::string values_table(const Study& study) {
+  std::set<Column> columns;
+  for (const auto& cell : study.cells) columns.merge(value_columns(cell.record));
   if (columns.empty()) return {};
   Table table;
   table.header = {"method", "scene", "status"};
-  for (const auto& [name, by] : columns) table.header.push_back(by.empty() ? name : "d " + name + " / d " + by);
+  for (const auto& column : columns) table.header.push_back(column.title);
   for (const auto& cell : study.cells) {
     std::vector<std::string> row = {cell.label, cell.variant, cell.status};
-    for (const auto& [name, by] : columns) {
-      const json& v =
-          by.empty() ? at(at(cell.record, "responses"), name) : at(at(at(cell.record, "sensitivities"), name), by);
-      row.push_back(v.is_number() ? number(v.get<double>(), 10) : plain(v));
+    for (const auto& column : columns) {
+      const json* v = &cell.record;
+      for (const auto& key : column.place) v = &at(*v, key);
+      row.push_back(v->is_number() ? number(v->get<double>(), 10) : plain(*v));
     }
     table.rows.push_back(row);
     table.row_classes.emplace_back(cell.converged ? "" : "failed");
   }
-  return folded("Values of responses and sensitivities at the last step",
-                compact(table, "Responses and sensitivities at the last step"));
+  return folded("Values of responses and sensitivities at the last step, and of objectives",
+                compact(table, "Responses and sensitivities at the last step, objectives"));
 }
 
 }  // namespace stickslip::report

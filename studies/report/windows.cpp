@@ -100,9 +100,7 @@ std::string stretches(const Window& window) {
 std::string failures(const Window& window) {
   std::string out;
   for (const auto& run : window.runs)
-    if (!run.cell->converged)
-      out += (out.empty() ? "" : ", ") + number(run.knob) + " (" +
-             (run.cell->status.empty() ? "no status" : run.cell->status) + ")";
+    if (!run.cell->converged) out += (out.empty() ? "" : ", ") + number(run.knob) + " (" + run.cell->status + ")";
   return out;
 }
 

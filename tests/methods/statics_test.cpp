@@ -118,6 +118,35 @@ TEST(Incline, AnElasticBlockThatNothingElseHoldsSticksBelowTheAngleAndIsSaidToSl
   }
 }
 
+/// A block on a frictionless floor, lifted off it, that supports hold but for one motion.
+Scene lifted_block(std::vector<Support> supports) {
+  Scene s;
+  s.legs = {{1, 1}};
+  s.bodies = {box_body("block", {0, 0}, {4, 1}, {8, 2})};
+  s.obstacles = {{"floor", Plane{{0.0, 0.0}, {0.0, 1.0}}}};
+  s.contacts = {contact("sole", "block.bottom", "floor")};
+  s.supports = std::move(supports);
+  s.loads = {{"block", Load::Kind::body_force, {0.0, 5.0}, ramp(1.0)}};
+  return s;
+}
+
+TEST(Statics, SayHowABodyThatSupportsHoldInPartIsFreeToMove) {
+  const auto zero = scenes::table({{0, 0.0}});
+  Support along_wall = scenes::support("block.left", {});
+  along_wall.inclined = Inclined{{-0.6, 0.8}, zero};
+  const std::vector<std::pair<Support, std::string>> cases{
+      {scenes::support("block.left", {{'x', zero}}), "free to move along (0, 1)"},
+      {scenes::support("block.left & block.bottom", {{'x', zero}, {'y', zero}}), "free to move about (0, 0)"},
+      {along_wall, "free to move along (0.8, 0.6)"}};
+  for (const auto& method : all_methods())
+    for (const auto& [support, words] : cases) {
+      const auto s = run(lifted_block({support}), method);
+      EXPECT_EQ(s.trajectory.status, Status::singular) << name_of(method);
+      EXPECT_NE(s.trajectory.message.find("block is " + words), std::string::npos)
+          << name_of(method) << ": " << s.trajectory.message;
+    }
+}
+
 // --- A11: flat punch -------------------------------------------------------------------------------------------------
 
 /// Right half of a block under a rigid punch of half width 1; cells of size h at the punch's edge, growing away.

@@ -209,15 +209,33 @@ TEST_F(Report, WritesAPageWhereEveryRunFailed) {
   EXPECT_THAT(page(), HasSubstr("7 of 7 runs did not converge (7 singular)"));
 }
 
-TEST_F(Report, WritesAPageFromRecordsThatHoldNothingButAMethod) {
-  record(nullptr, {{{"method", {{"penalty", json::object()}}}}, {{"label", "uzawa_al"}, {"status", "converged"}}});
-  EXPECT_THAT(page(), AllOf(HasSubstr("no status"), HasSubstr("Uzawa AL"), HasSubstr("Frictional contact study")));
+TEST_F(Report, WritesAPageFromRowsThatHoldNextToNothing) {
+  const json bare = {{"status", "converged"}, {"cost", json::object()}};
+  json penalty = bare, uzawa = bare;
+  penalty.update({{"id", "a"}, {"method", {{"penalty", json::object()}}}});
+  uzawa.update({{"id", "b"}, {"label", "uzawa_al"}});
+  record(nullptr, {penalty, uzawa});
+  EXPECT_THAT(page(), AllOf(HasSubstr("Penalty"), HasSubstr("Uzawa AL"), HasSubstr("Frictional contact study")));
 }
 
-TEST_F(Report, CountsLinesThatAreNoRecords) {
-  record(description(), three_methods());
-  std::ofstream(directory_ / "results.jsonl", std::ios::app) << "{\"id\": \"torn\n[1]\n\n";
-  EXPECT_THAT(page(), HasSubstr("2 line(s) of results.jsonl could not be read"));
+TEST_F(Report, SaysWhichLinesAreNoRowsAndShowsNothingOfThem) {
+  auto cells = three_methods();
+  cells[0]["label"] = "a damaged label";
+  cells[0]["errors"]["enforcement"]["response:press"] = "small";
+  record(description(), cells);
+  std::ofstream(directory_ / "results.jsonl", std::ios::app) << "{\"id\": \"torn\n[1]\n{\"id\": ";
+  EXPECT_THAT(page(), AllOf(HasSubstr("line 1 is no row and was dropped: /errors/enforcement/response:press is"),
+                            HasSubstr("line 8 is no row"), HasSubstr("line 9 is no row"),
+                            HasSubstr("a torn last line (7 bytes) was dropped"), Not(HasSubstr("a damaged label"))));
+}
+
+TEST_F(Report, SaysHowManyRunsAreNotRecordedYet) {
+  auto study = description();
+  auto cells = three_methods();
+  study["cells"] = json::array({"a", "b"});
+  for (const auto& c : cells) study["cells"].push_back(c["id"]);
+  record(study, cells);
+  EXPECT_THAT(page(), HasSubstr("2 of the study's 9 runs are not recorded"));
 }
 
 TEST_F(Report, TakesTheLastRecordOfAnId) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -93,6 +94,30 @@ TEST_F(StudyCell, ErrorsAgainstAFinerMeshFallWithTheMesh) {
     EXPECT_LT(errors["discretization"].value("response:shift", 1.0), last);
     EXPECT_TRUE(errors["enforcement"].empty());
     last = errors["discretization"]["response:shift"];
+  }
+}
+
+TEST_F(StudyCell, HoldsObjectivesAndTheirGradientsAgainstAReferenceInEitherMode) {
+  for (const char* mode : {"direct", "adjoint"}) {
+    json scene = block();
+    scene["objectives"] = {{"J", {{"of", "shift"}, {"sum", true}}}};
+    scene["sensitivity"] = {{"mode", mode}};
+    const auto [study, cells] =
+        read(scene, {{"methods", {{{"penalty", {{"stiffness", 100}}}}, {{"monolithic_al", json::object()}}}},
+                     {"reference", {{{"method", {{"monolithic_al", json::object()}}}}, {{"values", {{"J/E", -1e-6}}}}}},
+                     {"errors", {"response:J", "sensitivity:J/E"}}});
+    ASSERT_EQ(cells.size(), 2u);
+    CellRunner runner(study, cells, meshes_);
+    const json penalty = runner.row(0), exact = runner.row(1);
+    const double J = exact["objectives"]["J"]["value"], dJ = exact["objectives"]["J"]["gradient"]["E"];
+    const double off = penalty["objectives"]["J"]["value"], d_off = penalty["objectives"]["J"]["gradient"]["E"];
+    const auto& errors = penalty["errors"]["enforcement"];
+    EXPECT_GT(std::abs(off - J), 1e-6 * std::abs(J)) << mode;
+    EXPECT_DOUBLE_EQ(errors["response:J"], std::abs(off - J) / std::abs(J)) << mode;
+    // J is proportional to 1/E: dJ/dE is of the size of J over E, by which a derivative that vanishes is measured
+    EXPECT_NEAR(errors["sensitivity:J/E"], std::abs(d_off - dJ) / std::abs(dJ), 1e-9) << mode;
+    EXPECT_EQ(exact["errors"]["enforcement"]["response:J"], 0) << mode;
+    EXPECT_NEAR(exact["errors"]["discretization"]["sensitivity:J/E"], std::abs(dJ + 1e-6) / std::abs(J / 1000), 1e-9);
   }
 }
 
