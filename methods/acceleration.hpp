@@ -8,9 +8,9 @@
 ///
 /// Weights are numbers of the iteration, not of the scene: they are formed from the primal parts and not
 /// differentiated, which the fixed point does not notice. An extrapolated x is on trial: where its residual is not
-/// below 0.9 of the last one, the plain step from there is taken in its place, which has cost one evaluation. Two of
-/// these are free; more must have been earned, one each by an extrapolation worth two plain steps, so that an iteration
-/// is never much worse than plain. [IT69], [WN11]
+/// below 0.9 of the last one, or q of it where the contraction q is slower, the plain step from there is taken in its
+/// place, which has cost one evaluation. Two of these are free; more must have been earned, one each by an
+/// extrapolation worth two plain steps, so that an iteration is never much worse than plain. [IT69], [WN11]
 #pragma once
 
 #include <vector>
@@ -91,7 +91,7 @@ class Accelerator {
     for (Eigen::Index i = 0; i < differences.cols(); ++i)
       differences.col(i) = past_[i + 1].residual() - past_[i].residual();
     Vector<T> x = past_.back().image;
-    const double noise = 1e2 * detail::unit_roundoff * values(x).norm();  // of a difference of residuals, and more
+    const double noise = 1e2 * unit_roundoff * values(x).norm();  // of a difference of residuals, and more
     const Vector<double> gamma = anderson_weights(differences, residual, noise);
     for (Eigen::Index i = 0; i < gamma.size(); ++i)
       if (gamma[i] != 0) x -= T(gamma[i]) * (past_[i + 1].image - past_[i].image);

@@ -52,14 +52,18 @@ class Augmentations {
   bool settled() const { return settled_; }            ///< no state changed since the last augmentation
   double contraction() const { return contraction_; }  ///< 0: not measured yet
   double update() const { return values_or_zero(update_); }
-  double last_update() const { return last_update_; }  ///< 0 at the first
   double error_left() const {
-    constexpr double not_falling = 1e3;  // a ratio of 1 and more is that of updates too small to tell it
+    // beyond it, a constraint that others repeat: what is left of it, at rounding, pushes its multiplier for ever,
+    // which moves nothing. Of a rho that small by itself the violation, held against its own tolerance, tells the error
+    constexpr double not_falling = 1 - 1e-4;
     const double q = contraction_;
-    if (!settled_ || q == 0) return update();
-    return update() * (q < 1 ? std::max(1.0, q / (1 - q)) : not_falling);
+    if (!settled_ || q == 0 || q > not_falling) return update();
+    return update() * std::max(1.0, q / (1 - q));
   }
   bool stalled() const { return settled_ && last_update_ > 0 && 2 * update_.norm() > last_update_; }
+  /// The updates have not fallen for long: a rho far above the stiffness of the other body turns what the inner solves
+  /// leave into tractions.
+  bool exhausted() const { return settled_ && idle_ >= 50; }
   const std::vector<double>& violations() const { return violations_; }  ///< per point, length
   const std::vector<double>& last_violations() const { return last_violations_; }
   double violation() const {
@@ -91,7 +95,9 @@ class Augmentations {
   UzawaAL::Acceleration acceleration_;
   bool settled_ = false, same_map_ = true;
   double contraction_ = 0, last_update_ = 0, riding_ = 0;
-  double inner_error_ = 0;  ///< of the last value, which the inner solve has left
+  double inner_error_ = 0;   ///< of the last value, which the inner solve has left
+  double least_update_ = 0;  ///< in the present states
+  int idle_ = 0;             ///< augmentations since it last fell, to 0.7
   double settled_riding_ = std::numeric_limits<double>::infinity();
   Vector<double> update_;
   std::vector<double> violations_, last_violations_;
@@ -113,6 +119,12 @@ void Augmentations<T>::record(const Vector<T>& multiplier, const ContactField<T>
   undone_ = undone ? undone_ + 1 : 0;
   last_update_ = update_.size() ? update_.norm() : 0;
   update_ = update;
+  if (!settled_ || !same_map_ || update.norm() < 0.7 * least_update_) {
+    least_update_ = update.norm();
+    idle_ = 0;
+  } else {
+    ++idle_;
+  }
   record_rate(multiplier, field, left);
   last_violations_ = std::move(violations_);
   violations_.assign(points, 0.0);
@@ -135,9 +147,11 @@ void Augmentations<T>::record_rate(const Vector<T>& multiplier, const ContactFie
   same_map_ = true;
   if (!comparable) return;
   const Vector<double> moved = values(multiplier - multiplier_);
-  const double length = moved.norm(), rounding = 8 * detail::unit_roundoff * values(field.traction).norm();
-  if (100 * rounding > length) return;  // rounding has no rate
-  secants_.push_back({moved, values(field.traction - field_.traction), (rounding + before + inner_error_) / length});
+  const double length = moved.norm(), rounding = 8 * unit_roundoff * values(field.traction).norm();
+  const double noise = (rounding + before + inner_error_) / length;
+  // rounding has no rate; nor have values between which the inner solves saw nothing to solve for
+  if (100 * rounding > length || noise > 0.5) return;
+  secants_.push_back({moved, values(field.traction - field_.traction), noise});
   if (secants_.size() > kept_secants) secants_.erase(secants_.begin());
   const double q = stickslip::contraction(secants_);
   // plain updates turn into the slowest mode, which accelerated ones suppress once they have shown it

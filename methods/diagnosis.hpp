@@ -122,10 +122,10 @@ std::string free_motion(const Model& model, const Slots<T>& slots, std::size_t b
 
 }  // namespace detail
 
-/// Says why an increment to `time` failed. Supports may drive a point into its obstacle, against
-/// a method that `prevents_penetration`. A body without a support,
-/// whose load no forces within its cones can balance, has no equilibrium; one of which no contact point sticks may move
-/// without resistance, where the tangent is singular, and so may one whose supports leave a motion free.
+/// Says why an increment to `time` failed. Supports may drive a point into its obstacle, against a method that
+/// `prevents_penetration`. A body without a support, whose load no forces within its cones can balance, has no
+/// equilibrium; one of which no contact point sticks may move without resistance, where the tangent is singular, and so
+/// may one whose supports leave a motion free.
 template <class T>
 void diagnose(const Model& model, const Slots<T>& slots, double time, bool prevents_penetration, Increment<T>& failed) {
   const std::string driven_in = detail::prescribed_penetration(model, slots, failed.state);

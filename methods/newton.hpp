@@ -9,11 +9,12 @@
 ///   normal        closed: |t_N - lambda_N|/rho = |g_N| / largest of A|t|/k and of the relative displacement;
 ///   tangential    stick: |dg_T| likewise; open and slip: |t - lambda| / largest traction
 /// Converged: all within the tolerance and no state changed since the last tangent. Where a residual stops falling at
-/// the level of its own rounding the status is converged_at_roundoff. The full step is taken when
-/// it lands in another active set, for that is how the set is found; within one set the residual must fall, and a
-/// repeated set without progress asks the same of every step: backtracking. Where a tangent is singular while points
-/// are open, as of a body that nothing holds but the contact it is about to make, they are presumed closed for one
-/// step: those that should not be are in tension then, and open. [AC91], [HSW08]; theory: core/README.md.
+/// the level of its own rounding the status is converged_at_roundoff; where it does so above it, but close to the
+/// solution, stagnated. The full step is taken when it lands in another active set, for that is how the set is found;
+/// within one set the residual must fall, and a repeated set without progress asks the same of every step:
+/// backtracking, down to 1/64. Where a tangent is singular while points are open, as of a body that nothing holds but
+/// the contact it is about to make, they are presumed closed for one step: those that should not be are in tension
+/// then, and open. [AC91], [HSW08]; theory: core/README.md.
 #pragma once
 
 #include <chrono>
@@ -69,13 +70,14 @@ inline double ratio(double x, double scale) { return x == 0 ? 0 : x / scale; }
 
 struct Residuals {
   double equilibrium = 0, normal = 0, tangential = 0;
-  double floor_equilibrium = 0, floor_length = 0;  ///< what rounding alone may leave of them
+  double floor_equilibrium = 0, floor_length = 0, floor_traction = 0;  ///< what rounding alone may leave of them
   double largest() const { return std::max({equilibrium, normal, tangential}); }
   bool finite() const { return std::isfinite(equilibrium) && std::isfinite(normal) && std::isfinite(tangential); }
   bool within(double tolerance) const { return finite() && largest() <= tolerance; }
   bool within_rounding(double tolerance) const {
     return finite() && equilibrium <= std::max(tolerance, floor_equilibrium) &&
-           std::max(normal, tangential) <= std::max(tolerance, floor_length);
+           normal <= std::max(tolerance, floor_length) &&
+           tangential <= std::max({tolerance, floor_length, floor_traction});
   }
 };
 
@@ -104,7 +106,7 @@ Evaluation<T> evaluate(E& engine, const ContactInput<T>& input, const Vector<T>&
   ForceScale force{scales.force, 0};
   at.rows_u = engine.residual(u, contact_forces(model, input.slots, at.field.traction), force);
   scales.force = force.force;
-  double contact_rounding = 0, elastic = 0;  // elastic: largest k / A
+  double contact_rounding = 0, elastic = 0, stiffest = 0;  // elastic: largest k / A; stiffest: largest rho
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
     const double area = value(input.slots.geometry[p].area), stiffness = value(input.slots.stiffness[p]);
@@ -123,6 +125,7 @@ Evaluation<T> evaluate(E& engine, const ContactInput<T>& input, const Vector<T>&
     scales.length = std::max({scales.length, std::sqrt(moved), area * traction / stiffness});
     contact_rounding = std::max(contact_rounding, area * value(input.rho[p].normal));
     elastic = std::max(elastic, stiffness / area);
+    stiffest = std::max(stiffest, value(input.rho[p].normal));
   }
   const double reach = largest_nodal_norm(compact, model.dimension);
   for (Eigen::Index row = 0; row < at.rows_u.size(); ++row)
@@ -133,6 +136,8 @@ Evaluation<T> evaluate(E& engine, const ContactInput<T>& input, const Vector<T>&
     at.residuals.floor_equilibrium =
         bulk_floor + rounding_factor * ratio(unit_roundoff * contact_rounding * reach, scales.force);
   at.residuals.floor_length = rounding_factor * ratio(unit_roundoff * reach, scales.length);
+  // in slip the bound passes on what rounding makes of the pressure lambda_N + rho g_N
+  at.residuals.floor_traction = rounding_factor * ratio(unit_roundoff * stiffest * reach, scales.traction);
   if (!unknown) return at;
   at.rows_l = multiplier_residual(model, input.slots, at.field.traction, multiplier);
   // a body that slides where nothing presses: all its tractions are what rounding makes of its displacements
@@ -270,7 +275,8 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
                       const std::vector<ContactState>& last, const NewtonOptions& options, Account& account,
                       double forcing = 0) {
   const Model& model = input.model;
-  constexpr double shortest_step = 1.0 / 128;
+  constexpr double shortest_step = 1.0 / 64;
+  constexpr int patience = 10;  // iterations in one active set that leave more than half of the residual
   Equilibrium<T> result;
   std::vector<ContactState> used;                // states of the last tangent
   ContactField<T> directed;                      // field and branches of the last step
@@ -308,6 +314,9 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
       result.rough = true;
       return finish(Status::converged);
     }
+    const bool close = at.residuals.within(std::sqrt(options.tolerance));  // where a step should square the residual
+    if (close && steady >= patience && 2 * at.residuals.largest() > result.history[iteration - patience].residual)
+      return finish(Status::stagnated, "no step lowers the residual any more; try a smaller stiffness or scale");
     if (iteration >= options.max_iterations)
       return finish(damped ? Status::cycle : Status::cap,
                     damped ? "the active set repeats; try a smaller stiffness or scale, or more steps"
@@ -361,7 +370,7 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
     const double before = at.residuals.largest();
     double best = std::numeric_limits<double>::infinity();
     const Vector<T> u0 = u, multiplier0 = multiplier;
-    for (double length = 1; length > shortest_step; length /= 2) {
+    for (double length = 1; length >= shortest_step; length /= 2) {
       const Vector<T> u1 = u0 + T(length) * step.u.col(0);
       const Vector<T> multiplier1 = unknown ? Vector<T>(multiplier0 + T(length) * step.l.col(0)) : multiplier0;
       auto trial = detail::evaluate(engine, input, u1, multiplier1, unknown, account.scales);

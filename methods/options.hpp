@@ -89,7 +89,8 @@ inline std::string_view name_of(const Method& method) {
   return std::visit([](const auto& m) { return std::string_view(m.name); }, method);
 }
 
-/// Exact or fast: which linear algebra carries the run (scene key "linear_solver", results name what was used).
+/// Which linear algebra carries the run; both give the same solution (scene key "linear_solver", results name what was
+/// used).
 struct LinearAlgebra {
   enum class Engine { automatic, sparse, condensed };
   Engine engine = Engine::automatic;

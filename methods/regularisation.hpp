@@ -2,7 +2,7 @@
 ///
 ///   relative c:  rho_i = c k_i / A_i        k_i: local nodal stiffness (core/model/slots), A_i: tributary area
 ///   absolute:    rho_i = value
-///   automatic:   relative, with the multiple that the method's file gives
+///   automatic:   relative, with the method's automatic_multiple (options.hpp)
 ///
 /// rho is a function of the scene, so its derivative is there by itself.
 #pragma once

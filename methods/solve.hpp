@@ -24,13 +24,6 @@ struct RunOptions {
 
 namespace detail {
 
-/// Good enough to go on from: converged, or cut off by max_augmentations as asked.
-template <class T>
-bool usable(const Increment<T>& increment) {
-  return is_converged(increment.status) || (increment.status == Status::cap && increment.augmentations > 0 &&
-                                            increment.message.starts_with("max_augmentations"));
-}
-
 /// Advances the trajectory to `target`; false where it gave up (the failed increment is then the last).
 template <class T, class E, class M>
 bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double target, bool may_cut) {
@@ -50,7 +43,7 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
     increment.time = next;
     increment.requested = last;
     increment.cutbacks = cutbacks;
-    if (usable(increment)) {
+    if (increment.usable()) {
       trajectory.increments.push_back(std::move(increment));
       if (last) return true;
       reached = next;

@@ -11,7 +11,7 @@
 ///                 one more fixed point iteration, whose error changes by -mu/s an augmentation where the load path has
 ///                 the slope s (tangential over normal stiffness of the unloading): beyond s it ends in a two-cycle
 ///
-/// The error shrinks by 1/(1 + rho s_min) an augmentation (s_min: smallest stiffness-free compliance of the active
+/// The error shrinks by 1/(1 + rho s_min) an augmentation (s_min: smallest compliance of the active
 /// constraints, S = B K^-1 B^T A), so a large rho needs few augmentations of harder inner problems. Slip is always
 /// measured from the last converged increment, never from the last augmentation. Start: the last increment's lambda.
 /// Stops where update, violation and states have settled to `tolerance`; gives up where the updates undo each other
@@ -98,7 +98,8 @@ Standing judge(const UzawaAL& method, const Slots<T>& slots, const Regularisatio
   // in slip the bound passes the rounding of the pressure on
   const double traction = (1 + friction) * (stiffest * gap + 10 * unit_roundoff * scales.traction);
   const bool small = progress.error_left() <= method.tolerance * scales.traction;
-  const bool at_roundoff = progress.stalled() && progress.violation() <= gap && progress.update() <= traction;
+  const bool at_roundoff = (progress.stalled() && progress.violation() <= gap && progress.update() <= traction) ||
+                           (progress.exhausted() && progress.violation() <= 1e3 * gap);
   Standing now;
   now.negligible = std::max(violation, gap);
   auto end = [&](Status status, std::string message = "") {
@@ -124,6 +125,7 @@ template <class T>
 void conclude(const Standing& now, bool at_limit, Increment<T>& increment) {
   if (!now.done && !at_limit) return;
   increment.status = now.done ? now.status : Status::cap;
+  increment.cut_off = !now.done;
   increment.message =
       now.done ? now.message : "max_augmentations reached; try a larger scale, adapt, or an acceleration";
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "core/model/response.hpp"
 #include "sensitivity/adjoint.hpp"
@@ -36,7 +35,8 @@ Path run(const Model& model, const Numbers<double>& numbers, const Method& metho
   if (path.values.cols() > 0)
     path.values.rightCols(1).bottomRows(objectives) = objective_values(model, slots, trajectory);
   path.usable = trajectory.increments.size() == options.replay.size() && path.values.allFinite() &&
-                (is_converged(trajectory.status) || trajectory.increments.back().augmentations > 0);
+                std::all_of(trajectory.increments.begin(), trajectory.increments.end(),
+                            [](const auto& increment) { return increment.usable(); });
   return path;
 }
 
@@ -183,7 +183,7 @@ void compare(const Differences& differences, const std::vector<Matrix<double>>& 
     worst.estimate = estimate;
     worst.allowed = allowed;
     worst.step = best.step / size;
-    // an estimate as large as the derivative itself checks nothing
+    // differences that tell a derivative to less than three digits check nothing
     worst.verdict = estimate > 1e-3    ? GradientCheck::Verdict::not_checked
                     : error <= allowed ? GradientCheck::Verdict::agrees
                                        : GradientCheck::Verdict::differs;

@@ -29,6 +29,8 @@ namespace stickslip {
 
 namespace detail {
 
+inline constexpr std::string_view other_scheme = ", or the preconditioned scheme";
+
 /// D lambda of the last increment on the value of `multiplier`.
 template <class E>
 std::vector<Vector<Direction>> carried_multiplier(Differentiation<E>& problem, const Vector<double>& multiplier) {
@@ -118,14 +120,18 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
       const double q = last[j] > 0 ? change / last[j] : 1;
       const double left = q < 1 ? change * q / (1 - q) : change;
       const bool stalled = pass > 3 && change <= std::max(floors[j], 4 * unit_roundoff * std::max(size, carried[j]));
-      settled &= change == 0 || stalled || (q < 1 && pass > 2 && left <= std::max(tolerance * size, 8 * floors[j]));
+      // Constraints that repeat one another push each other's multiplier for ever by what rounding left between them. A
+      // slow mode would need more than `limit` passes at such a q, and not start at so small a change.
+      const bool drifts = pass > 10 && q > 1 - 1e-4 && change <= 1e-11 * std::max(size, carried[j]);
+      settled &=
+          change == 0 || stalled || drifts || (q < 1 && pass > 2 && left <= std::max(tolerance * size, 8 * floors[j]));
       if (last[j] > 0 && change > floors[j]) record.contraction = std::max(record.contraction, q);
       last[j] = change;
     }
     if (settled) return true;
   }
   problem.status = Status::cap;
-  problem.message = "the derivatives did not settle in 20000 passes; try a larger scale, or the preconditioned scheme";
+  problem.message = "the derivatives did not settle in 20000 passes; try a larger scale";
   return false;
 }
 
@@ -193,6 +199,7 @@ bool differentiate_increment(const UzawaAL& method, Differentiation<E>& problem,
     fields = linearised.solve(lambda);
     problem.record = {1, oversize, 0};
   } else if (!detail::iterate(problem, linearised, rho, lambda, fields, 1e-13)) {
+    problem.message += detail::other_scheme;
     return false;
   }
   linearised.settle(fields, lambda);
@@ -218,7 +225,7 @@ RegularisationField<Reverse> recorded_regularisation(const UzawaAL& method, Adjo
 template <class E>
 bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, int objective, double contraction,
                   Vector<double>& left) {
-  constexpr double tolerance = 1e-13;
+  constexpr double tolerance = 1e-14;
   constexpr double noise = 1e4 * unit_roundoff;  // changes below it that do not fall any more are rounding
   constexpr int limit = 20000;
   recorded.balance(objective);
@@ -251,7 +258,7 @@ bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, 
     plain = x == image;
   }
   problem.status = Status::cap;
-  problem.message = "the adjoint did not settle in 20000 passes; try a larger scale, or the preconditioned scheme";
+  problem.message = "the adjoint did not settle in 20000 passes; try a larger scale";
   return false;
 }
 
@@ -343,7 +350,9 @@ bool pull_back_increment(const UzawaAL& method, AdjointProblem<E>& problem, cons
   RecordedEquilibrium<E> recorded(problem, previous, increment.state,
                                   detail::recorded_regularisation(method, problem, increment.rho_factor, oversize),
                                   cone_radius(method), increment.time, false, increment.requested);
-  return detail::pull_back_fixed_point(problem, recorded, oversized, increment.contraction);
+  const bool settled = detail::pull_back_fixed_point(problem, recorded, oversized, increment.contraction);
+  if (!settled && problem.status == Status::cap) problem.message += detail::other_scheme;
+  return settled;
 }
 
 }  // namespace stickslip

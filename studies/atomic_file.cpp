@@ -81,10 +81,9 @@ bool is_orphan(const fs::path& temporary) {
 }
 
 void prepare_folder(const fs::path& folder) {
+  check_folder(folder);
   std::error_code error;
-  if (fs::exists(folder, error) && !fs::is_directory(folder, error))
-    throw InputFault(folder.string() + ": is a file; must be a directory, or a name that is free");
-  if (!error) fs::create_directories(folder, error);
+  fs::create_directories(folder, error);
   if (error) throw InputFault(folder.string() + ": cannot be made: " + error.message());
   if (::access(folder.c_str(), W_OK | X_OK) != 0) throw InputFault(folder.string() + ": cannot be written to");
   for (const auto& entry : fs::directory_iterator(folder))
@@ -92,6 +91,12 @@ void prepare_folder(const fs::path& folder) {
 }
 
 }  // namespace
+
+void check_folder(const fs::path& folder) {
+  std::error_code ignored;
+  if (fs::exists(folder, ignored) && !fs::is_directory(folder, ignored))
+    throw InputFault(folder.string() + ": is a file; must be a directory, or a name that is free");
+}
 
 void prepare_directory(const fs::path& directory, const std::vector<std::string>& files,
                        const std::vector<std::string>& folders) {

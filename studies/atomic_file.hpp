@@ -12,6 +12,9 @@ namespace stickslip {
 /// sees the old file or the new one, whole. Throws std::system_error with the path where the disk refuses.
 void write_file_atomically(const std::filesystem::path& path, std::string_view content);
 
+/// Throws InputFault where something that is no directory has the name.
+void check_folder(const std::filesystem::path& folder);
+
 /// Makes a directory for results ready, and `folders` in it: made where they are missing, rid of the temporary files of
 /// processes that are gone. Throws InputFault where it cannot be written to, or where one of `files`, which are to be
 /// written there, is a directory.

@@ -2,8 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -15,6 +15,7 @@
 #include "studies/explain.hpp"
 #include "studies/export_system.hpp"
 #include "studies/method_options.hpp"
+#include "studies/missing_effects.hpp"
 #include "studies/progress.hpp"
 #include "studies/report/report.hpp"
 #include "studies/result_rows.hpp"
@@ -116,6 +117,7 @@ int run_command(const RunArguments& arguments) {
   if (!loaded) return bad_input;
   const bool writes = !arguments.json || !arguments.output.empty();
   const auto directory = output_directory(arguments.output, arguments.scene);
+  if (!arguments.export_to.empty()) check_folder(arguments.export_to);
   if (writes) prepare_directory(directory, {"result.json", "fields.pvd"});
   if (!arguments.export_to.empty()) prepare_directory(arguments.export_to, {"README"});
   std::optional<Progress> progress;  // of long work only: a run of a second or two speaks for itself
@@ -146,6 +148,7 @@ int run_command(const RunArguments& arguments) {
   }
   if (!arguments.export_to.empty() && !result.trajectory.increments.empty()) export_system(arguments.export_to, result);
   if (arguments.json) std::cout << document.dump(2) << '\n';
+  for (const auto& sentence : missing_effects(result)) fmt::print(stderr, "warning: {}\n", sentence);
   if (is_converged(result.status())) return done;
   fmt::print(stderr, "{}: {}\n", name_of(result.status()), result.message());
   return not_solved;
@@ -190,6 +193,18 @@ int gradcheck_command(const RunArguments& arguments) {
   }
   if (check.passed()) return done;
   if (check.entries.empty()) fmt::print(stderr, "{}: {}\n", name_of(check.status), check.message);
+  const auto count = [&](GradientCheck::Verdict verdict) {
+    return std::count_if(check.entries.begin(), check.entries.end(),
+                         [&](const auto& entry) { return entry.verdict == verdict; });
+  };
+  if (const auto differ = count(GradientCheck::Verdict::differs); differ > 0)
+    fmt::print(stderr, "{} of {} derivatives differ\n", differ, check.entries.size());
+  if (const auto unchecked = count(GradientCheck::Verdict::not_checked); unchecked > 0)
+    fmt::print(
+        stderr,
+        "{} of {} derivatives are not checked: no difference step tells them to three digits, as of what is zero "
+        "but for rounding, or near a change of contact states\n",
+        unchecked, check.entries.size());
   return not_solved;
 }
 
@@ -224,10 +239,14 @@ int report_command(const std::string& directory) {
     std::cerr << directory << ": there is no results.jsonl; run `stickslip study` first\n";
     return bad_input;
   }
-  prepare_directory(directory, {"report.html"}, {"figures"});
   check_records(directory);
-  if (const auto stored = read_rows(directory); !stored.sound())
-    std::cerr << "note: " << directory << "/results.jsonl: " << stored.faults() << '\n';
+  const auto stored = read_rows(directory);
+  if (!stored.sound()) std::cerr << "note: " << directory << "/results.jsonl: " << stored.faults() << '\n';
+  if (stored.rows.empty()) {
+    std::cerr << directory << ": there are no rows in results.jsonl; run `stickslip study` with --resume first\n";
+    return bad_input;
+  }
+  prepare_directory(directory, {"report.html"}, {"figures"});
   write_report(directory);
   fmt::print("{}\n", (std::filesystem::path(directory) / "report.html").string());
   return done;

@@ -1,4 +1,4 @@
-/// The commands of the program (interface.md, section 1). Each returns the exit code: 0 done, 2 bad input, 3 the solve
+/// The commands of the program. Each returns the exit code: 0 done, 2 bad input, 3 the solve
 /// failed in a diagnosed way. Faults go to standard error, results to files and standard output.
 #pragma once
 

@@ -296,15 +296,18 @@ void JsonDocument::override_value(const std::string& assignment, Diagnostics& di
   if (equals == std::string::npos) return fault("is not POINTER=VALUE, for example /contacts/sole/friction=0.4");
   const std::string pointer = assignment.substr(0, equals), text = assignment.substr(equals + 1);
   const json* old = value_at(root_, pointer);
-  const json* parent = pointer.empty() ? nullptr : value_at(root_, pointer.substr(0, pointer.rfind('/')));
+  if (!is_pointer(pointer)) return fault(pointer_fault(root_, pointer));
+  const json* parent = value_at(root_, pointer.substr(0, pointer.rfind('/')));
   const bool can_add = parent && parent->is_object();  // an optional key: whoever reads the object says if it is none
-  if (const std::string message = pointer_fault(root_, pointer); !old && !can_add) return fault(message);
+  if (!old && !can_add) return fault(pointer_fault(root_, pointer));
   if (old && old->is_object()) return fault(pointer + " names an object; must name a number, a text or an array");
   json value = json::parse(text, nullptr, false);
   if (value.is_discarded()) {
     if (old && !old->is_string())
       return fault(in_quotes(text) + " is not a value of JSON; must be like " + shown(*old));
     value = text;
+  } else if (Diagnostics of_value; !parse(text, "", of_value)) {  // a key is given twice
+    return fault(of_value.errors().front().message);
   }
   set(pointer, std::move(value), origin);
 }

@@ -1,7 +1,6 @@
 /// A JSON text that remembers where each of its values stands.
 #pragma once
 
-#include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>

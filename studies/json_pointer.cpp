@@ -60,6 +60,8 @@ std::vector<std::string> names_in(const json& object) {
 
 }  // namespace
 
+bool is_pointer(const std::string& text) { return !text.empty() && keys_of(text); }
+
 const json* value_at(const json& root, const std::string& pointer) {
   const auto keys = keys_of(pointer);
   const json* value = keys ? &root : nullptr;
@@ -69,6 +71,8 @@ const json* value_at(const json& root, const std::string& pointer) {
 
 std::string pointer_fault(const json& root, const std::string& pointer) {
   const auto keys = keys_of(pointer);
+  if (pointer.starts_with('/') && !keys)
+    return in_quotes(pointer) + " is no JSON pointer; in a name ~ is written ~0 and / is written ~1";
   if (!keys || keys->empty())
     return in_quotes(pointer) + " is no JSON pointer; must begin with / and name a value, such as /time/steps";
   const json* value = &root;
@@ -77,6 +81,7 @@ std::string pointer_fault(const json& root, const std::string& pointer) {
     const json* next = member(*value, key);
     if (!next) {
       std::string message = pointer + " names nothing: " + (reached.empty() ? "the file" : reached);
+      if (value->is_array() && value->empty()) return message + " is empty";
       if (value->is_array()) return message + " has elements 0 to " + std::to_string(value->size() - 1);
       if (!value->is_object()) return message + " is " + shown(*value) + " and holds no " + in_quotes(key);
       const auto names = names_in(*value);

@@ -1,7 +1,6 @@
 #include "studies/method_options.hpp"
 
 #include <algorithm>
-#include <array>
 #include <type_traits>
 #include <utility>
 

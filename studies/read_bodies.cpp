@@ -139,6 +139,10 @@ const MeshFile* mesh_file(const JsonNode& node, const std::string& name, SceneRe
   const std::string path = (reading.folder / name).lexically_normal().string();
   auto found = reading.mesh_files.find(path);
   if (found == reading.mesh_files.end()) {
+    if (std::error_code none; std::filesystem::is_directory(path, none)) {
+      node.error("the mesh file " + path + " is a directory; must be a file");
+      return nullptr;
+    }
     std::ifstream stream(path, std::ios::binary);
     std::ostringstream text;
     if (stream) text << stream.rdbuf();

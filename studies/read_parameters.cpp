@@ -52,9 +52,15 @@ struct Reader {
       dropped.push_back(node.pointer());
     } else if (other) {
       node.error_at_key(pointer + " is an option of " + of + ", and the scene's method is " + method);
-    } else if (!reading.diagnostics.has_error_in(pointer) || !value_at(root, pointer)) {
+    } else if (!in_a_fault(pointer)) {
       node.error_at_key(reason(pointer, root, reading));
     }
+  }
+
+  /// Whether what keeps the pointer from a number has been said: a fault of the value, or of an unknown key beside it.
+  bool in_a_fault(const std::string& pointer) const {
+    const bool there = value_at(root, pointer) != nullptr;
+    return reading.diagnostics.has_error_in(there ? pointer : pointer.substr(0, pointer.rfind('/')));
   }
 
   /// One parameter, or where `each` one a node of the side: NAME/0, NAME/1, ... along it.

@@ -34,8 +34,8 @@ RunOptions run_options(const Input& input);
 /// is there, gathers every iterate.
 CaseResult simulate(const Simulation& simulation, const std::function<void()>& on_step = {}, Trace* trace = nullptr);
 
-/// Writes DIR/result.json and DIR/fields.pvd with its .vtu files; returns the former (interface.md, section 3). Throws
-/// std::system_error where the disk refuses.
+/// Writes DIR/result.json and DIR/fields.pvd with its .vtu files; returns the former (README, "What a run leaves").
+/// Throws std::system_error where the disk refuses.
 nlohmann::json write_result(const std::filesystem::path& directory, const Simulation& simulation,
                             const CaseResult& result);
 

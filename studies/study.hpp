@@ -1,8 +1,7 @@
 /// A study: every cell (a method with its options on a variant of the scene) is run, measured against the references,
-/// and recorded as one line of DIR/results.jsonl as soon as it is done. interface.md, section 4.
+/// and recorded as one line of DIR/results.jsonl as soon as it is done. (README, "Study files")
 #pragma once
 
-#include <functional>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>

@@ -4,7 +4,6 @@
 
 #include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/algebra/scalar.hpp"
@@ -59,15 +58,15 @@ class LinearSolver {
   /// pre: the last factorise() returned true.
   Matrix<T> solve(const Matrix<T>& right_hand_sides, bool transposed = false);
 
-  /// Relative backward error of the last solve, max_i |b - A x|_i / (|A||x| + |b|)_i over its columns (Oettli-Prager);
-  /// computed on demand from the values last factorised.
+  /// Relative backward error of the last solve, max_i |b - A x|_i / (|A||x| + |b|)_i over its columns (Oettli-Prager),
+  /// with the values last factorised.
   double backward_error() const;
 
   /// Estimate of the 1-norm condition number (Hager-Higham, about 5 solves, which are not counted).
   double condition_estimate();
 
   const SolverCounters& counters() const;
-  std::string name() const;            ///< e.g. "MUMPS 5.5.1 LU, PORD"; empty before the first factorisation
+  std::string name() const;            ///< e.g. "MUMPS 5.5.1 LU, PORD"; empty before analyse()
   const std::string& message() const;  ///< why the last factorise() failed
   long factor_nonzeros() const;        ///< entries of the last factor; 0 where the backend does not tell
 

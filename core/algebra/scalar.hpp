@@ -1,7 +1,7 @@
-/// The scalars of stickslip: double for the solver, Dual<N> for every derivative, std::complex<double> for
-/// the oracle of the tests (complex step over the whole program).
+/// The scalars of stickslip: double for the solver, Dual<N> for derivatives, Reverse (reverse.hpp) for the adjoint,
+/// std::complex<double> for the oracle of the tests (complex step over the whole program).
 ///
-/// One template serves the three, so solver, derivative and oracle cannot drift apart. Two rules keep that true:
+/// One template serves the four, so solver, derivative and oracle cannot drift apart. Two rules keep that true:
 ///   - branch on `value(x)`, the primal part, never on x;
 ///   - no implicit conversion from Dual or complex to double exists: a forgotten dependence does not compile.
 #pragma once
@@ -12,6 +12,9 @@
 #include <type_traits>
 
 namespace stickslip {
+
+/// Largest relative error of one rounding of a double, 2^-53.
+inline constexpr double unit_roundoff = 0x1p-53;
 
 /// Forward derivative: a value and N directional derivatives. S is the scalar it is built on (double, or
 /// std::complex<double> where the oracle needs a tangent of its own).

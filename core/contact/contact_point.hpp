@@ -12,8 +12,6 @@
 /// The methods differ only in who supplies lambda. Source: theory of [AC91], [PC99], [SL92].
 #pragma once
 
-#include <array>
-
 #include "core/contact/friction.hpp"
 
 namespace stickslip {

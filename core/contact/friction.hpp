@@ -2,7 +2,7 @@
 ///
 ///     trial  z = lambda + rho g        traction  t = P_mu(z)
 ///
-///   z = (z_N, z_T)   trial traction, Pa; compression is negative
+///   z = (z_N, z_T)   trial traction, force per area; compression is negative
 ///   open:  z_N > 0                    t = 0
 ///   stick: z_N <= 0, |z_T| <= bound   t = z
 ///   slip:  z_N <= 0, |z_T| >  bound   t_N = z_N,  t_T = bound z_T/|z_T|,     bound = -mu t_N
@@ -28,7 +28,7 @@ struct Traction {
 /// Relative width of the band in which a tie is decided by rule and not by rounding.
 inline constexpr double tie_band = 1e-12;
 
-/// The branch of a trial traction. `bound`: friction bound >= 0; `tie_normal`: z_N up to this counts as closed (Pa).
+/// The branch of a trial traction. `bound`: friction bound >= 0; `tie_normal`: z_N up to this counts as closed.
 /// Ties: a body that just rests is closed, a point on the cone sticks, and no bound never means stick.
 template <class T, int Tangents>
 ContactState classify(const Traction<T, Tangents>& trial, double bound, double tie_normal) {

@@ -7,9 +7,6 @@
 namespace stickslip {
 namespace {
 
-/// Relative distance (of a facet's length) within which a projection counts as lying at the facet's end.
-constexpr double at_end = 1e-9;
-
 struct Foot {
   double xi, distance;
   Vec<double, 2> at;
@@ -37,7 +34,7 @@ std::optional<ClosestPoint> closest_point(const Points<double>& points, const st
   Foot foot{0, std::numeric_limits<double>::infinity(), {0, 0}};
   for (std::size_t f = 0; f < facets.size(); ++f) {
     const Foot candidate = project(points, facets[f], x);
-    const double band = at_end * (points.col(facets[f][1]) - points.col(facets[f][0])).norm();
+    const double band = at_facet_end * (points.col(facets[f][1]) - points.col(facets[f][0])).norm();
     const bool tie = best >= 0 && std::abs(candidate.distance - foot.distance) <= band;
     if (tie ? before(candidate, foot) : candidate.distance < foot.distance) {
       foot = candidate;
@@ -45,13 +42,13 @@ std::optional<ClosestPoint> closest_point(const Points<double>& points, const st
     }
   }
   if (best < 0) return std::nullopt;
-  const bool start = foot.xi<at_end, end = foot.xi> 1 - at_end;
+  const bool start = foot.xi<at_facet_end, end = foot.xi> 1 - at_facet_end;
   if (!start && !end) return ClosestPoint{best, -1};
   const int vertex = facets[best][end ? 1 : 0];
   for (std::size_t f = 0; f < facets.size(); ++f)
     if (facets[f][end ? 0 : 1] == vertex)
       return end ? ClosestPoint{best, static_cast<int>(f)} : ClosestPoint{static_cast<int>(f), best};
-  const bool past_the_end = foot.xi < -at_end || foot.xi > 1 + at_end;
+  const bool past_the_end = foot.xi < -at_facet_end || foot.xi > 1 + at_facet_end;
   return past_the_end ? std::nullopt : std::optional<ClosestPoint>(ClosestPoint{best, -1});
 }
 

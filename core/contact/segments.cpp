@@ -1,7 +1,6 @@
 #include "core/contact/segments.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace stickslip {

@@ -116,9 +116,31 @@ PointGeometry<T> against_vertex(const Vec<T, 2>& x, const Vec<T, 2>& before, con
   g.normal << tau[1], -tau[0];
   g.gap = dot((x - v).eval(), g.normal);
   g.tangents = detail::tangent_frame<T>(g.normal);
-  g.weights.resize(3);
-  g.weights << T(1), T(-1), T(0);
+  g.weights.resize(2);
+  g.weights << T(1), T(-1);
   return g;
+}
+
+/// Lets a projection that lies just at the end of the facet v -> `to` slide off v: to one side it moves along the
+/// facet, to the other it does not (or along another facet), so half the slope is the mean of both derivatives.
+template <class T>
+void slide_off(PointGeometry<T>& geometry, const Vec<T, 2>& x, const Vec<T, 2>& v, const Vec<T, 2>& to) {
+  const Vec<T, 2> tau = to - v;
+  const T half = T(0.5) * dot((x - v).eval(), tau) / dot(tau, tau);
+  geometry.weights.conservativeResize(geometry.weights.size() + 1);
+  geometry.weights[1] += half;
+  geometry.weights[geometry.weights.size() - 1] = -half;
+}
+
+/// Outward normal of the slave side at its node: sum over its facets (solid on their left), weighted by length.
+template <class T>
+Vec<T, 2> slave_normal(const std::vector<std::pair<int, int>>& facets, const Points<T>& points) {
+  Vec<T, 2> n = Vec<T, 2>::Constant(T(0));
+  for (const auto& [a, b] : facets) {
+    n[0] += points(1, b) - points(1, a);
+    n[1] -= points(0, b) - points(0, a);
+  }
+  return n;
 }
 
 /// Turns the frame of a point half-way to its slave side: n becomes the bisector of the master normal and the reversed

@@ -1,5 +1,6 @@
 #include "core/mesh/generators.hpp"
 
+#include <map>
 #include <stdexcept>
 
 namespace stickslip {

@@ -1,7 +1,6 @@
 #include "core/mesh/half_disk.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 
 namespace stickslip {
 

@@ -1,6 +1,7 @@
 #include "core/mesh/middles.hpp"
 
 #include <algorithm>
+#include <map>
 
 namespace stickslip {
 namespace {

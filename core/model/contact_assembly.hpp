@@ -4,8 +4,6 @@
 /// lambda is an argument: the methods differ only in who supplies it.
 #pragma once
 
-#include <map>
-
 #include "core/model/frames.hpp"
 #include "core/model/state.hpp"
 

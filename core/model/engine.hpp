@@ -10,7 +10,6 @@
 #include <Eigen/Dense>
 #include <Eigen/SparseCore>
 #include <memory>
-#include <optional>
 #include <variant>
 
 #include "core/algebra/linear_solver.hpp"
@@ -100,7 +99,6 @@ class SparseEngine {
   long nonzeros() const { return pattern_->nonzeros(); }
 
  private:
-  void build_pattern(const std::vector<std::vector<int>>& element_rows);
   std::vector<int> point_rows(const ContactPoint& point) const;
 
   const Model& model_;
@@ -135,7 +133,6 @@ class Condensation {
   const std::string& message() const { return solver_.message(); }
   std::string name() const { return solver_.name(); }
   Counters counters;  ///< one factorisation and the solves that made S
-  double seconds = 0;
 
  private:
   const Model& model_;

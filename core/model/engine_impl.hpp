@@ -7,9 +7,6 @@ namespace stickslip {
 
 namespace detail {
 
-/// 1-norm condition estimate is not worth a solver of its own for the dense engine: Eigen has it for LU and LLT.
-inline constexpr double unit_roundoff = 1.1e-16;
-
 template <class T>
 std::vector<std::vector<int>> element_row_lists(const Model& model) {
   const int D = model.dimension;
@@ -171,7 +168,7 @@ Vector<T> SparseEngine<T>::residual(const Vector<T>& u, const Vector<T>& contact
   const int D = model_.dimension;
   scale.force = std::max(
       {scale.force, largest_nodal_norm(rows, D), largest_nodal_norm(external_, D), largest_nodal_norm(contact, D)});
-  scale.rounding = detail::unit_roundoff * stiffness_ * largest_nodal_norm(u, D);
+  scale.rounding = unit_roundoff * stiffness_ * largest_nodal_norm(u, D);
   rows -= external_;
   add_compact(model_, into_frames(model_, slots_.frames, Layout::compact, contact), rows);
   return rows;
@@ -370,7 +367,7 @@ Vector<T> CondensedEngine<T>::residual(const Vector<T>& u, const Vector<T>& cont
       {scale.force, largest_nodal_norm(rows, D), largest_nodal_norm(load_, D), largest_nodal_norm(contact, D)});
   double stiffest = 0;
   for (Eigen::Index i = 0; i < u.size(); ++i) stiffest = std::max(stiffest, value(condensation_->schur()(i, i)));
-  scale.rounding = detail::unit_roundoff * stiffest * largest_nodal_norm(u, D);
+  scale.rounding = unit_roundoff * stiffest * largest_nodal_norm(u, D);
   rows += into_frames(model_, slots_.frames, Layout::compact, contact) - load_;
   return rows;
 }

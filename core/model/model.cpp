@@ -21,16 +21,6 @@ int body_index(const Scene& scene, const std::string& name) {
   throw ModelError("there is no body \"" + name + "\"");
 }
 
-/// Mean of the outward facet normals at a slave node (solid on the left of a facet), zero where it has none.
-Vec<double, 2> outward_normal(const Points<double>& points, const std::vector<std::pair<int, int>>& facets) {
-  Vec<double, 2> n = Vec<double, 2>::Zero();
-  for (const auto& [a, b] : facets) {
-    const Vec<double, 2> tau = points.col(b).head<2>() - points.col(a).head<2>();
-    n += Vec<double, 2>(tau[1], -tau[0]);
-  }
-  return n;
-}
-
 /// Finds the facet or vertex of a polyline that a slave node faces; false where it lies past a free end.
 bool find_on_polyline(const Points<double>& points, const Polyline& polyline, const Numbers<double>& numbers,
                       ContactPoint& point) {
@@ -56,8 +46,7 @@ bool find_master(const Points<double>& points, const SideSet& master, ContactPoi
   if (!closest) return false;
   const auto& facet = master.facets[closest->facet];
   const Vec<double, 2> tau = points.col(facet[1]).head<2>() - points.col(facet[0]).head<2>();
-  const Vec<double, 2> slave_normal = outward_normal(points, point.area_facets);
-  if (point.shares_normal && slave_normal.dot(Vec<double, 2>(tau[1], -tau[0])) >= 0)
+  if (point.shares_normal && slave_normal(point.area_facets, points).dot(Vec<double, 2>(tau[1], -tau[0])) >= 0)
     return false;  // looks the same way
   if (closest->second < 0) {
     point.master = ContactPoint::Master::facet;
@@ -66,8 +55,13 @@ bool find_master(const Points<double>& points, const SideSet& master, ContactPoi
   }
   point.master = ContactPoint::Master::vertex;
   const int before = facet[0], vertex = facet[1], after = master.facets[closest->second][1];
-  point.nodes.insert(point.nodes.end(), {vertex, after});
+  point.nodes.push_back(vertex);
   point.neighbours = {before, after};
+  const Vec<double, 2> v = points.col(vertex).head<2>();
+  for (int to : point.neighbours) {
+    const Vec<double, 2> along = points.col(to).head<2>() - v;
+    if (std::abs((x - v).dot(along)) <= at_facet_end * along.squaredNorm()) point.nodes.push_back(to);
+  }
   return true;
 }
 
@@ -128,7 +122,7 @@ ContactPoint slave_point(const Model& model, const Points<double>& points, const
     if (std::find(edge.begin(), edge.end(), node) != edge.end()) point.area_edges.push_back(edge);
   point.area_of_bar = shape == ElementShape::bar2 && pairing.slave.nodes.size() == 1 && point.area_facets.empty();
   point.mesh_size = local_size(points, point.area_facets);
-  point.tie_length = tie_band * point.mesh_size + 4e-16 * points.col(node).cwiseAbs().maxCoeff();
+  point.tie_length = 8 * unit_roundoff * (point.mesh_size + points.col(node).cwiseAbs().maxCoeff());
   // what is on the axis of revolution cannot slide
   const bool slides = model.scene.contacts[pairing.index].friction && !model.is_on_axis(points, node);
   point.tangents = slides ? model.dimension - 1 : 0;
@@ -209,7 +203,7 @@ std::vector<double> step_ends(const Scene& scene) {
   std::set<double> ends;
   double start = 0;
   for (const auto& leg : scene.legs) {
-    for (int i = 1; i <= leg.steps; ++i) ends.insert(start + (leg.end - start) * i / leg.steps);
+    for (int i = 1; i <= leg.steps; ++i) ends.insert(start + (leg.end - start) * (static_cast<double>(i) / leg.steps));
     start = leg.end;
   }
   const double band = 1e-9 * start;

@@ -2,7 +2,6 @@
 /// not depend on a number (nodes, dofs, contact points, active effects); what does is in Slots<T>. Immutable.
 #pragma once
 
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -37,7 +36,8 @@ struct ContactPoint {
   Master master = Master::obstacle;
   int contact = 0;               ///< index in Scene::contacts
   int obstacle = -1;             ///< index in Scene::obstacles, -1 for a deformable master
-  std::vector<int> nodes;        ///< slave, then master nodes (facet: its two; vertex: the vertex and one neighbour)
+  std::vector<int> nodes;        ///< slave, then master nodes (facet: its two; vertex: itself, then the far ends of the
+                                 ///< facets at whose very end the projection lies)
   int slave_nodes = 1;           ///< how many of `nodes` are the slave's; more than one if segment-integrated
   std::vector<int> places;       ///< of `nodes` in Model::contact_nodes
   std::vector<int> neighbours;   ///< vertex: the vertices before and after it, whose facets share the normal
@@ -49,7 +49,7 @@ struct ContactPoint {
   bool shares_normal = false;  ///< deformable continua on both sides: the normal is the bisector of the two
   int slave_body = 0;
   double mesh_size = 0;   ///< local size of the slave side, 0 for a lumped point
-  double tie_length = 0;  ///< gaps up to this are rounding of the coordinates, or 1e-12 of the mesh size
+  double tie_length = 0;  ///< gaps up to this are rounding of the coordinates
   int multiplier = 0;     ///< offset of its components in the multiplier vector
   int tangents = 0;       ///< 0 (frictionless) or D - 1
   int components() const { return 1 + tangents; }

@@ -1,4 +1,4 @@
-/// Objectives: scalars over time, sums of what single steps contribute (interface.md, section 2).
+/// Objectives: scalars over time, sums of what single steps contribute (README, "Scene files").
 #pragma once
 
 #include "core/model/response.hpp"

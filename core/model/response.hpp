@@ -1,4 +1,4 @@
-/// Responses: scalars of a state, in any scalar, so that their derivatives are the same code (interface.md, section 2).
+/// Responses: scalars of a state, in any scalar, so that their derivatives are the same code (README, "Scene files").
 #pragma once
 
 #include <algorithm>
@@ -102,14 +102,15 @@ T contact_response(const Model& model, const Slots<T>& slots, const Response& re
     const auto closed = std::count_if(of_contact.begin(), of_contact.end(), [&](int p) {
       return value(state.contact.traction[model.points[p].multiplier]) < 0;
     });
-    if (closed < 2 || !(value(force) > 0)) return T(0);  // one point alone has no width
+    const bool rings = model.scene.space == Space::axisymmetric;
+    if (closed < (rings ? 1 : 2) || !(value(force) > 0)) return T(0);  // one point alone has no width, but off the axis
     using std::sqrt;
-    if (model.scene.space == Space::axisymmetric) {  // radius of a disk: exactly that of Hertz's p0 sqrt(1 - r^2/a^2)
+    if (rings) {  // radius of a disk: exactly that of Hertz's p0 sqrt(1 - r^2/a^2)
       for (int p : of_contact) {
         const T r = slots.points(0, model.points[p].nodes[0]);
         second_moment -= slots.geometry[p].area * state.contact.traction[model.points[p].multiplier] * r * r;
       }
-      return sqrt(T(2.5) * second_moment / force);
+      return value(second_moment) > 0 ? sqrt(T(2.5) * second_moment / force) : T(0);
     }
     Vector<T> normal = Vector<T>::Constant(2, T(0));  // of the contact as a whole: arms are measured across it
     for (int p : of_contact) {

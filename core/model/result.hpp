@@ -1,13 +1,11 @@
 /// How a solve ended and what it cost: the words shared by every method.
 #pragma once
 
-#include <string>
 #include <string_view>
-#include <vector>
 
 namespace stickslip {
 
-/// The whole set (interface.md, section 3).
+/// The whole set (README, "What a run leaves").
 enum class Status {
   converged,
   converged_at_roundoff,  ///< the tolerance lies below the rounding of the residual itself
@@ -25,7 +23,7 @@ std::string_view name_of(Status);
 /// converged, or converged_at_roundoff.
 bool is_converged(Status);
 
-/// Counts, equal on every machine; interface.md `cost.counts`.
+/// Counts, equal on every machine; `cost.counts` of a result.
 struct Counters {
   long assemblies = 0;
   long factorizations = 0;  ///< numeric, of any matrix: tangents and the condensation's

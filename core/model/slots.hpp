@@ -3,7 +3,6 @@
 /// oracle.
 #pragma once
 
-#include <algorithm>
 #include <variant>
 #include <vector>
 
@@ -81,17 +80,6 @@ T tributary_area(const ContactPoint& point, const Slots<T>& slots) {
   return area;
 }
 
-/// Outward normal of the slave side at its node: sum over its facets (solid on their left), weighted by length.
-template <class T>
-Vec<T, 2> slave_normal(const ContactPoint& point, const Points<T>& points) {
-  Vec<T, 2> n = Vec<T, 2>::Constant(T(0));
-  for (const auto& [a, b] : point.area_facets) {
-    n[0] += points(1, b) - points(1, a);
-    n[1] -= points(0, b) - points(0, a);
-  }
-  return n;
-}
-
 /// Geometry of a place against an obstacle.
 template <class T, class Place>
 PointGeometry<T> against_obstacle(const Obstacle& obstacle, const Place& x, const Numbers<T>& numbers) {
@@ -167,11 +155,14 @@ PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point,
     geometry = against_facet<T>(point2(slots.points, point.nodes[0]), point2(slots.points, point.nodes[1]),
                                 point2(slots.points, point.nodes[2]));
   } else {
-    geometry = against_vertex<T>(point2(slots.points, point.nodes[0]), point2(slots.points, point.neighbours[0]),
-                                 point2(slots.points, point.nodes[1]), point2(slots.points, point.neighbours[1]));
+    const Vec<T, 2> x = point2(slots.points, point.nodes[0]), v = point2(slots.points, point.nodes[1]);
+    geometry =
+        against_vertex<T>(x, point2(slots.points, point.neighbours[0]), v, point2(slots.points, point.neighbours[1]));
+    for (std::size_t n = 2; n < point.nodes.size(); ++n)
+      slide_off<T>(geometry, x, v, point2(slots.points, point.nodes[n]));
   }
   if (point.shares_normal) {
-    share_normal(geometry, slave_normal(point, slots.points));
+    share_normal(geometry, slave_normal(point.area_facets, slots.points));
     geometry.gap = T(0);
     for (std::size_t n = 0; n < point.nodes.size(); ++n)
       geometry.gap += geometry.weights[n] * dot(geometry.normal, point2(slots.points, point.nodes[n]));

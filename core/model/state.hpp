@@ -52,6 +52,9 @@ struct Increment {
   double contraction = 0;  ///< Uzawa: last measured ratio of multiplier updates; 0 if not measured
   std::vector<IterationRecord> history;
   std::vector<AugmentedState<T>> sweeps;
+  bool cut_off = false;  ///< by max_augmentations, as asked: status cap, but each of its equilibria was found
+  /// Good enough to go on from.
+  bool usable() const { return is_converged(status) || cut_off; }
 };
 
 /// Seconds by what they were spent on.

@@ -20,7 +20,7 @@ struct LinearElasticLaw {
     if (space == Space::plane_stress) lame = T(2) * lame * shear / (lame + T(2) * shear);
   }
 
-  /// Stress (Pa) of a displacement gradient H (D x D), in the scalar of H: U is T, or a Dual built on T.
+  /// Stress of a displacement gradient H (D x D), in the scalar of H: U is T, or a Dual built on T.
   template <class U, int D>
   Mat<U, D> stress(const Mat<U, D>& H) const {
     U trace = H(0, 0);

@@ -1,4 +1,3 @@
-#include <algorithm>
 
 #include "studies/report/chart_parts.hpp"
 #include "studies/report/look_up.hpp"

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <map>
 
 #include "studies/report/chart_parts.hpp"
 #include "studies/report/look_up.hpp"

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "studies/report/chart_parts.hpp"
 #include "studies/report/settings.hpp"

@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <map>
-#include <tuple>
 
 #include "studies/report/chart_parts.hpp"
 #include "studies/report/plot.hpp"

@@ -1,4 +1,4 @@
-/// What a scene does not call for costs nothing: allocations counted (cases.md D6), not timed.
+/// What a scene does not call for costs nothing: allocations counted, not timed.
 #include <gtest/gtest.h>
 
 #include "sensitivity/one_sided.hpp"

@@ -126,7 +126,7 @@ TEST(ThickRing, OfNearlyIncompressibleMaterialLocksInQ4AloneAndNotWithMeanDilata
   }
 }
 
-/// Timoshenko's cantilever of cases.md A12: E = 1000, nu = 0.3, L = 10, H = 1 under a load of 0.01 per length.
+/// Timoshenko's cantilever: E = 1000, nu = 0.3, L = 10, H = 1 under a load of 0.01 per length.
 double tip(const std::string& element, int along, int through, double thickness) {
   Scene s;
   s.space = Space::plane_stress;
@@ -257,7 +257,7 @@ Scene hertz_sphere(const std::string& element, int cells) {
 }
 
 TEST(HertzSphere, HasTheRadiusAndTheProfileOfItsForce) {
-  // a^3 = 3 P R / 4 E*, p0 = 3 P / 2 pi a^2 (cases.md A9), whatever the body is far away
+  // a^3 = 3 P R / 4 E*, p0 = 3 P / 2 pi a^2, whatever the body is far away
   for (const char* element : {"Q4", "Q4_mean_dilatation", "T3"}) {
     const auto solved = scenes::run(hertz_sphere(element, 40), MonolithicAL{});
     ASSERT_TRUE(is_converged(solved.trajectory.status));
@@ -295,7 +295,7 @@ TEST(Spaces, RefuseWhatTheyCannotHold) {
   expect_refused(segments, "/contacts/touch", "linear elements");
 }
 
-// --- press fit (cases.md A14) ----------------------------------------------------------------------------------------
+// --- press fit ----------------------------------------------------------------------------------------
 
 /// A full ring held against rigid motion where its own symmetry keeps it anyway: sides `along_x` and `along_y`, the
 /// nodes on the x and on the y axis of one of its circles.
@@ -365,7 +365,7 @@ Fit solve_fit(Space space, double nu, const std::string& element, int k, bool se
           solved.derivative("force", "offset") / area};
 }
 
-/// p of the closed form (cases.md A14; two Lame rings joined with the interference).
+/// p of the closed form (two Lame rings joined with the interference).
 double fit_pressure(Space space, double nu) {
   const bool plane_stress = space == Space::plane_stress;
   const double E1 = plane_stress ? 1000 : 1000 / (1 - nu * nu), n = plane_stress ? nu : nu / (1 - nu);
@@ -406,7 +406,7 @@ TEST(SlowPressFit, HasLamesPressureAndDisplacementsButForWhatTheFacetsTake) {
       const double outer = exact * 2 / E1 * (5.0 / 3 + n), inner = -exact * 2 / E1 * (5.0 / 3 - n);
       EXPECT_NEAR(fit.outer_at_fit / outer, share, 0.005);
       EXPECT_NEAR(fit.inner_at_fit / outer, share * inner / outer, 0.005);
-      EXPECT_NEAR(fit.rim / 0.004, share, 0.005);                        // for every nu (cases.md A14)
+      EXPECT_NEAR(fit.rim / 0.004, share, 0.005);                        // for every nu
       EXPECT_NEAR(fit.dp_dE * 1000, fit.pressure, 1e-8 * fit.pressure);  // E scales all stress, on any mesh
     }
     EXPECT_GT(std::log2(errors[1] / errors[2]), 1.9) << c.element;

@@ -1,4 +1,4 @@
-/// Hertz and Cattaneo-Mindlin in the plane (cases.md A8, A10): two equal cylinders, pressed and then sheared.
+/// Hertz and Cattaneo-Mindlin in the plane: two equal cylinders, pressed and then sheared.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// cases.md A7: two blocks under uniform pressure; the contact pressure must be uniform too, whatever the two meshes.
+// The contact patch test: two blocks under uniform pressure; the contact pressure must be uniform too, whatever the two
+// meshes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -101,7 +102,7 @@ TEST(ContactPatch, PassesWithThePenaltyMethodUpToTheUniformPenetration) {
   }
 }
 
-/// Node-to-segment passes where every master node is a slave node too, and else errs by what cases.md A7 derives from
+/// Node-to-segment passes where every master node is a slave node too, and else errs by what follows from
 /// the lumped slave forces: the expected failures.
 TEST(ContactPatch, FailsWithNodeToSegmentWhereMeshesDoNotMatchByTheDerivedAmount) {
   struct Row {

@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "sensitivity/gradcheck.hpp"
+#include "tests/support/cases.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace stickslip {
@@ -92,6 +94,48 @@ TEST(Case, AHeldBodyWithoutALoadRests) {
   std::shared_ptr<Condensation<double>> condensation;
   const auto result = run_case(std::make_shared<const Problem>(scene), Penalty{}, {}, condensation);
   EXPECT_EQ(result.status(), Status::converged) << result.message();
+}
+
+/// Blocks on matching meshes, the lower one moved along by `shift`: slave nodes face master nodes where it is 0.
+nlohmann::json matching_blocks(double shift) {
+  using nlohmann::json;
+  const json material = {{"linear_elastic", {{"E", 1000}, {"nu", 0.3}}}};
+  const auto box = [&](double left, double bottom, double right, int cells) {
+    return json{{"mesh", {{"box", {{"min", {left, bottom}}, {"max", {right, bottom + 1}}, {"cells", {cells, 3}}}}}},
+                {"material", material}};
+  };
+  return {{"space", "plane_strain"},
+          {"bodies", {{"lower", box(shift, 0, 4 + shift, 8)}, {"upper", box(1, 1, 3, 4)}}},
+          {"contacts", {{"sole", {{"slave", "upper.bottom"}, {"master", "lower.top"}, {"friction", 0.2}}}}},
+          {"supports",
+           {{{"on", "lower.bottom"}, {"move", {{"x", 0}, {"y", 0}}}},
+            {{"on", "upper.top"}, {"move", {{"x", {{0, 0}, {1, 0.004}}}, {"y", {{0, 0}, {1, -0.02}}}}}}}},
+          {"time", {{"end", 1}, {"steps", 2}}},
+          {"responses",
+           {{"fx", {{"contact_force", {{"contact", "sole"}, {"component", "x"}}}}},
+            {"N", {{"contact_force", {{"contact", "sole"}, {"component", "normal"}}}}},
+            {"turn", {{"reaction", {{"on", "upper.top"}, {"component", "moment"}, {"about", {2, 2}}}}}}}},
+          {"parameters", {{"shift", {{"/bodies/lower/mesh/box/min/0", 1}, {"/bodies/lower/mesh/box/max/0", 1}}}}}};
+}
+
+TEST(Case, GivesTheMeanOfBothDerivativesWhereANodeFacesANode) {
+  constexpr double h = 1e-5;
+  const nlohmann::json method = {{"monolithic_al", nlohmann::json::object()}};
+  const auto at = [&](double shift) { return cases::run(matching_blocks(shift), method, "blocks.json"); };
+  const auto here = at(0), ahead = at(h), behind = at(-h);
+  const auto& derivative = here.steps.back().sensitivities;
+  const Vector<double>&middle = here.steps.back().responses, &after = ahead.steps.back().responses,
+        &before = behind.steps.back().responses;
+  double largest = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double forward = (after[i] - middle[i]) / h, backward = (middle[i] - before[i]) / h;
+    largest = std::max({largest, std::abs(forward), std::abs(backward)});
+  }
+  for (int i = 0; i < 3; ++i)  // h times curvatures of the size of the derivative over a cell
+    EXPECT_NEAR(derivative(i, 0), (after[i] - before[i]) / (2 * h), 1e-4 * largest) << i;
+  EXPECT_GT(largest, 1);
+  // and the program's own differences, which keep the pairing, say the same
+  EXPECT_TRUE(check_gradients(here.problem->model, here.method, {}).passed());
 }
 
 }  // namespace

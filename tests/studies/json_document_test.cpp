@@ -146,6 +146,11 @@ TEST(Override, RefusesWhatNamesNoValue) {
       {"/contacts/sole=1", "names an object"},
       {"/contacts/sole/friction", "is not POINTER=VALUE"},
       {"contacts=1", "is no JSON pointer"},
+      {"=1", "is no JSON pointer; must begin with /"},
+      {"/contacts/sole/~=1", "in a name ~ is written ~0"},
+      {"/contacts/s~ole/friction=1", "in a name ~ is written ~0"},
+      {"/none/0=1", "/none is empty"},
+      {R"(/list/0={"a": 1, "a": 2})", "the key \"a\" is given twice"},
       {"/list/7=1", "/list has elements 0 to 1"},
       {"/list/01=1", "/list has elements 0 to 1"},
       {"/contacts/sole/friction/x=1", "/contacts/sole/friction is 0.3 and holds no \"x\""},
@@ -154,7 +159,7 @@ TEST(Override, RefusesWhatNamesNoValue) {
       {"/contacts/sole/friction=1e999", "\"1e999\" is not a value of JSON"},
   };
   for (const auto& [assignment, message] : faults) {
-    auto document = parsed(R"({"contacts": {"sole": {"friction": 0.3}}, "list": [1, 2]})");
+    auto document = parsed(R"({"contacts": {"sole": {"friction": 0.3}}, "list": [1, 2], "none": []})");
     const auto before = document.root();
     Diagnostics diagnostics;
     document.override_value(assignment, diagnostics);

@@ -120,6 +120,20 @@ std::string identifier(const testing::TestParamInfo<std::string>& info) {
 
 INSTANTIATE_TEST_SUITE_P(All, Shipped, testing::ValuesIn(names(false, false)), identifier);
 
+TEST(Headline, MonolithicTakesAsManyIterationsAtEveryScale) {  // README
+  json document = scene("cattaneo_mindlin");
+  document.erase("parameters");
+  int iterations = 0;
+  for (const double scale : {1e-3, 1.0, 1e3}) {
+    const auto result = run(document, {{"monolithic_al", {{"scale", scale}}}}, "cattaneo_mindlin");
+    ASSERT_TRUE(is_converged(result.status())) << scale << ": " << result.message();
+    EXPECT_EQ(result.trajectory.counters.cutbacks, 0) << scale;
+    if (iterations == 0) iterations = result.trajectory.counters.newton;
+    // where rounding, which grows with the scale, is above the tolerance, each of the 10 steps takes two more to see it
+    EXPECT_NEAR(result.trajectory.counters.newton, iterations, 20) << scale;
+  }
+}
+
 /// The headline's kind of scene at a size for the complex step in every run: two half disks, pressed and then sheared.
 json half_disks(double friction) {
   json document = json::parse(R"({

@@ -1,4 +1,4 @@
-/// Small scenes written in C++, shared by the tests: what interface.md's files say, without the files. Every number
+/// Small scenes written in C++, shared by the tests: what scene files say, without the files. Every number
 /// that a test differentiates has a slot.
 #pragma once
 
