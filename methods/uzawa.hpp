@@ -98,6 +98,7 @@ Standing judge(const UzawaAL& method, const Slots<T>& slots, const Regularisatio
   // in slip the bound passes the rounding of the pressure on
   const double traction = (1 + friction) * (stiffest * gap + 10 * unit_roundoff * scales.traction);
   const bool small = progress.error_left() <= method.tolerance * scales.traction;
+  // where nothing falls any more, rounding may have met the condition of a stiff body on a soft one
   const bool at_roundoff = (progress.stalled() && progress.violation() <= gap && progress.update() <= traction) ||
                            (progress.exhausted() && progress.violation() <= 1e3 * gap);
   Standing now;

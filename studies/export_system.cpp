@@ -103,7 +103,8 @@ Where a support is inclined, a row is a direction of its frame, not an axis. Wha
 }  // namespace
 
 void export_system(const std::filesystem::path& folder, const CaseResult& result) {
-  const auto& [model, slots, unused] = *result.problem;
+  const auto& model = result.problem->model;
+  const auto& slots = result.problem->slots;
   const auto& increment = result.trajectory.increments.back();
   const auto& state = increment.state;
   const auto in_frames = [&](const Vector<double>& v) { return into_frames(model, slots.frames, Layout::all, v); };
