@@ -124,7 +124,7 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
       // slow mode would need more than `limit` passes at such a q, and not start at so small a change.
       const bool drifts = pass > 10 && q > 1 - 1e-4 && change <= 1e-11 * std::max(size, carried[j]);
       settled &=
-          change == 0 || stalled || drifts || (q < 1 && pass > 2 && left <= std::max(tolerance * size, 8 * floors[j]));
+          change == 0 || stalled || drifts || (q < 1 && pass > 2 && left <= std::max(tolerance * size, floors[j]));
       if (last[j] > 0 && change > floors[j]) record.contraction = std::max(record.contraction, q);
       last[j] = change;
     }
