@@ -17,7 +17,6 @@
 /// then, and open. [AC91], [HSW08]; theory: core/README.md.
 #pragma once
 
-#include <chrono>
 #include <unordered_map>
 
 #include "core/model/engine.hpp"
@@ -30,18 +29,6 @@ namespace stickslip {
 /// iterate may overshoot by any factor.
 struct RunScales {
   double force = 0, length = 0, traction = 0;
-};
-
-/// Adds the seconds of its own life to a total.
-class Stopwatch {
- public:
-  explicit Stopwatch(double& total) : total_(total), start_(std::chrono::steady_clock::now()) {}
-  ~Stopwatch() { total_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-  Stopwatch(const Stopwatch&) = delete;
-
- private:
-  double& total_;
-  std::chrono::steady_clock::time_point start_;
 };
 
 /// What a run carries from solve to solve; owned by the caller.

@@ -17,7 +17,7 @@ namespace stickslip {
 struct Problem {
   Model model;
   Slots<double> slots;
-  double seconds = 0;  ///< to make them
+  Seconds seconds;  ///< `setup`: to make them, but for the contact search
   explicit Problem(const Scene& scene);
 };
 

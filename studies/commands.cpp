@@ -15,7 +15,6 @@
 #include "studies/explain.hpp"
 #include "studies/export_system.hpp"
 #include "studies/method_options.hpp"
-#include "studies/missing_effects.hpp"
 #include "studies/progress.hpp"
 #include "studies/report/report.hpp"
 #include "studies/result_rows.hpp"
@@ -148,7 +147,7 @@ int run_command(const RunArguments& arguments) {
   }
   if (!arguments.export_to.empty() && !result.trajectory.increments.empty()) export_system(arguments.export_to, result);
   if (arguments.json) std::cout << document.dump(2) << '\n';
-  for (const auto& sentence : missing_effects(result)) fmt::print(stderr, "warning: {}\n", sentence);
+  for (const auto& sentence : document["warnings"]) fmt::print(stderr, "warning: {}\n", sentence.get<std::string>());
   if (is_converged(result.status())) return done;
   fmt::print(stderr, "{}: {}\n", name_of(result.status()), result.message());
   return not_solved;

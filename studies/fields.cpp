@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "studies/strains.hpp"
 #include "studies/vtu.hpp"
 
 namespace stickslip {
@@ -19,33 +20,23 @@ Matrix<double> element_stress(const Problem& problem, const State<double>& state
   int count = 0;
   for (const auto& body : model.bodies) count += body.mesh.element_count();
   Matrix<double> stress = Matrix<double>::Zero(6, count);
-  int column = 0;
+  int first = 0;  // column of the body's first element
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    const auto& body = model.bodies[b];
-    if (!is_continuum(body.mesh.shape)) {
-      column += body.mesh.element_count();
-      continue;
-    }
-    const auto& law = std::get<LinearElasticLaw<double>>(problem.slots.laws[b]);
-    detail::with_element(body, [&]<class Shape, Kinematics kinematics>() {
-      constexpr int rows = stress_dimension(kinematics);
-      for (int e = 0; e < body.mesh.element_count(); ++e, ++column) {
-        const auto nodes = detail::element_nodes(body, e);
-        const auto X = detail::gather_coordinates<double, Shape>(problem.slots.points, nodes.data());
-        const auto u = detail::gather_displacements<double, Shape>(state.displacement, nodes.data());
-        double volume = 0;
-        for_each_gradient<double, Shape, kinematics>(X, 1, [&](const auto& gradient) {
-          const Mat<double, rows> H = gradient.of(u), s = law.template stress<double, rows>(H);
-          double zz = model.scene.space == Space::plane_strain ? law.lame * H.trace() : 0;
-          if constexpr (rows == 3) zz = s(2, 2);
-          Eigen::Matrix<double, 6, 1> components;
-          components << s(0, 0), s(1, 1), zz, s(0, 1), 0, 0;
-          stress.col(column) += gradient.volume * components;
-          volume += gradient.volume;
-        });
-        stress.col(column) /= volume;
-      }
+    const auto* law = std::get_if<LinearElasticLaw<double>>(&problem.slots.laws[b]);
+    Vector<double> volumes = Vector<double>::Zero(model.bodies[b].mesh.element_count());
+    for_each_strain(problem, state.displacement, b, [&](int e, const auto& H, double volume) {
+      constexpr int rows = std::decay_t<decltype(H)>::RowsAtCompileTime;
+      const Mat<double, rows> s = law->template stress<double, rows>(H);
+      double zz = model.scene.space == Space::plane_strain ? law->lame * H.trace() : 0;
+      if constexpr (rows == 3) zz = s(2, 2);
+      Eigen::Matrix<double, 6, 1> components;
+      components << s(0, 0), s(1, 1), zz, s(0, 1), 0, 0;
+      stress.col(first + e) += volume * components;
+      volumes[e] += volume;
     });
+    for (Eigen::Index e = 0; e < volumes.size(); ++e)
+      if (volumes[e] > 0) stress.col(first + e) /= volumes[e];
+    first += static_cast<int>(volumes.size());
   }
   return stress;
 }

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "studies/strains.hpp"
+
 namespace stickslip {
 namespace {
 
@@ -16,21 +18,9 @@ struct Deformation {
 /// Largest strain and rotation in the elements of a body.
 Deformation deformation_of(const Problem& problem, const Vector<double>& displacement, std::size_t b) {
   Deformation largest;
-  const auto& body = problem.model.bodies[b];
-  if (!is_continuum(body.mesh.shape)) return largest;
-  detail::with_element(body, [&]<class Shape, Kinematics kinematics>() {
-    constexpr int rows = stress_dimension(kinematics);
-    for (int e = 0; e < body.mesh.element_count(); ++e) {
-      const auto nodes = detail::element_nodes(body, e);
-      const auto X = detail::gather_coordinates<double, Shape>(problem.slots.points, nodes.data());
-      const auto u = detail::gather_displacements<double, Shape>(displacement, nodes.data());
-      for_each_gradient<double, Shape, kinematics>(X, 1, [&](const auto& gradient) {
-        const Mat<double, rows> H = gradient.of(u);
-        const double strain = (H + H.transpose()).cwiseAbs().maxCoeff() / 2;
-        largest.strain = std::max(largest.strain, strain);
-        largest.rotation = std::max(largest.rotation, std::abs(H(1, 0) - H(0, 1)) / 2);
-      });
-    }
+  for_each_strain(problem, displacement, b, [&](int, const auto& H, double) {
+    largest.strain = std::max(largest.strain, (H + H.transpose()).cwiseAbs().maxCoeff() / 2);
+    largest.rotation = std::max(largest.rotation, std::abs(H(1, 0) - H(0, 1)) / 2);
   });
   return largest;
 }

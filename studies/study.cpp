@@ -14,6 +14,12 @@ double larger(double a, double b) { return std::isnan(a) || a > b ? a : b; }
 
 double relative(double difference, double scale) { return difference == 0 ? 0 : difference / scale; }
 
+/// What a derivative is measured by: its own size, or, where it should vanish, what the response over the parameter
+/// makes of it.
+double derivative_scale(double exact, double response, const Parameter& parameter) {
+  return std::max(std::abs(exact), parameter.value != 0 ? std::abs(response / parameter.value) : 0.0);
+}
+
 /// Relative L2 difference of component c (0 normal, 1 tangential) of all tractions, weighted by area.
 double traction_difference(const CaseResult& result, const CaseResult& reference, int c) {
   const auto& model = result.problem->model;
@@ -76,8 +82,7 @@ Errors enforcement_errors(const CaseResult& result, const CaseResult& reference)
     }
     errors["response:" + scene.responses[i].name] = relative(difference, size);
     for (std::size_t j = 0; j < scene.parameters.size(); ++j) {
-      double worst = 0;
-      double scale = scene.parameters[j].value != 0 ? size / std::abs(scene.parameters[j].value) : 0;
+      double worst = 0, scale = 0;
       bool complete = true;
       for (std::size_t n = 0; n < result.steps.size(); ++n) {
         const auto& computed = result.steps[n].sensitivities;
@@ -85,7 +90,7 @@ Errors enforcement_errors(const CaseResult& result, const CaseResult& reference)
         complete = complete && computed.size() > 0 && exact.size() > 0;
         if (!complete) break;
         worst = larger(worst, std::abs(computed(i, j) - exact(i, j)));
-        scale = larger(scale, std::abs(exact(i, j)));
+        scale = larger(scale, derivative_scale(exact(i, j), size, scene.parameters[j]));
       }
       if (complete)
         errors["sensitivity:" + scene.responses[i].name + "/" + scene.parameters[j].name] = relative(worst, scale);
@@ -98,7 +103,7 @@ Errors enforcement_errors(const CaseResult& result, const CaseResult& reference)
     errors["response:" + name] = relative(std::abs(result.objectives[i] - value), size);
     for (std::size_t j = 0; computed.size() > 0 && exact.size() > 0 && j < scene.parameters.size(); ++j) {
       const auto& parameter = scene.parameters[j];
-      const double scale = std::max(std::abs(exact(i, j)), parameter.value != 0 ? size / std::abs(parameter.value) : 0);
+      const double scale = derivative_scale(exact(i, j), size, parameter);
       errors["sensitivity:" + name + "/" + parameter.name] = relative(std::abs(computed(i, j) - exact(i, j)), scale);
     }
   }
@@ -127,9 +132,7 @@ Errors discretisation_errors(const CaseResult& result, const ReferenceValues& re
       const auto& parameter = scene.parameters[j];
       const auto value = derivatives->second.find(parameter.name);
       if (value == derivatives->second.end()) continue;
-      // a derivative that should vanish is measured by what the response over the parameter makes of its size
-      const double scale =
-          std::max(std::abs(value->second), parameter.value != 0 ? size / std::abs(parameter.value) : 0);
+      const double scale = derivative_scale(value->second, size, parameter);
       errors["sensitivity:" + name + "/" + parameter.name] = relative(std::abs(gradient[j] - value->second), scale);
     }
   };

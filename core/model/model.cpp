@@ -2,13 +2,12 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <set>
 
-#include "core/contact/search.hpp"
 #include "core/mesh/generators.hpp"
 #include "core/mesh/sides.hpp"
+#include "core/model/pairing.hpp"
 #include "core/model/supports.hpp"
 #include "core/solids/shapes.hpp"
 
@@ -19,183 +18,6 @@ int body_index(const Scene& scene, const std::string& name) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
     if (scene.bodies[b].name == name) return static_cast<int>(b);
   throw ModelError("there is no body \"" + name + "\"");
-}
-
-/// Finds the facet or vertex of a polyline that a slave node faces; false where it lies past a free end.
-bool find_on_polyline(const Points<double>& points, const Polyline& polyline, const Numbers<double>& numbers,
-                      ContactPoint& point) {
-  const int count = static_cast<int>(polyline.points.size());
-  Points<double> vertices(2, count);
-  for (int v = 0; v < count; ++v)
-    for (int i = 0; i < 2; ++i) vertices(i, v) = numbers(polyline.points[v][i]);
-  std::vector<std::vector<int>> facets;  // reversed: those of the search have the solid on their left
-  for (int v = 0; v + 1 < count + polyline.closed; ++v) facets.push_back({(v + 1) % count, v});
-  const auto closest = closest_point(vertices, facets, points.col(point.nodes[0]).head<2>());
-  if (!closest) return false;
-  const auto& facet = facets[closest->facet];
-  point.master = closest->second < 0 ? ContactPoint::Master::facet : ContactPoint::Master::vertex;
-  point.of_polyline = facet;
-  if (closest->second >= 0) point.of_polyline.push_back(facets[closest->second][1]);
-  return true;
-}
-
-/// Finds the master of a slave node; false where it faces none.
-bool find_master(const Points<double>& points, const SideSet& master, ContactPoint& point) {
-  const Vec<double, 2> x = points.col(point.nodes[0]).head<2>();
-  const auto closest = closest_point(points, master.facets, x);
-  if (!closest) return false;
-  const auto& facet = master.facets[closest->facet];
-  const Vec<double, 2> tau = points.col(facet[1]).head<2>() - points.col(facet[0]).head<2>();
-  if (point.shares_normal && slave_normal(point.area_facets, points).dot(Vec<double, 2>(tau[1], -tau[0])) >= 0)
-    return false;  // looks the same way
-  if (closest->second < 0) {
-    point.master = ContactPoint::Master::facet;
-    point.nodes.insert(point.nodes.end(), {facet[0], facet[1]});
-    return true;
-  }
-  point.master = ContactPoint::Master::vertex;
-  const int before = facet[0], vertex = facet[1], after = master.facets[closest->second][1];
-  point.nodes.push_back(vertex);
-  point.neighbours = {before, after};
-  const Vec<double, 2> v = points.col(vertex).head<2>();
-  for (int to : point.neighbours) {
-    const Vec<double, 2> along = points.col(to).head<2>() - v;
-    if (std::abs((x - v).dot(along)) <= at_facet_end * along.squaredNorm()) point.nodes.push_back(to);
-  }
-  return true;
-}
-
-/// Finds what a slave node faces of its obstacle; false where it faces nothing. Throws ModelError where every place of
-/// it is as near as any other.
-bool find_on_obstacle(const Points<double>& points, const Scene& scene, ContactPoint& point) {
-  const Obstacle& obstacle = scene.obstacles[point.obstacle];
-  const auto numbers = scene.as<double>();
-  if (const auto* polyline = std::get_if<Polyline>(&obstacle.shape))
-    return find_on_polyline(points, *polyline, numbers, point);
-  const auto* circle = std::get_if<Circle>(&obstacle.shape);
-  const auto x = points.col(point.nodes[0]);
-  if (circle && x[0] == numbers(circle->center[0]) && x[1] == numbers(circle->center[1]))
-    throw ModelError("is where a slave node is, from which no place of the circle is nearer than another",
-                     "/obstacles/" + obstacle.name + "/circle/center");
-  return true;
-}
-
-int obstacle_index(const Scene& scene, const std::string& name) {
-  for (std::size_t o = 0; o < scene.obstacles.size(); ++o)
-    if (scene.obstacles[o].name == name) return static_cast<int>(o);
-  return -1;
-}
-
-/// Local size of the slave side: mean length of the facets at the node.
-double local_size(const Points<double>& points, const std::vector<std::pair<int, int>>& facets) {
-  double size = 0;
-  for (const auto& [a, b] : facets) size += (points.col(a) - points.col(b)).norm() / facets.size();
-  return size;
-}
-
-/// What all points of a contact have in common.
-struct Pairing {
-  int index, obstacle;  ///< in Scene::contacts, Scene::obstacles (-1: deformable master)
-  SideSet slave, master;
-};
-
-void add_point(Model& model, ContactPoint point) {
-  model.effects.contact = true;
-  model.effects.friction |= point.tangents > 0;
-  model.effects.deformable_master |= point.obstacle < 0;
-  point.multiplier = model.multiplier_count;
-  model.multiplier_count += point.components();
-  model.points.push_back(std::move(point));
-}
-
-/// A point at a slave node, still without a master.
-ContactPoint slave_point(const Model& model, const Points<double>& points, const Pairing& pairing, int node) {
-  const auto shape = model.bodies[pairing.slave.body].mesh.shape;
-  ContactPoint point;
-  point.contact = pairing.index;
-  point.obstacle = pairing.obstacle;
-  point.nodes = {node};
-  point.slave_body = pairing.slave.body;
-  for (const auto& facet : pairing.slave.facets)
-    if (facet[0] == node || facet[1] == node) point.area_facets.emplace_back(facet[0], facet[1]);
-  for (const auto& edge : pairing.slave.edges)
-    if (std::find(edge.begin(), edge.end(), node) != edge.end()) point.area_edges.push_back(edge);
-  point.area_of_bar = shape == ElementShape::bar2 && pairing.slave.nodes.size() == 1 && point.area_facets.empty();
-  point.mesh_size = local_size(points, point.area_facets);
-  point.tie_length = 8 * unit_roundoff * (point.mesh_size + points.col(node).cwiseAbs().maxCoeff());
-  // what is on the axis of revolution cannot slide
-  const bool slides = model.scene.contacts[pairing.index].friction && !model.is_on_axis(points, node);
-  point.tangents = slides ? model.dimension - 1 : 0;
-  return point;
-}
-
-/// Node-to-segment: each slave node against the closest point of its master.
-void pair_nodes(Model& model, const Points<double>& points, const Pairing& pairing) {
-  const auto shape = model.bodies[pairing.slave.body].mesh.shape;
-  for (int node : pairing.slave.nodes) {
-    if (is_quadratic(shape) && model.is_on_axis(points, node)) continue;  // it has no tributary area
-    ContactPoint point = slave_point(model, points, pairing, node);
-    point.shares_normal = pairing.obstacle < 0 && is_continuum(shape) && !point.area_facets.empty();
-    const bool faces = pairing.obstacle >= 0 ? find_on_obstacle(points, model.scene, point)
-                                             : find_master(points, pairing.master, point);
-    if (faces) add_point(model, std::move(point));
-  }
-}
-
-/// Segment-integrated: the multiplier of each slave node on the pieces of its facets.
-void pair_segments(Model& model, const Points<double>& points, const Pairing& pairing) {
-  const auto& nodes = pairing.slave.nodes;
-  auto carries = [&](int node) { return std::find(nodes.begin(), nodes.end(), node) != nodes.end(); };
-  std::map<int, std::vector<Piece>> of_node;
-  for (const auto& facet : pairing.slave.facets) {
-    Piece whole_facet;
-    whole_facet.slave = {facet[0], facet[1]};
-    const auto pieces =
-        pairing.obstacle >= 0 ? std::vector<Piece>{whole_facet} : facing_pieces(points, facet, pairing.master.facets);
-    for (Piece piece : pieces)
-      for (int end = 0; end < 2; ++end)
-        if (carries(facet[end])) {
-          piece.carrier = end;
-          piece.whole = !carries(facet[1 - end]);
-          of_node[facet[end]].push_back(piece);
-        }
-  }
-  for (int node : nodes) {
-    if (of_node[node].empty()) continue;
-    ContactPoint point = slave_point(model, points, pairing, node);
-    point.master = ContactPoint::Master::pieces;
-    point.pieces = of_node[node];
-    auto add = [&](int n) {
-      if (n >= 0 && std::find(point.nodes.begin(), point.nodes.end(), n) == point.nodes.end()) point.nodes.push_back(n);
-    };
-    for (const auto& piece : point.pieces) std::for_each(piece.slave.begin(), piece.slave.end(), add);
-    point.slave_nodes = static_cast<int>(point.nodes.size());
-    for (const auto& piece : point.pieces) std::for_each(piece.master.begin(), piece.master.end(), add);
-    add_point(model, std::move(point));
-  }
-}
-
-void pair_contact(Model& model, const Points<double>& points, int index) {
-  const Contact& contact = model.scene.contacts[index];
-  const std::string where = "/contacts/" + contact.name;
-  Pairing pairing{index, obstacle_index(model.scene, contact.master), model.side(contact.slave), {}};
-  if (pairing.obstacle < 0) {
-    pairing.master = model.side(contact.master);
-    if (model.dimension == 3) throw ModelError("a deformable master needs a 2D space", where);
-    if (pairing.master.facets.empty()) throw ModelError("the master side has no facets", where);
-  } else if (model.dimension == 3 && !std::holds_alternative<Plane>(model.scene.obstacles[pairing.obstacle].shape)) {
-    throw ModelError("in space an obstacle must be a plane", "/obstacles/" + contact.master);
-  }
-  if (!contact.segment) return pair_nodes(model, points, pairing);
-  const auto shape = model.bodies[pairing.slave.body].mesh.shape;
-  const bool quadratic_master = pairing.obstacle < 0 && is_quadratic(model.bodies[pairing.master.body].mesh.shape);
-  if (is_quadratic(shape) || quadratic_master)
-    throw ModelError("segment integration needs linear elements on both sides", where);
-  if (model.dimension == 3 || pairing.slave.facets.empty() || !is_continuum(shape))
-    throw ModelError("segment integration needs a slave side of facets of a solid body", where);
-  if (pairing.obstacle >= 0 && std::holds_alternative<Polyline>(model.scene.obstacles[pairing.obstacle].shape))
-    throw ModelError("segment integration against a polyline is not available in this version", where);
-  pair_segments(model, points, pairing);
 }
 
 /// Ends of the increments: equal steps of each leg, and the breakpoints of every table in it.
@@ -212,21 +34,10 @@ std::vector<double> step_ends(const Scene& scene) {
     const bool there = next != ends.end() && *next <= t + band;
     if (t > band && t < start && !there) ends.insert(t);
   };
-  auto hit = [&](const Table& table) {
-    for (int n = 0; n < table.repeat; ++n)
-      for (std::size_t i = 0; i < table.points.size(); ++i) hit_time(table.time(n, i));
-  };
-  auto hit_motion = [&](const auto& of) {
-    for (const auto& [axis, table] : of.move) hit(table);
-    if (of.rotate) hit(of.rotate->angle);
-  };
-  for (const auto& support : scene.supports) {
-    hit_motion(support);
-    if (support.inclined) hit(support.inclined->value);
-  }
-  for (const auto& obstacle : scene.obstacles) hit_motion(obstacle);
+  for (const auto& support : scene.supports) for_each_breakpoint(support, hit_time);
+  for (const auto& obstacle : scene.obstacles) for_each_breakpoint(obstacle, hit_time);
   for (const auto& load : scene.loads)
-    if (load.history) hit(*load.history);
+    if (load.history) for_each_breakpoint(*load.history, hit_time);
   for (const auto& objective : scene.objectives)
     if (objective.at) hit_time(*objective.at);
   return {ends.begin(), ends.end()};
@@ -368,6 +179,11 @@ int Model::contact_index(const std::string& name) const {
 }
 
 Model make_model(const Scene& scene) {
+  Seconds spent;
+  return make_model(scene, spent);
+}
+
+Model make_model(const Scene& scene, Seconds& spent) {
   Model model;
   model.scene = scene;
   model.dimension = scene.dimension();
@@ -397,7 +213,10 @@ Model make_model(const Scene& scene) {
     }
   }
   number_dofs(model, points);
-  for (std::size_t c = 0; c < scene.contacts.size(); ++c) pair_contact(model, points, static_cast<int>(c));
+  {
+    const Stopwatch time(spent.contact_search);
+    pair_contacts(model, points);
+  }
   std::set<int> nodes;
   for (const auto& point : model.points) nodes.insert(point.nodes.begin(), point.nodes.end());
   model.contact_nodes.assign(nodes.begin(), nodes.end());

@@ -11,6 +11,7 @@
 #include "core/mesh/mesh.hpp"
 #include "core/model/design_velocity.hpp"
 #include "core/model/scene.hpp"
+#include "core/model/seconds.hpp"
 #include "core/solids/continuum.hpp"
 
 namespace stickslip {
@@ -127,8 +128,9 @@ std::string space_fault(Space space, const Body& body);
 std::string radius_fault(Space space, const Points<double>& points, const BodyMesh& body);
 
 /// Makes meshes, finds contact pairs, numbers the dofs. Throws ModelError where the scene makes no sense as a whole
-/// (what a single entry may hold was checked when it was read).
+/// (what a single entry may hold was checked when it was read). `spent` gets the seconds of the contact search.
 Model make_model(const Scene& scene);
+Model make_model(const Scene& scene, Seconds& spent);
 
 /// "a.b - a.c" resolved on the meshes of a scene; used by make_model and by the scene reader's checks.
 SideSet resolve_side(const Scene& scene, const std::vector<BodyMesh>& bodies, const std::string& expression);

@@ -62,71 +62,84 @@ T slip_component(const Model& model, const Slots<T>& slots, const State<T>& stat
   return s;
 }
 
+/// Force of the contact points `of_contact` on the slave, or its moment; positive in compression if normal.
+template <class T>
+T contact_force(const Model& model, const Slots<T>& slots, const Response& response, const State<T>& state,
+                const std::vector<int>& of_contact) {
+  T force{};
+  for (int p : of_contact) {
+    const auto& point = model.points[p];
+    const auto& geometry = slots.geometry[p];
+    if (response.component == "normal") {
+      force -= geometry.area * state.contact.traction[point.multiplier];
+      continue;
+    }
+    force -= with_point(model, point, [&]<int D, int Tangents>() {
+      const auto on_slave =
+          point_force<T, D, Tangents>(geometry, gather_traction<T, Tangents>(state.contact.traction, point.multiplier));
+      Vec<T, D> at = Vec<T, D>::Constant(T(0));  // the force is shared by the slave's nodes
+      for (int n = 0; n < point.slave_nodes; ++n)
+        for (int i = 0; i < D; ++i) at[i] += geometry.weights[n] * slots.points(i, point.nodes[n]);
+      return component_of(response, on_slave, at, slots.numbers);
+    });
+  }
+  return force;
+}
+
+/// Half width of a contact from the second moment of its pressures, a = 2 sqrt(I / F) as of Hertz's p0 sqrt(1 -
+/// x^2/a^2); of revolution its radius, sqrt(5/2 I / F), likewise. 0 where fewer than two points are closed, one in
+/// revolution: one alone has no width, but off the axis.
+template <class T>
+T contact_half_width(const Model& model, const Slots<T>& slots, const State<T>& state,
+                     const std::vector<int>& of_contact) {
+  using std::sqrt;
+  const bool rings = model.scene.space == Space::axisymmetric;
+  T force{}, second_moment{};
+  Vector<T> moment = Vector<T>::Constant(2, T(0)), normal = moment;  // normal: of the contact as a whole
+  int closed = 0;
+  const auto nodal_force = [&](int p) {
+    return -slots.geometry[p].area * state.contact.traction[model.points[p].multiplier];
+  };
+  const auto place = [&](int p) { return slots.points.col(model.points[p].nodes[0]); };
+  for (int p : of_contact) {
+    const T f = nodal_force(p);
+    closed += value(f) > 0;
+    force += f;
+    for (int i = 0; i < 2; ++i) {
+      moment[i] += f * place(p)[i];
+      normal[i] += f * slots.geometry[p].normal[i];
+    }
+  }
+  if (closed < (rings ? 1 : 2) || !(value(force) > 0)) return T(0);
+  for (int p : of_contact) {  // arms: radii, or across the normal from the centroid
+    const T arm =
+        rings ? T(place(p)[0])
+              : (normal[0] * (place(p)[1] - moment[1] / force) - normal[1] * (place(p)[0] - moment[0] / force)) /
+                    norm(normal);
+    second_moment += nodal_force(p) * arm * arm;
+  }
+  return value(second_moment) > 0 ? sqrt(T(rings ? 2.5 : 4.0) * second_moment / force) : T(0);
+}
+
 template <class T>
 T contact_response(const Model& model, const Slots<T>& slots, const Response& response, const ResponsePlace& place,
                    const State<T>& state) {
   using Kind = Response::Kind;
   const int contact = model.contact_index(response.on);
   if (response.kind == Kind::dissipation) return state.dissipation.size() ? state.dissipation[contact] : T(0);
-  T force{}, second_moment{};
-  std::vector<T> samples, weights;
   std::vector<int> of_contact;
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p)
     if (model.points[p].contact == contact && (place.contact_point < 0 || place.contact_point == p))
       of_contact.push_back(p);
-  Vector<T> centroid = Vector<T>::Constant(model.dimension, T(0));
+  if (response.kind == Kind::contact_force) return contact_force(model, slots, response, state, of_contact);
+  if (response.kind == Kind::contact_half_width) return contact_half_width(model, slots, state, of_contact);
+  std::vector<T> samples, weights;
   for (int p : of_contact) {
-    const auto& point = model.points[p];
-    const auto& geometry = slots.geometry[p];
-    const T pressure = -state.contact.traction[point.multiplier];
-    weights.push_back(geometry.area);
-    if (response.kind == Kind::contact_pressure) samples.push_back(pressure);
+    if (response.kind == Kind::slip && model.points[p].tangents == 0) continue;
+    weights.push_back(slots.geometry[p].area);
+    if (response.kind == Kind::contact_pressure) samples.push_back(-state.contact.traction[model.points[p].multiplier]);
     if (response.kind == Kind::gap) samples.push_back(state.contact.gap[p]);
-    if (response.kind == Kind::slip && point.tangents > 0)
-      samples.push_back(slip_component(model, slots, state, p, response.component));
-    if (response.kind == Kind::contact_force && response.component != "normal")
-      force -= with_point(model, point, [&]<int D, int Tangents>() {
-        const auto on_slave = point_force<T, D, Tangents>(
-            geometry, gather_traction<T, Tangents>(state.contact.traction, point.multiplier));
-        Vec<T, D> at = Vec<T, D>::Constant(T(0));  // the force is shared by the slave's nodes
-        for (int n = 0; n < point.slave_nodes; ++n)
-          for (int i = 0; i < D; ++i) at[i] += geometry.weights[n] * slots.points(i, point.nodes[n]);
-        return component_of(response, on_slave, at, slots.numbers);
-      });
-    else
-      force += geometry.area * pressure;
-    for (int i = 0; i < model.dimension; ++i) centroid[i] += geometry.area * pressure * slots.points(i, point.nodes[0]);
-  }
-  if (response.kind == Kind::contact_force) return force;
-  if (response.kind == Kind::contact_half_width) {
-    const auto closed = std::count_if(of_contact.begin(), of_contact.end(), [&](int p) {
-      return value(state.contact.traction[model.points[p].multiplier]) < 0;
-    });
-    const bool rings = model.scene.space == Space::axisymmetric;
-    if (closed < (rings ? 1 : 2) || !(value(force) > 0)) return T(0);  // one point alone has no width, but off the axis
-    using std::sqrt;
-    if (rings) {  // radius of a disk: exactly that of Hertz's p0 sqrt(1 - r^2/a^2)
-      for (int p : of_contact) {
-        const T r = slots.points(0, model.points[p].nodes[0]);
-        second_moment -= slots.geometry[p].area * state.contact.traction[model.points[p].multiplier] * r * r;
-      }
-      return value(second_moment) > 0 ? sqrt(T(2.5) * second_moment / force) : T(0);
-    }
-    Vector<T> normal = Vector<T>::Constant(2, T(0));  // of the contact as a whole: arms are measured across it
-    for (int p : of_contact) {
-      const T weight = -slots.geometry[p].area * state.contact.traction[model.points[p].multiplier];
-      for (int i = 0; i < 2; ++i) normal[i] += weight * slots.geometry[p].normal[i];
-    }
-    const T length = norm(normal);
-    for (int p : of_contact) {
-      const T weight = -slots.geometry[p].area * state.contact.traction[model.points[p].multiplier];
-      const int node = model.points[p].nodes[0];
-      const T arm = (normal[0] * (slots.points(1, node) - centroid[1] / force) -
-                     normal[1] * (slots.points(0, node) - centroid[0] / force)) /
-                    length;
-      second_moment += weight * arm * arm;
-    }
-    return T(2) * sqrt(second_moment / force);
+    if (response.kind == Kind::slip) samples.push_back(slip_component(model, slots, state, p, response.component));
   }
   return samples.empty() ? T(0) : take_of(response.take, samples, weights);
 }

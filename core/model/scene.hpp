@@ -48,6 +48,13 @@ struct Table {
   double time(int n, std::size_t i) const { return points[i].first + n * period(); }
 };
 
+/// Calls f(t) with the time of each point of each repeat.
+template <class F>
+void for_each_breakpoint(const Table& table, F&& f) {
+  for (int n = 0; n < table.repeat; ++n)
+    for (std::size_t i = 0; i < table.points.size(); ++i) f(table.time(n, i));
+}
+
 /// The time that the points of a repeated table know: `t`, less the periods that went by. A breakpoint of any repeat
 /// is met to the last bit, so that no rounding adds up over the repeats.
 inline double time_in_period(const Table& table, double t) {
@@ -210,6 +217,15 @@ struct Support {
   std::optional<Rotation> rotate = {};    ///< of all axes, added to `move`
   std::optional<Inclined> inclined = {};  ///< alone
 };
+
+/// Calls f(t) with the breakpoints of all that a support or an obstacle prescribes; between them it is linear in time.
+template <class Moved, class F>
+void for_each_breakpoint(const Moved& moved, F&& f) {
+  for (const auto& [axis, table] : moved.move) for_each_breakpoint(table, f);
+  if (moved.rotate) for_each_breakpoint(moved.rotate->angle, f);
+  if constexpr (requires { moved.inclined; })
+    if (moved.inclined) for_each_breakpoint(moved.inclined->value, f);
+}
 
 struct Load {
   enum class Kind { traction, pressure, force, body_force };

@@ -7,6 +7,7 @@
 #include "core/contact/contact_point.hpp"
 #include "core/model/model.hpp"
 #include "core/model/result.hpp"
+#include "core/model/seconds.hpp"
 
 namespace stickslip {
 
@@ -55,11 +56,6 @@ struct Increment {
   bool cut_off = false;  ///< by max_augmentations, as asked: status cap, but each of its equilibria was found
   /// Good enough to go on from.
   bool usable() const { return is_converged(status) || cut_off; }
-};
-
-/// Seconds by what they were spent on.
-struct Seconds {
-  double setup = 0, assembly = 0, factorization = 0, backsolve = 0, sensitivity = 0, total = 0;
 };
 
 template <class T>

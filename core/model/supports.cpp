@@ -10,18 +10,6 @@ namespace {
 /// Sine of the least angle between a direction and the span of others at which it counts as a new one.
 constexpr double new_direction = 1e-9;
 
-void add_breakpoints(const Table& table, std::set<double>& times) {
-  for (int n = 0; n < table.repeat; ++n)
-    for (std::size_t i = 0; i < table.points.size(); ++i) times.insert(table.time(n, i));
-}
-
-/// Breakpoints of all that a support prescribes; between them it is linear in time.
-void add_breakpoints(const Support& support, std::set<double>& times) {
-  for (const auto& [axis, table] : support.move) add_breakpoints(table, times);
-  if (support.rotate) add_breakpoints(support.rotate->angle, times);
-  if (support.inclined) add_breakpoints(support.inclined->value, times);
-}
-
 /// JSON pointer of what a constraint comes from.
 std::string pointer_of(const Scene& scene, const Constraint& constraint) {
   const std::string support = "/supports/" + std::to_string(constraint.support);
@@ -67,8 +55,9 @@ struct Held {
     if (!by.empty()) weights = others.colPivHouseholderQr().solve(d);
     if (by.empty() || (d - others * weights).norm() > new_direction) return by.push_back(constraint);
     std::set<double> times;
-    add_breakpoints(scene.supports[constraint.support], times);
-    for (const auto& other : by) add_breakpoints(scene.supports[other.support], times);
+    const auto take = [&](double t) { times.insert(t); };
+    for_each_breakpoint(scene.supports[constraint.support], take);
+    for (const auto& other : by) for_each_breakpoint(scene.supports[other.support], take);
     double largest = 0, difference = 0;
     std::size_t with = 0;  // who has the largest say
     for (std::size_t c = 1; c < by.size(); ++c)

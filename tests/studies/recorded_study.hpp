@@ -1,7 +1,9 @@
 /// A small recorded study on the disk, for tests of its report.
 #pragma once
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -86,7 +88,8 @@ class StudyOnDisk : public testing::Test {
  protected:
   StudyOnDisk() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    directory_ = std::filesystem::path("report_test") / test->test_suite_name() / test->name();
+    directory_ = std::filesystem::path(testing::TempDir()) /
+                 fmt::format("stickslip_{}_{}_{}", ::getpid(), test->test_suite_name(), test->name());
     std::filesystem::remove_all(directory_);
     std::filesystem::create_directories(directory_);
   }

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "studies/fields.hpp"
 #include "tests/support/cases.hpp"
 
 namespace stickslip {
@@ -32,7 +33,49 @@ CaseResult run_reference(json scene, const json& method) {
   return cases::run(std::move(scene), method, "reference.json");
 }
 
-/// Holds responses, derivatives and states of every step against a solution of the reference file.
+double largest_of(const json& numbers) {
+  double largest = 0;
+  for (const auto& x : numbers.flatten()) largest = std::max(largest, std::abs(x.get<double>()));
+  return largest;
+}
+
+/// Holds place, area, state, force on the slave, gap and slip of the step of every point of a contact against
+/// those of the file.
+/// `before`: state of the last step.
+void compare_contact(const Problem& problem, const State<double>& before, const State<double>& state,
+                     const std::string& name, const json& expected, const std::string& what) {
+  const auto& [model, slots, unused] = problem;
+  const int D = model.dimension, contact = model.contact_index(name);
+  const double force = largest_of(expected.at("force")), size = largest_of(expected.at("x"));
+  const double length = std::max(largest_nodal_norm(state.displacement, D), largest_of(expected.at("gap")));
+  const auto vector = [&](const char* key, std::size_t i) {
+    const auto x = expected.at(key).at(i).get<std::vector<double>>();
+    return Vector<double>(Eigen::Map<const Vector<double>>(x.data(), static_cast<Eigen::Index>(x.size())));
+  };
+  std::size_t i = 0;
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    const auto& point = model.points[p];
+    if (point.contact != contact) continue;
+    ASSERT_LT(i, expected.at("state").size()) << what;
+    const std::string where = what + " point " + std::to_string(i);
+    const auto& geometry = slots.geometry[p];
+    EXPECT_LE((slots.points.col(point.nodes[0]) - vector("x", i)).norm(), same_solution * size) << where;
+    EXPECT_NEAR(geometry.area, expected["area"][i].get<double>(), same_solution * geometry.area) << where;
+    static const char* const names[] = {"open", "stick", "slip"};
+    EXPECT_EQ(names[static_cast<int>(state.contact.state[p])], expected["state"][i].get<std::string>()) << where;
+    EXPECT_LE((geometry.area * traction_vector(problem, state, p) - vector("force", i)).norm(), same_solution * force)
+        << where;
+    EXPECT_NEAR(state.contact.gap[p], expected["gap"][i].get<double>(), same_solution * length) << where;
+    const Vector<double> placed = state.contact.placement - before.contact.placement;
+    const Vector<double> slip =
+        geometry.tangents.leftCols(point.tangents) * placed.segment(tangential_offset(model, p), point.tangents);
+    EXPECT_LE((slip - vector("slip", i)).norm(), same_solution * length) << where;
+    ++i;
+  }
+  EXPECT_EQ(i, expected.at("state").size()) << what;
+}
+
+/// Holds responses, derivatives and contacts of every step against a solution of the reference file.
 void compare(const CaseResult& result, const json& solution, const std::string& what) {
   const auto& scene = result.problem->model.scene;
   ASSERT_TRUE(is_converged(result.status())) << what << ": " << result.message();
@@ -44,42 +87,30 @@ void compare(const CaseResult& result, const json& solution, const std::string& 
   for (std::size_t i = 0; i < scene.responses.size(); ++i) {
     const auto& name = scene.responses[i].name;
     double size = 0;
-    for (const auto& step : steps)
-      if (step["responses"].contains(name)) size = std::max(size, std::abs(step["responses"][name].get<double>()));
+    for (const auto& step : steps) size = std::max(size, std::abs(step["responses"].at(name).get<double>()));
     if (size == 0) size = largest;
     for (std::size_t n = 0; n < steps.size(); ++n) {
-      if (!steps[n]["responses"].contains(name)) continue;
-      EXPECT_NEAR(result.steps[n].responses[i], steps[n]["responses"][name].get<double>(), same_solution * size)
+      EXPECT_NEAR(result.steps[n].responses[i], steps[n]["responses"].at(name).get<double>(), same_solution * size)
           << what << " step " << n << " " << name;
-      if (!steps[n].contains("sensitivities") || !steps[n]["sensitivities"].contains(name)) continue;
       for (std::size_t j = 0; j < scene.parameters.size(); ++j) {
         const auto& parameter = scene.parameters[j];
         double scale = parameter.value != 0 ? size / std::abs(parameter.value) : 0;
-        for (const auto& step : steps)
-          scale = std::max(scale, std::abs(step["sensitivities"][name].value(parameter.name, 0.0)));
-        if (!steps[n]["sensitivities"][name].contains(parameter.name)) continue;
-        EXPECT_NEAR(result.steps[n].sensitivities(i, j), steps[n]["sensitivities"][name][parameter.name].get<double>(),
-                    same_derivative * scale)
+        const auto exact = [&](const json& step) {
+          return step.at("sensitivities").at(name).at(parameter.name).get<double>();
+        };
+        for (const auto& step : steps) scale = std::max(scale, std::abs(exact(step)));
+        EXPECT_NEAR(result.steps[n].sensitivities(i, j), exact(steps[n]), same_derivative * scale)
             << what << " step " << n << " " << name << "/" << parameter.name;
       }
     }
   }
-  for (std::size_t n = 0; n < steps.size(); ++n) {
-    if (!steps[n].contains("contacts")) continue;
-    for (const auto& [name, expected] : steps[n]["contacts"].items()) {
-      const int contact = result.problem->model.contact_index(name);
-      std::vector<double> pressure;
-      const auto& model = result.problem->model;
-      for (std::size_t p = 0; p < model.points.size(); ++p)
-        if (model.points[p].contact == contact)
-          pressure.push_back(result.steps[n].increment->state.contact.traction[model.points[p].multiplier]);
-      ASSERT_EQ(pressure.size(), expected["normal"].size()) << what;
-      double size = 0;
-      for (const auto& t : expected["normal"]) size = std::max(size, std::abs(t.get<double>()));
-      for (std::size_t p = 0; p < pressure.size(); ++p)
-        EXPECT_NEAR(pressure[p], expected["normal"][p].get<double>(), same_solution * std::max(size, 1e-300))
-            << what << " step " << n << " point " << p;
-    }
+  EXPECT_TRUE(steps.back().contains("contacts")) << what;
+  const State<double>* before = &result.trajectory.initial;
+  for (std::size_t n = 0; n < steps.size(); before = &result.steps[n++].increment->state) {
+    const json contacts = steps[n].value("contacts", json::object());
+    for (const auto& [name, expected] : contacts.items())
+      compare_contact(*result.problem, *before, result.steps[n].increment->state, name, expected,
+                      what + " step " + std::to_string(n) + " " + name);
   }
 }
 

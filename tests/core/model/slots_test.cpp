@@ -169,7 +169,8 @@ TEST(GapsAgainstBodies, AreThoseOfTheMovedPoints) {
         if (model.points[p].master != kind) continue;
         ++met;
         double gap = 1e-3;  // the contact's offset
-        for (int n = 0; n < 3; ++n) gap += g.weights[n] * g.normal.dot(slots.points.col(model.points[p].nodes[n]));
+        const auto& nodes = model.points[p].nodes;
+        for (std::size_t n = 0; n < nodes.size(); ++n) gap += g.weights[n] * g.normal.dot(slots.points.col(nodes[n]));
         EXPECT_NEAR(g.gap, gap, 20 * epsilon) << p;  // a dozen products of coordinates of the size of one
       }
     }
