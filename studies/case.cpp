@@ -9,9 +9,9 @@
 #include "core/model/response.hpp"
 #include "studies/json_document.hpp"
 #include "studies/method_options.hpp"
-#include "studies/missing_effects.hpp"
 #include "studies/provenance.hpp"
 #include "studies/version.hpp"
+#include "studies/warnings.hpp"
 
 namespace stickslip {
 namespace {
@@ -398,7 +398,7 @@ json result_json(const CaseResult& result, const std::string& scene_text) {
                     {"plasticity", false},
                     {"smoothing", false},
                     {"sensitivity", effects.sensitivity}};
-  out["warnings"] = missing_effects(result);
+  out["warnings"] = warnings_of(result);
   out["size"] = size_json(result);
   out["steps"] = steps_json(result);
   if (!model.scene.objectives.empty()) out["objectives"] = objectives_json(result);

@@ -1,4 +1,4 @@
-#include "studies/missing_effects.hpp"
+#include "studies/warnings.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -29,40 +29,56 @@ json blocks(double press, double push, double friction) {
           {"time", {{"end", 2}, {"steps", 4}}}};
 }
 
-std::vector<std::string> missing(const json& document) {
-  return missing_effects(cases::run(document, {{"monolithic_al", json::object()}}, "blocks.json"));
+std::vector<std::string> warnings(const json& document) {
+  return warnings_of(cases::run(document, {{"monolithic_al", json::object()}}, "blocks.json"));
 }
 
-TEST(MissingEffects, AreNoneWhereSmallStrainHolds) { EXPECT_THAT(missing(blocks(0.002, 0.02, 0.1)), IsEmpty()); }
+TEST(Warnings, AreNoneWhereSmallStrainHolds) { EXPECT_THAT(warnings(blocks(0.002, 0.02, 0.1)), IsEmpty()); }
 
-TEST(MissingEffects, NameSlidingBeyondHalfAnElementWithItsLength) {
+TEST(Warnings, NameSlidingBeyondHalfAnElementWithItsLength) {
   // elements of 0.5; the sole lags behind the top by its shear, some 0.1 of it
-  EXPECT_THAT(missing(blocks(0.002, 1.0, 0.1)), ElementsAre(HasSubstr("sole: a point slides by 2 elements")));
+  EXPECT_THAT(warnings(blocks(0.002, 1.0, 0.1)), ElementsAre(HasSubstr("sole: a point slides by 2 elements")));
 }
 
-TEST(MissingEffects, NameStrainAndRotation) {
-  const auto found = missing(blocks(0.3, 0.02, 0.1));
+TEST(Warnings, NameStrainAndRotation) {
+  const auto found = warnings(blocks(0.3, 0.02, 0.1));
   EXPECT_THAT(found, testing::Contains(HasSubstr("upper is strained by up to")));
-  EXPECT_THAT(missing(blocks(0.002, 0.02, 0.1)), IsEmpty());
+  EXPECT_THAT(warnings(blocks(0.002, 0.02, 0.1)), IsEmpty());
   // a bar of 4 x 1 whose end turns by 6 degrees about its corner: without strain, but for what the support takes
   json turned = blocks(0.002, 0.02, 0.1);
   turned["contacts"] = json::object();
   turned["supports"] = {{{"on", "lower.bottom"}, {"move", {{"x", 0}, {"y", 0}}}},
                         {{"on", "upper.top"}, {"rotate", {{"center", {2, 2}}, {"angle", {{0, 0}, {2, 6}}}}}}};
-  EXPECT_THAT(missing(turned), testing::Contains(HasSubstr("upper rotates by up to 6")));
+  EXPECT_THAT(warnings(turned), testing::Contains(HasSubstr("upper rotates by up to 6")));
 }
 
-TEST(MissingEffects, NameFrictionThatNeverSlips) {
+TEST(Warnings, NameFrictionThatNeverSlips) {
   EXPECT_THAT(
-      missing(blocks(0.002, 0, 5)),
+      warnings(blocks(0.002, 0, 5)),
       ElementsAre("sole: no point slipped in any step, so that the friction coefficient of 5 has no influence"));
 }
 
-TEST(MissingEffects, AreNotLookedForInWhatDidNotConverge) {
+TEST(Warnings, AreNotLookedForInWhatDidNotConverge) {
   json floating = blocks(0.002, 1.0, 0.1);
   floating["supports"].erase(1);
   floating["loads"] = {{{"on", "upper.top"}, {"traction", {0, 1}}}};
-  EXPECT_THAT(missing(floating), IsEmpty());
+  EXPECT_THAT(warnings(floating), IsEmpty());
+}
+
+TEST(Warnings, SayWhatCutStepsMeanWithFriction) {
+  const json impatient = {{"monolithic_al", {{"newton", {{"max_iterations", 3}}}}}};
+  for (const bool friction : {true, false}) {
+    json scene = blocks(0.002, 0.02, 0.1);
+    if (!friction) scene["contacts"]["sole"].erase("friction");
+    scene["supports"][1]["move"]["y"] = {{0, 0.001}, {1, -0.002}, {2, -0.002}};  // the states change within a step
+    const auto result = cases::run(scene, impatient, "blocks.json");
+    ASSERT_TRUE(is_converged(result.status())) << result.message();
+    EXPECT_EQ(result.trajectory.counters.cutbacks > 0, friction);
+    EXPECT_EQ(warnings_of(result).size(), friction ? 1 : 0);
+    if (friction) {
+      EXPECT_THAT(warnings_of(result), ElementsAre(HasSubstr("steps were cut into smaller ones")));
+    }
+  }
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "studies/missing_effects.hpp"
+#include "studies/warnings.hpp"
 
 #include <fmt/core.h>
 
@@ -25,7 +25,7 @@ Deformation deformation_of(const Problem& problem, const Vector<double>& displac
   return largest;
 }
 
-void add_deformations(const CaseResult& result, std::vector<std::string>& missing) {
+void add_deformations(const CaseResult& result, std::vector<std::string>& warnings) {
   constexpr double most_strain = 0.05, most_rotation = 5 * degree;
   const auto& model = result.problem->model;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
@@ -36,11 +36,11 @@ void add_deformations(const CaseResult& result, std::vector<std::string>& missin
     }
     const std::string& name = model.scene.bodies[b].name;
     if (largest.strain > most_strain)
-      missing.push_back(fmt::format("{} is strained by up to {:.2g} %; small strain holds below some 5 %", name,
-                                    100 * largest.strain));
+      warnings.push_back(fmt::format("{} is strained by up to {:.2g} %; small strain holds below some 5 %", name,
+                                     100 * largest.strain));
     if (largest.rotation > most_rotation)
-      missing.push_back(fmt::format("{} rotates by up to {:.2g} degrees; small strain holds below some 5", name,
-                                    largest.rotation / degree));
+      warnings.push_back(fmt::format("{} rotates by up to {:.2g} degrees; small strain holds below some 5", name,
+                                     largest.rotation / degree));
   }
 }
 
@@ -49,7 +49,7 @@ bool is_flat(const Model& model, const ContactPoint& point) {
   return point.obstacle >= 0 && std::holds_alternative<Plane>(model.scene.obstacles[point.obstacle].shape);
 }
 
-void add_slips(const CaseResult& result, std::vector<std::string>& missing) {
+void add_slips(const CaseResult& result, std::vector<std::string>& warnings) {
   constexpr double most = 0.5;  // of a slave element
   const auto& model = result.problem->model;
   const auto& contacts = model.scene.contacts;
@@ -71,26 +71,38 @@ void add_slips(const CaseResult& result, std::vector<std::string>& missing) {
   }
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     if (farthest[c] > most)
-      missing.push_back(
+      warnings.push_back(
           fmt::format("{}: a point slides by {:.2g} elements of the slave; the contact geometry is that of "
                       "the start, which holds below some half of one",
                       contacts[c].name, farthest[c]));
     if (contacts[c].friction && result.problem->slots.friction[c] > 0 && closed[c] && !slipped[c])
-      missing.push_back(
+      warnings.push_back(
           fmt::format("{}: no point slipped in any step, so that the friction coefficient of {:.6g} has no "
                       "influence",
                       contacts[c].name, result.problem->slots.friction[c]));
   }
 }
 
+void add_cut_steps(const CaseResult& result, std::vector<std::string>& warnings) {
+  if (!result.problem->model.effects.friction) return;
+  const auto cut = std::count_if(result.steps.begin(), result.steps.end(),
+                                 [](const StepResult& step) { return step.increment->cutbacks > 0; });
+  if (cut > 0)
+    warnings.push_back(
+        fmt::format("{} of {} steps were cut into smaller ones: friction depends on the path, and this is another "
+                    "one than whole steps would take",
+                    cut, result.steps.size()));
+}
+
 }  // namespace
 
-std::vector<std::string> missing_effects(const CaseResult& result) {
-  std::vector<std::string> missing;
-  if (!is_converged(result.trajectory.status)) return missing;
-  add_deformations(result, missing);
-  add_slips(result, missing);
-  return missing;
+std::vector<std::string> warnings_of(const CaseResult& result) {
+  std::vector<std::string> warnings;
+  if (!is_converged(result.trajectory.status)) return warnings;
+  add_deformations(result, warnings);
+  add_slips(result, warnings);
+  add_cut_steps(result, warnings);
+  return warnings;
 }
 
 }  // namespace stickslip
