@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <string>
 
-#include "methods/newton.hpp"
+#include "methods/equilibrium.hpp"
 #include "methods/regularisation.hpp"
 
 namespace stickslip {

@@ -25,8 +25,9 @@ Increment<T> solve_increment(const MonolithicAL& method, Run<T, E>& run, const S
   Increment<T> increment;
   const auto rho = initial_regularisation(run.slots, method);
   const ContactInput<T> input{run.model, run.slots, rho, previous.contact.placement, cone_radius(method), time};
-  const auto equilibrium = newton(run.engine, input, run.engine.begin(time, previous.displacement),
-                                  previous.contact.traction, true, previous.contact.state, method.newton, run.account);
+  const auto equilibrium =
+      find_equilibrium(run.engine, input, run.engine.begin(time, previous.displacement), previous.contact.traction,
+                       true, previous.contact.state, method.newton, run.account);
   account_for(increment, equilibrium, 0);
   increment.state = settle(run, input, equilibrium, previous.dissipation);
   return increment;

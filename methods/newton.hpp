@@ -20,6 +20,7 @@
 #include <unordered_map>
 
 #include "core/model/engine.hpp"
+#include "core/model/loading.hpp"
 #include "methods/options.hpp"
 #include "methods/trace.hpp"
 
@@ -47,18 +48,22 @@ struct Equilibrium {
   Vector<T> multiplier;  ///< lambda
   ContactField<T> field;
   int iterations = 0;
-  bool rough = false;  ///< ended by `forcing`, short of the tolerance
+  bool rough = false;            ///< ended by `forcing`, short of the tolerance
+  double motion = 0, first = 0;  ///< how far contact nodes went from the start values; in the first step
   std::vector<IterationRecord> history;
 };
 
 namespace detail {
 
-inline double ratio(double x, double scale) { return x == 0 ? 0 : x / scale; }
+/// Relative size; nothing is small against a scale that is not finite.
+inline double ratio(double x, double scale) {
+  return x == 0 ? 0 : std::isfinite(scale) ? x / scale : std::numeric_limits<double>::quiet_NaN();
+}
 
 struct Residuals {
   double equilibrium = 0, normal = 0, tangential = 0;
   double floor_equilibrium = 0, floor_length = 0, floor_traction = 0;  ///< what rounding alone may leave of them
-  double largest() const { return std::max({equilibrium, normal, tangential}); }
+  double largest() const { return larger(larger(equilibrium, normal), tangential); }
   bool finite() const { return std::isfinite(equilibrium) && std::isfinite(normal) && std::isfinite(tangential); }
   bool within(double tolerance) const { return finite() && largest() <= tolerance; }
   bool within_rounding(double tolerance) const {
@@ -67,6 +72,14 @@ struct Residuals {
            tangential <= std::max({tolerance, floor_length, floor_traction});
   }
 };
+
+/// Largest displacement that supports prescribe at a time.
+template <class T>
+double prescribed_motion(const Model& model, const Slots<T>& slots, double time) {
+  Vector<T> displacement = Vector<T>::Constant(model.dof_count(), T(0));
+  prescribe(model, slots, time, displacement);
+  return largest_nodal_norm(displacement, model.dimension);
+}
 
 /// One point of the Newton path, evaluated.
 template <class T>
@@ -79,11 +92,11 @@ struct Evaluation {
 
 template <class T, class E>
 Evaluation<T> evaluate(E& engine, const ContactInput<T>& input, const Vector<T>& u, const Vector<T>& multiplier,
-                       bool unknown, const RunScales& of_run) {
+                       bool unknown, double prescribed, const RunScales& of_run) {
   constexpr double rounding_factor = 100;  // several hundred terms meet in a row; each rounds once
   // Rounding of this share of the forces means displacements 1e9 times those that the forces cause: a body that drifts
-  // off on a nearly singular tangent, and no equilibrium that rounding hides.
-  constexpr double adrift = 1e-5;
+  // off on a nearly singular tangent, and no equilibrium that rounding hides; unless supports move it as far.
+  constexpr double adrift = 1e-5, carried = 10;
   const Model& model = input.model;
   Evaluation<T> at;
   RunScales& scales = at.scales;
@@ -119,7 +132,7 @@ Evaluation<T> evaluate(E& engine, const ContactInput<T>& input, const Vector<T>&
     if (!engine.is_free(row)) at.rows_u[row] = T(0);
   at.residuals.equilibrium = ratio(largest_nodal_norm(at.rows_u, model.dimension), scales.force);
   const double bulk_floor = rounding_factor * ratio(force.rounding, scales.force);
-  if (bulk_floor <= adrift)
+  if (bulk_floor <= adrift || reach <= carried * prescribed)
     at.residuals.floor_equilibrium =
         bulk_floor + rounding_factor * ratio(unit_roundoff * contact_rounding * reach, scales.force);
   at.residuals.floor_length = rounding_factor * ratio(unit_roundoff * reach, scales.length);
@@ -141,7 +154,7 @@ Evaluation<T> evaluate(E& engine, const ContactInput<T>& input, const Vector<T>&
                               : presses ? ratio(defect, traction_scale)
                                         : 0;
       double& worst = c == 0 ? at.residuals.normal : at.residuals.tangential;
-      worst = std::max(worst, relative);
+      worst = larger(worst, relative);
     }
   return at;
 }
@@ -241,6 +254,32 @@ void rows_in(E& engine, const ContactInput<T>& input, const Vector<T>& u, const 
   if (unknown) at.rows_l = multiplier_residual(input.model, input.slots, field.traction, multiplier);
 }
 
+/// Whether friction alone may hold some body between surfaces that are not parallel: one without a support that touches
+/// what it touches along more than one normal.
+template <class T>
+bool is_wedged(const ContactInput<T>& input) {
+  constexpr double parallel = 1e-9;
+  const Model& model = input.model;
+  if (!model.effects.friction) return false;
+  return std::any_of(model.bodies.begin(), model.bodies.end(), [&](const BodyMesh& body) {
+    const auto owns = [&](int node) {
+      return node >= body.first_node && node < body.first_node + body.mesh.node_count;
+    };
+    if (std::any_of(model.constraints.begin(), model.constraints.end(),
+                    [&](const Constraint& constraint) { return owns(constraint.dof / model.dimension); }))
+      return false;
+    Vector<double> first;  // normal into the body
+    for (std::size_t p = 0; p < model.points.size(); ++p) {
+      const auto& nodes = model.points[p].nodes;
+      if (!owns(nodes.front()) && !owns(nodes.back())) continue;
+      const Vector<double> normal = values(input.slots.geometry[p].normal) * (owns(nodes.front()) ? 1 : -1);
+      if (first.size() == 0) first = normal;
+      if ((normal - first).norm() > parallel) return true;
+    }
+    return false;
+  });
+}
+
 inline constexpr const char* redundant_message =
     "constraints repeat one another: they share the force, and their sum alone is unique";
 
@@ -263,6 +302,9 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
                       double forcing = 0) {
   const Model& model = input.model;
   constexpr double shortest_step = 1.0 / 64;
+  // A step of a body that friction alone holds between surfaces is not trusted farther than this many times the largest
+  // motion so far: where points slip one way by the branches of an iterate, it would be thrown out of its contacts.
+  const double growth = detail::is_wedged(input) ? 10 : std::numeric_limits<double>::infinity();
   constexpr int patience = 10;  // iterations in one active set that leave more than half of the residual
   Equilibrium<T> result;
   std::vector<ContactState> used;                // states of the last tangent
@@ -272,7 +314,10 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
   const auto decided = unknown ? decided_elsewhere(model, input.slots) : std::vector<char>();
   int extra = detail::extra_iterations<T>(), steady = 0, presumptions = 3;
   double step_length = 1;
-  auto at = detail::evaluate(engine, input, u, multiplier, unknown, account.scales);
+  const double prescribed = detail::prescribed_motion(model, input.slots, input.time);
+  auto at = detail::evaluate(engine, input, u, multiplier, unknown, prescribed, account.scales);
+  const Vector<T> start = engine.compact(u);
+  double reach = account.scales.length;  // largest motion of a contact node that was met, in the run or in this solve
   for (int iteration = 0;; ++iteration) {
     result.history.push_back(detail::record(at, used, step_length));
     result.history.back().changed = iteration == 0 ? 0 : result.history.back().changed;
@@ -357,10 +402,13 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
     const double before = at.residuals.largest();
     double best = std::numeric_limits<double>::infinity();
     const Vector<T> u0 = u, multiplier0 = multiplier;
-    for (double length = 1; length >= shortest_step; length /= 2) {
+    const Vector<T> moved = engine.compact(Vector<T>(u0 + step.u.col(0))) - engine.compact(u0);
+    const double asked = largest_nodal_norm(moved, model.dimension);
+    const double longest = iteration > 0 && reach > 0 ? std::min(1.0, growth * reach / asked) : 1.0;
+    for (double length = longest; length >= shortest_step * longest; length /= 2) {
       const Vector<T> u1 = u0 + T(length) * step.u.col(0);
       const Vector<T> multiplier1 = unknown ? Vector<T>(multiplier0 + T(length) * step.l.col(0)) : multiplier0;
-      auto trial = detail::evaluate(engine, input, u1, multiplier1, unknown, account.scales);
+      auto trial = detail::evaluate(engine, input, u1, multiplier1, unknown, prescribed, account.scales);
       const double merit = trial.residuals.largest();
       if (merit < best || !std::isfinite(best)) {
         best = merit;
@@ -369,10 +417,13 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
         multiplier = multiplier1;
         at = std::move(trial);
       }
-      const bool new_branch = length == 1 && at.field.state != used;
+      const bool new_branch = length == longest && at.field.state != used;
       if (!options.line_search || merit < 0.9 * before || (!damped && new_branch)) break;
       if (at.residuals.within_rounding(options.tolerance)) break;
     }
+    result.motion = largest_nodal_norm(Vector<T>(engine.compact(u) - start), model.dimension);
+    if (iteration == 0) result.first = result.motion;
+    reach = std::max(reach, result.motion);
   }
 }
 

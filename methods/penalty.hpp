@@ -32,8 +32,8 @@ Increment<T> solve_increment(const Penalty& method, Run<T, E>& run, const State<
   const auto rho = initial_regularisation(run.slots, method);
   const ContactInput<T> input{run.model, run.slots, rho, previous.contact.placement, cone_radius(method), time};
   const auto equilibrium =
-      newton(run.engine, input, run.engine.begin(time, previous.displacement), stored_traction(run.model, previous),
-             false, previous.contact.state, method.newton, run.account);
+      find_equilibrium(run.engine, input, run.engine.begin(time, previous.displacement),
+                       stored_traction(run.model, previous), false, previous.contact.state, method.newton, run.account);
   account_for(increment, equilibrium, 0);
   increment.state = settle(run, input, equilibrium, previous.dissipation);
   return increment;

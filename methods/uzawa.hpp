@@ -154,9 +154,9 @@ Increment<T> solve_increment(const UzawaAL& method, Run<T, E>& run, const State<
     const auto rho = adapted(initial, increment.rho_factor);
     const ContactInput<T> input{model, run.slots, rho, previous.contact.placement, cone_radius(method), time};
     run.account.scales = before;
-    const auto equilibrium =
-        newton(run.engine, input, u, lambda, false, last, detail::inner_options(method, progress.contraction()),
-               run.account, rough ? detail::forcing : 0);
+    const auto equilibrium = find_equilibrium(run.engine, input, u, lambda, false, last,
+                                              detail::inner_options(method, progress.contraction()), run.account,
+                                              rough ? detail::forcing : 0);
     account_for(increment, equilibrium, ++increment.augmentations);
     ++run.account.counters.augmentations;
     auto keep = [&] {

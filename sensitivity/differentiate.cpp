@@ -8,10 +8,39 @@
 namespace stickslip {
 namespace {
 
+/// Derivatives of an increment with those of responses that can tie replaced by what they are on one side, where that
+/// is more than rounding of the motion makes of it.
+Matrix<double> with_ties(const Model& model, const std::vector<ParameterBlock>& blocks, Matrix<double> of, Ties side) {
+  constexpr double rounding = 1e-9;
+  const auto& responses = model.scene.responses;
+  for (int i = 0; i < static_cast<int>(responses.size()); ++i) {
+    if (!can_tie(responses[i])) continue;
+    const bool is_length = responses[i].kind != Response::Kind::contact_pressure;
+    double per_length = is_length ? 1 : 0;  // what a length makes of the response
+    for (std::size_t p = 0; !is_length && p < model.points.size(); ++p) {
+      const auto& slots = blocks.front().slots;
+      per_length = std::max(per_length, value(slots.stiffness[p]) / value(slots.geometry[p].area));
+    }
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      const Direction on_side = evaluate_response(model, blocks[b].slots, i, blocks[b].current, {}, side);
+      const auto first = static_cast<Eigen::Index>(b) * directions;
+      Direction::Gradient motion = Direction::Gradient::Zero();
+      for (const auto& u : blocks[b].current.displacement) motion = motion.max(u.d.abs());
+      for (Eigen::Index j = first; j < std::min(first + directions, of.cols()); ++j) {
+        const double apart = std::abs(on_side.d[j - first] - of(i, j));
+        if (apart > rounding * per_length * motion[j - first]) of(i, j) = on_side.d[j - first];
+      }
+    }
+  }
+  return of;
+}
+
 template <class E, class M>
 void run(const M& method, Differentiation<E>& problem, const Trajectory<double>& trajectory, Gradients& gradients) {
   const Model& model = problem.model;
   const State<double>* previous = &trajectory.initial;
+  const auto& asked = model.scene.responses;
+  const bool ties = std::any_of(asked.begin(), asked.end(), can_tie);
   for (const auto& increment : trajectory.increments) {
     if (!differentiate_increment(method, problem, *previous, increment)) {
       gradients.status = problem.status;
@@ -24,6 +53,10 @@ void run(const M& method, Differentiation<E>& problem, const Trajectory<double>&
       responses.push_back(evaluate_responses(model, block.slots, block.current, increment.time));
     gradients.of.push_back(gather(
         problem.blocks, problem.parameters, [&](auto&, int b) -> auto& { return responses[b]; }));
+    if (ties) {
+      gradients.below.push_back(with_ties(model, problem.blocks, gradients.of.back(), Ties::below));
+      gradients.above.push_back(with_ties(model, problem.blocks, gradients.of.back(), Ties::above));
+    }
     gradients.last_displacement = gather(
         problem.blocks, problem.parameters,
         [](ParameterBlock & block, int) -> auto& { return block.current.displacement; });

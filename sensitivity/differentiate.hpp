@@ -21,6 +21,9 @@ struct Gradients {
   std::string message;
   /// Per increment of the trajectory: responses x parameters. Ends where the scheme failed.
   std::vector<Matrix<double>> of;
+  /// The same from below and from above, where a response is the largest or smallest of values that tie; empty where
+  /// none is.
+  std::vector<Matrix<double>> below, above;
   Matrix<double> of_objectives;       ///< objectives x parameters; empty where it failed
   std::vector<SchemeRecord> records;  ///< per increment; empty but for Uzawa
   Matrix<double> last_displacement;   ///< of the last differentiated increment: all dofs x parameters

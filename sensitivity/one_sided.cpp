@@ -140,7 +140,8 @@ void run_side(const M& method, E& engine, const Model& model, const Slots<double
   for (std::size_t n = 0; n < out.size(); ++n) {
     const auto& increment = trajectory.increments[n];
     if (!differentiate_side(method, problem, *previous, increment, side)) break;
-    const auto responses = evaluate_responses(model, blocks[0].slots, blocks[0].current, increment.time);
+    const auto responses = evaluate_responses(model, blocks[0].slots, blocks[0].current, increment.time,
+                                              side < 0 ? Ties::below : Ties::above);
     for (Eigen::Index i = 0; i < responses.size(); ++i) out[n](i, parameter) = responses[i].d[0];
     std::swap(blocks[0].previous, blocks[0].current);
     previous = &increment.state;

@@ -55,12 +55,17 @@ double size_of(const StepResult& step, const Scene& scene, std::size_t response,
 /// Fills in the one-sided derivatives of increment n, and whether they are one.
 void take_sides(const CaseResult& result, std::size_t n, StepResult& step) {
   const auto& scene = result.problem->model.scene;
-  if (!result.one_sided) {
-    step.differentiable = std::min(step.margins.open, step.margins.slip) > weak_margin;
-    return;
-  }
-  step.backward = result.one_sided->backward[n];
-  step.forward = result.one_sided->forward[n];
+  if (!result.one_sided) step.differentiable = std::min(step.margins.open, step.margins.slip) > weak_margin;
+  const auto take = [&](const auto& backward, const auto& forward) {
+    if (n >= backward.size()) return;
+    step.backward = backward[n];
+    step.forward = forward[n];
+  };
+  if (result.one_sided)
+    take(result.one_sided->backward, result.one_sided->forward);
+  else
+    take(result.gradients.below, result.gradients.above);
+  if (step.backward.size() == 0) return;
   for (std::size_t i = 0; i < scene.responses.size(); ++i)
     for (std::size_t j = 0; j < scene.parameters.size(); ++j)
       if (is_kink(step.backward(i, j), step.forward(i, j), size_of(step, scene, i, j))) step.differentiable = false;

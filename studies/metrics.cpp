@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/model/response.hpp"
 
@@ -29,8 +30,19 @@ struct Scales {
   double length = 0, traction = 0, force = 0;
 };
 
+/// Largest stiffness of an element against the displacement of one of its nodes.
+double largest_stiffness(const Model& model, const Slots<double>& slots) {
+  double largest = 0;
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
+    for_each_element_tangent(model, slots, b, nullptr, [&](const auto&, const auto& tangent) {
+      largest = std::max(largest, tangent.diagonal().maxCoeff());
+    });
+  return largest;
+}
+
 /// Largest relative displacement (or elastic displacement of the tractions), traction and nodal force of a state.
-void enlarge(const Model& model, const Slots<double>& slots, const State<double>& state, double time, Scales& scales) {
+void enlarge(const Model& model, const Slots<double>& slots, double stiffness, const State<double>& state, double time,
+             Scales& scales) {
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
     const double traction = state.contact.traction.segment(point.multiplier, point.components()).norm();
@@ -40,29 +52,37 @@ void enlarge(const Model& model, const Slots<double>& slots, const State<double>
     scales.traction = std::max(scales.traction, traction);
     scales.length =
         std::max({scales.length, std::hypot(normal, along), slots.geometry[p].area * traction / slots.stiffness[p]});
-    // where nothing presses, what rounding of the displacements makes of the tractions is no scale for them
+    // where nothing presses, what rounding of the displacements makes of tractions, and forces, is no scale for them
     scales.traction = std::max(scales.traction, rounding * slots.stiffness[p] / slots.geometry[p].area * scales.length);
   }
   const int D = model.dimension;
-  scales.force = std::max({scales.force, largest_nodal_norm(bulk_forces(model, slots, state.displacement), D),
+  scales.force = std::max({scales.force, rounding * stiffness * largest_nodal_norm(state.displacement, D),
+                           largest_nodal_norm(bulk_forces(model, slots, state.displacement), D),
                            largest_nodal_norm(external_forces(model, slots, time), D),
                            largest_nodal_norm(contact_forces(model, slots, state.contact.traction), D)});
 }
 
-double relative(double x, double scale) { return x == 0 ? 0 : x / scale; }
+double relative(double x, double scale) {
+  return x == 0 ? 0 : std::isfinite(scale) ? x / scale : std::numeric_limits<double>::quiet_NaN();
+}
 
 }  // namespace
 
-double KktError::largest() const { return std::max({equilibrium, gap, complementarity, cone, stick, slip_direction}); }
+double KktError::largest() const {
+  double worst = equilibrium;
+  for (double error : {gap, complementarity, cone, stick, slip_direction}) worst = larger(worst, error);
+  return worst;
+}
 
 std::vector<KktError> kkt_errors(const Model& model, const Slots<double>& slots, const Trajectory<double>& trajectory) {
   std::vector<KktError> errors;
   Scales scales;
+  const double stiffness = largest_stiffness(model, slots);
   std::vector<Eigen::VectorXd> creep;
   for (const auto& point : model.points) creep.push_back(Eigen::VectorXd::Zero(point.tangents));
   for (const auto& increment : trajectory.increments) {
     const auto& state = increment.state;
-    enlarge(model, slots, state, increment.time, scales);
+    enlarge(model, slots, stiffness, state, increment.time, scales);
     KktError e;
     Vector<double> balance = nodal_balance(model, slots, state, increment.time);
     balance -= support_forces(model, slots, balance);
@@ -71,19 +91,19 @@ std::vector<KktError> kkt_errors(const Model& model, const Slots<double>& slots,
       const auto& point = model.points[p];
       const double gap = state.contact.gap[p], pressure = -state.contact.traction[point.multiplier];
       const double elastic = slots.stiffness[p] / slots.geometry[p].area;
-      e.gap = std::max(e.gap, relative(std::max(0.0, -gap), scales.length));
+      e.gap = larger(e.gap, relative(larger(0.0, -gap), scales.length));
       e.complementarity =
-          std::max(e.complementarity, relative(std::abs(std::min(gap * elastic, pressure)), scales.traction));
+          larger(e.complementarity, relative(std::abs(std::min(gap * elastic, pressure)), scales.traction));
       if (point.tangents == 0) continue;
       const auto [traction, slip] = tangential(model, state, p);
       const double bound = slots.friction[point.contact] * std::max(0.0, pressure), size = traction.norm();
-      e.cone = std::max(e.cone, relative(std::max(0.0, size - bound), scales.traction));
+      e.cone = larger(e.cone, relative(larger(0.0, size - bound), scales.traction));
       const bool inside = pressure > 0 && size < bound * (1 - on_cone);
       creep[p] = inside ? Eigen::VectorXd(creep[p] + slip) : Eigen::VectorXd::Zero(point.tangents);
-      e.stick = std::max(e.stick, relative(creep[p].norm(), scales.length));
+      e.stick = larger(e.stick, relative(creep[p].norm(), scales.length));
       const double moved = slip.norm();
       if (!inside && size > rounding * scales.traction && moved > 1e-9 * scales.length)
-        e.slip_direction = std::max(e.slip_direction, 1 - traction.dot(slip) / (size * moved));
+        e.slip_direction = larger(e.slip_direction, 1 - traction.dot(slip) / (size * moved));
     }
     errors.push_back(e);
   }

@@ -9,9 +9,6 @@ namespace {
 
 using nlohmann::json;
 
-/// The larger one; NaN where either is, so that what cannot be compared is never found equal.
-double larger(double a, double b) { return std::isnan(a) || a > b ? a : b; }
-
 double relative(double difference, double scale) { return difference == 0 ? 0 : difference / scale; }
 
 /// What a derivative is measured by: its own size, or, where it should vanish, what the response over the parameter

@@ -107,6 +107,9 @@ bool vanishes(const Dual<N, S>& x) {
   return vanishes(x.v) && (x.d == S(0)).all();
 }
 
+/// The larger one; NaN where either is, so that what is not a number never passes for a small one.
+inline double larger(double a, double b) { return std::isnan(a) || a > b ? a : b; }
+
 template <class T>
 using Vector = Eigen::Matrix<T, Eigen::Dynamic, 1>;
 template <class T>

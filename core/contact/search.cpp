@@ -48,7 +48,7 @@ std::optional<ClosestPoint> closest_point(const Points<double>& points, const st
   for (std::size_t f = 0; f < facets.size(); ++f)
     if (facets[f][end ? 0 : 1] == vertex)
       return end ? ClosestPoint{best, static_cast<int>(f)} : ClosestPoint{static_cast<int>(f), best};
-  const bool past_the_end = foot.xi < -at_facet_end || foot.xi > 1 + at_facet_end;
+  const bool past_the_end = foot.xi < -past_free_end || foot.xi > 1 + past_free_end;
   return past_the_end ? std::nullopt : std::optional<ClosestPoint>(ClosestPoint{best, -1});
 }
 

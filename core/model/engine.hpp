@@ -30,14 +30,14 @@ struct ForceScale {
   double rounding = 0;  ///< what rounding alone may leave in a row
 };
 
-/// Largest Euclidean norm of the nodal vectors (D consecutive entries) of the primal parts.
+/// Largest Euclidean norm of the nodal vectors (D consecutive entries) of the primal parts; NaN where one is.
 template <class T>
 double largest_nodal_norm(const Vector<T>& v, int D) {
   double largest = 0;
   for (Eigen::Index n = 0; n + D <= v.size(); n += D) {
-    double sum = 0;
-    for (int i = 0; i < D; ++i) sum += value(v[n + i]) * value(v[n + i]);
-    largest = std::max(largest, std::sqrt(sum));
+    double norm = 0;
+    for (int i = 0; i < D; ++i) norm = std::hypot(norm, value(v[n + i]));  // (forces of 1e200 have squares too)
+    largest = larger(largest, norm);
   }
   return largest;
 }

@@ -16,18 +16,19 @@ inline bool is_of(const SideSet& side, int node) {
 template <class T>
 void add_surface_load(const Load& load, const SideSet& side, const Slots<T>& slots, int D, Vector<T>& forces) {
   for (const auto& edge : side.edges)
-    for_each_edge_point(slots.points, edge, slots.depths[side.body], [&](const auto& values, const auto& tau) {
-      Vector<T> force(D);
-      if (load.kind == Load::Kind::pressure) {
-        force << -tau[1], tau[0];
-        force *= slots.numbers(load.vector[0]);
-      } else {
-        const T area = norm(tau);
-        for (int i = 0; i < D; ++i) force[i] = area * slots.numbers(load.vector[i]);
-      }
-      for (std::size_t a = 0; a < edge.size(); ++a)
-        for (int i = 0; i < D && is_of(side, edge[a]); ++i) forces[edge[a] * D + i] += T(values[a]) * force[i];
-    });
+    for_each_edge_point(slots.points, edge, slots.depths[side.body],
+                        [&](const auto& values, const auto& tau, const T& area) {
+                          Vector<T> force(D);
+                          if (load.kind == Load::Kind::pressure) {
+                            force << -tau[1], tau[0];
+                            force *= slots.numbers(load.vector[0]);
+                          } else {
+                            for (int i = 0; i < D; ++i) force[i] = area * slots.numbers(load.vector[i]);
+                          }
+                          for (std::size_t a = 0; a < edge.size(); ++a)
+                            for (int i = 0; i < D && is_of(side, edge[a]); ++i)
+                              forces[edge[a] * D + i] += T(values[a]) * force[i];
+                        });
 }
 
 /// A total force, shared by tributary area; in equal shares among single nodes. A traction takes their area as 1.
@@ -70,11 +71,16 @@ void add_body_force(const Model& model, const Load& load, const Slots<T>& slots,
     }
     with_shape(body.mesh.shape, [&]<class Shape>(Shape) {
       const auto X = gather_coordinates<T, Shape>(slots.points, nodes.data());
-      for (const auto& point : Shape::quadrature()) {
-        const T volume = slots.depths[b].of_revolution ? Gradient<T, Shape, Kinematics::revolution>(point, X).volume
-                                                       : Gradient<T, Shape>(point, X, slots.depths[b].thickness).volume;
-        for (int a = 0; a < Shape::nodes; ++a) add(nodes[a], T(point.value[a]) * volume);
-      }
+      const auto add_shares = [&]<Kinematics kinematics>() {
+        for (const auto& point : quadrature_of<Shape, kinematics>()) {
+          const T volume = Gradient<T, Shape, kinematics>(point, X, slots.depths[b].thickness).volume;
+          for (int a = 0; a < Shape::nodes; ++a) add(nodes[a], T(point.value[a]) * volume);
+        }
+      };
+      if (slots.depths[b].of_revolution)
+        add_shares.template operator()<Kinematics::revolution>();
+      else
+        add_shares.template operator()<Kinematics::plane>();
     });
   }
 }

@@ -20,6 +20,24 @@ int body_index(const Scene& scene, const std::string& name) {
   throw ModelError("there is no body \"" + name + "\"");
 }
 
+/// Throws ModelError where a load or a contact acts on nothing but the axis of revolution, which has no area.
+void check_areas(const Model& model, const Points<double>& points) {
+  const auto has_area = [&](const std::string& side) {
+    const auto edges = model.side(side).edges;
+    const auto off_axis = [&](int node) { return !model.is_on_axis(points, node); };
+    return edges.empty() || std::any_of(edges.begin(), edges.end(), [&](const auto& edge) {
+             return std::any_of(edge.begin(), edge.end(), off_axis);
+           });
+  };
+  const std::string why = " lies on the axis of revolution, where it has no area";
+  const auto& scene = model.scene;
+  for (std::size_t l = 0; l < scene.loads.size(); ++l)
+    if (scene.loads[l].kind != Load::Kind::body_force && !has_area(scene.loads[l].on))
+      throw ModelError(scene.loads[l].on + why, "/loads/" + std::to_string(l) + "/on");
+  for (const auto& contact : scene.contacts)
+    if (!has_area(contact.slave)) throw ModelError(contact.slave + why, "/contacts/" + contact.name + "/slave");
+}
+
 /// Ends of the increments: equal steps of each leg, and the breakpoints of every table in it.
 std::vector<double> step_ends(const Scene& scene) {
   std::set<double> ends;
@@ -213,6 +231,7 @@ Model make_model(const Scene& scene, Seconds& spent) {
     }
   }
   number_dofs(model, points);
+  if (scene.space == Space::axisymmetric) check_areas(model, points);
   {
     const Stopwatch time(spent.contact_search);
     pair_contacts(model, points);

@@ -22,11 +22,32 @@ Vector<T> nodal_balance(const Model& model, const Slots<T>& slots, const State<T
   return nodal_balance(model, slots, state, bulk_forces(model, slots, state.displacement), time);
 }
 
+/// Samples that differ by up to this share of the largest are the same: to choose among them is left to rounding.
+inline constexpr double take_tie = 1e-9;
+
+/// Of a largest or smallest value that several samples share: the mean of their derivatives, or what it is if the
+/// parameter falls or grows.
+enum class Ties { mean, below, above };
+
 namespace detail {
+
+/// The derivative of the largest (or smallest) of samples that are equal, on the side that `ties` names.
+template <int N>
+Dual<N> on_side(Ties ties, Response::Take take, const std::vector<Dual<N>>& tied) {
+  Dual<N> one = tied.front();
+  const bool upper = (ties == Ties::above) == (take == Response::Take::max);
+  for (const auto& sample : tied)
+    for (int j = 0; j < N; ++j) one.d[j] = upper ? std::max(one.d[j], sample.d[j]) : std::min(one.d[j], sample.d[j]);
+  return one;
+}
+template <class T>
+T on_side(Ties, Response::Take, const std::vector<T>& tied) {
+  return tied.front();
+}
 
 /// Reduces samples by `take`; the weights are those of the mean. max and min follow the primal value.
 template <class T>
-T take_of(Response::Take take, const std::vector<T>& samples, const std::vector<T>& weights) {
+T take_of(Response::Take take, const std::vector<T>& samples, const std::vector<T>& weights, Ties ties) {
   if (take == Response::Take::mean) {
     T sum{}, total{};
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -35,12 +56,19 @@ T take_of(Response::Take take, const std::vector<T>& samples, const std::vector<
     }
     return sum / total;
   }
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < samples.size(); ++i) {
-    const bool larger = value(samples[i]) > value(samples[best]);
-    if (larger == (take == Response::Take::max) && value(samples[i]) != value(samples[best])) best = i;
+  double best = value(samples.front()), size = 0;
+  for (const T& sample : samples) {
+    best = take == Response::Take::max ? std::max(best, value(sample)) : std::min(best, value(sample));
+    size = std::max(size, std::abs(value(sample)));
   }
-  return samples[best];
+  std::vector<T> tied;
+  for (const T& sample : samples)
+    if (std::abs(value(sample) - best) <= take_tie * size) tied.push_back(sample);
+  if (tied.empty()) return T(best);  // not a number
+  if (ties != Ties::mean) return on_side(ties, take, tied);
+  T mean{};
+  for (const T& sample : tied) mean += sample / T(static_cast<double>(tied.size()));
+  return mean + T(best - value(mean));
 }
 
 /// Component x y z of a force, or its moment about a point of the plane, counter-clockwise, with the arm of the start.
@@ -123,7 +151,7 @@ T contact_half_width(const Model& model, const Slots<T>& slots, const State<T>& 
 
 template <class T>
 T contact_response(const Model& model, const Slots<T>& slots, const Response& response, const ResponsePlace& place,
-                   const State<T>& state) {
+                   const State<T>& state, Ties ties) {
   using Kind = Response::Kind;
   const int contact = model.contact_index(response.on);
   if (response.kind == Kind::dissipation) return state.dissipation.size() ? state.dissipation[contact] : T(0);
@@ -141,7 +169,7 @@ T contact_response(const Model& model, const Slots<T>& slots, const Response& re
     if (response.kind == Kind::gap) samples.push_back(state.contact.gap[p]);
     if (response.kind == Kind::slip) samples.push_back(slip_component(model, slots, state, p, response.component));
   }
-  return samples.empty() ? T(0) : take_of(response.take, samples, weights);
+  return samples.empty() ? T(0) : take_of(response.take, samples, weights, ties);
 }
 
 }  // namespace detail
@@ -156,7 +184,7 @@ struct NodalForces {
 /// Value of a response at a state.
 template <class T>
 T evaluate_response(const Model& model, const Slots<T>& slots, int index, const State<T>& state,
-                    const NodalForces<T>& forces) {
+                    const NodalForces<T>& forces, Ties ties = Ties::mean) {
   const Response& response = model.scene.responses[index];
   const ResponsePlace& place = model.response_places[index];
   const int D = model.dimension, axis = response.component.empty() ? 0 : response.component[0] - 'x';
@@ -174,15 +202,24 @@ T evaluate_response(const Model& model, const Slots<T>& slots, int index, const 
     }
     std::vector<T> samples;
     for (int node : model.side(response.on).nodes) samples.push_back(state.displacement[node * D + axis]);
-    return detail::take_of(response.take, samples, std::vector<T>(samples.size(), T(1)));
+    return detail::take_of(response.take, samples, std::vector<T>(samples.size(), T(1)), ties);
   }
   if (response.kind == Response::Kind::strain_energy) return T(0.5) * dot(forces.internal, state.displacement);
-  return detail::contact_response(model, slots, response, place, state);
+  return detail::contact_response(model, slots, response, place, state, ties);
+}
+
+/// Whether a response is the largest or smallest of several values, which may tie.
+inline bool can_tie(const Response& response) {
+  using Kind = Response::Kind;
+  const bool sampled = response.kind == Kind::displacement || response.kind == Kind::contact_pressure ||
+                       response.kind == Kind::gap || response.kind == Kind::slip;
+  return sampled && response.take != Response::Take::mean && response.at.empty();
 }
 
 /// All responses of a model at a state.
 template <class T>
-Vector<T> evaluate_responses(const Model& model, const Slots<T>& slots, const State<T>& state, double time) {
+Vector<T> evaluate_responses(const Model& model, const Slots<T>& slots, const State<T>& state, double time,
+                             Ties ties = Ties::mean) {
   const auto& responses = model.scene.responses;
   auto asked = [&](Response::Kind kind) {
     return std::any_of(responses.begin(), responses.end(), [&](const Response& r) { return r.kind == kind; });
@@ -193,7 +230,7 @@ Vector<T> evaluate_responses(const Model& model, const Slots<T>& slots, const St
   if (reaction) forces.held = support_forces(model, slots, nodal_balance(model, slots, state, forces.internal, time));
   Vector<T> out(responses.size());
   for (std::size_t i = 0; i < responses.size(); ++i)
-    out[i] = evaluate_response(model, slots, static_cast<int>(i), state, forces);
+    out[i] = evaluate_response(model, slots, static_cast<int>(i), state, forces, ties);
   return out;
 }
 

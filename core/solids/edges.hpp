@@ -42,10 +42,11 @@ inline const std::vector<EdgePoint>& edge_quadrature(int nodes, bool of_revoluti
 
 }  // namespace detail
 
-/// Calls f(values, tau) at each quadrature point of an edge (its two ends, and its middle where it is quadratic):
-/// the values N_a of its shape functions, and tau, the vector along the edge whose length is the area of the point. So
-/// N_a |tau| sums up to the tributary area of node a, and N_a times tau turned right to its share of the vector area
-/// (solid on the left of the edge).
+/// Calls f(values, tau, area) at each quadrature point of an edge (its two ends, and its middle where it is quadratic):
+/// the values N_a of its shape functions, tau, the vector along the edge whose length is the area of the point, and
+/// that area, whose derivative exists on the axis of revolution too, where it is zero. So N_a area sums up to the
+/// tributary area of node a, and N_a times tau turned right to its share of the vector area (solid on the left of the
+/// edge).
 template <class T, class F>
 void for_each_edge_point(const Points<T>& points, const std::vector<int>& edge, const Depth<T>& depth, F&& f) {
   const int nodes = static_cast<int>(edge.size());
@@ -55,14 +56,15 @@ void for_each_edge_point(const Points<T>& points, const std::vector<int>& edge, 
       tau[i] = T(0);
       for (int a = 0; a < nodes; ++a) tau[i] += points(i, edge[a]) * T(point.gradient[a]);
     }
-    T area = T(point.weight) * depth.thickness;
+    T width = T(point.weight) * depth.thickness;
     if (depth.of_revolution) {
-      area = T(0);
+      width = T(0);
       for (int a = 0; a < nodes; ++a)
-        area += points(0, edge[a]) * T(2 * std::acos(-1.0) * point.weight * point.value[a]);
+        width += points(0, edge[a]) * T(2 * std::acos(-1.0) * point.weight * point.value[a]);
     }
-    for (int i = 0; i < points.rows(); ++i) tau[i] *= area;
-    f(point.value, tau);
+    const T area = norm(tau) * width;
+    for (int i = 0; i < points.rows(); ++i) tau[i] *= width;
+    f(point.value, tau, area);
   }
 }
 
@@ -70,8 +72,7 @@ void for_each_edge_point(const Points<T>& points, const std::vector<int>& edge, 
 template <class T>
 std::array<T, 3> edge_shares(const Points<T>& points, const std::vector<int>& edge, const Depth<T>& depth) {
   std::array<T, 3> shares{T(0), T(0), T(0)};
-  for_each_edge_point(points, edge, depth, [&](const auto& values, const auto& tau) {
-    const T area = norm(tau);
+  for_each_edge_point(points, edge, depth, [&](const auto& values, const auto&, const T& area) {
     for (std::size_t a = 0; a < edge.size(); ++a) shares[a] += T(values[a]) * area;
   });
   return shares;

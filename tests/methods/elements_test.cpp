@@ -71,7 +71,7 @@ Solution quarter_ring(Space space, double nu, const std::string& element, int n)
   out.slots = make_slots<double>(out.model, s.as<double>());
   auto& forces = out.slots.loads[0];
   for (const auto& edge : out.model.side("ring.inner").edges)
-    for_each_edge_point(out.slots.points, edge, out.slots.depths[0], [&](const auto& values, const auto& tau) {
+    for_each_edge_point(out.slots.points, edge, out.slots.depths[0], [&](const auto& values, const auto& tau, double) {
       for (std::size_t a = 0; a < edge.size(); ++a) {  // the inward normal of the solid lies on the left of the edge
         forces[2 * edge[a]] -= 10 * values[a] * tau[1];
         forces[2 * edge[a] + 1] += 10 * values[a] * tau[0];

@@ -102,6 +102,71 @@ TEST(Loads, BodyForceOnAStandingColumn) {
   EXPECT_NEAR(r.derivative("u", "p0"), 0, 1e-15) << "weight and stiffness grow alike";
 }
 
+TEST(Loads, BodyForceOfRevolutionIsConsistentOnTrianglesToo) {
+  // N_a of two of the corners on the axis weigh r half as much as that of the third
+  Scene s;
+  s.space = Space::axisymmetric;
+  s.legs = {{1, 1}};
+  BoxMesh box;
+  box.min = {0.0, 0.0};
+  box.max = {3.0, 2.0};
+  box.cells = {1, 1};
+  s.bodies = {{"block", box, LinearElastic{1000.0, 0.0}, "T3", 1.0}};
+  s.loads = {{"block", Load::Kind::body_force, {0.0, -2.0}, {}}};
+  const Model model = make_model(s);
+  const auto slots = make_slots<double>(model, s.as<double>());
+  Vector<double> expected = Vector<double>::Zero(model.node_count);
+  const auto& mesh = model.bodies[0].mesh;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int* nodes = &mesh.connectivity[3 * e];
+    double r = 0;
+    for (int a = 0; a < 3; ++a) r += slots.points(0, nodes[a]);
+    // int N_a r dA = A (r_a + sum r) / 12, exactly, on a triangle of half the box
+    for (int a = 0; a < 3; ++a) expected[nodes[a]] += -2 * 2 * M_PI * 3 * (slots.points(0, nodes[a]) + r) / 12;
+  }
+  for (int node = 0; node < model.node_count; ++node)
+    EXPECT_NEAR(slots.loads[0][2 * node + 1], expected[node], 1e-14 * expected.norm()) << node;
+}
+
+TEST(Loads, ActOnNothingOnTheAxisOfRevolution) {
+  Points<Dual<1>> ends = Points<Dual<1>>::Constant(2, 2, Dual<1>(0));
+  ends(1, 1) = Dual<1>::seed(1, 0);
+  const auto shares = edge_shares(ends, {0, 1}, Depth<Dual<1>>{true});
+  EXPECT_EQ(shares[0].v, 0);
+  EXPECT_EQ(shares[0].d[0], 0) << "its length grows, its area does not";
+  Scene s;
+  s.space = Space::axisymmetric;
+  s.legs = {{1, 1}};
+  BoxMesh box;
+  box.min = {0.0, 0.0};
+  box.max = {with_slot(s, 1), 1.0};
+  box.cells = {2, 2};
+  s.bodies = {{"block", box, LinearElastic{1000.0, 0.3}, "", 1.0}};
+  s.loads = {{"block.top", Load::Kind::traction, {0.0, -3.0}, {}}};
+  s.supports = {support("block.bottom", {{'y', table({{0, 0.0}})}})};
+  s.responses = {response("R", Kind::reaction, "block.bottom", "y")};
+  const auto r = run(s, MonolithicAL{});
+  EXPECT_NEAR(r.value("R"), 3 * M_PI, 1e-12);
+  EXPECT_NEAR(r.derivative("R", "p0"), 6 * M_PI, 1e-12);
+  s.loads[0].on = "block.left";
+  EXPECT_THROW(make_model(s), ModelError);
+  s.loads[0].kind = Load::Kind::force;
+  EXPECT_THROW(make_model(s), ModelError);
+  s.loads[0].on = "block.top";
+  s.obstacles = {{"wall", Plane{{0.0, 0.0}, {1.0, 0.0}}, {}}};
+  s.contacts = {scenes::contact("touch", "block.left", "wall")};
+  EXPECT_THROW(make_model(s), ModelError);
+}
+
+TEST(Loads, BeyondTheRangeOfNumbersAreNotFiniteAndNotConverged) {
+  for (const Method& method : {Method{Penalty{}}, Method{UzawaAL{}}, Method{MonolithicAL{}}}) {
+    Scene s = of_box(1, 1, {2, 2}, 0.3, "Q4");
+    s.loads.assign(5, {"block.top", Load::Kind::force, {0.0, -1e308}, {}});  // half of each on the middle node
+    s.supports = {support("block.bottom", {{'x', table({{0, 0.0}})}, {'y', table({{0, 0.0}})}})};
+    EXPECT_EQ(run(s, method).trajectory.status, Status::not_finite) << name_of(method);
+  }
+}
+
 // --- tables ----------------------------------------------------------------------------------------------------------
 
 TEST(Tables, RepeatedValuesAreThoseOfTheFirstPeriodToTheLastBit) {

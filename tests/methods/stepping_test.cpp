@@ -18,7 +18,7 @@ MonolithicAL limited(int max_iterations) {
 Scene abrupt() { return scenes::pull_out(30, {0, 1}, 1); }
 
 TEST(Stepping, CutsAnIncrementThatDoesNotConvergeAndReachesTheEnd) {
-  const auto s = run(abrupt(), limited(12));
+  const auto s = run(abrupt(), limited(3));
   ASSERT_TRUE(is_converged(s.trajectory.status)) << s.trajectory.message;
   EXPECT_GT(s.trajectory.counters.cutbacks, 0);
   double before = 0;

@@ -13,10 +13,51 @@
 namespace stickslip {
 namespace {
 
+using nlohmann::json;
+
 nlohmann::json last_step(const Method& method) {
   const auto problem = std::make_shared<const Problem>(scenes::greco_plate(8));
   std::shared_ptr<Condensation<double>> condensation;
   return steps_json(run_case(problem, method, {}, condensation)).back();
+}
+
+TEST(Case, GivesBothSidesOfALargestValueThatTwoNodesShare) {
+  // a block pressed on a round obstacle between its two middle nodes: moved to either side one of them leads
+  json scene = {{"bodies",
+                 {{"b",
+                   {{"mesh", {{"box", {{"min", {-1, 0}}, {"max", {1, 1}}, {"cells", {7, 4}}}}}},
+                    {"material", {{"linear_elastic", {{"E", 1000}, {"nu", 0.3}}}}}}}}},
+                {"obstacles", {{"f", {{"circle", {{"center", {0.0, -5}}, {"radius", 5}}}}}}},
+                {"contacts", {{"c", {{"slave", "b.bottom"}, {"master", "f"}}}}},
+                {"supports", {{{"on", "b.top"}, {"move", {{"x", 0}, {"y", -0.02}}}}}},
+                {"time", {{"end", 1}, {"steps", 1}}},
+                {"responses",
+                 {{"most", {{"contact_pressure", {{"contact", "c"}, {"take", "max"}}}}},
+                  {"least", {{"gap", {{"contact", "c"}, {"take", "min"}}}}},
+                  {"farthest", {{"gap", {{"contact", "c"}, {"take", "max"}}}}}}},
+                {"parameters", {{"shift", "/obstacles/f/circle/center/0"}}}};
+  const json method = {{"monolithic_al", json::object()}};
+  const auto at = [&](double shift) {
+    json moved = scene;
+    moved["obstacles"]["f"]["circle"]["center"][0] = shift;
+    return steps_json(cases::run(moved, method, "tie.json")).back();
+  };
+  const auto step = at(0);
+  constexpr double h = 1e-6;
+  const auto below = at(-h), above = at(h);
+  EXPECT_FALSE(step["differentiable"]);
+  for (const char* name : {"most", "farthest"}) {
+    const double value = step["responses"][name];
+    const double left = (value - below["responses"][name].get<double>()) / h;
+    const double right = (above["responses"][name].get<double>() - value) / h;
+    const double size = std::abs(right);
+    EXPECT_GT(size, 0.1) << name;
+    EXPECT_NEAR(step["one_sided"][name]["shift"][0], left, 1e-4 * size) << name << ", h times the second derivative";
+    EXPECT_NEAR(step["one_sided"][name]["shift"][1], right, 1e-4 * size) << name;
+    EXPECT_NEAR(step["sensitivities"][name]["shift"], 0, 1e-9 * size) << name << ", their mean";
+  }
+  const auto off = at(1e-3);
+  EXPECT_TRUE(off["differentiable"]);
 }
 
 TEST(Case, RecordsTheContractionAndWhatTheDerivativesTook) {

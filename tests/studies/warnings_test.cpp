@@ -66,7 +66,7 @@ TEST(Warnings, AreNotLookedForInWhatDidNotConverge) {
 }
 
 TEST(Warnings, SayWhatCutStepsMeanWithFriction) {
-  const json impatient = {{"monolithic_al", {{"newton", {{"max_iterations", 3}}}}}};
+  const json impatient = {{"monolithic_al", {{"newton", {{"max_iterations", 2}}}}}};
   for (const bool friction : {true, false}) {
     json scene = blocks(0.002, 0.02, 0.1);
     if (!friction) scene["contacts"]["sole"].erase("friction");

@@ -216,6 +216,14 @@ TEST(HalfWidth, IsMeasuredAcrossTheNormalOfTheContact) {
   EXPECT_NEAR(first(tilted), 0.8 * first(level), few * first(level));
 }
 
+TEST(HalfWidth, IsANumberWherePressuresAreRoundingOfEitherSign) {
+  auto b = block({response("a", Kind::contact_half_width, "sole")});
+  const double pressures[] = {-1, 1, 1, 1, -1};  // their second moment is negative
+  for (std::size_t p = 0; p < b.model.points.size(); ++p)
+    b.state.contact.traction[b.model.points[p].multiplier] = -1e-12 * pressures[p];
+  EXPECT_EQ(first(b), 0);
+}
+
 TEST(HalfWidth, IsZeroWithAFiniteDerivativeWhereOneNodeOrNoneTouches) {
   auto b = block({response("a", Kind::contact_half_width, "sole")});
   const auto slots = make_slots<Dual<1>>(b.model, b.scene.as<Dual<1>>());
