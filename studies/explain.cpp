@@ -41,6 +41,11 @@ const char* space_name(Space space) {
   return "";
 }
 
+template <class List>
+std::string count(const List& list, const std::string& noun) {
+  return counted(static_cast<long>(list.size()), noun);
+}
+
 std::string contact_lines(const Model& model) {
   std::string text;
   for (std::size_t c = 0; c < model.scene.contacts.size(); ++c) {
@@ -48,7 +53,8 @@ std::string contact_lines(const Model& model) {
     int points = 0;
     for (const auto& point : model.points) points += point.contact == static_cast<int>(c);
     const std::size_t slaves = model.side(contact.slave).nodes.size();
-    text += fmt::format("  {}: {} against {}, {} contact points", contact.name, contact.slave, contact.master, points);
+    text += fmt::format("  {}: {} against {}, {}", contact.name, contact.slave, contact.master,
+                        counted(points, "contact point"));
     if (contact.segment) text += " (segment-integrated)";
     if (points < static_cast<int>(slaves)) text += fmt::format(" ({} slave nodes face no master)", slaves - points);
     text += contact.friction ? fmt::format(", Coulomb friction {}\n", contact.friction->value) : ", frictionless\n";
@@ -72,8 +78,8 @@ std::string explain(const Input& input, const Problem& problem) {
                         has_mean_dilatation(model.bodies[b].kinematics) ? " with mean dilatation" : "");
   }
   text += "contacts (node to segment):\n" + contact_lines(model);
-  text += fmt::format("driving: {} supports, {} loads, {} steps to t = {}\n", scene.supports.size(), scene.loads.size(),
-                      model.times.size(), model.times.empty() ? 0 : model.times.back());
+  text += fmt::format("driving: {}, {}, {} to t = {}\n", count(scene.supports, "support"), count(scene.loads, "load"),
+                      count(model.times, "step"), model.times.empty() ? 0 : model.times.back());
   const bool monolithic = std::holds_alternative<MonolithicAL>(input.method);
   text += fmt::format("unknowns: {} displacements", model.free_dofs.size());
   text +=
@@ -92,9 +98,9 @@ std::string explain(const Input& input, const Problem& problem) {
   if (effects.deformable_master) text += "  contact between deformable bodies\n";
   const bool adjoint = scene.sensitivity_mode == SensitivityMode::adjoint;
   if (effects.sensitivity)
-    text += fmt::format("  derivatives of {} {} with respect to {} parameters, {}\n",
-                        adjoint ? scene.objectives.size() : scene.responses.size(),
-                        adjoint ? "objectives" : "responses", scene.parameters.size(), adjoint ? "adjoint" : "direct");
+    text += fmt::format("  derivatives of {} with respect to {}, {}\n",
+                        adjoint ? count(scene.objectives, "objective") : count(scene.responses, "response"),
+                        count(scene.parameters, "parameter"), adjoint ? "adjoint" : "direct");
   text += "left out (no unknowns, no storage, no code path):\n";
   if (!effects.contact) text += "  contact: no slave node faces a master\n";
   if (!effects.friction) text += "  friction: no contact has a coefficient\n";

@@ -41,6 +41,7 @@ class TokenCursor {
   /// Moves behind the next token and returns where it begins.
   Position take() {
     const Position start = next_start();
+    begin_ = offset_;
     if (offset_ >= text_.size()) return start;
     const char first = text_[offset_];
     advance();
@@ -54,6 +55,11 @@ class TokenCursor {
     }
     return start;
   }
+
+  std::size_t offset() const { return offset_; }
+
+  /// The token that was taken last.
+  std::string_view taken() const { return text_.substr(begin_, offset_ - begin_); }
 
   std::string_view rest() const { return text_.substr(std::min(offset_, text_.size())); }
 
@@ -83,7 +89,7 @@ class TokenCursor {
   }
 
   std::string_view text_;
-  std::size_t offset_ = 0;
+  std::size_t offset_ = 0, begin_ = 0;
   int line_ = 1, column_ = 1;
 };
 
@@ -132,7 +138,13 @@ class PositionReader : public json::json_sax_t {
     TokenCursor token = cursor_;
     TokenCursor::Position at = token.next_start();
     std::string pointer;
-    if (has("number overflow")) {
+    if (last < cursor_.offset()) {  // as in 0x3, whose 0 alone was taken for the value
+      const auto place = document_.place(last_value_);
+      at = {place.line, place.column};
+      pointer = last_value_;
+      message =
+          "is " + std::string(cursor_.taken()) + ", which is not JSON; must be a number, a text, true, false or null";
+    } else if (has("number overflow")) {
       message = "is a number beyond the range of a double; must be less than 1.8e308 in size";
       pointer = next_pointer();
     } else if (const std::string word = leading_word(token.rest()); is_not_finite(word)) {
@@ -171,7 +183,7 @@ class PositionReader : public json::json_sax_t {
     return pointer;
   }
   bool scalar() {
-    value_begins();
+    last_value_ = value_begins();
     return true;
   }
   bool open(bool array) {
@@ -204,7 +216,7 @@ class PositionReader : public json::json_sax_t {
   JsonDocument& document_;
   Diagnostics& diagnostics_;
   std::vector<Open> open_;
-  std::string key_;
+  std::string key_, last_value_;  // name; pointer of the last value that is no object or array
 };
 
 // --- document ----------------------------------------------------------------------------------------------------

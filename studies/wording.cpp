@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
 
 namespace stickslip {
 
@@ -22,6 +25,10 @@ std::string shown(const json& value) {
 }
 
 std::string in_quotes(std::string_view name) { return "\"" + std::string(name) + "\""; }
+
+std::string counted(long count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
 
 std::string listed(const std::vector<std::string>& names) {
   std::string list;
@@ -47,22 +54,37 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return d[a.size()][b.size()];
 }
 
+/// Whether one is the other's beginning, or, of four letters or more, any part of it.
+bool holds(std::string_view longer, std::string_view shorter) {
+  return longer.substr(0, shorter.size()) == shorter
+             ? shorter.size() >= 3
+             : shorter.size() >= 4 && longer.find(shorter) != std::string_view::npos;
+}
+
+/// How many letters two names differ by, where one may be meant by the other.
+std::optional<std::size_t> distance_where_near(std::string_view a, std::string_view b) {
+  constexpr std::size_t farthest = 2;
+  const auto& [shorter, longer] = a.size() < b.size() ? std::pair(a, b) : std::pair(b, a);
+  const std::size_t lengths = longer.size() - shorter.size();
+  if (holds(longer, shorter)) return lengths;
+  if (lengths > farthest) return std::nullopt;  // which keeps the table of the distance small
+  const std::size_t distance = edit_distance(a, b);
+  // a name of two letters is within two edits of any other
+  const bool near = distance <= farthest && (distance < shorter.size() || longer.substr(0, shorter.size()) == shorter);
+  return near ? std::optional(distance) : std::nullopt;
+}
+
 }  // namespace
 
 std::string suggestion(std::string_view name, const std::vector<std::string>& names) {
-  constexpr std::size_t farthest = 2;
-  std::size_t least = farthest + 1;
+  constexpr std::size_t too_far = std::numeric_limits<std::size_t>::max();
+  std::size_t least = too_far;
   std::string nearest;
-  for (const std::string& candidate : names) {
-    // a longer difference in length alone is too far, and keeps the table small
-    if (std::max(name.size(), candidate.size()) > std::min(name.size(), candidate.size()) + farthest) continue;
-    const std::size_t distance = edit_distance(name, candidate);
-    // a name of two letters is within two edits of any other
-    if (distance < least && distance < candidate.size()) {
+  for (const std::string& candidate : names)
+    if (const std::size_t distance = distance_where_near(name, candidate).value_or(too_far); distance < least) {
       least = distance;
       nearest = candidate;
     }
-  }
   return nearest.empty() ? "" : " did you mean " + in_quotes(nearest) + "?";
 }
 

@@ -12,10 +12,12 @@ namespace stickslip {
 std::string shown(const nlohmann::json& value);
 /// "NAME" in quotes.
 std::string in_quotes(std::string_view name);
+/// "1 cell", "2 cells": a noun that an s makes many.
+std::string counted(long count, const std::string& noun);
 /// Names as a list: "a, b, c".
 std::string listed(const std::vector<std::string>& names);
-/// ` did you mean "NAME"?` with the nearest of the names, where at most two letters differ (a swap counts
-/// as one); otherwise "".
+/// ` did you mean "NAME"?` with the nearest of the names, where at most two letters differ (a swap counts as one) or
+/// one is the beginning of the other or, of four letters or more, a part of it; otherwise "".
 std::string suggestion(std::string_view name, const std::vector<std::string>& names);
 
 }  // namespace stickslip

@@ -96,6 +96,10 @@ INSTANTIATE_TEST_SUITE_P(
                     BadText{"infinity", "{\"a\": [0, Infinity]}", "1:11: /a/1: is Infinity; must be a finite number"},
                     BadText{"minus_infinity", "[-Infinity]", "1:2: /0: is -Infinity; must be a finite number"},
                     BadText{"overflow", "{\"a\":\n 1e999}", "2:2: /a: is a number beyond the range of a double"},
+                    BadText{"hexadecimal", "{\"friction\": 0x3\n\n\n}", "1:14: /friction: is 0x3, which is not JSON"},
+                    BadText{"number_in_letters", "{\"a\": {\"steps\": 12abc\n}}", "1:17: /a/steps: is 12abc, which"},
+                    BadText{"two_zeros", "[1,\n 00.3\n]", "2:2: /1: is 00.3, which is not JSON"},
+                    BadText{"two_numbers", "[1 2\n]", "1:4: is not JSON"},
                     BadText{"open_comment", "{\"a\": 1 /* }", "1:13: is not JSON: "},
                     BadText{"too_deep", std::string(100000, '['), "1:65: is nested deeper"}),
     [](const auto& info) { return std::string(info.param.name); });
@@ -187,12 +191,18 @@ TEST(Diagnostics, ListsFaultsInTheOrderOfTheFile) {
   EXPECT_FALSE(diagnostics.has_error_in("/z"));
 }
 
-TEST(Suggestion, NamesTheNearestWithinTwoEdits) {
+TEST(Suggestion, NamesTheNearestWithinTwoEditsOrTheOneThatHoldsTheOther) {
   const std::vector<std::string> names{"friction", "slave", "on"};
   EXPECT_EQ(suggestion("fricton", names), " did you mean \"friction\"?");
   EXPECT_EQ(suggestion("slaev", names), " did you mean \"slave\"?");
-  EXPECT_EQ(suggestion("frict", names), "");
+  EXPECT_EQ(suggestion("fric", names), " did you mean \"friction\"?");
   EXPECT_EQ(suggestion("xy", names), "");
+  EXPECT_EQ(suggestion("friction_coefficient", names), " did you mean \"friction\"?");
+  EXPECT_EQ(suggestion("in", names), " did you mean \"on\"?");
+  EXPECT_EQ(suggestion("uu", {"u/N", "u"}), " did you mean \"u\"?");
+  EXPECT_EQ(suggestion("monolithic", {"penalty", "monolithic_al"}), " did you mean \"monolithic_al\"?");
+  EXPECT_EQ(suggestion("width", {"contact_force", "contact_half_width"}), " did you mean \"contact_half_width\"?");
+  EXPECT_EQ(suggestion(std::string(100000, 'x'), names), "");
 }
 
 TEST(Fingerprint, IsThePublishedHash) {  // test vectors of the FNV reference code
