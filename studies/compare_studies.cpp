@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "studies/commands.hpp"
 #include "studies/input_fault.hpp"
@@ -53,10 +54,56 @@ void compare_errors(const json& before, const json& after, const std::string& ki
   }
 }
 
-CellComparison compare_cells(const json& before, const json& after, const ComparisonBands& bands) {
+/// What a cell computed: responses and sensitivities of the last step, objectives and their gradients.
+std::map<std::string, json> values_of(const json& row) {
+  std::map<std::string, json> values;
+  const auto add = [&](const std::string& name, const json& by_parameter) {
+    for (const auto& [parameter, value] : by_parameter.items()) values["sensitivity " + name + "/" + parameter] = value;
+  };
+  const auto part = [&](const char* name) { return row.value(name, json::object()); };
+  const json responses = part("responses"), sensitivities = part("sensitivities"), objectives = part("objectives");
+  for (const auto& [name, value] : responses.items()) values["response " + name] = value;
+  for (const auto& [name, by_parameter] : sensitivities.items()) add(name, by_parameter);
+  for (const auto& [name, objective] : objectives.items()) {
+    values["response " + name] = objective.value("value", json());
+    add(name, objective.value("gradient", json::object()));
+  }
+  return values;
+}
+
+/// What a difference of a value is measured by: its largest size in any cell.
+using Sizes = std::map<std::string, double>;
+
+void take_sizes(const RowsById& rows, Sizes& sizes) {
+  for (const auto& [id, row] : rows)
+    for (const auto& [name, value] : values_of(row))
+      if (value.is_number()) sizes[name] = std::max(sizes[name], std::abs(value.get<double>()));
+}
+
+void compare_values(const json& before, const json& after, const Sizes& sizes, double rounding,
+                    std::vector<Change>& changes) {
+  auto old_values = values_of(before), new_values = values_of(after);
+  for (const auto& [name, value] : new_values) old_values.emplace(name, json());
+  for (const auto& [name, value] : old_values) {
+    const json& other = new_values[name];
+    if (value == other) continue;
+    double relative = infinite;
+    if (value.is_number() && other.is_number())
+      relative = std::abs(value.get<double>() - other.get<double>()) / sizes.at(name);
+    if (relative > rounding) changes.push_back({name, value, other, std::log10(1 + relative), false});
+  }
+}
+
+void compare_scenes(const json& before, const json& after, std::vector<Change>& changes) {
+  const json a = before.value("scene_hash", json()), b = after.value("scene_hash", json());
+  if (a.is_string() && b.is_string() && a != b) changes.push_back({"scene", a, b, infinite, false});
+}
+
+CellComparison compare_cells(const json& before, const json& after, const Sizes& sizes, const ComparisonBands& bands) {
   CellComparison cell;
   std::tie(cell.label, cell.variant) = name_of(before);
   auto& changes = cell.changes;
+  compare_scenes(before, after, changes);
   if (before.value("status", "") != after.value("status", ""))
     changes.push_back({"status", before.value("status", json()), after.value("status", json()), infinite,
                        converged(before) && !converged(after)});
@@ -66,6 +113,7 @@ CellComparison compare_cells(const json& before, const json& after, const Compar
   compare_counts(part(before, "cost", "counts"), part(after, "cost", "counts"), changes);
   for (const char* kind : {"enforcement", "discretization", "kkt"})
     compare_errors(part(before, "errors", kind), part(after, "errors", kind), kind, bands, changes);
+  compare_values(before, after, sizes, bands.rounding, changes);
   std::stable_sort(changes.begin(), changes.end(), [](const auto& a, const auto& b) { return a.size > b.size; });
   cell.seconds_before = part(before, "cost", "seconds").value("total", 0.0);
   cell.seconds_after = part(after, "cost", "seconds").value("total", 0.0);
@@ -85,10 +133,32 @@ json to_json(const CellComparison& cell) {
           {"seconds", {cell.seconds_before, cell.seconds_after}}};
 }
 
-std::string shown(const json& value) {
-  return value.is_number_float() ? fmt::format("{:.3g}", value.get<double>())
+std::string shown(const json& value, int digits) {
+  return value.is_number_float() ? fmt::format("{:.{}g}", value.get<double>(), digits)
          : value.is_string()     ? value.get<std::string>()
                                  : value.dump();
+}
+
+/// Both values, with as many digits as tell them apart.
+std::pair<std::string, std::string> shown(const Change& change) {
+  constexpr int fewest = 3, all = 17;
+  for (int digits = fewest;; ++digits)
+    if (std::pair texts{shown(change.before, digits), shown(change.after, digits)};
+        texts.first != texts.second || digits == all)
+      return texts;
+}
+
+/// "response", "sensitivity" where the change is of one of the many values of a cell; "" otherwise.
+std::string kind_of_value(const Change& change) {
+  const std::string kind = change.quantity.substr(0, change.quantity.find(' '));
+  return kind == "response" || kind == "sensitivity" ? kind : "";
+}
+
+/// How many changes are of each kind of value.
+std::map<std::string, int> values_changed(const CellComparison& cell) {
+  std::map<std::string, int> count;
+  for (const auto& change : cell.changes) ++count[kind_of_value(change)];
+  return count;
 }
 
 void print(const std::vector<CellComparison>& cells) {
@@ -100,8 +170,17 @@ void print(const std::vector<CellComparison>& cells) {
   for (const auto& cell : cells) {
     if (cell.only_before) line(cell, "cell", "recorded", "missing", true);
     if (cell.only_after) line(cell, "cell", "missing", "recorded", false);
-    for (const auto& change : cell.changes)
-      line(cell, change.quantity, shown(change.before), shown(change.after), change.worse);
+    auto left = values_changed(cell);
+    for (const auto& change : cell.changes) {
+      std::string more;
+      if (const std::string kind = kind_of_value(change); !kind.empty()) {
+        const int others = std::exchange(left[kind], 0) - 1;  // the largest of a kind speaks for all
+        if (others < 0) continue;
+        if (others > 0) more = fmt::format(" (and {} more)", others);
+      }
+      const auto [before, after] = shown(change);
+      line(cell, change.quantity + more, before, after, change.worse);
+    }
   }
 }
 
@@ -116,8 +195,15 @@ double CellComparison::size() const {
   return changes.empty() ? 0 : changes.front().size;
 }
 
+bool CellComparison::other_scene() const {
+  return std::any_of(changes.begin(), changes.end(), [](const auto& c) { return c.quantity == "scene"; });
+}
+
 std::vector<CellComparison> compare_rows(const RowsById& before, const RowsById& after, const ComparisonBands& bands) {
   std::vector<CellComparison> cells;
+  Sizes sizes;
+  take_sizes(before, sizes);
+  take_sizes(after, sizes);
   const auto old_cells = by_name(before), new_cells = by_name(after);
   const auto alone = [](const std::pair<std::string, std::string>& name) {
     CellComparison cell;
@@ -126,7 +212,7 @@ std::vector<CellComparison> compare_rows(const RowsById& before, const RowsById&
   };
   for (const auto& [name, row] : old_cells)
     if (const auto other = new_cells.find(name); other != new_cells.end())
-      cells.push_back(compare_cells(*row, *other->second, bands));
+      cells.push_back(compare_cells(*row, *other->second, sizes, bands));
     else
       (cells.emplace_back(alone(name))).only_before = true;
   for (const auto& [name, row] : new_cells)
@@ -152,28 +238,35 @@ int compare_command(const CompareArguments& arguments) {
   }
   const ComparisonBands bands{arguments.relative, arguments.rounding};
   const auto cells = compare_rows(rows[0], rows[1], bands);
-  int changed = 0, worse = 0;
+  int changed = 0, worse = 0, other_scenes = 0;
   double seconds[2] = {0, 0};
   json list = json::array();
   for (const auto& cell : cells) {
     changed += !cell.changes.empty() || cell.only_before || cell.only_after;
     worse += cell.worse();
+    other_scenes += cell.other_scene();
     seconds[0] += cell.seconds_before;
     seconds[1] += cell.seconds_after;
     list.push_back(to_json(cell));
   }
   if (arguments.json) {
     std::cout << json{{"cells", list},
+                      {"changed", changed},
                       {"worse", worse},
+                      {"other_scenes", other_scenes},
                       {"bands", {{"relative", bands.relative}, {"rounding", bands.rounding}}}}
                      .dump(2)
               << '\n';
   } else {
     print(cells);
+    if (other_scenes > 0)
+      fmt::print("{} of {} cells ran another scene, or with other options of the method: their hashes differ\n",
+                 other_scenes, cells.size());
     fmt::print(
         "{} cells: {} changed, {} of them for the worse; errors may grow by {} of themselves and by {} (rounding), "
-        "counts not at all\nseconds, not judged: {:.3g} -> {:.3g}\n",
-        cells.size(), changed, worse, bands.relative, bands.rounding, seconds[0], seconds[1]);
+        "counts not at all; responses and sensitivities may differ by {} of their largest size in any cell\n"
+        "seconds, not judged: {:.3g} -> {:.3g}\n",
+        cells.size(), changed, worse, bands.relative, bands.rounding, bands.rounding, seconds[0], seconds[1]);
   }
   return worse ? not_solved : done;
 }

@@ -11,15 +11,19 @@ namespace stickslip {
 
 /// What passes as rounding.
 struct ComparisonBands {
-  double relative = 0.05;   ///< of an error: it may grow by this share of itself
-  double rounding = 1e-11;  ///< and by this: errors are relative, and this is what a change in the order of sums may do
+  double relative = 0.05;  ///< of an error: it may grow by this share of itself
+  /// And by this: errors are relative, and this is what a change in the order of sums may do. As much of its largest
+  /// size in any cell a response or a sensitivity may differ by: one that is zero but for rounding has no own size.
+  double rounding = 1e-11;
 };
 
-/// A quantity that differs: a status, a count or an error.
+/// A quantity that differs: the scene (by its hash), a status, a count, an error, a response or a sensitivity.
 struct Change {
-  std::string quantity;  ///< "status", "count newton", "enforcement response:press", ...
+  std::string quantity;  ///< "scene", "status", "count newton", "enforcement response:press", "response press", ...
   nlohmann::json before, after;
-  double size = 0;  ///< |log10(after / before)|, with the rounding band as the least value; a status: infinity
+  /// |log10(after / before)|, with the rounding band as the least value; of a response or sensitivity log10(1 +
+  /// relative difference); of a scene or status infinity.
+  double size = 0;
   bool worse = false;
 };
 
@@ -31,11 +35,13 @@ struct CellComparison {
   double seconds_before = 0, seconds_after = 0;
 
   bool worse() const;
+  bool other_scene() const;
   double size() const;
 };
 
 /// Cells of both, those with the largest change first. A count is worse where it is larger, an error where it grew
-/// beyond the bands, a status where it was converged and no longer is; a cell that is gone is worse.
+/// beyond the bands, a status where it was converged and no longer is; a cell that is gone is worse. A response, a
+/// sensitivity or a scene is only another one.
 std::vector<CellComparison> compare_rows(const RowsById& before, const RowsById& after, const ComparisonBands& bands);
 
 }  // namespace stickslip

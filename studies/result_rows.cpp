@@ -24,11 +24,12 @@ std::string row_fault(const json& row) {
   if (!row.is_object()) return row.is_discarded() ? "it is not JSON" : "it is " + shown(row);
   for (const char* name : {"id", "status"})
     if (!row.contains(name)) return "it has no " + in_quotes(name);
-  static const std::array<std::pair<const char*, json::value_t>, 16> kinds{{
+  static const std::array<std::pair<const char*, json::value_t>, 17> kinds{{
       {"/id", json::value_t::string},
       {"/status", json::value_t::string},
       {"/label", json::value_t::string},
       {"/message", json::value_t::string},
+      {"/scene_hash", json::value_t::string},
       {"/method", json::value_t::object},
       {"/knobs", json::value_t::object},
       {"/vary", json::value_t::object},

@@ -154,6 +154,7 @@ json CellRunner::row(std::size_t index) {
               {"knobs", cell.knobs},
               {"vary", cell.vary},
               {"refine", cell.refine},
+              {"scene_hash", fingerprint(cell.canonical)},
               {"status", name_of(result.status())},
               {"message", result.message()}};
   const json steps = steps_json(result);

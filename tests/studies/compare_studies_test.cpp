@@ -13,7 +13,10 @@ json row(const std::string& id, const std::string& label, double error, int newt
           {"label", label},
           {"vary", json::object()},
           {"refine", 0},
+          {"scene_hash", "abc"},
           {"status", "converged"},
+          {"responses", {{"press", 9.9}, {"side", label == "penalty" ? 2e-17 : 5.0}}},
+          {"sensitivities", {{"press", {{"E", 0.1}}}}},
           {"errors", {{"enforcement", {{"response:press", error}}}}},
           {"cost", {{"counts", {{"newton", newton}}}, {"seconds", {{"total", 1.0}}}}}};
 }
@@ -67,6 +70,43 @@ TEST(CompareStudies, PassesOverRoundingAndSmallShares) {
 TEST(CompareStudies, HoldsLargerErrorsAgainstTheNewRows) {
   EXPECT_TRUE(any_worse(compare_rows(before, after("penalty", "/errors/enforcement/response:press", 1.1e-3), {})));
   EXPECT_TRUE(any_worse(compare_rows(before, after("penalty", "/errors/enforcement/response:press", nullptr), {})));
+}
+
+TEST(CompareStudies, FindsOtherResponsesAndSensitivities) {
+  for (const auto& [pointer, quantity] :
+       {std::pair{"/responses/press", "response press"}, std::pair{"/sensitivities/press/E", "sensitivity press/E"}}) {
+    const double old = before.at("1").at(json::json_pointer(pointer));
+    const auto cells = compare_rows(before, after("penalty", pointer, old * (1 + 1e-9)), {});
+    ASSERT_EQ(cells.front().changes.size(), 1u) << pointer;
+    EXPECT_EQ(cells.front().changes.front().quantity, quantity);
+    EXPECT_EQ(cells.front().label, "penalty");
+    EXPECT_FALSE(any_worse(cells));
+    EXPECT_TRUE(cells.back().changes.empty());
+    EXPECT_TRUE(compare_rows(before, after("penalty", pointer, old * (1 + 1e-12)), {}).front().changes.empty());
+    EXPECT_FALSE(compare_rows(before, after("penalty", pointer, nullptr), {}).front().changes.empty());
+  }
+}
+
+/// A response that is zero but for rounding in one cell has the size that it has in the others.
+TEST(CompareStudies, MeasuresResponsesByTheirLargestSizeInAnyCell) {
+  EXPECT_TRUE(compare_rows(before, after("penalty", "/responses/side", -4e-17), {}).front().changes.empty());
+  EXPECT_FALSE(compare_rows(before, after("penalty", "/responses/side", 1e-9), {}).front().changes.empty());
+}
+
+TEST(CompareStudies, FindsObjectivesAndTheirGradients) {
+  auto old_rows = before, new_rows = before;
+  for (auto* rows : {&old_rows, &new_rows})
+    for (auto& [id, row] : *rows) row["objectives"] = {{"J", {{"value", 2.0}, {"gradient", {{"E", 3.0}}}}}};
+  EXPECT_TRUE(compare_rows(old_rows, new_rows, {}).front().changes.empty());
+  new_rows["1"]["objectives"] = {{"J", {{"value", 4.0}, {"gradient", {{"E", 6.0}}}}}};
+  EXPECT_EQ(compare_rows(old_rows, new_rows, {}).front().changes.size(), 2u);
+}
+
+TEST(CompareStudies, SaysThatTheSceneIsAnother) {
+  const auto cells = compare_rows(before, after("penalty", "/scene_hash", "def"), {});
+  EXPECT_TRUE(cells.front().other_scene());
+  EXPECT_FALSE(cells.back().other_scene());
+  EXPECT_FALSE(any_worse(cells));
 }
 
 TEST(CompareStudies, PutsACellThatNoLongerConvergesFirst) {
