@@ -11,6 +11,6 @@ bash tools/install_dependencies.sh
 cmake --preset release -DSTICKSLIP_BUILD_TESTS=OFF -DSTICKSLIP_BUILD_BENCH=OFF
 cmake --build --preset release -j "$jobs" --target stickslip
 
-results=results/cattaneo_mindlin
+results=results/cattaneo_mindlin.study
 build/release/stickslip study studies/scenes/cattaneo_mindlin.study.json -o "$results" --resume
 echo "The report: $PWD/$results/report.html"

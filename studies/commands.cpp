@@ -12,6 +12,7 @@
 #include "sensitivity/gradcheck.hpp"
 #include "studies/atomic_file.hpp"
 #include "studies/closed_forms.hpp"
+#include "studies/directory_lock.hpp"
 #include "studies/explain.hpp"
 #include "studies/export_system.hpp"
 #include "studies/method_options.hpp"
@@ -118,6 +119,12 @@ int run_command(const RunArguments& arguments) {
   const auto directory = output_directory(arguments.output, arguments.scene);
   if (!arguments.export_to.empty()) check_folder(arguments.export_to);
   if (writes) prepare_directory(directory, {"result.json", "fields.pvd"});
+  std::optional<DirectoryLock> lock;
+  if (writes) lock.emplace(directory);
+  if (writes && std::filesystem::exists(directory / "study.json")) {
+    std::cerr << directory.string() << ": holds a study; -o DIR writes to another directory\n";
+    return bad_input;
+  }
   if (!arguments.export_to.empty()) prepare_directory(arguments.export_to, {"README"});
   std::optional<Progress> progress;  // of long work only: a run of a second or two speaks for itself
   const auto start = std::chrono::steady_clock::now();
@@ -238,6 +245,7 @@ int report_command(const std::string& directory) {
     std::cerr << directory << ": there is no results.jsonl; run `stickslip study` first\n";
     return bad_input;
   }
+  const DirectoryLock lock(directory);
   check_records(directory);
   const auto stored = read_rows(directory);
   if (!stored.sound()) std::cerr << "note: " << directory << "/results.jsonl: " << stored.faults() << '\n';

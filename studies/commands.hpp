@@ -20,7 +20,7 @@ struct RunArguments {
 
 struct StudyArguments {
   std::string study;
-  std::string output;         ///< directory; empty: results/NAME OF THE STUDY
+  std::string output;         ///< directory; empty: results/NAME, the name of the file without .json
   bool resume = false;        ///< keep the rows that are there
   bool restart = false;       ///< delete them; with neither they are a fault
   std::string shard = "1/1";  ///< share of the cells, "i/N"

@@ -34,7 +34,7 @@ DirectoryLock::DirectoryLock(const std::filesystem::path& directory) {
     throw std::system_error(error, std::generic_category(), "cannot lock '" + path.string() + "'");
   throw DirectoryInUse(directory.string() + ": another stickslip writes here" +
                        (known ? " (process " + std::to_string(owner.l_pid) + ")" : std::string()) +
-                       "; wait for it, or give another directory with -o");
+                       "; wait for it, or use another directory");
 }
 
 DirectoryLock::~DirectoryLock() { ::close(file_); }

@@ -14,8 +14,10 @@ namespace {
 void add_scene(CLI::App& command, stickslip::RunArguments& arguments) {
   command.add_option("SCENE", arguments.scene, "scene file (JSON)")->required();
   command.add_option("-m,--method", arguments.method, "penalty, uzawa_al or monolithic_al in place of the scene's");
-  command.add_option("--set", arguments.overrides, "POINTER=VALUE: change a number of the scene")
-      ->allow_extra_args(false);
+  command.add_option("--set", arguments.overrides, "change a number of the scene; may be given again")
+      ->type_name("POINTER=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_flag("--json", arguments.json, "one JSON document on standard output and nothing else");
 }
 

@@ -29,8 +29,9 @@ std::string times(const ProgressState& state) {
 }  // namespace
 
 double estimate_remaining(const ProgressState& state) {
-  if (state.done <= 0) return -1;
-  return state.elapsed / static_cast<double>(state.done) * static_cast<double>(std::max(0L, state.total - state.done));
+  const long now = state.done - state.earlier;
+  if (now <= 0) return -1;
+  return state.elapsed / static_cast<double>(now) * static_cast<double>(std::max(0L, state.total - state.done));
 }
 
 std::string format_duration(double seconds) {
@@ -62,7 +63,7 @@ Progress::~Progress() {
 }
 
 ProgressState Progress::state() const {
-  return {done_, total_, std::chrono::duration<double>(clock_() - start_).count()};
+  return {done_, total_, std::chrono::duration<double>(clock_() - start_).count(), earlier_};
 }
 
 void Progress::draw() {
@@ -79,11 +80,24 @@ void Progress::advance(long pieces) {
     if (done_ >= total_ || clock_() - last_drawn_ >= std::chrono::milliseconds(100)) draw();
     return;
   }
+  tell_tenths();
+}
+
+void Progress::skip(long pieces) {
+  const std::scoped_lock lock(mutex_);
+  done_ += pieces;
+  earlier_ += pieces;
+  if (style_ == Style::bar)
+    draw();
+  else
+    tell_tenths();
+}
+
+void Progress::tell_tenths() {
   const long tenths = share(state(), 10);
-  if (tenths > tenths_told_) {
-    out_ << label_ << ": " << progress_line(state()) << '\n' << std::flush;
-    tenths_told_ = tenths;
-  }
+  if (tenths <= tenths_told_) return;
+  out_ << label_ << ": " << progress_line(state()) << '\n' << std::flush;
+  tenths_told_ = tenths;
 }
 
 void Progress::note(std::string_view message) {

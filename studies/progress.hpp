@@ -15,9 +15,10 @@ struct ProgressState {
   long done = 0;
   long total = 0;
   double elapsed = 0;  ///< seconds
+  long earlier = 0;    ///< of those done: before the work began, in none of these seconds
 };
 
-/// Seconds still to go if the rest takes as long per piece as what is done; negative where nothing is done yet.
+/// Seconds still to go if the rest takes as long per piece as what was done in `elapsed`; negative where nothing was.
 double estimate_remaining(const ProgressState& state);
 
 /// A time for people: "8.3 s", "2 min 05 s", "3 h 07 min".
@@ -45,12 +46,16 @@ class Progress {
   /// `pieces` more are done. A bar is redrawn at most ten times a second, and at the end.
   void advance(long pieces = 1);
 
+  /// `pieces` were done before, in no time that tells how long the rest takes.
+  void skip(long pieces);
+
   /// A message on a line of its own, which does not tear the bar.
   void note(std::string_view message);
 
  private:
   ProgressState state() const;
   void draw();
+  void tell_tenths();
 
   std::ostream& out_;
   const Style style_;
@@ -59,7 +64,7 @@ class Progress {
   const Clock clock_;
   const std::chrono::steady_clock::time_point start_;
   std::mutex mutex_;
-  long done_ = 0;
+  long done_ = 0, earlier_ = 0;
   long tenths_told_ = 0;                              ///< of a log
   std::chrono::steady_clock::time_point last_drawn_;  ///< of a bar
   bool drawn_ = false;

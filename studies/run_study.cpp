@@ -1,6 +1,9 @@
 /// The study command: cells to rows, rows to a report.
 #include <fmt/core.h>
+#include <signal.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -37,11 +40,9 @@ struct Plan {
   fs::path directory;
 };
 
+/// "results/hertz.study" of hertz.study.json: apart from "results/hertz", where a run of its scene writes.
 fs::path directory_of(const StudyArguments& arguments) {
-  if (!arguments.output.empty()) return arguments.output;
-  fs::path stem = fs::path(arguments.study).stem();
-  if (stem.extension() == ".study") stem = stem.stem();
-  return "results" / stem;
+  return arguments.output.empty() ? "results" / fs::path(arguments.study).stem() : fs::path(arguments.output);
 }
 
 /// Makes a model of every variant, so that a scene that makes no sense as a whole is found before anything is written.
@@ -85,7 +86,8 @@ json description(const Plan& plan, const StudyArguments& arguments, MeshFiles& m
   json out = plan.study.document.root();
   const Input input = input_of(plan.all.back(), meshes);
   const auto problem = problem_of(input);
-  out["command"] = "stickslip study " + arguments.study + (arguments.output.empty() ? "" : " -o " + arguments.output);
+  out["command"] = "stickslip study " + arguments.study + (arguments.output.empty() ? "" : " -o " + arguments.output) +
+                   (plan.shard.count > 1 ? " --shard " + plan.shard.text() : "");
   out["program"] = program_version();
   out["cells"] = plan.ids;
   out["shard"] = plan.shard.text();
@@ -107,6 +109,11 @@ void write_description(const fs::path& directory, const json& description) {
   write_file_atomically(directory / "study.json", description.dump(2) + "\n");
 }
 
+std::ptrdiff_t rows_of_other_shards(const Plan& plan, const RowsById& rows) {
+  return static_cast<std::ptrdiff_t>(rows.size()) -
+         std::count_if(plan.cells.begin(), plan.cells.end(), [&](const auto& cell) { return rows.count(cell.id) > 0; });
+}
+
 struct Tally {
   int run = 0, failed = 0;
 };
@@ -118,7 +125,7 @@ Tally run_missing(const Plan& plan, CellRunner& runner, int jobs, RowsById& rows
     if (rows.count(plan.cells[i].id) == 0) missing.push_back(i);
   Tally tally;
   Progress progress(std::cerr, progress_style_of_stderr(), "cells", static_cast<long>(plan.cells.size()));
-  progress.advance(static_cast<long>(plan.cells.size() - missing.size()));
+  progress.skip(static_cast<long>(plan.cells.size() - missing.size()));
   run_in_processes(
       jobs, missing.size(), [&](std::size_t i) { return runner.row(missing[i]).dump(); },
       [&](std::size_t, const std::string& text) {
@@ -200,10 +207,44 @@ bool is_described(const fs::path& directory, const json& described) {
   return there == ours;
 }
 
+/// Where Ctrl-C, or a scheduler, ends the study: says how to go on, while it lives. Workers, which are forked from it,
+/// are ended too, in silence.
+class InterruptNote {
+ public:
+  explicit InterruptNote(const std::string& command) {
+    text_ = "\ninterrupted: finished cells are kept; to go on:\n  " + command + " --resume\n";
+    owner_ = ::getpid();
+    struct sigaction action {
+    }, before{};
+    action.sa_handler = say;
+    action.sa_flags = SA_RESETHAND;
+    for (const int signal : {SIGINT, SIGTERM})
+      if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler == SIG_DFL)  // not of a job that ignores it
+        ::sigaction(signal, &action, nullptr);
+  }
+  ~InterruptNote() {
+    struct sigaction now {};
+    for (const int signal : {SIGINT, SIGTERM})
+      if (::sigaction(signal, nullptr, &now) == 0 && now.sa_handler == say) ::signal(signal, SIG_DFL);
+  }
+  InterruptNote(const InterruptNote&) = delete;
+  InterruptNote& operator=(const InterruptNote&) = delete;
+
+ private:
+  static void say(int signal) {  // only what a signal handler may call
+    if (::getpid() == owner_ && ::write(STDERR_FILENO, text_.data(), text_.size()) < 0) ::_exit(128 + signal);
+    ::raise(signal);
+  }
+  static inline std::string text_;
+  static inline pid_t owner_ = 0;
+};
+
 int carry_out(const Plan& plan, const StudyArguments& arguments, MeshFiles& meshes) {
   prepare_directory(plan.directory, {"results.jsonl", "timings.jsonl", "study.json", "picture.json", "report.html"},
                     {"figures"});
   const DirectoryLock lock(plan.directory);
+  if (fs::exists(plan.directory / "result.json"))
+    throw InputFault(plan.directory.string() + ": holds the result of a run; -o DIR writes to another directory");
   if (!arguments.restart) check_records(plan.directory);
   if (const auto found = read_rows(plan.directory).rows.size(); found > 0 && !arguments.resume && !arguments.restart)
     throw InputFault(
@@ -216,16 +257,19 @@ int carry_out(const Plan& plan, const StudyArguments& arguments, MeshFiles& mesh
   json described = description(plan, arguments, meshes);
   const bool drawn = is_described(plan.directory, described);
   if (!drawn) write_description(plan.directory, described);
-  std::vector<std::string> own, notes;
-  for (const auto& cell : plan.cells) own.push_back(cell.id);
-  RowsById rows = resume_rows(plan.directory, own, notes);
+  std::vector<std::string> notes;
+  const InterruptNote note_of_interrupt(described["command"]);
+  RowsById rows = resume_rows(plan.directory, plan.ids, notes);
+  if (const auto others = rows_of_other_shards(plan, rows); others > 0)
+    notes.push_back(
+        fmt::format("{} row(s) of this study that are not of shard {} stay as they are", others, plan.shard.text()));
   for (const auto& note : notes) std::cerr << "note: " << note << '\n';
   CellRunner runner(plan.study, plan.cells, meshes);
   const Tally tally = run_missing(plan, runner, arguments.jobs, rows);
   if (!drawn && !plan.cells.empty()) draw_showcase(plan, runner, described);
   time_cells(plan, runner, rows);
   take_timings(plan.directory, rows);
-  write_rows(plan.directory, own, rows);
+  write_rows(plan.directory, plan.ids, rows);
   write_report(plan.directory);
   fmt::print("{} cells, {} run now, {} of these without a converged result (kept as rows)\nreport: {}\n",
              plan.cells.size(), tally.run, tally.failed, (plan.directory / "report.html").string());
@@ -242,6 +286,7 @@ int study_command(const StudyArguments& arguments) {
     std::cerr << diagnostics.text();
     return bad_input;
   }
+  for (const auto& note : diagnostics.notes()) std::cerr << "note: " << note.text() << '\n';
   return carry_out(*plan, arguments, meshes);
 }
 

@@ -8,6 +8,10 @@
 # failure, it runs only what is missing. On one machine `stickslip study --jobs N` does the same without shards.
 set -euo pipefail
 
+if (($# < 2 || $# > 3)); then
+  echo "usage: $0 STUDY.json OUTPUT [SHARDS]" >&2
+  exit 2
+fi
 study=$(realpath "$1")
 output=$(realpath -m "$2")
 shards=${3:-8}

@@ -8,25 +8,36 @@
 # submits all tasks again, and each runs only what is missing in its share.
 set -euo pipefail
 
+if (($# < 2 || $# > 3)); then
+  echo "usage: $0 STUDY.json OUTPUT [SHARDS]" >&2
+  exit 2
+fi
 study=$(realpath "$1")
 output=$(realpath -m "$2")
 shards=${3:-8}
 program=$(realpath "$(command -v "${STICKSLIP:-stickslip}")")
 read -ra flags <<< "${SBATCH_FLAGS:-}"
 mkdir -p "$output/shards"
+parts=()
+for ((i = 1; i <= shards; ++i)); do parts+=("$output/shards/$i"); done
+quoted() {  # words as bash reads them again
+  local words
+  printf -v words '%q ' "$@"
+  printf '%s' "${words% }"
+}
 
 # One thread a task: the cells are what runs in parallel.
 array=$(sbatch --parsable "${flags[@]}" --job-name=stickslip --array="1-$shards" --ntasks=1 --cpus-per-task=1 \
   --output="$output/shards/%a.log" --export=ALL,OPENBLAS_NUM_THREADS=1,OMP_NUM_THREADS=1 <<EOF
 #!/bin/bash
-exec "$program" study "$study" --shard "\$SLURM_ARRAY_TASK_ID/$shards" --resume -o "$output/shards/\$SLURM_ARRAY_TASK_ID"
+exec $(quoted "$program" study "$study") --shard "\$SLURM_ARRAY_TASK_ID/$shards" --resume -o $(quoted "$output/shards/")"\$SLURM_ARRAY_TASK_ID"
 EOF
 )
 # afterany: where a task has failed, the merge says which cells are missing, and its exit code is 3.
 joined=$(sbatch --parsable "${flags[@]}" --job-name=stickslip-merge --dependency="afterany:${array%%;*}" --ntasks=1 \
   --output="$output/merge.log" <<EOF
 #!/bin/bash
-exec "$program" merge $(printf "'$output/shards/%s' " $(seq "$shards")) -o "$output"
+exec $(quoted "$program" merge "${parts[@]}" -o "$output")
 EOF
 )
 echo "tasks: job ${array%%;*}, merge: job ${joined%%;*}; the whole will be in $output"

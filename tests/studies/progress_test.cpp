@@ -43,6 +43,8 @@ TEST(EstimateRemaining, TakesTheRestToCostWhatTheDoneDid) {
   EXPECT_DOUBLE_EQ(estimate_remaining({.done = 10, .total = 40, .elapsed = 20}), 60);
   EXPECT_DOUBLE_EQ(estimate_remaining({.done = 40, .total = 40, .elapsed = 20}), 0);
   EXPECT_LT(estimate_remaining({.done = 0, .total = 40, .elapsed = 20}), 0);
+  EXPECT_DOUBLE_EQ(estimate_remaining({.done = 30, .total = 40, .elapsed = 20, .earlier = 28}), 100);
+  EXPECT_LT(estimate_remaining({.done = 30, .total = 40, .elapsed = 20, .earlier = 30}), 0);
 }
 
 TEST(ProgressBar, ShowsDoneLeftElapsedAndEstimate) {
@@ -85,6 +87,17 @@ TEST_F(Progresses, ALogOfFewPiecesGetsALineForEach) {
   Progress progress(out_, Progress::Style::lines, "few", 3, clock());
   for (int i = 0; i < 3; ++i) progress.advance();
   EXPECT_EQ(lines(out_.str()).size(), 3u);
+}
+
+TEST_F(Progresses, TheEstimateRestsOnThePiecesOfThisRun) {
+  Progress progress(out_, Progress::Style::lines, "resumed", 10, clock());
+  progress.skip(8);
+  pass(60);
+  progress.advance();
+  EXPECT_EQ(lines(out_.str()),
+            (std::vector<std::string>{"resumed: 80 %: 8 of 10 done, 2 left, 0.0 s elapsed",
+                                      "resumed: 90 %: 9 of 10 done, 1 left, 1 min 00 s elapsed, about 1 min 00 s to "
+                                      "go"}));
 }
 
 TEST_F(Progresses, ABarIsRedrawnInPlaceAtMostTenTimesASecond) {

@@ -8,6 +8,7 @@ import json
 import os
 import random
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -109,12 +110,49 @@ def one_at_a_time(study, work):
     while not (directory / "study.json").exists():
         time.sleep(0.005)
     second = run("study", study, "-o", directory, "--resume", check=False)
+    refused = run("report", directory, check=False)
     running = first.poll() is None
+    if refused.returncode != 2 or "another stickslip writes here" not in refused.stderr:
+        sys.exit(f"a report of a running study: exit code {refused.returncode}: {refused.stderr}")
     if not running or second.returncode != 2 or f"another stickslip writes here (process {first.pid})" not in second.stderr:
         sys.exit(f"two at once: first running: {running}, exit code {second.returncode}: {second.stderr}")
     if first.wait() != 0:
         sys.exit("the first of two did not finish")
     print("a second process is refused: " + second.stderr.strip(), flush=True)
+
+
+def interrupted(study, work):
+    directory = work / "interrupted"
+    process = subprocess.Popen([PROGRAM, "study", study, "-o", directory, "--jobs", "2"], stdout=subprocess.DEVNULL,
+                               stderr=subprocess.PIPE, text=True, start_new_session=True)
+    while not (directory / "results.jsonl").exists():
+        time.sleep(0.005)
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to the workers too
+    said = process.communicate()[1]
+    if process.returncode != -signal.SIGINT or said.count(f"stickslip study {study} -o {directory} --resume\n") != 1:
+        sys.exit(f"interrupted: {process.returncode} {said}")
+    print("an interrupted study says how to go on", flush=True)
+
+
+def by_slurm(study, whole, work):
+    """The array job by a stand-in for sbatch that runs its script at once, in a directory with an awkward name."""
+    tools = work / "tools"
+    tools.mkdir()
+    (tools / "sbatch").write_text("""#!/bin/bash
+script=$(cat)
+for argument in "$@"; do case $argument in --array=1-*) tasks=${argument#--array=1-};; esac; done
+for i in $(seq "${tasks:-1}"); do SLURM_ARRAY_TASK_ID=$i bash -c "$script" > /dev/null; done
+echo 7
+""")
+    (tools / "sbatch").chmod(0o755)
+    environment = dict(os.environ, PATH=f"{tools}:{os.environ['PATH']}", STICKSLIP=PROGRAM)
+    template, output = SOURCE / "studies" / "templates" / "slurm_array.sh", work / "it's $HOME `now`"
+    subprocess.run([template, study, output, "3"], env=environment, check=True, stdout=subprocess.DEVNULL)
+    same(output, whole, "three tasks of an array job")
+    for name in ("slurm_array.sh", "gnu_parallel.sh"):
+        refused = subprocess.run([SOURCE / "studies" / "templates" / name], capture_output=True, text=True)
+        if refused.returncode != 2 or "usage: " not in refused.stderr:
+            sys.exit(f"{name} without arguments: {refused.returncode} {refused.stderr}")
 
 
 def not_overwritten(study, whole, work):
@@ -123,11 +161,15 @@ def not_overwritten(study, whole, work):
     folder = work / "folder"
     (folder / "report.html").mkdir(parents=True)
     scene = study.parent / json.loads(study.read_text())["scene"]
+    single = work / "single"
+    run("run", scene, "-o", single)
     refusals = [
         (("study", study, "-o", whole), "--restart deletes them"),
         (("study", study, "-o", work / "file"), "is a file; must be a directory"),
         (("study", study, "-o", folder), "report.html: is a directory"),
         (("study", study, "-o", ""), "is empty; must be a name"),
+        (("run", scene, "-o", whole), "holds a study"),
+        (("study", study, "-o", single), "holds the result of a run"),
         (("run", scene, "-o", work / "file"), "is a file; must be a directory"),
         (("run", scene, "-o", work / ("x" * 300)), "cannot be made: File name too long"),
         (("run", scene, "--json", "--export", work / "file"), "is a file; must be a directory"),
@@ -179,6 +221,13 @@ def in_shards(study, whole, work):
     if refused.returncode != 2 or "are of different studies" not in refused.stderr or (work / "nothing").exists():
         sys.exit(f"another study: {refused.returncode} {refused.stderr}")
     print("another study is refused: " + refused.stderr.strip(), flush=True)
+    both = work / "both"
+    run("study", study, "-o", both, "--shard", "1/2")
+    said = run("study", study, "-o", both, "--shard", "2/2", "--resume").stderr
+    kept = (len(rows(whole)) + 1) // 2
+    if f"{kept} row(s) of this study that are not of shard 2/2 stay as they are" not in said:
+        sys.exit(f"rows of another shard: {said}")
+    same(both, whole, "two shards in one directory")
 
 
 def compared(whole, work):
@@ -195,6 +244,14 @@ def compared(whole, work):
         sys.exit(f"one more iteration: exit code {told.returncode}: {told.stdout}")
     if run("compare", worse, whole).returncode != 0:
         sys.exit("one iteration less is found to be worse")
+    for line in lines:
+        line["responses"] = {name: 2 * value for name, value in line["responses"].items()}
+        line["scene_hash"] = "another"
+    lines[3]["cost"]["counts"]["newton"] -= 1
+    (worse / "results.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
+    told = run("compare", whole, worse).stdout
+    if f"{len(lines)} cells: {len(lines)} changed, 0 of them" not in told or "ran another scene" not in told:
+        sys.exit(f"all responses doubled: {told}")
     print("one more iteration is found", flush=True)
 
 
@@ -234,6 +291,8 @@ def main():
         run("study", study, "-o", whole)
         killed_and_resumed(study, whole, work)
         one_at_a_time(study, work)
+        interrupted(study, work)
+        by_slurm(study, whole, work)
         not_overwritten(study, whole, work)
         in_parallel(study, whole, work)
         in_shards(study, whole, work)
