@@ -185,6 +185,11 @@ std::optional<Reference> read_reference(const JsonNode& node, const json& scene)
   return reference;
 }
 
+/// Whether one pointer names a part of what the other names.
+bool overlap(const std::string& a, const std::string& b) {
+  return (a + "/").starts_with(b + "/") || (b + "/").starts_with(a + "/");
+}
+
 std::vector<Knob> read_vary(const JsonNode& node, const json& scene) {
   std::vector<Knob> knobs;
   if (!node.is_map("lists of values by JSON pointer of the scene")) return knobs;
@@ -195,6 +200,10 @@ std::vector<Knob> read_vary(const JsonNode& node, const json& scene) {
       list.error_at_key(fault);
     else if (value_at(scene, pointer)->is_object())
       list.error_at_key("names an object; must name a number, a text or an array");
+    else if (const auto other = std::find_if(knobs.begin(), knobs.end(),
+                                             [&](const Knob& knob) { return overlap(knob.pointer, pointer); });
+             other != knobs.end())
+      list.error_at_key("overlaps " + other->pointer + ", which is varied too: one would overwrite the other");
     else
       knobs.push_back({pointer, values_of(list)});
   }
@@ -442,6 +451,7 @@ std::vector<CellInput> expand(const Study& study, const std::string& program_ver
   Diagnostics diagnostics;
   std::vector<CellInput> cells;
   std::set<std::string> ids;
+  std::size_t again = 0;
   for (const auto& [level, level_place] : study.refine) {
     CellInput refined;
     refined.document = study.scene;
@@ -457,8 +467,11 @@ std::vector<CellInput> expand(const Study& study, const std::string& program_ver
         for_each_combination(method.options, [&](const std::vector<const PlacedValue*>& chosen) {
           CellInput cell = scene;
           set_method(cell, method, chosen);
-          if (complete(cell, method.method, program_version, diagnostics, mesh_files) && ids.insert(cell.id).second)
+          if (!complete(cell, method.method, program_version, diagnostics, mesh_files)) return;
+          if (ids.insert(cell.id).second)
             cells.push_back(std::move(cell));
+          else
+            ++again;
         });
     });
   }
@@ -471,6 +484,13 @@ std::vector<CellInput> expand(const Study& study, const std::string& program_ver
           complete(cell, reference.method.method, program_version, diagnostics, mesh_files);
       }
   for (const Diagnostic& fault : diagnostics.errors()) all_faults.error(in_study(study, fault));
+  if (again > 0)
+    all_faults.note(
+        {{study.document.file()},
+         "",
+         fmt::format("{} of the {} cells that its lists make {} another and {} "
+                     "left out (the same method and options, or a mesh that has no levels)",
+                     again, again + cells.size(), again == 1 ? "equals" : "equal", again == 1 ? "is" : "are")});
   if (diagnostics.has_errors()) cells.clear();
   return cells;
 }

@@ -68,7 +68,8 @@ struct CellInput {
 std::optional<Study> read_study(const std::string& file, Diagnostics&);
 
 /// The cells, all valid: mesh level by level, then each combination of `vary`, then the methods with each combination
-/// of their options, the last varying fastest. Inputs that are the same come once. Empty where there is a fault.
+/// of their options, the last varying fastest. Inputs that are the same come once, and a note says how many
+/// were left out. Empty where there is a fault.
 std::vector<CellInput> expand(const Study&, const std::string& program_version, Diagnostics&, MeshFiles&);
 
 /// A fault of a cell's scene as one of the study, where the study gives the value: with the pointer that it has there.

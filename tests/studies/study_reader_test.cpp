@@ -282,6 +282,9 @@ INSTANTIATE_TEST_SUITE_P(
                     R"(in "methods")"},
         BrokenStudy{"vary_an_object", R"("/contacts/sole/friction": [0, 0.3])", R"(@"/contacts/sole": [0, 0.3])",
                     "/vary/~1contacts~1sole", "names an object"},
+        BrokenStudy{"vary_a_part_of_another", R"("/contacts/sole/friction": [0, 0.3])",
+                    R"("/obstacles/floor/plane/normal": [[0, 1]], @"/obstacles/floor/plane/normal/1": [1, 2])",
+                    "/vary/~1obstacles~1floor~1plane~1normal~11", "overlaps /obstacles/floor/plane/normal, which"},
         BrokenStudy{"vary_one_value", R"("/contacts/sole/friction": [0, 0.3])", R"("/contacts/sole/friction": @0.3)",
                     "/vary/~1contacts~1sole~1friction", "must be a list of values"},
         BrokenStudy{"vary_beyond", "[0, 0.3]", "[0, @-0.3]", "/vary/~1contacts~1sole~1friction/1",
@@ -354,6 +357,25 @@ TEST_F(StudyReader, TakesAnOverkillReferenceFromAFinerMeshOfTheSameCell) {
   EXPECT_EQ(fine.document.root()["bodies"]["block"]["mesh"]["box"]["cells"], (nlohmann::json{4 * 8, 2 * 8}));
   EXPECT_EQ(fine.document.root()["bodies"]["rod"]["mesh"]["line"]["cells"], 3 * 8);
   EXPECT_EQ(fine.vary, all.back().vary);
+}
+
+TEST_F(StudyReader, SaysHowManyCellsAreLeftOutBecauseTheyEqualOthers) {
+  const auto once = R"({"scene": "scene.json", "methods": [{"monolithic_al": {}}, {"penalty": {}}]})";
+  EXPECT_EQ(cells(once, without_stiffness_parameter()).size(), 2u);
+  EXPECT_THAT(diagnostics_.notes(), IsEmpty());
+  const auto twice = R"({"scene": "scene.json", "methods": [{"monolithic_al": {}}, {"penalty": {}}, {"penalty": {}}]})";
+  EXPECT_EQ(cells(twice, without_stiffness_parameter()).size(), 2u);
+  ASSERT_EQ(diagnostics_.notes().size(), 1u);
+  EXPECT_THAT(diagnostics_.notes()[0].text(), HasSubstr("1 of the 3 cells that its lists make equals another"));
+  EXPECT_EQ(diagnostics_.text(), "");
+}
+
+TEST_F(StudyReader, SaysThatPointsHaveNoMeshLevels) {
+  const auto scene = R"({"bodies": {"mass": {"mesh": {"point": {"at": [0, 0]}},
+      "material": {"grounded_spring": {"stiffness": [[1, 0], [0, 1]]}}}}, "time": {"end": 1, "steps": 1}})";
+  EXPECT_EQ(cells(R"({"scene": "scene.json", "refine": [0, 1, 2], "methods": [{"penalty": {}}]})", scene).size(), 1u);
+  ASSERT_EQ(diagnostics_.notes().size(), 1u);
+  EXPECT_THAT(diagnostics_.notes()[0].text(), HasSubstr("2 of the 3 cells that its lists make equal another"));
 }
 
 TEST_F(StudyReader, CannotTakeAnOverkillReferenceOfAnImportedMesh) {
