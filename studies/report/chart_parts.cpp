@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -256,14 +257,14 @@ json curves(const std::string& description, const json& x, const json& y, const 
 
 void tag_ends(json& rows, const std::string& text_field) {
   constexpr double word_width = 0.16, word_height = 0.05;  // of a word, in widths and heights of a chart
-  struct Place {
-    double x, y;
-  };
+  using Place = std::array<double, 3>;  // height, and the places across in the charts against work and seconds
   const auto place = [](const json& r) {
-    return Place{std::log10(r["work"].get<double>()), std::log10(r["shown"].get<double>())};
+    const auto logarithm = [&](const char* field) { return std::log10(r[field].get<double>()); };
+    return Place{logarithm("shown"), logarithm("work"), logarithm("seconds")};
   };
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  Place least{infinite, infinite}, most{-infinite, -infinite};
+  Place least, most;
+  least.fill(std::numeric_limits<double>::infinity());
+  most.fill(-std::numeric_limits<double>::infinity());
   std::map<std::string, std::pair<json*, json*>> ends;
   for (auto& r : rows) {
     if (r.value("failed", false) || r.value(text_field, "").empty()) continue;
@@ -271,15 +272,18 @@ void tag_ends(json& rows, const std::string& text_field) {
     if (!first || r["order"] < (*first)["order"]) first = &r;
     if (!last || r["order"] > (*last)["order"]) last = &r;
     const Place at = place(r);
-    if (!std::isfinite(at.x) || !std::isfinite(at.y)) continue;
-    least = {std::min(least.x, at.x), std::min(least.y, at.y)};
-    most = {std::max(most.x, at.x), std::max(most.y, at.y)};
+    for (std::size_t i = 0; i < at.size(); ++i)
+      if (std::isfinite(at[i])) {
+        least[i] = std::min(least[i], at[i]);
+        most[i] = std::max(most[i], at[i]);
+      }
   }
-  const double width = word_width * (most.x - least.x), height = word_height * (most.y - least.y);
   std::map<std::string, std::vector<Place>> taken;  // by what is shown at once
   for (auto& [key, pair] : ends) {
     const auto apart = [&](const Place& a, const Place& b) {
-      return std::abs(a.x - b.x) > width || std::abs(a.y - b.y) > height;
+      const auto far = [&](std::size_t i, double room) { return std::abs(a[i] - b[i]) > room * (most[i] - least[i]); };
+      const auto drawn = [&](std::size_t i) { return std::isfinite(a[i]) && std::isfinite(b[i]); };
+      return far(0, word_height) || ((far(1, word_width) || !drawn(1)) && (far(2, word_width) || !drawn(2)));
     };
     if (pair.first == pair.second || !apart(place(*pair.first), place(*pair.second))) continue;
     for (json* r : {pair.first, pair.second}) {

@@ -8,10 +8,13 @@
 #include <optional>
 
 #include "studies/report/html.hpp"
+#include "studies/wording.hpp"
 
 namespace stickslip::report {
 
 namespace {
+
+constexpr double rounding = 1e-12;  ///< of a response: what sixteen digits leave after a solve
 
 std::vector<const Cell*> main_cells(const Study& study) {
   std::vector<const Cell*> out;
@@ -34,7 +37,7 @@ std::string spent(const Cell& cell, const Measure& measure) {
       cell.count("factorizations") - (derivative ? 0 : cell.count("sensitivity_factorizations"));
   const double backsolves = cell.count("backsolves") + (derivative ? cell.count("sensitivity_backsolves") : 0);
   std::string out =
-      fmt::format("{} factorisations and {} back-solves", number(factorizations, 9), number(backsolves, 9));
+      counted(std::lround(factorizations), "factorisation") + " and " + counted(std::lround(backsolves), "back-solve");
   if (cell.*measure.seconds > 0) out += fmt::format(" ({} s)", number(cell.*measure.seconds, 2));
   return out;
 }
@@ -150,6 +153,13 @@ std::string penalty_sentence(const Study& study) {
   return out + "." + penalty_failures(study);
 }
 
+/// What, besides the method, makes the difference to the references.
+std::string what_else_errs(const Study& study) {
+  const std::string reference = discretization_reference(study);
+  if (reference == "the finer mesh") return "the mesh";
+  return reference == "the closed form" ? "mesh and steps" : "mesh, steps or the references themselves";
+}
+
 std::string mesh_sentence(const Study& study) {
   std::optional<double> best_mesh, best_method;
   for (const Cell* cell : main_cells(study)) {
@@ -162,9 +172,21 @@ std::string mesh_sentence(const Study& study) {
   if (!best_mesh) return {};
   std::string out = fmt::format("Against {} the best run is off by {} in its worst response",
                                 discretization_reference(study), number(*best_mesh, 2));
+  if (*best_mesh <= rounding) return out + ", which is rounding.";
   if (best_method && *best_method < *best_mesh)
-    out += ": that is the mesh, and enforcing contact more strictly than this does not bring the answer nearer to it";
+    out += fmt::format(": that is {}, and enforcing contact more strictly does not bring the answer nearer to it",
+                       what_else_errs(study));
   return out + ".";
+}
+
+/// What a study without references does not tell.
+std::string reference_sentence(const Study& study) {
+  const bool measured = std::any_of(study.cells.begin(), study.cells.end(), [](const Cell& cell) {
+    return !cell.enforcement.empty() || !cell.discretization.empty();
+  });
+  return measured ? ""
+                  : "No error was measured: the study names no reference, or none that its runs could be held against. "
+                    "What is here is what they gave, what they cost, and how far each is from Coulomb's law (KKT).";
 }
 
 std::string failure_sentence(const Study& study) {
@@ -195,6 +217,7 @@ std::vector<std::string> headline(const Study& study) {
     out.push_back(cost_sentence(study, measure));
   out.push_back(penalty_sentence(study));
   out.push_back(mesh_sentence(study));
+  out.push_back(reference_sentence(study));
   out.erase(std::remove(out.begin(), out.end(), std::string()), out.end());
   if (!out.empty() && !study.main_variant.empty())
     out.push_back("These figures are for " + study.main_variant +

@@ -136,7 +136,8 @@ std::optional<Figure> error_against_knob(const Study& study, const std::vector<s
   figure.text = "Enforcement error (same mesh) as the option is turned. ";
   figure.text += penalty ? "Penalty lets bodies penetrate and creep by an amount proportional to 1/stiffness, so its "
                            "error falls with slope -1, until rounding, which grows with the stiffness, lifts it again. "
-                           "An augmented Lagrangian's answer does not depend on its scale: its line is flat. "
+                           "What an augmented Lagrangian converges to does not depend on its scale: its line shows "
+                           "what its tolerance leaves, which may, and rounding. "
                          : "";
   figure.text += "Crosses are runs that did not converge.";
   const json tips = tooltip({{"label", "method"}, {"knob", "option"}, {"error", "error"}, {"status", "status"}});

@@ -18,7 +18,7 @@
   }
 
   /** The specification with the words $series, $colors, ... replaced by the series that occur in the rows. */
-  function filled(spec, series, rows) {
+  function filled(spec, series, rows, width) {
     const names = new Set(rows.map((row) => row.series));
     const present = series.filter((s) => names.has(s.name));
     const ink = css('--ink');
@@ -33,9 +33,23 @@
     const copy = JSON.parse(JSON.stringify(spec), (key, value) => words.has(value) ? words.get(value) : value);
     copy.datasets = {rows};
     for (const layer of copy.layer)
-      for (const channel of [layer.encoding?.x, layer.encoding?.y])
+      for (const [name, room] of [['x', width - 110], ['y', copy.height]]) {
+        const channel = layer.encoding?.[name];
         if (channel?.scale) fitAxis(channel, rows.map((row) => row[channel.field]));
+        if (channel?.title) channel.title = wrapped(channel.title, room / 7);
+      }
     return copy;
+  }
+
+  /** A text in lines of so many letters, broken between words. */
+  function wrapped(text, letters) {
+    const lines = [''];
+    for (const word of text.split(' ')) {
+      const line = lines.at(-1);
+      if (line && line.length + 1 + word.length > letters) lines.push(word);
+      else lines[lines.length - 1] = line ? line + ' ' + word : word;
+    }
+    return lines;
   }
 
   /** Gives a logarithmic axis its ticks and at least a decade, and another axis of one single value a length. */
@@ -44,7 +58,9 @@
     const usable = values.filter((value) => Number.isFinite(value) && (!log || value > 0));
     let low = usable.reduce((a, b) => Math.min(a, b), Infinity);
     let high = usable.reduce((a, b) => Math.max(a, b), -Infinity);
-    if (log && high < 10 * low) {
+    if (log && high < 10 * low && 'domainMin' in channel.scale) {
+      channel.scale.domainMax = high = 10 * low;
+    } else if (log && high < 10 * low) {
       const middle = Math.sqrt(low) * Math.sqrt(high);
       channel.scale.domain = [low, high] = [middle / Math.sqrt(10), middle * Math.sqrt(10)];
     }
@@ -93,7 +109,7 @@
       const only = spec.usermeta.panel;
       const own = only ? rows.filter((row) => row.panel === only) : rows;
       const names = [...new Set(own.map((row) => row.series ?? ''))];
-      await vegaEmbed(panel.querySelector('.vega'), filled(spec, data.series, own), {
+      await vegaEmbed(panel.querySelector('.vega'), filled(spec, data.series, own, panel.clientWidth), {
         mode: 'vega-lite', renderer: 'svg', config: config(names, panel.clientWidth), logLevel: vega.Error,
         actions: {export: true, source: false, compiled: false, editor: false},
         tooltip: {theme: dark.matches ? 'dark' : 'light'},

@@ -1,5 +1,7 @@
 #include "studies/report/plot.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -26,50 +28,108 @@ bool is_shown(const Figure& figure, const Panel& panel, const json& row) {
   return drawable(panel.x, panel.x_log) && drawable(panel.y, panel.y_log);
 }
 
-/// What is drawn of a panel: its rows, and the axes they span.
+/// What is drawn of a panel: its rows, the guides beside them, and the axes they span.
 struct Frame {
-  std::vector<const json*> rows;
+  std::vector<const json*> rows, guides;
   Axis x, y;
 };
 
-std::string axis_text(const json& spec, const std::string& name) {
+/// The channel of an axis, with its title; null where no layer has one.
+json channel_of(const json& spec, const std::string& name) {
   for (const auto& layer : spec["layer"])
     if (layer.contains("encoding") && layer["encoding"].contains(name) && layer["encoding"][name].contains("title"))
-      return layer["encoding"][name]["title"];
-  return {};
+      return layer["encoding"][name];
+  return nullptr;
+}
+
+std::string axis_text(const json& spec, const std::string& name) {
+  const json channel = channel_of(spec, name);
+  return channel.is_null() ? std::string() : channel["title"].get<std::string>();
+}
+
+/// Whether nothing can lie below the least value of the axis.
+bool is_bounded(const json& spec, const std::string& name) {
+  const json channel = channel_of(spec, name);
+  return !channel.is_null() && channel["scale"].contains("domainMin");
+}
+
+/// A tick as the page writes it.
+std::string tick_text(double value) {
+  const double size = std::abs(value);
+  if (value == 0 || (size >= 0.01 && size < 1e4)) return number(value);
+  const double exponent = std::floor(std::log10(size) + 1e-9);  // of 1e-5 too, whose logarithm may be rounded down
+  return fmt::format("{}e{}", number(value / std::pow(10, exponent)), exponent);
 }
 
 double number_of(const json& row, const std::string& field) { return row[field].get<double>(); }
 
 std::optional<Frame> frame_of(const Figure& figure, const Panel& panel) {
-  std::vector<const json*> rows;
+  std::vector<const json*> rows, guides;
   for (const auto& row : figure.rows)
-    if (!row.value("guide", false) && is_shown(figure, panel, row)) rows.push_back(&row);
+    if (is_shown(figure, panel, row)) (row.value("guide", false) ? guides : rows).push_back(&row);
   if (rows.empty()) return std::nullopt;
+  std::vector<const json*> all = rows;
+  all.insert(all.end(), guides.begin(), guides.end());
   const auto bounds = [&](const std::string& field) {
-    const auto [low, high] = std::minmax_element(rows.begin(), rows.end(), [&](const json* a, const json* b) {
+    const auto [low, high] = std::minmax_element(all.begin(), all.end(), [&](const json* a, const json* b) {
       return number_of(*a, field) < number_of(*b, field);
     });
     return std::pair{number_of(**low, field), number_of(**high, field)};
   };
   const auto [x_low, x_high] = bounds(panel.x);
   const auto [y_low, y_high] = bounds(panel.y);
-  return Frame{rows, Axis(x_low, x_high, panel.x_log, left, right), Axis(y_low, y_high, panel.y_log, bottom, top)};
+  return Frame{rows, guides, Axis(x_low, x_high, panel.x_log, left, right, is_bounded(panel.spec, "x")),
+               Axis(y_low, y_high, panel.y_log, bottom, top)};
 }
 
 void draw_axes(const Frame& frame, const json& spec, Drawing& drawing) {
   const Style grid{"line"};
   for (const double tick : frame.x.ticks()) {
     drawing.line(frame.x(tick), top, frame.x(tick), bottom, grid);
-    drawing.text(frame.x(tick), bottom + 16, number(tick), {Anchor::middle});
+    drawing.text(frame.x(tick), bottom + 16, tick_text(tick), {Anchor::middle});
   }
   for (const double tick : frame.y.ticks()) {
     drawing.line(left, frame.y(tick), right, frame.y(tick), grid);
-    drawing.text(left - 6, frame.y(tick) + 4, number(tick), {Anchor::end});
+    drawing.text(left - 6, frame.y(tick) + 4, tick_text(tick), {Anchor::end});
   }
   drawing.path(Path().move(left, top).line(left, bottom).line(right, bottom), {"ink"});
   drawing.text((left + right) / 2, bottom + 36, axis_text(spec, "x"), {Anchor::middle});
   drawing.text(14, (top + bottom) / 2, axis_text(spec, "y"), {Anchor::middle, 12, "ink", true});
+}
+
+/// The line on which exact zeros stand, where there are any.
+void draw_ground(const Frame& frame, const Panel& panel, Drawing& drawing) {
+  const auto zero =
+      std::find_if(frame.rows.begin(), frame.rows.end(), [](const json* r) { return r->value("zero", false); });
+  if (zero == frame.rows.end()) return;
+  const double y = frame.y(number_of(**zero, panel.y));
+  drawing.line(left, y, right, y, {"ink", "", 1, {1, 3}});
+  drawing.text(left + 4, y - 4, "on this line: exactly 0", {Anchor::start, 11});
+}
+
+/// Lines that theory gives.
+void draw_guides(const Frame& frame, const Panel& panel, Drawing& drawing) {
+  std::map<std::string, Path> lines;
+  for (const json* row : frame.guides) {
+    const double x = frame.x(number_of(*row, panel.x)), y = frame.y(number_of(*row, panel.y));
+    Path& path = lines[row->value("line", "")];
+    path.empty() ? path.move(x, y) : path.line(x, y);
+    if (const std::string tag = row->value("guide_tag", ""); !tag.empty())
+      drawing.text(x - 6, y + 6, tag, {Anchor::end, 11});
+  }
+  for (const auto& [name, path] : lines) drawing.path(path, {"ink", "", 1, {3, 3}});
+}
+
+/// The option's values at the ends of curves.
+void draw_tags(const Frame& frame, const Panel& panel, Drawing& drawing) {
+  constexpr double size = 11, aside = 9, above = 8;
+  for (const json* row : frame.rows) {
+    const std::string tag = row->value("tag", "");
+    if (tag.empty()) continue;
+    const double x = frame.x(number_of(*row, panel.x)), y = frame.y(number_of(*row, panel.y));
+    const bool fits = x + aside + text_width(tag, size) < width;
+    drawing.text(fits ? x + aside : x - aside, y - above, tag, {fits ? Anchor::start : Anchor::end, size});
+  }
 }
 
 /// Markers and lines of one series; false where it has none.
@@ -103,17 +163,17 @@ bool draw_series(const Frame& frame, const Panel& panel, const Series& series, D
 
 }  // namespace
 
-Axis::Axis(double low, double high, bool logarithmic, double from, double to)
+Axis::Axis(double low, double high, bool logarithmic, double from, double to, bool bounded)
     : log_(logarithmic), from_(from), to_(to) {
   low_ = scaled(low);
   high_ = scaled(high);
   if (log_ && high_ - low_ < 1) {  // a decade at least: rounding is no trend, and some tick has its place
     const double middle = (low_ + high_) / 2;
-    low_ = middle - 0.5;
-    high_ = middle + 0.5;
+    low_ = bounded ? low_ : middle - 0.5;
+    high_ = low_ + 1;
   }
   const double room = high_ > low_ ? 0.05 * (high_ - low_) : std::max(std::abs(high_), 1.0) / 2;
-  low_ -= room;
+  if (!bounded) low_ -= room;
   high_ += room;
 }
 
@@ -153,6 +213,8 @@ std::optional<Drawing> draw_plot(const Figure& figure, const Panel& panel) {
   if (!frame) return std::nullopt;
   Drawing drawing(width, bottom, figure.title + (panel.title.empty() ? "" : ", " + panel.title), figure.text);
   draw_axes(*frame, panel.spec, drawing);
+  draw_ground(*frame, panel, drawing);
+  draw_guides(*frame, panel, drawing);
   double legend = bottom + 58;
   for (const auto& series : figure.series) {
     if (!draw_series(*frame, panel, series, drawing)) continue;
@@ -161,10 +223,7 @@ std::optional<Drawing> draw_plot(const Figure& figure, const Panel& panel) {
     drawing.text(left + 42, legend + 4, series.name);
     legend += 18;
   }
-  if (std::any_of(frame->rows.begin(), frame->rows.end(), [](const json* r) { return r->value("zero", false); })) {
-    drawing.text(left, legend + 4, "lowest points: exactly 0");
-    legend += 18;
-  }
+  draw_tags(*frame, panel, drawing);
   drawing.set_height(legend);
   return drawing;
 }

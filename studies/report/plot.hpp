@@ -8,14 +8,16 @@
 
 namespace stickslip::report {
 
-/// The rows that are chosen at first in one panel of a figure: curves, markers, crosses for failed runs, ticks at round
-/// numbers, a legend. Nothing where no row can be drawn.
+/// The rows that are chosen at first in one panel of a figure: curves with the option's values at their ends, guides,
+/// the line of exact zeros, markers, crosses for failed runs, ticks at round numbers, a legend. Nothing where no row
+/// can be drawn.
 std::optional<Drawing> draw_plot(const Figure& figure, const Panel& panel);
 
-/// One axis: values onto pixels, linear or logarithmic (over a decade at least), with some room at both ends.
+/// One axis: values onto pixels, linear or logarithmic (over a decade at least), with some room at both ends, but none
+/// below `low` where the axis is `bounded` there.
 class Axis {
  public:
-  Axis(double low, double high, bool logarithmic, double from, double to);
+  Axis(double low, double high, bool logarithmic, double from, double to, bool bounded = false);
   double operator()(double value) const;
   /// Some four to eight round values inside the axis.
   std::vector<double> ticks() const;

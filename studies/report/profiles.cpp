@@ -75,14 +75,14 @@ void describe(Figure& figure, const Study& study, Of of, std::size_t problems) {
   figure.title =
       derivative ? "Profiles: sensitivities solved for a given work" : "Profiles: problems solved for a given work";
   figure.text = fmt::format(
-      "{} problems: each of the {} scenes with each accuracy asked for, from 1e-2 down to 1e-10, that some run reaches "
+      "{} problems: {} with each accuracy asked for, from 1e-2 down to 1e-10, that some run reaches "
       "there. The first chart shows the share of them that a method solves within a factor of the least work any of "
       "the methods needs (Dolan and More's performance profile): left is fast, high is dependable. The second shows "
       "the "
       "share solved with a given work (data profile). A line that stays below 1 has lost the rest: runs that failed or "
       "missed the accuracy. Default: no option given. Tuned: the cheapest of the settings tried for each problem, as "
       "one knows it only afterwards. Strict: the most accurate setting of each scene.",
-      problems, study.variants.size());
+      problems, study.variants.size() == 1 ? "the scene" : fmt::format("each of the {} scenes", study.variants.size()));
 }
 
 }  // namespace
@@ -114,15 +114,16 @@ std::optional<Figure> profiles(const Study& study, Of of) {
     add_stairs(figure, base, solved[c].work, problems.size(), least / 1.3, 1.3 * largest);
   }
   figure.series = series.list;
-  const auto panel = [&](const std::string& name, const std::string& title, const std::string& x_title) {
-    const json tips = tooltip({{"series", "method"}, {"x", x_title}, {"shown", "share solved"}});
-    json spec = curves(figure.title + ", " + title, channel("x", x_title, true),
-                       channel("shown", "share of the problems solved", false), tips);
+  const auto panel = [&](const std::string& name, const std::string& title, const json& x) {
+    const json tips = tooltip({{"series", "method"}, {"x", x["title"].get<std::string>()}, {"shown", "share solved"}});
+    json spec = curves(figure.title + ", " + title, x, channel("shown", "share of the problems solved", false), tips);
     spec["transform"] = only_if("datum.panel == '" + name + "'");
     figure.panels.push_back({title, spec, "x", "shown", true, false, name, false});
   };
-  panel("factor", "performance profile", "work over the least work for the problem");
-  panel("work", "data profile", "work (factorisations and weighted back-solves)");
+  json factor = channel("x", "work over the least work for the problem", true);
+  factor["scale"] = {{"type", "log"}, {"nice", false}, {"domainMin", 1}};  // nothing takes less than the least work
+  panel("factor", "performance profile", factor);
+  panel("work", "data profile", channel("x", "work (factorisations and weighted back-solves)", true));
   return figure;
 }
 

@@ -165,11 +165,17 @@ std::string how_to_read(const Study& study) {
          escape(ratio_text(study)) + "</p>\n";
 }
 
+bool is_merged(const Study& study) { return text_at(study.description, "command").starts_with("stickslip merge "); }
+
 std::string provenance(const Study& study) {
   std::string out;
   if (const std::string command = text_at(study.description, "command"); !command.empty())
-    out += "<p>This repeats the study; cells already recorded are kept with <code>--resume</code>:</p><pre>" +
-           escape(command) + "</pre>\n";
+    out +=
+        (is_merged(study) ? "<p>Shards of the study were run apart, each with a report of its own that says how, and "
+                            "joined by:</p><pre>"
+                          : "<p>This repeats the study; cells already recorded are kept with "
+                            "<code>--resume</code>:</p><pre>") +
+        escape(command) + "</pre>\n";
   if (study.cells.empty()) return out;
   // Seconds compare only between cells of one machine and build.
   std::set<std::string> builds;
@@ -254,10 +260,10 @@ std::string findings(const Study& study) {
   out += "</ul>\n";
   if (!study.faults.empty()) out += fmt::format("<p class=\"warning\">results.jsonl: {}.</p>\n", escape(study.faults));
   if (study.unrecorded > 0)
-    out += fmt::format(
-        "<p class=\"warning\">{} of the study's {} runs are not recorded, and missing here; the command "
-        "at the end runs them with <code>--resume</code>.</p>\n",
-        study.unrecorded, study.unrecorded + study.cells.size());
+    out += fmt::format("<p class=\"warning\">Of the study's {} runs {} {} not recorded, and missing here; {}.</p>\n",
+                       study.unrecorded + study.cells.size(), study.unrecorded, study.unrecorded == 1 ? "is" : "are",
+                       is_merged(study) ? "run their shards with <code>--resume</code>, and merge again"
+                                        : "the command at the end runs them with <code>--resume</code>");
   return out + settings_table(study);
 }
 

@@ -38,9 +38,7 @@ const Cell* stand_in(const Study& study, const std::string& family, Contestant::
 }  // namespace
 
 std::optional<double> accuracy(const Cell& cell, Of of) {
-  if (of == Of::sensitivities) return worst(cell.enforcement, "sensitivity:");
-  const auto error = worst(cell.enforcement, "response:");
-  return error ? error : worst(cell.kkt, "");
+  return worst(cell.enforcement, of == Of::sensitivities ? "sensitivity:" : "response:");
 }
 
 double work_of(const Cell& cell, Of of) { return of == Of::responses ? cell.work : cell.sensitivity_work; }

@@ -11,8 +11,7 @@ namespace stickslip::report {
 
 enum class Of { responses, sensitivities };
 
-/// Worst enforcement error of the kind; where the study has no reference on the same mesh, the worst KKT measure (of
-/// responses); nothing where neither was recorded.
+/// Worst enforcement error of the kind; nothing where the study has no reference on the same mesh.
 std::optional<double> accuracy(const Cell& cell, Of of);
 
 /// Work of the solution, or of it and its derivatives.

@@ -43,8 +43,9 @@ std::vector<Window> windows_of(const Study& study, const std::vector<std::string
 
 constexpr double width = 520, left = 14, right = 506, row_height = 34;
 
-/// The name, the bars between neighbours that both converged, and a mark a run.
-void draw_window(const Window& window, const Series& looks, const Axis& x, double target, double top,
+/// The name, the bars between neighbours that both converged, and a mark a run: full where it reached the target, if
+/// there is one.
+void draw_window(const Window& window, const Series& looks, const Axis& x, std::optional<double> target, double top,
                  Drawing& drawing) {
   const double y = top + 23;
   drawing.text(left, top + 11, window.name, {Anchor::start, 11});
@@ -58,7 +59,7 @@ void draw_window(const Window& window, const Series& looks, const Axis& x, doubl
       drawing.path(marker("failed", x(run.knob), y), {"ink", "", 2, {}});
     else
       drawing.path(Path().circle(x(run.knob), y, 5),
-                   {looks.color, error && *error <= target ? looks.color : "paper", 2, {}});
+                   {looks.color, !target || (error && *error <= *target) ? looks.color : "paper", 2, {}});
   }
 }
 
@@ -71,11 +72,13 @@ void draw_scale(const Axis& x, double top, double bottom, const std::string& tit
   drawing.text((left + right) / 2, bottom + 34, title, {Anchor::middle});
 }
 
-double draw_legend(const std::string& target, double y, Drawing& drawing) {
+double draw_legend(std::optional<double> target, double y, Drawing& drawing) {
   drawing.path(Path().circle(left + 6, y, 5), {"ink", "ink", 2, {}});
-  drawing.text(left + 18, y + 4, "converged, error at most " + target);
-  drawing.path(Path().circle(left + 236, y, 5), {"ink", "paper", 2, {}});
-  drawing.text(left + 248, y + 4, "converged, less accurate");
+  drawing.text(left + 18, y + 4, target ? "converged, error at most " + number(*target) : "converged");
+  if (target) {
+    drawing.path(Path().circle(left + 236, y, 5), {"ink", "paper", 2, {}});
+    drawing.text(left + 248, y + 4, "converged, less accurate");
+  }
   drawing.path(marker("failed", left + 416, y), {"ink", "", 2, {}});
   drawing.text(left + 428, y + 4, "failed");
   return y + 14;
@@ -124,12 +127,14 @@ std::optional<Plate> robustness_windows(const Study& study, const std::vector<st
     high = std::max(high, window.runs.back().knob);
     series.add(window.name, window.family);
   }
-  const double target = target_error(study, Of::responses).value_or(1e-6);
+  const auto target = target_error(study, Of::responses);
   const std::string title = "Where each method works: " + knob_title(knobs);
   const std::string text =
       "Each line is one setting in one scene. A bar spans neighbouring values of the option that both converged; a "
-      "cross is a run that did not. A full mark is a run whose worst response is within " +
-      number(target) + " of the exact contact conditions, an open one converged to something less accurate.";
+      "cross is a run that did not." +
+      (target ? " A full mark is a run whose worst response is within " + number(*target) +
+                    " of the exact contact conditions, an open one converged to something less accurate."
+              : std::string());
   const Axis x(low, high, true, left, right);
   const double top = 8, bottom = top + row_height * static_cast<double>(windows.size()) + 4;
   Plate plate{"windows-" + slug(knobs.front()), title, text, Drawing(width, bottom, title, text), {}, rows_of(windows)};
@@ -142,7 +147,7 @@ std::optional<Plate> robustness_windows(const Study& study, const std::vector<st
         {windows[i].name, std::to_string(windows[i].runs.size()), stretches(windows[i]), failures(windows[i])});
     plate.table.row_classes.emplace_back(plate.table.rows.back().back().empty() ? "" : "failed");
   }
-  plate.drawing.set_height(draw_legend(number(target), bottom + 54, plate.drawing));
+  plate.drawing.set_height(draw_legend(target, bottom + 54, plate.drawing));
   return plate;
 }
 

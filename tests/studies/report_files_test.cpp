@@ -197,6 +197,23 @@ TEST_F(ReportCharts, EveryFigureIsAFileInThreeFormats) {
 }
 
 /// The places in the table at the end of a PDF are those of its objects: else a reader has to repair it.
+TEST_F(ReportCharts, FiguresHoldWhatThePagesChartsShow) {
+  record(description(), three_methods());
+  page();
+  const std::string work = file("enforcement-responses-against-work-factorisations.svg");
+  EXPECT_THAT(work, HasSubstr("on this line: exactly 0"));
+  for (const char* option : {">1000<", ">1e9<", ">0.0001<", ">1e-8<"}) EXPECT_THAT(work, HasSubstr(option));
+  EXPECT_THAT(file("error-stiffness-responses.svg"), HasSubstr(">slope -1<"));
+}
+
+TEST(ReportAxis, HasNoRoomBelowABound) {
+  const report::Axis open(1, 30, true, 0, 100), bounded(1, 30, true, 0, 100, true), narrow(1, 2, true, 0, 100, true);
+  EXPECT_GT(open(1), 0);
+  EXPECT_EQ(bounded(1), 0);
+  EXPECT_EQ(narrow(1), 0);
+  EXPECT_LT(narrow(10), 100);
+}
+
 TEST_F(ReportCharts, PdfObjectsStandWhereItsTableSays) {
   record(description(), three_methods());
   page();

@@ -235,7 +235,7 @@ TEST_F(Report, SaysHowManyRunsAreNotRecordedYet) {
   study["cells"] = json::array({"a", "b"});
   for (const auto& c : cells) study["cells"].push_back(c["id"]);
   record(study, cells);
-  EXPECT_THAT(page(), HasSubstr("2 of the study's 9 runs are not recorded"));
+  EXPECT_THAT(page(), HasSubstr("Of the study's 9 runs 2 are not recorded"));
 }
 
 TEST_F(Report, TakesTheLastRecordOfAnId) {
@@ -326,6 +326,53 @@ TEST_F(Report, NamesWhatTheDiscretisationErrorIsAgainst) {
     EXPECT_THAT(all_of(report::headline(study())), HasSubstr(std::string("Against ") + words + " the best run"));
     EXPECT_THAT(page(), HasSubstr(std::string("response error to ") + words));
   }
+}
+
+TEST_F(Report, HeadlineSaysWhatTheDistanceFromAReferenceIs) {
+  auto cells = three_methods();
+  json told = description();
+  const auto said = [&](const json& reference) {
+    told["reference"] = {reference};
+    record(told, cells);
+    return all_of(report::headline(study()));
+  };
+  EXPECT_THAT(said({{"analytic", "hertz_line"}}), HasSubstr("0.01 in its worst response: that is mesh and steps, and"));
+  EXPECT_THAT(said({{"overkill", {{"refine", 1}}}}), HasSubstr("worst response: that is the mesh, and"));
+  EXPECT_THAT(said({{"values", {{"press", 1}}}}), HasSubstr("that is mesh, steps or the references themselves, and"));
+  for (auto& c : cells) c["errors"]["discretization"]["response:press"] = 4e-16;
+  EXPECT_THAT(said({{"analytic", "hertz_line"}}),
+              AllOf(HasSubstr("off by 4e-16 in its worst response, which is rounding."), Not(HasSubstr("that is"))));
+}
+
+/// The KKT measures are no errors: nothing may be called accurate by them.
+TEST_F(Report, OfAStudyWithoutReferencesSaysThatNoErrorWasMeasured) {
+  auto cells = three_methods();
+  for (auto& c : cells)
+    for (const char* kind : {"enforcement", "discretization"}) c["errors"][kind] = json::object();
+  record(description(), cells);
+  EXPECT_THAT(all_of(report::headline(study())), HasSubstr("No error was measured"));
+  const std::string html = without_scripts(page());
+  EXPECT_THAT(html, AllOf(Not(HasSubstr("accurate enough")), Not(HasSubstr("within 1e-6")), Not(HasSubstr("Profiles")),
+                          Not(HasSubstr("class=\"failed\""))));
+  record(description(), three_methods());
+  EXPECT_THAT(all_of(report::headline(study())), Not(HasSubstr("No error was measured")));
+}
+
+TEST_F(Report, OfAMergedStudySaysWhatTheCommandWas) {
+  json merged = description();
+  merged["command"] = "stickslip merge p1 p2 -o m";
+  merged["cells"] = {"none"};
+  record(merged, three_methods());
+  const std::string html = without_scripts(page());
+  EXPECT_THAT(html, AllOf(HasSubstr("joined by:</p><pre>stickslip merge p1 p2 -o m"), HasSubstr("and merge again"),
+                          Not(HasSubstr("This repeats the study")), Not(HasSubstr("the command at the end"))));
+}
+
+TEST_F(Report, CountsInTheSingularToo) {
+  record(description(), {cell("monolithic_al", json::object(), 1e-9, 1)});
+  EXPECT_THAT(all_of(report::headline(study())), HasSubstr("1 factorisation and 2 back-solves"));
+  record(description(), three_methods());
+  EXPECT_THAT(report::profiles(study(), Of::responses)->text, HasSubstr("problems: the scene with each accuracy"));
 }
 
 TEST_F(Report, LeavesOutOfNamesWhatTellsNoRunsApart) {
