@@ -152,7 +152,8 @@ constexpr const char* scene_parts = R"({
     "end": {"$ref": "#/$defs/positive"}, "steps": {"$ref": "#/$defs/count"},
     "legs": {"type": "array", "minItems": 1, "items": {"type": "array", "minItems": 2, "maxItems": 2,
       "prefixItems": [{"$ref": "#/$defs/positive"}, {"$ref": "#/$defs/count"}]}}},
-    "oneOf": [{"required": ["end", "steps"]}, {"required": ["legs"], "properties": {"end": false, "steps": false}}]},
+    "oneOf": [{"required": ["end", "steps"], "properties": {"legs": false}},
+              {"required": ["legs"], "properties": {"end": false, "steps": false}}]},
   "responses": {"type": "object", "additionalProperties": {"$ref": "#/$defs/response"}},
   "objectives": {"description": "scalars over time", "type": "object", "additionalProperties": {
     "type": "object", "required": ["of"], "additionalProperties": false, "properties": {
@@ -240,8 +241,11 @@ json response_schema() {
                    {"required", parts.at("required")},
                    {"additionalProperties", false},
                    {"properties", properties}};
-    if (properties.contains("about"))
-      kinds[kind]["dependentSchemas"] = {{"about", {{"properties", {{"component", {{"const", "moment"}}}}}}}};
+    if (properties.contains("about")) {  // the two go together
+      kinds[kind]["if"] = {{"properties", {{"component", {{"const", "moment"}}}}}};
+      kinds[kind]["then"] = {{"required", {"about"}}};
+      kinds[kind]["else"] = {{"properties", {{"about", false}}}};
+    }
   }
   return {{"type", "object"},
           {"minProperties", 1},

@@ -262,6 +262,8 @@ TEST(Schema, RefusesASampleOfWhatTheReaderRefuses) {
       {"/loads/3", R"({"on": "block"})"},
       {"/time", R"({"end": 1})"},
       {"/time/steps", "0"},
+      {"/time", R"({"end": 1, "steps": 2, "legs": [[1, 2]]})"},
+      {"/responses/b", R"({"reaction": {"on": "block.left", "component": "moment"}})"},
       {"/responses/b/contact_force/about", "[0, 0]"},
       {"/responses/c/displacement/take", R"("median")"},
       {"/method", R"({"penalty": {}, "monolithic_al": {}})"},
