@@ -17,6 +17,7 @@ void add_scene(CLI::App& command, stickslip::RunArguments& arguments) {
   command.add_option("--set", arguments.overrides, "change a number of the scene; may be given again")
       ->type_name("POINTER=VALUE")
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_flag("--json", arguments.json, "one JSON document on standard output and nothing else");
 }

@@ -107,7 +107,7 @@ def one_at_a_time(study, work):
     directory = work / "shared"
     first = subprocess.Popen([PROGRAM, "study", study, "-o", directory], stdout=subprocess.DEVNULL,
                              stderr=subprocess.DEVNULL)
-    while not (directory / "study.json").exists():
+    while not (directory / "results.jsonl").exists():
         time.sleep(0.005)
     second = run("study", study, "-o", directory, "--resume", check=False)
     refused = run("report", directory, check=False)
