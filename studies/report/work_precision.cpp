@@ -75,10 +75,11 @@ std::optional<Figure> work_precision(const Study& study, Against against, Of of)
     const std::string reference = discretization_reference(study);
     figure.id = "discretization-" + what;
     figure.title = (derivative ? "Sensitivities: error against " : "Responses: error against ") + reference;
-    figure.text = "Discretisation error: the distance from " + reference +
-                  ", mesh and method together. Where curves lie on one level, the mesh decides and a stricter method "
-                  "buys nothing. " +
-                  joined + " ";
+    figure.text =
+        "Discretisation error: the distance from " + reference +
+        ", mesh, steps and method together. Where curves lie on one level, mesh and steps decide and a stricter method "
+        "buys nothing. " +
+        joined + " ";
   } else {
     figure.id = "kkt";
     figure.title = "How well equilibrium and Coulomb's law are met";
