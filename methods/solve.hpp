@@ -43,6 +43,11 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
     increment.time = next;
     increment.requested = last;
     increment.cutbacks = cutbacks;
+    if (increment.usable() && !increment.state.displacement.allFinite()) {
+      increment.status = Status::not_finite;  // (engines eliminate what no residual sees)
+      increment.cut_off = false;
+      increment.message = "the displacements are not finite";
+    }
     if (increment.usable()) {
       trajectory.increments.push_back(std::move(increment));
       if (last) return true;
