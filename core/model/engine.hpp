@@ -35,8 +35,13 @@ template <class T>
 double largest_nodal_norm(const Vector<T>& v, int D) {
   double largest = 0;
   for (Eigen::Index n = 0; n + D <= v.size(); n += D) {
-    double norm = 0;
-    for (int i = 0; i < D; ++i) norm = std::hypot(norm, value(v[n + i]));  // (forces of 1e200 have squares too)
+    double squares = 0;
+    for (int i = 0; i < D; ++i) squares += value(v[n + i]) * value(v[n + i]);
+    double norm = std::sqrt(squares);
+    if (!(squares > 1e-280 && squares < 1e280)) {  // squares that overflow or vanish though the numbers do not
+      norm = 0;
+      for (int i = 0; i < D; ++i) norm = std::hypot(norm, value(v[n + i]));
+    }
     largest = larger(largest, norm);
   }
   return largest;
