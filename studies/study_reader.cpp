@@ -201,7 +201,7 @@ std::vector<Knob> read_vary(const JsonNode& node, const json& scene) {
     else if (value_at(scene, pointer)->is_object())
       list.error_at_key("names an object; must name a number, a text or an array");
     else if (const auto other = std::find_if(knobs.begin(), knobs.end(),
-                                             [&](const Knob& knob) { return overlap(knob.pointer, pointer); });
+                                             [&at = pointer](const Knob& knob) { return overlap(knob.pointer, at); });
              other != knobs.end())
       list.error_at_key("overlaps " + other->pointer + ", which is varied too: one would overwrite the other");
     else
