@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/model/response.hpp"
+#include "methods/newton.hpp"
 
 namespace stickslip {
 namespace {
@@ -62,10 +62,6 @@ void enlarge(const Model& model, const Slots<double>& slots, double stiffness, c
                            largest_nodal_norm(contact_forces(model, slots, state.contact.traction), D)});
 }
 
-double relative(double x, double scale) {
-  return x == 0 ? 0 : std::isfinite(scale) ? x / scale : std::numeric_limits<double>::quiet_NaN();
-}
-
 }  // namespace
 
 double KktError::largest() const {
@@ -86,21 +82,21 @@ std::vector<KktError> kkt_errors(const Model& model, const Slots<double>& slots,
     KktError e;
     Vector<double> balance = nodal_balance(model, slots, state, increment.time);
     balance -= support_forces(model, slots, balance);
-    e.equilibrium = relative(largest_nodal_norm(balance, model.dimension), scales.force);
+    e.equilibrium = detail::ratio(largest_nodal_norm(balance, model.dimension), scales.force);
     for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
       const auto& point = model.points[p];
       const double gap = state.contact.gap[p], pressure = -state.contact.traction[point.multiplier];
       const double elastic = slots.stiffness[p] / slots.geometry[p].area;
-      e.gap = larger(e.gap, relative(larger(0.0, -gap), scales.length));
+      e.gap = larger(e.gap, detail::ratio(larger(0.0, -gap), scales.length));
       e.complementarity =
-          larger(e.complementarity, relative(std::abs(std::min(gap * elastic, pressure)), scales.traction));
+          larger(e.complementarity, detail::ratio(std::abs(std::min(gap * elastic, pressure)), scales.traction));
       if (point.tangents == 0) continue;
       const auto [traction, slip] = tangential(model, state, p);
       const double bound = slots.friction[point.contact] * std::max(0.0, pressure), size = traction.norm();
-      e.cone = larger(e.cone, relative(larger(0.0, size - bound), scales.traction));
+      e.cone = larger(e.cone, detail::ratio(larger(0.0, size - bound), scales.traction));
       const bool inside = pressure > 0 && size < bound * (1 - on_cone);
       creep[p] = inside ? Eigen::VectorXd(creep[p] + slip) : Eigen::VectorXd::Zero(point.tangents);
-      e.stick = larger(e.stick, relative(creep[p].norm(), scales.length));
+      e.stick = larger(e.stick, detail::ratio(creep[p].norm(), scales.length));
       const double moved = slip.norm();
       if (!inside && size > rounding * scales.traction && moved > 1e-9 * scales.length)
         e.slip_direction = larger(e.slip_direction, 1 - traction.dot(slip) / (size * moved));

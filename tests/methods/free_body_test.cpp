@@ -2,7 +2,7 @@
 /// The one that belongs to the path is found, by every method and from every scale.
 #include <gtest/gtest.h>
 
-#include "tests/support/scenes.hpp"
+#include "tests/support/blocks.hpp"
 
 namespace stickslip {
 namespace {
@@ -18,13 +18,8 @@ using Kind = Response::Kind;
 Scene pressed_block(double tilt, double below, double above, double across, int cells, int steps = 1) {
   Scene s;
   s.legs = {{1, steps}};
-  for (const double bottom : {0.0, 1.0}) {
-    BoxMesh box;
-    box.min = {0.0, bottom};
-    box.max = {2.0, bottom + 1};
-    box.cells = {cells, 2};
-    s.bodies.push_back({bottom == 0 ? "block" : "press", box, LinearElastic{1000.0, 0.3}, "", 1.0});
-  }
+  s.bodies = {scenes::box_body("block", {0, 0}, {2, 1}, {cells, 2}),
+              scenes::box_body("press", {0, 1}, {2, 2}, {cells, 2})};
   s.obstacles = {{"slope", Plane{{0.0, 0.0}, {tilt, 1.0}}, {}}};
   s.contacts = {contact("sole", "block.bottom", "slope"), contact("top", "press.bottom", "block.top")};
   s.contacts[0].friction = below;
@@ -76,58 +71,6 @@ TEST(BodyHeldByFriction, FollowsItsPathInAnyNumberOfSteps) {
         << "Uzawa's 1e-10 times a factor rho / k";
     EXPECT_NEAR(updated.value("u"), exact.value("u"), 1e-8 * std::abs(exact.value("u")));
   }
-}
-
-TEST(BodyThatApproaches, NeedsNoForceByEitherEngine) {
-  for (const auto engine : {LinearAlgebra::Engine::sparse, LinearAlgebra::Engine::condensed})
-    for (const Method& method : {Method{Penalty{}}, Method{UzawaAL{}}, Method{MonolithicAL{}}}) {
-      Scene s;
-      s.legs = {{1, 5}};
-      BoxMesh box;
-      box.min = {0.0, 0.0};
-      box.max = {2.0, 1.0};
-      box.cells = {8, 4};
-      s.bodies = {{"block", box, LinearElastic{1000.0, 0.3}, "", 1.0}};
-      s.obstacles = {{"floor", Plane{{0.0, -0.02}, {0.0, 1.0}}, {}}};
-      s.contacts = {contact("sole", "block.bottom", "floor")};
-      s.supports = {support("block.top", {{'x', table({{0, 0.0}})}, {'y', table({{0, 0.0}, {1, -0.05}})}})};
-      s.responses = {response("N", Kind::contact_force, "sole", "normal"),
-                     response("v", Kind::displacement, "block.bottom", "y")};
-      RunOptions options;
-      options.linear_algebra.engine = engine;
-      const auto r = run(s, method, options);
-      ASSERT_TRUE(is_converged(r.trajectory.status)) << name_of(method) << r.trajectory.message;
-      EXPECT_EQ(r.trajectory.counters.cutbacks, 0);
-      EXPECT_LE(r.trajectory.increments[0].newton, 3) << "one, and two to see that nothing falls any more";
-      // one fifth of the way, where it touches nothing, all of it has moved alike
-      EXPECT_EQ(r.value("N", 0), 0);
-      EXPECT_NEAR(r.value("v", 0), -0.01, 1e-13);
-      EXPECT_GT(r.value("N"), 60);
-    }
-}
-
-TEST(NodeAtTheEndOfItsMaster, KeepsItWhereRoundedCoordinatesEndShort) {
-  const auto force = [](double width) {
-    Scene s;
-    s.legs = {{1, 1}};
-    for (const double bottom : {0.0, 1.0}) {
-      BoxMesh box;
-      box.min = {0.0, bottom};
-      box.max = {bottom == 0 ? width : 2.0, bottom + 1};
-      box.cells = {4, 3};
-      s.bodies.push_back({bottom == 0 ? "lower" : "upper", box, LinearElastic{1000.0, 0.3}, "", 1.0});
-    }
-    s.contacts = {contact("touch", "upper.bottom", "lower.top")};
-    s.contacts[0].friction = 0.3;
-    s.supports = {support("lower.bottom", {{'x', table({{0, 0.0}})}, {'y', table({{0, 0.0}})}}),
-                  support("upper.top", {{'x', table({{0, 0.001}})}, {'y', table({{0, -0.01}})}})};
-    s.responses = {response("N", Kind::contact_force, "touch", "normal")};
-    return run(s, MonolithicAL{}).value("N");
-  };
-  const double flush = force(2);
-  for (const double short_by : {1e-12, 1e-9, 1e-7, -1e-9})
-    EXPECT_NEAR(force(2 - short_by), flush, 10 * std::abs(short_by) * flush + 1e-11 * flush) << short_by;
-  EXPECT_LT(force(2 - 1e-3), 0.95 * flush) << "beyond rounding the last node faces nothing";
 }
 
 }  // namespace

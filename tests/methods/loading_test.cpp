@@ -2,18 +2,17 @@
 /// scene said in another way.
 #include <gtest/gtest.h>
 
-#include "tests/support/scenes.hpp"
+#include "tests/support/blocks.hpp"
 
 namespace stickslip {
 namespace {
 
+using scenes::all_methods;
 using scenes::response;
 using scenes::run;
 using scenes::support;
 using scenes::table;
 using Kind = Response::Kind;
-
-std::vector<Method> all_methods() { return {Penalty{}, UzawaAL{}, MonolithicAL{}}; }
 
 std::vector<RunOptions> both_engines() {
   RunOptions sparse, condensed;
@@ -159,7 +158,7 @@ TEST(Loads, ActOnNothingOnTheAxisOfRevolution) {
 }
 
 TEST(Loads, BeyondTheRangeOfNumbersAreNotFiniteAndNotConverged) {
-  for (const Method& method : {Method{Penalty{}}, Method{UzawaAL{}}, Method{MonolithicAL{}}}) {
+  for (const auto& method : all_methods()) {
     Scene s = of_box(1, 1, {2, 2}, 0.3, "Q4");
     s.loads.assign(5, {"block.top", Load::Kind::force, {0.0, -1e308}, {}});  // half of each on the middle node
     s.supports = {support("block.bottom", {{'x', table({{0, 0.0}})}, {'y', table({{0, 0.0}})}})};

@@ -83,6 +83,20 @@ inline json description() {
           {"explain", "No inertia."}};
 }
 
+/// A plane mesh of two squares with one contact point of each state.
+inline json picture() {
+  return {{"points", {{0, 0}, {1, 0}, {2, 0}, {0, 1}, {1, 1}, {2, 1}}},
+          {"elements", {{0, 1, 4, 3}, {1, 2, 5, 4}}},
+          {"displacement", {{0, 0}, {0, 0}, {0, 0}, {0, 0.1}, {0, 0.1}, {0, 0.1}}},
+          {"von_mises", {1.0, 2.0}},
+          {"contact",
+           {{{"name", "sole"}, {"x", 0}, {"y", 0}, {"state", "stick"}, {"normal", -1}, {"tangential", 0}},
+            {{"name", "sole"}, {"x", 2}, {"y", 0}, {"state", "slip"}, {"normal", -1}, {"tangential", 0}}}},
+          {"obstacles", {{{"plane", {{"point", {0, 0}}, {"normal", {0, 1}}}}}}},
+          {"bodies", {0, 0}},
+          {"body_names", {"block"}}};
+}
+
 /// A directory of its own for each test.
 class StudyOnDisk : public testing::Test {
  protected:

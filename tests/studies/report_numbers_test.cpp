@@ -1,0 +1,362 @@
+/// The numbers of a report: headline, tables and the rows of its charts.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "studies/report/charts.hpp"
+#include "studies/report/headline.hpp"
+#include "studies/report/records.hpp"
+#include "studies/report/report.hpp"
+#include "tests/studies/recorded_study.hpp"
+#include "tests/studies/report_page.hpp"
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+using recorded::all_of;
+using recorded::cell;
+using recorded::description;
+using recorded::picture;
+using recorded::three_methods;
+using recorded::without_scripts;
+using report::Against;
+using report::Of;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class ReportNumbers : public recorded::StudyOnDisk {};
+
+TEST_F(ReportNumbers, WeighsBackSolvesByTheirMeasuredCost) {
+  record(description(), three_methods());
+  const auto s = study();
+  // 14 factorisations and 28 back-solves at a tenth each: exact but for the rounding of these few sums.
+  EXPECT_NEAR(s.ratio.at(0), 0.1, 1e-14);
+  EXPECT_NEAR(s.cells[0].work, 14 + 2.8, 1e-12);
+  EXPECT_NEAR(s.cells[0].sensitivity_work, 14 + 2.9, 1e-12);
+  EXPECT_NEAR(s.cells[0].seconds, 28 - 0.1, 1e-12);
+}
+
+TEST_F(ReportNumbers, HeadlineNamesTheCheapestRunOfEachMethodThatIsAccurateEnough) {
+  record(description(), three_methods());
+  const std::string text = all_of(report::headline(study()));
+  EXPECT_THAT(text, HasSubstr("To bring every response within 1e-6"));
+  EXPECT_THAT(text, HasSubstr("Monolithic AL needs least: 10 factorisations and 20 back-solves"));
+  // Works of 12, 16.8 and 48; the Uzawa run of 24 is not accurate enough.
+  EXPECT_THAT(text,
+              HasSubstr("Penalty (stiffness=10000000.0) needs 14 factorisations and 28 back-solves (28 s), 1.4 times"));
+  EXPECT_THAT(text, HasSubstr("Uzawa AL (tolerance=1e-08) needs 40 factorisations and 80 back-solves (80 s), 4 times"));
+  EXPECT_THAT(text, HasSubstr("Penalty's error falls as stiffness to the power -1 down to 1e-9 at stiffness 1e9."));
+}
+
+TEST_F(ReportNumbers, HeadlineSaysForWhichSceneThePenaltysErrorFallsAndWhereItFails) {
+  auto cells = three_methods();
+  for (auto& c : cells) c["vary"] = {{"friction", 1}};
+  auto others = three_methods();
+  for (auto& c : others) c["vary"] = {{"friction", 0.3}};
+  others[3]["status"] = "cap";
+  cells.insert(cells.begin(), others.begin(), others.end());
+  record(description(), cells);
+  EXPECT_THAT(all_of(report::headline(study())),
+              HasSubstr("Penalty's error for friction = 1 falls as stiffness to the power -1 down to 1e-9 at stiffness "
+                        "1e9. It fails at 1e9 (cap) for friction = 0.3."));
+}
+
+TEST_F(ReportNumbers, NamesWhatTheDiscretisationErrorIsAgainst) {
+  json study_json = description();
+  const json method = {{"method", {{"monolithic_al", json::object()}}}}, fine = {{"overkill", {{"refine", 2}}}};
+  const json closed = {{"analytic", "hertz_line"}}, given = {{"values", {{"press", 9.9}}}};
+  for (const auto& [references, words] :
+       {std::pair{json{method, closed}, "the closed form"}, std::pair{json{method, fine}, "the finer mesh"},
+        std::pair{json{given}, "the given values"}, std::pair{json{closed, fine}, "the references"}}) {
+    study_json["reference"] = references;
+    record(study_json, three_methods());
+    EXPECT_EQ(report::discretization_reference(study()), words);
+    const auto figure = report::work_precision(study(), Against::discretization, Of::responses);
+    EXPECT_EQ(figure->title, std::string("Responses: error against ") + words);
+    EXPECT_THAT(all_of(report::headline(study())), HasSubstr(std::string("Against ") + words + " the best run"));
+    EXPECT_THAT(page(), HasSubstr(std::string("response error to ") + words));
+  }
+}
+
+TEST_F(ReportNumbers, HeadlineSaysWhatTheDistanceFromAReferenceIs) {
+  auto cells = three_methods();
+  json told = description();
+  const auto said = [&](const json& reference) {
+    told["reference"] = {reference};
+    record(told, cells);
+    return all_of(report::headline(study()));
+  };
+  EXPECT_THAT(said({{"analytic", "hertz_line"}}), HasSubstr("0.01 in its worst response: that is mesh and steps, and"));
+  EXPECT_THAT(said({{"overkill", {{"refine", 1}}}}), HasSubstr("worst response: that is the mesh, and"));
+  EXPECT_THAT(said({{"values", {{"press", 1}}}}), HasSubstr("that is mesh, steps or the references themselves, and"));
+  for (auto& c : cells) c["errors"]["discretization"]["response:press"] = 4e-16;
+  EXPECT_THAT(said({{"analytic", "hertz_line"}}),
+              AllOf(HasSubstr("off by 4e-16 in its worst response, which is rounding."), Not(HasSubstr("that is"))));
+}
+
+/// The KKT measures are no errors: nothing may be called accurate by them.
+TEST_F(ReportNumbers, OfAStudyWithoutReferencesSaysThatNoErrorWasMeasured) {
+  auto cells = three_methods();
+  for (auto& c : cells)
+    for (const char* kind : {"enforcement", "discretization"}) c["errors"][kind] = json::object();
+  record(description(), cells);
+  EXPECT_THAT(all_of(report::headline(study())), HasSubstr("No error was measured"));
+  const std::string html = without_scripts(page());
+  EXPECT_THAT(html, AllOf(Not(HasSubstr("accurate enough")), Not(HasSubstr("within 1e-6")), Not(HasSubstr("Profiles")),
+                          Not(HasSubstr("class=\"failed\""))));
+  record(description(), three_methods());
+  EXPECT_THAT(all_of(report::headline(study())), Not(HasSubstr("No error was measured")));
+}
+
+TEST_F(ReportNumbers, OfAMergedStudySaysWhatTheCommandWas) {
+  json merged = description();
+  merged["command"] = "stickslip merge p1 p2 -o m";
+  merged["cells"] = {"none"};
+  record(merged, three_methods());
+  const std::string html = without_scripts(page());
+  EXPECT_THAT(html, AllOf(HasSubstr("joined by:</p><pre>stickslip merge p1 p2 -o m"), HasSubstr("and merge again"),
+                          Not(HasSubstr("This repeats the study")), Not(HasSubstr("the command at the end"))));
+}
+
+TEST_F(ReportNumbers, CountsInTheSingularToo) {
+  record(description(), {cell("monolithic_al", json::object(), 1e-9, 1)});
+  EXPECT_THAT(all_of(report::headline(study())), HasSubstr("1 factorisation and 2 back-solves"));
+  record(description(), three_methods());
+  EXPECT_THAT(report::profiles(study(), Of::responses)->text, HasSubstr("problems: the scene with each accuracy"));
+}
+
+TEST_F(ReportNumbers, LeavesOutOfNamesWhatTellsNoRunsApart) {
+  std::vector<json> cells;
+  for (const char* acceleration : {"none", "anderson"})
+    for (const double scale : {1, 10})
+      cells.push_back(cell("uzawa_al", {{"acceleration", acceleration}, {"limit", 50}, {"scale", scale}}, 1e-5, 10));
+  cells.push_back(cell("uzawa_al", {{"scale", 1}}, 1e-5, 10));
+  for (auto& c : cells) c["knobs"].erase("limit");  // given, but not swept
+  record(description(), cells);
+  const auto s = study();
+  EXPECT_THAT(s.shared, testing::ElementsAre("Uzawa AL limit=50"));
+  // The last would be "uzawa_al scale=1.0" twice without the acceleration.
+  EXPECT_THAT(s.cells[0].label, AllOf(HasSubstr("acceleration"), HasSubstr("scale"), Not(HasSubstr("limit"))));
+  EXPECT_THAT(page(), HasSubstr("tells none apart: Uzawa AL limit=50"));
+}
+
+TEST_F(ReportNumbers, GivesEachMethodAMarkerOfItsOwn) {
+  std::vector<json> cells;
+  for (const double scale : {1, 10, 100, 1000})
+    for (const double tolerance : {1e-4, 1e-8})
+      cells.push_back(cell("uzawa_al", {{"scale", scale}, {"tolerance", tolerance}}, tolerance, 10));
+  for (const auto& c : three_methods())
+    if (!c["method"].contains("uzawa_al")) cells.push_back(c);
+  record(description(), cells);
+  const auto figure = report::work_precision(study(), Against::same_mesh, Of::responses);
+  std::set<std::string> shapes;
+  for (const auto& series : figure->series) shapes.insert(series.shape);
+  EXPECT_EQ(figure->series.size(), 6u);
+  EXPECT_EQ(shapes.size(), 6u);  // in grey the marker is all that tells
+}
+
+TEST_F(ReportNumbers, KeepsErrorsAndCostsInTablesOfTheirOwn) {
+  record(description(), three_methods());
+  const std::string html = page();
+  const std::size_t errors = html.find("<caption>All runs: errors"), costs = html.find("<caption>All runs: costs");
+  ASSERT_LT(errors, costs);
+  EXPECT_THAT(html.substr(errors, costs - errors), AllOf(HasSubstr("KKT"), Not(HasSubstr(">seconds<"))));
+  EXPECT_THAT(html.substr(costs), HasSubstr(">seconds<"));
+}
+
+TEST_F(ReportNumbers, KeepsLongMessagesOutOfTheTableOfAllRuns) {
+  auto cells = three_methods();
+  cells[0]["message"] = "a long story";
+  record(description(), cells);
+  const std::string html = page();
+  EXPECT_GT(html.find("<td>a long story</td>"), html.find("Messages of the runs"));
+}
+
+TEST_F(ReportNumbers, SaysOfTheSceneWhatHoldsForEveryMethod) {
+  json study_json = description();
+  study_json["explain"] = "unknowns: 10 displacements, 4 multipliers\nmethod: {\"penalty\":{}}\nsimulated:\n";
+  record(study_json, three_methods());
+  EXPECT_THAT(page(), AllOf(HasSubstr("unknowns: 10 displacements\nsimulated:"), Not(HasSubstr("method: {"))));
+}
+
+TEST_F(ReportNumbers, TablesSayOnceWhatHoldsInEveryRow) {
+  report::Table table{{"method", "cutbacks", "error"}, {{"a", "0", "1"}, {"b", "0", "2"}}, {}};
+  EXPECT_EQ(report::take_out_constant_columns(table), "In every row: cutbacks 0.");
+  EXPECT_THAT(table.header, testing::ElementsAre("method", "error"));
+  EXPECT_THAT(table.rows[1], testing::ElementsAre("b", "2"));
+}
+
+TEST_F(ReportNumbers, HeadlineSaysWhichMethodDoesNotReachTheAccuracy) {
+  auto cells = three_methods();
+  cells.erase(cells.begin() + 2, cells.begin() + 4);
+  record(description(), cells);
+  EXPECT_THAT(all_of(report::headline(study())), HasSubstr("Penalty did not get there: its best was 1e-5"));
+}
+
+TEST_F(ReportNumbers, HeadlineTakesTheStrictestDecadeThatWasReached) {
+  record(description(), {cell("penalty", {{"stiffness", 10}}, 3e-3, 5), cell("uzawa_al", json::object(), 0.2, 5)});
+  EXPECT_THAT(all_of(report::headline(study())), HasSubstr("within 0.01 of"));
+}
+
+TEST_F(ReportNumbers, HeadlineSeesRoundingLiftThePenaltysError) {
+  auto cells = three_methods();
+  cells.push_back(cell("penalty", {{"stiffness", 1e12}}, 3e-4, 14));
+  record(description(), cells);
+  EXPECT_THAT(all_of(report::headline(study())), HasSubstr("and rises again beyond it, to 0.0003 at 1e12"));
+}
+
+TEST_F(ReportNumbers, DrawsErrorsOfExactlyZeroBelowAllOthersAndNamesThem) {
+  record(description(), three_methods());
+  const auto figure = report::work_precision(study(), Against::same_mesh, Of::responses);
+  ASSERT_TRUE(figure);
+  double least = 1;
+  for (const auto& row : figure->rows)
+    if (!row["zero"].get<bool>()) least = std::min(least, row["shown"].get<double>());
+  int zeros = 0;
+  for (const auto& row : figure->rows)
+    if (row["zero"].get<bool>()) {
+      ++zeros;
+      EXPECT_EQ(row["error"], 0);
+      EXPECT_GT(row["shown"], 0);
+      EXPECT_LT(row["shown"], least);
+    }
+  EXPECT_EQ(zeros, 1);
+  EXPECT_THAT(page(), HasSubstr("exactly 0"));
+}
+
+TEST_F(ReportNumbers, JoinsOneCurveAMethodAlongItsSweptKnob) {
+  record(description(), three_methods());
+  const auto s = study();
+  EXPECT_EQ(report::running_knob(s, "penalty"), "stiffness");
+  EXPECT_EQ(report::running_knob(s, "uzawa_al"), "tolerance");
+  EXPECT_EQ(report::running_knob(s, "monolithic_al"), "");
+  const auto figure = report::work_precision(s, Against::same_mesh, Of::responses);
+  std::vector<std::string> names;
+  for (const auto& series : figure->series) names.push_back(series.name);
+  EXPECT_THAT(names, testing::ElementsAre("Penalty", "Uzawa AL", "Monolithic AL"));
+  std::set<std::string> colors, shapes;
+  for (const auto& series : figure->series) {
+    colors.insert(series.color);
+    shapes.insert(series.shape);
+  }
+  EXPECT_EQ(colors.size(), 3u);
+  EXPECT_EQ(shapes.size(), 3u);  // apart in grey too
+}
+
+TEST_F(ReportNumbers, KeepsOtherKnobsApartAsCurvesOfTheirOwn) {
+  std::vector<json> cells;
+  for (const double scale : {1, 10})
+    for (const double tolerance : {1e-4, 1e-8})
+      cells.push_back(cell("uzawa_al", {{"scale", scale}, {"tolerance", tolerance}}, tolerance, 10));
+  record(description(), cells);
+  const auto figure = report::work_precision(study(), Against::same_mesh, Of::responses);
+  ASSERT_EQ(figure->series.size(), 2u);
+  EXPECT_EQ(figure->series[0].name, "Uzawa AL scale=1.0");
+  EXPECT_THAT(figure->text, HasSubstr("Uzawa AL along tolerance"));
+  EXPECT_EQ(figure->series[0].color, figure->series[1].color);
+  EXPECT_NE(figure->series[0].shape, figure->series[1].shape);
+}
+
+TEST_F(ReportNumbers, DrawsMethodsWithoutTheKnobAsLevelLines) {
+  record(description(), three_methods());
+  const auto figure = report::error_against_knob(study(), {"stiffness"});
+  ASSERT_TRUE(figure);
+  std::set<double> ends;
+  for (const auto& row : figure->rows)
+    if (row.value("family", "") == "monolithic_al") ends.insert(row["knob"].get<double>());
+  EXPECT_THAT(ends, testing::ElementsAre(1e3, 1e9));
+}
+
+TEST_F(ReportNumbers, DrawsAGuideOfSlopeMinusOneBesideThePenalty) {
+  record(description(), three_methods());
+  const auto figure = report::error_against_knob(study(), {"stiffness"});
+  std::vector<std::pair<double, double>> guide;
+  for (const auto& row : figure->rows)
+    if (row.value("guide", false) && row["panel"] == "responses") guide.emplace_back(row["knob"], row["error"]);
+  ASSERT_EQ(guide.size(), 2u);
+  // Error times stiffness is constant along it; both are products of few factors, so a few roundings apart at most.
+  EXPECT_NEAR(guide[0].first * guide[0].second / (guide[1].first * guide[1].second), 1, 1e-14);
+}
+
+TEST_F(ReportNumbers, TreatsAnAbsoluteStiffnessAsAKnobOfItsOwn) {
+  record(description(), {cell("penalty", {{"stiffness", {{"absolute", 1e3}}}}, 1e-3, 5),
+                         cell("penalty", {{"stiffness", {{"absolute", 1e4}}}}, 1e-4, 5),
+                         cell("penalty", {{"stiffness", "auto"}}, 1e-2, 5)});
+  const auto s = study();
+  EXPECT_THAT(report::knob_names(s), testing::ElementsAre("stiffness (absolute)"));
+  EXPECT_EQ(report::series_of(s.cells[0], "stiffness (absolute)"), "Penalty");
+  EXPECT_TRUE(report::error_against_knob(s, {"stiffness (absolute)"}));
+}
+
+TEST_F(ReportNumbers, ShowsFirstTheSceneWhereMostRunsConverged) {
+  auto cells = three_methods();
+  for (auto& c : cells) c["vary"] = {{"/contacts/sole/friction", 0.1}};
+  auto more = three_methods();
+  for (auto& c : more) c["vary"] = {{"/contacts/sole/friction", 0.3}};
+  more[0]["status"] = "cycle";
+  cells.insert(cells.end(), more.begin(), more.end());
+  record(description(), cells);
+  EXPECT_EQ(study().main_variant, "/contacts/sole/friction = 0.1");
+  EXPECT_THAT(page(), HasSubstr("Which setting works where"));
+}
+
+TEST_F(ReportNumbers, JoinsMeshLevelsWhereThereAreSeveral) {
+  auto cells = three_methods();
+  record(description(), cells);
+  EXPECT_FALSE(report::mesh_convergence(study()));
+  auto finer = three_methods();
+  for (auto& c : finer) c["refine"] = 1;
+  cells.insert(cells.end(), finer.begin(), finer.end());
+  record(description(), cells);
+  const auto figure = report::mesh_convergence(study());
+  ASSERT_TRUE(figure);
+  std::map<std::string, std::set<double>> levels;
+  for (const auto& row : figure->rows) levels[row["line"]].insert(row["level"].get<double>());
+  EXPECT_EQ(levels.size(), 7u);
+  for (const auto& [line, found] : levels) EXPECT_EQ(found.size(), 2u) << line;
+}
+
+TEST_F(ReportNumbers, DrawsTractionsWithPressurePositiveAndTheClosedForm) {
+  json study_json = description();
+  study_json["analytic"] = {
+      {"name", "hertz_line"},
+      {"curves", {{"sole", {{"s", {0, 1, 2}}, {"normal", {0, -2, -1}}, {"tangential", {0, 0, 0}}}}}}};
+  record(study_json, three_methods());
+  const auto figure = report::tractions(study());
+  ASSERT_TRUE(figure);
+  EXPECT_EQ(figure->series.front().name, "closed form (hertz_line)");
+  for (const auto& row : figure->rows)
+    if (row["panel"] == "pressure") {
+      EXPECT_GE(row["error"], 0);
+    }
+  double largest = 0;  // distance of the softest penalty, whose pressure at the middle is off by 1e-3 of 2
+  for (const auto& row : figure->rows)
+    if (row["panel"] == "difference") largest = std::max(largest, row["error"].get<double>());
+  EXPECT_NEAR(largest, 0.5e-3, 1e-15);  // a difference of numbers near 2
+}
+
+TEST_F(ReportNumbers, ShowsTheHistoryOfTheHardestStep) {
+  auto cells = three_methods();
+  json steps = json::array();
+  for (const int length : {2, 5, 3}) {
+    json step = {{"time", length}, {"history", json::array()}};
+    for (int i = 0; i < length; ++i) step["history"].push_back({{"residual", std::pow(10.0, -i)}});
+    steps.push_back(step);
+  }
+  cells[0]["steps"] = steps;
+  cells[1]["steps"] = steps;
+  cells[1]["status"] = "cap";  // of a failed run, the last
+  record(description(), cells);
+  const auto figure = report::convergence_histories(study());
+  std::map<std::string, int> iterations;
+  for (const auto& row : figure->rows) ++iterations[row["label"]];
+  EXPECT_EQ(iterations.at(cells[0]["label"]), 5);
+  EXPECT_EQ(iterations.at(cells[1]["label"]), 3);
+}
+
+}  // namespace
+}  // namespace stickslip

@@ -1,0 +1,66 @@
+/// The picture of the deformed bodies.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "studies/report/picture.hpp"
+#include "tests/studies/recorded_study.hpp"
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+using recorded::picture;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(ReportPicture, DrawsBodiesObstaclesAndContactStates) {
+  const std::string svg = report::draw_picture(picture())->drawing.inline_svg();
+  EXPECT_THAT(svg, AllOf(HasSubstr("role=\"img\""), HasSubstr("<title>Deformed bodies"), HasSubstr("<desc>"),
+                         HasSubstr("<clipPath id="), HasSubstr("sole: stick"), HasSubstr("sole: slip"),
+                         HasSubstr("true scale"), Not(HasSubstr("nan")), Not(HasSubstr("inf "))));
+}
+
+TEST(ReportPicture, StatesByHowMuchSmallDisplacementsAreEnlarged) {
+  json small = picture();
+  for (auto& u : small["displacement"]) u[1] = u[1].get<double>() * 1e-3;
+  // 1e-4 of a width of 2: 3 % of the width is 600 times that, 500 the round number below.
+  EXPECT_THAT(report::draw_picture(small)->text, HasSubstr("displacements 500 times enlarged"));
+}
+
+TEST(ReportPicture, DrawsContactPointsAtTheirEnlargedPlaces) {
+  json small = picture();
+  for (auto& u : small["displacement"]) u = {0, 1e-4};
+  small["contact"][0]["node"] = 3;
+  small["contact"][0]["x"] = 0;
+  small["contact"][0]["y"] = 1 + 1e-4;
+  const auto plate = report::draw_picture(small);
+  EXPECT_THAT(plate->drawing.inline_svg(), AllOf(HasSubstr("sole: stick"), HasSubstr("sole: slip")));
+  for (const auto& row : plate->rows)
+    if (row["what"] == "contact point" && row["state"] == "stick") {
+      EXPECT_NEAR(row["y"].get<double>(), 1 + 500 * 1e-4, 1e-12);  // enlarged 500 times; few roundings
+    }
+}
+
+TEST(ReportPicture, HasNoWordsForStatesWhereNothingCanTouch) {
+  json alone = picture();
+  alone["contact"] = json::array();
+  EXPECT_THAT(report::draw_picture(alone)->drawing.inline_svg(), Not(HasSubstr(">sticks<")));
+}
+
+TEST(ReportPicture, DrawsNothingWhereThereIsNoPlaneMesh) {
+  EXPECT_FALSE(report::draw_picture(nullptr));
+  EXPECT_FALSE(report::draw_picture({{"points", {{0, 0}}}, {"elements", json::array()}}));
+  EXPECT_FALSE(report::draw_picture({{"points", {{0, 0, 0}, {1, 0, 0}}}, {"elements", {{0, 1}}}}));
+}
+
+TEST(ReportPicture, LeavesOutElementsThatNameNoNode) {
+  json broken = picture();
+  broken["elements"].push_back({0, 1, 99});
+  EXPECT_THAT(report::draw_picture(broken)->text, HasSubstr("2 elements"));
+}
+
+}  // namespace
+}  // namespace stickslip
