@@ -25,29 +25,6 @@ inline NodeRange nodes_of_body(const Model& model, std::size_t b) {
   return {model.bodies[b].first_node, model.bodies[b].first_node + model.bodies[b].mesh.node_count};
 }
 
-/// Whether forces within the friction cones of a body's contact points can balance the force on it, in 2D: whether its
-/// opposite lies in the cone that their edges n + mu e, n - mu e span (reversed where the body is the master).
-template <class T>
-bool cones_balance(const Model& model, const Slots<T>& slots, const NodeRange& body, const Vec<double, 2>& force) {
-  constexpr double band = 1e-12, pi = 3.141592653589793;
-  const Vec<double, 2> wanted = -force;
-  double left = pi, right = pi;  // least angles from it to an edge, to either side
-  for (std::size_t p = 0; p < model.points.size(); ++p) {
-    const auto& point = model.points[p];
-    const bool slave = body.has(point.nodes[0]);
-    if (!slave && !body.has(point.nodes.back())) continue;
-    const double mu = point.tangents > 0 ? value(slots.friction[point.contact]) : 0;
-    for (double sign : {-1.0, 1.0}) {
-      Vec<double, 2> edge = values(slots.geometry[p].normal) + sign * mu * values(slots.geometry[p].tangents.col(0));
-      if (!slave) edge = -edge;
-      const double angle = std::atan2(wanted[0] * edge[1] - wanted[1] * edge[0], wanted.dot(edge));
-      if (angle >= -band) left = std::min(left, std::max(angle, 0.0));
-      if (angle <= band) right = std::min(right, std::max(-angle, 0.0));
-    }
-  }
-  return left == 0 || right == 0 || left + right < pi - band;
-}
-
 /// The contact point that violates its constraint the most while supports prescribe the motion of all its nodes, in
 /// words of the scene; empty where there is none.
 template <class T>
@@ -122,46 +99,40 @@ std::string free_motion(const Model& model, const Slots<T>& slots, std::size_t b
 
 }  // namespace detail
 
-/// Says why an increment to `time` failed. Supports may drive a point into its obstacle, against a method that
-/// `prevents_penetration`. A body without a support, whose load no forces within its cones can balance, has no
-/// equilibrium; one of which no contact point sticks may move without resistance, where the tangent is singular, and so
-/// may one whose supports leave a motion free.
+/// Says why an increment failed. Supports may drive a point into its obstacle, against a method that
+/// `prevents_penetration`. A body without a support of which no contact point sticks may move without resistance, where
+/// the tangent is singular, and so may one whose supports leave a motion free.
 template <class T>
-void diagnose(const Model& model, const Slots<T>& slots, double time, bool prevents_penetration, Increment<T>& failed) {
+void diagnose(const Model& model, const Slots<T>& slots, bool prevents_penetration, Increment<T>& failed) {
+  if (failed.status == Status::no_equilibrium) return;
   const std::string driven_in = detail::prescribed_penetration(model, slots, failed.state);
   if (prevents_penetration && !driven_in.empty()) {
     failed.status = Status::infeasible;
     failed.message = driven_in;
     return;
   }
-  const Vector<double> external = values(external_forces(model, slots, time));
+  if (failed.status != Status::singular) return;
   const auto& states = failed.state.contact.state;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const auto body = detail::nodes_of_body(model, b);
     const bool supported = std::any_of(model.constraints.begin(), model.constraints.end(),
                                        [&](const Constraint& c) { return body.has(c.dof / model.dimension); });
     if (supported) {
-      if (failed.status != Status::singular) continue;
       const std::string motion = detail::free_motion(model, slots, b, states);
       if (motion.empty()) continue;
       failed.message = model.scene.bodies[b].name + " is free to move " + motion +
                        ": neither its supports nor its closed contacts hold it there (" + failed.message + ")";
       return;
     }
-    Vec<double, 2> force = Vec<double, 2>::Zero();
-    for (int node = body.first; node < body.end; ++node) force += external.segment(node * model.dimension, 2);
-    const bool balanced = model.dimension != 2 || force.norm() == 0 || detail::cones_balance(model, slots, body, force);
     bool sticks = false;
     for (std::size_t p = 0; p < states.size(); ++p)
       sticks |=
           states[p] == ContactState::stick && std::any_of(model.points[p].nodes.begin(), model.points[p].nodes.end(),
                                                           [&](int node) { return body.has(node); });
-    if (balanced && (sticks || failed.status != Status::singular)) continue;
-    failed.message =
-        model.scene.bodies[b].name + " is free to slide: no support holds it, and " +
-        (balanced ? "none of its contact points sticks" : "no forces that its contacts can give balance its load") +
-        " (" + failed.message + ")";
-    if (!balanced) failed.status = Status::no_equilibrium;
+    if (sticks) continue;
+    failed.message = model.scene.bodies[b].name +
+                     " is free to slide: no support holds it, and none of its contact points sticks (" +
+                     failed.message + ")";
     return;
   }
 }

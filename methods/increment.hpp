@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <string>
 
-#include "methods/equilibrium.hpp"
+#include "methods/newton.hpp"
 #include "methods/regularisation.hpp"
 
 namespace stickslip {
@@ -16,6 +16,21 @@ struct Run {
   const Slots<T>& slots;
   E& engine;
   Account account;
+  bool several = false;  ///< increments may have several solutions (methods/motion.hpp)
+};
+
+/// Where a method begins to look for an increment's solution, and what holds the bodies there.
+template <class T>
+struct Start {
+  const State<T>& from;  ///< the last increment's state, or a step of the motion
+  Anchor<T> anchor;      ///< of the motion; empty: the unmodified equations
+  bool is_step() const { return anchor.stiffness.size() > 0; }
+  /// States that points resume which start on their cone: those of the last increment, where it starts there.
+  std::vector<ContactState> resumed(const State<T>& previous) const {
+    return &from == &previous ? previous.contact.state : std::vector<ContactState>{};
+  }
+  /// What a tolerance becomes: steps of the motion are solved to its root.
+  double tolerance(double asked) const { return is_step() ? std::sqrt(asked) : asked; }
 };
 
 /// An equilibrium as the state that the next increment starts from. `multiplier`: the lambda it was found with.
@@ -36,6 +51,7 @@ void account_for(Increment<T>& increment, const Equilibrium<T>& equilibrium, int
   increment.status = equilibrium.status;
   increment.message = equilibrium.message;
   increment.newton += equilibrium.iterations;
+  increment.reversed |= equilibrium.reversed;
   for (auto entry : equilibrium.history) {
     entry.augmentation = augmentation;
     increment.history.push_back(entry);

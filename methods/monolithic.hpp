@@ -19,15 +19,20 @@ inline ConeRadius cone_radius(const MonolithicAL& method) {
 /// Whether a converged solution penetrates nothing.
 constexpr bool prevents_penetration(const MonolithicAL&) { return true; }
 
+/// Whether the motion of methods/motion.hpp stands in where an increment fails.
+constexpr bool is_globalised(const MonolithicAL&) { return true; }
+
 template <class T, class E>
 Increment<T> solve_increment(const MonolithicAL& method, Run<T, E>& run, const State<T>& previous,
-                             const std::vector<double>&, double time) {
+                             const std::vector<double>&, double time, const Start<T>& start) {
   Increment<T> increment;
   const auto rho = initial_regularisation(run.slots, method);
   const ContactInput<T> input{run.model, run.slots, rho, previous.contact.placement, cone_radius(method), time};
+  NewtonOptions options = method.newton;
+  options.tolerance = start.tolerance(options.tolerance);
   const auto equilibrium =
-      find_equilibrium(run.engine, input, run.engine.begin(time, previous.displacement), previous.contact.traction,
-                       true, previous.contact.state, method.newton, run.account);
+      newton(run.engine, input, run.engine.begin(time, start.from.displacement), start.from.contact.traction, true,
+             start.resumed(previous), options, run.account, 0, start.anchor);
   account_for(increment, equilibrium, 0);
   increment.state = settle(run, input, equilibrium, previous.dissipation);
   return increment;

@@ -11,10 +11,11 @@
 /// Converged: all within the tolerance and no state changed since the last tangent. Where a residual stops falling at
 /// the level of its own rounding the status is converged_at_roundoff; where it does so above it, but close to the
 /// solution, stagnated. The full step is taken when it lands in another active set, for that is how the set is found;
-/// within one set the residual must fall, and a repeated set without progress asks the same of every step:
-/// backtracking, down to 1/64. Where a tangent is singular while points are open, as of a body that nothing holds but
-/// the contact it is about to make, they are presumed closed for one step: those that should not be are in tension
-/// then, and open. [AC91], [HSW08]; theory: core/README.md.
+/// within one set the residual must fall: backtracking, down to 1/64. A set that is met again without half of its
+/// residual gone is a cycle: in 2D a step depends on the set alone, so that all would repeat. What solves these
+/// problems is methods/motion.hpp. Where a tangent is singular while points are open, as of a body that nothing
+/// holds but the contact it is about to make, they are presumed closed for one step: those that should not be are in
+/// tension then, and open. [AC91], [HSW08]; theory: core/README.md.
 #pragma once
 
 #include <unordered_map>
@@ -48,9 +49,22 @@ struct Equilibrium {
   Vector<T> multiplier;  ///< lambda
   ContactField<T> field;
   int iterations = 0;
-  bool rough = false;            ///< ended by `forcing`, short of the tolerance
-  double motion = 0, first = 0;  ///< how far contact nodes went from the start values; in the first step
+  bool rough = false;     ///< ended by `forcing`, short of the tolerance
+  bool reversed = false;  ///< a tangent on the way was (Engine::reversed): there may be other solutions
   std::vector<IterationRecord> history;
+};
+
+/// Springs between the contact nodes and a place, which join the equilibrium with their forces.
+template <class T>
+struct Anchor {
+  Vector<double> stiffness;  ///< of each contact node, the same in all directions, force per length; empty: none
+  Vector<T> place;           ///< compact displacements
+  /// Their forces at compact displacements.
+  Vector<T> force(const Vector<T>& compact, int dimension) const {
+    Vector<T> f = compact - place;
+    for (Eigen::Index i = 0; i < f.size(); ++i) f[i] *= stiffness[i / dimension];
+    return f;
+  }
 };
 
 namespace detail {
@@ -81,6 +95,15 @@ double prescribed_motion(const Model& model, const Slots<T>& slots, double time)
   return largest_nodal_norm(displacement, model.dimension);
 }
 
+/// Forces of contact, and of the anchor where there is one, on the contact nodes.
+template <class T>
+Vector<T> acting_forces(const ContactInput<T>& input, const Vector<T>& compact, const Vector<T>& traction,
+                        const Anchor<T>& anchor) {
+  Vector<T> forces = contact_forces(input.model, input.slots, traction);
+  if (anchor.stiffness.size() > 0) forces += anchor.force(compact, input.model.dimension);
+  return forces;
+}
+
 /// One point of the Newton path, evaluated.
 template <class T>
 struct Evaluation {
@@ -92,7 +115,7 @@ struct Evaluation {
 
 template <class T, class E>
 Evaluation<T> evaluate(E& engine, const ContactInput<T>& input, const Vector<T>& u, const Vector<T>& multiplier,
-                       bool unknown, double prescribed, const RunScales& of_run) {
+                       bool unknown, double prescribed, const RunScales& of_run, const Anchor<T>& anchor) {
   constexpr double rounding_factor = 100;  // several hundred terms meet in a row; each rounds once
   // Rounding of this share of the forces means displacements 1e9 times those that the forces cause: a body that drifts
   // off on a nearly singular tangent, and no equilibrium that rounding hides; unless supports move it as far.
@@ -104,7 +127,7 @@ Evaluation<T> evaluate(E& engine, const ContactInput<T>& input, const Vector<T>&
   const Vector<T> compact = engine.compact(u);
   at.field = evaluate_contact<T>(input, compact, multiplier, nullptr);
   ForceScale force{scales.force, 0};
-  at.rows_u = engine.residual(u, contact_forces(model, input.slots, at.field.traction), force);
+  at.rows_u = engine.residual(u, acting_forces(input, compact, at.field.traction, anchor), force);
   scales.force = force.force;
   double contact_rounding = 0, elastic = 0, stiffest = 0;  // elastic: largest k / A; stiffest: largest rho
   for (std::size_t p = 0; p < model.points.size(); ++p) {
@@ -247,37 +270,12 @@ std::vector<ContactState> presume_contact(const ContactInput<T>& input, std::vec
 /// Rows of an evaluation anew, in given branches.
 template <class T, class E>
 void rows_in(E& engine, const ContactInput<T>& input, const Vector<T>& u, const Vector<T>& multiplier, bool unknown,
-             const std::vector<ContactState>& branch, Evaluation<T>& at) {
-  const auto field = evaluate_contact<T>(input, engine.compact(u), multiplier, &branch);
+             const std::vector<ContactState>& branch, const Anchor<T>& anchor, Evaluation<T>& at) {
+  const Vector<T> compact = engine.compact(u);
+  const auto field = evaluate_contact<T>(input, compact, multiplier, &branch);
   ForceScale unused;
-  at.rows_u = engine.residual(u, contact_forces(input.model, input.slots, field.traction), unused);
+  at.rows_u = engine.residual(u, acting_forces(input, compact, field.traction, anchor), unused);
   if (unknown) at.rows_l = multiplier_residual(input.model, input.slots, field.traction, multiplier);
-}
-
-/// Whether friction alone may hold some body between surfaces that are not parallel: one without a support that touches
-/// what it touches along more than one normal.
-template <class T>
-bool is_wedged(const ContactInput<T>& input) {
-  constexpr double parallel = 1e-9;
-  const Model& model = input.model;
-  if (!model.effects.friction) return false;
-  return std::any_of(model.bodies.begin(), model.bodies.end(), [&](const BodyMesh& body) {
-    const auto owns = [&](int node) {
-      return node >= body.first_node && node < body.first_node + body.mesh.node_count;
-    };
-    if (std::any_of(model.constraints.begin(), model.constraints.end(),
-                    [&](const Constraint& constraint) { return owns(constraint.dof / model.dimension); }))
-      return false;
-    Vector<double> first;  // normal into the body
-    for (std::size_t p = 0; p < model.points.size(); ++p) {
-      const auto& nodes = model.points[p].nodes;
-      if (!owns(nodes.front()) && !owns(nodes.back())) continue;
-      const Vector<double> normal = values(input.slots.geometry[p].normal) * (owns(nodes.front()) ? 1 : -1);
-      if (first.size() == 0) first = normal;
-      if ((normal - first).norm() > parallel) return true;
-    }
-    return false;
-  });
 }
 
 inline constexpr const char* redundant_message =
@@ -299,25 +297,20 @@ constexpr int extra_iterations() {
 template <class T, class E>
 Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vector<T> multiplier, bool unknown,
                       const std::vector<ContactState>& last, const NewtonOptions& options, Account& account,
-                      double forcing = 0) {
+                      double forcing = 0, const Anchor<T>& anchor = {}) {
   const Model& model = input.model;
   constexpr double shortest_step = 1.0 / 64;
-  // A step of a body that friction alone holds between surfaces is not trusted farther than this many times the largest
-  // motion so far: where points slip one way by the branches of an iterate, it would be thrown out of its contacts.
-  const double growth = detail::is_wedged(input) ? 10 : std::numeric_limits<double>::infinity();
   constexpr int patience = 10;  // iterations in one active set that leave more than half of the residual
   Equilibrium<T> result;
   std::vector<ContactState> used;                // states of the last tangent
   ContactField<T> directed;                      // field and branches of the last step
   std::unordered_map<std::size_t, double> seen;  // active set -> smallest residual met with it
-  bool damped = false, redundant = false;        // redundant: constraints repeat one another
+  bool redundant = false;                        // constraints repeat one another
   const auto decided = unknown ? decided_elsewhere(model, input.slots) : std::vector<char>();
   int extra = detail::extra_iterations<T>(), steady = 0, presumptions = 3;
   double step_length = 1;
   const double prescribed = detail::prescribed_motion(model, input.slots, input.time);
-  auto at = detail::evaluate(engine, input, u, multiplier, unknown, prescribed, account.scales);
-  const Vector<T> start = engine.compact(u);
-  double reach = account.scales.length;  // largest motion of a contact node that was met, in the run or in this solve
+  auto at = detail::evaluate(engine, input, u, multiplier, unknown, prescribed, account.scales, anchor);
   for (int iteration = 0;; ++iteration) {
     result.history.push_back(detail::record(at, used, step_length));
     result.history.back().changed = iteration == 0 ? 0 : result.history.back().changed;
@@ -335,29 +328,31 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
     };
     if (!at.residuals.finite()) return finish(Status::not_finite, "the residual is not finite");
     steady = unchanged && iteration > 0 ? steady + 1 : 0;
+    bool repeats = false;
+    if (!unchanged) {
+      const auto [entry, fresh] = seen.try_emplace(detail::signature(at.field.state), at.residuals.largest());
+      repeats = !fresh && at.residuals.largest() > 0.5 * entry->second;
+      entry->second = std::min(entry->second, at.residuals.largest());
+    }
     // (sets that repeat although nothing is left of the residuals are those of a tie)
-    if ((unchanged || damped) && at.residuals.within(options.tolerance)) {
+    if ((unchanged || repeats) && at.residuals.within(options.tolerance)) {
       if (extra-- == 0) return finish(Status::converged, redundant ? detail::redundant_message : "");
-    } else if (steady >= 2 && at.residuals.within_rounding(options.tolerance) &&
+    } else if ((steady >= 2 || repeats) && at.residuals.within_rounding(options.tolerance) &&
                2 * at.residuals.largest() > result.history[iteration - 1].residual) {
       if (extra-- == 0)
         return finish(Status::converged_at_roundoff, "the residual stopped falling at the level of rounding");
     } else if (iteration > 0 && at.residuals.within(forcing * result.history[0].residual)) {
       result.rough = true;
       return finish(Status::converged);
+    } else if (repeats) {
+      return finish(Status::cycle, "the active set repeats; try a smaller stiffness or scale, or more steps");
     }
     const bool close = at.residuals.within(std::sqrt(options.tolerance));  // where a step should square the residual
-    if (close && steady >= patience && 2 * at.residuals.largest() > result.history[iteration - patience].residual)
-      return finish(Status::stagnated, "no step lowers the residual any more; try a smaller stiffness or scale");
+    if (steady >= patience && 2 * at.residuals.largest() > result.history[iteration - patience].residual)
+      return finish(close ? Status::stagnated : Status::cycle,
+                    "no step lowers the residual any more; try a smaller stiffness or scale");
     if (iteration >= options.max_iterations)
-      return finish(damped ? Status::cycle : Status::cap,
-                    damped ? "the active set repeats; try a smaller stiffness or scale, or more steps"
-                           : "Newton's method reached max_iterations; try more steps");
-    if (options.line_search && !damped && !unchanged) {
-      const auto [entry, fresh] = seen.try_emplace(detail::signature(at.field.state), at.residuals.largest());
-      damped = !fresh && at.residuals.largest() > 0.5 * entry->second;
-      entry->second = std::min(entry->second, at.residuals.largest());
-    }
+      return finish(Status::cap, "Newton's method reached max_iterations; try more steps");
 
     const auto evaluated = at.field.state;
     if (iteration == 0 && !last.empty()) detail::resume_on_cone(input, multiplier, last, at.field);
@@ -372,8 +367,9 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
           tangents.push_back(point_tangent<T>(input, p, compact, multiplier, branch[p]));
       }
       const Stopwatch time(account.seconds.factorization);
-      return unknown ? factorise_sharing(engine, model, decided, std::move(tangents), redundant, account.counters)
-                     : engine.factorise(tangents, account.counters);
+      return unknown ? factorise_sharing(engine, model, decided, std::move(tangents), redundant, account.counters,
+                                         anchor.stiffness)
+                     : engine.factorise(tangents, account.counters, anchor.stiffness);
     };
     if (!factorise()) {
       const auto closed = detail::presume_contact(input, branch);
@@ -381,12 +377,13 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
       branch = closed;
       if (!factorise()) return finish(Status::singular, engine.message());
     }
+    result.reversed |= engine.reversed();
     directed = at.field;
     directed.state = branch;
     BlockVector<T> step;
     {
       const Stopwatch time(account.seconds.backsolve);
-      if (branch != evaluated) detail::rows_in(engine, input, u, multiplier, unknown, branch, at);
+      if (branch != evaluated) detail::rows_in(engine, input, u, multiplier, unknown, branch, anchor, at);
       step = engine.solve({-at.rows_u, unknown ? Matrix<T>(-at.rows_l) : Matrix<T>()});
       ++account.counters.backsolves;
     }
@@ -402,13 +399,10 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
     const double before = at.residuals.largest();
     double best = std::numeric_limits<double>::infinity();
     const Vector<T> u0 = u, multiplier0 = multiplier;
-    const Vector<T> moved = engine.compact(Vector<T>(u0 + step.u.col(0))) - engine.compact(u0);
-    const double asked = largest_nodal_norm(moved, model.dimension);
-    const double longest = iteration > 0 && reach > 0 ? std::min(1.0, growth * reach / asked) : 1.0;
-    for (double length = longest; length >= shortest_step * longest; length /= 2) {
+    for (double length = 1; length >= shortest_step; length /= 2) {
       const Vector<T> u1 = u0 + T(length) * step.u.col(0);
       const Vector<T> multiplier1 = unknown ? Vector<T>(multiplier0 + T(length) * step.l.col(0)) : multiplier0;
-      auto trial = detail::evaluate(engine, input, u1, multiplier1, unknown, prescribed, account.scales);
+      auto trial = detail::evaluate(engine, input, u1, multiplier1, unknown, prescribed, account.scales, anchor);
       const double merit = trial.residuals.largest();
       if (merit < best || !std::isfinite(best)) {
         best = merit;
@@ -417,13 +411,10 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
         multiplier = multiplier1;
         at = std::move(trial);
       }
-      const bool new_branch = length == longest && at.field.state != used;
-      if (!options.line_search || merit < 0.9 * before || (!damped && new_branch)) break;
+      const bool new_branch = length == 1 && at.field.state != used;
+      if (!options.line_search || merit < 0.9 * before || new_branch) break;
       if (at.residuals.within_rounding(options.tolerance)) break;
     }
-    result.motion = largest_nodal_norm(Vector<T>(engine.compact(u) - start), model.dimension);
-    if (iteration == 0) result.first = result.motion;
-    reach = std::max(reach, result.motion);
   }
 }
 

@@ -7,9 +7,7 @@
 #include <functional>
 
 #include "methods/diagnosis.hpp"
-#include "methods/monolithic.hpp"
-#include "methods/penalty.hpp"
-#include "methods/uzawa.hpp"
+#include "methods/motion.hpp"
 
 namespace stickslip {
 
@@ -20,6 +18,15 @@ struct RunOptions {
   std::vector<double> replay;     ///< ends of the increments to repeat, without cutting; empty: the model's own steps
   std::function<void()> on_step;  ///< called after each requested step; may be empty
   Trace* trace = nullptr;         ///< not owned; gathers every iterate where it is there
+};
+
+/// What a run allocates and leaves for its sensitivities: owned by the caller, the only mutable thing beside them.
+/// `condensation` may be handed on to another run on the same slots (a sweep over methods): it is reused if it is
+/// there.
+template <class T>
+struct Workspace {
+  std::shared_ptr<Condensation<T>> condensation;
+  std::optional<Engine<T>> engine;
 };
 
 namespace detail {
@@ -39,7 +46,7 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
     const auto& increments = trajectory.increments;
     const State<T>& previous = increments.empty() ? trajectory.initial : increments.back().state;
     const auto factor = increments.empty() ? std::vector<double>{} : increments.back().rho_factor;
-    auto increment = solve_increment(method, run, previous, factor, next);
+    auto increment = find_increment(method, run, previous, factor, next);
     increment.time = next;
     increment.requested = last;
     increment.cutbacks = cutbacks;
@@ -55,14 +62,15 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
       if (++easy >= 3) step *= regrowth;
       continue;
     }
+    const bool impossible = increment.status == Status::no_equilibrium;
     if (!failed) failed = std::move(increment);
     easy = 0;
     step = (next - reached) / 2;
-    if (!may_cut || step < smallest * (target - start)) break;
+    if (!may_cut || impossible || step < smallest * (target - start)) break;
     ++cutbacks;
     ++run.account.counters.cutbacks;
   }
-  diagnose(run.model, run.slots, target, prevents_penetration(method), *failed);
+  diagnose(run.model, run.slots, prevents_penetration(method), *failed);
   trajectory.increments.resize(start_count);
   failed->time = target;
   failed->requested = true;
@@ -71,10 +79,35 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
   return false;
 }
 
+/// Whether increments may have several solutions, for all that can be told before the first: friction may hold a body
+/// between surfaces; of few points, some combination of branches has a negative determinant; of many, a point could
+/// jump on its own, as mu exceeds k_t / |k_nt| of its stiffness with all others held.
+template <class T, class E>
+bool may_have_several(const Run<T, E>& run, Workspace<T>& workspace) {
+  const Model& model = run.model;
+  if (!model.effects.friction) return false;
+  if (is_wedged(model, run.slots)) return true;
+  if constexpr (std::is_same_v<T, double>) {
+    auto condensation = workspace.condensation;
+    if (can_try_all_branches(model)) {
+      if (!condensation) condensation = std::make_shared<Condensation<double>>(model, run.slots, Backend::automatic);
+      if (!condensation->valid()) return false;
+      const RegularisationField<double> rho(model.points.size(), {1, 1});
+      const auto start = initial_state<double>(model);
+      const ContactInput<double> input{model, run.slots, rho, start.contact.placement};
+      const auto problem = branch_problem(input, start.displacement, condensation, nullptr);
+      return problem && may_have_several(*problem);
+    }
+    return condensation && exceeds_critical_friction(model, run.slots, condensation->schur());
+  }
+  return false;
+}
+
 template <class T, class E, class M>
 void march(const M& method, const Model& model, const Slots<T>& slots, E& engine, const RunOptions& options,
-           Trajectory<T>& trajectory) {
+           Workspace<T>& workspace, Trajectory<T>& trajectory) {
   Run<T, E> run{model, slots, engine, {}};
+  run.several = may_have_several(run, workspace);
   run.account.trace = options.trace;
   trajectory.initial = initial_state<T>(model);
   const auto& times = options.replay.empty() ? model.times : options.replay;
@@ -110,15 +143,6 @@ inline bool condensed_pays(const Model& model) {
 }
 
 }  // namespace detail
-
-/// What a run allocates and leaves for its sensitivities: owned by the caller, the only mutable thing beside them.
-/// `condensation` may be handed on to another run on the same slots (a sweep over methods): it is reused if it is
-/// there.
-template <class T>
-struct Workspace {
-  std::shared_ptr<Condensation<T>> condensation;
-  std::optional<Engine<T>> engine;
-};
 
 /// Builds the engine a run asks for: condensed where the bodies are linear and it pays (or it is demanded).
 template <class T>
@@ -157,7 +181,7 @@ Trajectory<T> solve_in(const Model& model, const Slots<T>& slots, const Method& 
   if (workspace.condensation && !reused) trajectory.counters += workspace.condensation->counters;
   std::visit(
       [&](const auto& m) {
-        std::visit([&](auto& engine) { detail::march(m, model, slots, engine, options, trajectory); },
+        std::visit([&](auto& engine) { detail::march(m, model, slots, engine, options, workspace, trajectory); },
                    *workspace.engine);
       },
       method);

@@ -29,6 +29,9 @@ inline ConeRadius cone_radius(const UzawaAL& method) {
 }
 /// Whether a converged solution penetrates nothing.
 constexpr bool prevents_penetration(const UzawaAL&) { return true; }
+/// Whether the motion of methods/motion.hpp stands in where an increment fails. A frozen cone is there to be studied as
+/// it is.
+inline bool is_globalised(const UzawaAL& method) { return method.cone == UzawaAL::Cone::augmented; }
 
 namespace detail {
 
@@ -134,17 +137,19 @@ void conclude(const Standing& now, bool at_limit, Increment<T>& increment) {
 }  // namespace detail
 
 template <class T, class E>
-Increment<T> solve_increment(const UzawaAL& method, Run<T, E>& run, const State<T>& previous,
-                             const std::vector<double>& previous_factor, double time) {
+Increment<T> solve_increment(const UzawaAL& options, Run<T, E>& run, const State<T>& previous,
+                             const std::vector<double>& previous_factor, double time, const Start<T>& start) {
   const Model& model = run.model;
+  UzawaAL method = options;
+  method.tolerance = start.tolerance(options.tolerance);
   const bool truncated = method.sensitivity == UzawaAL::Sensitivity::truncated;
   const int limit = method.max_augmentations * (std::is_same_v<T, double> || truncated ? 1 : 20);
   Increment<T> increment;
   increment.rho_factor = previous_factor.empty() ? std::vector<double>(model.points.size(), 1.0) : previous_factor;
   const auto initial = initial_regularisation(run.slots, method);
   const RunScales before = run.account.scales;  // without what an extrapolated lambda may overshoot by
-  Vector<T> u = run.engine.begin(time, previous.displacement), lambda = previous.contact.traction;
-  std::vector<ContactState> last = previous.contact.state;  // resumed at the first augmentation
+  Vector<T> u = run.engine.begin(time, start.from.displacement), lambda = start.from.contact.traction;
+  std::vector<ContactState> last = start.resumed(previous);  // at the first augmentation
   Augmentations<T> progress(model, run.slots, method.acceleration);
   Accelerator<T> accelerator(method.acceleration);
   const auto cones = [&](Vector<T> x) { return detail::into_cones(model, run.slots, std::move(x)); };
@@ -154,9 +159,9 @@ Increment<T> solve_increment(const UzawaAL& method, Run<T, E>& run, const State<
     const auto rho = adapted(initial, increment.rho_factor);
     const ContactInput<T> input{model, run.slots, rho, previous.contact.placement, cone_radius(method), time};
     run.account.scales = before;
-    const auto equilibrium = find_equilibrium(run.engine, input, u, lambda, false, last,
-                                              detail::inner_options(method, progress.contraction()), run.account,
-                                              rough ? detail::forcing : 0);
+    const auto equilibrium =
+        newton(run.engine, input, u, lambda, false, last, detail::inner_options(method, progress.contraction()),
+               run.account, rough ? detail::forcing : 0, start.anchor);
     account_for(increment, equilibrium, ++increment.augmentations);
     ++run.account.counters.augmentations;
     auto keep = [&] {

@@ -31,6 +31,7 @@ struct Factorisation {
   /// do not matter); in (0, 1] or a little above. Only its order of magnitude has a meaning: a small one is a reason
   /// to look at the condition number.
   double smallest_pivot = 1;
+  int determinant_sign = 1;  ///< +1 or -1; of the real part of the determinant's phase where complex
 };
 
 #ifdef STICKSLIP_WITH_CHOLMOD

@@ -32,6 +32,16 @@ struct EigenFactor<T>::Data {
     }
     return smallest;
   }
+
+  /// Sign of the real part of the phase of det A. (SparseLU has it for real matrices alone.)
+  int determinant_sign() const {
+    const auto& upper = lu.matrixL().m_mapL;
+    T phase(static_cast<double>(lu.rowsPermutation().determinant() * lu.colsPermutation().determinant()));
+    for (int k = 0; k < pattern->size; ++k)
+      for (typename std::decay_t<decltype(upper)>::InnerIterator it(upper, k); it; ++it)
+        if (it.row() == k) phase *= it.value() / std::abs(it.value());
+    return std::real(phase) < 0 ? -1 : 1;
+  }
 };
 
 template <class T>
@@ -73,7 +83,7 @@ Factorisation EigenFactor<T>::factorise(const T* values) {
     const auto column = std::find(order.begin(), order.end(), step) - order.begin();
     return {Outcome::singular, "pivot of column " + std::to_string(column) + " is zero"};
   }
-  return {Outcome::done, "", d.smallest_pivot()};
+  return {Outcome::done, "", d.smallest_pivot(), d.determinant_sign()};
 }
 
 template <class T>

@@ -43,6 +43,7 @@ struct MumpsFactor::Data {
     icntl(24) = 1;  // null pivots are listed, so that a message can name them
     icntl(27) = columns_at_a_time;
     icntl(28) = 1;  // sequential analysis
+    icntl(33) = 1;  // the determinant, of which its sign is wanted
   }
   Data(const Data&) = delete;
   Data& operator=(const Data&) = delete;
@@ -107,7 +108,8 @@ Factorisation MumpsFactor::factorise(const double* values) {
     return {cholesky ? Outcome::not_positive_definite : Outcome::singular, which + " is zero"};
   }
   if (status < 0) return {Outcome::failed, "MUMPS: INFOG(1) = " + std::to_string(status)};
-  return {Outcome::done, "", d.mumps.rinfog[19 - 1]};  // of the scaled matrix, whose entries are at most about 1
+  // RINFOG(19): of the scaled matrix, whose entries are at most about 1. RINFOG(12): mantissa of the determinant
+  return {Outcome::done, "", d.mumps.rinfog[19 - 1], d.mumps.rinfog[12 - 1] < 0 ? -1 : 1};
 }
 
 void MumpsFactor::solve(const Matrix<double>& b, Matrix<double>& x, bool transposed) {

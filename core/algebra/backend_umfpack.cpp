@@ -91,7 +91,9 @@ Factorisation UmfpackFactor::factorise(const double* values) {
     const auto k = zero == d.pivots.end() ? 0 : zero - d.pivots.begin();
     return {Outcome::singular, "pivot of column " + std::to_string(d.column_order[k]) + " is zero"};
   }
-  return {Outcome::done, "", d.smallest_pivot(values)};
+  double mantissa = 1, exponent = 0;
+  umfpack_di_get_determinant(&mantissa, &exponent, d.numeric, nullptr);
+  return {Outcome::done, "", d.smallest_pivot(values), mantissa < 0 ? -1 : 1};
 }
 
 void UmfpackFactor::solve(const Matrix<double>& b, Matrix<double>& x, bool transposed) {

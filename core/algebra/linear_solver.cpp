@@ -178,6 +178,7 @@ struct LinearSolver<T>::Implementation {
   SolverCounters counters;
   std::string message;
   double backward_error = 0;
+  int determinant_sign = 1;
 
   const Scaling& scales() {
     if (!scaling) scaling = equilibrate(*pattern, values.data());
@@ -331,6 +332,7 @@ bool LinearSolver<T>::factorise(const T* values) {
     }
     s.message = result.outcome == Outcome::done ? s.singularity(result.smallest_pivot) : result.message;
     if (result.outcome == Outcome::singular) s.message = "singular: " + s.message;
+    s.determinant_sign = result.determinant_sign;
   } catch (const std::bad_alloc&) {
     s.message = "not enough memory for the factors";
   } catch (const std::runtime_error& error) {  // the fallback's analysis
@@ -361,6 +363,11 @@ Matrix<T> LinearSolver<T>::solve(const Matrix<T>& right_hand_sides, bool transpo
   }
   s.backward_error = check.error;
   return x;
+}
+
+template <class T>
+int LinearSolver<T>::determinant_sign() const {
+  return implementation_->determinant_sign;
 }
 
 template <class T>

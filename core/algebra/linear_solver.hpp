@@ -58,6 +58,9 @@ class LinearSolver {
   /// pre: the last factorise() returned true.
   Matrix<T> solve(const Matrix<T>& right_hand_sides, bool transposed = false);
 
+  /// Sign of the determinant of the last factor, +1 or -1 (complex: of the real part of its phase).
+  int determinant_sign() const;
+
   /// Relative backward error of the last solve, max_i |b - A x|_i / (|A||x| + |b|)_i over its columns (Oettli-Prager),
   /// with the values last factorised.
   double backward_error() const;

@@ -276,13 +276,15 @@ void yield_rows(const Model& model, const std::vector<char>* which, double share
 /// from the gap as a penalty would, step by step: nothing where the support agrees with it. Where constraints repeat
 /// one another the tangent is singular; a yield of 1e-8 then shares the force out in the least norm, far above the
 /// limit of singularity and small enough to cost one iteration more. `redundant`: that yield was needed, and is kept.
+/// `hold`: as of the engine's factorise().
 template <class T, class E>
 bool factorise_sharing(E& engine, const Model& model, const std::vector<char>& decided,
-                       std::vector<PointTangent<T>> tangents, bool& redundant, Counters& counters) {
+                       std::vector<PointTangent<T>> tangents, bool& redundant, Counters& counters,
+                       const Vector<double>& hold = {}) {
   if (!decided.empty()) yield_rows(model, &decided, 1, tangents);
-  if (!redundant && engine.factorise(tangents, counters)) return true;
+  if (!redundant && engine.factorise(tangents, counters, hold)) return true;
   yield_rows(model, nullptr, 1e-8, tangents);
-  return redundant = engine.factorise(tangents, counters);
+  return redundant = engine.factorise(tangents, counters, hold);
 }
 
 /// Frictional work of the increment, added to the previous dissipation, per contact: sum A t_T . plastic slip, where

@@ -67,6 +67,9 @@ bool same_tangents(const std::vector<PointTangent<T>>& a, const std::vector<Poin
   return true;
 }
 
+/// Whether two vectors are the same to the last bit, their sizes included.
+inline bool same_values(const Vector<double>& a, const Vector<double>& b) { return a.size() == b.size() && a == b; }
+
 }  // namespace detail
 
 /// The bodies in full: one sparse matrix over the free dofs and the multipliers, its pattern fixed for every contact
@@ -85,7 +88,11 @@ class SparseEngine {
   /// f_int - f_ext + contact.
   Vector<T> residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const;
   bool is_free(Eigen::Index row) const { return model_.free_index[row] >= 0; }
-  bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters);
+  /// `hold`: stiffness against motion of each contact node, the same in all directions, force per length; empty: none.
+  bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
+  /// Whether the tangent has the other sign of its determinant than where all points stick: such a tangent belongs to a
+  /// problem that has several solutions, or none, under some load.
+  bool reversed() const;
   /// K^T in place of K where `transposed`.
   BlockVector<T> solve(const BlockVector<T>& rows, bool transposed = false);
   /// The bodies' stiffness times engine increments (engine rows).
@@ -118,6 +125,7 @@ class SparseEngine {
   double stiffness_ = 0;  ///< largest diagonal entry, for the rounding of a residual
   LinearSolver<T> solver_;
   std::vector<PointTangent<T>> factorised_;
+  Vector<double> held_;
   bool analysed_ = false, valid_ = false;
 };
 
@@ -161,7 +169,11 @@ class CondensedEngine {
   Vector<T> all(const Vector<T>& u);
   Vector<T> residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const;
   bool is_free(Eigen::Index row) const { return free_[row]; }
-  bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters);
+  /// `hold`: stiffness against motion of each contact node, the same in all directions, force per length; empty: none.
+  bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
+  /// Whether the tangent has the other sign of its determinant than where all points stick: such a tangent belongs to a
+  /// problem that has several solutions, or none, under some load.
+  bool reversed() const;
   /// K^T in place of K where `transposed`.
   BlockVector<T> solve(const BlockVector<T>& rows, bool transposed = false);
   Matrix<T> apply_stiffness(const Matrix<T>& u) const { return condensation_->schur() * u; }
@@ -195,6 +207,7 @@ class CondensedEngine {
   Eigen::LLT<Matrix<T>> llt_;
   bool cholesky_ = false, valid_ = false;
   std::vector<PointTangent<T>> factorised_;
+  Vector<double> held_;
   std::string message_;
 };
 

@@ -175,9 +175,15 @@ Vector<T> SparseEngine<T>::residual(const Vector<T>& u, const Vector<T>& contact
 }
 
 template <class T>
-bool SparseEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters) {
-  if (valid_ && model_.effects.linear_bulk && detail::same_tangents(tangents, factorised_)) return true;
+bool SparseEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters,
+                                const Vector<double>& hold) {
+  const bool same = detail::same_values(hold, held_) && detail::same_tangents(tangents, factorised_);
+  if (valid_ && model_.effects.linear_bulk && same) return true;
   values_ = bulk_;
+  for (Eigen::Index n = 0; n < hold.size(); ++n)
+    for (int i = 0; i < model_.dimension; ++i)
+      if (const int row = model_.free_index[model_.contact_nodes[n] * model_.dimension + i]; row >= 0)
+        values_[detail::locate(*pattern_, row, row)] += T(hold[n]);
   for (std::size_t p = 0; p < tangents.size(); ++p) {
     const auto& map = point_map_[p];
     const int n = static_cast<int>(std::lround(std::sqrt(static_cast<double>(map.size()))));
@@ -196,7 +202,14 @@ bool SparseEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents, Co
   valid_ = solver_.factorise(values_.data());
   counters.factorizations += solver_.counters().factorizations - before;
   factorised_ = tangents;
+  held_ = hold;
   return valid_;
+}
+
+template <class T>
+bool SparseEngine<T>::reversed() const {
+  const bool odd = unknown_multipliers_ && model_.multiplier_count % 2 == 1;  // each multiplier turns the sign
+  return solver_.determinant_sign() != (odd ? -1 : 1);
 }
 
 template <class T>
@@ -373,8 +386,9 @@ Vector<T> CondensedEngine<T>::residual(const Vector<T>& u, const Vector<T>& cont
 }
 
 template <class T>
-bool CondensedEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters) {
-  if (valid_ && detail::same_tangents(tangents, factorised_)) return true;
+bool CondensedEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters,
+                                   const Vector<double>& hold) {
+  if (valid_ && detail::same_values(hold, held_) && detail::same_tangents(tangents, factorised_)) return true;
   const int D = model_.dimension, free = static_cast<int>(free_list_.size());
   active_.clear();
   std::vector<int> place(model_.multiplier_count, -1);
@@ -396,6 +410,8 @@ bool CondensedEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents,
   const auto& S = condensation_->schur();
   for (int j = 0; j < free; ++j)
     for (int i = 0; i < free; ++i) K(i, j) = S(free_list_[i], free_list_[j]);
+  if (hold.size() > 0)
+    for (int i = 0; i < free; ++i) K(i, i) += T(hold[free_list_[i] / D]);
   for (std::size_t p = 0; p < tangents.size(); ++p) {
     const auto& point = model_.points[p];
     std::vector<int> rows;
@@ -410,6 +426,7 @@ bool CondensedEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents,
   ++counters.assemblies;
   ++counters.factorizations;
   factorised_ = tangents;
+  held_ = hold;
   cholesky_ = false;
   valid_ = false;
   message_.clear();
@@ -430,6 +447,15 @@ bool CondensedEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents,
   valid_ = regular && (cholesky_ ? llt_.rcond() : lu_.rcond()) > 10 * std::numeric_limits<double>::epsilon();
   if (!valid_) message_ = "the tangent is singular to working precision";
   return valid_;
+}
+
+template <class T>
+bool CondensedEngine<T>::reversed() const {
+  if (cholesky_ || free_list_.size() + active_.size() == 0) return false;
+  double sign = static_cast<double>(lu_.permutationP().determinant());
+  for (Eigen::Index i = 0; i < lu_.matrixLU().rows(); ++i)
+    if (value(lu_.matrixLU()(i, i)) < 0) sign = -sign;
+  return sign != (active_.size() % 2 == 1 ? -1 : 1);  // each multiplier turns the sign
 }
 
 template <class T>

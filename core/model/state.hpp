@@ -53,6 +53,8 @@ struct Increment {
   double contraction = 0;  ///< Uzawa: last measured ratio of multiplier updates; 0 if not measured
   std::vector<IterationRecord> history;
   std::vector<AugmentedState<T>> sweeps;
+  bool reversed = false;  ///< a tangent on the way was (Engine::reversed): there may be other solutions
+  std::vector<State<T>> others;  ///< other solutions of the increment, where all were looked for (displacements empty)
   bool cut_off = false;  ///< by max_augmentations, as asked: status cap, but each of its equilibria was found
   /// Good enough to go on from.
   bool usable() const { return is_converged(status) || cut_off; }

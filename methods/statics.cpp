@@ -1,0 +1,54 @@
+#include "methods/statics.hpp"
+
+#include <Eigen/QR>
+#include <vector>
+
+namespace stickslip {
+
+double unbalanced_share(const RigidStatics& statics) {
+  const double size = statics.load.norm();
+  if (!(size > 0)) return 0;
+  // x >= 0 for all columns: supports give either sign by two columns
+  Matrix<double> A(statics.load.size(), statics.pushes.cols() + 2 * statics.holds.cols());
+  A << statics.pushes, statics.holds, -statics.holds;
+  const Vector<double> b = -statics.load / size;
+  const double negligible = 1e-13 * std::sqrt(static_cast<double>(A.rows()));  // rounding of a column of length one
+  Vector<double> x = Vector<double>::Zero(A.cols());
+  std::vector<int> passive;
+  const auto least_squares = [&] {
+    Matrix<double> P(A.rows(), passive.size());
+    for (std::size_t k = 0; k < passive.size(); ++k) P.col(k) = A.col(passive[k]);
+    return Vector<double>(P.completeOrthogonalDecomposition().solve(b));
+  };
+  for (Eigen::Index round = 0; round < 3 * A.cols(); ++round) {
+    const Vector<double> descent = A.transpose() * (b - A * x);
+    int best = -1;
+    for (int j = 0; j < descent.size(); ++j)
+      if (x[j] == 0 && descent[j] > negligible && (best < 0 || descent[j] > descent[best])) best = j;
+    if (best < 0) break;
+    passive.push_back(best);
+    Vector<double> z = least_squares();
+    while (z.size() > 0 &&
+           z.minCoeff() <= 0) {  // back to the last x that is not negative, and without what ended there
+      double step = 1;
+      for (std::size_t k = 0; k < passive.size(); ++k)
+        if (z[k] <= 0) step = std::min(step, x[passive[k]] / (x[passive[k]] - z[k]));
+      std::vector<int> kept;
+      for (std::size_t k = 0; k < passive.size(); ++k) {
+        double& of = x[passive[k]];
+        of += step * (z[k] - of);
+        if (of > 1e-15)
+          kept.push_back(passive[k]);
+        else
+          of = 0;
+      }
+      if (kept.size() == passive.size()) break;
+      passive = std::move(kept);
+      z = least_squares();
+    }
+    for (std::size_t k = 0; k < passive.size(); ++k) x[passive[k]] = z[k];
+  }
+  return (b - A * x).norm();
+}
+
+}  // namespace stickslip

@@ -1,0 +1,84 @@
+/// Whether forces that contacts and supports can give balance the loads on the bodies as if these were rigid: necessary
+/// for any equilibrium of theirs, and what tells "cannot be solved" from "was not solved".
+#pragma once
+
+#include <string>
+
+#include "core/model/contact_assembly.hpp"
+#include "core/model/loading.hpp"
+
+namespace stickslip {
+
+/// Columns of forces that a body, or all bodies together, may be given: three rows a body, force along x and y and
+/// moment about the origin over the size of the model.
+struct RigidStatics {
+  Matrix<double> pushes;  ///< of contact points, by factors >= 0: the edges n - mu e and n + mu e of their cones
+  Matrix<double> holds;   ///< of supports, by factors of either sign
+  Vector<double> load;
+};
+
+/// Share of the load that no such forces balance, |load + pushes x + holds y| / |load| at its least over x >= 0 and y;
+/// 0 without load. Non-negative least squares [LH74].
+double unbalanced_share(const RigidStatics& statics);
+
+/// A body's column block in RigidStatics, at a time. pre: 2D, not of revolution.
+template <class T>
+RigidStatics rigid_statics(const Model& model, const Slots<T>& slots, double time) {
+  const Matrix<double> X = slots.points.unaryExpr([](const T& x) { return value(x); });
+  const double size = std::max((X.rowwise().maxCoeff() - X.rowwise().minCoeff()).norm(), 1e-300);
+  const auto body_of = [&](int node) {
+    std::size_t b = 0;
+    while (b + 1 < model.bodies.size() && node >= model.bodies[b + 1].first_node) ++b;
+    return static_cast<Eigen::Index>(b);
+  };
+  const auto rows = static_cast<Eigen::Index>(3 * model.bodies.size());
+  RigidStatics statics{Matrix<double>::Zero(rows, 2 * model.points.size()),
+                       Matrix<double>::Zero(rows, model.constraints.size()), Vector<double>::Zero(rows)};
+  const auto add = [&](auto column, int node, const Vec<double, 2>& force) {
+    const auto at = X.col(node);
+    column.template segment<3>(3 * body_of(node)) +=
+        Vec<double, 3>(force[0], force[1], (at[0] * force[1] - at[1] * force[0]) / size);
+  };
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const auto& point = model.points[p];
+    const auto& geometry = slots.geometry[p];
+    const double mu = point.tangents > 0 ? value(slots.friction[point.contact]) : 0;
+    for (int side : {0, 1}) {
+      Vec<double, 2> edge = values(geometry.normal);
+      if (mu > 0) edge += (side == 0 ? -mu : mu) * values(geometry.tangents.col(0));
+      edge /= edge.norm();
+      for (std::size_t n = 0; n < point.nodes.size(); ++n)
+        add(statics.pushes.col(2 * p + side), point.nodes[n], value(geometry.weights[n]) * edge);
+    }
+  }
+  for (std::size_t k = 0; k < model.constraints.size(); ++k) {
+    const int dof = model.constraints[k].dof, node = dof / 2;
+    const int framed = framed_index(model, node);
+    Vec<double, 2> direction = Vec<double, 2>::Unit(dof % 2);
+    if (framed >= 0) direction = values(slots.frames[framed]).col(dof % 2);
+    add(statics.holds.col(k), node, direction);
+  }
+  const Vector<double> external = values(external_forces(model, slots, time));
+  for (int node = 0; node < model.node_count; ++node)
+    add(statics.load.col(0), node, Vec<double, 2>(external.segment(2 * node, 2)));
+  return statics;
+}
+
+/// A sentence about the body whose load nothing balances; empty where all can be, or where this cannot tell (space,
+/// bodies of revolution).
+template <class T>
+std::string unbalanced_body(const Model& model, const Slots<T>& slots, double time) {
+  constexpr double rounding = 1e-9;  // of the least squares: what is less may be balanced
+  if (model.dimension != 2 || model.scene.space == Space::axisymmetric) return "";
+  const RigidStatics all = rigid_statics(model, slots, time);
+  if (!(unbalanced_share(all) > rounding)) return "";
+  const std::string why = " is free to move: no forces that its contacts and supports can give balance its load";
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const auto rows = static_cast<Eigen::Index>(3 * b);
+    const RigidStatics one{all.pushes.middleRows(rows, 3), all.holds.middleRows(rows, 3), all.load.segment(rows, 3)};
+    if (unbalanced_share(one) > rounding) return model.scene.bodies[b].name + why;
+  }
+  return "a group of bodies" + why;
+}
+
+}  // namespace stickslip
