@@ -188,9 +188,46 @@ std::optional<BranchProblem> branch_problem(const ContactInput<double>& input, c
   }
   const Eigen::LLT<Matrix<double>> factor(stiffness);
   if (factor.info() != Eigen::Success || !(factor.rcond() > 1e-13)) return std::nullopt;
-  problem.compliance = held.transpose() * factor.solve(held) * area.asDiagonal();
-  problem.free += held.transpose() * factor.solve(load);
+  const Matrix<double> lift = factor.solve(held) * area.asDiagonal();
+  const Vector<double> moved = factor.solve(load);
+  problem.compliance = held.transpose() * lift;
+  problem.free += held.transpose() * moved;
+  problem.unloaded = u;
+  problem.lift = Matrix<double>::Zero(u.size(), count);
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    problem.unloaded[free[i]] += moved[i];
+    problem.lift.row(free[i]) = lift.row(i);
+  }
   return problem;
+}
+
+std::optional<std::vector<State<double>>> other_solutions(const ContactInput<double>& input,
+                                                          const Vector<double>& displacement,
+                                                          const State<double>& taken,
+                                                          std::shared_ptr<Condensation<double>> condensation,
+                                                          const Vector<double>* stored) {
+  constexpr double same = 1e-6;  // the taken one was found to a tolerance
+  const auto problem = branch_problem(input, displacement, condensation, stored);
+  if (!problem) return std::nullopt;
+  const Model& model = input.model;
+  CondensedEngine<double> engine(model, input.slots, false, ConeRadius::augmented, condensation);
+  engine.begin(input.time, displacement);
+  std::vector<State<double>> others;
+  for (const auto& solution : all_solutions(*problem)) {
+    State<double> other = taken;
+    const Vector<double> u = problem->unloaded - problem->lift * solution.traction;
+    other.displacement = engine.all(u);
+    other.multiplier = solution.traction;
+    other.contact = evaluate_contact<double>(input, engine.compact(u), solution.traction, &solution.state);
+    other.contact.traction = solution.traction;  // (laid out as multipliers are)
+    const double lengths =
+        std::max(largest_nodal_norm(other.displacement, 2), largest_nodal_norm(taken.displacement, 2));
+    const double tractions = std::max(solution.traction.norm(), taken.contact.traction.norm());
+    if (largest_nodal_norm(Vector<double>(other.displacement - taken.displacement), 2) > same * lengths ||
+        (solution.traction - taken.contact.traction).norm() > same * tractions)
+      others.push_back(std::move(other));
+  }
+  return others;
 }
 
 }  // namespace stickslip

@@ -32,6 +32,8 @@ struct BranchProblem {
   std::vector<Point> points;
   Matrix<double> compliance;  ///< H, length^3 per force
   Vector<double> free;        ///< g_0: gaps and slips without any traction
+  Vector<double> unloaded;    ///< engine dofs without any traction
+  Matrix<double> lift;        ///< and what each traction takes off them
 };
 
 /// One solution: branches, and g and t in the rows of H.
@@ -45,6 +47,14 @@ bool may_have_several(const BranchProblem& problem);
 
 /// All solutions; those whose tractions differ by less than 1e-9 of the largest are one.
 std::vector<BranchSolution> all_solutions(const BranchProblem& problem);
+
+/// Solutions of an increment other than the one in `taken`, as states; nothing where not all can be tried. The problem
+/// is branch_problem's, with its arguments.
+std::optional<std::vector<State<double>>> other_solutions(const ContactInput<double>& input,
+                                                          const Vector<double>& displacement,
+                                                          const State<double>& taken,
+                                                          std::shared_ptr<Condensation<double>> condensation,
+                                                          const Vector<double>* stored);
 
 /// Whether a model has few enough points for it, in 2D, and friction.
 bool can_try_all_branches(const Model& model);

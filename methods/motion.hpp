@@ -124,7 +124,9 @@ Increment<T> find_increment(const M& method, Run<T, E>& run, const State<T>& pre
   auto direct = solve_increment(method, run, previous, factor, time, Start<T>{previous, {}});
   const bool solved = direct.usable();
   const bool several = run.several || direct.reversed;
-  if ((solved && (!several || direct.cut_off)) || run.model.points.empty() || !is_globalised(method)) return direct;
+  const bool final =
+      solved ? !several || direct.cut_off : direct.status == Status::infeasible && !prevents_penetration(method);
+  if (final || run.model.points.empty() || !is_globalised(method)) return direct;
   if (!solved) {
     const std::string body = unbalanced_body(run.model, run.slots, time);
     if (!body.empty()) {

@@ -337,8 +337,8 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
     // (sets that repeat although nothing is left of the residuals are those of a tie)
     if ((unchanged || repeats) && at.residuals.within(options.tolerance)) {
       if (extra-- == 0) return finish(Status::converged, redundant ? detail::redundant_message : "");
-    } else if ((steady >= 2 || repeats) && at.residuals.within_rounding(options.tolerance) &&
-               2 * at.residuals.largest() > result.history[iteration - 1].residual) {
+    } else if (at.residuals.within_rounding(options.tolerance) &&
+               (repeats || (steady >= 2 && 2 * at.residuals.largest() > result.history[iteration - 1].residual))) {
       if (extra-- == 0)
         return finish(Status::converged_at_roundoff, "the residual stopped falling at the level of rounding");
     } else if (iteration > 0 && at.residuals.within(forcing * result.history[0].residual)) {

@@ -25,6 +25,71 @@ inline ConeRadius cone_radius(const Penalty&) { return ConeRadius::augmented; }
 /// Whether a converged solution penetrates nothing.
 constexpr bool prevents_penetration(const Penalty&) { return false; }
 
+namespace detail {
+
+/// Points, closed in `field`, whose constraints could contradict others: not those with a slave node of their own that
+/// is free to follow.
+template <class T>
+std::vector<int> shared_points(const Model& model, const ContactField<T>& field) {
+  std::vector<int> users(model.node_count, 0);
+  for (std::size_t p = 0; p < model.points.size(); ++p)
+    if (field.state[p] != ContactState::open)
+      for (int node : model.points[p].nodes) ++users[node];
+  std::vector<int> shared;
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const int node = model.points[p].nodes[0], D = model.dimension;
+    const auto first = model.free_index.begin() + node * D;
+    const bool free = std::all_of(first, first + D, [](int index) { return index >= 0; });
+    if (field.state[p] != ContactState::open && (!free || users[node] > 1)) shared.push_back(static_cast<int>(p));
+  }
+  return shared;
+}
+
+/// A point whose overlap no stiffness removes, in words; empty where there is none. One augmentation from the solution
+/// with 1e8 nodal stiffnesses, the closed points closed and tangential tractions as they are, leaves some 1e-8 of an
+/// overlap that bodies can yield to, and all of one that supports or other contacts prescribe: the force there is
+/// stiffness times overlap. It is made only where points share a node or are held by supports.
+template <class T, class E>
+std::string unyielding_point(Run<T, E>& run, const ContactInput<T>& found, const Equilibrium<T>& equilibrium) {
+  constexpr double stiff = 1e8, left = 1e-2, negligible = 1e-9;
+  const Model& model = run.model;
+  const auto shared = shared_points(model, equilibrium.field);
+  if (shared.empty()) return "";
+  RegularisationField<T> rho;
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const T nodal = T(stiff) * run.slots.stiffness[p] / run.slots.geometry[p].area;
+    rho.push_back({nodal, nodal / T(stiff * stiff)});  // across the normal a traction stays what it is
+  }
+  const ContactInput<T> input{model, run.slots, rho, found.previous_placement, found.cone, found.time};
+  const auto& traction = equilibrium.field.traction;
+  std::vector<ContactState> states = equilibrium.field.state;
+  for (std::size_t p = 0; p < states.size(); ++p)
+    if (states[p] == ContactState::slip && model.points[p].tangents > 0) states[p] = ContactState::stick;
+  const Vector<T> compact = run.engine.compact(equilibrium.u);
+  const auto pushed = evaluate_contact<T>(input, compact, traction, &states);
+  ForceScale unused;
+  Vector<T> rows = run.engine.residual(equilibrium.u, contact_forces(model, run.slots, pushed.traction), unused);
+  for (Eigen::Index row = 0; row < rows.size(); ++row)
+    if (!run.engine.is_free(row)) rows[row] = T(0);
+  std::vector<PointTangent<T>> tangents;
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p)
+    tangents.push_back(point_tangent<T>(input, p, compact, traction, states[p]));
+  if (!run.engine.factorise(tangents, run.account.counters)) return "";
+  const Vector<T> u = equilibrium.u + run.engine.solve({-rows, {}}).u.col(0);
+  ++run.account.counters.backsolves;
+  const auto after = evaluate_contact<T>(input, run.engine.compact(u), traction, &states);
+  for (int p : shared) {
+    const double overlap = -value(equilibrium.field.gap[p]), rest = -value(after.gap[p]);
+    if (overlap > negligible * run.account.scales.length && rest > left * overlap)
+      return name_of_point(model, run.slots, p) + " overlaps by " + short_number(overlap) +
+             ", which no stiffness removes: supports or other contacts prescribe it, and the force is stiffness times "
+             "overlap";
+  }
+  return "";
+}
+
+}  // namespace detail
+
 /// Whether the motion of methods/motion.hpp stands in where an increment fails.
 constexpr bool is_globalised(const Penalty&) { return true; }
 
@@ -41,6 +106,11 @@ Increment<T> solve_increment(const Penalty& method, Run<T, E>& run, const State<
              false, start.resumed(previous), options, run.account, 0, start.anchor);
   account_for(increment, equilibrium, 0);
   increment.state = settle(run, input, equilibrium, previous.dissipation);
+  if (!is_converged(equilibrium.status) || start.is_step()) return increment;
+  const std::string point = detail::unyielding_point(run, input, equilibrium);
+  if (point.empty()) return increment;
+  increment.status = Status::infeasible;
+  increment.message = point;
   return increment;
 }
 

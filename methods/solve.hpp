@@ -31,9 +31,30 @@ struct Workspace {
 
 namespace detail {
 
+/// Looks for all solutions of an increment that was solved, where there may be several and points are few.
+template <class T, class E, class M>
+void count_solutions(const M& method, const Run<T, E>& run, Workspace<T>& workspace, const State<T>& previous,
+                     double time, Increment<T>& increment) {
+  if constexpr (std::is_same_v<T, double>) {
+    if (!(run.several || increment.reversed) || !can_try_all_branches(run.model)) return;
+    auto condensation = workspace.condensation;
+    if (!condensation) condensation = std::make_shared<Condensation<double>>(run.model, run.slots, Backend::automatic);
+    if (!condensation->valid()) return;
+    const auto rho = adapted(initial_regularisation(run.slots, method), increment.rho_factor);
+    const ContactInput<double> input{run.model, run.slots, rho, previous.contact.placement, ConeRadius::augmented,
+                                     time};
+    const auto stored = stored_traction(run.model, previous);
+    auto others = other_solutions(input, previous.displacement, increment.state, condensation,
+                                  prevents_penetration(method) ? nullptr : &stored);
+    increment.counted = others.has_value();
+    if (others) increment.others = std::move(*others);
+  }
+}
+
 /// Advances the trajectory to `target`; false where it gave up (the failed increment is then the last).
 template <class T, class E, class M>
-bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double target, bool may_cut) {
+bool advance(const M& method, Run<T, E>& run, Workspace<T>& workspace, Trajectory<T>& trajectory, double target,
+             bool may_cut) {
   constexpr double smallest = 1.0 / 1024, regrowth = 1.5;
   const std::size_t start_count = trajectory.increments.size();
   const double start = start_count ? trajectory.increments.back().time : 0;
@@ -56,13 +77,15 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
       increment.message = "the displacements are not finite";
     }
     if (increment.usable()) {
+      count_solutions(method, run, workspace, previous, next, increment);
       trajectory.increments.push_back(std::move(increment));
       if (last) return true;
       reached = next;
       if (++easy >= 3) step *= regrowth;
       continue;
     }
-    const bool impossible = increment.status == Status::no_equilibrium;
+    const bool impossible = increment.status == Status::no_equilibrium ||
+                            (increment.status == Status::infeasible && !prevents_penetration(method));
     if (!failed) failed = std::move(increment);
     easy = 0;
     step = (next - reached) / 2;
@@ -113,7 +136,7 @@ void march(const M& method, const Model& model, const Slots<T>& slots, E& engine
   const auto& times = options.replay.empty() ? model.times : options.replay;
   for (double time : times) {
     const std::size_t before = trajectory.increments.size();
-    const bool reached = advance(method, run, trajectory, time, options.replay.empty());
+    const bool reached = advance(method, run, workspace, trajectory, time, options.replay.empty());
     for (std::size_t n = before; n < trajectory.increments.size(); ++n) {  // the first that is not plainly converged
       const auto& increment = trajectory.increments[n];
       if (increment.status == Status::converged || (trajectory.status != Status::converged && reached)) continue;
