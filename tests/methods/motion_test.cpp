@@ -1,0 +1,277 @@
+/// What plain Newton does not solve (methods/motion.hpp): points that friction couples strongly, bodies that friction
+/// alone holds, several solutions; each against all solutions or the equations themselves, found apart from the solver.
+#include <gtest/gtest.h>
+
+#include "tests/support/blocks.hpp"
+#include "tests/support/every_branch.hpp"
+#include "tests/support/random_contacts.hpp"
+
+namespace stickslip {
+namespace {
+
+using scenes::coulomb_error;
+using scenes::relative;
+using Kind = Response::Kind;
+
+struct Run {
+  Model model;
+  Slots<double> slots;
+  Trajectory<double> trajectory;
+  const Increment<double>& last() const { return trajectory.increments.back(); }
+  /// Largest error of an increment in the exact equations.
+  double error() const {
+    double worst = 0;
+    const State<double>* before = &trajectory.initial;
+    for (const auto& increment : trajectory.increments) {
+      worst = larger(worst, coulomb_error(model, slots, *before, increment.state));
+      before = &increment.state;
+    }
+    return worst;
+  }
+};
+
+Run solve_scene(const Scene& scene, const Method& method, RunOptions options = {}) {
+  Run r{make_model(scene), {}, {}};
+  r.slots = make_slots<double>(r.model, scene.as<double>());
+  Workspace<double> workspace;
+  r.trajectory = solve(r.model, r.slots, method, options, workspace);
+  return r;
+}
+
+// Newton's tolerance of 1e-12, and Uzawa's of 1e-10, times condition numbers up to some hundred.
+constexpr double solved = 1e-8;
+
+std::vector<Method> at_scales(const std::vector<double>& scales) {
+  std::vector<Method> methods;
+  for (double scale : scales) {
+    MonolithicAL monolithic;
+    monolithic.scale = relative(scale);
+    UzawaAL uzawa;
+    uzawa.scale = relative(scale);
+    methods.insert(methods.end(), {monolithic, uzawa});
+  }
+  return methods;
+}
+
+/// Whether one of `solutions` is the state, up to `tolerance` of the displacements.
+bool is_among(const std::vector<scenes::FoundSolution>& solutions, const State<double>& state, double tolerance) {
+  return std::any_of(solutions.begin(), solutions.end(), [&](const scenes::FoundSolution& s) {
+    return (s.u - state.displacement).norm() <= tolerance * std::max(s.u.norm(), state.displacement.norm());
+  });
+}
+
+// --- one point: all solutions are known (A18) ------------------------------------------------------------------------
+
+Scene klarbring(double mu, double push) { return scenes::point_on_floor({{1.0, -0.5}, {-0.5, 1.0}}, {push, -1.0}, mu); }
+
+TEST(StronglyCoupledPoint, EndsInTheSameSolutionByEveryMethodFromEveryScale) {
+  struct Case {
+    double mu, push, u_t, u_n, p;
+  };
+  // stick where it can; at mu = 3 and a push of 2.5 slip and open are solutions too, which the motion from rest leaves
+  for (const auto& c : {Case{1, 0.5, 0, 0, 1}, Case{1, 1.5, 1, 0, 0.5}, Case{1, 2.5, 8.0 / 3, 1.0 / 3, 0},
+                        Case{3, 1.9, 0, 0, 1}, Case{3, 2.5, 0, 0, 1}, Case{3, 3.5, 4, 1, 0}})
+    for (const auto& method : at_scales({0.01, 0.1, 1, 10, 100})) {
+      const auto r = solve_scene(klarbring(c.mu, c.push), method);
+      ASSERT_TRUE(is_converged(r.trajectory.status)) << name_of(method) << c.mu << " " << c.push;
+      EXPECT_NEAR(r.last().state.displacement[0], c.u_t, solved) << name_of(method) << c.mu << " " << c.push;
+      EXPECT_NEAR(r.last().state.displacement[1], c.u_n, solved);
+      EXPECT_NEAR(-r.last().state.contact.traction[0], c.p, solved);
+      EXPECT_EQ(r.trajectory.counters.cutbacks, 0);
+    }
+}
+
+TEST(StronglyCoupledPoint, HasItsOtherSolutionsListed) {
+  for (const auto& method : at_scales({0.1, 10})) {
+    const auto r = solve_scene(klarbring(3, 2.5), method);
+    ASSERT_TRUE(r.last().counted);
+    ASSERT_EQ(r.last().others.size(), 2u);
+    std::vector<double> u_t;
+    for (const auto& other : r.last().others) u_t.push_back(other.displacement[0]);
+    std::sort(u_t.begin(), u_t.end());
+    EXPECT_NEAR(u_t[0], 1, solved) << "slip";
+    EXPECT_NEAR(u_t[1], 8.0 / 3, solved) << "open";
+    EXPECT_TRUE(solve_scene(klarbring(3, 1.9), method).last().others.empty());
+    EXPECT_FALSE(solve_scene(klarbring(1, 1.5), method).last().counted)
+        << "below the critical friction it is the only one";
+  }
+}
+
+// --- random problems -------------------------------------------------------------------------------------------------
+
+/// Solves `count` random problems by every method, and holds them against all solutions; with more than `enumerated`
+/// points against the equations.
+template <class MakeScene>
+void check_random_problems(int count, unsigned seed, std::size_t enumerated, MakeScene&& make) {
+  std::mt19937 random(seed);
+  for (int i = 0; i < count; ++i) {
+    const Scene scene = make(random);
+    std::optional<Vector<double>> first;
+    for (const auto& method : at_scales({0.1, 10})) {
+      UzawaAL tight;
+      if (const auto* uzawa = std::get_if<UzawaAL>(&method)) tight = *uzawa;
+      tight.tolerance = 1e-12;
+      const auto r = solve_scene(scene, std::holds_alternative<UzawaAL>(method) ? Method(tight) : method);
+      ASSERT_TRUE(is_converged(r.trajectory.status))
+          << "problem " << i << ", " << name_of(method) << ": " << r.trajectory.message;
+      EXPECT_LT(r.error(), solved) << "problem " << i << ", " << name_of(method);
+      if (r.model.dimension != 2 || r.model.points.size() > enumerated) continue;
+      const auto all = scenes::every_solution(r.model, r.slots, 1);
+      EXPECT_TRUE(is_among(all, r.last().state, 1e-6)) << "problem " << i << ", " << name_of(method);
+      if (all.size() > 1) {
+        ASSERT_TRUE(r.last().counted) << "problem " << i;
+        EXPECT_EQ(r.last().others.size() + 1, all.size()) << "problem " << i << ", " << name_of(method);
+      }
+      if (!first) first = r.last().state.displacement;
+      EXPECT_LT((*first - r.last().state.displacement).norm(), 1e-6 * first->norm())
+          << "the same of " << all.size() << " solutions by every method: problem " << i << ", " << name_of(method);
+    }
+    const auto soft = solve_scene(scene, Penalty{});
+    EXPECT_TRUE(is_converged(soft.trajectory.status)) << "problem " << i << ", penalty: " << soft.trajectory.message;
+  }
+}
+
+TEST(RandomContacts, OfStripsAreSolvedByEveryMethod) {
+  for (double mu : {0.2, 1.0, 2.0, 5.0})
+    check_random_problems(25, 3, 2, [&](std::mt19937& random) { return scenes::random_strip(random, 2, mu); });
+  for (double mu : {0.5, 5.0})
+    check_random_problems(10, 4, 4, [&](std::mt19937& random) { return scenes::random_strip(random, 4, mu); });
+}
+TEST(RandomContacts, OfPointsInSpaceAreSolvedByEveryMethod) {
+  for (double mu : {0.5, 2.0, 5.0})
+    check_random_problems(40, 9, 0, [&](std::mt19937& random) { return scenes::random_point(random, 3, mu); });
+}
+TEST(SlowRandomContacts, OfStripsWithTwoToEightPointsAreSolvedByEveryMethod) {
+  for (double mu : {0.2, 0.5, 1.0, 2.0, 5.0})
+    for (int n : {2, 3, 4, 6, 8})
+      check_random_problems(400, 11 + n, n < 4 ? 3 : 0,
+                            [&](std::mt19937& random) { return scenes::random_strip(random, n, mu); });
+}
+TEST(SlowRandomContacts, OfPointsInSpaceAreSolvedByEveryMethod) {
+  for (double mu : {0.2, 0.5, 1.0, 2.0, 5.0})
+    check_random_problems(1000, 19, 0, [&](std::mt19937& random) { return scenes::random_point(random, 3, mu); });
+}
+
+// --- bodies that friction alone holds --------------------------------------------------------------------------------
+
+Scene block_on_floor(std::array<double, 2> size, std::array<int, 2> cells, double mu, double shear) {
+  Scene s;
+  s.legs = {{1, 1}};
+  s.bodies = {scenes::box_body("block", {0, 0}, size, cells)};
+  s.obstacles = {{"floor", Plane{{0.0, 0.0}, {0.0, 1.0}}}};
+  s.contacts = {scenes::contact("sole", "block.bottom", "floor")};
+  s.contacts[0].friction = mu;
+  s.loads = {scenes::traction("block.top", {shear, -1.0})};
+  return s;
+}
+
+/// Shares of the limit of slip; the block tips where mu times the share exceeds its width over its height.
+void check_blocks(const std::vector<int>& cells, const std::vector<double>& frictions,
+                  const std::vector<double>& shares) {
+  for (int n : cells)
+    for (double mu : frictions)
+      for (double share : shares) {
+        if (mu * share > 0.9) continue;
+        for (const auto& method : scenes::all_methods()) {
+          const auto r = solve_scene(block_on_floor({4, 2}, {n, std::max(1, n / 2)}, mu, share * mu), method);
+          ASSERT_TRUE(is_converged(r.trajectory.status))
+              << name_of(method) << ", " << n << " cells, mu " << mu << ", " << share << ": " << r.trajectory.message;
+          EXPECT_EQ(r.trajectory.counters.cutbacks, 0);
+          if (!std::holds_alternative<Penalty>(method)) EXPECT_LT(r.error(), solved) << n << " " << mu << " " << share;
+        }
+      }
+}
+
+TEST(BlockOnFloor, IsHeldByFrictionAloneUpToItsLimit) {
+  check_blocks({1, 2, 5, 12}, {0.01, 0.1, 0.3, 1}, {0.1, 0.7, 0.99});
+}
+TEST(SlowBlockOnFloor, IsHeldByFrictionAloneUpToItsLimit) {
+  check_blocks({1, 2, 3, 4, 6, 8, 10, 12, 20, 50, 100, 199}, {0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.6, 1},
+               {0.1, 0.3, 0.5, 0.7, 0.9, 0.99});
+}
+
+TEST(BlockOnFloor, HasNoEquilibriumBeyondSlipAndBeyondTipping) {
+  for (const auto& method : scenes::all_methods())
+    for (int n : {2, 8}) {
+      for (double mu : {0.05, 0.3, 0.9}) {  // slip
+        const auto r = solve_scene(block_on_floor({4, 2}, {n, n / 2}, mu, 1.0001 * mu), method);
+        EXPECT_EQ(r.trajectory.status, Status::no_equilibrium) << name_of(method) << mu << r.trajectory.message;
+        EXPECT_NE(r.trajectory.message.find("block"), std::string::npos);
+      }
+      // width 1, height 4: the load's line of action leaves the sole at a shear of 1/8 of the press
+      const auto tips = solve_scene(block_on_floor({1, 4}, {n, 4 * n}, 1, 0.126), method);
+      EXPECT_EQ(tips.trajectory.status, Status::no_equilibrium) << name_of(method) << tips.trajectory.message;
+      const auto stands = solve_scene(block_on_floor({1, 4}, {n, 4 * n}, 1, 0.1), method);
+      EXPECT_TRUE(is_converged(stands.trajectory.status)) << name_of(method) << stands.trajectory.message;
+    }
+}
+
+TEST(BlockOnFloor, IsSolvedInBothEngines) {
+  for (const auto& method : scenes::all_methods()) {
+    std::vector<double> shift;
+    for (const auto engine : {LinearAlgebra::Engine::sparse, LinearAlgebra::Engine::condensed}) {
+      RunOptions options;
+      options.linear_algebra.engine = engine;
+      const auto r = solve_scene(block_on_floor({4, 2}, {6, 3}, 0.1, 0.07), method, options);
+      ASSERT_TRUE(is_converged(r.trajectory.status)) << name_of(method) << r.trajectory.message;
+      shift.push_back(r.last().state.displacement.norm());
+    }
+    EXPECT_NEAR(shift[0], shift[1], solved * shift[0]) << name_of(method);
+  }
+}
+
+// --- a front of slip that turns back (A4) ----------------------------------------------------------------------------
+
+TEST(PullOut, IsSolvedWithoutACutFromEveryScale) {
+  for (int n : {10, 30})
+    for (int steps : {4, 16}) {
+      const Scene scene = scenes::pull_out(n, {0, 1, 0}, steps);
+      std::optional<double> u;
+      auto methods = at_scales({1e-6, 1e-2, 1, 1e4});
+      for (double stiffness : {1e-6, 1.0, 1e4, 1e7}) {
+        Penalty penalty;
+        penalty.stiffness = relative(stiffness);
+        methods.push_back(penalty);
+      }
+      for (auto method : methods) {
+        if (auto* uzawa = std::get_if<UzawaAL>(&method)) uzawa->tolerance = 1e-12;
+        const auto r = solve_scene(scene, method);
+        ASSERT_TRUE(is_converged(r.trajectory.status)) << name_of(method) << n << " " << steps << r.trajectory.message;
+        EXPECT_EQ(r.trajectory.counters.cutbacks, 0) << name_of(method);
+        if (std::holds_alternative<Penalty>(method)) continue;
+        if (!u) u = r.last().state.displacement[0];
+        EXPECT_NEAR(r.last().state.displacement[0], *u, 1e-10 * std::abs(*u)) << name_of(method) << n << " " << steps;
+      }
+    }
+}
+
+// --- what no stiffness can close -------------------------------------------------------------------------------------
+
+TEST(Penalty, NamesAnOverlapThatGrowsAForceWithTheStiffness) {
+  Scene squeeze = scenes::stop();  // a point between two walls that are nearer than it is thick
+  squeeze.obstacles.push_back({"back", Plane{{0.0, 0.005}, {0.0, 1.0}}});
+  squeeze.contacts.push_back(scenes::contact("behind", "block.node", "back"));
+  squeeze.obstacles[0].shape = Plane{{0.0, -0.005}, {0.0, -1.0}};
+  Scene driven = scenes::stop();
+  driven.loads.clear();
+  driven.supports = {scenes::support("block.node", {{'y', scenes::ramp(0.02)}, {'x', scenes::ramp(0.0)}})};
+  for (const auto& scene : {squeeze, driven})
+    for (double stiffness : {1e-2, 1.0, 1e3, 1e6}) {
+      Penalty method;
+      method.stiffness = relative(stiffness);
+      const auto r = solve_scene(scene, method);
+      EXPECT_EQ(r.trajectory.status, Status::infeasible) << stiffness << r.trajectory.message;
+      EXPECT_NE(r.trajectory.message.find("no stiffness removes"), std::string::npos) << r.trajectory.message;
+    }
+  Scene groove = scenes::point_on_floor({{1.0, 0.0}, {0.0, 1.0}}, {0.3, -1.0}, 0.2);  // two contacts that do not clash
+  groove.obstacles.push_back({"wall", Plane{{0.0, 0.0}, {-1.0, 1.0}}});
+  groove.contacts.push_back(scenes::contact("side", "point.node", "wall"));
+  for (double stiffness : {1e-2, 1.0, 1e3, 1e6}) {
+    Penalty method;
+    method.stiffness = relative(stiffness);
+    EXPECT_TRUE(is_converged(solve_scene(groove, method).trajectory.status)) << stiffness;
+  }
+}
+
+}  // namespace
+}  // namespace stickslip
