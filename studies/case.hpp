@@ -33,6 +33,9 @@ struct StepResult {
   Matrix<double> sensitivities;        ///< responses x parameters; empty where there are none
   bool differentiable = true;          ///< both one-sided derivatives agree
   Matrix<double> backward, forward;    ///< one-sided sensitivities, where they are known; else empty
+  /// Whether the one-sided derivatives of a response by a parameter differ by more than their rounding (or are no
+  /// numbers). pre: there are some.
+  bool has_kink(const Scene& scene, std::size_t response, std::size_t parameter) const;
 };
 
 struct CaseResult {
@@ -45,7 +48,7 @@ struct CaseResult {
   Vector<double> objectives;  ///< their values
   double condition_estimate = 0;
   long nonzeros = 0;
-  Status status() const;  ///< of the trajectory, or of the derivatives where only they failed
+  Status status() const;  ///< of the trajectory, or of the derivatives where only they failed; both by what came out
   std::string message() const;
 };
 

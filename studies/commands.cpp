@@ -154,7 +154,9 @@ int run_command(const RunArguments& arguments) {
   }
   if (!arguments.export_to.empty() && !result.trajectory.increments.empty()) export_system(arguments.export_to, result);
   if (arguments.json) std::cout << document.dump(2) << '\n';
-  for (const auto& sentence : document["warnings"]) fmt::print(stderr, "warning: {}\n", sentence.get<std::string>());
+  for (const auto& warning : document["warnings"])
+    fmt::print(stderr, "warning ({}): {}; {}\n", warning["code"].get<std::string>(), warning["text"].get<std::string>(),
+               warning["remedy"].get<std::string>());
   if (is_converged(result.status())) return done;
   fmt::print(stderr, "{}: {}\n", name_of(result.status()), result.message());
   return not_solved;

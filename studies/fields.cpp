@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -41,31 +42,72 @@ Matrix<double> element_stress(const Problem& problem, const State<double>& state
   return stress;
 }
 
-double von_mises(const Eigen::Ref<const Eigen::Matrix<double, 6, 1>>& s) {
+double von_mises(const Eigen::Ref<const Eigen::Matrix<double, 6, 1>>& stress) {
+  const double size = stress.cwiseAbs().maxCoeff();
+  if (size == 0) return 0;
+  const Eigen::Matrix<double, 6, 1> s = stress / size;  // whose squares do not overflow
   const double normal = std::pow(s[0] - s[1], 2) + std::pow(s[1] - s[2], 2) + std::pow(s[2] - s[0], 2);
-  return std::sqrt(0.5 * normal + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+  return size * std::sqrt(0.5 * normal + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
 }
 
 Matrix<double> nodal(const Model& model, const Eigen::Ref<const Vector<double>>& dofs) {
   return Eigen::Map<const Matrix<double>>(dofs.data(), model.dimension, model.node_count);
 }
 
+/// Fields of contact over the nodes, of one contact or of several together.
+struct ContactFields {
+  Matrix<double> state, pressure, traction, gap;
+
+  explicit ContactFields(const Model& model)
+      : state(Matrix<double>::Constant(1, model.node_count, -1)),
+        pressure(Matrix<double>::Zero(1, model.node_count)),
+        traction(Matrix<double>::Zero(model.dimension, model.node_count)),
+        gap(pressure) {}
+
+  /// Adds what contact point p does to its slave node. Of several: the state that holds most, the sum of the pressures
+  /// and of the tractions, the smallest gap.
+  void add(const Problem& problem, const State<double>& of, int p) {
+    const auto& point = problem.model.points[p];
+    const int node = point.nodes[0];
+    const auto hold = [](double code) { return code == 1 ? 2 : code == 2 ? 1 : code; };  // open < slip < stick
+    const double code = static_cast<int>(of.contact.state[p]);
+    gap(0, node) = state(0, node) < 0 ? of.contact.gap[p] : -larger(-gap(0, node), -of.contact.gap[p]);
+    if (hold(code) > hold(state(0, node))) state(0, node) = code;
+    pressure(0, node) -= of.contact.traction[point.multiplier];
+    traction.col(node) += traction_vector(problem, of, p);
+  }
+
+  void append_to(VtuData& data, const std::string& ending) const {
+    data.point_fields.push_back({"contact_state" + ending, state});
+    data.point_fields.push_back({"contact_pressure" + ending, pressure});
+    data.point_fields.push_back({"contact_traction" + ending, traction});
+    data.point_fields.push_back({"gap" + ending, gap});
+  }
+};
+
+/// Whether some node is a slave in more than one contact.
+bool contacts_share_nodes(const Model& model) {
+  std::vector<int> contact(model.node_count, -1);
+  return std::any_of(model.points.begin(), model.points.end(), [&](const ContactPoint& point) {
+    int& first = contact[point.nodes[0]];
+    if (first < 0) first = point.contact;
+    return first != point.contact;
+  });
+}
+
 void append_contact_fields(VtuData& data, const Problem& problem, const State<double>& state) {
   const auto& model = problem.model;
-  Matrix<double> code = Matrix<double>::Constant(1, model.node_count, -1),
-                 pressure = Matrix<double>::Zero(1, model.node_count),
-                 traction = Matrix<double>::Zero(model.dimension, model.node_count), gap = pressure;
-  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
-    const int node = model.points[p].nodes[0];
-    code(0, node) = static_cast<int>(state.contact.state[p]);
-    pressure(0, node) = -state.contact.traction[model.points[p].multiplier];
-    gap(0, node) = state.contact.gap[p];
-    traction.col(node) = traction_vector(problem, state, p);
+  const int count = static_cast<int>(model.points.size());
+  ContactFields together(model);
+  for (int p = 0; p < count; ++p) together.add(problem, state, p);
+  together.append_to(data, "");
+  if (!contacts_share_nodes(model)) return;
+  for (std::size_t c = 0; c < model.scene.contacts.size(); ++c) {
+    ContactFields alone(model);
+    for (int p = 0; p < count; ++p)
+      if (model.points[p].contact == static_cast<int>(c)) alone.add(problem, state, p);
+    alone.append_to(data, "_" + model.scene.contacts[c].name);
   }
-  data.point_fields.push_back({"contact_state", code});
-  data.point_fields.push_back({"contact_pressure", pressure});
-  data.point_fields.push_back({"contact_traction", traction});
-  data.point_fields.push_back({"gap", gap});
 }
 
 VtuData fields_of(const CaseResult& result, const StepResult& step, bool last) {

@@ -1,6 +1,7 @@
 /// One measure of error for every method, computed from states alone by code that does not know which method ran.
 ///
-/// With l the largest relative displacement or A|t|/k of the run, p the largest traction and f the largest nodal force:
+/// With l the largest relative displacement or A|t|/k of the run so far, p the largest traction, f the largest nodal
+/// force (KktScales):
 ///   equilibrium      largest nodal imbalance at free nodes / f
 ///   gap              largest penetration / l
 ///   complementarity  largest |min(g_N k / A, -t_N)| / p
@@ -11,6 +12,7 @@
 /// All are 0 for an exact solution of the discrete problem. Dimensionless, hence the same in any units.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "methods/method.hpp"
@@ -22,11 +24,57 @@ struct KktError {
   double largest() const;
 };
 
+/// What the errors are relative to, at an increment: the largest of the run so far, but no less than 1e-9 of what the
+/// largest displacement makes of lengths, tractions (k / A) and forces, of which rounding leaves little.
+struct KktScales {
+  double length = 0, traction = 0, force = 0;
+  double least_traction = 0;  ///< that share
+  double reach = 0;           ///< largest displacement
+  double stiffness = 0;       ///< largest of an element against the displacement of a node
+};
+
+/// What one contact point misses of Signorini's and Coulomb's laws.
+struct PointDefects {
+  double penetration = 0;      ///< length
+  double complementarity = 0;  ///< traction
+  double cone = 0;             ///< traction beyond the bound
+  double creep = 0;            ///< length: slip summed since the point came inside its cone
+  double pull = 0;             ///< traction: |t_T| of a point on its cone that slips
+  double turn = 0;             ///< 1 - cos(slip, t_T) of such a point
+  double astray = 0;           ///< length: the part of that slip that is not along t_T
+};
+
+/// Of one increment. `imbalance`: largest nodal force at free nodes that nothing balances, at `node`.
+struct KktDefects {
+  KktScales scales;
+  double imbalance = 0;
+  int node = 0;
+  std::vector<PointDefects> points;
+};
+
+/// An elastic layer at each contact point (length^3 / force), which penetrates and slips by compliance times traction:
+/// the errors are then against contact with that layer. Empty: none. `band`: share of the largest traction within which
+/// a point counts as on its cone.
+struct ElasticLayer {
+  std::vector<double> normal, tangential;
+  double band = 0;
+};
+
+/// Calls f(n, of the states as they are, against contact with the layer) for the increments in order.
+void visit_defects(
+    const Model& model, const Slots<double>& slots, const Trajectory<double>& trajectory,
+    const std::function<ElasticLayer(const Increment<double>&)>& layer,
+    const std::function<void(std::size_t, const KktDefects&, const std::vector<PointDefects>& with_layer)>& f);
+
+/// The largest of each kind, relative to its scale.
+KktError relative(const KktDefects& defects);
+
 struct ContactSummary {
   int open = 0, stick = 0, slip = 0;
   double penetration = 0;                ///< largest, length
   double normal_force = 0;               ///< sum, positive in compression
   std::vector<double> tangential_force;  ///< on the slave, by axis
+  bool is_finite() const;
 };
 
 /// Measures of the increments of a trajectory, in order (the creep of sticking points is summed along the way).

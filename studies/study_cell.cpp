@@ -10,6 +10,7 @@
 #include "studies/provenance.hpp"
 #include "studies/study.hpp"
 #include "studies/version.hpp"
+#include "studies/warnings.hpp"
 
 namespace stickslip {
 namespace {
@@ -156,7 +157,8 @@ json CellRunner::row(std::size_t index) {
               {"refine", cell.refine},
               {"scene_hash", fingerprint(cell.canonical)},
               {"status", name_of(result.status())},
-              {"message", result.message()}};
+              {"message", result.message()},
+              {"warnings", warnings_json(result)}};
   const json steps = steps_json(result);
   row["errors"] = errors(result);
   if (!steps.empty()) {

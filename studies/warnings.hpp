@@ -1,20 +1,38 @@
 /// What a user should know of a result beside its status: effects that the scene leaves out and that its own solution
-/// shows to matter, and steps that are not those that were asked for.
+/// shows to matter, discretisations that this solution is not to be trusted on, and steps that are not those that were
+/// asked for.
 #pragma once
 
-#include <string>
+#include <nlohmann/json_fwd.hpp>
 #include <vector>
 
+#include "core/model/warning.hpp"
 #include "studies/case.hpp"
 
 namespace stickslip {
 
-/// A sentence each, with the contact or body and the measured value, largest over the steps:
-///   small strain   strain above 5 % or rotation above 5 degrees in an element
-///   fixed geometry slip of a closed point along a master that is deformable or curved, above half a slave element
-///   friction       none of the points of a contact with friction has slipped in any step
-///   cut steps      with friction: steps that were taken in smaller ones, which is another discrete path
+/// The warnings of a run, each with its body or contact and the measured value, largest over the steps (README,
+/// "What a run leaves"):
+///   large_strain, large_rotation   above 5 % or 5 degrees in an element
+///   large_sliding  slip of a closed point along a master that is deformable or curved, above half a slave element
+///   idle_friction  none of the points of a contact with friction has slipped in any step
+///   cut_steps      with friction: steps that were taken in smaller ones, which is another discrete path
+///   locking        Q4 or T3, nu near 1/2: pressures that differ within and between elements as no smooth field does
+///   single_node    a side of several nodes one of which carries nearly all of the contact's force
+///   non_unique     a body that nothing holds and no load moves
 /// Empty where nothing of it is found, and where nothing converged.
-std::vector<std::string> warnings_of(const CaseResult& result);
+std::vector<Warning> warnings_of(const CaseResult& result);
+
+/// [{"code", "where", "value", "remedy", "text"}].
+nlohmann::json warnings_json(const CaseResult& result);
+
+/// A body that no support holds and no contact point touches: nothing determines where it is. nullptr where all are
+/// held.
+const Body* loose_body(const Model& model);
+
+/// What locking does to a body: the root mean square, over its volume, of the pressure that is left once the dilatation
+/// has been averaged over the elements around each node, relative to that of the stress. 0 where the body is no Q4
+/// without mean dilatation and no T3, or the space is plane stress.
+double spurious_pressure(const Problem& problem, const Vector<double>& displacement, std::size_t body);
 
 }  // namespace stickslip

@@ -18,8 +18,8 @@ std::string_view name_of(Status status) {
       return "infeasible";
     case Status::no_equilibrium:
       return "no_equilibrium";
-    case Status::non_unique:
-      return "non_unique";
+    case Status::inaccurate:
+      return "inaccurate";
     case Status::singular:
       return "singular";
     case Status::inverted_element:

@@ -169,6 +169,10 @@ void bind_result(py::module_& module) {
       .def_property_readonly("notes", [](const RunResult& r) { return r.notes; })
       .def_property_readonly("document",
                              [](const RunResult& r) { return py::module_::import("json").attr("loads")(r.document); })
+      .def_property_readonly("warnings",
+                             [](const RunResult& r) {
+                               return py::object(py::module_::import("json").attr("loads")(r.document)["warnings"]);
+                             })
       .def_property_readonly(
           "times", [](py::object self) { return view(self, run_of(self).times.data(), {run_of(self).times.size()}); })
       .def_property_readonly("responses", &responses)

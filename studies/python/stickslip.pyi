@@ -19,7 +19,8 @@ class Result:
 
     @property
     def status(self) -> str:
-        """"converged", "converged_at_roundoff", or why not: "cap", "singular", ... (a failed solve raises nothing)."""
+        """"converged", "converged_at_roundoff", or why not: "inaccurate", "cap", "cycle", "stagnated", "infeasible",
+        "no_equilibrium", "singular", "inverted_element", "not_finite" (a failed solve raises nothing)."""
     @property
     def converged(self) -> bool: ...
     @property
@@ -27,6 +28,10 @@ class Result:
     @property
     def notes(self) -> list[str]:
         """What the reader had to say of a valid scene."""
+    @property
+    def warnings(self) -> list[dict[str, Any]]:
+        """What is no failure and should be known: dicts of `code` (README, "What a run leaves"), `where`, `value`,
+        `remedy` and `text`."""
     @property
     def document(self) -> dict[str, Any]:
         """The content of result.json, made anew by each access."""

@@ -125,12 +125,14 @@ std::optional<Plate> film_of_states(const Study& study) {
       add_strips(cell, strips);
   if (strips.empty()) return std::nullopt;
   constexpr std::size_t most = 12;
-  if (strips.size() > most) strips.erase(strips.begin() + most, strips.end());
+  const std::size_t left_out = strips.size() - std::min(strips.size(), most);
+  strips.resize(strips.size() - left_out);
   const std::string title = "Film of the contact: what sticks, slips and is open, step by step";
-  const std::string text =
+  std::string text =
       "Time runs downwards, the contact points stand side by side in the order of their numbers; the most accurate run "
-      "of "
-      "each method and the one furthest off. Where two pictures differ, the methods disagree on the state of a point.";
+      "of each method and the one furthest off. Where two pictures differ, the methods disagree on the state of a "
+      "point.";
+  if (left_out > 0) text += fmt::format(" {} more are left out.", left_out);
   const std::size_t columns = std::min<std::size_t>(strips.size(), 2);
   const double cell_width = indent + strip_width + gap / 2, cell_height = head + strip_height + foot;
   const std::size_t lines = (strips.size() + columns - 1) / columns;

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "studies/report/html.hpp"
+#include "studies/report/look_up.hpp"
 #include "studies/wording.hpp"
 
 namespace stickslip::report {
@@ -206,6 +207,29 @@ std::string failure_sentence(const Study& study) {
       failed, study.cells.size(), kinds);
 }
 
+/// A sentence for each kind of warning and place, in the words of the run where it is worst.
+std::vector<std::string> warning_sentences(const Study& study) {
+  struct Kind {
+    long runs = 0;
+    double worst = 0;
+    std::string words;
+  };
+  std::map<std::pair<std::string, std::string>, Kind> kinds;  // code, place
+  for (const auto& cell : study.cells)
+    for (const auto& warning : array_at(cell.record, "warnings")) {
+      Kind& kind = kinds[{text_at(warning, "code"), text_at(warning, "where")}];
+      const double value = number_at(warning, "value");
+      if (kind.runs++ > 0 && value <= kind.worst) continue;
+      kind.worst = value;
+      kind.words = text_at(warning, "text") + "; " + text_at(warning, "remedy");
+    }
+  std::vector<std::string> out;
+  for (const auto& [key, kind] : kinds)
+    out.push_back(
+        fmt::format("Warning ({}, {} of {} runs): {}.", key.first, kind.runs, study.cells.size(), kind.words));
+  return out;
+}
+
 }  // namespace
 
 std::vector<std::string> headline(const Study& study) {
@@ -223,6 +247,7 @@ std::vector<std::string> headline(const Study& study) {
     out.push_back("These figures are for " + study.main_variant +
                   (study.variants.size() > 1 ? "; the charts offer the others." : "."));
   out.push_back(failure_sentence(study));
+  for (auto& sentence : warning_sentences(study)) out.push_back(std::move(sentence));
   return out;
 }
 

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <vector>
 
 #include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
+#include "studies/report/picture_contact.hpp"
 
 namespace stickslip::report {
 
@@ -18,36 +18,9 @@ using nlohmann::json;
 
 namespace {
 
-struct Point {
-  double x = 0, y = 0;
-};
-
-struct Box {
-  Point min{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  Point max{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  void add(Point p) {
-    min = {std::min(min.x, p.x), std::min(min.y, p.y)};
-    max = {std::max(max.x, p.x), std::max(max.y, p.y)};
-  }
-  double width() const { return max.x - min.x; }
-  double height() const { return max.y - min.y; }
-  bool overlaps(const Box& o) const {
-    return min.x <= o.max.x && o.min.x <= max.x && min.y <= o.max.y && o.min.y <= max.y;
-  }
-};
-
 /// Light to dark, so that it reads in grey too (the ends of Viridis, turned round).
 constexpr std::array<const char*, 9> colors = {"#f4f1de", "#d9e4a8", "#a8d483", "#6cbf80", "#3ba387",
                                                "#2a848c", "#31648c", "#3d4287", "#43176a"};
-
-struct ContactPoint {
-  Point place, displacement;  ///< deformed; of its node, 0 where that is not recorded
-  std::string name, state;
-  json normal, tangential;  ///< tractions
-  Point enlarged(double scale) const {
-    return {place.x + (scale - 1) * displacement.x, place.y + (scale - 1) * displacement.y};
-  }
-};
 
 struct Mesh {
   std::vector<Point> points;               ///< initial
@@ -85,22 +58,6 @@ Mesh read_mesh(const json& picture) {
   return mesh;
 }
 
-std::vector<ContactPoint> read_contact(const json& contact, const Mesh& mesh) {
-  std::vector<ContactPoint> out;
-  for (const auto& c : contact) {
-    if (!at(c, "x").is_number() || !at(c, "y").is_number()) continue;
-    const json& node = at(c, "node");
-    const bool known = node.is_number_integer() && node >= 0 && node < mesh.points.size();
-    out.push_back({{c["x"], c["y"]},
-                   known ? mesh.displacement[node.get<std::size_t>()] : Point{},
-                   plain(at(c, "name")),
-                   plain(at(c, "state")),
-                   at(c, "normal"),
-                   at(c, "tangential")});
-  }
-  return out;
-}
-
 /// Exaggeration: 1 where displacements show by themselves, else the round number that brings the largest to some 3 %
 /// of the picture.
 double scale_of(const Mesh& mesh, double extent) {
@@ -112,24 +69,6 @@ double scale_of(const Mesh& mesh, double extent) {
     if (wanted >= step * decade) return step * decade;
   return decade;
 }
-
-/// Maps a window of the plane onto a picture of the given size in pixels, y up.
-class Frame {
- public:
-  Frame(Box window, double width, double height, double left) : window_(window) {
-    scale_ = std::min(width / window.width(), height / window.height());
-    shift_ = {left + (width - scale_ * window.width()) / 2, (height - scale_ * window.height()) / 2};
-  }
-  double x(double x) const { return shift_.x + scale_ * (x - window_.min.x); }
-  double y(double y) const { return shift_.y + scale_ * (window_.max.y - y); }
-  double length(double l) const { return scale_ * l; }
-  const Box& window() const { return window_; }
-
- private:
-  Box window_;
-  double scale_;
-  Point shift_;
-};
 
 std::vector<Point> deformed(const Mesh& mesh, double scale) {
   std::vector<Point> out(mesh.points.size());
@@ -251,29 +190,6 @@ void draw_obstacles(const json& obstacles, const Frame& frame, Drawing& drawing)
   }
 }
 
-void draw_state(const std::string& state, double x, double y, const std::string& tooltip, Drawing& drawing) {
-  if (state == "stick")
-    drawing.path(Path().rectangle(x - 3.5, y - 3.5, 7, 7), {"#ffffff", "#0072B2", 0.8, {}}, tooltip);
-  else if (state == "slip")
-    drawing.path(Path().move(x, y - 5).line(x + 4.5, y + 3).line(x - 4.5, y + 3).close(),
-                 {"#000000", "#E69F00", 0.8, {}}, tooltip);
-  else
-    drawing.path(Path().circle(x, y, 3), {"#333333", "#ffffff", 1, {}}, tooltip);
-}
-
-/// Contact points inside the window, at the mesh's scale, with the state and tractions as a tooltip.
-void draw_contact(const std::vector<ContactPoint>& contact, double scale, const Frame& frame, Drawing& drawing) {
-  const Box& w = frame.window();
-  for (const auto& c : contact) {
-    const Point p = c.enlarged(scale);
-    if (p.x < w.min.x || p.x > w.max.x || p.y < w.min.y || p.y > w.max.y) continue;
-    draw_state(
-        c.state, frame.x(p.x), frame.y(p.y),
-        fmt::format("{}: {}, normal traction {}, tangential {}", c.name, c.state, plain(c.normal), plain(c.tangential)),
-        drawing);
-  }
-}
-
 /// A square around the contact points that touch (around all where none does), and some room; empty without points.
 Box close_up(const std::vector<ContactPoint>& contact, double scale) {
   Box touching, all;
@@ -307,15 +223,6 @@ void draw_stresses(double peak, double y, Drawing& drawing) {
   drawing.text(343, y + 28, number(peak), {Anchor::end});
 }
 
-void draw_states(double y, Drawing& drawing) {
-  double x = 400;
-  for (const auto& [state, words] : {std::pair{"stick", "sticks"}, {"slip", "slips"}, {"open", "open"}}) {
-    draw_state(state, x, y + 8, "", drawing);
-    drawing.text(x + 10, y + 12, words);
-    x += 80;
-  }
-}
-
 /// What is drawn: the mesh, what came of it, and how it is laid out.
 struct Scene {
   Mesh mesh;
@@ -328,7 +235,7 @@ struct Scene {
 std::optional<Scene> lay_out(const json& picture) {
   Scene scene{read_mesh(picture), {}, 1, 0, {}, {}, false};
   if (scene.mesh.elements.empty()) return std::nullopt;
-  scene.contact = read_contact(array_at(picture, "contact"), scene.mesh);
+  scene.contact = read_contact(array_at(picture, "contact"), scene.mesh.displacement);
   Box reference;
   for (const auto& p : scene.mesh.points) reference.add(p);
   const double extent = std::max(reference.width(), reference.height());

@@ -110,20 +110,77 @@ TEST(Case, RefusesResponsesOfWhatIsNotThere) {
   EXPECT_THAT(fault(gap), testing::HasSubstr("/responses/g: the point of \"at\" is off the contact"));
 }
 
-/// No support, no contact: with a load there is no equilibrium, without one there are many.
+/// No support, no contact: with a load there is no equilibrium. (Without one: a warning.)
 TEST(Case, ABodyThatNothingHoldsIsNamed) {
-  for (const bool loaded : {false, true})
-    for (const Method& method : {Method(Penalty{}), Method(UzawaAL{}), Method(MonolithicAL{})}) {
-      Scene scene;
-      scene.bodies = {{"block", BoxMesh{{0.0, 0.0}, {2.0, 1.0}, {2, 1}}, LinearElastic{100, 0.3}}};
-      if (loaded) scene.loads = {scenes::traction("block.top", {0.0, -1.0})};
-      scene.legs = {{1, 1}};
-      std::shared_ptr<Condensation<double>> condensation;
-      const auto result = run_case(std::make_shared<const Problem>(scene), method, {}, condensation);
-      EXPECT_EQ(result.status(), loaded ? Status::no_equilibrium : Status::non_unique) << name_of(method);
-      EXPECT_EQ(result.message(),
-                "block is free to move: no support holds it and no contact touches it; add a support or a contact");
+  for (const Method& method : {Method(Penalty{}), Method(UzawaAL{}), Method(MonolithicAL{})}) {
+    Scene scene;
+    scene.bodies = {{"block", BoxMesh{{0.0, 0.0}, {2.0, 1.0}, {2, 1}}, LinearElastic{100, 0.3}}};
+    scene.loads = {scenes::traction("block.top", {0.0, -1.0})};
+    scene.legs = {{1, 1}};
+    std::shared_ptr<Condensation<double>> condensation;
+    const auto result = run_case(std::make_shared<const Problem>(scene), method, {}, condensation);
+    EXPECT_EQ(result.status(), Status::no_equilibrium) << name_of(method);
+    EXPECT_EQ(result.message(),
+              "block is free to move: no support holds it and no contact touches it; add a support or a contact");
+  }
+}
+
+/// All numbers of a run that says it converged are numbers, in what it writes as well.
+bool has_null(const json& value) {
+  return value.is_null() || (value.is_structured() && std::any_of(value.begin(), value.end(), has_null));
+}
+
+TEST(Case, AForceThatOverflowsIsNotSolved) {
+  auto tractrix = cases::load(std::string(STICKSLIP_SOURCE_DIR) + "/studies/scenes/tractrix.json");
+  for (const double force : {-1e100, -1e150, -1e160, -1e200, -1e300, -1.7e308})
+    for (const char* method : {"penalty", "uzawa_al", "monolithic_al"}) {
+      for (auto& load : tractrix["loads"])
+        if (load.contains("force")) load["force"][2] = force;
+      const auto result = cases::run(tractrix, {{method, json::object()}}, "tractrix.json");
+      const std::string what = std::string(method) + " " + std::to_string(force) + ": " + result.message();
+      if (force <= -1e160) {
+        EXPECT_EQ(result.status(), Status::not_finite) << what;
+      }
+      if (!is_converged(result.status())) continue;
+      for (const auto& step : steps_json(result)) {
+        EXPECT_FALSE(has_null(step["responses"]) || has_null(step["kkt"]) || has_null(step["sensitivities"])) << what;
+      }
     }
+}
+
+TEST(Case, DerivativesThatOverflowAreNotFinite) {
+  // u = F / k: finite, while du/dk = -F / k^2 is not
+  json scene = {{"bodies",
+                 {{"a",
+                   {{"mesh", {{"point", {{"at", {0, 0}}}}}},
+                    {"material", {{"grounded_spring", {{"stiffness", {{1e-160, 0}, {0, 1e-160}}}}}}}}}}},
+                {"loads", {{{"on", "a.node"}, {"force", {1, 0}}}}},
+                {"time", {{"end", 1}, {"steps", 1}}},
+                {"responses", {{"u", {{"displacement", {{"on", "a.node"}, {"component", "x"}}}}}}},
+                {"parameters", {{"k", "/bodies/a/material/grounded_spring/stiffness/0/0"}}}};
+  for (const char* mode : {"direct", "adjoint"}) {
+    scene["sensitivity"] = {{"mode", mode}};
+    scene["objectives"] = {{"J", {{"of", "u"}, {"at", 1}}}};
+    const auto result = cases::run(scene, {{"monolithic_al", json::object()}}, "soft.json");
+    EXPECT_EQ(result.trajectory.status, Status::converged) << mode << result.trajectory.message;
+    EXPECT_EQ(result.status(), Status::not_finite) << mode;
+    EXPECT_THAT(result.message(), testing::HasSubstr("derivative of")) << mode;
+  }
+}
+
+TEST(Case, DerivativesThatFailFailARunThatRoundingEnded) {
+  CaseResult result;
+  result.trajectory.status = Status::converged_at_roundoff;
+  result.trajectory.message = "rounding";
+  EXPECT_EQ(result.status(), Status::converged_at_roundoff);
+  EXPECT_EQ(result.message(), "rounding");
+  result.gradients.status = Status::singular;
+  result.gradients.message = "the tangent";
+  EXPECT_EQ(result.status(), Status::singular);
+  EXPECT_EQ(result.message(), "the tangent");
+  result.trajectory.status = Status::cap;
+  EXPECT_EQ(result.status(), Status::cap);
+  EXPECT_EQ(result.message(), "rounding");
 }
 
 TEST(Case, AHeldBodyWithoutALoadRests) {

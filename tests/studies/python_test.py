@@ -219,6 +219,16 @@ class Input(unittest.TestCase):
         with self.assertRaises((TypeError, AttributeError)):
             stickslip.run({"bodies": object()})
 
+    def test_warnings_are_those_of_the_document(self):
+        scene = plate(3)
+        scene["contacts"]["sole"]["friction"] = 50
+        result = stickslip.run(scene)
+        self.assertTrue(result.converged)
+        self.assertEqual(result.warnings, result.document["warnings"])
+        self.assertEqual([w["code"] for w in result.warnings], ["idle_friction"])
+        self.assertEqual(result.warnings[0]["where"], "sole")
+        self.assertEqual(result.warnings[0]["value"], 50)
+
     def test_a_failed_solve_is_a_status_and_keeps_what_there_is(self):
         scene = plate(3)
         scene["loads"][0]["traction"] = [2, -5]  # more than friction can hold

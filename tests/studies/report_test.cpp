@@ -112,6 +112,34 @@ TEST_F(Report, EscapesHostileNames) {
   EXPECT_TRUE(found);
 }
 
+TEST_F(Report, SaysEachWarningOnceInTheWordsOfTheWorstRun) {
+  auto cells = three_methods();
+  const auto warn = [&](std::size_t n, const char* where, double value, const char* text) {
+    cells[n]["warnings"].push_back(
+        {{"code", "locking"}, {"where", where}, {"value", value}, {"remedy", "take <T6>"}, {"text", text}});
+  };
+  warn(0, "pad", 0.3, "pad locks half-heartedly");
+  warn(1, "pad", 0.9, "pad locks");
+  warn(1, "seal", 0.4, "seal locks");
+  record(description(), cells, picture());
+  const std::string html = without_scripts(page());
+  EXPECT_THAT(html, HasSubstr("Warning (locking, 2 of 7 runs): pad locks; take &lt;T6&gt;."));
+  EXPECT_THAT(html, HasSubstr("Warning (locking, 1 of 7 runs): seal locks; take &lt;T6&gt;."));
+  EXPECT_THAT(html, testing::Not(HasSubstr("half-heartedly")));
+}
+
+TEST_F(Report, DrawsAnInaccurateRunAsACross) {
+  auto cells = three_methods();
+  cells[3]["status"] = "inaccurate";
+  record(description(), cells, picture());
+  EXPECT_THAT(without_scripts(page()), HasSubstr("1 of 7 runs did not converge (1 inaccurate)"));
+  const auto figure = report::work_precision(study(), Against::same_mesh, Of::responses);
+  const auto crosses = std::count_if(figure->rows.begin(), figure->rows.end(), [](const json& row) {
+    return row["failed"].get<bool>() && row["status"] == "inaccurate";
+  });
+  EXPECT_GE(crosses, 1);
+}
+
 TEST_F(Report, KeepsFailedRunsAsRowsWithTheirStatus) {
   auto cells = three_methods();
   cells[3]["status"] = "not_finite";

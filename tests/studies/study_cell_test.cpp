@@ -97,6 +97,17 @@ TEST_F(StudyCell, ErrorsAgainstAFinerMeshFallWithTheMesh) {
   }
 }
 
+TEST_F(StudyCell, RowsHoldTheWarningsOfTheirRun) {
+  json scene = block();
+  scene["contacts"]["sole"]["friction"] = 50;
+  const auto [study, cells] = read(scene, {{"methods", {{{"penalty", {{"stiffness", 100}}}}}}});
+  ASSERT_EQ(cells.size(), 1u);
+  const json row = CellRunner(study, cells, meshes_).row(0);
+  ASSERT_EQ(row["warnings"].size(), 1u);
+  EXPECT_EQ(row["warnings"][0]["code"], "idle_friction");
+  EXPECT_EQ(row["warnings"][0]["value"], 50);
+}
+
 TEST_F(StudyCell, HoldsObjectivesAndTheirGradientsAgainstAReferenceInEitherMode) {
   for (const char* mode : {"direct", "adjoint"}) {
     json scene = block();

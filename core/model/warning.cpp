@@ -1,0 +1,27 @@
+#include "core/model/warning.hpp"
+
+namespace stickslip {
+
+std::string_view name_of(WarningCode code) {
+  switch (code) {
+    case WarningCode::large_strain:
+      return "large_strain";
+    case WarningCode::large_rotation:
+      return "large_rotation";
+    case WarningCode::large_sliding:
+      return "large_sliding";
+    case WarningCode::idle_friction:
+      return "idle_friction";
+    case WarningCode::cut_steps:
+      return "cut_steps";
+    case WarningCode::locking:
+      return "locking";
+    case WarningCode::single_node:
+      return "single_node";
+    case WarningCode::non_unique:
+      return "non_unique";
+  }
+  return "";
+}
+
+}  // namespace stickslip

@@ -1,0 +1,31 @@
+/// A remark on a run that is no failure: one code of a closed set, with what it is about, a number, and what to do.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stickslip {
+
+/// The whole set (README, "What a run leaves").
+enum class WarningCode {
+  large_strain,    ///< value: largest component of strain
+  large_rotation,  ///< value: degrees
+  large_sliding,   ///< value: elements of the slave
+  idle_friction,   ///< value: the coefficient that has no influence
+  cut_steps,       ///< value: number of steps that were cut
+  locking,         ///< value: spurious pressure / stress, both root mean squares over the body
+  single_node,     ///< value: share of the force that one node carries
+  non_unique       ///< value: number of solutions that are known, 0 where they are a continuum
+};
+std::string_view name_of(WarningCode);
+
+struct Warning {
+  WarningCode code = WarningCode::large_strain;
+  std::string where;   ///< name of a body or a contact; empty: the run
+  double value = 0;    ///< of what, the code tells
+  std::string remedy;  ///< what to do, as an imperative
+  std::string text;    ///< a sentence that names place and value, without the remedy
+};
+
+}  // namespace stickslip

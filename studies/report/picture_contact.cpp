@@ -1,0 +1,87 @@
+#include "studies/report/picture_contact.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "studies/report/html.hpp"
+#include "studies/report/look_up.hpp"
+
+namespace stickslip::report {
+
+using nlohmann::json;
+
+namespace {
+
+void draw_state(const std::string& state, double x, double y, const std::string& tooltip, Drawing& drawing) {
+  if (state == "stick")
+    drawing.path(Path().rectangle(x - 3.5, y - 3.5, 7, 7), {"#ffffff", "#0072B2", 0.8, {}}, tooltip);
+  else if (state == "slip")
+    drawing.path(Path().move(x, y - 5).line(x + 4.5, y + 3).line(x - 4.5, y + 3).close(),
+                 {"#000000", "#E69F00", 0.8, {}}, tooltip);
+  else
+    drawing.path(Path().circle(x, y, 3), {"#333333", "#ffffff", 1, {}}, tooltip);
+}
+
+int hold(const std::string& state) { return state == "stick" ? 2 : state == "slip" ? 1 : 0; }
+
+std::string in_words(const ContactPoint& c) {
+  return fmt::format("{}: {}, normal traction {}, tangential {}", c.name, c.state, plain(c.normal),
+                     plain(c.tangential));
+}
+
+}  // namespace
+
+std::vector<ContactPoint> read_contact(const json& contact, const std::vector<Point>& displacement) {
+  std::vector<ContactPoint> out;
+  for (const auto& c : contact) {
+    if (!at(c, "x").is_number() || !at(c, "y").is_number()) continue;
+    const json& node = at(c, "node");
+    const bool known = node.is_number_integer() && node >= 0 && node < displacement.size();
+    out.push_back({{c["x"], c["y"]},
+                   known ? displacement[node.get<std::size_t>()] : Point{},
+                   plain(at(c, "name")),
+                   plain(at(c, "state")),
+                   at(c, "normal"),
+                   at(c, "tangential"),
+                   known ? node.get<int>() : -1});
+  }
+  return out;
+}
+
+void draw_contact(const std::vector<ContactPoint>& contact, double scale, const Frame& frame, Drawing& drawing) {
+  struct Symbol {
+    const ContactPoint* point;  ///< that holds most
+    std::string tooltip;
+  };
+  std::vector<Symbol> symbols;
+  std::map<int, std::size_t> of_node;
+  for (const auto& c : contact) {
+    const auto place = c.node < 0 ? of_node.end() : of_node.find(c.node);
+    if (place == of_node.end()) {
+      if (c.node >= 0) of_node[c.node] = symbols.size();
+      symbols.push_back({&c, in_words(c)});
+      continue;
+    }
+    Symbol& symbol = symbols[place->second];
+    symbol.tooltip += "; " + in_words(c);
+    if (hold(c.state) > hold(symbol.point->state)) symbol.point = &c;
+  }
+  const Box& w = frame.window();
+  for (const auto& [point, tooltip] : symbols) {
+    const Point p = point->enlarged(scale);
+    if (p.x < w.min.x || p.x > w.max.x || p.y < w.min.y || p.y > w.max.y) continue;
+    draw_state(point->state, frame.x(p.x), frame.y(p.y), tooltip, drawing);
+  }
+}
+
+void draw_states(double y, Drawing& drawing) {
+  double x = 400;
+  for (const auto& [state, words] : {std::pair{"stick", "sticks"}, {"slip", "slips"}, {"open", "open"}}) {
+    draw_state(state, x, y + 8, "", drawing);
+    drawing.text(x + 10, y + 12, words);
+    x += 80;
+  }
+}
+
+}  // namespace stickslip::report
