@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/model/response.hpp"
 #include "studies/case.hpp"
 #include "studies/json_document.hpp"
 #include "studies/method_options.hpp"
@@ -120,19 +121,42 @@ json objectives_json(const CaseResult& result) {
   return out;
 }
 
+/// {contact: states and forces} of a state.
+json contacts_json(const Problem& problem, const State<double>& state) {
+  json contacts = json::object();
+  const auto summaries = summarise(problem.model, problem.slots, state);
+  for (std::size_t c = 0; c < summaries.size(); ++c)
+    contacts[problem.model.scene.contacts[c].name] = {{"open", summaries[c].open},
+                                                      {"stick", summaries[c].stick},
+                                                      {"slip", summaries[c].slip},
+                                                      {"penetration", finite(summaries[c].penetration)},
+                                                      {"normal_force", finite(summaries[c].normal_force)},
+                                                      {"tangential_force", summaries[c].tangential_force}};
+  return contacts;
+}
+
+/// Solutions that were found and not taken: of each its time, contacts and responses.
+json solutions_json(const CaseResult& result) {
+  const auto& [model, slots, unused] = *result.problem;
+  json solutions = json::array();
+  for (const auto& increment : result.trajectory.increments)
+    for (const auto& other : increment.others) {
+      json responses = json::object();
+      const auto values = evaluate_responses(model, slots, other, increment.time);
+      for (std::size_t i = 0; i < model.scene.responses.size(); ++i)
+        responses[model.scene.responses[i].name] = finite(values[i]);
+      solutions.push_back({{"time", increment.time},
+                           {"contacts", contacts_json(*result.problem, other)},
+                           {"responses", responses}});
+    }
+  return solutions;
+}
+
 json steps_json(const CaseResult& result) {
   const auto& scene = result.problem->model.scene;
   json steps = json::array();
   for (const auto& step : result.steps) {
-    json contacts = json::object(), responses = json::object(), sensitivities = json::object();
-    const auto summaries = summarise(result.problem->model, result.problem->slots, step.increment->state);
-    for (std::size_t c = 0; c < summaries.size(); ++c)
-      contacts[scene.contacts[c].name] = {{"open", summaries[c].open},
-                                          {"stick", summaries[c].stick},
-                                          {"slip", summaries[c].slip},
-                                          {"penetration", finite(summaries[c].penetration)},
-                                          {"normal_force", finite(summaries[c].normal_force)},
-                                          {"tangential_force", summaries[c].tangential_force}};
+    json responses = json::object(), sensitivities = json::object();
     for (std::size_t i = 0; i < scene.responses.size(); ++i) {
       responses[scene.responses[i].name] = finite(step.responses[i]);
       for (std::size_t j = 0; step.sensitivities.size() && j < scene.parameters.size(); ++j)
@@ -144,7 +168,7 @@ json steps_json(const CaseResult& result) {
                   {"augmentations", step.augmentations},
                   {"cutbacks", step.increment->cutbacks},
                   {"history", history_json(step.history)},
-                  {"contacts", contacts},
+                  {"contacts", contacts_json(*result.problem, step.increment->state)},
                   {"kkt", kkt_json(step.kkt)},
                   {"margins", {{"open", finite(step.margins.open)}, {"slip", finite(step.margins.slip)}}},
                   {"responses", responses}};
@@ -232,6 +256,7 @@ json result_json(const CaseResult& result, const std::string& scene_text) {
   out["warnings"] = warnings_json(result);
   out["size"] = size_json(result);
   out["steps"] = steps_json(result);
+  if (json solutions = solutions_json(result); !solutions.empty()) out["solutions"] = std::move(solutions);
   if (!model.scene.objectives.empty()) out["objectives"] = objectives_json(result);
   out["cost"] = cost_json(result);
   out["provenance"] = provenance(1);

@@ -183,6 +183,30 @@ void add_loose_bodies(const CaseResult& result, std::vector<Warning>& warnings) 
                                       "where it is"});
 }
 
+/// Steps with other solutions than the one that was taken, where these were counted, or with tangents that belong to
+/// problems of which some have several.
+void add_other_solutions(const CaseResult& result, std::vector<Warning>& warnings) {
+  std::size_t most = 0, several = 0, uncounted = 0;
+  double first = 0;
+  for (const auto& increment : result.trajectory.increments) {
+    if (increment.reversed && !increment.counted) ++uncounted;
+    if (increment.others.empty()) continue;
+    if (several++ == 0) first = increment.time;
+    most = std::max(most, 1 + increment.others.size());
+  }
+  const std::string remedy = "look at `solutions`, and whether friction this high is meant; smaller steps follow a branch";
+  if (several > 0)
+    warnings.push_back({WarningCode::non_unique, "", static_cast<double>(most), remedy,
+                        fmt::format("{} of {} increments have several solutions, up to {}, the first at t = {:.6g}; the one "
+                                    "is taken in which the motion from the last increment comes to rest",
+                                    several, result.trajectory.increments.size(), most, first)});
+  else if (uncounted > 0)
+    warnings.push_back({WarningCode::non_unique, "", 1, remedy,
+                        fmt::format("{} of {} increments met tangents whose determinant has the other sign: there may be "
+                                    "other solutions",
+                                    uncounted, result.trajectory.increments.size())});
+}
+
 }  // namespace
 
 const Body* loose_body(const Model& model) {
@@ -239,6 +263,7 @@ std::vector<Warning> warnings_of(const CaseResult& result) {
   add_locking(result, warnings);
   add_single_nodes(result, warnings);
   add_loose_bodies(result, warnings);
+  add_other_solutions(result, warnings);
   return warnings;
 }
 

@@ -19,7 +19,8 @@ namespace stickslip {
 ///   cut_steps      with friction: steps that were taken in smaller ones, which is another discrete path
 ///   locking        Q4 or T3, nu near 1/2: pressures that differ within and between elements as no smooth field does
 ///   single_node    a side of several nodes one of which carries nearly all of the contact's force
-///   non_unique     a body that nothing holds and no load moves
+///   non_unique     a body that nothing holds and no load moves; increments with several solutions, or tangents of
+///                  problems of which some have several
 /// Empty where nothing of it is found, and where nothing converged.
 std::vector<Warning> warnings_of(const CaseResult& result);
 
