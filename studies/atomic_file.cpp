@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
@@ -136,10 +137,30 @@ void append_line(const fs::path& path, std::string_view line) {
   file.sync();
 }
 
-std::string read_file(const fs::path& path) {
+std::string unreadable(const fs::path& path, std::uintmax_t most) {
+  std::error_code error;
+  const auto status = fs::status(path, error);
+  if (fs::is_directory(status)) return "is a directory; must be a file";
+  if (fs::is_fifo(status) || fs::is_socket(status)) return "is a pipe; must be a file";
+  if (fs::is_character_file(status) || fs::is_block_file(status)) return "is a device; must be a file";
+  if (!fs::is_regular_file(status) || ::access(path.c_str(), R_OK) != 0) return "cannot be read";
+  const auto size = fs::file_size(path, error);
+  if (error) return "cannot be read";
+  if (size <= most) return "";
+  return "is too large, " + std::to_string(size) + " bytes; must have " + std::to_string(most) + " at most";
+}
+
+std::ifstream open_to_read(const fs::path& path) {
   if (fs::is_directory(path)) throw std::system_error(EISDIR, std::generic_category(), path.string());
+  if (fs::exists(path) && !fs::is_regular_file(path))
+    throw InputFault(path.string() + ": " + unreadable(path, std::numeric_limits<std::uintmax_t>::max()));
   std::ifstream file(path, std::ios::binary);
   if (!file) fail(path, "cannot read");
+  return file;
+}
+
+std::string read_file(const fs::path& path) {
+  const std::ifstream file = open_to_read(path);
   std::ostringstream content;
   content << file.rdbuf();
   return std::move(content).str();

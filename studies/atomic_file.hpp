@@ -1,7 +1,9 @@
 /// Files that are whole or absent: a run that is killed leaves what it had written before, never half of it.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,7 +31,15 @@ void append_line(const std::filesystem::path& path, std::string_view line);
 /// where the file does not exist. Throws std::system_error where it cannot be read.
 std::vector<std::string> read_lines(const std::filesystem::path& path);
 
-/// The content of a file. Throws std::system_error where it cannot be read.
+/// Why a file is not to be read: "is a directory; must be a file", "is a pipe; ...", "is a device; ..." (neither need
+/// ever end), "cannot be read", or more than `most` bytes; "" where nothing speaks against it.
+std::string unreadable(const std::filesystem::path& path, std::uintmax_t most);
+
+/// A file opened for reading. Throws InputFault where the path names a pipe or a device, std::system_error where it
+/// cannot be read.
+std::ifstream open_to_read(const std::filesystem::path& path);
+
+/// The content of a file. Throws what open_to_read() throws.
 std::string read_file(const std::filesystem::path& path);
 
 }  // namespace stickslip

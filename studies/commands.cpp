@@ -15,7 +15,9 @@
 #include "studies/directory_lock.hpp"
 #include "studies/explain.hpp"
 #include "studies/export_system.hpp"
+#include "studies/input_fault.hpp"
 #include "studies/method_options.hpp"
+#include "studies/printing.hpp"
 #include "studies/progress.hpp"
 #include "studies/report/report.hpp"
 #include "studies/result_rows.hpp"
@@ -34,8 +36,7 @@ constexpr int done = 0, bad_input = 2, not_solved = 3;
 std::optional<Simulation> load(const RunArguments& arguments) {
   Diagnostics diagnostics;
   auto simulation = prepare(arguments.scene, arguments.overrides, arguments.method, diagnostics);
-  for (const auto& note : diagnostics.notes())
-    if (simulation) std::cerr << "note: " << note.text() << '\n';
+  if (simulation) std::cerr << diagnostics.notes_text();
   std::cerr << diagnostics.text();
   return simulation;
 }
@@ -118,13 +119,11 @@ int run_command(const RunArguments& arguments) {
   const bool writes = !arguments.json || !arguments.output.empty();
   const auto directory = output_directory(arguments.output, arguments.scene);
   if (!arguments.export_to.empty()) check_folder(arguments.export_to);
+  if (writes && std::filesystem::exists(directory / "study.json"))
+    throw InputFault(directory.string() + ": holds a study; -o DIR writes to another directory");
   if (writes) prepare_directory(directory, {"result.json", "fields.pvd"});
   std::optional<DirectoryLock> lock;
   if (writes) lock.emplace(directory);
-  if (writes && std::filesystem::exists(directory / "study.json")) {
-    std::cerr << directory.string() << ": holds a study; -o DIR writes to another directory\n";
-    return bad_input;
-  }
   if (!arguments.export_to.empty()) prepare_directory(arguments.export_to, {"README"});
   std::optional<Progress> progress;  // of long work only: a run of a second or two speaks for itself
   const auto start = std::chrono::steady_clock::now();
@@ -145,20 +144,24 @@ int run_command(const RunArguments& arguments) {
     document = result_json(result, canonical_text(loaded->input));
   } else {
     document = write_result(directory, *loaded, result);
-    if (arguments.trace) write_trace(directory, *loaded->problem, trace);
+    if (arguments.trace) {
+      write_trace(directory, *loaded->problem, trace);
+    } else {  // of an earlier run
+      for (const char* file : {"trace.csv", "cones.svg"}) std::filesystem::remove(directory / file);
+    }
     if (!arguments.json) {
       if (arguments.trace) std::cout << trace_table(trace) << '\n';
       print_summary(result);
-      fmt::print("\nwritten: {0}/result.json, {0}/fields.pvd\n", directory.string());
+      fmt::print("\nwritten: {0}/result.json, {0}/fields.pvd\n", printable(directory.string()));
     }
   }
   if (!arguments.export_to.empty() && !result.trajectory.increments.empty()) export_system(arguments.export_to, result);
-  if (arguments.json) std::cout << document.dump(2) << '\n';
+  if (arguments.json) std::cout << json_text(document, 2) << '\n';
   for (const auto& warning : document["warnings"])
-    fmt::print(stderr, "warning ({}): {}; {}\n", warning["code"].get<std::string>(), warning["text"].get<std::string>(),
-               warning["remedy"].get<std::string>());
+    fmt::print(stderr, "warning ({}): {}; {}\n", warning["code"].get<std::string>(),
+               printable(warning["text"].get<std::string>()), printable(warning["remedy"].get<std::string>()));
   if (is_converged(result.status())) return done;
-  fmt::print(stderr, "{}: {}\n", name_of(result.status()), result.message());
+  fmt::print(stderr, "{}: {}\n", name_of(result.status()), printable(result.message()));
   return not_solved;
 }
 
@@ -166,7 +169,7 @@ int explain_command(const RunArguments& arguments) {
   const auto loaded = load(arguments);
   if (!loaded) return bad_input;
   const std::string text = explain(loaded->input, *loaded->problem);
-  std::cout << (arguments.json ? json{{"explain", text}}.dump(2) + "\n" : text);
+  std::cout << (arguments.json ? json_text({{"explain", text}}, 2) + "\n" : text);
   return done;
 }
 
@@ -187,10 +190,10 @@ int gradcheck_command(const RunArguments& arguments) {
     });
   }
   if (arguments.json) {
-    std::cout << check_json(check).dump(2) << '\n';
+    std::cout << json_text(check_json(check), 2) << '\n';
   } else {
     static const char* const verdicts[] = {"agrees", "DIFFERS", "not checked"};
-    fmt::print("{} by {}: {} difference runs, {} of them through other contact states\n", arguments.scene,
+    fmt::print("{} by {}: {} difference runs, {} of them through other contact states\n", printable(arguments.scene),
                name_of(loaded->input.method), check.runs, check.rejected);
     fmt::print("{:<16} {:<12} {:>9} {:>18} {:>18} {:>9} {:>9}  {}\n", "response", "parameter", "time", "computed",
                "difference", "error", "allowed", "verdict");
@@ -243,21 +246,17 @@ int schema_command(const std::string& kind) {
 }
 
 int report_command(const std::string& directory) {
-  if (!std::filesystem::exists(std::filesystem::path(directory) / "results.jsonl")) {
-    std::cerr << directory << ": there is no results.jsonl; run `stickslip study` first\n";
-    return bad_input;
-  }
+  if (!std::filesystem::exists(std::filesystem::path(directory) / "results.jsonl"))
+    throw InputFault(directory + ": there is no results.jsonl; run `stickslip study` first");
   const DirectoryLock lock(directory);
   check_records(directory);
-  const auto stored = read_rows(directory);
-  if (!stored.sound()) std::cerr << "note: " << directory << "/results.jsonl: " << stored.faults() << '\n';
-  if (stored.rows.empty()) {
-    std::cerr << directory << ": there are no rows in results.jsonl; run `stickslip study` with --resume first\n";
-    return bad_input;
-  }
+  const auto stored = read_rows(directory, [](json& row) { row = json::object(); });  // what counts is which there are
+  if (!stored.sound()) std::cerr << printable("note: " + directory + "/results.jsonl: " + stored.faults()) << '\n';
+  if (stored.rows.empty())
+    throw InputFault(directory + ": there are no rows in results.jsonl; run `stickslip study` with --resume first");
   prepare_directory(directory, {"report.html"}, {"figures"});
   write_report(directory);
-  fmt::print("{}\n", (std::filesystem::path(directory) / "report.html").string());
+  fmt::print("{}\n", printable((std::filesystem::path(directory) / "report.html").string()));
   return done;
 }
 

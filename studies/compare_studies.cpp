@@ -12,13 +12,19 @@
 
 #include "studies/commands.hpp"
 #include "studies/input_fault.hpp"
+#include "studies/printing.hpp"
 
 namespace stickslip {
 namespace {
 
 using nlohmann::json;
-constexpr int done = 0, bad_input = 2, not_solved = 3;
+constexpr int done = 0, not_solved = 3;
 constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// What is not compared, and most of a row.
+void drop_curves(json& row) {
+  for (const char* part : {"steps", "film", "interface"}) row.erase(part);
+}
 
 /// A cell by what it is.
 std::pair<std::string, std::string> name_of(const json& row) { return {row.value("label", ""), variant_text(row)}; }
@@ -136,7 +142,7 @@ json to_json(const CellComparison& cell) {
 std::string shown(const json& value, int digits) {
   return value.is_number_float() ? fmt::format("{:.{}g}", value.get<double>(), digits)
          : value.is_string()     ? value.get<std::string>()
-                                 : value.dump();
+                                 : json_text(value);
 }
 
 /// Both values, with as many digits as tell them apart.
@@ -164,8 +170,8 @@ std::map<std::string, int> values_changed(const CellComparison& cell) {
 void print(const std::vector<CellComparison>& cells) {
   const auto line = [](const CellComparison& cell, const std::string& quantity, const std::string& before,
                        const std::string& after, bool worse) {
-    fmt::print("{:<5}  {:<44} {:<44} {:>14} -> {}\n", worse ? "WORSE" : "", cell.label + "  " + cell.variant, quantity,
-               before, after);
+    fmt::print("{:<5}  {:<44} {:<44} {:>14} -> {}\n", worse ? "WORSE" : "", printable(cell.label + "  " + cell.variant),
+               printable(quantity), printable(before), printable(after));
   };
   for (const auto& cell : cells) {
     if (cell.only_before) line(cell, "cell", "recorded", "missing", true);
@@ -223,19 +229,37 @@ std::vector<CellComparison> compare_rows(const RowsById& before, const RowsById&
   return cells;
 }
 
-int compare_command(const CompareArguments& arguments) {
+std::string unrelated(const RowsById& before, const RowsById& after) {
+  const auto old_cells = by_name(before), new_cells = by_name(after);
+  bool same_cells = false, same_scene = false, values = false;
+  for (const auto& [name, row] : old_cells) {
+    const auto other = new_cells.find(name);
+    if (other == new_cells.end()) continue;
+    same_cells = true;
+    const json hash = row->value("scene_hash", json());
+    same_scene = same_scene || (hash.is_string() && hash == other->second->value("scene_hash", json()));
+    const auto old_values = values_of(*row), new_values = values_of(*other->second);
+    values = values || !old_values.empty() || !new_values.empty();
+    for (const auto& [quantity, value] : old_values) same_scene = same_scene || new_values.count(quantity) > 0;
+  }
+  if (!same_cells) return "they have no cell in common";
+  return same_scene || !values ? "" : "their scenes are not the same, and have no response in common";
+}
+
+int compare_command(const CompareArguments& arguments) try {
   for (const auto& [option, band] : {std::pair{"--relative", arguments.relative}, {"--rounding", arguments.rounding}})
     if (!(band >= 0 && band < infinite)) throw InputFault(fmt::format("{} {}: must be a number >= 0", option, band));
   RowsById rows[2];
   const std::string directories[] = {arguments.before, arguments.after};
   for (int i = 0; i < 2; ++i) {
-    StoredRows stored = read_rows(directories[i]);
-    if (!stored.sound()) std::cerr << "note: " << directories[i] << "/results.jsonl: " << stored.faults() << '\n';
+    StoredRows stored = read_rows(directories[i], drop_curves);
+    if (!stored.sound())
+      std::cerr << printable("note: " + directories[i] + "/results.jsonl: " + stored.faults()) << '\n';
     rows[i] = std::move(stored.rows);
-    if (!rows[i].empty()) continue;
-    std::cerr << directories[i] << ": there are no rows in results.jsonl\n";
-    return bad_input;
+    if (rows[i].empty()) throw InputFault(directories[i] + ": there are no rows in results.jsonl");
   }
+  if (const std::string fault = unrelated(rows[0], rows[1]); !fault.empty())
+    throw InputFault(directories[0] + " and " + directories[1] + " are recordings of different studies: " + fault);
   const ComparisonBands bands{arguments.relative, arguments.rounding};
   const auto cells = compare_rows(rows[0], rows[1], bands);
   int changed = 0, worse = 0, other_scenes = 0;
@@ -250,12 +274,12 @@ int compare_command(const CompareArguments& arguments) {
     list.push_back(to_json(cell));
   }
   if (arguments.json) {
-    std::cout << json{{"cells", list},
-                      {"changed", changed},
-                      {"worse", worse},
-                      {"other_scenes", other_scenes},
-                      {"bands", {{"relative", bands.relative}, {"rounding", bands.rounding}}}}
-                     .dump(2)
+    std::cout << json_text({{"cells", list},
+                            {"changed", changed},
+                            {"worse", worse},
+                            {"other_scenes", other_scenes},
+                            {"bands", {{"relative", bands.relative}, {"rounding", bands.rounding}}}},
+                           2)
               << '\n';
   } else {
     print(cells);
@@ -269,6 +293,9 @@ int compare_command(const CompareArguments& arguments) {
         cells.size(), changed, worse, bands.relative, bands.rounding, bands.rounding, seconds[0], seconds[1]);
   }
   return worse ? not_solved : done;
+} catch (const json::exception& error) {  // rows without a checksum may hold anything
+  throw InputFault(arguments.before + " or " + arguments.after + ": rows without a checksum hold what stickslip does " +
+                   "not write (" + error.what() + ")");
 }
 
 }  // namespace stickslip

@@ -44,4 +44,8 @@ struct CellComparison {
 /// sensitivity or a scene is only another one.
 std::vector<CellComparison> compare_rows(const RowsById& before, const RowsById& after, const ComparisonBands& bands);
 
+/// Why the two cannot be recordings of one study: "they have no cell in common", or those in common are of unlike
+/// scenes with no response in common; "" where they can.
+std::string unrelated(const RowsById& before, const RowsById& after);
+
 }  // namespace stickslip

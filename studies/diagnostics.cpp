@@ -3,28 +3,43 @@
 #include <algorithm>
 #include <map>
 #include <tuple>
+#include <utility>
+
+#include "studies/printing.hpp"
 
 namespace stickslip {
+namespace {
+
+constexpr std::size_t most_told = 100;  // beyond, nobody reads on
+
+std::string lines(const std::vector<Diagnostic>& all, const std::string& before, const std::string& noun) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(all.size(), most_told); ++i) text += before + all[i].text() + "\n";
+  if (all.size() > most_told) text += "... and " + std::to_string(all.size() - most_told) + " more " + noun + "s\n";
+  return text;
+}
+
+}  // namespace
 
 std::string Diagnostic::text() const {
   std::string text = place.source;
   if (place.line > 0) text += ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
   if (!text.empty()) text += ": ";
   if (!pointer.empty()) text += pointer + ": ";
-  return text + message;
+  return printable(text + message);
 }
 
 void Diagnostics::error(Diagnostic diagnostic) {
-  const std::string text = diagnostic.text();
-  if (std::any_of(errors_.begin(), errors_.end(), [&](const auto& each) { return each.text() == text; })) return;
+  if (!texts_.insert(diagnostic.text()).second) return;
+  pointers_.insert(diagnostic.pointer);
   errors_.push_back(std::move(diagnostic));
 }
 void Diagnostics::note(Diagnostic diagnostic) { notes_.push_back(std::move(diagnostic)); }
 
 bool Diagnostics::has_error_in(const std::string& pointer) const {
-  return std::any_of(errors_.begin(), errors_.end(), [&](const Diagnostic& each) {
-    return each.pointer == pointer || each.pointer.rfind(pointer + "/", 0) == 0;
-  });
+  if (pointers_.count(pointer) > 0) return true;
+  const auto inside = pointers_.lower_bound(pointer + "/");
+  return inside != pointers_.end() && inside->starts_with(pointer + "/");
 }
 
 std::vector<Diagnostic> Diagnostics::errors() const {
@@ -38,10 +53,8 @@ std::vector<Diagnostic> Diagnostics::errors() const {
   return sorted;
 }
 
-std::string Diagnostics::text() const {
-  std::string text;
-  for (const auto& each : errors()) text += each.text() + "\n";
-  return text;
-}
+std::string Diagnostics::text() const { return lines(errors(), "", "fault"); }
+
+std::string Diagnostics::notes_text() const { return lines(notes_, "note: ", "note"); }
 
 }  // namespace stickslip

@@ -4,7 +4,10 @@
 /// after a fault. Columns count characters, from 1.
 #pragma once
 
+#include <cstddef>
+#include <set>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 namespace stickslip {
@@ -22,7 +25,7 @@ struct Diagnostic {
   std::string pointer;  ///< JSON pointer of the value; empty: the whole file
   std::string message;
 
-  /// "FILE:LINE:COL: POINTER: MESSAGE", each part where it is known.
+  /// "FILE:LINE:COL: POINTER: MESSAGE", each part where it is known, in one printable line.
   std::string text() const;
 };
 
@@ -39,11 +42,15 @@ class Diagnostics {
   /// Sources in the order they were met, each from its first line to its last.
   std::vector<Diagnostic> errors() const;
   const std::vector<Diagnostic>& notes() const { return notes_; }
-  /// errors() as text, one line each.
+  /// errors() as text, one line each; of more than 100 the first 100, and how many more there are.
   std::string text() const;
+  /// The same of the notes, each after "note: ".
+  std::string notes_text() const;
 
  private:
   std::vector<Diagnostic> errors_, notes_;
+  std::unordered_set<std::string> texts_;  ///< of errors_
+  std::set<std::string> pointers_;         ///< of errors_
 };
 
 }  // namespace stickslip

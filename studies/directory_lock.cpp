@@ -1,6 +1,7 @@
 #include "studies/directory_lock.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -21,7 +22,7 @@ struct flock whole_file(short type) {
 
 DirectoryLock::DirectoryLock(const std::filesystem::path& directory) {
   std::filesystem::create_directories(directory);
-  const auto path = directory / ".lock";
+  const auto& path = path_ = directory / ".lock";
   file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (file_ < 0) throw std::system_error(errno, std::generic_category(), "cannot open '" + path.string() + "'");
   auto lock = whole_file(F_WRLCK);
@@ -35,6 +36,16 @@ DirectoryLock::DirectoryLock(const std::filesystem::path& directory) {
   throw DirectoryInUse(directory.string() + ": another stickslip writes here" +
                        (known ? " (process " + std::to_string(owner.l_pid) + ")" : std::string()) +
                        "; wait for it, or use another directory");
+}
+
+void DirectoryLock::check() const {
+  struct stat held {
+  }, there{};
+  if (::fstat(file_, &held) == 0 && ::stat(path_.c_str(), &there) == 0 && held.st_ino == there.st_ino &&
+      held.st_dev == there.st_dev)
+    return;
+  throw InputFault(path_.parent_path().string() + ": was deleted or moved while this ran; what was not yet written " +
+                   "is lost; run the command again");
 }
 
 DirectoryLock::~DirectoryLock() { ::close(file_); }

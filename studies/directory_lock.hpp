@@ -19,10 +19,13 @@ class DirectoryLock {
  public:
   explicit DirectoryLock(const std::filesystem::path& directory);
   ~DirectoryLock();
+  /// Throws InputFault where the directory was deleted or moved since: what is written would be alone in a new one.
+  void check() const;
   DirectoryLock(const DirectoryLock&) = delete;
   DirectoryLock& operator=(const DirectoryLock&) = delete;
 
  private:
+  std::filesystem::path path_;  ///< of the file that is locked
   int file_;
 };
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "studies/method_options.hpp"
+#include "studies/printing.hpp"
 
 namespace stickslip {
 namespace {
@@ -68,7 +69,7 @@ std::string explain(const Input& input, const Problem& problem) {
   const auto& model = problem.model;
   const auto& scene = model.scene;
   const auto& effects = model.effects;
-  std::string text = scene.title.empty() ? input.file + "\n" : scene.title + "\n";
+  std::string text = printable(scene.title.empty() ? input.file : scene.title) + "\n";
   text += fmt::format("\nspace: {}, small strain: linear strains, contact geometry of the start\nbodies:\n",
                       space_name(scene.space));
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {

@@ -6,6 +6,7 @@
 
 #include "core/model/engine.hpp"
 #include "studies/atomic_file.hpp"
+#include "studies/printing.hpp"
 
 namespace stickslip {
 namespace {
@@ -64,7 +65,7 @@ std::string rows_csv(const Model& model, const Slots<double>& slots) {
     const int dof = model.free_dofs[row], node = dof / model.dimension;
     std::size_t body = model.bodies.size() - 1;
     while (model.bodies[body].first_node > node) --body;
-    text += fmt::format("{},{},{},{},{},{},{}\n", row + 1, model.scene.bodies[body].name,
+    text += fmt::format("{},{},{},{},{},{},{}\n", row + 1, csv_text(model.scene.bodies[body].name),
                         node - model.bodies[body].first_node, slots.points(0, node), slots.points(1, node),
                         model.dimension == 3 ? slots.points(2, node) : 0.0,
                         framed_index(model, node) >= 0 ? "inclined" : std::string(1, "xyz"[dof % model.dimension]));
@@ -78,7 +79,7 @@ std::string points_csv(const Model& model, const State<double>& state) {
   for (std::size_t p = 0; p < model.points.size(); ++p)
     for (int c = 0; c < model.points[p].components(); ++c)
       text += fmt::format("{},{},{},{},{}\n", model.points[p].multiplier + c + 1,
-                          model.scene.contacts[model.points[p].contact].name, model.points[p].nodes[0],
+                          csv_text(model.scene.contacts[model.points[p].contact].name), model.points[p].nodes[0],
                           c == 0 ? "normal" : "tangent " + std::to_string(c),
                           names[static_cast<int>(state.contact.state[p])]);
   return text;

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cctype>
-#include <filesystem>
+#include <cstdint>
 #include <fstream>
 #include <sstream>
 #include <utility>
+
+#include "studies/atomic_file.hpp"
+#include "studies/printing.hpp"
 
 namespace stickslip {
 
@@ -98,8 +101,10 @@ class TokenCursor {
 /// Listens to the parser and notes where keys and values begin.
 class PositionReader : public json::json_sax_t {
  public:
-  PositionReader(std::string_view text, JsonDocument& document, Diagnostics& diagnostics)
-      : text_(text), cursor_(text), document_(document), diagnostics_(diagnostics) {}
+  PositionReader(std::string_view text, std::string file, Diagnostics& diagnostics)
+      : text_(text), cursor_(text), file_(std::move(file)), diagnostics_(diagnostics) {}
+
+  JsonDocument::Positions& positions() { return positions_; }
 
   bool null() override { return scalar(); }
   bool boolean(bool) override { return scalar(); }
@@ -117,10 +122,10 @@ class PositionReader : public json::json_sax_t {
     const auto position = cursor_.take();
     key_ = name;
     const std::string pointer = child_pointer(open_.back().pointer, name);
-    const auto [first, is_new] = document_.keys_.emplace(pointer, position);
+    const auto [first, is_new] = positions_.keys.emplace(pointer, position);
     if (!is_new)
       diagnostics_.error(
-          {{document_.file_, position.first, position.second},
+          {{file_, position.first, position.second},
            pointer,
            "the key " + in_quotes(name) + " is given twice, first in line " + std::to_string(first->second.first)});
     return true;
@@ -129,6 +134,9 @@ class PositionReader : public json::json_sax_t {
   bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& fault) override {
     std::string message = fault.what();
     if (const auto start = message.find("] "); start != std::string::npos) message.erase(0, start + 2);
+    // the text that the parser had read: it may be of a file that is none of the user's
+    if (const auto quote = message.find("; last read: '"); quote != std::string::npos)
+      message.erase(quote, message.rfind('\'') + 1 - quote);
     if (const auto column = message.find(", column "); column != std::string::npos)
       message.erase(0, message.find(": ", column) + 2);
     const auto has = [&](const char* part) { return message.find(part) != std::string::npos; };
@@ -138,9 +146,8 @@ class PositionReader : public json::json_sax_t {
     TokenCursor token = cursor_;
     TokenCursor::Position at = token.next_start();
     std::string pointer;
-    if (last < cursor_.offset()) {  // as in 0x3, whose 0 alone was taken for the value
-      const auto place = document_.place(last_value_);
-      at = {place.line, place.column};
+    if (last < cursor_.offset() && !open_.empty()) {  // as in 0x3, whose 0 alone was taken for the value
+      at = positions_.values.at(last_value_);
       pointer = last_value_;
       message =
           "is " + std::string(cursor_.taken()) + ", which is not JSON; must be a number, a text, true, false or null";
@@ -158,7 +165,7 @@ class PositionReader : public json::json_sax_t {
         at = TokenCursor(cursor_).go_to(last);
       message = "is not JSON: " + message;
     }
-    diagnostics_.error({{document_.file_, at.first, at.second}, pointer, message});
+    diagnostics_.error({{file_, at.first, at.second}, pointer, message});
     return false;
   }
 
@@ -178,7 +185,7 @@ class PositionReader : public json::json_sax_t {
 
   std::string value_begins() {
     const std::string pointer = next_pointer();
-    document_.values_[pointer] = cursor_.take();
+    positions_.values[pointer] = cursor_.take();
     if (!open_.empty()) ++open_.back().count;
     return pointer;
   }
@@ -190,7 +197,8 @@ class PositionReader : public json::json_sax_t {
     constexpr std::size_t deepest = 64;  // pointers grow with depth: a file of brackets alone would fill the memory
     open_.push_back({value_begins(), array});
     if (open_.size() <= deepest) return true;
-    diagnostics_.error({document_.place(open_.back().pointer), "", "is nested deeper than 64 values"});
+    const auto& [line, column] = positions_.values.at(open_.back().pointer);
+    diagnostics_.error({{file_, line, column}, "", "is nested deeper than 64 values"});
     return false;
   }
   bool close() {
@@ -213,7 +221,8 @@ class PositionReader : public json::json_sax_t {
 
   std::string_view text_;
   TokenCursor cursor_;
-  JsonDocument& document_;
+  std::string file_;
+  JsonDocument::Positions positions_;
   Diagnostics& diagnostics_;
   std::vector<Open> open_;
   std::string key_, last_value_;  // name; pointer of the last value that is no object or array
@@ -226,9 +235,10 @@ std::optional<JsonDocument> JsonDocument::parse(std::string_view text, const std
   JsonDocument document;
   document.file_ = file;
   const std::size_t faults = diagnostics.error_count();
-  PositionReader reader(text, document, diagnostics);
+  PositionReader reader(text, file, diagnostics);
   constexpr bool strict = true, with_comments = true, exceptions = false;
   if (!json::sax_parse(text, &reader, json::input_format_t::json, strict, with_comments)) return std::nullopt;
+  document.positions_ = std::make_shared<const Positions>(std::move(reader.positions()));
   if (diagnostics.error_count() > faults) return std::nullopt;
   document.root_ = json::parse(text, nullptr, exceptions, with_comments);
   return document;
@@ -242,19 +252,19 @@ JsonDocument JsonDocument::of(json value, const std::string& source) {
 }
 
 std::optional<JsonDocument> JsonDocument::read(const std::string& file, Diagnostics& diagnostics) {
-  if (std::error_code none; std::filesystem::is_directory(file, none)) {
-    diagnostics.error({{file}, "", "is a directory; must be a file"});
-    return std::nullopt;
-  }
-  std::ifstream stream(file, std::ios::binary);
+  constexpr std::uintmax_t most = 32 << 20;  // the places of 16 million values, the most it can hold, take 3 GB
+  std::string fault = unreadable(file, most);
+  std::ifstream stream;
   std::ostringstream text;
-  // an empty file sets failbit on the left of <<, which is no fault of reading
-  if (stream) text << stream.rdbuf();
-  if (!stream || stream.bad()) {
-    diagnostics.error({{file}, "", "cannot be read"});
-    return std::nullopt;
+  if (fault.empty()) {
+    stream.open(file, std::ios::binary);
+    // an empty file sets failbit on the left of <<, which is no fault of reading
+    if (stream) text << stream.rdbuf();
+    if (!stream || stream.bad()) fault = "cannot be read";
   }
-  return parse(text.str(), file, diagnostics);
+  if (fault.empty()) return parse(text.str(), file, diagnostics);
+  diagnostics.error({{file}, "", fault});
+  return std::nullopt;
 }
 
 namespace {
@@ -267,31 +277,38 @@ void walk_up(std::string pointer, Found&& found) {
 
 }  // namespace
 
+std::optional<Place> JsonDocument::origin(const std::string& pointer) const {
+  std::optional<Place> place;
+  walk_up(pointer, [&](const std::string& each) {
+    const auto found = origins_.find(each);
+    if (found == origins_.end()) return false;
+    place = found->second;
+    place->pointer += pointer.substr(each.size());
+    return true;
+  });
+  return place;
+}
+
 Place JsonDocument::place(const std::string& pointer) const {
+  if (const auto given = origin(pointer)) return *given;
   Place place{file_, 1, 1};
   walk_up(pointer, [&](const std::string& each) {
-    if (const auto origin = origins_.find(each); origin != origins_.end()) {
-      place = origin->second;
-      place.pointer += pointer.substr(each.size());
-      return true;
-    }
-    const auto value = values_.find(each);
-    if (value != values_.end()) place = {file_, value->second.first, value->second.second, pointer};
-    return value != values_.end();
+    const auto value = positions_->values.find(each);
+    if (value != positions_->values.end()) place = {file_, value->second.first, value->second.second, pointer};
+    return value != positions_->values.end();
   });
   return place;
 }
 
 Place JsonDocument::key_place(const std::string& pointer) const {
-  const auto key = keys_.find(pointer);
-  return key == keys_.end() ? place(pointer) : Place{file_, key->second.first, key->second.second};
+  const auto key = positions_->keys.find(pointer);
+  if (key == positions_->keys.end() || origin(pointer)) return place(pointer);
+  return {file_, key->second.first, key->second.second};
 }
 
 void JsonDocument::set(const std::string& pointer, json value, Place origin) {
   root_[json::json_pointer(pointer)] = std::move(value);
   auto replaced = [&](const auto& each) { return each.first == pointer || each.first.rfind(pointer + "/", 0) == 0; };
-  std::erase_if(values_, replaced);
-  std::erase_if(keys_, replaced);
   std::erase_if(origins_, replaced);
   origins_[pointer] = std::move(origin);
 }
@@ -303,6 +320,7 @@ void JsonDocument::remove(const std::string& pointer) {
 
 void JsonDocument::override_value(const std::string& assignment, Diagnostics& diagnostics) {
   const Place origin{"--set " + assignment, 0, 0};
+  if (!is_utf8(assignment)) return diagnostics.error({origin, "", "is not UTF-8"});
   const auto equals = assignment.find('=');
   auto fault = [&](const std::string& message) { diagnostics.error({origin, "", message}); };
   if (equals == std::string::npos) return fault("is not POINTER=VALUE, for example /contacts/sole/friction=0.4");

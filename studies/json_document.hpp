@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -44,11 +45,17 @@ class JsonDocument {
   void override_value(const std::string& assignment, Diagnostics&);
 
  private:
+  /// Of the value that set() put at the pointer or around it.
+  std::optional<Place> origin(const std::string& pointer) const;
+
   using Position = std::pair<int, int>;  // line, column
   std::string file_;
   nlohmann::json root_;
-  std::map<std::string, Position> values_, keys_;
-  std::map<std::string, Place> origins_;  // of values put in by set()
+  struct Positions {
+    std::map<std::string, Position> values, keys;
+  };
+  std::shared_ptr<const Positions> positions_ = std::make_shared<const Positions>();  // in the file; copies share them
+  std::map<std::string, Place> origins_;  // of values put in by set(): these hide the positions below
 
   friend class PositionReader;
 };

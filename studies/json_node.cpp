@@ -31,7 +31,11 @@ void JsonNode::error_at_key(const std::string& message) const {
   diagnostics_->error({document_->key_place(pointer_), pointer_, message});
 }
 
-void JsonNode::must_be(const std::string& what) const { error("is " + shown(*value_) + "; must be " + what); }
+void JsonNode::must_be(const std::string& what) const {
+  // of a whole file of another kind, which may be none of the user's, no content is told
+  const bool foreign = pointer_.empty() && (value_->is_string() || value_->is_array());
+  error("is " + (foreign ? (value_->is_string() ? "a text" : "an array") : shown(*value_)) + "; must be " + what);
+}
 
 std::optional<JsonNode> JsonNode::find(const std::string& key) const {
   const auto found = value_->find(key);

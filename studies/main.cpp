@@ -2,11 +2,15 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <new>
+#include <sstream>
+#include <stdexcept>
 #include <system_error>
 
 #include "core/algebra/linear_solver.hpp"
 #include "studies/commands.hpp"
 #include "studies/input_fault.hpp"
+#include "studies/printing.hpp"
 #include "studies/provenance.hpp"
 
 namespace {
@@ -26,6 +30,11 @@ void add_scene(CLI::App& command, stickslip::RunArguments& arguments) {
 int finished(int code) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.flush()) return code;
   std::cerr << "stickslip: standard output cannot be written\n";
+  return 2;
+}
+
+int out_of_memory() {
+  std::cerr << "stickslip: there is not enough memory; a coarser mesh, fewer steps or fewer parameters need less\n";
   return 2;
 }
 
@@ -92,15 +101,24 @@ int main(int argc, char** argv) {
     if (schema_app) return finished(schema_command(schema_of));
     return finished(methods_command(methods_json));
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    std::ostringstream out, faults;  // a fault quotes the argument
+    const int code = app.exit(error, out, faults);
+    std::cout << out.str();
+    std::cerr << printable_lines(faults.str());
+    return code == 0 ? finished(0) : 2;
   } catch (const InputFault& fault) {
-    std::cerr << fault.what() << '\n';
+    std::cerr << printable_lines(fault.what()) << '\n';
     return 2;
   } catch (const std::system_error& error) {
-    std::cerr << "stickslip: " << error.what() << '\n';
+    std::cerr << "stickslip: " << printable_lines(error.what()) << '\n';
     return 2;
+  } catch (const std::bad_alloc&) {
+    return out_of_memory();
+  } catch (const std::length_error&) {  // a container beyond all memory
+    return out_of_memory();
   } catch (const std::exception& error) {
-    std::cerr << "stickslip: " << error.what() << "\nthis is a bug of ours: please report it with the scene\n";
+    std::cerr << "stickslip: " << printable_lines(error.what())
+              << "\nthis is a bug of ours: please report it with the scene\n";
     return 1;
   }
 }

@@ -5,13 +5,16 @@
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "studies/atomic_file.hpp"
 #include "studies/commands.hpp"
 #include "studies/directory_lock.hpp"
 #include "studies/input_fault.hpp"
+#include "studies/printing.hpp"
 #include "studies/report/report.hpp"
 #include "studies/result_rows.hpp"
+#include "studies/simulation.hpp"
 
 namespace stickslip {
 namespace {
@@ -34,7 +37,13 @@ Part read_part(const fs::path& directory) {
     if (!part.description.contains(key))
       throw InputFault((directory / "study.json").string() + ": has no \"" + key +
                        "\"; was it recorded by another version?");
+  drop_unsealed(part.stored);
   return part;
+}
+
+/// Whether the share that writes there never began: there is no study.json, nor any row.
+bool never_began(const fs::path& directory) {
+  return !fs::exists(directory / "study.json") && !fs::exists(directory / "results.jsonl");
 }
 
 /// The study alone, without what differs from shard to shard.
@@ -50,7 +59,7 @@ std::string difference(const Part& a, const Part& b) {
   const auto& program = first["program"];
   if (program != second["program"])
     return fmt::format("{} was run by stickslip {}, {} by {}: run all shards with one version", a.directory.string(),
-                       program.dump(), b.directory.string(), second["program"].dump());
+                       json_text(program), b.directory.string(), json_text(second["program"]));
   for (const auto& [key, value] : first.items())
     if (!second.contains(key) || second[key] != value)
       return fmt::format("{} and {} are of different studies: their \"{}\" differ", a.directory.string(),
@@ -58,14 +67,41 @@ std::string difference(const Part& a, const Part& b) {
   return fmt::format("{} and {} are of different studies", a.directory.string(), b.directory.string());
 }
 
+/// Throws InputFault where the output holds what would be lost: a run, another study, or rows and timed runs of this
+/// one that none of the parts has.
+void check_output(const std::vector<Part>& parts, const fs::path& output) {
+  const std::string name = output.string(), elsewhere = "; -o DIR writes to another directory";
+  if (fs::exists(output / "result.json")) throw InputFault(name + ": holds the result of a run" + elsewhere);
+  const bool described = fs::exists(output / "study.json");
+  if (described && identity(read_description(output)) != identity(parts.front().description))
+    throw InputFault(name + ": holds another study" + elsewhere);
+  const auto in_parts = [&](const auto& has) { return std::any_of(parts.begin(), parts.end(), has); };
+  const auto rows = read_rows(output).rows;
+  if (!described && !rows.empty()) throw InputFault(name + ": holds rows, of another study as it seems" + elsewhere);
+  const auto alone = std::count_if(rows.begin(), rows.end(), [&](const auto& row) {
+    return !in_parts([&](const Part& part) { return part.stored.rows.count(row.first) > 0; });
+  });
+  const std::string as_well = "; name it among the directories too, or -o another";
+  if (alone > 0)
+    throw InputFault(
+        fmt::format("{}: holds {} row(s) of this study that are in none of the directories{}", name, alone, as_well));
+  for (const auto& [id, rounds] : read_timings(output))
+    if (!in_parts([&, &id = id, &rounds = rounds](const Part& part) {
+          const auto timed = part.timings.find(id);
+          return timed != part.timings.end() && timed->second.size() >= rounds.size();
+        }))
+      throw InputFault(name + ": holds timed runs that are in none of the directories" + as_well);
+}
+
 /// Copies what one shard drew: the picture and the fields of the last variant.
 void copy_drawings(const std::vector<Part>& parts, const fs::path& output) {
   const auto drawn = std::find_if(parts.begin(), parts.end(),
                                   [](const Part& part) { return fs::exists(part.directory / "picture.json"); });
   if (drawn == parts.end() || fs::equivalent(drawn->directory, output)) return;
+  remove_fields(output);
   for (const auto& entry : fs::directory_iterator(drawn->directory)) {
     const std::string name = entry.path().filename();
-    if (name == "picture.json" || name.starts_with("fields"))
+    if ((name == "picture.json" || name.starts_with("fields")) && entry.is_regular_file())
       fs::copy_file(entry.path(), output / name, fs::copy_options::overwrite_existing);
   }
 }
@@ -84,23 +120,26 @@ json merged_description(const std::vector<Part>& parts, const std::string& outpu
   out["shard"] = "1/1";
   out["command"] = "stickslip merge";
   for (const auto& part : parts) {
-    out["command"] = out["command"].get<std::string>() + " " + part.directory.string();
+    out["command"] = out["command"].get<std::string>() + " " + shell_word(part.directory.string());
     for (const char* drawn : {"size", "analytic"})
       if (out.value(drawn, json()).is_null() && part.description.contains(drawn)) out[drawn] = part.description[drawn];
   }
-  out["command"] = out["command"].get<std::string>() + " -o " + output;
+  out["command"] = out["command"].get<std::string>() + " -o " + shell_word(output);
   return out;
 }
 
 int join(const std::vector<Part>& parts, const fs::path& output) {
-  prepare_directory(output, {"results.jsonl", "study.json", "picture.json", "report.html"}, {"figures"});
+  check_output(parts, output);
+  prepare_directory(output, {"results.jsonl", "timings.jsonl", "study.json", "picture.json", "report.html"},
+                    {"figures"});
   const DirectoryLock lock(output);
   const std::vector<std::string> ids = parts.front().description["cells"];
+  const std::set<std::string> known(ids.begin(), ids.end());
   RowsById rows;
   int doubles = 0, failed = 0;
   for (const auto& part : parts)
     for (const auto& [id, row] : part.stored.rows) {
-      if (std::find(ids.begin(), ids.end(), id) == ids.end()) continue;
+      if (known.count(id) == 0) continue;
       const auto [place, is_new] = rows.emplace(id, row);
       doubles += !is_new;
       failed += is_new && !converged(row);
@@ -114,12 +153,14 @@ int join(const std::vector<Part>& parts, const fs::path& output) {
     for (const auto& [id, rounds] : part.timings)
       for (const auto& [round, seconds] : rounds) append_timing(output, id, round, seconds);
   copy_drawings(parts, output);
-  write_file_atomically(output / "study.json", merged_description(parts, output.string()).dump(2) + "\n");
+  write_file_atomically(output / "study.json", json_text(merged_description(parts, output.string()), 2) + "\n");
   write_rows(output, ids, rows);
+  const std::size_t joined = rows.size();
+  rows.clear();  // the report reads them again, and not all of each
   write_report(output);
   fmt::print("{} of {} cells from {} directories, {} of these without a converged result (kept as rows), {} double\n",
-             rows.size(), ids.size(), parts.size(), failed, doubles);
-  fmt::print("report: {}\n", (output / "report.html").string());
+             joined, ids.size(), parts.size(), failed, doubles);
+  fmt::print("report: {}\n", printable((output / "report.html").string()));
   if (missing.empty()) return done;
   fmt::print(stderr, "{} cells are still missing, in the study's order: {}\n", missing.size(), places(missing));
   return not_solved;
@@ -129,16 +170,21 @@ int join(const std::vector<Part>& parts, const fs::path& output) {
 
 int merge_command(const std::vector<std::string>& directories, const std::string& output) {
   std::vector<Part> parts;
-  std::string faults;
+  std::string faults, absent;
   for (const auto& directory : directories) {
+    if (never_began(directory)) {
+      absent += directory + ": there is no study.json; its share was never begun, or the name is wrong\n";
+      continue;
+    }
     parts.push_back(read_part(directory));
     if (const auto& part = parts.back(); !part.stored.sound())
-      std::cerr << "note: " << directory << "/results.jsonl: " << part.stored.faults() << '\n';
+      std::cerr << printable("note: " + directory + "/results.jsonl: " + part.stored.faults()) << '\n';
     if (const std::string fault = difference(parts.front(), parts.back()); !fault.empty()) faults += fault + "\n";
   }
-  if (faults.empty()) return join(parts, output);
-  std::cerr << faults;
-  return bad_input;
+  std::cerr << printable_lines(absent + faults);
+  if (parts.empty() || !faults.empty()) return bad_input;
+  const int code = join(parts, output);
+  return absent.empty() ? code : not_solved;
 }
 
 }  // namespace stickslip

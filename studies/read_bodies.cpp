@@ -1,12 +1,15 @@
 #include <Eigen/Cholesky>
-#include <fstream>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <sstream>
 
 #include "core/mesh/generators.hpp"
 #include "core/mesh/quality.hpp"
 #include "core/model/model.hpp"
+#include "studies/atomic_file.hpp"
 #include "studies/scene_reading.hpp"
+#include "studies/size_estimate.hpp"
 
 namespace stickslip {
 namespace {
@@ -139,19 +142,14 @@ const MeshFile* mesh_file(const JsonNode& node, const std::string& name, SceneRe
   const std::string path = (reading.folder / name).lexically_normal().string();
   auto found = reading.mesh_files.find(path);
   if (found == reading.mesh_files.end()) {
-    if (std::error_code none; std::filesystem::is_directory(path, none)) {
-      node.error("the mesh file " + path + " is a directory; must be a file");
+    constexpr std::uintmax_t most = std::uintmax_t{1} << 30;  // some 10 million nodes
+    if (const std::string fault = unreadable(path, most); !fault.empty()) {
+      node.error("the mesh file " + path + " " + fault);
       return nullptr;
     }
-    std::ifstream stream(path, std::ios::binary);
-    std::ostringstream text;
-    if (stream) text << stream.rdbuf();
-    if (!stream || stream.bad()) {
-      node.error("the mesh file " + path + " cannot be read");
-      return nullptr;
-    }
-    std::istringstream content(text.str());
-    found = reading.mesh_files.emplace(path, MeshFile{read_msh(content, path), fingerprint(text.str())}).first;
+    const std::string text = read_file(path);
+    std::istringstream content(text);
+    found = reading.mesh_files.emplace(path, MeshFile{read_msh(content, path), fingerprint(text)}).first;
   }
   reading.mesh_fingerprints[name] = found->second.fingerprint;
   for (const std::string& error : found->second.content.errors) reading.diagnostics.error({{}, "", error});
@@ -258,6 +256,24 @@ void report_mesh_fault(const JsonNode& mesh, const std::string& fault) {
   mesh.error(fault);
 }
 
+/// Whether there is memory for the mesh, and those before it; reported at its cells where there is not.
+bool fits(const JsonNode& node, const MeshDescription& description, const std::string& element, SceneReading& reading) {
+  const double nodes = estimated_nodes(description, element);
+  reading.nodes += nodes;
+  const double limit = memory_limit(), bytes = estimated_bytes({reading.dimension() * reading.nodes});
+  if (bytes <= limit) return true;
+  std::string message = "makes " + shown(std::round(nodes)) + " nodes, which need " + too_much(bytes, limit);
+  if (reading.nodes > nodes) message = message + " (with the bodies before it)";
+  message = message + "; try fewer cells, half of them each way need about a quarter";
+  for (const auto& [kind, generator] : node.members())
+    if (const auto cells = generator.value().is_object() ? generator.find("cells") : std::nullopt) {
+      cells->error("is " + shown(cells->value()) + ", which " + message);
+      return false;
+    }
+  node.error(message);
+  return false;
+}
+
 /// Makes the mesh and looks at it; none where it is at fault.
 std::optional<Mesh> check_mesh(const JsonNode& body, const JsonNode& node, const MeshDescription& description,
                                const std::string& element, SceneReading& reading) {
@@ -270,6 +286,7 @@ std::optional<Mesh> check_mesh(const JsonNode& body, const JsonNode& node, const
     body.find("element")->error(message);
     return std::nullopt;
   }
+  if (!fits(node, description, element, reading)) return std::nullopt;
   Mesh mesh = make_mesh(description, element, reading.dimension());
   const auto points = make_points<double>(description, mesh, reading.scene.as<double>());
   if (const auto message = radius_fault(reading.scene.space, points, {mesh}); !message.empty()) {

@@ -156,6 +156,7 @@ void read_contacts(const JsonNode& node, SceneReading& reading) {
   if (!node.is_map("contacts by name")) return;
   for (const auto& [name, contact] : node.members()) {
     reading.contact_names.push_back(name);
+    check_characters(contact, name);
     read_contact(name, contact, reading);
   }
 }

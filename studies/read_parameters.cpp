@@ -122,6 +122,7 @@ struct Reader {
   void read(const std::string& name, const JsonNode& node) {
     constexpr const char* allowed =
         R"(a JSON pointer such as /contacts/sole/friction, {pointer: weight, ...}, or {"shape": {...}})";
+    check_characters(node, name);
     Parameter parameter;
     parameter.name = name;
     if (node.value().is_string()) {

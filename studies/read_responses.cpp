@@ -98,6 +98,7 @@ void read_component(const JsonNode& node, const JsonNode& component, const Kind&
 }
 
 void read_response(const std::string& name, const JsonNode& outer, SceneReading& reading) {
+  check_characters(outer, name);
   std::vector<std::string> names;
   for (const Kind& each : kinds) names.emplace_back(each.name);
   const auto found = outer.kind(names);
@@ -136,6 +137,7 @@ void read_instant(const JsonNode& node, Objective& objective, SceneReading& read
 }
 
 void read_objective(const std::string& name, const JsonNode& node, SceneReading& reading) {
+  check_characters(node, name);
   if (!node.is_object({{"of"}, {"sum", "at", "target"}})) return;
   Objective objective;
   objective.name = name;

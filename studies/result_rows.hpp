@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -17,19 +18,27 @@ using RowsById = std::map<std::string, nlohmann::json>;
 /// results.jsonl as it was found, with what was wrong with it.
 struct StoredRows {
   RowsById rows;
-  std::vector<std::string> order;    ///< their ids, as they first stand in the file
-  std::size_t torn_bytes = 0;        ///< of a last line that a killed process left
-  std::vector<std::string> damaged;  ///< whole lines that are no rows: "line 3 is no row: ..."
-  int doubles = 0;                   ///< rows of an id that a later line repeats
+  std::vector<std::string> order;     ///< their ids, as they first stand in the file
+  std::size_t torn_bytes = 0;         ///< of a last line that a killed process left
+  std::vector<std::string> damaged;   ///< whole lines that are no rows: "line 3 is no row: ..."
+  int doubles = 0;                    ///< rows of an id that a later line repeats
+  std::vector<std::string> unsealed;  ///< ids of rows without a checksum, as another version of the program wrote them
 
   bool sound() const { return torn_bytes == 0 && damaged.empty() && doubles == 0; }
   /// "a torn last line (12 bytes) was dropped; line 3 is no row: it has no "status"", or "".
   std::string faults() const;
 };
 
-/// Empty where there is no file. A row has the texts "id" and "status", and what else the program writes of the
-/// kind that it writes; lines that are none are left out. Throws std::system_error where it cannot be read.
-StoredRows read_rows(const std::filesystem::path& directory);
+/// The row with its checksum in "provenance", which is what two runs need not share: 16 digits over all else in it.
+nlohmann::json sealed(nlohmann::json row);
+
+/// Empty where there is no file. A row has the texts "id" and "status", what else the program writes of the kind that
+/// it writes, and, where it has a checksum, the content that this is of; lines that are none are left out. `trim` may
+/// take parts out of each row before the next is read. Throws InputFault or std::system_error where it cannot be read.
+StoredRows read_rows(const std::filesystem::path& directory, const std::function<void(nlohmann::json&)>& trim = {});
+
+/// Drops the rows without a checksum, which this version did not write, and says so among `damaged`.
+void drop_unsealed(StoredRows& stored);
 
 /// Takes the rows in `directory` up again for the cells of `ids`: what read_rows() mends is mended on the disk, and
 /// rows of other cells (of another study, or of another version of the program) go to results.stale.jsonl. What was
@@ -37,7 +46,7 @@ StoredRows read_rows(const std::filesystem::path& directory);
 RowsById resume_rows(const std::filesystem::path& directory, const std::vector<std::string>& ids,
                      std::vector<std::string>& notes);
 
-/// Adds a row. On the disk when it returns.
+/// Adds a row with its checksum. On the disk when it returns.
 void append_row(const std::filesystem::path& directory, const nlohmann::json& row);
 
 /// Writes results.jsonl anew, whole or not at all: the rows there are, in the order of `ids`.
@@ -46,7 +55,8 @@ void write_rows(const std::filesystem::path& directory, const std::vector<std::s
 /// Seconds of each timed run, by cell id and round (from 1).
 using Timings = std::map<std::string, std::map<int, nlohmann::json>>;
 
-Timings read_timings(const std::filesystem::path& directory);
+/// Lines that are none, or whose checksum is of another, are left out, and counted in `damaged`.
+Timings read_timings(const std::filesystem::path& directory, int* damaged = nullptr);
 void append_timing(const std::filesystem::path& directory, const std::string& id, int round,
                    const nlohmann::json& seconds);
 

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -15,10 +16,12 @@
 #include "studies/explain.hpp"
 #include "studies/fields.hpp"
 #include "studies/input_fault.hpp"
+#include "studies/printing.hpp"
 #include "studies/progress.hpp"
 #include "studies/report/report.hpp"
 #include "studies/result_rows.hpp"
 #include "studies/shard.hpp"
+#include "studies/simulation.hpp"
 #include "studies/study_cell.hpp"
 #include "studies/timing.hpp"
 #include "studies/workers.hpp"
@@ -28,13 +31,13 @@ namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
-constexpr int done = 0, bad_input = 2;
+constexpr int done = 0, bad_input = 2, not_solved = 3;
 
 /// A study that was found valid, and where its results go.
 struct Plan {
   Study study;
-  std::vector<CellInput> all;  ///< cells of the study
-  std::vector<std::string> ids;
+  std::vector<std::string> ids;  ///< of the study's cells
+  CellInput last;                ///< of these
   std::vector<CellInput> cells;  ///< those of the shard
   Shard shard;
   fs::path directory;
@@ -53,7 +56,8 @@ void check_models(const Study& study, const std::vector<CellInput>& cells, MeshF
     if (variant_key(cell) == checked) continue;
     checked = variant_key(cell);
     try {
-      problem_of(input_of(cell, meshes));
+      const Input input = input_of(cell, meshes);
+      check_memory(*problem_of(input), input);
     } catch (const ModelError& error) {
       diagnostics.error(in_study(study, {cell.document.place(error.pointer), error.pointer, error.what()}));
     }
@@ -66,14 +70,17 @@ std::optional<Plan> make_plan(const StudyArguments& arguments, MeshFiles& meshes
     plan.shard = *shard;
   else
     diagnostics.error({{"--shard " + arguments.shard}, "", "must be i/N, whole numbers with 1 <= i <= N"});
-  if (arguments.jobs < 1) diagnostics.error({{"--jobs " + std::to_string(arguments.jobs)}, "", "must be 1 or more"});
+  constexpr int most_jobs = 1024;  // beyond, a system runs out of processes
+  if (arguments.jobs < 1 || arguments.jobs > most_jobs)
+    diagnostics.error({{"--jobs " + std::to_string(arguments.jobs)}, "", "must be 1 to 1024"});
   auto study = read_study(arguments.study, diagnostics);
   if (!study) return std::nullopt;
   plan.study = *std::move(study);
-  plan.all = expand(plan.study, program_version(), diagnostics, meshes);
-  for (std::size_t i = 0; i < plan.all.size(); ++i) {
-    plan.ids.push_back(plan.all[i].id);
-    if (plan.shard.holds(i)) plan.cells.push_back(plan.all[i]);
+  auto all = expand(plan.study, program_version(), diagnostics, meshes);
+  if (!all.empty()) plan.last = all.back();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    plan.ids.push_back(all[i].id);
+    if (plan.shard.holds(i)) plan.cells.push_back(std::move(all[i]));
   }
   if (!diagnostics.has_errors()) check_models(plan.study, plan.cells, meshes, diagnostics);
   if (diagnostics.has_errors()) return std::nullopt;
@@ -84,9 +91,10 @@ std::optional<Plan> make_plan(const StudyArguments& arguments, MeshFiles& meshes
 /// study.json: the study as given, which cells it has, and what the report says of the scene beside the rows.
 json description(const Plan& plan, const StudyArguments& arguments, MeshFiles& meshes) {
   json out = plan.study.document.root();
-  const Input input = input_of(plan.all.back(), meshes);
+  const Input input = input_of(plan.last, meshes);
   const auto problem = problem_of(input);
-  out["command"] = "stickslip study " + arguments.study + (arguments.output.empty() ? "" : " -o " + arguments.output) +
+  out["command"] = "stickslip study " + shell_word(arguments.study) +
+                   (arguments.output.empty() ? "" : " -o " + shell_word(arguments.output)) +
                    (plan.shard.count > 1 ? " --shard " + plan.shard.text() : "");
   out["program"] = program_version();
   out["cells"] = plan.ids;
@@ -106,7 +114,7 @@ json description(const Plan& plan, const StudyArguments& arguments, MeshFiles& m
 }
 
 void write_description(const fs::path& directory, const json& description) {
-  write_file_atomically(directory / "study.json", description.dump(2) + "\n");
+  write_file_atomically(directory / "study.json", json_text(description, 2) + "\n");
 }
 
 std::ptrdiff_t rows_of_other_shards(const Plan& plan, const RowsById& rows) {
@@ -118,40 +126,57 @@ struct Tally {
   int run = 0, failed = 0;
 };
 
+/// A cell in words: its label and variant.
+std::string name_of_cell(const CellInput& cell) {
+  const std::string variant = variant_text({{"vary", cell.vary}, {"refine", cell.refine}});
+  return cell.label + (variant.empty() ? "" : ", " + variant);
+}
+
+/// Whether such a signal comes from outside: the user, a scheduler, or the kernel where memory runs out. The others
+/// are the program's own fault.
+bool from_outside(int signal) {
+  return signal == SIGKILL || signal == SIGTERM || signal == SIGINT || signal == SIGHUP || signal == SIGXCPU;
+}
+
 /// The accuracy pass: runs what is missing and records each cell as soon as it is done.
-Tally run_missing(const Plan& plan, CellRunner& runner, int jobs, RowsById& rows) {
+Tally run_missing(const Plan& plan, const DirectoryLock& lock, CellRunner& runner, int jobs, RowsById& rows) {
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < plan.cells.size(); ++i)
     if (rows.count(plan.cells[i].id) == 0) missing.push_back(i);
   Tally tally;
   Progress progress(std::cerr, progress_style_of_stderr(), "cells", static_cast<long>(plan.cells.size()));
   progress.skip(static_cast<long>(plan.cells.size() - missing.size()));
+  const auto record = [&](const CellInput& cell, json row) {
+    lock.check();
+    append_row(plan.directory, row);
+    ++tally.run;
+    if (!converged(row)) {
+      ++tally.failed;
+      progress.note(printable(fmt::format("{}: {} ({})", name_of_cell(cell), row["status"].get<std::string>(),
+                                          row["message"].get<std::string>())));
+    }
+    rows[cell.id] = std::move(row);
+    progress.advance();
+  };
   run_in_processes(
-      jobs, missing.size(), [&](std::size_t i) { return runner.row(missing[i]).dump(); },
-      [&](std::size_t, const std::string& text) {
-        json row = json::parse(text);
-        append_row(plan.directory, row);
-        ++tally.run;
-        if (!converged(row)) {
-          ++tally.failed;
-          const std::string variant = variant_text(row);
-          progress.note(fmt::format("{}{}: {} ({})", row["label"].get<std::string>(),
-                                    variant.empty() ? "" : ", " + variant, row["status"].get<std::string>(),
-                                    row["message"].get<std::string>()));
-        }
-        const std::string id = row["id"];
-        rows[id] = std::move(row);
-        progress.advance();
+      jobs, missing.size(), [&](std::size_t i) { return json_text(runner.row(missing[i])); },
+      [&](std::size_t i, const std::string& text) { record(plan.cells[missing[i]], json::parse(text)); },
+      [&](std::size_t i, int signal) {
+        const std::string end = fmt::format("its process was ended by signal {} ({})", signal, ::strsignal(signal));
+        if (from_outside(signal))
+          progress.note(printable(fmt::format("{}: {}; it has no row", name_of_cell(plan.cells[missing[i]]), end)));
+        else
+          record(plan.cells[missing[i]], runner.failed_row(missing[i], "failed", end + ", please report it"));
       });
   return tally;
 }
 
 /// The timing pass: serial, over the cells that converged; what is recorded is not run again.
-void time_cells(const Plan& plan, CellRunner& runner, const RowsById& rows) {
+void time_cells(const Plan& plan, const DirectoryLock& lock, CellRunner& runner, const RowsById& rows) {
   std::vector<std::size_t> cells;
   std::vector<std::string> keys;
   for (std::size_t i = 0; i < plan.cells.size(); ++i)
-    if (converged(rows.at(plan.cells[i].id))) {
+    if (const auto row = rows.find(plan.cells[i].id); row != rows.end() && converged(row->second)) {
       cells.push_back(i);
       keys.push_back(variant_key(plan.cells[i]));
     }
@@ -165,15 +190,25 @@ void time_cells(const Plan& plan, CellRunner& runner, const RowsById& rows) {
   if (runs.empty()) return;
   Progress progress(std::cerr, progress_style_of_stderr(), "timed runs", static_cast<long>(runs.size()));
   for (const auto& run : runs) {
-    const auto& cell = plan.cells[cells[run.cell]];
-    append_timing(plan.directory, cell.id, run.round, runner.seconds(cells[run.cell]));
+    const std::size_t cell = cells[run.cell];
+    json seconds;
+    try {
+      seconds = runner.seconds(cell);
+    } catch (const std::exception& error) {
+      progress.note(printable(fmt::format("{}: not timed: {}", name_of_cell(plan.cells[cell]), error.what())));
+    }
+    lock.check();
+    if (!seconds.is_null()) append_timing(plan.directory, plan.cells[cell].id, run.round, seconds);
     progress.advance();
   }
 }
 
 /// Puts what the timing pass measured into the rows: cost.seconds the least, cost.timing how many runs and the median.
 void take_timings(const fs::path& directory, RowsById& rows) {
-  for (const auto& [id, rounds] : read_timings(directory)) {
+  int damaged = 0;
+  const auto timings = read_timings(directory, &damaged);
+  if (damaged > 0) std::cerr << "note: " << damaged << " line(s) of timings.jsonl are damaged and were left out\n";
+  for (const auto& [id, rounds] : timings) {
     const auto row = rows.find(id);
     if (row == rows.end()) continue;
     std::vector<json> runs;
@@ -187,7 +222,8 @@ void take_timings(const fs::path& directory, RowsById& rows) {
 /// The picture of the last variant, its fields, and the closed form's curves beside it.
 void draw_showcase(const Plan& plan, CellRunner& runner, json& described) {
   const auto result = runner.showcase(plan.cells.size() - 1);
-  write_file_atomically(plan.directory / "picture.json", picture_json(result).dump());
+  remove_fields(plan.directory);
+  write_file_atomically(plan.directory / "picture.json", json_text(picture_json(result)));
   write_fields(plan.directory, result, 0);
   described["size"] = size_json(result);
   if (is_converged(result.status()))
@@ -196,6 +232,17 @@ void draw_showcase(const Plan& plan, CellRunner& runner, json& described) {
         if (const auto values = reference_values(reference.entry, result); !values.curves.is_null())
           described["analytic"] = {{"name", reference.entry.value("analytic", "")}, {"curves", values.curves}};
   write_description(plan.directory, described);
+}
+
+/// A picture that cannot be drawn, as for want of memory, is missing in the report; the rows are what counts.
+void try_to_draw(const Plan& plan, CellRunner& runner, json& described) {
+  try {
+    draw_showcase(plan, runner, described);
+  } catch (const std::system_error&) {
+    throw;  // the disk's
+  } catch (const std::exception& error) {
+    std::cerr << printable(fmt::format("note: there is no picture of the solution: {}", error.what())) << '\n';
+  }
 }
 
 /// Whether study.json is that of this study, and the picture beside it drawn.
@@ -240,11 +287,11 @@ class InterruptNote {
 };
 
 int carry_out(const Plan& plan, const StudyArguments& arguments, MeshFiles& meshes) {
+  if (fs::exists(plan.directory / "result.json"))
+    throw InputFault(plan.directory.string() + ": holds the result of a run; -o DIR writes to another directory");
   prepare_directory(plan.directory, {"results.jsonl", "timings.jsonl", "study.json", "picture.json", "report.html"},
                     {"figures"});
   const DirectoryLock lock(plan.directory);
-  if (fs::exists(plan.directory / "result.json"))
-    throw InputFault(plan.directory.string() + ": holds the result of a run; -o DIR writes to another directory");
   if (!arguments.restart) check_records(plan.directory);
   if (const auto found = read_rows(plan.directory).rows.size(); found > 0 && !arguments.resume && !arguments.restart)
     throw InputFault(
@@ -263,17 +310,27 @@ int carry_out(const Plan& plan, const StudyArguments& arguments, MeshFiles& mesh
   if (const auto others = rows_of_other_shards(plan, rows); others > 0)
     notes.push_back(
         fmt::format("{} row(s) of this study that are not of shard {} stay as they are", others, plan.shard.text()));
-  for (const auto& note : notes) std::cerr << "note: " << note << '\n';
+  for (const auto& note : notes) std::cerr << "note: " << printable(note) << '\n';
   CellRunner runner(plan.study, plan.cells, meshes);
-  const Tally tally = run_missing(plan, runner, arguments.jobs, rows);
-  if (!drawn && !plan.cells.empty()) draw_showcase(plan, runner, described);
-  time_cells(plan, runner, rows);
+  const Tally tally = run_missing(plan, lock, runner, arguments.jobs, rows);
+  lock.check();
+  if (!drawn && !plan.cells.empty()) try_to_draw(plan, runner, described);
+  time_cells(plan, lock, runner, rows);
+  lock.check();
   take_timings(plan.directory, rows);
   write_rows(plan.directory, plan.ids, rows);
+  const auto recorded =
+      std::count_if(plan.cells.begin(), plan.cells.end(), [&](const auto& cell) { return rows.count(cell.id) > 0; });
+  rows.clear();  // the report reads them again, and not all of each
   write_report(plan.directory);
   fmt::print("{} cells, {} run now, {} of these without a converged result (kept as rows)\nreport: {}\n",
-             plan.cells.size(), tally.run, tally.failed, (plan.directory / "report.html").string());
-  return done;
+             plan.cells.size(), tally.run, tally.failed, printable((plan.directory / "report.html").string()));
+  if (recorded == std::ssize(plan.cells)) return done;
+  fmt::print(stderr,
+             "{} cells have no row: their processes were ended from outside, by the system where memory runs out; "
+             "--resume runs them again, fewer --jobs need less memory at once\n",
+             std::ssize(plan.cells) - recorded);
+  return not_solved;
 }
 
 }  // namespace
@@ -286,7 +343,7 @@ int study_command(const StudyArguments& arguments) {
     std::cerr << diagnostics.text();
     return bad_input;
   }
-  for (const auto& note : diagnostics.notes()) std::cerr << "note: " << note.text() << '\n';
+  std::cerr << diagnostics.notes_text();
   return carry_out(*plan, arguments, meshes);
 }
 

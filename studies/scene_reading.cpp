@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "studies/printing.hpp"
+
 namespace stickslip {
 
 std::vector<std::string> SceneReading::axes() const {
@@ -159,6 +161,12 @@ std::optional<NamedSide> SceneReading::side(const JsonNode& node) {
 void check_name(const JsonNode& node, const std::string& name) {
   if (name.empty() || name.find_first_of(".& \t\n") != std::string::npos)
     node.error_at_key("the name " + in_quotes(name) + " must have letters, and no space, dot or &");
+  else
+    check_characters(node, name);
+}
+
+void check_characters(const JsonNode& node, const std::string& name) {
+  if (printable(name) != name) node.error_at_key("the name " + in_quotes(name) + " must have no control characters");
 }
 
 }  // namespace stickslip

@@ -36,6 +36,7 @@ struct SceneReading {
   std::map<std::string, std::string> constants;  ///< pointers of numbers that cannot be a parameter, and why
   std::map<int, int> symmetric;                  ///< slots of a symmetric matrix that must change together
   std::vector<std::string> body_names, obstacle_names, contact_names;  ///< valid or not: all that the file has
+  double nodes = 0;                    ///< of all bodies so far, as estimated before they are made
   std::map<std::string, Mesh> meshes;  ///< by body; none where the body's mesh is at fault
 
   int dimension() const { return scene.dimension(); }
@@ -80,6 +81,8 @@ struct SceneReading {
 
 /// Reports a name that side expressions could not tell from something else.
 void check_name(const JsonNode&, const std::string& name);
+/// Reports a name with characters that no terminal and no XML file can hold.
+void check_characters(const JsonNode&, const std::string& name);
 
 // One part of the scene each; "bodies" come first, the method before "parameters".
 void read_bodies(const JsonNode&, SceneReading&);

@@ -215,7 +215,8 @@ constexpr const char* study_parts = R"({
     "oneOf": [{"required": ["method"]}, {"required": ["analytic", "map"]}, {"required": ["values"]},
               {"required": ["overkill"]}]}},
   "errors": {"type": "array", "items": {"type": "string", "pattern": "^kkt$|^response:|^sensitivity:|^field:"}},
-  "timing": {"type": "object", "additionalProperties": false, "properties": {"repeat": {"$ref": "#/$defs/count"}}}
+  "timing": {"type": "object", "additionalProperties": false, "properties": {
+    "repeat": {"$ref": "#/$defs/count", "maximum": 1000}}}
 })";
 
 /// {"KIND": {...}}, one of the kinds.

@@ -4,6 +4,8 @@
 
 #include "studies/atomic_file.hpp"
 #include "studies/fields.hpp"
+#include "studies/printing.hpp"
+#include "studies/size_estimate.hpp"
 
 namespace stickslip {
 namespace {
@@ -28,6 +30,7 @@ std::optional<Simulation> prepare(const JsonDocument& document, const Overrides&
   if (!input) return std::nullopt;
   try {
     auto problem = std::make_shared<const Problem>(input->scene);
+    check_memory(*problem, *input);
     return Simulation{std::move(*input), problem};
   } catch (const ModelError& error) {
     diagnostics.error({document.place(error.pointer), error.pointer, error.what()});
@@ -41,6 +44,28 @@ std::optional<Simulation> prepare(const std::string& file, const Overrides& over
   return document ? prepare(*document, overrides, method, diagnostics) : std::nullopt;
 }
 
+void check_memory(const Problem& problem, const Input& input) {
+  using Engine = LinearAlgebra::Engine;
+  const auto& model = problem.model;
+  const Engine engine = input.linear_algebra.engine;
+  const double limit = memory_limit();
+  ProblemSize size{static_cast<double>(model.free_dofs.size()),
+                   static_cast<double>(model.contact_nodes.size()) * model.dimension,
+                   static_cast<double>(model.points.size()), 0, false};
+  if (estimated_bytes(size) > limit)
+    throw ModelError("the bodies need " + too_much(estimated_bytes(size), limit) + "; try fewer cells", "/bodies");
+  size.condensed = engine == Engine::condensed || (engine == Engine::automatic && detail::condensed_pays(model));
+  if (estimated_bytes(size) > limit)
+    throw ModelError("the bodies, condensed to " + shown(size.contact_dofs) + " contact dofs, need " +
+                         too_much(estimated_bytes(size), limit) + R"(; try {"engine": "sparse"}, or fewer cells)",
+                     engine == Engine::condensed ? "/linear_solver/engine" : "/linear_solver");
+  size.steps = static_cast<double>(model.times.size());
+  if (estimated_bytes(size) > limit)
+    throw ModelError("its " + shown(size.steps) + " steps need " + too_much(estimated_bytes(size), limit) +
+                         "; try fewer, or tables with fewer points",
+                     "/time");
+}
+
 RunOptions run_options(const Input& input) { return {input.linear_algebra, input.backend, {}, {}}; }
 
 CaseResult simulate(const Simulation& simulation, const std::function<void()>& on_step, Trace* trace) {
@@ -51,16 +76,31 @@ CaseResult simulate(const Simulation& simulation, const std::function<void()>& o
   return run_case(simulation.problem, simulation.input.method, options, condensation);
 }
 
+void remove_fields(const std::filesystem::path& directory) {
+  constexpr std::string_view begin = "fields_", end = ".vtu";
+  std::vector<std::filesystem::path> old;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(directory, none)) {
+    const std::string name = entry.path().filename();
+    const bool framed = name.size() > begin.size() + end.size() && name.starts_with(begin) && name.ends_with(end);
+    if (framed && name.substr(begin.size(), name.size() - begin.size() - end.size()).find_first_not_of("0123456789") ==
+                      std::string::npos)
+      old.push_back(entry.path());
+  }
+  for (const auto& file : old) std::filesystem::remove(file);
+}
+
 nlohmann::json write_result(const std::filesystem::path& directory, const Simulation& simulation,
                             const CaseResult& result) {
   double seconds = 0;
   {
     const Stopwatch time(seconds);
+    remove_fields(directory);
     write_fields(directory, result, fields_every(simulation.input.output));
   }
   auto document = result_json(result, canonical_text(simulation.input));
   document["cost"]["seconds"]["output"] = seconds;
-  write_file_atomically(directory / "result.json", document.dump(2) + "\n");
+  write_file_atomically(directory / "result.json", json_text(document, 2) + "\n");
   return document;
 }
 

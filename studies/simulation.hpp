@@ -27,6 +27,9 @@ std::optional<Simulation> prepare(const JsonDocument& document, const Overrides&
 std::optional<Simulation> prepare(const std::string& file, const Overrides& overrides,
                                   const std::optional<std::string>& method, Diagnostics& diagnostics);
 
+/// Throws ModelError, with the bytes and what to try, where a run would need more memory than there is.
+void check_memory(const Problem& problem, const Input& input);
+
 /// What the scene says of how to solve it.
 RunOptions run_options(const Input& input);
 
@@ -34,8 +37,11 @@ RunOptions run_options(const Input& input);
 /// is there, gathers every iterate.
 CaseResult simulate(const Simulation& simulation, const std::function<void()>& on_step = {}, Trace* trace = nullptr);
 
-/// Writes DIR/result.json and DIR/fields.pvd with its .vtu files; returns the former (README, "What a run leaves").
-/// Throws std::system_error where the disk refuses.
+/// Removes the fields_NNNN.vtu of an earlier run, which would stand beside those of the next.
+void remove_fields(const std::filesystem::path& directory);
+
+/// Writes DIR/result.json and DIR/fields.pvd with its .vtu files, in place of an earlier run's; returns the former
+/// (README, "What a run leaves"). Throws std::system_error where the disk refuses.
 nlohmann::json write_result(const std::filesystem::path& directory, const Simulation& simulation,
                             const CaseResult& result);
 

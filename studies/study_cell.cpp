@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "studies/film.hpp"
 #include "studies/method_options.hpp"
+#include "studies/printing.hpp"
 #include "studies/provenance.hpp"
 #include "studies/study.hpp"
 #include "studies/version.hpp"
@@ -62,6 +65,39 @@ json brief(const json& steps) {
   return out;
 }
 
+/// Why a piece of work ended without a result.
+struct Breakdown {
+  std::string status, message;
+};
+
+/// Does it; what it throws is returned, whatever it is.
+std::optional<Breakdown> attempt(const std::function<void()>& work) {
+  try {
+    work();
+    return std::nullopt;
+  } catch (const std::bad_alloc&) {
+    return Breakdown{"cap", "there is not enough memory; a coarser mesh or fewer steps need less"};
+  } catch (const std::length_error&) {  // a container beyond all memory
+    return Breakdown{"cap", "there is not enough memory; a coarser mesh or fewer steps need less"};
+  } catch (const std::exception& error) {
+    return Breakdown{"failed", std::string("the program broke down, please report it with the scene: ") + error.what()};
+  } catch (...) {
+    return Breakdown{"failed", "the program broke down, please report it with the scene"};
+  }
+}
+
+/// What a row says of its cell, however it went.
+json head_of(const CellInput& cell) {
+  return {{"id", cell.id},
+          {"label", cell.label},
+          {"method", to_json(cell.method)},
+          {"default", is_default(cell.method)},
+          {"knobs", cell.knobs},
+          {"vary", cell.vary},
+          {"refine", cell.refine},
+          {"scene_hash", fingerprint(cell.canonical)}};
+}
+
 }  // namespace
 
 std::string variant_key(const CellInput& cell) { return json{{"vary", cell.vary}, {"refine", cell.refine}}.dump(); }
@@ -86,16 +122,33 @@ void CellRunner::enter(const CellInput& cell) {
     const Stopwatch time(variant_.setup_seconds);
     variant_.condensation = condense(*variant_.problem, options_of(input));
   }
-  for (const auto& reference : study_.references) {
-    if (reference.kind == Reference::Kind::method)
-      variant_.same_mesh.push_back(run(reference_cell(cell, reference, program_version(), meshes_)));
-    if (reference.kind != Reference::Kind::overkill) continue;
-    const auto fine = input_of(reference_cell(cell, reference, program_version(), meshes_), meshes_);
-    std::shared_ptr<Condensation<double>> own;
-    const auto result = run_case(problem_of(fine), fine.method, options_of(fine), own);
-    variant_.overkill.push_back(is_converged(result.status()) ? values_of(result) : ReferenceValues{});
-  }
+  run_references(cell);
   variant_.key = variant_key(cell);
+}
+
+/// A reference that throws gives no errors, as one that does not converge, and the rows say why.
+void CellRunner::run_references(const CellInput& cell) {
+  const auto note = [&](const Reference& reference, const Breakdown& breakdown) {
+    variant_.fault += (variant_.fault.empty() ? "reference " : "; reference ") + json_text(reference.entry) + ": " +
+                      breakdown.message;
+  };
+  for (const auto& reference : study_.references) {
+    if (reference.kind == Reference::Kind::method) {
+      auto& result = variant_.same_mesh.emplace_back();
+      const auto breakdown =
+          attempt([&] { result = run(reference_cell(cell, reference, program_version(), meshes_)); });
+      if (breakdown) note(reference, *breakdown);
+    }
+    if (reference.kind != Reference::Kind::overkill) continue;
+    auto& values = variant_.overkill.emplace_back();
+    const auto breakdown = attempt([&] {
+      const auto fine = input_of(reference_cell(cell, reference, program_version(), meshes_), meshes_);
+      std::shared_ptr<Condensation<double>> own;
+      const auto result = run_case(problem_of(fine), fine.method, options_of(fine), own);
+      if (is_converged(result.status())) values = values_of(result);
+    });
+    if (breakdown) note(reference, *breakdown);
+  }
 }
 
 CaseResult CellRunner::run(const CellInput& cell) {
@@ -105,7 +158,8 @@ CaseResult CellRunner::run(const CellInput& cell) {
 
 CaseResult CellRunner::showcase(std::size_t cell) {
   enter(cells_[cell]);
-  return variant_.same_mesh.empty() ? run(cells_[cell]) : variant_.same_mesh.front();
+  const auto& references = variant_.same_mesh;
+  return references.empty() || !references.front() ? run(cells_[cell]) : *references.front();
 }
 
 json CellRunner::seconds_of(const CaseResult& result) const {
@@ -130,7 +184,7 @@ json CellRunner::errors(const CaseResult& result) const {
     json given;
     if (enforcement) {
       const auto& other = *same_mesh++;
-      if (is_converged(other.status())) given = only_asked(enforcement_errors(result, other), study_.errors);
+      if (other && is_converged(other->status())) given = only_asked(enforcement_errors(result, *other), study_.errors);
     } else {
       const auto values =
           reference.kind == Reference::Kind::overkill ? *overkill++ : reference_values(reference.entry, result);
@@ -144,21 +198,31 @@ json CellRunner::errors(const CaseResult& result) const {
 }
 
 json CellRunner::row(std::size_t index) {
-  const CellInput& cell = cells_[index];
+  json row;
+  const auto breakdown = attempt([&] { row = measured_row(cells_[index]); });
+  if (!breakdown) return row;
+  variant_ = {};  // it may be half made
+  return failed_row(index, breakdown->status, breakdown->message);
+}
+
+json CellRunner::failed_row(std::size_t index, const std::string& status, const std::string& message) const {
+  json row = head_of(cells_[index]);
+  row["status"] = status;
+  row["message"] = message;
+  row["errors"] = {{"enforcement", json::object()}, {"discretization", json::object()}};
+  row["steps"] = json::array();
+  row["provenance"] = provenance(1);
+  return row;
+}
+
+json CellRunner::measured_row(const CellInput& cell) {
   enter(cell);
   const auto result = run(cell);
-  json row = {{"id", cell.id},
-              {"label", cell.label},
-              {"method", to_json(cell.method)},
-              {"default", is_default(cell.method)},
-              {"regularisation", regularisation_json(result)},
-              {"knobs", cell.knobs},
-              {"vary", cell.vary},
-              {"refine", cell.refine},
-              {"scene_hash", fingerprint(cell.canonical)},
-              {"status", name_of(result.status())},
-              {"message", result.message()},
-              {"warnings", warnings_json(result)}};
+  json row = head_of(cell);
+  row["regularisation"] = regularisation_json(result);
+  row["status"] = name_of(result.status());
+  row["message"] = result.message().empty() ? variant_.fault : result.message();
+  row["warnings"] = warnings_json(result);
   const json steps = steps_json(result);
   row["errors"] = errors(result);
   if (!steps.empty()) {

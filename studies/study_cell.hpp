@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,8 +31,11 @@ class CellRunner {
   CellRunner(const Study& study, const std::vector<CellInput>& cells, MeshFiles& meshes)
       : study_(study), cells_(cells), meshes_(meshes) {}
 
-  /// The line of results.jsonl (README, "What a run leaves").
+  /// The line of results.jsonl (README, "What a run leaves"). Whatever the cell throws is a row too: of status `cap`
+  /// where there was not enough memory, `failed` where the program broke down, with the reason as its message.
   nlohmann::json row(std::size_t cell);
+  /// The row of a cell that left nothing.
+  nlohmann::json failed_row(std::size_t cell, const std::string& status, const std::string& message) const;
   /// Seconds of one more run, as in cost.seconds.
   nlohmann::json seconds(std::size_t cell);
   /// The run that the report draws: the first reference on the cell's mesh, or else the cell itself.
@@ -43,11 +47,14 @@ class CellRunner {
     std::shared_ptr<const Problem> problem;  ///< the condensation refers to its model
     std::shared_ptr<Condensation<double>> condensation;
     double setup_seconds = 0;
-    std::vector<CaseResult> same_mesh;      ///< of Reference::Kind::method, in order
+    std::vector<std::optional<CaseResult>> same_mesh;  ///< of Reference::Kind::method, in order; none: it threw
     std::vector<ReferenceValues> overkill;  ///< of Reference::Kind::overkill, in order; empty values: did not converge
+    std::string fault;                      ///< what a reference threw
   };
 
   void enter(const CellInput& cell);
+  void run_references(const CellInput& cell);
+  nlohmann::json measured_row(const CellInput& cell);
   CaseResult run(const CellInput& cell);
   nlohmann::json errors(const CaseResult& result) const;
   nlohmann::json seconds_of(const CaseResult& result) const;

@@ -24,6 +24,7 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
 
 constexpr int finest = 10;              ///< mesh level: a thousand times the cells each way
 constexpr double most_cells = 100'000;  ///< of a study
+constexpr int most_rounds = 1000;       ///< of the timing pass: the least of so many is as good as it gets
 
 /// The values of a list, each once.
 std::vector<PlacedValue> values_of(const JsonNode& list) {
@@ -185,13 +186,28 @@ std::optional<Reference> read_reference(const JsonNode& node, const json& scene)
   return reference;
 }
 
-/// Whether one pointer names a part of what the other names.
-bool overlap(const std::string& a, const std::string& b) {
-  return (a + "/").starts_with(b + "/") || (b + "/").starts_with(a + "/");
+std::vector<Reference> read_references(const JsonNode& list, const json& scene) {
+  std::vector<Reference> references;
+  std::set<json> before;
+  for (const JsonNode& node : list.elements())
+    if (!before.insert(node.value()).second)
+      node.error("is a reference that the list has already");
+    else if (auto reference = read_reference(node, scene))
+      references.push_back(*std::move(reference));
+  return references;
+}
+
+/// The one of the pointers that names a part of what `pointer` names, or what that is a part of; "" where none does.
+std::string overlapping(const std::set<std::string>& pointers, const std::string& pointer) {
+  for (std::string around = pointer; !around.empty(); around.erase(around.rfind('/')))
+    if (pointers.count(around) > 0) return around;
+  const auto inside = pointers.lower_bound(pointer + "/");
+  return inside != pointers.end() && inside->starts_with(pointer + "/") ? *inside : "";
 }
 
 std::vector<Knob> read_vary(const JsonNode& node, const json& scene) {
   std::vector<Knob> knobs;
+  std::set<std::string> known;
   if (!node.is_map("lists of values by JSON pointer of the scene")) return knobs;
   for (const auto& [pointer, list] : node.members()) {
     if (pointer == "/method" || pointer.rfind("/method/", 0) == 0)
@@ -200,11 +216,9 @@ std::vector<Knob> read_vary(const JsonNode& node, const json& scene) {
       list.error_at_key(fault);
     else if (value_at(scene, pointer)->is_object())
       list.error_at_key("names an object; must name a number, a text or an array");
-    else if (const auto other = std::find_if(knobs.begin(), knobs.end(),
-                                             [&at = pointer](const Knob& knob) { return overlap(knob.pointer, at); });
-             other != knobs.end())
-      list.error_at_key("overlaps " + other->pointer + ", which is varied too: one would overwrite the other");
-    else
+    else if (const std::string other = overlapping(known, pointer); !other.empty())
+      list.error_at_key("overlaps " + other + ", which is varied too: one would overwrite the other");
+    else if (known.insert(pointer).second)
       knobs.push_back({pointer, values_of(list)});
   }
   return knobs;
@@ -229,6 +243,7 @@ bool matches_something(const std::string& pattern, const std::vector<std::string
 
 void read_errors(const JsonNode& node, const json& scene, std::vector<std::string>& patterns) {
   if (!node.value().is_array()) return node.must_be("a list of patterns");
+  const auto names = error_names(scene);
   for (const JsonNode& element : node.elements()) {
     const auto pattern = element.text();
     if (!pattern) continue;
@@ -236,7 +251,7 @@ void read_errors(const JsonNode& node, const json& scene, std::vector<std::strin
                        pattern->rfind("sensitivity:", 0) == 0 || pattern->rfind("field:", 0) == 0;
     if (!known)
       element.must_be("\"kkt\", or begin with response:, sensitivity: or field:, as in \"response:*\"");
-    else if (const auto names = error_names(scene); !matches_something(*pattern, names))
+    else if (!matches_something(*pattern, names))
       element.error("is " + in_quotes(*pattern) + ", which matches nothing in the scene;" +
                     suggestion(*pattern, names) + " allowed: " + listed(names) + ", or one of them cut short by a *");
     patterns.push_back(*pattern);
@@ -413,17 +428,10 @@ std::optional<Study> read_study(const std::string& file, Diagnostics& diagnostic
       level.count(0, finest);
   }
   if (const auto references = root.find("reference")) {
-    if (!references->value().is_array())
-      references->must_be("a list of references");
+    if (references->value().is_array())
+      study.references = read_references(*references, scene_root);
     else
-      for (const JsonNode& node : references->elements()) {
-        const bool again = std::any_of(study.references.begin(), study.references.end(),
-                                       [&](const auto& before) { return before.entry == node.value(); });
-        if (again)
-          node.error("is a reference that the list has already");
-        else if (auto reference = read_reference(node, scene_root))
-          study.references.push_back(*std::move(reference));
-      }
+      references->must_be("a list of references");
   }
   study.errors = {"response:*", "sensitivity:*", "kkt"};
   if (const auto errors = root.find("errors")) {
@@ -431,7 +439,7 @@ std::optional<Study> read_study(const std::string& file, Diagnostics& diagnostic
     read_errors(*errors, scene_root, study.errors);
   }
   if (const auto timing = root.find("timing"); timing && timing->is_object({{}, {"repeat"}}))
-    if (const auto repeat = timing->find("repeat")) study.repeat = repeat->count(1).value_or(0);
+    if (const auto repeat = timing->find("repeat")) study.repeat = repeat->count(1, most_rounds).value_or(0);
   if (const double count = cell_count(study); count > most_cells)
     root.error(fmt::format("makes {:.0f} cells of all its lists; allowed: {:.0f} at most", count, most_cells));
   if (diagnostics.error_count() > faults) return std::nullopt;
@@ -479,7 +487,9 @@ std::vector<CellInput> expand(const Study& study, const std::string& program_ver
   if (!cells.empty())
     for (const Reference& reference : study.references)
       if (reference.kind == Reference::Kind::method || reference.kind == Reference::Kind::overkill) {
-        CellInput cell = cells.front();
+        // of the finest mesh, which a finer one may be too large for
+        CellInput cell = *std::max_element(cells.begin(), cells.end(),
+                                           [](const auto& a, const auto& b) { return a.refine < b.refine; });
         if (set_reference(cell, reference, diagnostics))
           complete(cell, reference.method.method, program_version, diagnostics, mesh_files);
       }

@@ -1,6 +1,7 @@
 #include "studies/wording.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -31,27 +32,33 @@ std::string counted(long count, const std::string& noun) {
 }
 
 std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 40;
   std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  for (std::size_t i = 0; i < std::min(names.size(), most); ++i) list += (i ? ", " : "") + names[i];
+  if (names.size() > most) list += ", ... (" + std::to_string(names.size()) + " in all)";
   return list.empty() ? "nothing" : list;
 }
 
 namespace {
 
-/// Letters put in, left out, replaced or swapped with their neighbour that turn one text into the other.
+constexpr std::size_t longest_name = 64;  // that is looked for among others
+
+/// Letters put in, left out, replaced or swapped with their neighbour that turn one text into the other. pre: neither
+/// is longer than longest_name.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i)
+  std::array<std::array<std::size_t, longest_name + 1>, 3> rows;  // of the table: row i, and the two before it
+  for (std::size_t i = 0; i <= a.size(); ++i) {
+    auto &now = rows[i % 3], &before = rows[(i + 2) % 3], &earlier = rows[(i + 1) % 3];
     for (std::size_t j = 0; j <= b.size(); ++j) {
       if (i == 0 || j == 0) {
-        d[i][j] = i + j;
+        now[j] = i + j;
         continue;
       }
-      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+      now[j] = std::min({before[j] + 1, now[j - 1] + 1, before[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) now[j] = std::min(now[j], earlier[j - 2] + 1);
     }
-  return d[a.size()][b.size()];
+  }
+  return rows[a.size() % 3][b.size()];
 }
 
 /// Whether one is the other's beginning, or, of four letters or more, any part of it.
@@ -64,10 +71,11 @@ bool holds(std::string_view longer, std::string_view shorter) {
 /// How many letters two names differ by, where one may be meant by the other.
 std::optional<std::size_t> distance_where_near(std::string_view a, std::string_view b) {
   constexpr std::size_t farthest = 2;
+  if (a.size() > longest_name || b.size() > longest_name) return std::nullopt;
   const auto& [shorter, longer] = a.size() < b.size() ? std::pair(a, b) : std::pair(b, a);
   const std::size_t lengths = longer.size() - shorter.size();
   if (holds(longer, shorter)) return lengths;
-  if (lengths > farthest) return std::nullopt;  // which keeps the table of the distance small
+  if (lengths > farthest) return std::nullopt;
   const std::size_t distance = edit_distance(a, b);
   // a name of two letters is within two edits of any other
   const bool near = distance <= farthest && (distance < shorter.size() || longer.substr(0, shorter.size()) == shorter);
@@ -77,13 +85,13 @@ std::optional<std::size_t> distance_where_near(std::string_view a, std::string_v
 }  // namespace
 
 std::string suggestion(std::string_view name, const std::vector<std::string>& names) {
-  constexpr std::size_t too_far = std::numeric_limits<std::size_t>::max();
+  constexpr std::size_t too_far = std::numeric_limits<std::size_t>::max(), most = 1000;
   std::size_t least = too_far;
   std::string nearest;
-  for (const std::string& candidate : names)
-    if (const std::size_t distance = distance_where_near(name, candidate).value_or(too_far); distance < least) {
+  for (std::size_t i = 0; i < std::min(names.size(), most); ++i)
+    if (const std::size_t distance = distance_where_near(name, names[i]).value_or(too_far); distance < least) {
       least = distance;
-      nearest = candidate;
+      nearest = names[i];
     }
   return nearest.empty() ? "" : " did you mean " + in_quotes(nearest) + "?";
 }

@@ -12,8 +12,10 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
+#include <optional>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 namespace stickslip {
@@ -51,12 +53,14 @@ void write_all(int file, const std::string& text) {
   }
 }
 
-/// A child's life. One line a piece: "INDEX TEXT", or "! MESSAGE" where the work threw.
+/// A child's life. Two lines a piece: "> INDEX" as it begins, then "INDEX TEXT", or "! MESSAGE" where the work threw.
 [[noreturn]] void serve(int out, SharedCounter& counter, std::size_t count,
                         const std::function<std::string(std::size_t)>& work) {
   try {
-    for (std::size_t i = counter.next(); i < count; i = counter.next())
+    for (std::size_t i = counter.next(); i < count; i = counter.next()) {
+      write_all(out, "> " + std::to_string(i) + "\n");
       write_all(out, std::to_string(i) + " " + work(i) + "\n");
+    }
   } catch (const std::exception& error) {
     std::string message = error.what();
     std::replace(message.begin(), message.end(), '\n', ' ');
@@ -73,6 +77,7 @@ class Pool {
     pid_t process;
     int in;
     std::string unread;
+    std::optional<std::size_t> piece;  ///< that it works on
   };
 
   ~Pool() {
@@ -100,40 +105,46 @@ class Pool {
       serve(ends[1], counter, count, work);
     }
     ::close(ends[1]);
-    workers.push_back({process, ends[0], {}});
+    workers.push_back({process, ends[0], {}, {}});
   }
 
-  /// Forgets a worker that closed its pipe; throws where it did not end well.
-  void dismiss(Worker& worker) {
+  /// Forgets a worker that closed its pipe and returns the signal that ended it, 0 for none.
+  int dismiss(Worker& worker) {
     ::close(worker.in);
     worker.in = -1;
     int status = 0;
     ::waitpid(worker.process, &status, 0);
     worker.process = 0;
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-      throw std::runtime_error(WIFSIGNALED(status) ? "a worker was ended by signal " + std::to_string(WTERMSIG(status))
-                                                   : std::string("a worker ended without a word"));
+    if (WIFSIGNALED(status)) return WTERMSIG(status);
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw std::runtime_error("a worker ended without a word");
+    return 0;
   }
 
   std::vector<Worker> workers;
 };
 
 /// Hands the whole lines that have arrived on.
-void deliver(std::string& unread, const std::function<void(std::size_t, const std::string&)>& done) {
+void deliver(Pool::Worker& worker, const std::function<void(std::size_t, const std::string&)>& done) {
   std::size_t begin = 0;
-  for (std::size_t end; (end = unread.find('\n', begin)) != std::string::npos; begin = end + 1) {
-    const std::string line = unread.substr(begin, end - begin);
+  for (std::size_t end; (end = worker.unread.find('\n', begin)) != std::string::npos; begin = end + 1) {
+    const std::string line = worker.unread.substr(begin, end - begin);
     if (line.starts_with("! ")) throw std::runtime_error(line.substr(2));
     const auto space = line.find(' ');
-    done(std::stoul(line.substr(0, space)), line.substr(space + 1));
+    if (line.starts_with("> ")) {
+      worker.piece = std::stoul(line.substr(2));
+    } else {
+      worker.piece.reset();
+      done(std::stoul(line.substr(0, space)), line.substr(space + 1));
+    }
   }
-  unread.erase(0, begin);
+  worker.unread.erase(0, begin);
 }
 
 }  // namespace
 
 void run_in_processes(int jobs, std::size_t count, const std::function<std::string(std::size_t)>& work,
-                      const std::function<void(std::size_t, const std::string&)>& done) {
+                      const std::function<void(std::size_t, const std::string&)>& done,
+                      const std::function<void(std::size_t, int)>& lost) {
   if (jobs <= 1 || count <= 1) {
     for (std::size_t i = 0; i < count; ++i) done(i, work(i));
     return;
@@ -155,10 +166,15 @@ void run_in_processes(int jobs, std::size_t count, const std::function<std::stri
       if (size < 0 && errno == EINTR) continue;
       if (size < 0) fail("read from a worker");
       worker.unread.append(block, static_cast<std::size_t>(size));
-      deliver(worker.unread, done);
+      deliver(worker, done);
       if (size > 0) continue;
       --open;
-      pool.dismiss(worker);
+      const int signal = pool.dismiss(worker);
+      const auto piece = std::exchange(worker.piece, std::nullopt);
+      if (signal == 0 || !piece) continue;
+      lost(*piece, signal);
+      pool.add(counter, count, work);
+      ++open;
     }
   }
 }

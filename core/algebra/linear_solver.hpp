@@ -65,7 +65,7 @@ class LinearSolver {
   /// with the values last factorised.
   double backward_error() const;
 
-  /// Estimate of the 1-norm condition number (Hager-Higham, about 5 solves, which are not counted).
+  /// Estimate of the 1-norm condition number (Hager-Higham, 5 solves, not counted); 0 where no factors are usable.
   double condition_estimate();
 
   const SolverCounters& counters() const;

@@ -130,6 +130,8 @@ std::vector<std::pair<std::string, double>> quantities(const std::map<std::strin
         out.emplace_back(prefix == "field:" ? "field " + bare : bare, value);
         of_first += prefix == prefixes.front();
       }
+  constexpr std::size_t most = 200;  // beyond, the worst stands for the rest
+  if (out.size() > most) out.resize(most);
   if (of_first > 1) out.insert(out.begin(), {worst_name, *worst(errors, prefixes.front())});
   return out;
 }

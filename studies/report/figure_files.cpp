@@ -6,6 +6,7 @@
 #include <set>
 
 #include "studies/atomic_file.hpp"
+#include "studies/printing.hpp"
 #include "studies/report/chart_parts.hpp"
 #include "studies/report/look_up.hpp"
 #include "studies/report/plot.hpp"
@@ -16,18 +17,11 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// A text as it stands between two commas.
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + '"';
-}
-
 std::string csv_cell(const json& value) {
   if (value.is_null()) return {};
   if (value.is_number_float()) return fmt::format("{}", value.get<double>());  // shortest that reads back the same
-  return quoted(value.is_string() ? value.get<std::string>() : value.dump());
+  if (value.is_string()) return csv_text(value.get<std::string>());
+  return value.is_structured() ? csv_text(json_text(value)) : json_text(value);
 }
 
 /// How a row is drawn, as opposed to what it says.
@@ -65,7 +59,7 @@ std::string to_csv(const json& rows) {
     for (std::size_t i = 0; i < fields.size(); ++i) out += (i ? "," : "") + cell(fields[i]);
     out += "\r\n";
   };
-  add_line(quoted);
+  add_line(csv_text);
   for (const auto& row : rows) add_line([&](const std::string& field) { return csv_cell(at(row, field)); });
   return out;
 }

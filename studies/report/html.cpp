@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "studies/printing.hpp"
+
 namespace stickslip::report {
 
 namespace {
@@ -29,7 +31,7 @@ bool reads_as_number(const std::string& text) {
 std::string escape(std::string_view text) {
   std::string out;
   out.reserve(text.size());
-  for (const char c : text) switch (c) {
+  for (const char c : printable_lines(text)) switch (c) {  // XML has no control characters, and HTML shows none
       case '&':
         out += "&amp;";
         break;

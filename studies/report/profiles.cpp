@@ -31,6 +31,9 @@ std::string name_of(const Contestant& contestant) {
 void add_stairs(Figure& figure, const json& base, std::vector<double> places, std::size_t problems, double begin,
                 double end) {
   std::sort(places.begin(), places.end());
+  // of many problems every n-th stair stands for those before it, at the height they reach together
+  constexpr std::size_t most = 300;
+  const std::size_t stride = (places.size() + most - 1) / most;
   double share = 0;
   int order = 0;
   const auto add = [&](double x, double y, bool corner) {
@@ -43,6 +46,7 @@ void add_stairs(Figure& figure, const json& base, std::vector<double> places, st
   };
   add(begin, 0, false);
   for (std::size_t i = 0; i < places.size(); ++i) {
+    if ((places.size() - 1 - i) % stride != 0) continue;
     add(places[i], share, false);
     share = static_cast<double>(i + 1) / static_cast<double>(problems);
     add(places[i], share, i + 1 == places.size() || places[i + 1] > places[i]);

@@ -4,13 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <set>
 #include <sstream>
-#include <stdexcept>
+#include <utility>
+#include <variant>
 
+#include "studies/atomic_file.hpp"
+#include "studies/input_fault.hpp"
+#include "studies/method_options.hpp"
 #include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
+#include "studies/report/sample.hpp"
 #include "studies/result_rows.hpp"
 
 namespace stickslip::report {
@@ -41,9 +45,10 @@ std::string scene_text(const json& vary) {
   return out;
 }
 
-Cell read_cell(const json& record) {
+Cell read_cell(json&& row) {
   Cell cell;
-  cell.record = record;
+  cell.record = std::move(row);
+  const json& record = cell.record;
   if (const json& method = at(record, "method"); method.is_object() && !method.empty())
     cell.family = method.begin().key();
   else if (method.is_string())
@@ -120,6 +125,36 @@ std::string main_variant_of(const Study& study) {
   return best;
 }
 
+/// The number that an option has in a run that does not sweep it: as used, or what "auto" stands for. None where it is
+/// no number.
+std::optional<double> option_as_used(const Cell& cell, const std::string& name) {
+  const json* value = &object_at(at(cell.record, "method"), cell.family);
+  std::istringstream keys(name);
+  for (std::string key; std::getline(keys, key, '.');) value = &at(*value, key);
+  if (value->is_number()) return value->get<double>();
+  const auto method = default_method(cell.family);
+  if (*value != "auto" || !method || (name != "stiffness" && name != "scale")) return std::nullopt;
+  return std::visit([](const auto& m) { return m.automatic_multiple; }, *method);
+}
+
+/// Gives runs of a method that leave out an option which others of it sweep, or say "auto", their place among them.
+void complete_knobs(std::vector<Cell>& cells) {
+  std::map<std::string, std::set<std::string>> swept;  // names of options with a number, by family
+  for (const auto& cell : cells)
+    for (const auto& knob : cell.knobs)
+      if (knob.value) swept[cell.family].insert(knob.name);
+  for (auto& cell : cells)
+    for (const auto& name : swept[cell.family]) {
+      const auto value = option_as_used(cell, name);
+      const auto known =
+          std::find_if(cell.knobs.begin(), cell.knobs.end(), [&](const Knob& knob) { return knob.name == name; });
+      if (known != cell.knobs.end() && !known->value)
+        known->value = value;
+      else if (known == cell.knobs.end() && value)
+        cell.knobs.push_back({name, plain(json(*value)), value});
+    }
+}
+
 /// `label` without " NAME=VALUE" of a knob. An absolute value may be written in any form, so all up to the blank goes.
 std::string without(std::string label, const std::string& knob) {
   const std::string key = " " + knob.substr(0, knob.find(" (")) + "=";
@@ -155,13 +190,10 @@ void shorten_labels(Study& study) {
 }
 
 json read_json(const std::filesystem::path& path) {
-  std::ifstream in(path);
-  if (!in) return nullptr;
-  try {
-    return json::parse(in);
-  } catch (const json::parse_error& e) {
-    throw std::runtime_error(path.string() + ": " + e.what());
-  }
+  if (!std::filesystem::exists(path)) return nullptr;
+  json content = json::parse(read_file(path), nullptr, false);
+  if (content.is_discarded()) throw InputFault(path.string() + ": is not JSON");
+  return content;
 }
 
 }  // namespace
@@ -174,10 +206,11 @@ Study read_study(const std::filesystem::path& directory) {
   study.picture = read_json(directory / "picture.json");
 
   if (!std::filesystem::exists(directory / "results.jsonl"))
-    throw std::runtime_error((directory / "results.jsonl").string() + ": there is no such file");
-  const StoredRows stored = read_rows(directory);
+    throw InputFault((directory / "results.jsonl").string() + ": there is no such file");
+  StoredRows stored =
+      read_rows(directory, [first = true](json& row) mutable { drop_bulk(row, std::exchange(first, false)); });
   study.faults = stored.faults();
-  for (const auto& id : stored.order) study.cells.push_back(read_cell(stored.rows.at(id)));
+  for (const auto& id : stored.order) study.cells.push_back(read_cell(std::move(stored.rows.at(id))));
   for (const json& id : array_at(study.description, "cells"))
     study.unrecorded += id.is_string() && stored.rows.count(id) == 0;
 
@@ -192,9 +225,11 @@ Study read_study(const std::filesystem::path& directory) {
     measure_work(cell, ratio == study.ratio.end() ? 0 : ratio->second);
   }
   study.families = distinct(study.cells, [](const Cell& c) { return c.family; });
+  complete_knobs(study.cells);
   shorten_labels(study);
   study.variants = distinct(study.cells, [](const Cell& c) { return c.variant; });
   study.main_variant = main_variant_of(study);
+  attach_curves(study, directory);
   return study;
 }
 

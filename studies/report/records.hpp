@@ -15,12 +15,12 @@ namespace stickslip::report {
 struct Knob {
   std::string name;             ///< option name; "NAME (absolute)" where the value is {"absolute": number}
   std::string text;             ///< the value as shown
-  std::optional<double> value;  ///< the number, where it is one
+  std::optional<double> value;  ///< the number, where it is one; of "auto" the one that it stands for
 };
 
 /// One cell of a study: a method with its options, on one variant of the scene.
 struct Cell {
-  nlohmann::json record;  ///< the whole line
+  nlohmann::json record;  ///< the line; without its steps, film and interface but where attach_curves() adds them
   std::string label;      ///< method and options, as recorded or made up from them, without Study::shared
   std::string family;     ///< key of the method: penalty, uzawa_al, monolithic_al, ...
   std::string status;
@@ -52,7 +52,7 @@ struct Study {
   std::size_t unrecorded = 0;         ///< cells of the study without a row
 };
 
-/// Reads `directory`. Throws std::runtime_error where there is no results.jsonl or study.json is no JSON.
+/// Reads `directory`. Throws InputFault where there is no results.jsonl or study.json is no JSON.
 Study read_study(const std::filesystem::path& directory);
 
 /// "Penalty", "Uzawa AL", "Monolithic AL"; another key as it stands.

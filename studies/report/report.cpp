@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <set>
 #include <sstream>
 
 #include "studies/atomic_file.hpp"
+#include "studies/input_fault.hpp"
 #include "studies/report/charts.hpp"
 #include "studies/report/embedded.hpp"
 #include "studies/report/figure_files.hpp"
@@ -17,6 +19,7 @@
 #include "studies/report/picture.hpp"
 #include "studies/report/plot.hpp"
 #include "studies/report/records.hpp"
+#include "studies/report/sample.hpp"
 #include "studies/report/tables.hpp"
 
 namespace stickslip {
@@ -56,7 +59,8 @@ std::string plain_picture(const Figure& figure, const Panel& panel) {
 
 /// Six digits are more than a chart shows, in a third of the bytes. The files beside the page hold all of them.
 json rounded(const json& value) {
-  return value.is_number_float() ? json(std::stod(fmt::format("{:.6g}", value.get<double>()))) : value;
+  return value.is_number_float() ? json(std::strtod(fmt::format("{:.6g}", value.get<double>()).c_str(), nullptr))
+                                 : value;
 }
 
 std::string to_html(const Figure& figure) {
@@ -193,7 +197,7 @@ std::string provenance(const Study& study) {
   const json& p = object_at(study.cells.front().record, "provenance");
   std::vector<std::pair<std::string, json>> entries;
   for (const auto& [key, value] : p.items())
-    if (key != "libraries") entries.emplace_back(key, value);
+    if (key != "libraries" && key != "checksum") entries.emplace_back(key, value);
   for (const auto& [name, version] : object_at(p, "libraries").items())
     entries.emplace_back("library " + name, version);
   entries.emplace_back("scene hash", at(study.description, "scene_hash"));
@@ -254,7 +258,16 @@ class Figures {
   std::vector<Plate> plates;
 };
 
-std::string findings(const Study& study) {
+/// "3900 converged, 100 cap" of the runs' statuses.
+std::string statuses(const Study& study) {
+  std::map<std::string, int> count;
+  for (const auto& cell : study.cells) ++count[cell.converged ? "converged" : cell.status];
+  std::string out;
+  for (const auto& [status, cells] : count) out += fmt::format("{}{} {}", out.empty() ? "" : ", ", cells, status);
+  return out;
+}
+
+std::string findings(const Study& study, const Study& shown) {
   std::string out = "<ul class=\"headline\">";
   for (const auto& sentence : headline(study)) out += "<li>" + escape(sentence) + "</li>\n";
   out += "</ul>\n";
@@ -264,14 +277,19 @@ std::string findings(const Study& study) {
                        study.unrecorded + study.cells.size(), study.unrecorded, study.unrecorded == 1 ? "is" : "are",
                        is_merged(study) ? "run their shards with <code>--resume</code>, and merge again"
                                         : "the command at the end runs them with <code>--resume</code>");
-  return out + settings_table(study);
+  if (shown.cells.size() < study.cells.size())
+    out += fmt::format(
+        "<p class=\"note\">Of {} runs ({}) the charts and tables show {}: scene variants evenly spaced, or "
+        "settings of one. The sentences above, and the profiles, are of all; so is results.jsonl.</p>\n",
+        study.cells.size(), escape(statuses(study)), shown.cells.size());
+  return out + settings_table(shown);
 }
 
-std::string of_errors(const Study& study, Of of, Figures& figures) {
+std::string of_errors(const Study& all, const Study& study, Of of, Figures& figures) {
   std::string out = figures.show(work_precision(study, Against::same_mesh, of));
   out += figures.show(work_precision(study, Against::discretization, of));
   if (of == Of::responses) out += figures.show(mesh_convergence(study));
-  return out + figures.show(profiles(study, of));
+  return out + figures.show(profiles(all, of));
 }
 
 std::string of_knobs(const Study& study, Figures& figures) {
@@ -295,21 +313,22 @@ std::string of_solver(const Study& study, Figures& figures) {
   return out + figures.show(work_precision(study, Against::coulomb, Of::responses));
 }
 
-std::vector<Section> sections_of(const Study& study, Figures& figures) {
+/// `study`: what of `all` is shown run by run.
+std::vector<Section> sections_of(const Study& all, const Study& study, Figures& figures) {
   return {
-      {"findings", "What came out", findings(study)},
-      {"reading", "How to read this", how_to_read(study)},
-      {"responses", "Accuracy against cost: responses", of_errors(study, Of::responses, figures)},
-      {"sensitivities", "Accuracy against cost: sensitivities", of_errors(study, Of::sensitivities, figures)},
+      {"findings", "What came out", findings(all, study)},
+      {"reading", "How to read this", how_to_read(all)},
+      {"responses", "Accuracy against cost: responses", of_errors(all, study, Of::responses, figures)},
+      {"sensitivities", "Accuracy against cost: sensitivities", of_errors(all, study, Of::sensitivities, figures)},
       {"knobs", "Turning the knobs", of_knobs(study, figures)},
       {"solution", "The solution", of_solution(study, figures)},
       {"solver", "The solver at work", of_solver(study, figures)},
       {"results", "All results",
        study.cells.empty() ? std::string() : results_table(study) + values_table(study) + status_table(study)},
-      {"study", "What was simulated", the_study(study)},
+      {"study", "What was simulated", the_study(all)},
       {"provenance", "Provenance",
-       provenance(study) + folded("Licences of the chart library in this file",
-                                  "<pre>" + escape(embedded::third_party_notices()) + "</pre>\n")},
+       provenance(all) + folded("Licences of the chart library in this file",
+                                "<pre>" + escape(embedded::third_party_notices()) + "</pre>\n")},
   };
 }
 
@@ -340,10 +359,10 @@ std::string fill(std::string_view page, const std::map<std::string, std::string,
   }
 }
 
-std::string page_of(const Study& study, Figures& figures) {
+std::string page_of(const Study& study, const Study& shown, Figures& figures) {
   const std::string title = text_at(study.description, "title");
   std::string navigation, content;
-  for (const auto& section : sections_of(study, figures)) {
+  for (const auto& section : sections_of(study, shown, figures)) {
     if (section.content.empty()) continue;
     navigation += fmt::format("<a href=\"#{}\">{}</a>\n", section.id, section.title);
     content +=
@@ -362,11 +381,15 @@ std::string page_of(const Study& study, Figures& figures) {
 
 }  // namespace
 
-void write_report(const std::filesystem::path& directory) {
+void write_report(const std::filesystem::path& directory) try {
   const Study study = read_study(directory);
+  const Study shown = sample_of(study);
   Figures figures;
-  write_file_atomically(directory / "report.html", page_of(study, figures));
+  write_file_atomically(directory / "report.html", page_of(study, shown, figures));
   write_figures(directory, figures.figures, figures.plates);
+} catch (const json::exception& error) {  // rows have checksums; what else is recorded may have been edited
+  throw InputFault(directory.string() + ": study.json, picture.json or rows without a checksum hold what stickslip " +
+                   "does not write (" + error.what() + "); delete them, and run the study again with --resume");
 }
 
 }  // namespace stickslip

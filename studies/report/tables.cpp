@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 
@@ -200,6 +201,8 @@ std::string values_table(const Study& study) {
   std::set<Column> columns;
   for (const auto& cell : study.cells) columns.merge(value_columns(cell.record));
   if (columns.empty()) return {};
+  constexpr std::size_t most = 200;  // a table of more is read by programs alone, from results.jsonl
+  if (columns.size() > most) columns.erase(std::next(columns.begin(), most), columns.end());
   Table table;
   table.header = {"method", "scene", "status"};
   for (const auto& column : columns) table.header.push_back(column.title);

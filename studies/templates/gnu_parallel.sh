@@ -15,13 +15,24 @@ fi
 study=$(realpath "$1")
 output=$(realpath -m "$2")
 shards=${3:-8}
+if [[ ! $shards =~ ^[1-9][0-9]{0,4}$ ]]; then
+  echo "$0: SHARDS is '$shards'; must be a whole number from 1 to 99999" >&2
+  exit 2
+fi
 program=$(realpath "$(command -v "${STICKSLIP:-stickslip}")")
 read -ra flags <<< "${PARALLEL_FLAGS:-}"
 export OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1
 
 parts=()
 for ((i = 1; i <= shards; ++i)); do parts+=("$output/shards/$i"); done
+# Paths go by the environment: parallel would replace {} and its like in a command.
+export SHARE_PROGRAM=$program SHARE_STUDY=$study SHARE_OUTPUT=$output SHARE_COUNT=$shards
+names=()
+for name in OPENBLAS_NUM_THREADS OMP_NUM_THREADS SHARE_PROGRAM SHARE_STUDY SHARE_OUTPUT SHARE_COUNT; do
+  names+=(--env "$name")
+done
 # A share that fails does not stop the others; the merge then says what is missing, and its exit code is 3.
-parallel "${flags[@]}" --env OPENBLAS_NUM_THREADS --env OMP_NUM_THREADS --quote \
-  "$program" study "$study" --shard "{}/$shards" --resume -o "$output/shards/{}" ::: $(seq "$shards") || true
+parallel "${flags[@]}" "${names[@]}" \
+  '"$SHARE_PROGRAM" study "$SHARE_STUDY" --shard {}/"$SHARE_COUNT" --resume -o "$SHARE_OUTPUT"/shards/{}' \
+  ::: $(seq "$shards") || true
 exec "$program" merge "${parts[@]}" -o "$output"

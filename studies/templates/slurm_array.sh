@@ -15,6 +15,10 @@ fi
 study=$(realpath "$1")
 output=$(realpath -m "$2")
 shards=${3:-8}
+if [[ ! $shards =~ ^[1-9][0-9]{0,4}$ ]]; then
+  echo "$0: SHARDS is '$shards'; must be a whole number from 1 to 99999" >&2
+  exit 2
+fi
 program=$(realpath "$(command -v "${STICKSLIP:-stickslip}")")
 read -ra flags <<< "${SBATCH_FLAGS:-}"
 mkdir -p "$output/shards"

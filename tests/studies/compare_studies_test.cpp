@@ -43,6 +43,21 @@ TEST(CompareStudies, FindsNothingInEqualRowsOfAnotherVersion) {
   for (const auto& cell : cells) EXPECT_TRUE(cell.changes.empty());
 }
 
+TEST(CompareStudies, KnowsRecordingsOfDifferentStudies) {
+  EXPECT_EQ(unrelated(before, after("", "", 0)), "");
+  // another scene of the same responses may be an edited one
+  auto others = before;
+  for (auto& [id, row] : others) row["scene_hash"] = "other";
+  EXPECT_EQ(unrelated(before, others), "");
+  for (auto& [id, row] : others) {
+    row["responses"] = {{"drag", 1.0}};
+    row["sensitivities"] = json::object();
+  }
+  EXPECT_EQ(unrelated(before, others), "their scenes are not the same, and have no response in common");
+  for (auto& [id, row] : others) row["label"] = "another " + row["label"].get<std::string>();
+  EXPECT_EQ(unrelated(before, others), "they have no cell in common");
+}
+
 TEST(CompareStudies, HoldsOneMoreIterationAgainstTheNewRows) {
   const auto cells = compare_rows(before, after("uzawa_al", "/cost/counts/newton", 21), {});
   EXPECT_TRUE(any_worse(cells));

@@ -282,6 +282,34 @@ TEST_F(ReportNumbers, DrawsAGuideOfSlopeMinusOneBesideThePenalty) {
   EXPECT_NEAR(guide[0].first * guide[0].second / (guide[1].first * guide[1].second), 1, 1e-14);
 }
 
+/// A penalty without a stiffness has the automatic one, 1e3, and its place on the curve is there.
+TEST_F(ReportNumbers, PutsTheDefaultOfAnOptionWhereItsValueIs) {
+  auto cells = three_methods();
+  auto plain = cell("penalty", json::object(), 1e-3, 14);
+  plain["method"] = {{"penalty", {{"stiffness", "auto"}, {"newton", {{"tolerance", 1e-10}}}}}};
+  auto automatic = cell("penalty", {{"stiffness", "auto"}}, 1e-3, 14);
+  cells.push_back(plain);
+  cells.push_back(automatic);
+  record(description(), cells);
+  const auto s = study();
+  for (const std::size_t i : {cells.size() - 2, cells.size() - 1})
+    EXPECT_EQ(report::find_knob(s.cells[i], "stiffness")->value, 1e3);
+  EXPECT_EQ(report::find_knob(s.cells.back(), "stiffness")->text, "auto");
+  const auto figure = report::work_precision(s, Against::same_mesh, Of::responses);
+  for (const auto& row : figure->rows)
+    EXPECT_GE(row["order"].get<double>(), row["family"] == "penalty" ? 1e3 : 0) << row;
+}
+
+/// Options of other names are looked up as they were used.
+TEST_F(ReportNumbers, PutsATighterToleranceBesideTheOneThatIsTheDefault) {
+  auto loose = cell("uzawa_al", {{"tolerance", 1e-4}}, 1e-5, 20),
+       tight = cell("uzawa_al", {{"tolerance", 1e-9}}, 0, 40);
+  auto plain = cell("uzawa_al", json::object(), 1e-7, 30);
+  plain["method"] = {{"uzawa_al", {{"tolerance", 1e-6}}}};
+  record(description(), {loose, tight, plain});
+  EXPECT_EQ(report::find_knob(study().cells[2], "tolerance")->value, 1e-6);
+}
+
 TEST_F(ReportNumbers, TreatsAnAbsoluteStiffnessAsAKnobOfItsOwn) {
   record(description(), {cell("penalty", {{"stiffness", {{"absolute", 1e3}}}}, 1e-3, 5),
                          cell("penalty", {{"stiffness", {{"absolute", 1e4}}}}, 1e-4, 5),

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -10,6 +11,7 @@
 #include "studies/report/charts.hpp"
 #include "studies/report/headline.hpp"
 #include "studies/report/records.hpp"
+#include "studies/report/sample.hpp"
 #include "tests/studies/recorded_study.hpp"
 #include "tests/studies/report_page.hpp"
 
@@ -17,6 +19,7 @@ namespace stickslip {
 namespace {
 
 using nlohmann::json;
+using recorded::cell;
 using recorded::data_of;
 using recorded::description;
 using recorded::picture;
@@ -229,6 +232,43 @@ TEST_F(Report, SaysWhichFileIsMissingOrBroken) {
   EXPECT_THAT(message(), HasSubstr("study.json"));
   std::ifstream in(directory_ / "report.html");
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), before);  // the former report stands
+}
+
+/// 4000 runs in 100 scenes: the page shows some of them run by run, and says so.
+TEST_F(Report, OfManyRunsShowsSomeAndCountsAll) {
+  std::vector<json> cells;
+  for (int scene = 0; scene < 100; ++scene)
+    for (int i = 0; i < 40; ++i) {
+      cells.push_back(cell("penalty", {{"stiffness", 10.0 + i}}, 1e-3 / (1 + i), 10 + i));
+      cells.back()["vary"] = {{"/contacts/sole/friction", 0.01 * scene}};
+      if (i == 7) cells.back()["status"] = "cap";
+    }
+  record(description(), cells);
+  const auto whole = study();
+  ASSERT_EQ(whole.cells.size(), 4000u);
+  const auto shown = report::sample_of(whole);
+  EXPECT_LE(shown.cells.size(), 250u);
+  EXPECT_EQ(shown.main_variant, whole.main_variant);
+  EXPECT_EQ(std::count_if(shown.cells.begin(), shown.cells.end(),
+                          [&](const auto& cell) { return cell.variant == shown.main_variant; }),
+            40);
+  const std::string text = page();
+  EXPECT_THAT(text, HasSubstr("Of 4000 runs (100 cap, 3900 converged) the charts and tables show 240"));
+  EXPECT_LT(text.size(), 15u << 20);
+}
+
+/// Of one scene with too many settings the best and the worst stay.
+TEST_F(Report, OfManySettingsKeepsTheTellingOnes) {
+  std::vector<json> cells;
+  for (int i = 0; i < 1000; ++i)
+    cells.push_back(cell("penalty", {{"stiffness", 10.0 + i}}, i == 333 ? 1e-9 : i == 777 ? 0.5 : 1e-3, 10 + i));
+  record(description(), cells);
+  const auto shown = report::sample_of(study());
+  EXPECT_LE(shown.cells.size(), 250u);
+  for (const double stiffness : {343.0, 787.0})
+    EXPECT_TRUE(std::any_of(shown.cells.begin(), shown.cells.end(), [&](const auto& cell) {
+      return report::find_knob(cell, "stiffness")->value == stiffness;
+    })) << stiffness;
 }
 
 TEST_F(Report, WarnsWhereRunsComeFromUnlikeMachines) {

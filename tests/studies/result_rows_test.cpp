@@ -28,9 +28,12 @@ class ResultRows : public testing::Test {
   }
   ~ResultRows() override { std::filesystem::remove_all(directory_); }
 
+  /// A line that the program wrote.
+  static std::string line(const json& row) { return sealed(row).dump() + "\n"; }
   void write(const std::string& text) { std::ofstream(directory_ / "results.jsonl", std::ios::binary) << text; }
   std::string content() { return read_file(directory_ / "results.jsonl"); }
 
+  const json a = {{"id", "a"}, {"status", "cap"}}, b = {{"id", "b"}, {"status", "cap"}};
   const std::filesystem::path directory_ =
       std::filesystem::path("result_rows_test") / testing::UnitTest::GetInstance()->current_test_info()->name();
   std::vector<std::string> notes_;
@@ -43,20 +46,20 @@ TEST_F(ResultRows, AreNoneInAnEmptyDirectory) {
 }
 
 TEST_F(ResultRows, AreLeftAloneWhereTheyAreSound) {
-  write("{\"id\":\"b\",\"status\":\"cap\"}\n{\"id\":\"a\",\"status\":\"cap\"}\n");
+  write(line(b) + line(a));
   const auto rows = resume_rows(directory_, {"a", "b"}, notes_);
   EXPECT_EQ(rows.size(), 2u);
   EXPECT_THAT(notes_, IsEmpty());
-  EXPECT_EQ(content(), "{\"id\":\"b\",\"status\":\"cap\"}\n{\"id\":\"a\",\"status\":\"cap\"}\n");
+  EXPECT_EQ(content(), line(b) + line(a));
 }
 
 TEST_F(ResultRows, LoseATornLastLineAndSayIt) {
-  write("{\"id\":\"a\",\"status\":\"cap\"}\n{\"id\":\"b\",\"sta");
+  write(line(a) + "{\"id\":\"b\",\"sta");
   const auto rows = resume_rows(directory_, {"a", "b"}, notes_);
   EXPECT_EQ(rows.count("a"), 1u);
   EXPECT_EQ(rows.count("b"), 0u);
   EXPECT_THAT(notes_, ElementsAre("a torn last line (14 bytes) was dropped"));
-  EXPECT_EQ(content(), "{\"id\":\"a\",\"status\":\"cap\"}\n");
+  EXPECT_EQ(content(), line(a));
 }
 
 TEST_F(ResultRows, LoseATornFirstLine) {
@@ -66,15 +69,14 @@ TEST_F(ResultRows, LoseATornFirstLine) {
 }
 
 TEST_F(ResultRows, LoseDoublesAndLinesThatAreNoRows) {
-  write(
-      "{\"id\":\"a\",\"n\":1,\"status\":\"cap\"}\nnonsense\n[1]\n{\"id\":7}\n{\"id\":\"a\",\"n\":2,\"status\":\"cap\"}"
-      "\n");
+  const json first = {{"id", "a"}, {"n", 1}, {"status", "cap"}}, second = {{"id", "a"}, {"n", 2}, {"status", "cap"}};
+  write(line(first) + "nonsense\n[1]\n{\"id\":7}\n" + line(second));
   const auto rows = resume_rows(directory_, {"a"}, notes_);
   EXPECT_EQ(rows.at("a")["n"], 2);
   EXPECT_THAT(notes_, ElementsAre("line 2 is no row and was dropped: it is not JSON; line 3 is no row and was dropped: "
-                                  "it is [1]; line 4 is no row and was dropped: it has no \"status\"; "
+                                  "it is an array; line 4 is no row and was dropped: it has no \"status\"; "
                                   "1 double row(s) were dropped"));
-  EXPECT_EQ(content(), "{\"id\":\"a\",\"n\":2,\"status\":\"cap\"}\n");
+  EXPECT_EQ(content(), line(second));
 }
 
 /// A cell whose row is damaged is run again.
@@ -114,17 +116,71 @@ TEST_F(ResultRows, GoWithRecordsThatAreWholeOrNamed) {
 }
 
 TEST_F(ResultRows, PutThoseOfAnotherStudyAside) {
-  write("{\"id\":\"old\",\"status\":\"cap\"}\n{\"id\":\"a\",\"status\":\"cap\"}\n");
+  const json old = {{"id", "old"}, {"status", "cap"}};
+  write(line(old) + line(a));
   EXPECT_EQ(resume_rows(directory_, {"a"}, notes_).size(), 1u);
   EXPECT_THAT(notes_, ElementsAre(HasSubstr("1 row(s) of another study")));
-  EXPECT_EQ(read_file(directory_ / "results.stale.jsonl"), "{\"id\":\"old\",\"status\":\"cap\"}\n");
-  EXPECT_EQ(content(), "{\"id\":\"a\",\"status\":\"cap\"}\n");
+  EXPECT_EQ(read_file(directory_ / "results.stale.jsonl"), line(old));
+  EXPECT_EQ(content(), line(a));
 }
 
 TEST_F(ResultRows, AreWrittenInTheOrderOfTheStudy) {
   write_rows(directory_, {"b", "c", "a"},
              {{"a", {{"id", "a"}, {"status", "cap"}}}, {"b", {{"id", "b"}, {"status", "cap"}}}});
-  EXPECT_EQ(content(), "{\"id\":\"b\",\"status\":\"cap\"}\n{\"id\":\"a\",\"status\":\"cap\"}\n");
+  EXPECT_EQ(content(), line(b) + line(a));
+}
+
+/// A number that changed on the disk, or a part that went missing, is noticed, wherever it is.
+TEST_F(ResultRows, AreKnownByTheirChecksum) {
+  const json row = {{"id", "a"},
+                    {"status", "converged"},
+                    {"responses", {{"press", 1.25}, {"tiny", 4e-310}, {"whole", 7}, {"none", nullptr}}},
+                    {"provenance", {{"git", "abc"}}}};
+  const std::string sound = line(row);
+  write(sound);
+  EXPECT_EQ(read_rows(directory_).rows.size(), 1u);
+  EXPECT_THAT(read_rows(directory_).unsealed, IsEmpty());
+  int noticed = 0, changes = 0;
+  for (std::size_t i = 0; i + 1 < sound.size(); ++i) {
+    std::string damaged = sound;
+    damaged[i] = damaged[i] == '3' ? '4' : '3';
+    write(damaged);
+    const auto stored = read_rows(directory_);
+    ++changes;
+    noticed += stored.rows.empty() || !stored.unsealed.empty();
+    EXPECT_TRUE(resume_rows(directory_, {"a"}, notes_).empty()) << damaged;
+  }
+  EXPECT_EQ(noticed, changes);
+}
+
+/// Another program may write the same numbers in other words.
+TEST_F(ResultRows, KeepTheirChecksumInOtherWords) {
+  write(sealed({{"id", "a"}, {"status", "converged"}, {"n", 1e-5}}).dump(-1, ' ', true) + "\n");
+  std::string text = content();
+  text.replace(text.find("1e-05"), 5, "0.00001");
+  write(text);
+  EXPECT_TRUE(read_rows(directory_).sound());
+}
+
+TEST_F(ResultRows, AreRunAnewWithoutAChecksum) {
+  write(a.dump() + "\n" + line(b));
+  EXPECT_EQ(read_rows(directory_).rows.size(), 2u);
+  const auto rows = resume_rows(directory_, {"a", "b"}, notes_);
+  EXPECT_EQ(rows.count("a"), 0u);
+  EXPECT_EQ(rows.count("b"), 1u);
+  EXPECT_THAT(notes_, ElementsAre("1 row(s) without a checksum were dropped"));
+}
+
+TEST_F(ResultRows, LeaveOutTimedRunsThatAreDamaged) {
+  append_timing(directory_, "a", 1, {{"total", 2.5}});
+  const std::string sound = read_file(directory_ / "timings.jsonl");
+  for (const std::string& damaged :
+       {std::string("{}"), std::string("[1]"), std::string("{\"id\":\"a\",\"round\":2,\"seconds\":{\"total\":1}}"),
+        std::string("{\"id\":\"a\",\"round\":2,\"seconds\":\"x\"}"), std::string("nonsense \xff")})
+    append_line(directory_ / "timings.jsonl", damaged);
+  int count = 0;
+  EXPECT_EQ(read_timings(directory_, &count).at("a").size(), 1u);
+  EXPECT_EQ(count, 5);
 }
 
 TEST_F(ResultRows, RememberEachTimedRun) {
@@ -151,7 +207,18 @@ TEST_F(ResultRows, BelongToOneProcessAtATime) {
       },
       [&](std::size_t, const std::string& text) {
         EXPECT_THAT(text, HasSubstr("another stickslip writes here (process " + std::to_string(::getpid()) + ")"));
-      });
+      },
+      [](std::size_t, int signal) { ADD_FAILURE() << signal; });
+}
+
+TEST_F(ResultRows, AreLostWithTheirDirectoryWithAWord) {
+  const DirectoryLock lock(directory_);
+  EXPECT_NO_THROW(lock.check());
+  std::filesystem::remove_all(directory_);
+  EXPECT_THROW(lock.check(), InputFault);
+  std::filesystem::create_directories(directory_);  // another one of the same name
+  std::ofstream(directory_ / ".lock") << "";
+  EXPECT_THROW(lock.check(), InputFault);
 }
 
 TEST_F(ResultRows, AreFreeAgainAfterTheLock) {

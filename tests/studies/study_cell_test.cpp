@@ -162,6 +162,52 @@ TEST_F(StudyCell, AClosedFormWithoutAnAnswerGivesNoErrors) {
   EXPECT_EQ(errors["discretization"], json::object());
 }
 
+/// A block that its weight presses on a floor of friction 1000 and its drive lifts at one end, on the sparse engine:
+/// the last factorisation of a run that ends without an answer fails.
+TEST_F(StudyCell, ARunThatEndsWithoutFactorsIsARow) {
+  json scene = block();
+  scene["contacts"]["sole"]["friction"] = 1000;
+  scene["loads"] = {{{"on", "block"}, {"body_force", {3, -1}}, {"history", {{0, 0}, {1, 1}}}}};
+  scene["linear_solver"] = {{"engine", "sparse"}};
+  const auto [study, cells] =
+      read(scene, {{"methods", {{{"uzawa_al", json::object()}}, {{"penalty", json::object()}}}}});
+  ASSERT_EQ(cells.size(), 2u);
+  CellRunner runner(study, cells, meshes_);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const json row = runner.row(i);
+    EXPECT_NE(row["status"], "failed") << row["message"];
+    EXPECT_TRUE(row["cost"].contains("condition_estimate"));
+  }
+}
+
+/// Whatever a cell throws is a row, and the cells after it run.
+TEST_F(StudyCell, ACellThatThrowsIsARow) {
+  auto [study, cells] = read(block(), {{"methods", {{{"penalty", {{"stiffness", {10, 1000}}}}}}},
+                                       {"vary", {{"/contacts/sole/friction", {0.3, 0.4}}}}});
+  ASSERT_EQ(cells.size(), 4u);
+  cells[2].document.set("/bodies", 7, {"nowhere"});  // as of a fault in the program: no valid cell is like that
+  CellRunner runner(study, cells, meshes_);
+  EXPECT_EQ(runner.row(1)["status"], "converged");
+  const json row = runner.row(2);
+  EXPECT_EQ(row["status"], "failed");
+  EXPECT_EQ(row["id"], cells[2].id);
+  EXPECT_EQ(row["label"], cells[2].label);
+  EXPECT_NE(row["message"].get<std::string>().find("not a valid scene"), std::string::npos) << row["message"];
+  EXPECT_EQ(runner.row(3)["status"], "converged");
+}
+
+/// A reference that throws leaves the cells their own results.
+TEST_F(StudyCell, AReferenceThatThrowsGivesNoErrors) {
+  auto [study, cells] =
+      read(block(), {{"methods", {{{"penalty", json::object()}}}}, {"reference", {{{"overkill", {{"refine", 1}}}}}}});
+  study.references.front().method.options.push_back({"/no_such_option", {{1, {"nowhere"}}}});
+  CellRunner runner(study, cells, meshes_);
+  const json row = runner.row(0);
+  EXPECT_EQ(row["status"], "converged");
+  EXPECT_EQ(row["errors"]["discretization"], json::object());
+  EXPECT_NE(row["message"].get<std::string>().find("no_such_option"), std::string::npos) << row["message"];
+}
+
 /// What a worker of another process gives is what this one gives, so it must not depend on the cells before.
 TEST_F(StudyCell, ARowDoesNotDependOnWhatRanBefore) {
   const auto [study, cells] =

@@ -1,0 +1,29 @@
+/// Text from outside (names, paths, recorded messages) as it is printed, written to JSON or put on a command line.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+
+namespace stickslip {
+
+/// True where the bytes are UTF-8 throughout (RFC 3629: no surrogates, nothing overlong).
+bool is_utf8(std::string_view text);
+
+/// The text in one line that moves no cursor and changes no colour: control characters, and those that turn the
+/// direction of writing, as \n, \t or \u001b; bytes that are not UTF-8 as \xff.
+std::string printable(std::string_view text);
+/// The same, with the ends of lines left as they are.
+std::string printable_lines(std::string_view text);
+
+/// JSON in one line, or indented. Never throws: bytes that are not UTF-8 become U+FFFD.
+std::string json_text(const nlohmann::json& value, int indent = -1);
+
+/// A word as bash reads it again: as it is, in single quotes, or, where it holds what would not print, as $'...'.
+std::string shell_word(std::string_view word);
+
+/// The text of a cell of a CSV file, in double quotes where it needs them. What a spreadsheet would take for a formula
+/// (it begins with = + - @ or a tab) gets an apostrophe before it, by which spreadsheets know text.
+std::string csv_text(std::string_view text);
+
+}  // namespace stickslip

@@ -1,0 +1,32 @@
+/// Memory that a run needs, estimated before any of it is allocated.
+#pragma once
+
+#include <string>
+
+#include "core/model/scene.hpp"
+
+namespace stickslip {
+
+/// What decides how much a run needs.
+struct ProblemSize {
+  double displacements = 0;
+  double contact_dofs = 0;  ///< displacements of the nodes of sides in contact
+  double contact_points = 0;
+  double steps = 0;
+  bool condensed = false;  ///< bodies condensed to the contact dofs
+};
+
+/// Nodes of a mesh that a generator makes, within a few per cent; of an imported one those it has.
+double estimated_nodes(const MeshDescription& mesh, const std::string& element);
+
+/// Bytes of a run, within a factor of two: it is meant to tell a megabyte from a terabyte.
+double estimated_bytes(const ProblemSize& size);
+
+/// Bytes that this process may have: the machine's memory, or less where a limit of the process or of its control group
+/// says so. Linux; elsewhere infinite.
+double memory_limit();
+
+/// "some 45 GB of memory, and there are 16 GB for this process".
+std::string too_much(double bytes, double limit);
+
+}  // namespace stickslip
