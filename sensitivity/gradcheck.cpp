@@ -73,8 +73,8 @@ Extrapolated extrapolate(const Differences& differences, Eigen::Index i, Eigen::
     // what truncation (large steps) and the solver's noise (small ones) leave shows in the distance to the neighbours;
     // a pair without neighbours has only the term it took away to tell
     double spread = values.size() == 1 ? std::abs(values[k] - differences.values[k + 1](i, n)) : 0;
-    if (k > 0) spread = std::max(spread, std::abs(values[k] - values[k - 1]));
-    if (k + 1 < values.size()) spread = std::max(spread, std::abs(values[k] - values[k + 1]));
+    if (k > 0) spread = larger(spread, std::abs(values[k] - values[k - 1]));
+    if (k + 1 < values.size()) spread = larger(spread, std::abs(values[k] - values[k + 1]));
     const double estimate = spread + rounding / differences.step[k + 1];
     if (estimate < best.estimate) best = {values[k], estimate, differences.step[k + 1]};
   }
@@ -88,7 +88,7 @@ double noise(const Differences& differences, Eigen::Index i) {
   for (std::size_t k = 0; k + 1 < differences.step.size(); ++k) {
     double apart = 0;
     for (Eigen::Index n = 0; n < differences.values[k].cols(); ++n)
-      apart = std::max(apart, std::abs(differences.values[k](i, n) - differences.values[k + 1](i, n)));
+      apart = larger(apart, std::abs(differences.values[k](i, n) - differences.values[k + 1](i, n)));
     least = std::min(least, apart * differences.step[k + 1]);
   }
   return least;
@@ -174,7 +174,7 @@ void compare(const Differences& differences, const std::vector<Matrix<double>>& 
     const double scale = worst.scale > 0 ? worst.scale : 1;
     const double error = std::abs(computed[n](i, j) - best.value) / scale, estimate = best.estimate / scale;
     const double allowed = std::max(scheme, estimate);
-    if (error / allowed <= excess) continue;
+    if (std::isnan(excess) || error / allowed <= excess) continue;  // one that is no number is the worst of all
     excess = error / allowed;
     worst.time = times[n];
     worst.computed = computed[n](i, j);

@@ -10,7 +10,8 @@ packages=(g++ cmake ninja-build libeigen3-dev libsuitesparse-dev libopenblas0-se
   libmumps-headers-dev nlohmann-json3-dev libcli11-dev libfmt-dev)
 case "${1:-}" in
   "") ;;
-  test) packages+=(libgtest-dev libgmock-dev libbenchmark-dev librapidcheck-dev python3-jsonschema) ;;
+  test) packages+=(libgtest-dev libgmock-dev libbenchmark-dev librapidcheck-dev python3-jsonschema
+    python3-numpy python3-scipy) ;;
   python) packages+=(pybind11-dev python3-dev python3-numpy python3-matplotlib jupyter-nbconvert python3-ipykernel) ;;
   *) echo "usage: $0 [test|python]" >&2; exit 2 ;;
 esac

@@ -47,7 +47,7 @@ double radial_error(const Solution& s, Space space, double nu) {
       const int node = mesh.connectivity[e * n + a];
       const double x = s.slots.points(0, node), y = space == Space::axisymmetric ? 0 : s.slots.points(1, node);
       const double r = std::hypot(x, y), radial = (s.u[2 * node] * x + s.u[2 * node + 1] * y) / r;
-      worst = std::max(worst, std::abs(radial - ring_displacement(space, nu, r)));
+      worst = larger(worst, std::abs(radial - ring_displacement(space, nu, r)));
     }
   return worst / ring_displacement(space, nu, 1);
 }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "tests/support/largest.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace stickslip {
@@ -47,7 +48,7 @@ double cell_size(const scenes::Solved& s) {
   const auto nodes = s.model.side("upper.arc").nodes;
   double least = radius;
   for (std::size_t n = 1; n < nodes.size(); ++n)
-    least = std::min(least, (s.slots.points.col(nodes[n]) - s.slots.points.col(nodes[n - 1])).norm());
+    least = smaller(least, (s.slots.points.col(nodes[n]) - s.slots.points.col(nodes[n - 1])).norm());
   return least;
 }
 
@@ -106,12 +107,12 @@ TEST(CattaneoMindlin, StickZoneAndTractionFollowTheForces) {
     for (std::size_t p = 0; p < s.model.points.size(); ++p) {
       const int k = s.model.points[p].multiplier;
       const double x = s.slots.points(0, s.model.points[p].nodes[0]);
-      if (state.contact.state[p] == ContactState::stick) stick = std::max(stick, std::abs(x));
+      if (state.contact.state[p] == ContactState::stick) stick = larger(stick, std::abs(x));
       if (std::abs(x) >= b - h) continue;
       double exact = std::sqrt(1 - x * x / (b * b));
       if (std::abs(x) < c) exact -= c / b * std::sqrt(1 - x * x / (c * c));
       if (std::abs(std::abs(x) - c) > 2 * h)  // the cusp at the edge of the stick zone is smeared over its cells
-        worst = std::max(worst, std::abs(std::abs(state.contact.traction[k + 1]) / (mu * p0) - exact));
+        worst = larger(worst, std::abs(std::abs(state.contact.traction[k + 1]) / (mu * p0) - exact));
     }
     EXPECT_NEAR(stick, c, 2 * h) << name_of(method) << " b " << b << " h " << h;
     // the theory leaves out what shear does to the gap, and lets each half disk be a half-space: 5 % of the peak

@@ -425,7 +425,7 @@ TEST(Responses, MomentsOfContactAndSupportsBalanceThoseOfTheLoads) {
     double sum = loads, largest = 0;
     for (const auto& response : s.responses) {
       sum += r.value(response.name);
-      largest = std::max(largest, std::abs(r.value(response.name)));
+      largest = larger(largest, std::abs(r.value(response.name)));
     }
     EXPECT_GT(largest, 1);
     // equilibrium holds to Newton's tolerance of the largest force

@@ -61,7 +61,7 @@ double traction_error(const Solved& s) {
     if (s.model.points[p].tangents) t += contact.traction[k + 1] * Eigen::Vector2d(g.tangents.col(0));
     // the force on the slave is -t A, A along the interface: a vertical pressure p per horizontal length on it
     const double slope = std::abs(g.normal[1]);
-    worst = std::max(worst, (t - Eigen::Vector2d(0, -10 * slope)).norm() / 10);
+    worst = larger(worst, (t - Eigen::Vector2d(0, -10 * slope)).norm() / 10);
   }
   return worst;
 }
@@ -125,7 +125,7 @@ TEST(ContactPatch, FailsWithNodeToSegmentWhereMeshesDoNotMatchByTheDerivedAmount
     for (int node : side.nodes) {
       const bool end = node == side.nodes.front() || node == side.nodes.back();
       const double share = (end ? 0.5 : 1.0) / row.master;
-      worst = std::max(worst, std::abs(load[node] / share - 1));
+      worst = larger(worst, std::abs(load[node] / share - 1));
     }
     EXPECT_NEAR(worst, row.error, row.error == 0 ? 1e-12 : 5e-4 + 0.01 * row.error)  // the printed digits
         << row.slave << ":" << row.master;

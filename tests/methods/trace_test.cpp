@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "methods/method.hpp"
+#include "tests/support/same_bits.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace stickslip {
@@ -33,6 +34,13 @@ TEST(Trace, HasEveryIterateOfTheHistory) {
         EXPECT_EQ(iterate.record.residual, record.residual);
       }
     EXPECT_EQ(next, t.trace.iterates.size());
+  }
+}
+
+TEST(Trace, DoesNotChangeTheSolution) {
+  for (const Method& method : {Method(Penalty{}), Method(UzawaAL{}), Method(MonolithicAL{})}) {
+    const Traced t(scenes::two_boxes(6, 9), method);
+    expect_same_bits(t.trajectory, solve(t.model, t.slots, method), std::string(name_of(method)) + " traced");
   }
 }
 

@@ -108,7 +108,8 @@ TEST(Acceleration, ConvergesToTheSameSolutionAsPlainUpdates) {
           // where a point has come to rest on its cone, as in the bar.)
           EXPECT_LE((a.contact.traction - b.contact.traction).norm(), 1e-10 * b.contact.traction.norm());
           EXPECT_LE((a.displacement - b.displacement).norm(), 1e-9 * b.displacement.norm());
-          EXPECT_LE(s.trajectory.increments[n].augmentations, none.trajectory.increments[n].augmentations + 2);
+          // two extrapolations that are taken back are free; at 1e-12, rounding ends either run an augmentation later
+          EXPECT_LE(s.trajectory.increments[n].augmentations, none.trajectory.increments[n].augmentations + 3);
         }
       }
     }

@@ -1,17 +1,22 @@
-"""Checks contact_reference.py itself: python3 check_references.py. Prints a line per check.
+"""Checks contact_reference.py itself: check_references.py [PART...]; without parts, those of seconds. One line a check.
 
 Closed forms and published numbers of the scenes, derivatives against differences of the whole path with free states,
-and, where there are few points, all combinations of states tried one by one.
+all combinations of states tried one by one where there are few points, and the stored solutions, solved anew.
+`check_references.py faults` plants an error at a time in contact_reference.py; the parts of seconds must see each.
 """
 
 import itertools
+import json
 import math
+import os
+import subprocess
 import sys
+import tempfile
 
 import numpy as np
 
-from contact_reference import Model, Path, differences, solve, weights_of
-from make_references import belt, boxes, cases, changed, plate, points_plane, pull_out, shipped
+from contact_reference import Model, Path, at_pointer, differences, reference, solve, weights_of
+from make_references import HERE, SCENES, belt, boxes, cases, changed, plate, points_plane, pull_out, shipped
 
 FAILED = []
 
@@ -19,7 +24,7 @@ FAILED = []
 def check(what, got, expected, tolerance):
     """tolerance is relative to the expected number (to 1 where that is 0)."""
     error = abs(got - expected) / (abs(expected) or 1.0)
-    ok = error <= tolerance
+    ok = bool(error <= tolerance)  # (of a NaN: not)
     print(f"{'ok  ' if ok else 'FAIL'} {what:60} {got:.12g}  expected {expected:.12g}  error {error:.1e}")
     if not ok:
         FAILED.append(what)
@@ -59,15 +64,15 @@ def slider():
         check(f"slider: back from {top}: du/dmu", g["u"]["mu"], du_dmu, 1e-12)
 
 
-def tractrix():
-    for steps, printed in ((30, 7.61e-3), (300, 7.72e-4)):
-        v, g = last(shipped("tractrix", __time__steps=steps), derivatives=steps == 300)
+def tractrix(all_increments=((30, 7.61e-3, 1e-1),), circles=((20, 4, 0.7116266437),)):
+    """Increments with the printed error and the error of a derivative (both fall as the increment), and circles."""
+    for steps, printed, first_order in all_increments:
+        v, g = last(shipped("tractrix", __time__steps=steps))
         error = math.hypot(v["x"] - 2.0027245810, v["y"] + 0.6 - 0.0737681415)
         check(f"tractrix: error of {steps} increments", error, printed, 1e-2)
-    check("tractrix: dx/dc (first order in 300 increments)", g["x"]["mu"] / 2, -0.98530359, 1e-2)
-    check("tractrix: dy/dc (first order in 300 increments)", g["y"]["mu"] / 2, 0.23561588, 1e-2)
-    for n, printed in ((20, 0.7116266437), (100, 0.7813755068)):
-        turns = 4 if n == 20 else 3
+        check(f"tractrix: dx/dc of {steps} increments", g["x"]["mu"] / 2, -0.98530359, first_order)
+        check(f"tractrix: dy/dc of {steps} increments", g["y"]["mu"] / 2, 0.23561588, first_order)
+    for n, turns, printed in circles:
         angle = lambda i: 2 * math.pi * i / n
         # the hand starts at (1, 0), the block on it; c = mu N / k = 0.6
         document = changed(shipped("tractrix"), {
@@ -78,6 +83,10 @@ def tractrix():
         v, _ = last(document, derivatives=False)
         check(f"circle of {n} increments: radius of the block", math.hypot(v["x"], v["y"]), printed,
               1e-9 if n == 20 else 1e-4)  # the transient still decays in the longer one
+
+
+def slow_tractrix():
+    tractrix(((300, 7.72e-4, 1e-2),), ((100, 3, 0.7813755068),))
 
 
 def bar():
@@ -116,20 +125,98 @@ def greco():
     check("plate 32: Euler", 50 * g["u1"]["pressure"] + 150 * g["u1"]["push"], v["u1"], 1e-10)
 
 
-def derivatives():
+def uniform():
+    """A block under a uniform traction is stretched uniformly: H = (1 - nu^2) t / E along it, in plane strain."""
+    young, nu, t = 1000, 0.3, 5
+    for element, space in itertools.product(("Q4", "T3"), ("plane_strain", "plane_stress")):
+        block = {"mesh": {"box": {"min": [0, 0], "max": [2, 1], "cells": [3, 2]}}, "element": element,
+                 "material": {"linear_elastic": {"E": young, "nu": nu}}}
+        v, g = last({
+            "space": space, "bodies": {"block": block},
+            "supports": [{"on": "block.left", "move": {"x": 0}}, {"on": "block.bottom", "move": {"y": 0}}],
+            "loads": [{"on": "block.right", "traction": [t, 0]}], "time": {"end": 1, "steps": 1},
+            "responses": {"u": {"displacement": {"on": "block.right", "component": "x"}},
+                          "v": {"displacement": {"on": "block.top", "component": "y"}},
+                          "hold": {"reaction": {"on": "block.left", "component": "x"}},
+                          "energy": {"strain_energy": {}}},
+            "parameters": {"nu": "/bodies/block/material/linear_elastic/nu"}})
+        E, n = (young, nu) if space == "plane_stress" else (young / (1 - nu * nu), nu / (1 - nu))
+        check(f"{element}, {space}: u", v["u"], 2 * t / E, 1e-12)
+        check(f"{element}, {space}: v", v["v"], -n * t / E, 1e-12)
+        check(f"{element}, {space}: reaction", v["hold"], -t, 1e-12)
+        check(f"{element}, {space}: energy", v["energy"], t * 2 * t / E / 2, 1e-12)
+        check(f"{element}, {space}: du/dnu", g["u"]["nu"], 0 if space == "plane_stress" else -4 * nu * t / young, 1e-12)
+
+
+def balance():
+    """A corner with a support across a slope that it presses on: reaction, push of the slope and load balance."""
+    t, p = 2, 5
+    v, g = last({
+        "space": "plane_strain",
+        "bodies": {"block": {"mesh": {"box": {"min": [0, 0], "max": [2, 1], "cells": [3, 2]}},
+                             "material": {"linear_elastic": {"E": 1000, "nu": 0.3}}}},
+        "obstacles": {"floor": {"plane": {"point": [0, 0], "normal": [-0.01, 1]}}},
+        "contacts": {"sole": {"slave": "block.bottom", "master": "floor"}},
+        "supports": [{"on": "block.left", "move": {"x": 0}}],
+        "loads": [{"on": "block.top", "traction": [t, -p]}], "time": {"end": 1, "steps": 1},
+        "responses": {"hold": {"reaction": {"on": "block.left", "component": "x"}},
+                      "push": {"contact_force": {"contact": "sole", "component": "x"}},
+                      "press": {"contact_force": {"contact": "sole", "component": "normal"}}},
+        "parameters": {"tilt": "/obstacles/floor/plane/normal/0"}})
+    length = math.hypot(0.01, 1)
+    check("corner: normal force", v["press"], 2 * p * length, 1e-12)
+    check("corner: push of the slope", v["push"], -0.01 * 2 * p, 1e-12)
+    check("corner: reaction", v["hold"], -2 * t + 0.01 * 2 * p, 1e-12)
+    check("corner: d reaction / d tilt", g["hold"]["tilt"], -2 * p, 1e-12)
+
+
+def inequalities():
+    """Forces of states that are not the solution's violate the law, and verify() says so."""
+    document = shipped("slider")
+    path = Path(Model(document))
+    result = path.run()[0]
+    twin = Path(Model(document))
+    gap0, slip0, none = np.zeros(1), np.zeros(1), np.zeros(1)
+    x, force = result["u"], np.abs(result["rN"]).max()
+    gap, rubs = twin.BN @ x, twin.mu[0] * force
+    for what, state, rN, rT, gap0 in (
+            ("penetration", ("open", None), 0.0, 0.0, -gap - 0.1), ("tension", ("stick", None), -force, 0.0, -gap),
+            ("stick beyond the cone", ("stick", None), force, 2 * rubs, -gap)):
+        violation, _ = twin.verify([state], x, np.array([rN]), np.array([rT]), gap0, slip0, none)
+        check(f"verify: {what}", float(violation > 1e-3), 1, 0)
+    slip0 = 0.1 - twin.BT @ x
+    violation, _ = twin.verify([("slip", np.ones(1))], x, np.array([force]), np.array([rubs]), -gap, slip0, none)
+    check("verify: friction along the slip", float(violation > 1e-3), 1, 0)
+
+
+def worst_difference(document, law, steps):
+    """(error, response/parameter) of the largest relative error of the derivatives against differences; NaN counts."""
+    _, g = last(document, law)
+    worst, where = 0.0, ""
+    for parameter, pointer in document["parameters"].items():
+        for response, d in differences(document, weights_of(pointer), law, steps).items():
+            scale = max(abs(g[response][q]) for q in g[response])
+            error = abs(d - g[response][parameter]) / (abs(d) + 1e-3 * scale or 1.0)
+            if not error <= worst:
+                worst, where = error, f"{response}/{parameter}"
+    return worst, where
+
+
+def derivatives(documents=None):
     """Complex step against differences with Richardson, states free in the differences."""
-    for name, document, law in (("boxes", boxes("Q4"), None), ("boxes, penalty", boxes("T3"), {"stiffness": 2e4}),
-                                ("points", points_plane(), None), ("plate 8", plate(8), None),
-                                ("points in space", cases()["points_space"][0](), None)):
-        _, g = last(document, law)
-        worst, where = 0.0, ""
-        for parameter, pointer in document["parameters"].items():
-            for response, d in differences(document, weights_of(pointer), law, (1e-5, 5e-6, 2.5e-6)).items():
-                scale = max(abs(g[response][q]) for q in g[response])
-                error = abs(d - g[response][parameter]) / (abs(d) + 1e-3 * scale or 1.0)
-                if error > worst:
-                    worst, where = error, f"{response}/{parameter}"
+    for name, document, law in documents or (("boxes", boxes("Q4"), None), ("plate 8", plate(8), None),
+                                             ("boxes, penalty", boxes("T3"), {"stiffness": 2e4}),
+                                             ("points in space", cases()["points_space"][0](), None)):
+        worst, where = worst_difference(document, law, (1e-5, 5e-6, 2.5e-6))
         check(f"{name}: derivatives against differences, worst at {where}", worst, 0, 1e-5)
+
+
+def few_derivatives():
+    """The same on a short path, with three parameters: one of the law, one of the material, one of the shape."""
+    document = changed(boxes("Q4"), {"/time": {"end": 2, "steps": 2}, "/bodies/upper/mesh/box/cells": [3, 2],
+                                     "/bodies/lower/mesh/box/cells": [4, 2]})
+    document["parameters"] = {name: document["parameters"][name] for name in ("mu", "nu_lower", "left")}
+    derivatives((("small boxes", document, None), ("small boxes, penalty", document, {"stiffness": 2e4})))
 
 
 def enumeration():
@@ -160,7 +247,131 @@ def enumeration():
     check("points: combinations of states per step, most", max(counts), 1, 0)
 
 
+def flattened(value, key=()):
+    """(path, number or text) of everything in a step."""
+    if isinstance(value, dict):
+        for name, inner in value.items():
+            yield from flattened(inner, key + (name,))
+    elif isinstance(value, list):
+        for inner in value:
+            yield from flattened(inner, key + ("*",))
+    else:
+        yield key, value
+
+
+def natural_size(path, largest, document, law):
+    """What a number of this kind is measured by where it vanishes: gaps and slips by the largest displacement, forces
+    by the largest force, a derivative by its response over the parameter."""
+    if path[0] == "displacement" or path[0] == "contacts" and path[2] in ("gap", "slip"):
+        return max(v for p, v in largest.items() if p[0] == "displacement")
+    if path[0] == "contacts" and path[2] == "force":
+        return max(v for p, v in largest.items() if p[0] == "contacts" and p[2] == "force")
+    if path[0] == "sensitivities":
+        if path[2] == "stiffness":
+            at = law["stiffness"]
+        else:
+            node, key = at_pointer(document, next(iter(weights_of(document["parameters"][path[2]]))))
+            at = node[key]
+        return largest["responses", path[1]] / abs(at) if at else 0.0
+    return 0.0
+
+
+def same_solution(name, law, document, stored, fresh):
+    """Each number against the largest of its kind: both are solved to rounding, of conditions up to 1e6."""
+    label = f"{name} {'penalty' if law else 'exact'}"
+    check(f"{label}: steps", len(fresh["steps"]), len(stored["steps"]), 0)
+    kinds, unlike = {}, 0
+    for step, anew in zip(stored["steps"], fresh["steps"]):
+        # margins are rounding where a point is at its limit
+        both = [list(flattened({k: v for k, v in s.items() if k != "margins"})) for s in (step, anew)]
+        unlike += len(both[0]) != len(both[1])
+        for (path, a), (path_anew, b) in zip(*both):
+            if path != path_anew or isinstance(a, str) and a != b:
+                unlike += 1
+            elif not isinstance(a, str):
+                kinds.setdefault(path, []).append((a, b))
+    check(f"{label}: states and layout that differ", unlike, 0, 0)
+    largest = {path: np.abs(pairs).max() for path, pairs in kinds.items()}
+    worst, where = 0.0, ()
+    for path, pairs in kinds.items():
+        difference = np.abs(np.subtract(*np.transpose(pairs))).max()
+        size = max(largest[path], natural_size(path, largest, document, law))
+        error = difference / size if difference else 0.0
+        if not error <= worst:
+            worst, where = error, path
+    check(f"{label}: worst number, of {'/'.join(where)}", worst, 0, 1e-9)
+
+
+def stored(names=("stop", "stop_bars", "slider", "belt_8", "pull_out_10", "plate_8", "points_plane")):
+    for name in names:
+        scene, stiffness, ratio = cases()[name]
+        document = scene()
+        with open(os.path.join(HERE, name + ".json"), encoding="utf-8") as f:
+            file = json.load(f)
+        check(f"{name}: scene as stored", file["scene"] == json.loads(json.dumps(document)), True, 0)
+        for law in (None, {"stiffness": stiffness, "tangential_ratio": ratio}):
+            fresh = json.loads(json.dumps(reference(document, law, SCENES)))
+            same_solution(name, law, document, file["solutions"]["penalty" if law else "exact"], fresh)
+
+
+def slow_stored():
+    stored([name for name in cases() if name not in stored.__defaults__[0] + ("cattaneo_mindlin",)])
+
+
+# Errors that a reference solver may have: text of contact_reference.py, and what is planted in its place.
+FAULTS = {
+    "gap without its offset": ("n, gap + offset, a,", "n, gap, a,"),
+    "tributary area of whole facets": ("area[b] += length / 2", "area[b] += length"),
+    "penalty without the area": ('1 / (law["stiffness"] * self.area)', '1 / (law["stiffness"] * self.area ** 0)'),
+    "penalty without its tangential ratio": ('self.CN / law.get("tangential_ratio", 1.0)', "self.CN"),
+    "slip from the start, not from the last increment": ("- self.BT @ self.u", ""),
+    "tangential force forgotten": ("self.u, self.rT_before, self.before = x, rT,", "self.u, self.before = x,"),
+    "friction halved": ("rT[i] = self.mu[i] * rN[i] * states", "rT[i] = self.mu[i] / 2 * rN[i] * states"),
+    "dissipation with the wrong sign": ("self.dissipation - np.where", "self.dissipation + np.where"),
+    "inequalities not verified": ("return max(0.0, worst[0]), repaired", "return 0.0, repaired"),
+    "shear modulus doubled": ("[0, 0, (1 - 2 * nu) / 2]", "[0, 0, (1 - 2 * nu)]"),
+    "plane stress as plane strain": ("if plane_stress:", "if False:"),
+    "weight of triangles": ("[0.0, 1.0]]), 0.5)]", "[0.0, 1.0]]), 0.45)]"),
+    "reaction without the contact force": ("total[node] = total[node] - w * force", "pass"),
+    "moving obstacle that stands": ("gap0 = self.gap0 - part(", "gap0 = self.gap0 - 0 * part("),
+    "normal of a cup turned": ('sign = -1 if shape_.get("inside") else 1', "sign = 1"),
+    "derivatives with real stiffness": ("values = [v if np.iscomplexobj(v) else v.astype(float) for v in values]",
+                                        "values = [v.real.astype(float) for v in values]"),
+}
+
+
+def faults():
+    """Each fault in a copy of the folder: the parts of seconds must fail there."""
+    with open(os.path.join(HERE, "contact_reference.py"), encoding="utf-8") as f:
+        sound = f.read()
+    for name, (text, faulty) in FAULTS.items():
+        assert sound.count(text) == 1, f"the text of the fault is no longer there, or twice: {name}: {text}"
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, "contact_reference.py"), "w", encoding="utf-8") as f:
+                f.write(sound.replace(text, faulty))
+            result = subprocess.run(
+                [sys.executable, "-c", "import sys; sys.path.insert(0, sys.argv[1]); sys.path.append(sys.argv[2]); "
+                 "import contact_reference; assert contact_reference.__file__.startswith(sys.argv[1]); "
+                 "import check_references; sys.exit(check_references.run(check_references.QUICK, True))", folder, HERE],
+                capture_output=True, text=True, check=False)
+            seen = next((line for line in result.stdout.split("\n") if line.startswith("FAIL")),
+                        result.stderr.strip().split("\n")[-1])
+            check(f"seen: {name}", result.returncode != 0, True, 0)
+            print("     by", seen[:100])
+
+
+QUICK = ("stop", "uniform", "balance", "inequalities", "bar", "capstan", "enumeration", "few_derivatives", "slider",
+         "tractrix", "stored")
+SLOW = ("greco", "slow_tractrix", "derivatives", "slow_stored")
+
+
+def run(parts, until_one_fails=False):
+    for part in parts:
+        globals()[part]()
+        if FAILED and until_one_fails:
+            break
+    return f"{len(FAILED)} failed: {FAILED}" if FAILED else 0
+
+
 if __name__ == "__main__":
-    for part in (stop, slider, tractrix, bar, capstan, greco, enumeration, derivatives):
-        part()
-    sys.exit(f"{len(FAILED)} failed: {FAILED}" if FAILED else 0)
+    sys.exit(run(sys.argv[1:] or QUICK))

@@ -783,6 +783,8 @@ class Path:
                 faults.append(((size - self.mu[i] * rN[i]) / force, i, ("slip", d)))
             elif self.rubs[i]:
                 faults.append(((slip[t] @ rT[t]) / (size or 1.0) / length, i, ("stick", None)))
+        if not np.isfinite([fault[0] for fault in faults]).all():
+            raise RuntimeError("the solution of these states is not finite")
         worst = max(faults, key=lambda fault: fault[0])
         repaired = list(states)
         repaired[worst[1]] = worst[2]
@@ -833,7 +835,7 @@ def responses(model, result, place):
         elif kind == "displacement":
             values[name] = take([u[n]["xyz".index(r["component"])] for n in m.nodes(r["on"])])
         elif kind == "reaction":
-            total = (m.K @ result["u"] - result["f"]).reshape(-1, d)
+            total = (m.K @ result["u"] - result["f"]).reshape(-1, d).astype(complex)
             for p, force in zip(m.points, forces):
                 for node, w in p.weights.items():
                     total[node] = total[node] - w * force

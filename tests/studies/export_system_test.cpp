@@ -6,6 +6,7 @@
 #include <unsupported/Eigen/SparseExtra>
 
 #include "tests/support/cases.hpp"
+#include "tests/support/largest.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace stickslip {
@@ -35,14 +36,13 @@ void expect_solution(const CaseResult& result, const std::string& name) {
 
   // Rows balance to the solver's tolerance of 1e-12, relative to the largest force in them.
   const Vector<double> inner = s.K * s.u, contact = s.G * s.lambda;
-  const double force =
-      std::max({inner.cwiseAbs().maxCoeff(), contact.cwiseAbs().maxCoeff(), s.f.cwiseAbs().maxCoeff()});
-  EXPECT_LE((inner + contact - s.f).cwiseAbs().maxCoeff(), 1e-11 * force);
+  const double force = larger(larger(largest_entry(inner), largest_entry(contact)), largest_entry(s.f));
+  EXPECT_LE(largest_entry(inner + contact - s.f), 1e-11 * force);
 
   // Kinematics: a few roundings of displacements and coordinates.
   const auto& state = result.trajectory.increments.back().state;
   const Vector<double> moved = s.G.transpose() * s.u + s.g;
-  const double length = std::max(s.u.cwiseAbs().maxCoeff(), slots.points.cwiseAbs().maxCoeff());
+  const double length = std::max(largest_entry(s.u), largest_entry(slots.points));
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const double area = slots.geometry[p].area;
     EXPECT_NEAR(moved[model.points[p].multiplier] / area, state.contact.gap[p], 1e-14 * length) << p;

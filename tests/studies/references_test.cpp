@@ -35,7 +35,7 @@ CaseResult run_reference(json scene, const json& method) {
 
 double largest_of(const json& numbers) {
   double largest = 0;
-  for (const auto& x : numbers.flatten()) largest = std::max(largest, std::abs(x.get<double>()));
+  for (const auto& x : numbers.flatten()) largest = larger(largest, std::abs(x.get<double>()));
   return largest;
 }
 
@@ -83,11 +83,11 @@ void compare(const CaseResult& result, const json& solution, const std::string& 
   ASSERT_EQ(result.steps.size(), steps.size()) << what;
   double largest = 0;  // stands in for the size of a response that is zero throughout
   for (const auto& step : steps)
-    for (const auto& response : step["responses"]) largest = std::max(largest, std::abs(response.get<double>()));
+    for (const auto& response : step["responses"]) largest = larger(largest, std::abs(response.get<double>()));
   for (std::size_t i = 0; i < scene.responses.size(); ++i) {
     const auto& name = scene.responses[i].name;
     double size = 0;
-    for (const auto& step : steps) size = std::max(size, std::abs(step["responses"].at(name).get<double>()));
+    for (const auto& step : steps) size = larger(size, std::abs(step["responses"].at(name).get<double>()));
     if (size == 0) size = largest;
     for (std::size_t n = 0; n < steps.size(); ++n) {
       EXPECT_NEAR(result.steps[n].responses[i], steps[n]["responses"].at(name).get<double>(), same_solution * size)
@@ -98,7 +98,7 @@ void compare(const CaseResult& result, const json& solution, const std::string& 
         const auto exact = [&](const json& step) {
           return step.at("sensitivities").at(name).at(parameter.name).get<double>();
         };
-        for (const auto& step : steps) scale = std::max(scale, std::abs(exact(step)));
+        for (const auto& step : steps) scale = larger(scale, std::abs(exact(step)));
         EXPECT_NEAR(result.steps[n].sensitivities(i, j), exact(steps[n]), same_derivative * scale)
             << what << " step " << n << " " << name << "/" << parameter.name;
       }

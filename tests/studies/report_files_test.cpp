@@ -8,6 +8,7 @@
 #include "studies/report/figure_files.hpp"
 #include "studies/report/plot.hpp"
 #include "tests/studies/recorded_study.hpp"
+#include "tests/support/largest.hpp"
 
 namespace stickslip {
 namespace {
@@ -110,7 +111,7 @@ TEST_F(ReportCharts, ProfilesKeepAMethodThatSolvesNothing) {
   ASSERT_TRUE(figure);
   double most = -1;
   for (const auto& row : figure->rows)
-    if (row["series"] == "Uzawa AL, tuned") most = std::max(most, row["shown"].get<double>());
+    if (row["series"] == "Uzawa AL, tuned") most = larger(most, row["shown"].get<double>());
   EXPECT_EQ(most, 0);
 }
 

@@ -11,6 +11,7 @@
 #include "studies/report/report.hpp"
 #include "tests/studies/recorded_study.hpp"
 #include "tests/studies/report_page.hpp"
+#include "tests/support/largest.hpp"
 
 namespace stickslip {
 namespace {
@@ -215,7 +216,7 @@ TEST_F(ReportNumbers, DrawsErrorsOfExactlyZeroBelowAllOthersAndNamesThem) {
   ASSERT_TRUE(figure);
   double least = 1;
   for (const auto& row : figure->rows)
-    if (!row["zero"].get<bool>()) least = std::min(least, row["shown"].get<double>());
+    if (!row["zero"].get<bool>()) least = smaller(least, row["shown"].get<double>());
   int zeros = 0;
   for (const auto& row : figure->rows)
     if (row["zero"].get<bool>()) {
@@ -363,7 +364,7 @@ TEST_F(ReportNumbers, DrawsTractionsWithPressurePositiveAndTheClosedForm) {
     }
   double largest = 0;  // distance of the softest penalty, whose pressure at the middle is off by 1e-3 of 2
   for (const auto& row : figure->rows)
-    if (row["panel"] == "difference") largest = std::max(largest, row["error"].get<double>());
+    if (row["panel"] == "difference") largest = larger(largest, row["error"].get<double>());
   EXPECT_NEAR(largest, 0.5e-3, 1e-15);  // a difference of numbers near 2
 }
 

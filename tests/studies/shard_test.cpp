@@ -24,8 +24,8 @@ TEST(Shard, GivesEachCellToOneShareAndNoShareTwoMoreThanAnother) {
     for (int index = 1; index <= count; ++index) {
       int own = 0;
       for (std::size_t cell = 0; cell < 30; ++cell) own += Shard{index, count}.holds(cell);
-      least = std::min(least, own);
-      most = std::max(most, own);
+      least = std::min<int>(least, own);
+      most = std::max<int>(most, own);
     }
     EXPECT_LE(most - least, 1);
   }

@@ -9,6 +9,7 @@
 #include "studies/study.hpp"
 #include "studies/study_reader.hpp"
 #include "tests/support/cases.hpp"
+#include "tests/support/largest.hpp"
 #include "tests/support/oracle.hpp"
 
 namespace stickslip {
@@ -65,7 +66,7 @@ void expect_oracle(const CaseResult& result, const std::string& what, int first,
   Matrix<double> responses(model.scene.responses.size(), increments.size());
   for (std::size_t n = 0; n < increments.size(); ++n)
     responses.col(n) = evaluate_responses(model, result.problem->slots, increments[n].state, increments[n].time);
-  const double overall = responses.cwiseAbs().maxCoeff();
+  const double overall = largest_entry(responses);
   // oracle and scheme round differently, by 50 u cond
   const double rounding = std::max(1e-10, 50 * 1.1e-16 * result.condition_estimate);
   for (int j = first; j < last; ++j) {
@@ -73,9 +74,9 @@ void expect_oracle(const CaseResult& result, const std::string& what, int first,
     const Matrix<double> exact = oracle::complex_step(model, result.method, result.trajectory.step_table(), j);
     ASSERT_EQ(exact.cols(), static_cast<Eigen::Index>(result.gradients.of.size())) << what;
     for (Eigen::Index i = 0; i < exact.rows(); ++i) {
-      double scale = exact.row(i).cwiseAbs().maxCoeff();
-      const double size = responses.row(i).cwiseAbs().maxCoeff();
-      if (parameter.value != 0) scale = std::max(scale, (size > 0 ? size : overall) / std::abs(parameter.value));
+      double scale = largest_entry(exact.row(i));
+      const double size = largest_entry(responses.row(i));
+      if (parameter.value != 0) scale = larger(scale, (size > 0 ? size : overall) / std::abs(parameter.value));
       for (Eigen::Index n = 0; n < exact.cols(); ++n)
         EXPECT_NEAR(result.gradients.of[n](i, j), exact(i, n), rounding * scale)
             << what << " " << model.scene.responses[i].name << "/" << parameter.name << " increment " << n;
@@ -400,8 +401,8 @@ TEST(ShippedComments, CylindersTouchAsHertzAndSlipAsCattaneoAndMindlinSay) {
   double stick = 0, closed = 0;
   for (std::size_t p = 0; p < states.size(); ++p) {
     const double at = std::abs(problem.slots.points(0, problem.model.points[p].nodes[0]));
-    if (states[p] != ContactState::open) closed = std::max(closed, at);
-    if (states[p] == ContactState::stick) stick = std::max(stick, at);
+    if (states[p] != ContactState::open) closed = larger(closed, at);
+    if (states[p] == ContactState::stick) stick = larger(stick, at);
   }
   EXPECT_NEAR(closed, b, b / 21);  // an element
   EXPECT_NEAR(stick, c, b / 21);

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "core/algebra/scalar.hpp"
+#include "tests/support/largest.hpp"
 
 namespace stickslip::derivatives {
 
@@ -41,8 +42,8 @@ Matrix<double> by_complex_step(F&& f, const Vector<double>& x) {
 
 /// Largest difference of the entries over the largest entry of `reference`; 0 where both are zero.
 inline double relative_difference(const Matrix<double>& a, const Matrix<double>& reference) {
-  const double largest = reference.size() ? reference.cwiseAbs().maxCoeff() : 0;
-  const double difference = a.size() ? (a - reference).cwiseAbs().maxCoeff() : 0;
+  const double largest = largest_entry(reference);
+  const double difference = largest_entry(a - reference);
   return difference == 0 ? 0 : difference / largest;
 }
 

@@ -110,7 +110,8 @@ double tolerance_for(const MatrixXd& a) {
 }
 
 double dense_condition(const MatrixXd& a) {
-  return a.cwiseAbs().colwise().sum().maxCoeff() * a.inverse().cwiseAbs().colwise().sum().maxCoeff();
+  return a.cwiseAbs().colwise().sum().maxCoeff<Eigen::PropagateNaN>() *
+         a.inverse().cwiseAbs().colwise().sum().maxCoeff<Eigen::PropagateNaN>();
 }
 
 class EveryBackend : public testing::TestWithParam<Backend> {
@@ -144,7 +145,7 @@ class EveryBackend : public testing::TestWithParam<Backend> {
     ASSERT_TRUE(solver.factorise(stored.data())) << solver.name() << ": " << solver.message();
     EXPECT_TRUE(solver.message().empty());
     // Two roundings of sqrt(2) in a Cholesky, nothing elsewhere.
-    EXPECT_LT((solver.solve(MatrixXd::Ones(n, 1)).array() - 0.5).abs().maxCoeff(),
+    EXPECT_LT((solver.solve(MatrixXd::Ones(n, 1)).array() - 0.5).abs().maxCoeff<Eigen::PropagateNaN>(),
               4 * std::numeric_limits<double>::epsilon());
   }
 };
@@ -492,7 +493,8 @@ TEST(LinearSolver, SolvesComplexMatricesWithoutConjugating) {
     EXPECT_LT(error(solver.solve(b), a), 1e-12);  // a residual: rounding, whatever the condition number
     EXPECT_LT(error(solver.solve(b, true), a.transpose()), 1e-12);
     EXPECT_LT(solver.backward_error(), 1e-12);
-    const double exact = a.cwiseAbs().colwise().sum().maxCoeff() * a.inverse().cwiseAbs().colwise().sum().maxCoeff();
+    const double exact = a.cwiseAbs().colwise().sum().maxCoeff<Eigen::PropagateNaN>() *
+                         a.inverse().cwiseAbs().colwise().sum().maxCoeff<Eigen::PropagateNaN>();
     const double estimate = solver.condition_estimate();
     EXPECT_GT(estimate, exact / 3);
     EXPECT_LT(estimate, exact * (1 + 1e-10));  // a lower bound, but for rounding

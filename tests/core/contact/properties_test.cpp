@@ -13,6 +13,7 @@
 #include "core/contact/search.hpp"
 #include "core/contact/surfaces.hpp"
 #include "tests/support/derivatives.hpp"
+#include "tests/support/largest.hpp"
 
 namespace stickslip {
 namespace {
@@ -93,8 +94,8 @@ std::pair<double, double> two_distances(const Curve& c, const Point& x) {
   for (const auto& facet : c.facets) {
     const double d = distance(x, c.points.col(facet[0]), c.points.col(facet[1]));
     if (d < first - 1e-6) second = first;
-    if (d > first + 1e-6) second = std::min(second, d);
-    first = std::min(first, d);
+    if (d > first + 1e-6) second = smaller(second, d);
+    first = smaller(first, d);
   }
   return {first, second};
 }
@@ -181,7 +182,7 @@ TEST(ClosestPointProperties, MovesWithTheCurveAndThePoint) {
     const Point normal = move.turn * Point(g.normal), tangent = move.turn * Point(g.tangents.col(0));
     RC_ASSERT((normal - Point(h.normal)).norm() <= rounding);
     RC_ASSERT((tangent - Point(h.tangents.col(0))).norm() <= rounding);
-    RC_ASSERT((h.weights - g.weights).cwiseAbs().maxCoeff() <= rounding);
+    RC_ASSERT(largest_entry(h.weights - g.weights) <= rounding);
   }));
 }
 
@@ -388,7 +389,7 @@ TYPED_TEST(CoulombProperties, HasTheTangentOfTheComplexStepAndOfDifferences) {
       const Vector<double> slope = (value_at(plus) - value_at(minus)) / (2 * step);
       // central differences: step^2 over the third derivative, 1/|z_T|^2 <= 1/0.02^2 times 2; roundings over the step
       const double scale = j <= n ? 1 : z.unit;
-      RC_ASSERT((slope - tangent.col(j)).cwiseAbs().maxCoeff() <=
+      RC_ASSERT(largest_entry(slope - tangent.col(j)) <=
                 (1e-5 * 1e-5 * 4 / (0.02 * 0.02) + 1e2 * epsilon / 1e-5) * scale * 2);
     }
   }));

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "tests/support/derivatives.hpp"
+#include "tests/support/largest.hpp"
 
 namespace stickslip {
 namespace {
@@ -25,8 +26,8 @@ void expect_frame(const PointGeometry<double>& g) {
   ASSERT_EQ(e.rows(), D);
   ASSERT_EQ(e.cols(), D - 1);
   const Matrix<double> products = e.transpose() * e;
-  EXPECT_LE((products - Matrix<double>::Identity(D - 1, D - 1)).cwiseAbs().maxCoeff(), rounding);
-  EXPECT_LE((e.transpose() * g.normal).cwiseAbs().maxCoeff(), rounding);
+  EXPECT_LE(largest_entry(products - Matrix<double>::Identity(D - 1, D - 1)), rounding);
+  EXPECT_LE(largest_entry(e.transpose() * g.normal), rounding);
 }
 
 void expect_vector(const PointGeometry<double>& g, double x, double y) {
@@ -175,7 +176,7 @@ void expect_derivatives(F&& f, int inputs, const std::string& what) {
   for (unsigned seed = 0; seed < 8; ++seed) {
     const Vector<double> x = derivatives::arbitrary(inputs, seed);
     const auto dual = derivatives::by_dual(f, x), exact = derivatives::by_complex_step(f, x);
-    EXPECT_GT(exact.cwiseAbs().maxCoeff(), 0) << what;
+    EXPECT_GT(largest_entry(exact), 0) << what;
     // some fifty operations, each rounding once; relative to the largest entry
     EXPECT_LE(derivatives::relative_difference(dual, exact), 100 * epsilon) << what << " " << seed;
   }

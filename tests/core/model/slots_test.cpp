@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "tests/support/derivatives.hpp"
+#include "tests/support/largest.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace stickslip {
@@ -120,9 +121,8 @@ TEST(SlotDerivatives, AreThoseOfTheComplexStep) {
       if (dual[g].size() == 0) continue;
       const Vector<double> exact = complex[g].imag() / h, here = complex[g].real();
       // some hundred operations; where the dependence cancels as a whole, relative to the terms that cancel
-      const double size =
-          std::max(exact.cwiseAbs().maxCoeff(), here.cwiseAbs().maxCoeff() / std::abs(scene.parameters[j].value));
-      EXPECT_LE((dual[g] - exact).cwiseAbs().maxCoeff(), 1e-12 * size) << scene.parameters[j].name << " group " << g;
+      const double size = std::max(largest_entry(exact), largest_entry(here) / std::abs(scene.parameters[j].value));
+      EXPECT_LE(largest_entry(dual[g] - exact), 1e-12 * size) << scene.parameters[j].name << " group " << g;
     }
   });
 }
@@ -138,8 +138,8 @@ TEST(SlotDerivatives, AreThoseOfDifferences) {
       const Vector<double> difference = (up[g] - down[g]) / (2 * h);
       if (dual[g].size() == 0) continue;
       // h^2 of the third derivative, for functions that change within a tenth of the parameter, and rounding over h
-      const double allowed = 1e-7 * dual[g].cwiseAbs().maxCoeff() + 100 * epsilon * here[g].cwiseAbs().maxCoeff() / h;
-      EXPECT_LE((dual[g] - difference).cwiseAbs().maxCoeff(), allowed) << scene.parameters[j].name << " group " << g;
+      const double allowed = 1e-7 * largest_entry(dual[g]) + 100 * epsilon * largest_entry(here[g]) / h;
+      EXPECT_LE(largest_entry(dual[g] - difference), allowed) << scene.parameters[j].name << " group " << g;
     }
   });
 }
@@ -148,8 +148,7 @@ TEST(SlotDerivatives, AreThereForEveryParameterOfTheseScenes) {
   for_every_parameter([&](const Scene& scene, const Model& model, std::size_t j) {
     if (scene.parameters[j].name == "down" || scene.parameters[j].name == "F") return;  // read at their time
     double largest = 0;
-    for (const auto& group : by_dual(scene, model, j))
-      if (group.size()) largest = std::max(largest, group.cwiseAbs().maxCoeff());
+    for (const auto& group : by_dual(scene, model, j)) largest = larger(largest, largest_entry(group));
     if (scene.parameters[j].name != "rim" || scene.contacts[0].master != "lower.arc") {
       EXPECT_GT(largest, 0) << scene.parameters[j].name;
     }
@@ -271,13 +270,13 @@ TEST(BulkForces, AreTheElementTangentsTimesTheDisplacements) {
     double stiffest = 0;
     for (std::size_t b = 0; b < model.bodies.size(); ++b)
       for_each_element_tangent(model, slots, static_cast<int>(b), nullptr, [&](const auto& nodes, const auto& K) {
-        stiffest = std::max(stiffest, K.cwiseAbs().maxCoeff());
+        stiffest = larger(stiffest, largest_entry(K));
         for (Eigen::Index i = 0; i < K.rows(); ++i)
           for (Eigen::Index j = 0; j < K.cols(); ++j)
             forces[nodes[i / 2] * 2 + i % 2] += K(i, j) * u[nodes[j / 2] * 2 + j % 2];
       });
     // some thirty products of displacements up to one
-    EXPECT_LE((bulk_forces(model, slots, u) - forces).cwiseAbs().maxCoeff(), 60 * epsilon * stiffest);
+    EXPECT_LE(largest_entry(bulk_forces(model, slots, u) - forces), 60 * epsilon * stiffest);
   }
 }
 
@@ -287,7 +286,7 @@ TEST(BulkForces, VanishInARigidTranslationOfFreeBodies) {
   const auto slots = make_slots<double>(model, scene.as<double>());
   Vector<double> u(model.dof_count());
   for (int node = 0; node < model.node_count; ++node) u.segment<2>(2 * node) << 0.3, -0.7;
-  EXPECT_LE(bulk_forces(model, slots, u).cwiseAbs().maxCoeff(), 60 * epsilon * 10 * 10);  // E times the worst stretch
+  EXPECT_LE(largest_entry(bulk_forces(model, slots, u)), 60 * epsilon * 10 * 10);  // E times the worst stretch
 }
 
 }  // namespace
