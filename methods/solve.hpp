@@ -51,6 +51,40 @@ void count_solutions(const M& method, const Run<T, E>& run, Workspace<T>& worksp
   }
 }
 
+/// Where the branch of solutions that leads to an increment's solution ends and this jumps: the end of the thousandth
+/// of the increment in which at least a quarter of its motion falls. It is looked for where solutions were counted.
+template <class T, class E, class M>
+std::optional<double> find_jump(const M& method, Run<T, E>& run, const State<T>& previous,
+                                const std::vector<double>& factor, double start, double end, const State<T>& reached) {
+  constexpr int halvings = 10;
+  constexpr double much = 0.25;
+  const auto moved = [&](const State<T>& from, const State<T>& to) {
+    return largest_nodal_norm(Vector<T>(to.displacement - from.displacement), run.model.dimension);
+  };
+  const RunScales scales = run.account.scales;
+  Trace* const trace = std::exchange(run.account.trace, nullptr);
+  State<T> before = previous, after = reached;
+  bool solved = true;
+  for (int level = 0; level < halvings && solved; ++level) {
+    const double middle = (start + end) / 2;
+    auto half = find_increment(method, run, before, factor, middle);
+    solved = half.usable();
+    if (!solved) break;
+    auto rest = find_increment(method, run, half.state, factor, end);
+    solved = rest.usable();
+    if (!solved) break;
+    const bool first = moved(before, half.state) >= moved(half.state, rest.state);
+    (first ? end : start) = middle;
+    before = first ? std::move(before) : half.state;
+    after = first ? std::move(half.state) : std::move(rest.state);
+  }
+  run.account.scales = scales;
+  run.account.trace = trace;
+  const double all = moved(previous, reached);
+  if (!solved || all == 0 || moved(before, after) < much * all) return std::nullopt;
+  return end;
+}
+
 /// Advances the trajectory to `target`; false where it gave up (the failed increment is then the last).
 template <class T, class E, class M>
 bool advance(const M& method, Run<T, E>& run, Workspace<T>& workspace, Trajectory<T>& trajectory, double target,
@@ -78,6 +112,7 @@ bool advance(const M& method, Run<T, E>& run, Workspace<T>& workspace, Trajector
     }
     if (increment.usable()) {
       count_solutions(method, run, workspace, previous, next, increment);
+      if (increment.counted) increment.jump = find_jump(method, run, previous, factor, reached, next, increment.state);
       trajectory.increments.push_back(std::move(increment));
       if (last) return true;
       reached = next;

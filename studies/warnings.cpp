@@ -194,17 +194,26 @@ void add_other_solutions(const CaseResult& result, std::vector<Warning>& warning
     if (several++ == 0) first = increment.time;
     most = std::max(most, 1 + increment.others.size());
   }
-  const std::string remedy = "look at `solutions`, and whether friction this high is meant; smaller steps follow a branch";
+  const std::string remedy =
+      "look at `solutions`, and whether friction this high is meant; smaller steps follow a branch";
   if (several > 0)
-    warnings.push_back({WarningCode::non_unique, "", static_cast<double>(most), remedy,
-                        fmt::format("{} of {} increments have several solutions, up to {}, the first at t = {:.6g}; the one "
-                                    "is taken in which the motion from the last increment comes to rest",
-                                    several, result.trajectory.increments.size(), most, first)});
-  else if (uncounted > 0)
-    warnings.push_back({WarningCode::non_unique, "", 1, remedy,
-                        fmt::format("{} of {} increments met tangents whose determinant has the other sign: there may be "
-                                    "other solutions",
-                                    uncounted, result.trajectory.increments.size())});
+    warnings.push_back(
+        {WarningCode::non_unique, "", static_cast<double>(most), remedy,
+         fmt::format("{} of {} increments have several solutions, up to {}, the first at t = {:.6g}; the one "
+                     "is taken in which the motion from the last increment comes to rest",
+                     several, result.trajectory.increments.size(), most, first)});
+  for (const auto& increment : result.trajectory.increments)
+    if (increment.jump)
+      warnings.push_back({WarningCode::branch_ends, "", *increment.jump,
+                          "control a displacement in place of a force, or lower the friction",
+                          fmt::format("the branch of solutions ends at t = {:.4g}, and the bodies jump to another one",
+                                      *increment.jump)});
+  if (several == 0 && uncounted > 0)
+    warnings.push_back(
+        {WarningCode::non_unique, "", 1, remedy,
+         fmt::format("{} of {} increments met tangents whose determinant has the other sign: there may be "
+                     "other solutions",
+                     uncounted, result.trajectory.increments.size())});
 }
 
 }  // namespace

@@ -21,6 +21,7 @@ namespace stickslip {
 ///   single_node    a side of several nodes one of which carries nearly all of the contact's force
 ///   non_unique     a body that nothing holds and no load moves; increments with several solutions, or tangents of
 ///                  problems of which some have several
+///   branch_ends    where solutions were counted: the one that leads on from the last increment ceases to be
 /// Empty where nothing of it is found, and where nothing converged.
 std::vector<Warning> warnings_of(const CaseResult& result);
 

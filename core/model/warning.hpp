@@ -16,6 +16,7 @@ enum class WarningCode {
   cut_steps,       ///< value: number of steps that were cut
   locking,         ///< value: spurious pressure / stress, both root mean squares over the body
   single_node,     ///< value: share of the force that one node carries
+  branch_ends,     ///< value: time at which the solution jumps
   non_unique       ///< value: number of solutions that are known, 1: there may be more, 0 where they are a continuum
 };
 std::string_view name_of(WarningCode);

@@ -97,6 +97,28 @@ TEST(StronglyCoupledPoint, HasItsOtherSolutionsListed) {
   }
 }
 
+TEST(StronglyCoupledPoint, IsSeenToJumpWhereItsBranchEnds) {
+  // mu = 3, press 1, push to 3.5: it sticks until 3, then nothing but the open solution (4, 1) is left
+  for (int steps : {1, 7}) {
+    Scene scene = klarbring(3, 3.5);
+    scene.loads[0].vector[1] = 0.0;
+    scene.loads[0].history = scenes::ramp(1.0);
+    scene.loads.push_back(scenes::force("point.node", {0.0, -1.0}));
+    scene.legs = {{1, steps}};
+    const auto r = solve_scene(scene, MonolithicAL{});
+    ASSERT_TRUE(is_converged(r.trajectory.status));
+    int jumps = 0;
+    for (const auto& increment : r.trajectory.increments)
+      if (increment.jump) {
+        ++jumps;
+        EXPECT_NEAR(*increment.jump, 3 / 3.5, 1e-3 / steps) << "a thousandth of a step";
+      }
+    EXPECT_EQ(jumps, 1) << steps;
+  }
+  for (const auto& increment : solve_scene(klarbring(3, 1.9), MonolithicAL{}).trajectory.increments)
+    EXPECT_FALSE(increment.jump);
+}
+
 // --- random problems -------------------------------------------------------------------------------------------------
 
 /// Solves `count` random problems by every method, and holds them against all solutions; with more than `enumerated`
