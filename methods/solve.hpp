@@ -75,8 +75,8 @@ std::optional<double> find_jump(const M& method, Run<T, E>& run, const State<T>&
     if (!solved) break;
     const bool first = moved(before, half.state) >= moved(half.state, rest.state);
     (first ? end : start) = middle;
-    before = first ? std::move(before) : half.state;
-    after = first ? std::move(half.state) : std::move(rest.state);
+    after = first ? half.state : std::move(rest.state);
+    if (!first) before = std::move(half.state);
   }
   run.account.scales = scales;
   run.account.trace = trace;
