@@ -93,6 +93,11 @@ void prepare_folder(const fs::path& folder) {
 
 }  // namespace
 
+bool holds(const fs::path& folder, const char* file) {
+  std::error_code none;
+  return fs::exists(folder / file, none);
+}
+
 void check_folder(const fs::path& folder) {
   std::error_code ignored;
   if (fs::exists(folder, ignored) && !fs::is_directory(folder, ignored))

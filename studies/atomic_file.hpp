@@ -14,6 +14,9 @@ namespace stickslip {
 /// sees the old file or the new one, whole. Throws std::system_error with the path where the disk refuses.
 void write_file_atomically(const std::filesystem::path& path, std::string_view content);
 
+/// Whether the folder has a file of the name; false where the folder is none, or its name no name at all.
+bool holds(const std::filesystem::path& folder, const char* file);
+
 /// Throws InputFault where something that is no directory has the name.
 void check_folder(const std::filesystem::path& folder);
 

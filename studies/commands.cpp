@@ -119,7 +119,7 @@ int run_command(const RunArguments& arguments) {
   const bool writes = !arguments.json || !arguments.output.empty();
   const auto directory = output_directory(arguments.output, arguments.scene);
   if (!arguments.export_to.empty()) check_folder(arguments.export_to);
-  if (writes && std::filesystem::exists(directory / "study.json"))
+  if (writes && holds(directory, "study.json"))
     throw InputFault(directory.string() + ": holds a study; -o DIR writes to another directory");
   if (writes) prepare_directory(directory, {"result.json", "fields.pvd"});
   std::optional<DirectoryLock> lock;
@@ -246,7 +246,7 @@ int schema_command(const std::string& kind) {
 }
 
 int report_command(const std::string& directory) {
-  if (!std::filesystem::exists(std::filesystem::path(directory) / "results.jsonl"))
+  if (!holds(directory, "results.jsonl"))
     throw InputFault(directory + ": there is no results.jsonl; run `stickslip study` first");
   const DirectoryLock lock(directory);
   check_records(directory);

@@ -43,7 +43,7 @@ Part read_part(const fs::path& directory) {
 
 /// Whether the share that writes there never began: there is no study.json, nor any row.
 bool never_began(const fs::path& directory) {
-  return !fs::exists(directory / "study.json") && !fs::exists(directory / "results.jsonl");
+  return !holds(directory, "study.json") && !holds(directory, "results.jsonl");
 }
 
 /// The study alone, without what differs from shard to shard.
@@ -71,8 +71,8 @@ std::string difference(const Part& a, const Part& b) {
 /// one that none of the parts has.
 void check_output(const std::vector<Part>& parts, const fs::path& output) {
   const std::string name = output.string(), elsewhere = "; -o DIR writes to another directory";
-  if (fs::exists(output / "result.json")) throw InputFault(name + ": holds the result of a run" + elsewhere);
-  const bool described = fs::exists(output / "study.json");
+  if (holds(output, "result.json")) throw InputFault(name + ": holds the result of a run" + elsewhere);
+  const bool described = holds(output, "study.json");
   if (described && identity(read_description(output)) != identity(parts.front().description))
     throw InputFault(name + ": holds another study" + elsewhere);
   const auto in_parts = [&](const auto& has) { return std::any_of(parts.begin(), parts.end(), has); };

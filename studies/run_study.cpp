@@ -287,7 +287,7 @@ class InterruptNote {
 };
 
 int carry_out(const Plan& plan, const StudyArguments& arguments, MeshFiles& meshes) {
-  if (fs::exists(plan.directory / "result.json"))
+  if (holds(plan.directory, "result.json"))
     throw InputFault(plan.directory.string() + ": holds the result of a run; -o DIR writes to another directory");
   prepare_directory(plan.directory, {"results.jsonl", "timings.jsonl", "study.json", "picture.json", "report.html"},
                     {"figures"});
