@@ -13,7 +13,7 @@ namespace stickslip {
 struct NewtonOptions {
   double tolerance = 1e-12;  ///< relative, each residual to its own scale (methods/newton.hpp); 0 < tolerance < 1
   int max_iterations = 100;  ///< per solve; >= 1. A front of slip may pass one node an iteration
-  bool line_search = true;   ///< backtracking once the full step has repeated an active set without progress
+  bool line_search = true;   ///< backtracking where a full step stays in its active set and the residual does not fall
 };
 
 /// Regularisation rho (force per length cubed) of each contact point. `relative` is a multiple of the local nodal

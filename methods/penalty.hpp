@@ -28,9 +28,10 @@ constexpr bool prevents_penetration(const Penalty&) { return false; }
 namespace detail {
 
 /// Points, closed in `field`, whose constraints could contradict others: not those with a slave node of their own that
-/// is free to follow.
+/// is free to follow along the normal.
 template <class T>
-std::vector<int> shared_points(const Model& model, const ContactField<T>& field) {
+std::vector<int> shared_points(const Model& model, const Slots<T>& slots, const ContactField<T>& field) {
+  constexpr double across = 1e-6;  // of a normal: less is none
   std::vector<int> users(model.node_count, 0);
   for (std::size_t p = 0; p < model.points.size(); ++p)
     if (field.state[p] != ContactState::open)
@@ -38,8 +39,9 @@ std::vector<int> shared_points(const Model& model, const ContactField<T>& field)
   std::vector<int> shared;
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const int node = model.points[p].nodes[0], D = model.dimension;
-    const auto first = model.free_index.begin() + node * D;
-    const bool free = std::all_of(first, first + D, [](int index) { return index >= 0; });
+    bool free = false;
+    for (int i = 0; i < D && framed_index(model, node) < 0; ++i)
+      free |= model.free_index[node * D + i] >= 0 && std::abs(value(slots.geometry[p].normal[i])) > across;
     if (field.state[p] != ContactState::open && (!free || users[node] > 1)) shared.push_back(static_cast<int>(p));
   }
   return shared;
@@ -53,7 +55,7 @@ template <class T, class E>
 std::string unyielding_point(Run<T, E>& run, const ContactInput<T>& found, const Equilibrium<T>& equilibrium) {
   constexpr double stiff = 1e8, left = 1e-2, negligible = 1e-9;
   const Model& model = run.model;
-  const auto shared = shared_points(model, equilibrium.field);
+  const auto shared = shared_points(model, run.slots, equilibrium.field);
   if (shared.empty()) return "";
   RegularisationField<T> rho;
   for (std::size_t p = 0; p < model.points.size(); ++p) {
