@@ -55,7 +55,8 @@ double size_of(const StepResult& step, const Scene& scene, std::size_t response,
 /// Fills in the one-sided derivatives of increment n, and whether they are one.
 void take_sides(const CaseResult& result, std::size_t n, StepResult& step) {
   const auto& scene = result.problem->model.scene;
-  if (!result.one_sided) step.differentiable = std::min(step.margins.open, step.margins.slip) > weak_margin;
+  if (scene.sensitivity_mode == SensitivityMode::adjoint)  // (which has no sides)
+    step.differentiable = std::min(step.margins.open, step.margins.slip) > weak_margin;
   const auto take = [&](const auto& backward, const auto& forward) {
     if (n >= backward.size()) return;
     step.backward = backward[n];
@@ -71,14 +72,13 @@ void take_sides(const CaseResult& result, std::size_t n, StepResult& step) {
       if (is_kink(step.backward(i, j), step.forward(i, j), size_of(step, scene, i, j))) step.differentiable = false;
 }
 
-/// {response: {parameter: [backward, forward]}} where the two differ and both are known.
+/// {response: {parameter: [backward, forward]}} of all; null where a side has no derivative.
 json one_sided_json(const StepResult& step, const Scene& scene) {
   json out = json::object();
   for (std::size_t i = 0; step.backward.size() && i < scene.responses.size(); ++i)
     for (std::size_t j = 0; j < scene.parameters.size(); ++j) {
-      const double backward = step.backward(i, j), forward = step.forward(i, j);
-      if (std::isfinite(backward + forward) && is_kink(backward, forward, size_of(step, scene, i, j)))
-        out[scene.responses[i].name][scene.parameters[j].name] = {backward, forward};
+      out[scene.responses[i].name][scene.parameters[j].name] = {finite(step.backward(i, j)),
+                                                                finite(step.forward(i, j))};
     }
   return out;
 }
