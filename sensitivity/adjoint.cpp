@@ -2,6 +2,7 @@
 
 #include "core/model/objective.hpp"
 #include "sensitivity/monolithic.hpp"
+#include "sensitivity/one_sided.hpp"
 #include "sensitivity/penalty.hpp"
 #include "sensitivity/uzawa.hpp"
 
@@ -158,6 +159,7 @@ Gradients adjoint(const Model& model, const Slots<double>& slots, const Method& 
   const auto& scene = model.scene;
   if (scene.objectives.empty() || scene.parameters.empty()) return gradients;
   const Stopwatch time(gradients.seconds);
+  const auto consistent = consistent_at_ties(model, slots, method, trajectory, workspace, gradients.counters);
   Recording recording(model);
   Tape& tape = recording.tape;
   std::vector<Backward> objectives(scene.objectives.size());
@@ -166,9 +168,9 @@ Gradients adjoint(const Model& model, const Slots<double>& slots, const Method& 
   auto backward = [&](const auto& m, auto& engine) {
     using E = std::decay_t<decltype(engine)>;
     AdjointProblem<E> problem{model, slots, engine, tape, recording.slots, tape.size(), objectives, {}};
-    done = run(m, problem, trajectory);
+    done = run(m, problem, consistent ? *consistent : trajectory);
     tape.rewind(problem.slots_end);
-    gradients.counters = problem.counters;
+    gradients.counters += problem.counters;
     gradients.message = problem.message;
     if (!done) gradients.status = problem.status;
   };

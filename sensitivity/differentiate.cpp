@@ -2,6 +2,7 @@
 
 #include "core/model/response.hpp"
 #include "sensitivity/monolithic.hpp"
+#include "sensitivity/one_sided.hpp"
 #include "sensitivity/penalty.hpp"
 #include "sensitivity/uzawa.hpp"
 
@@ -73,6 +74,8 @@ Gradients differentiate(const Model& model, const Slots<double>& slots, const Me
   const int parameters = static_cast<int>(model.scene.parameters.size());
   if (parameters == 0) return gradients;
   const Stopwatch time(gradients.seconds);
+  Counters search;
+  const auto consistent = consistent_at_ties(model, slots, method, trajectory, workspace, search);
   std::vector<ParameterBlock> blocks;
   for (int b = 0; b * directions < parameters; ++b) {
     std::vector<int> of_block;
@@ -88,8 +91,9 @@ Gradients differentiate(const Model& model, const Slots<double>& slots, const Me
             [&](auto& engine) {
               using E = std::decay_t<decltype(engine)>;
               Differentiation<E> problem{model, slots, engine, blocks, parameters, {}};
-              run(m, problem, trajectory, gradients);
+              run(m, problem, consistent ? *consistent : trajectory, gradients);
               gradients.counters = problem.counters;
+              gradients.counters += search;
             },
             *workspace.engine);
       },

@@ -213,6 +213,7 @@ typename LinearisedEquilibrium<E>::Rows LinearisedEquilibrium<E>::evaluate(
   for (int b = 0; b < blocks; ++b) {
     const auto& slots = problem_.blocks[b].slots;
     rows.fields.push_back(evaluate_contact<Direction>(input(b), compact[b], lambda[b], &at_.contact.state));
+    take_rays(input(b), lambda[b], at_.contact.ray, rows.fields[b]);
     forces.push_back(into_frames(problem_.model, slots.frames, Layout::compact,
                                  contact_forces(problem_.model, slots, rows.fields[b].traction)));
     if (unknown_)

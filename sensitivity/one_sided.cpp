@@ -1,11 +1,13 @@
 #include "sensitivity/one_sided.hpp"
 
+#include <array>
 #include <limits>
 #include <set>
 
 #include "core/model/response.hpp"
 #include "sensitivity/monolithic.hpp"
 #include "sensitivity/penalty.hpp"
+#include "sensitivity/sided_geometry.hpp"
 #include "sensitivity/uzawa.hpp"
 
 namespace stickslip {
@@ -13,140 +15,322 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::infinity();
 
-/// Largest pressure, or k / A times the largest motion: contact that has only just begun is measured by that.
-double traction_scale(const Model& model, const Slots<double>& slots, const State<double>& state) {
-  double largest = 0;
-  for (std::size_t p = 0; p < model.points.size(); ++p) {
-    const double elastic = slots.stiffness[p] / slots.geometry[p].area;
-    largest = std::max({largest, -state.contact.traction[model.points[p].multiplier],
-                        elastic * std::abs(state.contact.gap[p] - slots.geometry[p].gap)});
-    const int offset = tangential_offset(model, static_cast<int>(p));
-    largest = std::max(largest, elastic * state.contact.placement.segment(offset, model.points[p].tangents).norm());
-  }
-  return largest;
-}
-
-double tangential_norm(const Model& model, const Vector<double>& of, int first, int p) {
-  return of.segment(first, model.points[p].tangents).norm();
-}
-
 Margins margins_of(const Model& model, const Slots<double>& slots, const State<double>& state, int p, double largest) {
   const auto& point = model.points[p];
   const auto& contact = state.contact;
+  const auto tangential = [&](const Vector<double>& of, int first) { return of.segment(first, point.tangents).norm(); };
   const double pressure = -contact.traction[point.multiplier];
   const double elastic = slots.stiffness[p] / slots.geometry[p].area;
   const bool open = contact.state[p] == ContactState::open;
-  Margins margin{largest > 0 ? (open ? elastic * contact.gap[p] : pressure) / largest : none, none};
+  const double distance = open ? elastic * contact.gap[p] : pressure;
+  Margins margin{largest > 0 ? distance / largest : distance <= elastic * point.tie_length ? 0 : none, none};
   const double bound = slots.friction[point.contact] * pressure;
   if (open || point.tangents == 0 || !(bound > 0)) return margin;
   const double reach = contact.state[p] == ContactState::stick
-                           ? bound - tangential_norm(model, contact.traction, point.multiplier + 1, p)
-                           : elastic * tangential_norm(model, contact.slip, tangential_offset(model, p), p);
+                           ? bound - tangential(contact.traction, point.multiplier + 1)
+                           : elastic * tangential(contact.slip, tangential_offset(model, p));
   margin.slip = reach / bound;
   return margin;
 }
 
-struct WeakPoint {
-  int point;
-  bool opens;  ///< between open and closed; else between stick and slip
-};
-
-std::vector<WeakPoint> weak_points(const Model& model, const Slots<double>& slots, const State<double>& state) {
-  std::vector<WeakPoint> weak;
-  const double largest = traction_scale(model, slots, state);
-  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
-    const Margins margin = margins_of(model, slots, state, p, largest);
-    if (margin.open <= weak_margin || margin.slip <= weak_margin) weak.push_back({p, margin.open <= weak_margin});
-  }
-  return weak;
-}
-
-enum class Verdict { confirmed, flip, unknown };
-
-/// Whether the derivative of a state, in direction `side`, confirms the branch that it was found with.
-Verdict judge(const Model& model, const ParameterBlock& block, const PointRegularisation<Direction>& rho,
-              const WeakPoint& weak, const State<double>& at, ContactState branch, double side) {
-  const auto& point = model.points[weak.point];
-  const int normal = point.multiplier, offset = tangential_offset(model, weak.point);
-  const auto& now = block.current;
-  auto confirms = [](bool yes) { return yes ? Verdict::confirmed : Verdict::flip; };
-  const Direction z_normal = now.multiplier[normal] + rho.normal * now.contact.gap[weak.point];
-  if (weak.opens) {
-    if (branch == ContactState::open) return confirms(side * z_normal.d[0] >= 0);
-    if (side * z_normal.d[0] > 0) return Verdict::flip;
-    double size = 0, tangential = 0;
-    for (int a = 0; a < point.tangents; ++a) {
-      size = std::max(size, std::abs(at.contact.traction[normal + 1 + a]));
-      const Direction z = now.multiplier[normal + 1 + a] + rho.tangential * now.contact.slip[offset + a];
-      tangential += z.d[0] * z.d[0];
-    }
-    const double bound = value(block.slots.friction[point.contact]) * std::abs(z_normal.d[0]);
-    const bool slides = tangential_norm(model, at.contact.slip, offset, weak.point) > 0;  // the direction of its slip
-    const bool leaves_apex = point.tangents > 0 && size == 0 && !slides && std::sqrt(tangential) > bound;
-    return leaves_apex ? Verdict::unknown : Verdict::confirmed;
-  }
-  Vector<Direction> z(point.tangents);
-  for (int a = 0; a < point.tangents; ++a)
-    z[a] = now.multiplier[normal + 1 + a] + rho.tangential * now.contact.slip[offset + a];
-  const Direction excess = norm(z) + block.slots.friction[point.contact] * z_normal;  // |z_T| - bound
-  return confirms(branch == ContactState::stick ? side * excess.d[0] <= 0 : side * excess.d[0] >= 0);
-}
-
-/// The branch on the other side of a tie. A point that slides while it touches slips when it closes.
-ContactState other_branch(const Model& model, const State<double>& at, const WeakPoint& weak, ContactState branch) {
-  if (weak.opens && branch != ContactState::open) return ContactState::open;
-  if (weak.opens) {
-    const bool slides = tangential_norm(model, at.contact.slip, tangential_offset(model, weak.point), weak.point) > 0;
-    return slides || model.points[weak.point].tangents == 0 ? ContactState::slip : ContactState::stick;
-  }
-  return branch == ContactState::stick ? ContactState::slip : ContactState::stick;
-}
-
-/// Differentiates one increment along one parameter and side; false where no set of branches is confirmed: one was
-/// tried twice, or as many as a search that gets there does not need.
-template <class M, class E>
-bool differentiate_side(const M& method, Differentiation<E>& problem, const State<double>& previous,
-                        Increment<double> increment, double side) {
-  const auto weak = weak_points(problem.model, problem.slots, increment.state);
-  auto& branches = increment.state.contact.state;
-  constexpr std::size_t limit = 20;
-  std::set<std::vector<ContactState>> tried;
-  while (tried.size() < limit && tried.insert(branches).second) {
-    if (!differentiate_increment(method, problem, previous, increment)) return false;
-    const auto rho = regularisation_blocks(method, problem, increment.rho_factor)[0];
-    auto next = branches;
-    for (const auto& w : weak) {
-      const auto verdict =
-          judge(problem.model, problem.blocks[0], rho[w.point], w, increment.state, branches[w.point], side);
-      if (verdict == Verdict::unknown) return false;
-      if (verdict == Verdict::flip) next[w.point] = other_branch(problem.model, increment.state, w, branches[w.point]);
-    }
-    if (next == branches) return true;
-    branches = next;
-  }
+/// What of a method's scheme the branches depend on: the equilibrium that it differentiates, its cone, and what it
+/// multiplies rho by.
+template <class M>
+constexpr bool is_truncated(const M&) {
   return false;
 }
+bool is_truncated(const UzawaAL& method) { return method.sensitivity == UzawaAL::Sensitivity::truncated; }
+template <class M>
+constexpr double oversize_of(const M&) {
+  return 1;
+}
+double oversize_of(const UzawaAL& method) {
+  const bool oversized = method.sensitivity == UzawaAL::Sensitivity::oversized;
+  return oversized ? method.oversize.value_or(UzawaAL::automatic_oversize) : 1;
+}
 
-/// One side of the derivatives with respect to one parameter, as column `parameter` of `out`.
+template <class M>
+RegularisationField<double> own_rho(const M& method, const Slots<double>& slots, const std::vector<double>& factor) {
+  return adapted(initial_regularisation(slots, method), factor);
+}
+
+/// Weak points of all equilibria that the scheme differentiates in an increment.
+template <class M>
+bool has_ties(const M& method, const Model& model, const Slots<double>& slots, const Increment<double>& increment) {
+  const auto weak = [&](const State<double>& at, const std::vector<double>& factor) {
+    return !weak_points(model, slots, at, own_rho(method, slots, factor), cone_radius(method)).empty();
+  };
+  if (!is_truncated(method)) return weak(increment.state, increment.rho_factor);
+  return std::any_of(increment.sweeps.begin(), increment.sweeps.end(),
+                     [&](const auto& sweep) { return weak(sweep.state, sweep.rho_factor); });
+}
+
+/// Index of the first increment with ties; their number where none has.
+std::size_t first_tie(const Model& model, const Slots<double>& slots, const Method& method,
+                      const Trajectory<double>& trajectory) {
+  const auto& all = trajectory.increments;
+  return std::visit(
+      [&](const auto& m) {
+        return std::find_if(all.begin(), all.end(), [&](const auto& i) { return has_ties(m, model, slots, i); }) -
+               all.begin();
+      },
+      method);
+}
+
+/// Search for the branches of one equilibrium along one direction, the first of the first block.
 template <class M, class E>
-void run_side(const M& method, E& engine, const Model& model, const Slots<double>& slots,
-              const Trajectory<double>& trajectory, int parameter, double side, OneSided& sides) {
-  auto& out = side < 0 ? sides.backward : sides.forward;
-  std::vector<ParameterBlock> blocks{
-      {make_slots<Direction>(model, seeded(model.scene, {parameter})), initial_state<Direction>(model), {}}};
-  blocks[0].current = blocks[0].previous;
-  Differentiation<E> problem{model, slots, engine, blocks, 1, {}};
-  const State<double>* previous = &trajectory.initial;
-  for (std::size_t n = 0; n < out.size(); ++n) {
-    const auto& increment = trajectory.increments[n];
-    if (!differentiate_side(method, problem, *previous, increment, side)) break;
-    const auto responses = evaluate_responses(model, blocks[0].slots, blocks[0].current, increment.time,
-                                              side < 0 ? Ties::below : Ties::above);
-    for (Eigen::Index i = 0; i < responses.size(); ++i) out[n](i, parameter) = responses[i].d[0];
-    std::swap(blocks[0].previous, blocks[0].current);
-    previous = &increment.state;
+class BranchSearch {
+ public:
+  /// `increment`: what is differentiated; `at`: its equilibrium, whose branches change.
+  BranchSearch(const M& method, Differentiation<E>& problem, const State<double>& previous,
+               const Increment<double>& increment, State<double>& at, const std::vector<double>& factor, double side)
+      : method_(method),
+        problem_(problem),
+        previous_(previous),
+        increment_(increment),
+        at_(at),
+        own_(own_rho(method, problem.slots, factor)),
+        weak_(weak_points(problem.model, problem.slots, at, own_, cone_radius(method))),
+        side_(side) {
+    std::vector<double> stiffened = factor;
+    for (double& f : stiffened) f *= oversize_of(method);
+    rho_ = regularisation_blocks(method, problem, stiffened)[0];
   }
-  sides.counters += problem.counters;
+
+  /// Leaves the derivative with the branches that it confirms in the block, and them in `at`.
+  bool run() {
+    if (weak_.empty()) return differentiate_increment(method_, problem_, previous_, increment_);
+    return by_flipping() || by_enumeration();
+  }
+
+ private:
+  struct Standing {
+    bool possible = true;
+    std::vector<std::pair<int, Branch>> contradicted;  ///< by point
+  };
+
+  std::optional<Standing> differentiate() {
+    if (!differentiate_increment(method_, problem_, previous_, increment_)) return std::nullopt;
+    Standing standing;
+    for (const auto& w : weak_) {
+      auto verdict =
+          judge(problem_.model, problem_.slots, problem_.blocks[0], rho_, own_, cone_radius(method_), w, at_, side_);
+      standing.possible &= verdict.possible;
+      if (verdict.contradicts) standing.contradicted.emplace_back(w.point, *std::move(verdict.contradicts));
+    }
+    return standing;
+  }
+
+  /// What tells one choice from another: branches, and in the plane the sides to which points slip.
+  std::vector<int> key() const {
+    std::vector<int> key;
+    for (const auto& w : weak_) {
+      const Branch branch = branch_of(problem_.model, at_, w.point);
+      const int direction = branch.ray.size() == 2 ? (branch.ray[1] > 0 ? 1 : 2) : 0;
+      key.push_back(3 * static_cast<int>(branch.state) + direction);
+    }
+    return key;
+  }
+
+  /// Flips all that is contradicted; where that was tried, the first alone.
+  bool by_flipping() {
+    const std::size_t limit = 40 + 4 * weak_.size();
+    std::set<std::vector<int>> tried;
+    for (std::size_t round = 0; round < limit; ++round) {
+      const auto before = key();
+      tried.insert(before);
+      const auto standing = differentiate();
+      if (!standing) return false;
+      if (!standing->possible) return false;
+      if (standing->contradicted.empty()) return true;
+      const State<double> start = at_;
+      for (const auto& [point, branch] : standing->contradicted) take_branch(problem_.model, point, branch, at_);
+      const auto after = key();
+      if (after == before || !tried.count(after)) continue;  // (the same: a direction in space is being found)
+      at_.contact = start.contact;
+      const auto& [point, branch] = standing->contradicted.front();
+      take_branch(problem_.model, point, branch, at_);
+    }
+    return false;
+  }
+
+  /// Tries all branches of few points.
+  bool by_enumeration() {
+    constexpr std::size_t most = 256;
+    std::vector<std::vector<Branch>> of_point;
+    std::size_t count = 1;
+    for (const auto& w : weak_) {
+      of_point.push_back(branches_of(problem_.model, w));
+      count *= of_point.back().size();
+      if (count > most) return false;
+    }
+    for (std::size_t choice = 0; choice < count; ++choice) {
+      std::size_t rest = choice;
+      for (std::size_t k = 0; k < weak_.size(); ++k) {
+        take_branch(problem_.model, weak_[k].point, of_point[k][rest % of_point[k].size()], at_);
+        rest /= of_point[k].size();
+      }
+      const auto standing = differentiate();
+      if (standing && standing->possible && standing->contradicted.empty()) return true;
+    }
+    return false;
+  }
+
+  const M& method_;
+  Differentiation<E>& problem_;
+  const State<double>& previous_;
+  const Increment<double>& increment_;
+  State<double>& at_;
+  RegularisationField<double> own_;
+  RegularisationField<Direction> rho_;
+  std::vector<WeakPoint> weak_;
+  double side_;
+};
+
+/// Differentiates one increment along one direction; its branches at ties become those that are confirmed. False where
+/// none are.
+template <class M, class E>
+bool differentiate_side(const M& method, Differentiation<E>& problem, const State<double>& previous,
+                        Increment<double>& increment, double side) {
+  if (!is_truncated(method))
+    return BranchSearch(method, problem, previous, increment, increment.state, increment.rho_factor, side).run();
+  // each augmentation starts from the derivative that the one before left
+  auto& block = problem.blocks[0];
+  const State<Direction> start = block.previous;
+  bool found = true;
+  for (auto& sweep : increment.sweeps) {
+    Increment<double> alone;
+    alone.time = increment.time;
+    alone.sweeps = {sweep};
+    auto& only = alone.sweeps[0];
+    found = BranchSearch(method, problem, previous, alone, only.state, only.rho_factor, side).run();
+    if (!found) break;
+    sweep = std::move(only);
+    block.previous.contact.traction = block.current.contact.traction;
+  }
+  block.previous = start;
+  return found;
+}
+
+/// A pressure that is about to begin widens a contact of one point, or of none, with an infinite slope.
+bool widens_at_once(const Model& model, const Slots<double>& slots, const State<double>& state, const Response& asked) {
+  if (asked.kind != Response::Kind::contact_half_width) return false;
+  const int contact = model.contact_index(asked.on);
+  const double largest = traction_scale(model, slots, state);
+  const bool rings = model.scene.space == Space::axisymmetric;
+  int wide = 0, weak = 0;  // points that make a width; those that are about to
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    if (model.points[p].contact != contact) continue;
+    const bool is_weak = margins_of(model, slots, state, p, largest).open <= weak_margin;
+    const bool closed = state.contact.state[p] != ContactState::open;
+    weak += is_weak;
+    wide += !is_weak && closed && (!rings || slots.points(0, model.points[p].nodes[0]) > 0);
+  }
+  return weak > 0 && wide < (rings ? 1 : 2);
+}
+
+/// Derivatives along a single direction, carried from increment to increment.
+template <class M, class E>
+struct SideRun {
+  const M& method;
+  const Model& model;
+  const Slots<double>& slots;
+  E& engine;
+  const Trajectory<double>& trajectory;
+  std::vector<ParameterBlock> blocks;
+  Counters counters;
+
+  SideRun(const M& m, const Model& of, const Slots<double>& s, E& e, const Trajectory<double>& t,
+          Slots<Direction> seeded_slots)
+      : method(m), model(of), slots(s), engine(e), trajectory(t) {
+    blocks.push_back({std::move(seeded_slots), initial_state<Direction>(model), {}});
+    blocks[0].current = blocks[0].previous;
+  }
+
+  /// Increments first .. last - 1; `on_increment(n, increment)` after each, with the derivative in blocks[0].current
+  /// and the branches taken in increment. False where one was not found.
+  template <class F>
+  bool run(std::size_t first, std::size_t last, double side, F&& on_increment) {
+    Differentiation<E> problem{model, slots, engine, blocks, 1, {}};
+    bool found = true;
+    for (std::size_t n = first; n < last && found; ++n) {
+      Increment<double> increment = trajectory.increments[n];
+      const State<double>& previous = n == 0 ? trajectory.initial : trajectory.increments[n - 1].state;
+      found = differentiate_side(method, problem, previous, increment, side);
+      if (!found) break;
+      on_increment(n, increment);
+      std::swap(blocks[0].previous, blocks[0].current);
+    }
+    counters += problem.counters;
+    return found;
+  }
+};
+
+/// Which points carry a force at some time, or are about to.
+std::vector<char> engaged_points(const Model& model, const Slots<double>& slots, const Trajectory<double>& trajectory) {
+  std::vector<char> engaged(model.points.size(), 0);
+  for (const auto& increment : trajectory.increments) {
+    const double largest = traction_scale(model, slots, increment.state);
+    for (std::size_t p = 0; p < engaged.size(); ++p)
+      engaged[p] |= increment.state.contact.state[p] != ContactState::open ||
+                    margins_of(model, slots, increment.state, static_cast<int>(p), largest).open <= weak_margin;
+  }
+  return engaged;
+}
+
+/// What the slave nodes face if a parameter falls, and if it grows.
+using Pairings = std::array<SidedPairing, 2>;
+
+/// Both sides of the derivatives with respect to one parameter, as column `parameter`. `first`: the first increment
+/// with ties.
+template <class M, class E>
+void run_sides(const M& method, E& engine, const Model& model, const Slots<double>& slots,
+               const Trajectory<double>& trajectory, std::size_t first, int parameter, const Pairings& pairings,
+               OneSided& sides) {
+  const auto& responses = model.scene.responses;
+  const std::size_t count = trajectory.increments.size();
+  const bool geometric = pairings[0].kink || pairings[1].kink;
+  if (geometric) first = 0;
+  SideRun start(method, model, slots, engine, trajectory,
+                make_slots<Direction>(model, seeded(model.scene, {parameter})));
+  const auto engaged = geometric ? engaged_points(model, slots, trajectory) : std::vector<char>();
+  const auto record = [&](const SideRun<M, E>& run, double side, std::size_t n) {
+    const auto& increment = trajectory.increments[n];
+    const auto& block = run.blocks[0];
+    const auto values =
+        evaluate_responses(model, block.slots, block.current, increment.time, side < 0 ? Ties::below : Ties::above);
+    auto& out = (side < 0 ? sides.backward : sides.forward)[n];
+    for (std::size_t i = 0; i < responses.size(); ++i)
+      if (!widens_at_once(model, slots, increment.state, responses[i])) out(i, parameter) = values[i].d[0];
+  };
+  const bool smooth = start.run(0, first, 1, [&](std::size_t n, auto&) {
+    record(start, -1, n);
+    record(start, +1, n);
+  });
+  for (double side : {-1.0, 1.0}) {
+    if (!smooth) break;
+    const auto& pairing = pairings[side < 0 ? 0 : 1];
+    SideRun run = start;
+    run.counters = {};
+    if (pairing.kink && !take_side(model, pairing, engaged, run.blocks[0].slots)) continue;
+    run.run(first, count, side, [&](std::size_t n, auto&) { record(run, side, n); });
+    sides.counters += run.counters;
+  }
+  sides.counters += start.counters;
+}
+
+/// Numbers of the scene with one seed: all parameters grow together, each by a share of its value. The shares differ,
+/// so that what cancels between two parameters does not here.
+Numbers<Direction> all_growing(const Scene& scene) {
+  constexpr double golden = 0.6180339887498949;
+  auto numbers = scene.as<Direction>();
+  for (std::size_t j = 0; j < scene.parameters.size(); ++j) {
+    const auto& parameter = scene.parameters[j];
+    const double size = parameter.value == 0 ? 1 : std::abs(parameter.value);
+    const double share = 1 + golden * static_cast<double>(j + 1) - std::floor(golden * static_cast<double>(j + 1));
+    for (const auto& [slot, weight] : parameter.slots) numbers.at_slot[slot].d[0] += weight * size * share;
+  }
+  return numbers;
 }
 
 }  // namespace
@@ -168,24 +352,43 @@ Margins margins(const Model& model, const Slots<double>& slots, const State<doub
 std::optional<OneSided> one_sided_derivatives(const Model& model, const Slots<double>& slots, const Method& method,
                                               const Trajectory<double>& trajectory, Workspace<double>& workspace) {
   const int parameters = static_cast<int>(model.scene.parameters.size());
-  const auto* uzawa = std::get_if<UzawaAL>(&method);
-  const bool truncated = uzawa && uzawa->sensitivity == UzawaAL::Sensitivity::truncated;
-  bool weak = false;
-  for (const auto& increment : trajectory.increments) weak |= !weak_points(model, slots, increment.state).empty();
-  if (!weak || parameters == 0 || truncated) return std::nullopt;
+  if (parameters == 0) return std::nullopt;
+  const std::size_t first = first_tie(model, slots, method, trajectory);
+  std::vector<Pairings> pairings;
+  bool kinks = first < trajectory.increments.size();
+  for (int j = 0; j < parameters; ++j) {
+    pairings.push_back({sided_pairing(model, j, -1), sided_pairing(model, j, 1)});
+    kinks |= pairings.back()[0].kink || pairings.back()[1].kink;
+  }
+  if (!kinks) return std::nullopt;
   const auto unknown =
       Matrix<double>::Constant(model.scene.responses.size(), parameters, std::numeric_limits<double>::quiet_NaN());
   OneSided sides;
   sides.backward.assign(trajectory.increments.size(), unknown);
   sides.forward = sides.backward;
   auto both = [&](const auto& m, auto& engine) {
-    for (int j = 0; j < parameters; ++j) {
-      run_side(m, engine, model, slots, trajectory, j, -1, sides);
-      run_side(m, engine, model, slots, trajectory, j, +1, sides);
-    }
+    for (int j = 0; j < parameters; ++j) run_sides(m, engine, model, slots, trajectory, first, j, pairings[j], sides);
   };
   std::visit([&](const auto& m) { std::visit([&](auto& engine) { both(m, engine); }, *workspace.engine); }, method);
   return sides;
+}
+
+std::optional<Trajectory<double>> consistent_at_ties(const Model& model, const Slots<double>& slots,
+                                                     const Method& method, const Trajectory<double>& trajectory,
+                                                     Workspace<double>& workspace, Counters& counters) {
+  const std::size_t first = first_tie(model, slots, method, trajectory);
+  if (first == trajectory.increments.size()) return std::nullopt;
+  Trajectory<double> consistent = trajectory;
+  auto search = [&](const auto& m, auto& engine) {
+    SideRun run(m, model, slots, engine, trajectory, make_slots<Direction>(model, all_growing(model.scene)));
+    run.run(0, trajectory.increments.size(), 1, [&](std::size_t n, Increment<double>& increment) {
+      consistent.increments[n].state.contact = increment.state.contact;
+      consistent.increments[n].sweeps = std::move(increment.sweeps);
+    });
+    counters += run.counters;
+  };
+  std::visit([&](const auto& m) { std::visit([&](auto& engine) { search(m, engine); }, *workspace.engine); }, method);
+  return consistent;
 }
 
 }  // namespace stickslip

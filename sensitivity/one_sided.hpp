@@ -1,21 +1,21 @@
-/// One-sided derivatives where a contact point is about to change state.
+/// One-sided derivatives where the solution has a kink, and the derivative that stands for both.
 ///
-/// At a tie both branches give the same traction, so the scheme of the method, run with the neighbouring branch, gives
-/// the derivative of the other side. For one parameter and one direction s = -1, +1 the branch of each weak point is
-/// the one that its own derivative confirms:
+/// Contact points at a tie take, for one parameter and one direction, the branches that their own derivatives confirm
+/// (sensitivity/branches.hpp), found by flipping what is not confirmed. The history Dh then differs between the two
+/// sides, so both are carried to the end of the run, where they may agree again. Uzawa's truncated scheme does so in
+/// each augmentation. A projection onto a vertex of the master goes to another facet on each side
+/// (sensitivity/sided_geometry.hpp).
 ///
-///   z_N = 0          open iff s Dz_N > 0
-///   |z_T| = bound    slip iff s (D|z_T| - D bound) > 0            Dz = D lambda + D(rho g), in that branch
-///
-/// found by flipping what is not confirmed. The history Dh then differs between the two sides, so both are carried to
-/// the end of the run. Left out: a point at the apex of its cone (z_N = 0, z_T = 0) that would slip, for its direction
-/// is not in its state, and the truncated scheme of Uzawa, whose sweeps have states of their own.
+/// Branches that no direction confirms give the derivative of nothing, and leave it in the history. So where there are
+/// ties, all parameters are differentiated with the branches that hold along one direction, in which all of them grow
+/// (consistent_at_ties): that is the derivative of a neighbouring smooth piece of the solution, for every scheme and
+/// its adjoint, and exact again where the kink has passed.
 #pragma once
 
 #include <optional>
 #include <vector>
 
-#include "sensitivity/differentiate.hpp"
+#include "sensitivity/branches.hpp"
 
 namespace stickslip {
 
@@ -32,17 +32,22 @@ Margins margins(const Model& model, const Slots<double>& slots, const State<doub
 /// Of all: the least of each.
 Margins margins(const Model& model, const Slots<double>& slots, const State<double>& state);
 
-/// A margin up to this is none: a point is weak.
-inline constexpr double weak_margin = 1e-8;
-
 struct OneSided {
-  /// Per increment: responses x parameters, from below and from above. NaN where no branch was confirmed.
+  /// Per increment: responses x parameters, from below and from above. NaN where a side has none: the response jumps,
+  /// or its slope is infinite (core/README.md), or no branches were confirmed.
   std::vector<Matrix<double>> backward, forward;
   Counters counters;
 };
 
-/// Both sides of all derivatives, if some increment has a weak point; none (and nothing is computed) otherwise.
+/// Both sides of all derivatives, if some increment has a weak point or the contact geometry a kink; none (and nothing
+/// is computed) otherwise.
 std::optional<OneSided> one_sided_derivatives(const Model& model, const Slots<double>& slots, const Method& method,
                                               const Trajectory<double>& trajectory, Workspace<double>& workspace);
+
+/// The trajectory with the branches of its ties chosen along one direction of all parameters; none where it has no
+/// ties. Adds what that took to `counters`.
+std::optional<Trajectory<double>> consistent_at_ties(const Model& model, const Slots<double>& slots,
+                                                     const Method& method, const Trajectory<double>& trajectory,
+                                                     Workspace<double>& workspace, Counters& counters);
 
 }  // namespace stickslip

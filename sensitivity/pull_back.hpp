@@ -159,6 +159,7 @@ void RecordedEquilibrium<E>::record(const State<double>& previous, const Regular
   state_.displacement = displacement_;
   state_.multiplier = multiplier_;
   state_.contact = evaluate_contact<Reverse>(input, to_compact(model, displacement_), multiplier_, &at_.contact.state);
+  take_rays(input, multiplier_, at_.contact.ray, state_.contact);
   state_.dissipation = dissipated(input, state_.contact, multiplier_, dissipation_);
   const Vector<Reverse> balance = nodal_balance(model, slots, state_, internal_, time);
   rows_ = into_frames(model, slots.frames, Layout::all, balance);

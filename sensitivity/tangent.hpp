@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/model/engine.hpp"
+#include "sensitivity/rays.hpp"
 
 namespace stickslip {
 
@@ -13,9 +14,10 @@ bool factorise_converged(Problem& problem, const ContactInput<double>& input, co
                          bool& redundant) {
   const Model& model = problem.model;
   const Vector<double> compact = to_compact(model, at.displacement);
+  const Vector<double> multiplier = multiplier_on_rays(input, at);
   std::vector<PointTangent<double>> tangents;
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p)
-    tangents.push_back(point_tangent<double>(input, p, compact, at.multiplier, at.contact.state[p]));
+    tangents.push_back(point_tangent<double>(input, p, compact, multiplier, at.contact.state[p]));
   const long before = problem.counters.factorizations;
   const bool valid = unknown ? factorise_sharing(problem.engine, model, decided_elsewhere(model, problem.slots),
                                                  std::move(tangents), redundant, problem.counters)

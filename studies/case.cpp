@@ -14,7 +14,8 @@ namespace {
 /// Fills in the one-sided derivatives of increment n, and whether they are one.
 void take_sides(const CaseResult& result, std::size_t n, StepResult& step) {
   const auto& scene = result.problem->model.scene;
-  if (!result.one_sided) step.differentiable = std::min(step.margins.open, step.margins.slip) > weak_margin;
+  if (scene.sensitivity_mode == SensitivityMode::adjoint)  // (which has no sides)
+    step.differentiable = std::min(step.margins.open, step.margins.slip) > weak_margin;
   const auto take = [&](const auto& backward, const auto& forward) {
     if (n >= backward.size()) return;
     step.backward = backward[n];

@@ -40,15 +40,13 @@ json history_json(const std::vector<IterationRecord>& history) {
   return out;
 }
 
-/// {response: {parameter: [backward, forward]}} where the two differ and both are known.
+/// {response: {parameter: [backward, forward]}} of all; null where a side has no derivative.
 json one_sided_json(const StepResult& step, const Scene& scene) {
   json out = json::object();
   for (std::size_t i = 0; step.backward.size() && i < scene.responses.size(); ++i)
-    for (std::size_t j = 0; j < scene.parameters.size(); ++j) {
-      const double backward = step.backward(i, j), forward = step.forward(i, j);
-      if (std::isfinite(backward + forward) && step.has_kink(scene, i, j))
-        out[scene.responses[i].name][scene.parameters[j].name] = {backward, forward};
-    }
+    for (std::size_t j = 0; j < scene.parameters.size(); ++j)
+      out[scene.responses[i].name][scene.parameters[j].name] = {finite(step.backward(i, j)),
+                                                                finite(step.forward(i, j))};
   return out;
 }
 

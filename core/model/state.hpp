@@ -22,6 +22,9 @@ struct ContactField {
   Vector<T> placement;  ///< s, the slip history
   Vector<T> slip;       ///< dg_T of this increment
   Vector<T> traction;   ///< t; compression negative
+  /// Of derivatives alone (sensitivity/branches.hpp): the direction that the trial of a slipping point takes from the
+  /// apex of its cone, laid out as traction, zero elsewhere; empty where no point is there.
+  Vector<double> ray;
 };
 
 /// Where the tangential quantities of point p stand (each earlier point has exactly one normal component).

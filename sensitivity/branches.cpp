@@ -1,0 +1,193 @@
+#include "sensitivity/branches.hpp"
+
+#include <limits>
+
+namespace stickslip {
+namespace {
+
+using Tie = WeakPoint::Tie;
+
+double elastic_traction(const Slots<double>& slots, std::size_t p) {
+  return slots.stiffness[p] / slots.geometry[p].area;
+}
+
+/// Trial traction of a point from a state: values or derivatives.
+template <class T>
+Vector<T> trial(const Model& model, const State<T>& state, const PointRegularisation<T>& rho, int p) {
+  const auto& point = model.points[p];
+  const int offset = tangential_offset(model, p);
+  Vector<T> z(point.components());
+  z[0] = state.multiplier[point.multiplier] + rho.normal * state.contact.gap[p];
+  for (int a = 0; a < point.tangents; ++a)
+    z[1 + a] = state.multiplier[point.multiplier + 1 + a] + rho.tangential * state.contact.slip[offset + a];
+  return z;
+}
+
+/// Derivatives below this are zero beside those of all points: of tractions, and of motions times k / A. `multiple`: of
+/// rho in k / A, which magnifies the rounding of a motion.
+double negligible(const Model& model, const Slots<double>& slots, const ParameterBlock& block, double multiple) {
+  constexpr double share = 1e-10, roundings = 64;
+  double size = 0;
+  const auto& now = block.current.contact;
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    const auto& point = model.points[p];
+    const double elastic = elastic_traction(slots, p);
+    const int offset = tangential_offset(model, p);
+    size = std::max(size, elastic * std::abs(now.gap[p].d[0]));
+    for (int c = 0; c < point.components(); ++c)
+      size = std::max(size, std::abs(now.traction[point.multiplier + c].d[0]));
+    for (int a = 0; a < point.tangents; ++a) size = std::max(size, elastic * std::abs(now.placement[offset + a].d[0]));
+  }
+  return std::max(share, roundings * unit_roundoff * multiple) * size;
+}
+
+/// The derivative of a trial, s Dz, and what is negligible of it; `kinematic`: of a motion, k / A over rho.
+struct Judged {
+  double normal;
+  Vector<double> tangential;
+  double negligible, kinematic_normal, kinematic;
+};
+
+Branch slip_along(const Judged& d, double normal) {
+  Branch branch{ContactState::slip, Vector<double>(1 + d.tangential.size())};
+  branch.ray << normal, d.tangential;
+  branch.ray /= branch.ray.cwiseAbs().maxCoeff();
+  return branch;
+}
+
+/// A closed point without a trial of its own: the derivative of its bound is `bound`.
+std::optional<Branch> judge_from_apex(const Judged& d, double bound, const Branch& now) {
+  const double length = d.tangential.norm(), excess = length - bound;
+  const Branch slip = length > 0 ? slip_along(d, std::min(d.normal, 0.0)) : Branch{ContactState::stick, {}};
+  if (now.state == ContactState::stick) return excess <= d.negligible ? std::nullopt : std::optional(slip);
+  if (now.state == ContactState::open) return excess <= 0 ? Branch{ContactState::stick, {}} : slip;
+  if (excess * d.kinematic < -d.negligible) return Branch{ContactState::stick, {}};
+  if (bound <= d.negligible) return std::nullopt;
+  if (now.ray.size() == 0) return slip;
+  const Vector<double> was = now.ray.tail(d.tangential.size());
+  const double turned = (d.tangential / length - was / was.norm()).norm();
+  return turned * bound <= d.negligible ? std::nullopt : std::optional(slip);
+}
+
+}  // namespace
+
+double traction_scale(const Model& model, const Slots<double>& slots, const State<double>& state) {
+  double largest = 0;
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const double elastic = elastic_traction(slots, p);
+    largest = std::max({largest, -state.contact.traction[model.points[p].multiplier],
+                        elastic * std::abs(state.contact.gap[p] - slots.geometry[p].gap)});
+    const int offset = tangential_offset(model, static_cast<int>(p));
+    largest = std::max(largest, elastic * state.contact.placement.segment(offset, model.points[p].tangents).norm());
+  }
+  return largest;
+}
+
+std::vector<WeakPoint> weak_points(const Model& model, const Slots<double>& slots, const State<double>& state,
+                                   const RegularisationField<double>& rho, ConeRadius cone) {
+  std::vector<WeakPoint> weak;
+  const double largest = traction_scale(model, slots, state);
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    const auto& point = model.points[p];
+    const double elastic = elastic_traction(slots, p);
+    const double negligible = std::max(weak_margin * largest, elastic * point.tie_length);
+    const Vector<double> z = trial(model, state, rho[p], p);
+    const double tangential = z.tail(point.tangents).norm();
+    const bool open = state.contact.state[p] == ContactState::open;
+    const bool at_apex = point.tangents > 0 && elastic / rho[p].tangential * tangential <= negligible;
+    const double mu = slots.friction[point.contact];
+    if (open ? elastic / rho[p].normal * z[0] <= negligible : -z[0] <= negligible) {
+      weak.push_back({p, at_apex && mu > 0 ? Tie::apex : Tie::opens});
+      continue;
+    }
+    if (open || point.tangents == 0) continue;
+    const double bound = -mu * (cone == ConeRadius::augmented ? z[0] : state.multiplier[point.multiplier]);
+    if (!(bound > 0)) {
+      if (at_apex) weak.push_back({p, Tie::line});
+      continue;
+    }
+    const double excess = tangential - bound, share = excess > 0 ? elastic / rho[p].tangential : -1;
+    if (share * excess <= weak_margin * bound) weak.push_back({p, Tie::slips});
+  }
+  return weak;
+}
+
+Branch branch_of(const Model& model, const State<double>& at, int point) {
+  Branch branch{at.contact.state[point], {}};
+  const auto& of = model.points[point];
+  if (has_ray(model, at.contact.ray, point)) branch.ray = at.contact.ray.segment(of.multiplier, of.components());
+  return branch;
+}
+
+void take_branch(const Model& model, int point, const Branch& branch, State<double>& at) {
+  at.contact.state[point] = branch.state;
+  auto& ray = at.contact.ray;
+  if (ray.size() == 0 && branch.ray.size() == 0) return;
+  if (ray.size() == 0) ray = Vector<double>::Zero(model.multiplier_count);
+  auto of_point = ray.segment(model.points[point].multiplier, model.points[point].components());
+  if (branch.ray.size() == 0)
+    of_point.setZero();
+  else
+    of_point = branch.ray;
+}
+
+std::vector<Branch> branches_of(const Model& model, const WeakPoint& weak) {
+  const Branch open{ContactState::open, {}}, stick{ContactState::stick, {}}, slip{ContactState::slip, {}};
+  if (weak.tie == Tie::opens) return {slip, open};
+  if (weak.tie == Tie::slips) return {stick, slip};
+  std::vector<Branch> all{stick};
+  if (weak.tie == Tie::apex) all.push_back(open);
+  if (model.points[weak.point].tangents == 1)
+    for (double direction : {-1.0, 1.0}) {
+      all.push_back(slip);
+      all.back().ray = Vector<double>(2);
+      all.back().ray << (weak.tie == Tie::apex ? -1.0 : 0.0), direction;
+    }
+  return all;
+}
+
+Verdict judge(const Model& model, const Slots<double>& slots, const ParameterBlock& block,
+              const RegularisationField<Direction>& rho, const RegularisationField<double>& own, ConeRadius cone,
+              const WeakPoint& weak, const State<double>& at, double side) {
+  const int p = weak.point;
+  const auto& point = model.points[p];
+  const double elastic = elastic_traction(slots, p);
+  const Vector<Direction> z = trial(model, block.current, rho[p], p);
+  Judged d{side * z[0].d[0], Vector<double>(point.tangents), 0, elastic / rho[p].normal.v,
+           elastic / rho[p].tangential.v};
+  for (int a = 0; a < point.tangents; ++a) d.tangential[a] = side * z[1 + a].d[0];
+  d.negligible = negligible(model, slots, block, rho[p].normal.v / elastic);
+  const Branch now = branch_of(model, at, p);
+  const bool open = now.state == ContactState::open;
+  const Direction& mu = block.slots.friction[point.contact];
+  Verdict verdict;
+  if (weak.tie == Tie::opens || weak.tie == Tie::apex) {
+    const bool closes = open && d.normal * d.kinematic_normal < -d.negligible;
+    const bool opens = !open && d.normal > d.negligible;
+    if (opens) verdict.contradicts = Branch{ContactState::open, {}};
+    if (opens || (open && !closes)) return verdict;
+    if (weak.tie == Tie::apex)
+      verdict.contradicts = judge_from_apex(d, -mu.v * std::min(d.normal, 0.0), now);
+    else if (now.state != ContactState::slip)
+      verdict.contradicts = Branch{ContactState::slip, {}};
+    return verdict;
+  }
+  const Vector<double> found = trial(model, at, own[p], p);
+  const bool augmented = cone == ConeRadius::augmented;
+  const double pressure = augmented ? found[0] : at.multiplier[point.multiplier];
+  const double moved = augmented ? z[0].d[0] : block.current.multiplier[point.multiplier].d[0];
+  const double bound = -side * (mu.d[0] * pressure + mu.v * moved);
+  if (weak.tie == Tie::line) {
+    verdict.possible = side * mu.d[0] >= 0;
+    verdict.contradicts = judge_from_apex(d, std::max(bound, 0.0), now);
+    return verdict;
+  }
+  const auto along = found.tail(point.tangents);
+  const double excess = along.dot(d.tangential) / along.norm() - bound;
+  if (now.state == ContactState::stick && excess > d.negligible) verdict.contradicts = Branch{ContactState::slip, {}};
+  if (now.state == ContactState::slip && excess * d.kinematic < -d.negligible)
+    verdict.contradicts = Branch{ContactState::stick, {}};
+  return verdict;
+}
+
+}  // namespace stickslip

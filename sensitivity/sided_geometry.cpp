@@ -1,0 +1,143 @@
+#include "sensitivity/sided_geometry.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+#include "core/model/pairing.hpp"
+
+namespace stickslip {
+namespace {
+
+/// Whether a point can come to face another part of its master.
+bool may_leave(const ContactPoint& point) {
+  return point.master == ContactPoint::Master::pieces ? point.obstacle < 0
+                                                      : point.master != ContactPoint::Master::obstacle;
+}
+
+bool same_part(const ContactPoint& a, const ContactPoint& b) {
+  const auto same = [](const Piece& p, const Piece& q) {
+    return p.slave == q.slave && p.master == q.master && p.from == q.from && p.to == q.to;
+  };
+  return a.master == b.master && a.nodes == b.nodes && a.of_polyline == b.of_polyline &&
+         std::equal(a.pieces.begin(), a.pieces.end(), b.pieces.begin(), b.pieces.end(), same);
+}
+
+/// The point of the same slave node; nullptr where there is none.
+const ContactPoint* counterpart(const std::vector<ContactPoint>& points, const ContactPoint& of) {
+  const auto found = std::find_if(points.begin(), points.end(), [&](const ContactPoint& point) {
+    return point.contact == of.contact && point.nodes[0] == of.nodes[0];
+  });
+  return found == points.end() ? nullptr : &*found;
+}
+
+/// The contact points where all nodes and obstacles are moved to one side.
+std::vector<ContactPoint> paired_beside(const Model& model, const Points<Direction>& points,
+                                        const Numbers<Direction>& numbers, double step) {
+  Model beside;
+  beside.scene = model.scene;
+  beside.dimension = model.dimension;
+  beside.bodies = model.bodies;
+  for (std::size_t i = 0; i < beside.scene.numbers.size(); ++i)
+    beside.scene.numbers[i] += step * numbers.at_slot[i].d[0];
+  Points<double> moved(points.rows(), points.cols());
+  for (Eigen::Index i = 0; i < moved.size(); ++i) moved.data()[i] = points.data()[i].v + step * points.data()[i].d[0];
+  pair_contacts(beside, moved);
+  return beside.points;
+}
+
+/// Largest velocity of a contact node, or a number of an obstacle, over the mesh size of the slave.
+double speed(const Model& model, const Points<Direction>& points, const Numbers<Direction>& numbers) {
+  double fastest = 0, size = std::numeric_limits<double>::infinity();
+  for (const auto& point : model.points) {
+    if (!may_leave(point)) continue;
+    size = point.mesh_size > 0 ? std::min(size, point.mesh_size) : size;
+    for (const auto* nodes : {&point.nodes, &point.neighbours})
+      for (int node : *nodes)
+        for (Eigen::Index i = 0; i < points.rows(); ++i) fastest = std::max(fastest, std::abs(points(i, node).d[0]));
+    if (point.of_polyline.empty()) continue;
+    const auto& polyline = std::get<Polyline>(model.scene.obstacles[point.obstacle].shape);
+    for (int v : point.of_polyline)
+      for (const Number& x : polyline.points[v]) fastest = std::max(fastest, std::abs(numbers(x).d[0]));
+    const auto& from = polyline.points[point.of_polyline[0]];
+    const auto& to = polyline.points[point.of_polyline[1]];
+    const double length = std::hypot(numbers(to[0]).v - numbers(from[0]).v, numbers(to[1]).v - numbers(from[1]).v);
+    size = std::min(size, length);
+  }
+  return std::isfinite(size) ? fastest / size : 0;
+}
+
+/// The geometry of a point of the side with its weights in the order of `nodes`; nothing where another node has one.
+std::optional<PointGeometry<Direction>> on_nodes(PointGeometry<Direction> geometry, const std::vector<int>& of,
+                                                 const std::vector<int>& nodes) {
+  constexpr double negligible = 1e-12;
+  decltype(geometry.weights) weights = decltype(geometry.weights)::Constant(nodes.size(), Direction(0));
+  for (Eigen::Index n = 0; n < geometry.weights.size(); ++n) {
+    const auto found = std::find(nodes.begin(), nodes.end(), of[n]);
+    const Direction& weight = geometry.weights[n];
+    if (found != nodes.end())
+      weights[found - nodes.begin()] += weight;
+    else if (std::abs(weight.v) > negligible || std::abs(weight.d[0]) > negligible)
+      return std::nullopt;
+  }
+  geometry.weights = weights;
+  return geometry;
+}
+
+/// Whether two geometries of the same nodes are the same in value, to the tolerance of a tie.
+bool meets(const PointGeometry<Direction>& a, const PointGeometry<Direction>& b, double size) {
+  constexpr double tie = 1e-6;
+  return (values(a.normal) - values(b.normal)).cwiseAbs().maxCoeff() <= tie &&
+         (values(a.weights) - values(b.weights)).cwiseAbs().maxCoeff() <= tie &&
+         std::abs(a.gap.v - b.gap.v) <= tie * size && std::abs(a.area.v - b.area.v) <= tie * a.area.v;
+}
+
+}  // namespace
+
+SidedPairing sided_pairing(const Model& model, int parameter, double side) {
+  constexpr double step = 1e-7;  // a tie is 1e-9 wide (core/contact/search.hpp), a free end 1e-6
+  SidedPairing out;
+  if (std::none_of(model.points.begin(), model.points.end(), may_leave)) return out;
+  const auto numbers = seeded(model.scene, {parameter});
+  const auto points = initial_points(model, numbers);
+  const double fastest = speed(model, points, numbers);
+  if (!(fastest > 0)) return out;
+  out.points = paired_beside(model, points, numbers, side * step / fastest);
+  out.kink = out.points.size() != model.points.size();
+  for (const auto& point : model.points) {
+    if (!may_leave(point)) continue;
+    const auto* other = counterpart(out.points, point);
+    out.kink |= !other || !same_part(*other, point);
+  }
+  return out;
+}
+
+bool take_side(const Model& model, const SidedPairing& pairing, const std::vector<char>& engaged,
+               Slots<Direction>& slots) {
+  bool continuous = true;
+  Model sided = model;  // what the points face; their nodes stay
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const auto& point = model.points[p];
+    const auto* other = counterpart(pairing.points, point);
+    if (!may_leave(point) || (other && same_part(*other, point))) continue;
+    std::optional<PointGeometry<Direction>> geometry;
+    if (other) geometry = on_nodes(detail::initial_geometry(model, *other, slots), other->nodes, point.nodes);
+    const double size = point.mesh_size > 0 ? point.mesh_size : 1;
+    if (!geometry || !meets(*geometry, slots.geometry[p], size)) {
+      continuous &= !engaged[p];
+      continue;
+    }
+    slots.geometry[p] = *geometry;
+    sided.points[p].master = other->master;
+    sided.points[p].of_polyline = other->of_polyline;
+  }
+  for (const auto& other : pairing.points)  // that face the master on this side alone
+    if (!counterpart(model.points, other))
+      for (std::size_t p = 0; p < model.points.size(); ++p)
+        continuous &= !(engaged[p] && model.points[p].contact == other.contact);
+  slots.stiffness = contact_stiffness(model, slots);
+  for (std::size_t p = 0; p < slots.spins.size(); ++p) slots.spins[p] = detail::spin(sided, static_cast<int>(p), slots);
+  return continuous;
+}
+
+}  // namespace stickslip
