@@ -163,7 +163,7 @@ def catch(folder, times, fault):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--only", default="", help="faults whose name matches")
+    parser.add_argument("--only", default="", help="faults whose \"FILE NAME\" matches")
     parser.add_argument("--tests", nargs="+", default=FOLDERS, choices=FOLDERS, help="the tests that are to notice")
     parser.add_argument("--scratch", default=os.path.join(HERE, "build", "faults"))
     parser.add_argument("--compilers", type=int, default=1)
@@ -176,7 +176,7 @@ def main():
     programs = [f"stickslip_{folder}_tests" for folder in options.tests]
     folder = build(options.scratch, programs, options.compilers)
     times = baseline(folder, programs)
-    chosen = [n for n, fault in enumerate(FAULTS, 1) if re.search(options.only, fault[0])]
+    chosen = [n for n, fault in enumerate(FAULTS, 1) if re.search(options.only, f"{fault[1]} {fault[0]}")]
     survivors = 0
     for n in chosen:
         start = time.monotonic()
