@@ -104,7 +104,7 @@ std::vector<BranchSolution> all_solutions(const BranchProblem& problem) {
     const Vector<double> t = lu.solve(system.right), g = problem.free - problem.compliance * t;
     if (!t.allFinite() || !is_valid(problem, combination, g, t)) return true;
     for (const auto& other : solutions) {
-      const double lengths = std::max(g.norm(), other.kinematics.norm());
+      const double lengths = std::max({g.norm(), other.kinematics.norm(), problem.free.norm()});
       const double tractions = std::max(t.norm(), other.traction.norm());
       if ((g - other.kinematics).norm() <= same * lengths && (t - other.traction).norm() <= same * tractions)
         return true;
@@ -221,7 +221,8 @@ std::optional<std::vector<State<double>>> other_solutions(const ContactInput<dou
     other.contact = evaluate_contact<double>(input, engine.compact(u), solution.traction, &solution.state);
     other.contact.traction = solution.traction;  // (laid out as multipliers are)
     const double lengths =
-        std::max(largest_nodal_norm(other.displacement, 2), largest_nodal_norm(taken.displacement, 2));
+        std::max({largest_nodal_norm(other.displacement, 2), largest_nodal_norm(taken.displacement, 2),
+                  largest_nodal_norm(problem->unloaded, 2)});
     const double tractions = std::max(solution.traction.norm(), taken.contact.traction.norm());
     if (largest_nodal_norm(Vector<double>(other.displacement - taken.displacement), 2) > same * lengths ||
         (solution.traction - taken.contact.traction).norm() > same * tractions)
