@@ -86,9 +86,11 @@ bool is_valid(const BranchProblem& problem, const std::vector<Branch>& combinati
 }  // namespace
 
 bool may_have_several(const BranchProblem& problem) {
+  constexpr double rounding = 1e-12;  // of Hadamard's bound: two contacts on one node repeat one another
   bool found = false;
   for_each_combination(problem, [&](const std::vector<Branch>& combination) {
-    found = system_of(problem, combination).matrix.determinant() < 0;
+    const Matrix<double> A = system_of(problem, combination).matrix;
+    found = A.determinant() < -rounding * A.rowwise().norm().prod();
     return !found;
   });
   return found;

@@ -10,6 +10,7 @@
 #include "core/model/loading.hpp"
 #include "core/model/state.hpp"
 #include "methods/increment.hpp"
+#include "methods/statics.hpp"
 
 namespace stickslip {
 
@@ -23,24 +24,6 @@ struct NodeRange {
 
 inline NodeRange nodes_of_body(const Model& model, std::size_t b) {
   return {model.bodies[b].first_node, model.bodies[b].first_node + model.bodies[b].mesh.node_count};
-}
-
-/// The contact point that violates its constraint the most while supports prescribe the motion of all its nodes, in
-/// words of the scene; empty where there is none.
-template <class T>
-std::string prescribed_penetration(const Model& model, const Slots<T>& slots, const State<T>& state) {
-  constexpr double rounding = 1e-12;
-  const auto decided = decided_elsewhere(model, slots);
-  double worst = rounding * largest_nodal_norm(state.displacement, model.dimension);
-  int found = -1;
-  for (int p = 0; !decided.empty() && p < static_cast<int>(state.contact.gap.size()); ++p) {
-    if (!decided[model.points[p].multiplier] || -value(state.contact.gap[p]) <= worst) continue;
-    worst = -value(state.contact.gap[p]);
-    found = p;
-  }
-  if (found < 0) return "";
-  return name_of_point(model, slots, found) + " penetrates by " + short_number(worst) +
-         ", and supports prescribe its motion: no traction can prevent that";
 }
 
 /// How an elastic body can move as a whole although its supports, and its contact points in these states, hold it, in
@@ -97,18 +80,38 @@ std::string free_motion(const Model& model, const Slots<T>& slots, std::size_t b
   return "";
 }
 
+/// Which body no forces balance, and how it can move.
+template <class T>
+std::string words_of_imbalance(const Model& model, const Slots<T>& slots, double time,
+                               const std::vector<ContactState>& states) {
+  const int b = unbalanced_body(model, slots, time);
+  if (b < 0)
+    return "bodies are free to move together: no forces that their contacts and supports can give balance their loads";
+  const auto body = nodes_of_body(model, b);
+  const std::string name = model.scene.bodies[b].name, load = "no forces that its contacts can give balance its load";
+  const bool supported = std::any_of(model.constraints.begin(), model.constraints.end(),
+                                     [&](const Constraint& c) { return body.has(c.dof / model.dimension); });
+  if (!supported) return name + " is free to slide: no support holds it, and " + load;
+  const std::string motion = free_motion(model, slots, b, states);
+  return name + " is free to move" + (motion.empty() ? "" : " " + motion) +
+         ": neither its supports nor its contacts hold it, and " + load;
+}
+
 }  // namespace detail
 
 /// Says why an increment failed. Supports may drive a point into its obstacle, against a method that
 /// `prevents_penetration`. A body without a support of which no contact point sticks may move without resistance, where
 /// the tangent is singular, and so may one whose supports leave a motion free.
 template <class T>
-void diagnose(const Model& model, const Slots<T>& slots, bool prevents_penetration, Increment<T>& failed) {
-  if (failed.status == Status::no_equilibrium) return;
-  const std::string driven_in = detail::prescribed_penetration(model, slots, failed.state);
+void diagnose(const Model& model, const Slots<T>& slots, double time, bool prevents_penetration, Increment<T>& failed) {
+  const std::string driven_in = prescribed_penetration(model, slots, failed.state);
   if (prevents_penetration && !driven_in.empty()) {
     failed.status = Status::infeasible;
     failed.message = driven_in;
+    return;
+  }
+  if (failed.status == Status::no_equilibrium) {
+    failed.message = detail::words_of_imbalance(model, slots, time, failed.state.contact.state);
     return;
   }
   if (failed.status != Status::singular) return;

@@ -75,4 +75,22 @@ std::string name_of_point(const Model& model, const Slots<T>& slots, int p) {
   return "the contact point of " + model.scene.contacts[point.contact].name + " at (" + place + ")";
 }
 
+/// The contact point that violates its constraint the most while supports prescribe the motion of all its nodes, in
+/// words of the scene; empty where there is none.
+template <class T>
+std::string prescribed_penetration(const Model& model, const Slots<T>& slots, const State<T>& state) {
+  constexpr double rounding = 1e-12;
+  const auto decided = decided_elsewhere(model, slots);
+  double worst = rounding * largest_nodal_norm(state.displacement, model.dimension);
+  int found = -1;
+  for (int p = 0; !decided.empty() && p < static_cast<int>(state.contact.gap.size()); ++p) {
+    if (!decided[model.points[p].multiplier] || -value(state.contact.gap[p]) <= worst) continue;
+    worst = -value(state.contact.gap[p]);
+    found = p;
+  }
+  if (found < 0) return "";
+  return name_of_point(model, slots, found) + " penetrates by " + short_number(worst) +
+         ", and supports prescribe its motion: no traction can prevent that";
+}
+
 }  // namespace stickslip

@@ -69,13 +69,15 @@ void add_cost(const Increment<T>& attempt, std::vector<IterationRecord>& history
   iterations += attempt.newton;
 }
 
-/// Follows the overdamped motion from `previous` until the method solves the unmodified equations; `of_its_branches`:
-/// and until that solution has the branches of the step before. Its history holds all iterations; where no attempt
-/// succeeds its status is that of the last.
+/// Follows the overdamped motion from `previous` until the method solves the unmodified equations. `several`: there may
+/// be more solutions; then that solution must have the branches of the step before, and no step but the first may go
+/// farther than four times the way so far: a step of that size could as well have gone to another one. Its history
+/// holds all iterations; where no attempt succeeds its status is that of the last.
 template <class M, class T, class E>
 Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& previous, const std::vector<double>& factor,
-                           double time, bool of_its_branches) {
+                           double time, bool several) {
   constexpr double slower = 8, faster = 0.2, slowest = 1e9, fastest = 1e-15;  // below it the term is rounding
+  constexpr double farthest = 4;
   constexpr int most_steps = 300;
   const Vector<double> D = damping(run.model, run.slots);
   const RunScales scales = run.account.scales;
@@ -91,17 +93,22 @@ Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& prev
   };
   Increment<T> result;
   State<T> rest = previous;
-  double alpha = 1;
+  double alpha = 1, way = 0;
   for (int step = 0; step < most_steps && alpha >= fastest && alpha <= slowest; ++step) {
     auto moved = attempt(rest, alpha);
-    if (!is_converged(moved.status)) {
+    const double length =
+        largest_nodal_norm(Vector<T>(moved.state.displacement - rest.displacement), run.model.dimension);
+    const bool strays = several && way > 0 && length > farthest * way;
+    if (!is_converged(moved.status) || strays) {
       alpha *= slower;
+      if (is_converged(moved.status)) moved.status = Status::cycle;
       result = std::move(moved);
       continue;
     }
+    way += length;
     rest = std::move(moved.state);
     result = attempt(rest, 0);
-    const bool settled = !of_its_branches || result.state.contact.state == rest.contact.state;
+    const bool settled = !several || result.state.contact.state == rest.contact.state;
     if (is_converged(result.status) && settled) break;
     if (is_converged(result.status)) {
       result.status = Status::cycle;
@@ -124,20 +131,22 @@ Increment<T> find_increment(const M& method, Run<T, E>& run, const State<T>& pre
   auto direct = solve_increment(method, run, previous, factor, time, Start<T>{previous, {}});
   const bool solved = direct.usable();
   const bool several = run.several || direct.reversed;
-  const bool final =
-      solved ? !several || direct.cut_off : direct.status == Status::infeasible && !prevents_penetration(method);
+  const bool prescribed =
+      direct.status == Status::infeasible &&
+      (!prevents_penetration(method) || !prescribed_penetration(run.model, run.slots, direct.state).empty());
+  const bool final = prescribed || (solved && (!several || direct.cut_off));
   if (final || run.model.points.empty() || !is_globalised(method)) return direct;
-  if (!solved) {
-    const std::string body = unbalanced_body(run.model, run.slots, time);
-    if (!body.empty()) {
-      direct.status = Status::no_equilibrium;
-      direct.message = body;
-      return direct;
-    }
+  if (!solved && unbalanced_body(run.model, run.slots, time) != balanced) {
+    direct.status = Status::no_equilibrium;
+    return direct;
   }
   const RunScales after = std::exchange(run.account.scales, before);
   auto rest = detail::follow_motion(method, run, previous, factor, time, several);
-  const bool better = rest.usable();
+  // a multiplier that grows for ever makes any violation small against it
+  constexpr double runaway = 1e4;
+  const bool grown = direct.status == Status::infeasible && values(rest.state.contact.traction).norm() >
+                                                                runaway * values(direct.state.contact.traction).norm();
+  const bool better = rest.usable() && !grown;
   if (!better) run.account.scales = after;
   auto& taken = better ? rest : direct;
   const auto& other = better ? direct : rest;

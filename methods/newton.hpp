@@ -129,7 +129,8 @@ Evaluation<T> evaluate(E& engine, const ContactInput<T>& input, const Vector<T>&
   ForceScale force{scales.force, 0};
   at.rows_u = engine.residual(u, acting_forces(input, compact, at.field.traction, anchor), force);
   scales.force = force.force;
-  double contact_rounding = 0, elastic = 0, stiffest = 0;  // elastic: largest k / A; stiffest: largest rho
+  double contact_rounding = 0, distance = 0, elastic = 0,
+         stiffest = 0;  // elastic: largest k / A; stiffest: largest rho
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
     const double area = value(input.slots.geometry[p].area), stiffness = value(input.slots.stiffness[p]);
@@ -147,6 +148,8 @@ Evaluation<T> evaluate(E& engine, const ContactInput<T>& input, const Vector<T>&
     scales.traction = std::max(scales.traction, traction);
     scales.length = std::max({scales.length, std::sqrt(moved), area * traction / stiffness});
     contact_rounding = std::max(contact_rounding, area * value(input.rho[p].normal));
+    if (at.field.state[p] != ContactState::open)  // an initial gap rounds as a displacement does
+      distance = std::max(distance, std::abs(value(input.slots.geometry[p].gap)));
     elastic = std::max(elastic, stiffness / area);
     stiffest = std::max(stiffest, value(input.rho[p].normal));
   }
@@ -157,7 +160,8 @@ Evaluation<T> evaluate(E& engine, const ContactInput<T>& input, const Vector<T>&
   const double bulk_floor = rounding_factor * ratio(force.rounding, scales.force);
   if (bulk_floor <= adrift || reach <= carried * prescribed)
     at.residuals.floor_equilibrium =
-        bulk_floor + rounding_factor * ratio(unit_roundoff * contact_rounding * reach, scales.force);
+        bulk_floor +
+        rounding_factor * ratio(unit_roundoff * contact_rounding * std::max(reach, distance), scales.force);
   at.residuals.floor_length = rounding_factor * ratio(unit_roundoff * reach, scales.length);
   // in slip the bound passes on what rounding makes of the pressure lambda_N + rho g_N
   at.residuals.floor_traction = rounding_factor * ratio(unit_roundoff * stiffest * reach, scales.traction);
@@ -253,6 +257,25 @@ std::vector<ContactState> step_branches(const Model& model, const ContactInput<T
     if (apex || reversed) branches[p] = ContactState::stick;
   }
   return branches;
+}
+
+/// A constraint that supports decide takes its multiplier from the gap as a penalty of the local stiffness k / A would,
+/// step by step, also where rho is smaller: steps of rho would not get to the bound of friction.
+template <class T>
+void yield_decided(const ContactInput<T>& input, const std::vector<char>& decided,
+                   std::vector<PointTangent<T>>& tangents) {
+  constexpr double nothing = 1e-8;
+  for (std::size_t p = 0; p < tangents.size(); ++p) {
+    auto& tangent = tangents[p];
+    const double local = value(input.slots.stiffness[p]) / value(input.slots.geometry[p].area);
+    const double share = std::min(1.0, value(input.rho[p].normal) / local);
+    for (Eigen::Index c = 0; c < tangent.row_l.rows(); ++c) {
+      if (!decided[input.model.points[p].multiplier + c]) continue;
+      const double own = values(tangent.row_l.row(c)).cwiseAbs().maxCoeff();
+      const double along = values(tangent.row_w.row(c)).cwiseAbs().maxCoeff();
+      if (own <= nothing * along) tangent.row_l(c, c) -= T(share * along);
+    }
+  }
 }
 
 /// Branches with all open points closed, and sticking where there is friction.
@@ -366,8 +389,9 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
         for (int p = 0; p < static_cast<int>(model.points.size()); ++p)
           tangents.push_back(point_tangent<T>(input, p, compact, multiplier, branch[p]));
       }
+      if (!decided.empty()) detail::yield_decided(input, decided, tangents);
       const Stopwatch time(account.seconds.factorization);
-      return unknown ? factorise_sharing(engine, model, decided, std::move(tangents), redundant, account.counters,
+      return unknown ? factorise_sharing(engine, model, {}, std::move(tangents), redundant, account.counters,
                                          anchor.stiffness)
                      : engine.factorise(tangents, account.counters, anchor.stiffness);
     };

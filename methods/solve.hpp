@@ -52,7 +52,8 @@ void count_solutions(const M& method, const Run<T, E>& run, Workspace<T>& worksp
 }
 
 /// Where the branch of solutions that leads to an increment's solution ends and this jumps: the end of the thousandth
-/// of the increment in which at least a quarter of its motion falls. It is looked for where solutions were counted.
+/// of the increment in which at least a quarter of its motion falls. It is looked for where solutions were counted, and
+/// there were several at either end or a tangent on the way had the other sign of its determinant.
 template <class T, class E, class M>
 std::optional<double> find_jump(const M& method, Run<T, E>& run, const State<T>& previous,
                                 const std::vector<double>& factor, double start, double end, const State<T>& reached) {
@@ -112,7 +113,10 @@ bool advance(const M& method, Run<T, E>& run, Workspace<T>& workspace, Trajector
     }
     if (increment.usable()) {
       count_solutions(method, run, workspace, previous, next, increment);
-      if (increment.counted) increment.jump = find_jump(method, run, previous, factor, reached, next, increment.state);
+      const bool folded = increment.reversed || !increment.others.empty() ||
+                          (!trajectory.increments.empty() && !trajectory.increments.back().others.empty());
+      if (increment.counted && folded)
+        increment.jump = find_jump(method, run, previous, factor, reached, next, increment.state);
       trajectory.increments.push_back(std::move(increment));
       if (last) return true;
       reached = next;
@@ -128,7 +132,7 @@ bool advance(const M& method, Run<T, E>& run, Workspace<T>& workspace, Trajector
     ++cutbacks;
     ++run.account.counters.cutbacks;
   }
-  diagnose(run.model, run.slots, prevents_penetration(method), *failed);
+  diagnose(run.model, run.slots, target, prevents_penetration(method), *failed);
   trajectory.increments.resize(start_count);
   failed->time = target;
   failed->requested = true;

@@ -64,21 +64,23 @@ RigidStatics rigid_statics(const Model& model, const Slots<T>& slots, double tim
   return statics;
 }
 
-/// A sentence about the body whose load nothing balances; empty where all can be, or where this cannot tell (space,
-/// bodies of revolution).
+/// What unbalanced_body returns of no body, and of several that only together have no balance.
+inline constexpr int balanced = -1, a_group = -2;
+
+/// Index of a body whose load nothing balances; `balanced` where all can be, or where this cannot tell (space, bodies
+/// of revolution).
 template <class T>
-std::string unbalanced_body(const Model& model, const Slots<T>& slots, double time) {
+int unbalanced_body(const Model& model, const Slots<T>& slots, double time) {
   constexpr double rounding = 1e-9;  // of the least squares: what is less may be balanced
-  if (model.dimension != 2 || model.scene.space == Space::axisymmetric) return "";
+  if (model.dimension != 2 || model.scene.space == Space::axisymmetric) return balanced;
   const RigidStatics all = rigid_statics(model, slots, time);
-  if (!(unbalanced_share(all) > rounding)) return "";
-  const std::string why = " is free to move: no forces that its contacts and supports can give balance its load";
+  if (!(unbalanced_share(all) > rounding)) return balanced;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const auto rows = static_cast<Eigen::Index>(3 * b);
     const RigidStatics one{all.pushes.middleRows(rows, 3), all.holds.middleRows(rows, 3), all.load.segment(rows, 3)};
-    if (unbalanced_share(one) > rounding) return model.scene.bodies[b].name + why;
+    if (unbalanced_share(one) > rounding) return static_cast<int>(b);
   }
-  return "a group of bodies" + why;
+  return a_group;
 }
 
 }  // namespace stickslip

@@ -82,6 +82,9 @@ inline NewtonOptions inner_options(const UzawaAL& method, double contraction) {
   return inner;
 }
 
+inline constexpr const char* frozen_advice =
+    ", as a frozen cone does where the friction coefficient exceeds the slope of the load path; use the augmented cone";
+
 /// How the augmentations stand: the status they could end with, if `done`.
 struct Standing {
   Status status = Status::converged;
@@ -118,10 +121,7 @@ Standing judge(const UzawaAL& method, const Slots<T>& slots, const Regularisatio
   if (const std::string point = progress.unyielding(violation); !point.empty()) return end(Status::infeasible, point);
   if (!progress.alternates()) return now;
   const std::string cycle = "the augmentations go to and fro between two multipliers";
-  return end(Status::cycle, cycle + (method.cone == UzawaAL::Cone::frozen
-                                         ? ", as a frozen cone does where the friction coefficient exceeds the slope "
-                                           "of the load path; use the augmented cone"
-                                         : "; try more steps"));
+  return end(Status::cycle, cycle + (is_globalised(method) ? "; try more steps" : frozen_advice));
 }
 
 /// Status and message as things stand: the outer tolerance decides, not the stricter one of the inner solves.
@@ -168,6 +168,7 @@ Increment<T> solve_increment(const UzawaAL& options, Run<T, E>& run, const State
       increment.state = settle(run, input, equilibrium, previous.dissipation);
       return increment;
     };
+    if (equilibrium.status == Status::cycle && !is_globalised(method)) increment.message += detail::frozen_advice;
     if (!is_converged(equilibrium.status)) return keep();
     if (truncated)
       increment.sweeps.push_back({settle(run, input, equilibrium, previous.dissipation), increment.rho_factor});

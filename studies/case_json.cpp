@@ -143,9 +143,8 @@ json solutions_json(const CaseResult& result) {
       const auto values = evaluate_responses(model, slots, other, increment.time);
       for (std::size_t i = 0; i < model.scene.responses.size(); ++i)
         responses[model.scene.responses[i].name] = finite(values[i]);
-      solutions.push_back({{"time", increment.time},
-                           {"contacts", contacts_json(*result.problem, other)},
-                           {"responses", responses}});
+      solutions.push_back(
+          {{"time", increment.time}, {"contacts", contacts_json(*result.problem, other)}, {"responses", responses}});
     }
   return solutions;
 }

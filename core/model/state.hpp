@@ -58,10 +58,11 @@ struct Increment {
   std::vector<IterationRecord> history;
   std::vector<AugmentedState<T>> sweeps;
   bool reversed = false;  ///< a tangent on the way was (Engine::reversed): there may be other solutions
-  bool counted = false;          ///< all solutions of the increment were looked for
-  std::vector<State<T>> others;  ///< and these are those that were not taken; their dissipation is that of the taken one
-  std::optional<double> jump;    ///< where the branch of solutions ended that led here, as a time
-  bool cut_off = false;  ///< by max_augmentations, as asked: status cap, but each of its equilibria was found
+  bool counted = false;   ///< all solutions of the increment were looked for
+  std::vector<State<T>>
+      others;                  ///< and these are those that were not taken; their dissipation is that of the taken one
+  std::optional<double> jump;  ///< where the branch of solutions ended that led here, as a time
+  bool cut_off = false;        ///< by max_augmentations, as asked: status cap, but each of its equilibria was found
   /// Good enough to go on from.
   bool usable() const { return is_converged(status) || cut_off; }
 };

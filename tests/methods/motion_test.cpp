@@ -53,11 +53,10 @@ std::vector<Method> at_scales(const std::vector<double>& scales) {
   return methods;
 }
 
-/// Whether one of `solutions` is the state, up to `tolerance` of the displacements.
-bool is_among(const std::vector<scenes::FoundSolution>& solutions, const State<double>& state, double tolerance) {
-  return std::any_of(solutions.begin(), solutions.end(), [&](const scenes::FoundSolution& s) {
-    return (s.u - state.displacement).norm() <= tolerance * std::max(s.u.norm(), state.displacement.norm());
-  });
+/// Whether one of `solutions` is the state, up to `allowed`, a length.
+bool is_among(const std::vector<scenes::FoundSolution>& solutions, const State<double>& state, double allowed) {
+  return std::any_of(solutions.begin(), solutions.end(),
+                     [&](const scenes::FoundSolution& s) { return (s.u - state.displacement).norm() <= allowed; });
 }
 
 // --- one point: all solutions are known (A18) ------------------------------------------------------------------------
@@ -139,13 +138,14 @@ void check_random_problems(int count, unsigned seed, std::size_t enumerated, Mak
       EXPECT_LT(r.error(), solved) << "problem " << i << ", " << name_of(method);
       if (r.model.dimension != 2 || r.model.points.size() > enumerated) continue;
       const auto all = scenes::every_solution(r.model, r.slots, 1);
-      EXPECT_TRUE(is_among(all, r.last().state, 1e-6)) << "problem " << i << ", " << name_of(method);
+      const double allowed = 1e-6 * scenes::free_motion(r.model, r.slots, 1);
+      EXPECT_TRUE(is_among(all, r.last().state, allowed)) << "problem " << i << ", " << name_of(method);
       if (all.size() > 1) {
         ASSERT_TRUE(r.last().counted) << "problem " << i;
         EXPECT_EQ(r.last().others.size() + 1, all.size()) << "problem " << i << ", " << name_of(method);
       }
       if (!first) first = r.last().state.displacement;
-      EXPECT_LT((*first - r.last().state.displacement).norm(), 1e-6 * first->norm())
+      EXPECT_LT((*first - r.last().state.displacement).norm(), allowed)
           << "the same of " << all.size() << " solutions by every method: problem " << i << ", " << name_of(method);
     }
     const auto soft = solve_scene(scene, Penalty{});
@@ -279,7 +279,7 @@ TEST(Penalty, NamesAnOverlapThatGrowsAForceWithTheStiffness) {
   driven.loads.clear();
   driven.supports = {scenes::support("block.node", {{'y', scenes::ramp(0.02)}, {'x', scenes::ramp(0.0)}})};
   for (const auto& scene : {squeeze, driven})
-    for (double stiffness : {1e-2, 1.0, 1e3, 1e6}) {
+    for (double stiffness : {1.0, 1e3, 1e6}) {  // softer, the load pushes the point through one wall alone
       Penalty method;
       method.stiffness = relative(stiffness);
       const auto r = solve_scene(scene, method);

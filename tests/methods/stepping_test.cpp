@@ -9,8 +9,11 @@ namespace {
 
 using scenes::run;
 
-MonolithicAL limited(int max_iterations) {
-  MonolithicAL method;
+/// A frozen cone is not followed by a motion where it fails (methods/motion.hpp): its increments are cut.
+UzawaAL limited(int max_iterations) {
+  UzawaAL method;
+  method.cone = UzawaAL::Cone::frozen;
+  method.tolerance = 1e-12;
   method.newton.max_iterations = max_iterations;
   return method;
 }

@@ -35,6 +35,20 @@ inline Vector<double> along(const Model& model, const Slots<double>& slots, int 
   return row;
 }
 
+/// Displacements without any contact; 0 where the bodies could move as a whole. A scale for displacements that are
+/// zero.
+inline double free_motion(const Model& model, const Slots<double>& slots, double time) {
+  Matrix<double> K = dense_stiffness(model, slots);
+  Vector<double> f = external_forces(model, slots, time);
+  for (int dof = 0; dof < model.dof_count(); ++dof)
+    if (model.free_index[dof] < 0) {
+      K.row(dof) = Vector<double>::Unit(K.rows(), dof);
+      f[dof] = 0;
+    }
+  const Eigen::FullPivLU<Matrix<double>> lu(K);
+  return lu.isInvertible() ? lu.solve(f).norm() : 0;
+}
+
 /// All solutions of the first increment, every point with friction, supports held, obstacles at rest.
 inline std::vector<FoundSolution> every_solution(const Model& model, const Slots<double>& slots, double time) {
   const int n = static_cast<int>(model.points.size()), dofs = model.dof_count(), size = dofs + 2 * n;
@@ -60,6 +74,7 @@ inline std::vector<FoundSolution> every_solution(const Model& model, const Slots
   long combinations = 1;
   for (int p = 0; p < n; ++p) combinations *= 4;
   std::vector<FoundSolution> found;
+  const double scale = free_motion(model, slots, time);
   for (long c = 0; c < combinations; ++c) {
     Matrix<double> A = base;
     Vector<double> b = right;
@@ -97,7 +112,7 @@ inline std::vector<FoundSolution> every_solution(const Model& model, const Slots
       solution.traction.push_back({t_N, t_T});
     }
     const auto same = [&](const FoundSolution& other) {
-      return (other.u - solution.u).norm() <= 1e-8 * solution.u.norm();
+      return (other.u - solution.u).norm() <= 1e-8 * std::max(solution.u.norm(), scale);
     };
     if (valid && std::none_of(found.begin(), found.end(), same)) found.push_back(std::move(solution));
   }
