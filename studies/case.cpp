@@ -18,9 +18,12 @@ namespace {
 
 using nlohmann::json;
 
-/// Whether two one-sided derivatives differ by more than their rounding. `size`: |response| / |parameter|.
-bool is_kink(double backward, double forward, double size) {
-  constexpr double rounding = 1e-9;
+/// Whether two one-sided derivatives differ by more than their rounding, or than their scheme is off by. `size`:
+/// |response| / |parameter|.
+bool is_kink(const Method& method, double backward, double forward, double size) {
+  const auto* uzawa = std::get_if<UzawaAL>(&method);
+  const bool oversized = uzawa && uzawa->sensitivity == UzawaAL::Sensitivity::oversized;
+  const double rounding = oversized ? 10 / uzawa->oversize.value_or(UzawaAL::automatic_oversize) : 1e-9;
   return !(std::abs(forward - backward) <= rounding * std::max({std::abs(backward), std::abs(forward), size}));
 }
 
@@ -69,7 +72,8 @@ void take_sides(const CaseResult& result, std::size_t n, StepResult& step) {
   if (step.backward.size() == 0) return;
   for (std::size_t i = 0; i < scene.responses.size(); ++i)
     for (std::size_t j = 0; j < scene.parameters.size(); ++j)
-      if (is_kink(step.backward(i, j), step.forward(i, j), size_of(step, scene, i, j))) step.differentiable = false;
+      if (is_kink(result.method, step.backward(i, j), step.forward(i, j), size_of(step, scene, i, j)))
+        step.differentiable = false;
 }
 
 /// {response: {parameter: [backward, forward]}} of all; null where a side has no derivative.
