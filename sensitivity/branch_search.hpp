@@ -40,18 +40,18 @@ RegularisationField<double> own_rho(const M& method, const Slots<double>& slots,
 template <class M, class E>
 class BranchSearch {
  public:
-  /// `increment`: what is differentiated; `at`: its equilibrium, whose branches change; `largest`: traction scale.
+  /// `increment`: what is differentiated; `at`: its equilibrium, whose branches change.
   BranchSearch(const M& method, Differentiation<E>& problem, const State<double>& previous,
-               const Increment<double>& increment, State<double>& at, const std::vector<double>& factor, double largest,
-               double side)
+               const Increment<double>& increment, State<double>& at, const std::vector<double>& factor,
+               const Along& along)
       : method_(method),
         problem_(problem),
         previous_(previous),
         increment_(increment),
         at_(at),
         own_(detail::own_rho(method, problem.slots, factor)),
-        weak_(weak_points(problem.model, problem.slots, at, own_, cone_radius(method), largest)),
-        side_(side) {
+        weak_(weak_points(problem.model, problem.slots, at, own_, cone_radius(method), along.largest_so_far)),
+        along_(along) {
     std::vector<double> stiffened = factor;
     for (double& f : stiffened) f *= detail::oversize_of(method);
     rho_ = regularisation_blocks(method, problem, stiffened)[0];
@@ -75,7 +75,7 @@ class BranchSearch {
     Standing standing;
     for (const auto& w : weak_) {
       auto verdict =
-          judge(problem_.model, problem_.slots, problem_.blocks[0], rho_, own_, cone_radius(method_), w, at_, side_);
+          judge(problem_.model, problem_.slots, problem_.blocks[0], rho_, own_, cone_radius(method_), w, at_, along_);
       standing.possible &= verdict.possible;
       standing.by = std::max(standing.by, verdict.by);
       if (verdict.contradicts) standing.contradicted.emplace_back(w.point, *std::move(verdict.contradicts));
@@ -159,8 +159,9 @@ class BranchSearch {
   RegularisationField<double> own_;
   RegularisationField<Direction> rho_;
   std::vector<WeakPoint> weak_;
-  double side_, least_ = std::numeric_limits<double>::infinity();  ///< least_, best_: of the choices tried, the one
-                                                                   ///< that was contradicted least
+  Along along_;
+  double least_ = std::numeric_limits<double>::infinity();  ///< least_, best_: of the choices tried, the one
+                                                            ///< that was contradicted least
   ContactField<double> best_;
 };
 
@@ -168,10 +169,9 @@ class BranchSearch {
 /// none are.
 template <class M, class E>
 bool differentiate_side(const M& method, Differentiation<E>& problem, const State<double>& previous,
-                        Increment<double>& increment, double largest, double side) {
+                        Increment<double>& increment, const Along& along) {
   if (!detail::is_truncated(method))
-    return BranchSearch(method, problem, previous, increment, increment.state, increment.rho_factor, largest, side)
-        .run();
+    return BranchSearch(method, problem, previous, increment, increment.state, increment.rho_factor, along).run();
   // each augmentation starts from the derivative that the one before left
   auto& block = problem.blocks[0];
   const State<Direction> start = block.previous;
@@ -181,7 +181,7 @@ bool differentiate_side(const M& method, Differentiation<E>& problem, const Stat
     alone.time = increment.time;
     alone.sweeps = {sweep};
     auto& only = alone.sweeps[0];
-    found = BranchSearch(method, problem, previous, alone, only.state, only.rho_factor, largest, side).run();
+    found = BranchSearch(method, problem, previous, alone, only.state, only.rho_factor, along).run();
     if (!found) break;
     sweep = std::move(only);
     block.previous.contact.traction = block.current.contact.traction;

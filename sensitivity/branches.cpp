@@ -23,17 +23,20 @@ Vector<T> trial(const Model& model, const State<T>& state, const PointRegularisa
   return z;
 }
 
-/// Derivatives below this are zero beside those of all points: of tractions, and of motions times k / A. `multiple`: of
-/// rho in k / A, which magnifies the rounding of a motion.
-double negligible(const Model& model, const Slots<double>& slots, const ParameterBlock& block, double multiple) {
-  constexpr double share = 1e-10, roundings = 64;
-  double size = 0;
+/// Derivatives below this are zero beside those of all points, of tractions and of motions times k / A, beside what a
+/// rigid motion leaves of these, and beside the tractions over the parameter. `multiple`: of rho in k / A, which
+/// magnifies the rounding of a motion.
+double negligible(const Model& model, const Slots<double>& slots, const ParameterBlock& block, double multiple,
+                  const Along& along) {
+  constexpr double share = 1e-10, rigid = 1e-3, roundings = 64;
+  double size = along.parameter > 0 ? along.largest_so_far / along.parameter : 0, reach = 0;
+  for (const auto& u : block.current.displacement) reach = std::max(reach, std::abs(u.d[0]));
   const auto& now = block.current.contact;
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     const auto& point = model.points[p];
     const double elastic = elastic_traction(slots, p);
     const int offset = tangential_offset(model, p);
-    size = std::max(size, elastic * std::abs(now.gap[p].d[0]));
+    size = std::max({size, elastic * std::abs(now.gap[p].d[0]), rigid * elastic * reach});
     for (int c = 0; c < point.components(); ++c)
       size = std::max(size, std::abs(now.traction[point.multiplier + c].d[0]));
     for (int a = 0; a < point.tangents; ++a) size = std::max(size, elastic * std::abs(now.placement[offset + a].d[0]));
@@ -151,15 +154,16 @@ std::vector<Branch> branches_of(const Model& model, const WeakPoint& weak) {
 
 Verdict judge(const Model& model, const Slots<double>& slots, const ParameterBlock& block,
               const RegularisationField<Direction>& rho, const RegularisationField<double>& own, ConeRadius cone,
-              const WeakPoint& weak, const State<double>& at, double side) {
+              const WeakPoint& weak, const State<double>& at, const Along& direction) {
   const int p = weak.point;
+  const double side = direction.side;
   const auto& point = model.points[p];
   const double elastic = elastic_traction(slots, p);
   const Vector<Direction> z = trial(model, block.current, rho[p], p);
   Judged d{side * z[0].d[0], Vector<double>(point.tangents), 0, elastic / rho[p].normal.v,
            elastic / rho[p].tangential.v};
   for (int a = 0; a < point.tangents; ++a) d.tangential[a] = side * z[1 + a].d[0];
-  d.negligible = negligible(model, slots, block, rho[p].normal.v / elastic);
+  d.negligible = negligible(model, slots, block, rho[p].normal.v / elastic, direction);
   const Branch now = branch_of(model, at, p);
   const bool open = now.state == ContactState::open;
   const Direction& mu = block.slots.friction[point.contact];

@@ -57,10 +57,17 @@ struct Verdict {
   double by = 0;                      ///< how much, in units of what is negligible
 };
 
+/// The direction of a derivative, and what it is measured by.
+struct Along {
+  double side;            ///< -1 or 1, times the seed
+  double parameter;       ///< size of what is seeded by one; 0: not known
+  double largest_so_far;  ///< traction_scale of the run up to here
+};
+
 /// `block`: the derivative, in its first direction; `rho`: that of the scheme, as is the block's multiplier; `own`:
 /// that of the equilibrium.
 Verdict judge(const Model& model, const Slots<double>& slots, const ParameterBlock& block,
               const RegularisationField<Direction>& rho, const RegularisationField<double>& own, ConeRadius cone,
-              const WeakPoint& weak, const State<double>& at, double side);
+              const WeakPoint& weak, const State<double>& at, const Along& along);
 
 }  // namespace stickslip

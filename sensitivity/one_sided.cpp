@@ -86,13 +86,14 @@ struct SideRun {
   const Slots<double>& slots;
   E& engine;
   const Trajectory<double>& trajectory;
-  std::vector<double> scales;
+  double parameter;            ///< Along::parameter
+  std::vector<double> scales;  ///< Along::largest_so_far
   std::vector<ParameterBlock> blocks;
   Counters counters;
 
   SideRun(const M& m, const Model& of, const Slots<double>& s, E& e, const Trajectory<double>& t,
-          Slots<Direction> seeded_slots)
-      : method(m), model(of), slots(s), engine(e), trajectory(t), scales(traction_scales(of, s, t)) {
+          Slots<Direction> seeded_slots, double size)
+      : method(m), model(of), slots(s), engine(e), trajectory(t), parameter(size), scales(traction_scales(of, s, t)) {
     blocks.push_back({std::move(seeded_slots), initial_state<Direction>(model), {}});
     blocks[0].current = blocks[0].previous;
   }
@@ -106,7 +107,7 @@ struct SideRun {
     for (std::size_t n = first; n < last && found; ++n) {
       Increment<double> increment = trajectory.increments[n];
       const State<double>& previous = n == 0 ? trajectory.initial : trajectory.increments[n - 1].state;
-      found = differentiate_side(method, problem, previous, increment, scales[n], side);
+      found = differentiate_side(method, problem, previous, increment, {side, parameter, scales[n]});
       if (!found) break;
       on_increment(n, increment);
       std::swap(blocks[0].previous, blocks[0].current);
@@ -142,7 +143,8 @@ void run_sides(const M& method, E& engine, const Model& model, const Slots<doubl
   const bool geometric = pairings[0].kink || pairings[1].kink;
   if (geometric) first = 0;
   SideRun start(method, model, slots, engine, trajectory,
-                make_slots<Direction>(model, seeded(model.scene, {parameter})));
+                make_slots<Direction>(model, seeded(model.scene, {parameter})),
+                std::abs(model.scene.parameters[parameter].value));
   const auto engaged = geometric ? engaged_points(model, slots, trajectory) : std::vector<char>();
   const auto record = [&](const SideRun<M, E>& run, double side, std::size_t n) {
     const auto& increment = trajectory.increments[n];
@@ -230,7 +232,7 @@ std::optional<Trajectory<double>> consistent_at_ties(const Model& model, const S
   if (first == trajectory.increments.size()) return std::nullopt;
   Trajectory<double> consistent = trajectory;
   auto search = [&](const auto& m, auto& engine) {
-    SideRun run(m, model, slots, engine, trajectory, make_slots<Direction>(model, all_growing(model.scene)));
+    SideRun run(m, model, slots, engine, trajectory, make_slots<Direction>(model, all_growing(model.scene)), 1);
     run.run(0, trajectory.increments.size(), 1, [&](std::size_t n, Increment<double>& increment) {
       consistent.increments[n].state.contact = increment.state.contact;
       consistent.increments[n].sweeps = std::move(increment.sweeps);
