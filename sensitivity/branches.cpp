@@ -23,17 +23,20 @@ Vector<T> trial(const Model& model, const State<T>& state, const PointRegularisa
   return z;
 }
 
-/// Derivatives below this are zero beside those of all points: of tractions, and of motions times k / A. `multiple`: of
-/// rho in k / A, which magnifies the rounding of a motion.
-double negligible(const Model& model, const Slots<double>& slots, const ParameterBlock& block, double multiple) {
-  constexpr double share = 1e-10, roundings = 64;
-  double size = 0;
+/// Derivatives below this are zero beside those of all points, of tractions and of motions times k / A, beside what a
+/// rigid motion leaves of these, and beside the tractions over the parameter. `multiple`: of rho in k / A, which
+/// magnifies the rounding of a motion.
+double negligible(const Model& model, const Slots<double>& slots, const ParameterBlock& block, double multiple,
+                  const Along& along) {
+  constexpr double share = 1e-10, rigid = 1e-3, roundings = 64;
+  double size = along.parameter > 0 ? along.largest_so_far / along.parameter : 0, reach = 0;
+  for (const auto& u : block.current.displacement) reach = std::max(reach, std::abs(u.d[0]));
   const auto& now = block.current.contact;
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     const auto& point = model.points[p];
     const double elastic = elastic_traction(slots, p);
     const int offset = tangential_offset(model, p);
-    size = std::max(size, elastic * std::abs(now.gap[p].d[0]));
+    size = std::max({size, elastic * std::abs(now.gap[p].d[0]), rigid * elastic * reach});
     for (int c = 0; c < point.components(); ++c)
       size = std::max(size, std::abs(now.traction[point.multiplier + c].d[0]));
     for (int a = 0; a < point.tangents; ++a) size = std::max(size, elastic * std::abs(now.placement[offset + a].d[0]));
@@ -55,18 +58,22 @@ Branch slip_along(const Judged& d, double normal) {
   return branch;
 }
 
+Verdict contradicted(Branch by_branch, double by) { return {true, std::move(by_branch), by}; }
+
 /// A closed point without a trial of its own: the derivative of its bound is `bound`.
-std::optional<Branch> judge_from_apex(const Judged& d, double bound, const Branch& now) {
+Verdict judge_from_apex(const Judged& d, double bound, const Branch& now) {
+  const Branch stick{ContactState::stick, {}};
   const double length = d.tangential.norm(), excess = length - bound;
-  const Branch slip = length > 0 ? slip_along(d, std::min(d.normal, 0.0)) : Branch{ContactState::stick, {}};
-  if (now.state == ContactState::stick) return excess <= d.negligible ? std::nullopt : std::optional(slip);
-  if (now.state == ContactState::open) return excess <= 0 ? Branch{ContactState::stick, {}} : slip;
-  if (excess * d.kinematic < -d.negligible) return Branch{ContactState::stick, {}};
-  if (bound <= d.negligible) return std::nullopt;
-  if (now.ray.size() == 0) return slip;
+  const Branch slip = length > 0 ? slip_along(d, std::min(d.normal, 0.0)) : stick;
+  if (now.state == ContactState::open) return contradicted(excess <= 0 ? stick : slip, 0);
+  if (now.state == ContactState::stick)
+    return excess <= d.negligible ? Verdict{} : contradicted(slip, excess / d.negligible);
+  if (excess * d.kinematic < -d.negligible) return contradicted(stick, -excess * d.kinematic / d.negligible);
+  if (bound <= d.negligible) return {};
+  if (now.ray.size() == 0 || length == 0) return contradicted(slip, bound / d.negligible);
   const Vector<double> was = now.ray.tail(d.tangential.size());
-  const double turned = (d.tangential / length - was / was.norm()).norm();
-  return turned * bound <= d.negligible ? std::nullopt : std::optional(slip);
+  const double turned = (d.tangential / length - was / was.norm()).norm() * bound;
+  return turned <= d.negligible ? Verdict{} : contradicted(slip, turned / d.negligible);
 }
 
 }  // namespace
@@ -84,9 +91,8 @@ double traction_scale(const Model& model, const Slots<double>& slots, const Stat
 }
 
 std::vector<WeakPoint> weak_points(const Model& model, const Slots<double>& slots, const State<double>& state,
-                                   const RegularisationField<double>& rho, ConeRadius cone) {
+                                   const RegularisationField<double>& rho, ConeRadius cone, double largest) {
   std::vector<WeakPoint> weak;
-  const double largest = traction_scale(model, slots, state);
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     const auto& point = model.points[p];
     const double elastic = elastic_traction(slots, p);
@@ -148,28 +154,29 @@ std::vector<Branch> branches_of(const Model& model, const WeakPoint& weak) {
 
 Verdict judge(const Model& model, const Slots<double>& slots, const ParameterBlock& block,
               const RegularisationField<Direction>& rho, const RegularisationField<double>& own, ConeRadius cone,
-              const WeakPoint& weak, const State<double>& at, double side) {
+              const WeakPoint& weak, const State<double>& at, const Along& direction) {
   const int p = weak.point;
+  const double side = direction.side;
   const auto& point = model.points[p];
   const double elastic = elastic_traction(slots, p);
   const Vector<Direction> z = trial(model, block.current, rho[p], p);
   Judged d{side * z[0].d[0], Vector<double>(point.tangents), 0, elastic / rho[p].normal.v,
            elastic / rho[p].tangential.v};
   for (int a = 0; a < point.tangents; ++a) d.tangential[a] = side * z[1 + a].d[0];
-  d.negligible = negligible(model, slots, block, rho[p].normal.v / elastic);
+  d.negligible = negligible(model, slots, block, rho[p].normal.v / elastic, direction);
   const Branch now = branch_of(model, at, p);
   const bool open = now.state == ContactState::open;
   const Direction& mu = block.slots.friction[point.contact];
-  Verdict verdict;
   if (weak.tie == Tie::opens || weak.tie == Tie::apex) {
-    const bool closes = open && d.normal * d.kinematic_normal < -d.negligible;
-    const bool opens = !open && d.normal > d.negligible;
-    if (opens) verdict.contradicts = Branch{ContactState::open, {}};
-    if (opens || (open && !closes)) return verdict;
+    if (!open && d.normal > d.negligible) return contradicted({ContactState::open, {}}, d.normal / d.negligible);
+    const double closing = -d.normal * d.kinematic_normal / d.negligible;
+    if (open && !(closing > 1)) return {};
+    Verdict verdict;
     if (weak.tie == Tie::apex)
-      verdict.contradicts = judge_from_apex(d, -mu.v * std::min(d.normal, 0.0), now);
+      verdict = judge_from_apex(d, -mu.v * std::min(d.normal, 0.0), now);
     else if (now.state != ContactState::slip)
-      verdict.contradicts = Branch{ContactState::slip, {}};
+      verdict = contradicted({ContactState::slip, {}}, 0);
+    if (open) verdict.by = closing;
     return verdict;
   }
   const Vector<double> found = trial(model, at, own[p], p);
@@ -178,16 +185,16 @@ Verdict judge(const Model& model, const Slots<double>& slots, const ParameterBlo
   const double moved = augmented ? z[0].d[0] : block.current.multiplier[point.multiplier].d[0];
   const double bound = -side * (mu.d[0] * pressure + mu.v * moved);
   if (weak.tie == Tie::line) {
+    Verdict verdict = judge_from_apex(d, std::max(bound, 0.0), now);
     verdict.possible = side * mu.d[0] >= 0;
-    verdict.contradicts = judge_from_apex(d, std::max(bound, 0.0), now);
     return verdict;
   }
   const auto along = found.tail(point.tangents);
   const double excess = along.dot(d.tangential) / along.norm() - bound;
-  if (now.state == ContactState::stick && excess > d.negligible) verdict.contradicts = Branch{ContactState::slip, {}};
-  if (now.state == ContactState::slip && excess * d.kinematic < -d.negligible)
-    verdict.contradicts = Branch{ContactState::stick, {}};
-  return verdict;
+  const bool sticks = now.state == ContactState::stick;
+  const double by = (sticks ? excess : -excess * d.kinematic) / d.negligible;
+  if (!(by > 1)) return {};
+  return contradicted({sticks ? ContactState::slip : ContactState::stick, {}}, by);
 }
 
 }  // namespace stickslip

@@ -33,9 +33,10 @@ struct WeakPoint {
 /// Largest pressure, or k / A times the largest motion: contact that has only just begun is measured by that.
 double traction_scale(const Model& model, const Slots<double>& slots, const State<double>& state);
 
-/// The points of an equilibrium that are about to change state. `rho`, `cone`: of the equilibrium.
+/// The points of an equilibrium that are about to change state. `rho`, `cone`: of the equilibrium; `largest`: the
+/// traction_scale of the run so far (all that was moved may be back where it was).
 std::vector<WeakPoint> weak_points(const Model& model, const Slots<double>& slots, const State<double>& state,
-                                   const RegularisationField<double>& rho, ConeRadius cone);
+                                   const RegularisationField<double>& rho, ConeRadius cone, double largest);
 
 struct Branch {
   ContactState state;
@@ -53,12 +54,20 @@ std::vector<Branch> branches_of(const Model& model, const WeakPoint& weak);
 struct Verdict {
   bool possible = true;               ///< false: the parameter cannot move this way (friction below zero)
   std::optional<Branch> contradicts;  ///< the branch that it points to, where it contradicts the one it was found with
+  double by = 0;                      ///< how much, in units of what is negligible
+};
+
+/// The direction of a derivative, and what it is measured by.
+struct Along {
+  double side;            ///< -1 or 1, times the seed
+  double parameter;       ///< size of what is seeded by one; 0: not known
+  double largest_so_far;  ///< traction_scale of the run up to here
 };
 
 /// `block`: the derivative, in its first direction; `rho`: that of the scheme, as is the block's multiplier; `own`:
 /// that of the equilibrium.
 Verdict judge(const Model& model, const Slots<double>& slots, const ParameterBlock& block,
               const RegularisationField<Direction>& rho, const RegularisationField<double>& own, ConeRadius cone,
-              const WeakPoint& weak, const State<double>& at, double side);
+              const WeakPoint& weak, const State<double>& at, const Along& along);
 
 }  // namespace stickslip

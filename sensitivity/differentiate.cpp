@@ -74,8 +74,7 @@ Gradients differentiate(const Model& model, const Slots<double>& slots, const Me
   const int parameters = static_cast<int>(model.scene.parameters.size());
   if (parameters == 0) return gradients;
   const Stopwatch time(gradients.seconds);
-  Counters search;
-  const auto consistent = consistent_at_ties(model, slots, method, trajectory, workspace, search);
+  const auto consistent = consistent_at_ties(model, slots, method, trajectory, workspace, gradients.search);
   std::vector<ParameterBlock> blocks;
   for (int b = 0; b * directions < parameters; ++b) {
     std::vector<int> of_block;
@@ -93,7 +92,7 @@ Gradients differentiate(const Model& model, const Slots<double>& slots, const Me
               Differentiation<E> problem{model, slots, engine, blocks, parameters, {}};
               run(m, problem, consistent ? *consistent : trajectory, gradients);
               gradients.counters = problem.counters;
-              gradients.counters += search;
+              gradients.counters += gradients.search;
             },
             *workspace.engine);
       },

@@ -28,6 +28,7 @@ struct Gradients {
   std::vector<SchemeRecord> records;  ///< per increment; empty but for Uzawa
   Matrix<double> last_displacement;   ///< of the last differentiated increment: all dofs x parameters
   Counters counters;
+  Counters search;  ///< of these, what it took to find the branches of ties (sensitivity/one_sided.hpp)
   double seconds = 0;
 };
 

@@ -2,13 +2,10 @@
 
 #include <array>
 #include <limits>
-#include <set>
 
 #include "core/model/response.hpp"
-#include "sensitivity/monolithic.hpp"
-#include "sensitivity/penalty.hpp"
+#include "sensitivity/branch_search.hpp"
 #include "sensitivity/sided_geometry.hpp"
-#include "sensitivity/uzawa.hpp"
 
 namespace stickslip {
 namespace {
@@ -33,34 +30,23 @@ Margins margins_of(const Model& model, const Slots<double>& slots, const State<d
   return margin;
 }
 
-/// What of a method's scheme the branches depend on: the equilibrium that it differentiates, its cone, and what it
-/// multiplies rho by.
-template <class M>
-constexpr bool is_truncated(const M&) {
-  return false;
-}
-bool is_truncated(const UzawaAL& method) { return method.sensitivity == UzawaAL::Sensitivity::truncated; }
-template <class M>
-constexpr double oversize_of(const M&) {
-  return 1;
-}
-double oversize_of(const UzawaAL& method) {
-  const bool oversized = method.sensitivity == UzawaAL::Sensitivity::oversized;
-  return oversized ? method.oversize.value_or(UzawaAL::automatic_oversize) : 1;
-}
-
-template <class M>
-RegularisationField<double> own_rho(const M& method, const Slots<double>& slots, const std::vector<double>& factor) {
-  return adapted(initial_regularisation(slots, method), factor);
+/// Largest traction scale of the run up to each increment.
+std::vector<double> traction_scales(const Model& model, const Slots<double>& slots,
+                                    const Trajectory<double>& trajectory) {
+  std::vector<double> scales;
+  for (const auto& increment : trajectory.increments)
+    scales.push_back(std::max(scales.empty() ? 0.0 : scales.back(), traction_scale(model, slots, increment.state)));
+  return scales;
 }
 
 /// Weak points of all equilibria that the scheme differentiates in an increment.
 template <class M>
-bool has_ties(const M& method, const Model& model, const Slots<double>& slots, const Increment<double>& increment) {
+bool has_ties(const M& method, const Model& model, const Slots<double>& slots, const Increment<double>& increment,
+              double largest) {
   const auto weak = [&](const State<double>& at, const std::vector<double>& factor) {
-    return !weak_points(model, slots, at, own_rho(method, slots, factor), cone_radius(method)).empty();
+    return !weak_points(model, slots, at, detail::own_rho(method, slots, factor), cone_radius(method), largest).empty();
   };
-  if (!is_truncated(method)) return weak(increment.state, increment.rho_factor);
+  if (!detail::is_truncated(method)) return weak(increment.state, increment.rho_factor);
   return std::any_of(increment.sweeps.begin(), increment.sweeps.end(),
                      [&](const auto& sweep) { return weak(sweep.state, sweep.rho_factor); });
 }
@@ -68,148 +54,11 @@ bool has_ties(const M& method, const Model& model, const Slots<double>& slots, c
 /// Index of the first increment with ties; their number where none has.
 std::size_t first_tie(const Model& model, const Slots<double>& slots, const Method& method,
                       const Trajectory<double>& trajectory) {
-  const auto& all = trajectory.increments;
-  return std::visit(
-      [&](const auto& m) {
-        return std::find_if(all.begin(), all.end(), [&](const auto& i) { return has_ties(m, model, slots, i); }) -
-               all.begin();
-      },
-      method);
-}
-
-/// Search for the branches of one equilibrium along one direction, the first of the first block.
-template <class M, class E>
-class BranchSearch {
- public:
-  /// `increment`: what is differentiated; `at`: its equilibrium, whose branches change.
-  BranchSearch(const M& method, Differentiation<E>& problem, const State<double>& previous,
-               const Increment<double>& increment, State<double>& at, const std::vector<double>& factor, double side)
-      : method_(method),
-        problem_(problem),
-        previous_(previous),
-        increment_(increment),
-        at_(at),
-        own_(own_rho(method, problem.slots, factor)),
-        weak_(weak_points(problem.model, problem.slots, at, own_, cone_radius(method))),
-        side_(side) {
-    std::vector<double> stiffened = factor;
-    for (double& f : stiffened) f *= oversize_of(method);
-    rho_ = regularisation_blocks(method, problem, stiffened)[0];
-  }
-
-  /// Leaves the derivative with the branches that it confirms in the block, and them in `at`.
-  bool run() {
-    if (weak_.empty()) return differentiate_increment(method_, problem_, previous_, increment_);
-    return by_flipping() || by_enumeration();
-  }
-
- private:
-  struct Standing {
-    bool possible = true;
-    std::vector<std::pair<int, Branch>> contradicted;  ///< by point
-  };
-
-  std::optional<Standing> differentiate() {
-    if (!differentiate_increment(method_, problem_, previous_, increment_)) return std::nullopt;
-    Standing standing;
-    for (const auto& w : weak_) {
-      auto verdict =
-          judge(problem_.model, problem_.slots, problem_.blocks[0], rho_, own_, cone_radius(method_), w, at_, side_);
-      standing.possible &= verdict.possible;
-      if (verdict.contradicts) standing.contradicted.emplace_back(w.point, *std::move(verdict.contradicts));
-    }
-    return standing;
-  }
-
-  /// What tells one choice from another: branches, and in the plane the sides to which points slip.
-  std::vector<int> key() const {
-    std::vector<int> key;
-    for (const auto& w : weak_) {
-      const Branch branch = branch_of(problem_.model, at_, w.point);
-      const int direction = branch.ray.size() == 2 ? (branch.ray[1] > 0 ? 1 : 2) : 0;
-      key.push_back(3 * static_cast<int>(branch.state) + direction);
-    }
-    return key;
-  }
-
-  /// Flips all that is contradicted; where that was tried, the first alone.
-  bool by_flipping() {
-    const std::size_t limit = 40 + 4 * weak_.size();
-    std::set<std::vector<int>> tried;
-    for (std::size_t round = 0; round < limit; ++round) {
-      const auto before = key();
-      tried.insert(before);
-      const auto standing = differentiate();
-      if (!standing) return false;
-      if (!standing->possible) return false;
-      if (standing->contradicted.empty()) return true;
-      const State<double> start = at_;
-      for (const auto& [point, branch] : standing->contradicted) take_branch(problem_.model, point, branch, at_);
-      const auto after = key();
-      if (after == before || !tried.count(after)) continue;  // (the same: a direction in space is being found)
-      at_.contact = start.contact;
-      const auto& [point, branch] = standing->contradicted.front();
-      take_branch(problem_.model, point, branch, at_);
-    }
-    return false;
-  }
-
-  /// Tries all branches of few points.
-  bool by_enumeration() {
-    constexpr std::size_t most = 256;
-    std::vector<std::vector<Branch>> of_point;
-    std::size_t count = 1;
-    for (const auto& w : weak_) {
-      of_point.push_back(branches_of(problem_.model, w));
-      count *= of_point.back().size();
-      if (count > most) return false;
-    }
-    for (std::size_t choice = 0; choice < count; ++choice) {
-      std::size_t rest = choice;
-      for (std::size_t k = 0; k < weak_.size(); ++k) {
-        take_branch(problem_.model, weak_[k].point, of_point[k][rest % of_point[k].size()], at_);
-        rest /= of_point[k].size();
-      }
-      const auto standing = differentiate();
-      if (standing && standing->possible && standing->contradicted.empty()) return true;
-    }
-    return false;
-  }
-
-  const M& method_;
-  Differentiation<E>& problem_;
-  const State<double>& previous_;
-  const Increment<double>& increment_;
-  State<double>& at_;
-  RegularisationField<double> own_;
-  RegularisationField<Direction> rho_;
-  std::vector<WeakPoint> weak_;
-  double side_;
-};
-
-/// Differentiates one increment along one direction; its branches at ties become those that are confirmed. False where
-/// none are.
-template <class M, class E>
-bool differentiate_side(const M& method, Differentiation<E>& problem, const State<double>& previous,
-                        Increment<double>& increment, double side) {
-  if (!is_truncated(method))
-    return BranchSearch(method, problem, previous, increment, increment.state, increment.rho_factor, side).run();
-  // each augmentation starts from the derivative that the one before left
-  auto& block = problem.blocks[0];
-  const State<Direction> start = block.previous;
-  bool found = true;
-  for (auto& sweep : increment.sweeps) {
-    Increment<double> alone;
-    alone.time = increment.time;
-    alone.sweeps = {sweep};
-    auto& only = alone.sweeps[0];
-    found = BranchSearch(method, problem, previous, alone, only.state, only.rho_factor, side).run();
-    if (!found) break;
-    sweep = std::move(only);
-    block.previous.contact.traction = block.current.contact.traction;
-  }
-  block.previous = start;
-  return found;
+  const auto scales = traction_scales(model, slots, trajectory);
+  std::size_t n = 0;
+  const auto smooth = [&](const auto& m) { return !has_ties(m, model, slots, trajectory.increments[n], scales[n]); };
+  while (n < scales.size() && std::visit(smooth, method)) ++n;
+  return n;
 }
 
 /// A pressure that is about to begin widens a contact of one point, or of none, with an infinite slope.
@@ -237,12 +86,14 @@ struct SideRun {
   const Slots<double>& slots;
   E& engine;
   const Trajectory<double>& trajectory;
+  double parameter;            ///< Along::parameter
+  std::vector<double> scales;  ///< Along::largest_so_far
   std::vector<ParameterBlock> blocks;
   Counters counters;
 
   SideRun(const M& m, const Model& of, const Slots<double>& s, E& e, const Trajectory<double>& t,
-          Slots<Direction> seeded_slots)
-      : method(m), model(of), slots(s), engine(e), trajectory(t) {
+          Slots<Direction> seeded_slots, double size)
+      : method(m), model(of), slots(s), engine(e), trajectory(t), parameter(size), scales(traction_scales(of, s, t)) {
     blocks.push_back({std::move(seeded_slots), initial_state<Direction>(model), {}});
     blocks[0].current = blocks[0].previous;
   }
@@ -256,7 +107,7 @@ struct SideRun {
     for (std::size_t n = first; n < last && found; ++n) {
       Increment<double> increment = trajectory.increments[n];
       const State<double>& previous = n == 0 ? trajectory.initial : trajectory.increments[n - 1].state;
-      found = differentiate_side(method, problem, previous, increment, side);
+      found = differentiate_side(method, problem, previous, increment, {side, parameter, scales[n]});
       if (!found) break;
       on_increment(n, increment);
       std::swap(blocks[0].previous, blocks[0].current);
@@ -292,7 +143,8 @@ void run_sides(const M& method, E& engine, const Model& model, const Slots<doubl
   const bool geometric = pairings[0].kink || pairings[1].kink;
   if (geometric) first = 0;
   SideRun start(method, model, slots, engine, trajectory,
-                make_slots<Direction>(model, seeded(model.scene, {parameter})));
+                make_slots<Direction>(model, seeded(model.scene, {parameter})),
+                std::abs(model.scene.parameters[parameter].value));
   const auto engaged = geometric ? engaged_points(model, slots, trajectory) : std::vector<char>();
   const auto record = [&](const SideRun<M, E>& run, double side, std::size_t n) {
     const auto& increment = trajectory.increments[n];
@@ -380,7 +232,7 @@ std::optional<Trajectory<double>> consistent_at_ties(const Model& model, const S
   if (first == trajectory.increments.size()) return std::nullopt;
   Trajectory<double> consistent = trajectory;
   auto search = [&](const auto& m, auto& engine) {
-    SideRun run(m, model, slots, engine, trajectory, make_slots<Direction>(model, all_growing(model.scene)));
+    SideRun run(m, model, slots, engine, trajectory, make_slots<Direction>(model, all_growing(model.scene)), 1);
     run.run(0, trajectory.increments.size(), 1, [&](std::size_t n, Increment<double>& increment) {
       consistent.increments[n].state.contact = increment.state.contact;
       consistent.increments[n].sweeps = std::move(increment.sweeps);

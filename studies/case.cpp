@@ -28,7 +28,7 @@ void take_sides(const CaseResult& result, std::size_t n, StepResult& step) {
   if (step.backward.size() == 0) return;
   for (std::size_t i = 0; i < scene.responses.size(); ++i)
     for (std::size_t j = 0; j < scene.parameters.size(); ++j)
-      if (step.has_kink(scene, i, j)) step.differentiable = false;
+      if (step.has_kink(scene, result.method, i, j)) step.differentiable = false;
 }
 
 /// `errors`: per increment.
@@ -160,8 +160,10 @@ void check_responses(const Model& model, const Slots<double>& slots) {
 
 }  // namespace
 
-bool StepResult::has_kink(const Scene& scene, std::size_t response, std::size_t parameter) const {
-  constexpr double rounding = 1e-9;
+bool StepResult::has_kink(const Scene& scene, const Method& method, std::size_t response, std::size_t parameter) const {
+  const auto* uzawa = std::get_if<UzawaAL>(&method);
+  const bool oversized = uzawa && uzawa->sensitivity == UzawaAL::Sensitivity::oversized;
+  const double rounding = oversized ? 10 / uzawa->oversize.value_or(UzawaAL::automatic_oversize) : 1e-9;
   const double below = backward(response, parameter), above = forward(response, parameter);
   const double value = scene.parameters[parameter].value, size = value == 0 ? 0 : std::abs(responses[response] / value);
   return !(std::abs(above - below) <= rounding * std::max({std::abs(below), std::abs(above), size}));

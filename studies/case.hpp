@@ -33,9 +33,9 @@ struct StepResult {
   Matrix<double> sensitivities;        ///< responses x parameters; empty where there are none
   bool differentiable = true;          ///< both one-sided derivatives agree
   Matrix<double> backward, forward;    ///< one-sided sensitivities, where they are known; else empty
-  /// Whether the one-sided derivatives of a response by a parameter differ by more than their rounding (or are no
-  /// numbers). pre: there are some.
-  bool has_kink(const Scene& scene, std::size_t response, std::size_t parameter) const;
+  /// Whether the one-sided derivatives of a response by a parameter differ by more than their rounding, or than their
+  /// scheme is off by (or are no numbers). pre: there are some.
+  bool has_kink(const Scene& scene, const Method& method, std::size_t response, std::size_t parameter) const;
 };
 
 struct CaseResult {

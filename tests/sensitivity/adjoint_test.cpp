@@ -138,6 +138,16 @@ TEST(Adjoint, EqualsDirectInBothEnginesAndForTheOtherCone) {
       expect_agreement(with_objectives(scene), method, engine);
 }
 
+TEST(Adjoint, EqualsDirectAtAndAfterTies) {
+  using S = UzawaAL::Sensitivity;
+  for (const auto& scene : {scenes::pull_out(10, {0, 1, 0}, 4), scenes::slider({{0, 0}, {1, 0.03}, {2, 0.02}}, 2),
+                            scenes::stop(10, 1000, 0.01)})
+    for (const Method& method : {Method(MonolithicAL{}), Method(Penalty{scenes::relative(100)}),
+                                 Method(uzawa(S::iterated, 1e-13, 5000)), Method(uzawa(S::preconditioned, 1e-13, 5000)),
+                                 Method(uzawa(S::oversized, 1e-13, 5000)), Method(uzawa(S::truncated, 1e-10, 400))})
+      expect_agreement(with_objectives(scene), method);
+}
+
 TEST(Adjoint, TakesOneTransposedSolveAnObjectiveAndIncrementHoweverManyParameters) {
   const auto scene = with_objectives(scenes::two_boxes(6, 9));
   const auto b = both(scene, MonolithicAL{});

@@ -231,7 +231,7 @@ void check(const Scene& scene, const Method& method, const std::string& what, Ta
             continue;
           }
           ++tally.compared;
-          if (std::abs(given - found->value(i, n)) <= 10 * agreement * scale + noise) continue;
+          if (std::abs(given - found->value(i, n)) <= 10 * agreement * scale + noise + 1e-12) continue;
           if (++tally.wrong <= 20)
             ADD_FAILURE() << what << " " << scene.responses[i].name << "/" << scene.parameters[j].name << " side " << k
                           << " increment " << n << " of " << table.size() << ": " << given << " for "
@@ -255,7 +255,7 @@ Method any_method(Draw& draw) {
 
 TEST(SlowRandomKinks, AreAllFlaggedAndRightOnBothSides) {
   const char* asked = std::getenv("STICKSLIP_RANDOM_SCENES");
-  const unsigned count = asked ? static_cast<unsigned>(std::atoi(asked)) : 3000;
+  const unsigned count = asked ? static_cast<unsigned>(std::atoi(asked)) : 10000;
   Tally tally;
   for (unsigned seed = 0; seed < count; ++seed) {
     Draw draw(seed);
@@ -277,7 +277,7 @@ TEST(SlowRandomKinks, AreAllFlaggedAndRightOnBothSides) {
   EXPECT_EQ(tally.wrong, 0);
   EXPECT_GT(tally.kinks, tally.scenes / 4);  // the scenes are about them
   EXPECT_LE(tally.unsolved, tally.scenes / 20);
-  EXPECT_LE(tally.unknown, tally.compared / 1000);
+  EXPECT_EQ(tally.unknown, 0);
 }
 
 }  // namespace
