@@ -70,14 +70,14 @@ void add_cost(const Increment<T>& attempt, std::vector<IterationRecord>& history
 }
 
 /// Follows the overdamped motion from `previous` until the method solves the unmodified equations. `several`: there may
-/// be more solutions; then that solution must have the branches of the step before, and no step but the first may go
-/// farther than four times the way so far: a step of that size could as well have gone to another one. Its history
-/// holds all iterations; where no attempt succeeds its status is that of the last.
+/// be more solutions; then that solution must have the branches of the step before, and neither it nor any step but the
+/// first may be farther away than all the way so far: it could as well belong to another one. Its history holds all
+/// iterations; where no attempt succeeds its status is that of the last.
 template <class M, class T, class E>
 Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& previous, const std::vector<double>& factor,
                            double time, bool several) {
   constexpr double slower = 8, faster = 0.2, slowest = 1e9, fastest = 1e-15;  // below it the term is rounding
-  constexpr double farthest = 4;
+  constexpr double farthest = 1;
   constexpr int most_steps = 300;
   const Vector<double> D = damping(run.model, run.slots);
   const RunScales scales = run.account.scales;
@@ -108,7 +108,9 @@ Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& prev
     way += length;
     rest = std::move(moved.state);
     result = attempt(rest, 0);
-    const bool settled = !several || result.state.contact.state == rest.contact.state;
+    const bool near = largest_nodal_norm(Vector<T>(result.state.displacement - rest.displacement),
+                                         run.model.dimension) <= farthest * way;
+    const bool settled = !several || (near && result.state.contact.state == rest.contact.state);
     if (is_converged(result.status) && settled) break;
     if (is_converged(result.status)) {
       result.status = Status::cycle;
