@@ -99,9 +99,10 @@ Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& prev
     const double length =
         largest_nodal_norm(Vector<T>(moved.state.displacement - rest.displacement), run.model.dimension);
     const bool strays = several && way > 0 && length > farthest * way;
-    if (!is_converged(moved.status) || strays) {
+    if (!moved.usable() || strays) {
       alpha *= slower;
-      if (is_converged(moved.status)) moved.status = Status::cycle;
+      if (moved.usable()) moved.status = Status::cycle;
+      moved.cut_off = false;  // a step is no solution, whatever becomes of it
       result = std::move(moved);
       continue;
     }
@@ -111,9 +112,10 @@ Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& prev
     const bool near = largest_nodal_norm(Vector<T>(result.state.displacement - rest.displacement),
                                          run.model.dimension) <= farthest * way;
     const bool settled = !several || (near && result.state.contact.state == rest.contact.state);
-    if (is_converged(result.status) && settled) break;
-    if (is_converged(result.status)) {
+    if (result.usable() && settled) break;
+    if (result.usable()) {
       result.status = Status::cycle;
+      result.cut_off = false;
       result.message = "the motion does not come to rest";
     }
     alpha *= faster;

@@ -148,7 +148,9 @@ Increment<T> solve_increment(const UzawaAL& options, Run<T, E>& run, const State
   increment.rho_factor = previous_factor.empty() ? std::vector<double>(model.points.size(), 1.0) : previous_factor;
   const auto initial = initial_regularisation(run.slots, method);
   const RunScales before = run.account.scales;  // without what an extrapolated lambda may overshoot by
-  Vector<T> u = run.engine.begin(time, start.from.displacement), lambda = start.from.contact.traction;
+  // (a loop that is differentiated as it was cut off begins with the last increment's lambda, as its derivative does)
+  const State<T>& with_lambda = truncated && !start.is_step() ? previous : start.from;
+  Vector<T> u = run.engine.begin(time, start.from.displacement), lambda = with_lambda.contact.traction;
   std::vector<ContactState> last = start.resumed(previous);  // at the first augmentation
   Augmentations<T> progress(model, run.slots, method.acceleration);
   Accelerator<T> accelerator(method.acceleration);
