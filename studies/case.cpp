@@ -58,9 +58,10 @@ std::vector<StepResult> gather_steps(const CaseResult& result, const std::vector
 /// Says of a run that failed with a loose body why it has no answer.
 void name_loose_body(const Model& model, Trajectory<double>& trajectory) {
   const Body* const loose = loose_body(model);
-  if (loose && !is_converged(trajectory.status))
-    trajectory.message =
-        loose->name + " is free to move: no support holds it and no contact touches it; add a support or a contact";
+  if (!loose || is_converged(trajectory.status)) return;
+  if (trajectory.status == Status::singular) trajectory.status = Status::no_equilibrium;  // nothing balances its load
+  trajectory.message =
+      loose->name + " is free to move: no support holds it and no contact touches it; add a support or a contact";
 }
 
 /// Whether the run ended with a tangent that derivatives can be taken of.
