@@ -9,7 +9,8 @@
 ///                of lengths      u R                        R: largest displacement and relative displacement
 ///                of tractions    u rho R                    rho: stiffness or scale
 ///                of forces       u (k + rho A) R            k: stiffness of an element
-///                but never more than `most_rounding` of the run's largest length, traction or force
+///                but never more than `most_rounding` of the run's largest length, traction or force; a hundred times
+///                that where nothing presses and these are next to nothing themselves (KktScales)
 #pragma once
 
 #include <string>

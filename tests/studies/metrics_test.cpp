@@ -273,11 +273,30 @@ TEST(Metrics, WhatIsNoNumberPassesForNoSmallOne) {
     auto& state = made.rest();
     state.contact.traction << -10, 5;
     (entry == 0 ? state.contact.gap[0] : entry == 1 ? state.contact.slip[0] : state.contact.traction[entry - 2]) = none;
-    EXPECT_TRUE(std::isnan(made.errors()[0].largest())) << entry;
+    const auto e = made.errors()[0];
+    EXPECT_TRUE(std::isnan(e.largest())) << entry;
+    EXPECT_EQ(std::isnan(e.gap), entry != 1) << "of what it is made of, and of its scale";
   }
   Point made;
   made.rest().displacement[0] = none;
   EXPECT_TRUE(std::isnan(made.errors()[0].equilibrium));
+}
+
+TEST(Metrics, WhatRoundingMakesOfDisplacementsPressesNothing) {
+  Scene scene = one_point();
+  scene.loads.clear();
+  Made made(scene);
+  auto& state = made.next();
+  state.displacement << 1, 0, 1, 0;  // its support moved it
+  state.contact.placement << -1;
+  state.contact.slip << -1;
+  state.contact.traction << -2e-11, 1e-12;  // 1e-13 of 200: inside its cone, if that were a pressure
+  const auto e = made.errors()[0];
+  EXPECT_EQ(e.stick, 0);
+  EXPECT_EQ(e.slip_direction, 0);
+  EXPECT_LT(e.largest(), 1e-3);
+  state.contact.traction << -2e-3, 1e-4;
+  EXPECT_NEAR(made.errors()[0].stick, 1, exact);
 }
 
 /// Contact with an elastic layer: what is left once it has taken its share.
