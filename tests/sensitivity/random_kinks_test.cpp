@@ -6,6 +6,7 @@
 
 #include "sensitivity/one_sided.hpp"
 #include "tests/support/kinks.hpp"
+#include "tests/support/largest.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace stickslip {
@@ -212,17 +213,17 @@ void check(const Scene& scene, const Method& method, const std::string& what, Ta
     for (int k : {0, 1}) {
       if (k == 0 && scene.parameters[j].name == "mu" && scene.parameters[j].value == 0) continue;
       // (what the solver leaves of a response that is zero, in forces of the bodies' stiffness, over h)
-      const double noise = 1e-7 * base.cwiseAbs().maxCoeff() / kinks::size_of(scene.parameters[j]);
+      const double noise = 1e-7 * largest_entry(base) / kinks::size_of(scene.parameters[j]);
       const auto found = differences(scene, method, table, j, k == 0 ? -1 : 1, base);
       for (std::size_t n = 0; found && n < table.size(); ++n)
         for (Eigen::Index i = 0; i < base.rows(); ++i) {
-          const double scale = std::max(found->value.row(i).cwiseAbs().maxCoeff(),
-                                        base.row(i).cwiseAbs().maxCoeff() / kinks::size_of(scene.parameters[j]));
+          const double scale = std::max(largest_entry(found->value.row(i)),
+                                        largest_entry(base.row(i)) / kinks::size_of(scene.parameters[j]));
           const auto& ties = k == 0 ? gradients.below : gradients.above;
           const double given = sides             ? (k == 0 ? sides->backward : sides->forward)[n](i, j)
                                : ties.size() > n ? ties[n](i, j)
                                                  : gradients.of[n](i, j);
-          if (found->spread.row(i).head(n + 1).maxCoeff() > agreement * scale + noise) {
+          if (largest_entry(found->spread.row(i).head(n + 1)) > agreement * scale + noise) {
             ++tally.unclear;
             continue;
           }

@@ -4,6 +4,7 @@
 
 #include "sensitivity/one_sided.hpp"
 #include "tests/support/kinks.hpp"
+#include "tests/support/largest.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace stickslip {
@@ -82,10 +83,10 @@ int expect_sides(const Scene& scene, const Named& named) {
     }
     if (!exact[0] || !exact[1]) continue;
     for (Eigen::Index i = 0; i < exact[0]->rows(); ++i) {
-      double scale = std::max(exact[0]->row(i).cwiseAbs().maxCoeff(), exact[1]->row(i).cwiseAbs().maxCoeff());
+      double scale = larger(largest_entry(exact[0]->row(i)), largest_entry(exact[1]->row(i)));
       for (std::size_t n = 0; n < count; ++n)
-        scale = std::max(scale, std::abs(s.value(scene.responses[i].name, static_cast<int>(n))) /
-                                    kinks::size_of(scene.parameters[j]));
+        scale = larger(scale, std::abs(s.value(scene.responses[i].name, static_cast<int>(n))) /
+                                  kinks::size_of(scene.parameters[j]));
       for (std::size_t n = 0; n < count; ++n) {
         const double lower = (*exact[0])(i, n), upper = (*exact[1])(i, n), given = s.gradients.of[n](i, j);
         const auto what = [&] {

@@ -12,7 +12,7 @@ check() {
   cd "$1"
   local found
   found=$(find tests -name '*.[hc]pp' -print0 | sort -z | xargs -0 perl -0777 -ne '
-    (my $text = $_) =~ s{//[^\n]*}{}g;
+    our $text = $_; $text =~ s{//[^\n]*}{}g;
     sub report { my ($at, $what) = @_; my $line = 1 + (substr($text, 0, $at) =~ tr/\n//);
                  $what =~ s/\s+/ /g; print "$ARGV:$line: $what\n"; }
     my $name = qr/[\w.\[\]]+(?:->\w+)*/;

@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 
+#include "tests/support/largest.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace stickslip::scenes {
@@ -100,8 +101,7 @@ inline std::vector<FoundSolution> every_solution(const Model& model, const Slots
     if (!lu.isInvertible()) continue;
     const Vector<double> x = lu.solve(b);
     FoundSolution solution{x.head(dofs), {}};
-    const double force = 1e-10 * x.tail(2 * n).cwiseAbs().maxCoeff(),
-                 length = 1e-10 * x.head(dofs).cwiseAbs().maxCoeff();
+    const double force = 1e-10 * largest_entry(x.tail(2 * n)), length = 1e-10 * largest_entry(x.head(dofs));
     bool valid = true;
     for (int p = 0; p < n; ++p) {
       const double t_N = x[dofs + 2 * p], t_T = x[dofs + 2 * p + 1], mu = slots.friction[model.points[p].contact];
@@ -129,7 +129,7 @@ inline double coulomb_error(const Model& model, const Slots<double>& slots, cons
     const double k = slots.stiffness[p] / slots.geometry[p].area, t_N = after.contact.traction[point.multiplier];
     const double z_N = t_N + k * after.contact.gap[p], pressed = std::min(z_N, 0.0);
     worst = larger(worst, std::abs(t_N - pressed));
-    scale = std::max({scale, std::abs(t_N), k * std::abs(after.contact.gap[p] - slots.geometry[p].gap)});
+    scale = larger(scale, larger(std::abs(t_N), k * std::abs(after.contact.gap[p] - slots.geometry[p].gap)));
     if (point.tangents == 0) continue;
     const int offset = tangential_offset(model, p);
     const Vector<double> t = after.contact.traction.segment(point.multiplier + 1, point.tangents);
@@ -139,9 +139,9 @@ inline double coulomb_error(const Model& model, const Slots<double>& slots, cons
     const double bound = -slots.friction[point.contact] * pressed, size = z.norm();
     if (size > bound) z *= size > 0 ? bound / size : 0;
     worst = larger(worst, (t - z).norm());
-    scale = std::max({scale, t.norm(), k * slip.norm()});
+    scale = larger(scale, larger(t.norm(), k * slip.norm()));
   }
-  return scale > 0 ? worst / scale : worst;
+  return scale == 0 ? worst : worst / scale;
 }
 
 }  // namespace stickslip::scenes

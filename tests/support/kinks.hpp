@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "tests/support/largest.hpp"
 #include "tests/support/oracle.hpp"
 
 namespace stickslip::kinks {
@@ -30,7 +31,7 @@ inline std::optional<Matrix<double>> one_sided(const Scene& scene, const Method&
   }
   const Matrix<double> near = 2 * at[0] - at[1], far = 2 * at[1] - at[2];
   for (Eigen::Index i = 0; i < near.rows(); ++i)
-    if ((near - far).row(i).cwiseAbs().maxCoeff() > noise * near.row(i).cwiseAbs().maxCoeff()) return std::nullopt;
+    if (largest_entry((near - far).row(i)) > noise * largest_entry(near.row(i))) return std::nullopt;
   return near;
 }
 
