@@ -18,9 +18,9 @@
 /// Control Optim. 14 (1976) 877-898; measured against others in core/README.md.
 #pragma once
 
-#include "methods/branches.hpp"
 #include "methods/monolithic.hpp"
 #include "methods/penalty.hpp"
+#include "methods/solutions.hpp"
 #include "methods/statics.hpp"
 #include "methods/uzawa.hpp"
 
@@ -83,9 +83,10 @@ Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& prev
   const RunScales scales = run.account.scales;
   std::vector<IterationRecord> history;
   int iterations = 0;
+  bool roughly = !several;  // (multipliers that are not unique keep what a rough step leaves)
   const auto attempt = [&](const State<T>& from, double alpha) {
     run.account.scales = scales;  // iterates on the way do not count
-    Start<T> start{from, {}};
+    Start<T> start{from, {}, roughly};
     if (alpha > 0) start.anchor = {alpha * D, to_compact(run.model, from.displacement)};
     auto found = solve_increment(method, run, previous, factor, time, start);
     add_cost(found, history, iterations);
@@ -118,7 +119,10 @@ Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& prev
       result.cut_off = false;
       result.message = "the motion does not come to rest";
     }
-    alpha *= faster;
+    if (length == 0 && roughly)  // so near to rest that a rough step begins solved
+      roughly = false;
+    else
+      alpha *= faster;
   }
   result.history = std::move(history);
   result.newton = iterations;

@@ -391,6 +391,7 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
       }
       if (!decided.empty()) detail::yield_decided(input, decided, tangents);
       const Stopwatch time(account.seconds.factorization);
+      if (!redundant && engine.update(tangents, account.counters, anchor.stiffness)) return true;
       return unknown ? factorise_sharing(engine, model, {}, std::move(tangents), redundant, account.counters,
                                          anchor.stiffness)
                      : engine.factorise(tangents, account.counters, anchor.stiffness);

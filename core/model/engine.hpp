@@ -15,6 +15,7 @@
 #include "core/algebra/linear_solver.hpp"
 #include "core/model/contact_assembly.hpp"
 #include "core/model/loading.hpp"
+#include "core/model/tangent_update.hpp"
 
 namespace stickslip {
 
@@ -49,22 +50,24 @@ double largest_nodal_norm(const Vector<T>& v, int D) {
 
 namespace detail {
 
-/// Whether two sets of point tangents are the same up to rounding, so that a factor can be used again.
+/// Whether two tangents of a point are the same up to rounding.
 template <class T>
-bool same_tangents(const std::vector<PointTangent<T>>& a, const std::vector<PointTangent<T>>& b) {
-  if (a.size() != b.size()) return false;
-  auto close = [](const Matrix<T>& x, const Matrix<T>& y, double scale) {
+bool same_tangent(const PointTangent<T>& a, const PointTangent<T>& b) {
+  const double scale = std::max(a.force_w.cwiseAbs().maxCoeff(), a.row_l.cwiseAbs().maxCoeff());
+  const auto close = [&](const Matrix<T>& x, const Matrix<T>& y) {
     for (Eigen::Index i = 0; i < x.size(); ++i)
       if (!(std::abs(x.data()[i] - y.data()[i]) <= 1e-14 * scale)) return false;
     return true;
   };
-  for (std::size_t p = 0; p < a.size(); ++p) {
-    const double scale = std::max(a[p].force_w.cwiseAbs().maxCoeff(), a[p].row_l.cwiseAbs().maxCoeff());
-    if (!close(a[p].force_w, b[p].force_w, scale) || !close(a[p].force_l, b[p].force_l, scale) ||
-        !close(a[p].row_w, b[p].row_w, scale) || !close(a[p].row_l, b[p].row_l, scale))
-      return false;
-  }
-  return true;
+  return close(a.force_w, b.force_w) && close(a.force_l, b.force_l) && close(a.row_w, b.row_w) &&
+         close(a.row_l, b.row_l);
+}
+
+/// Whether two sets of point tangents are, so that a factor can be used again.
+template <class T>
+bool same_tangents(const std::vector<PointTangent<T>>& a, const std::vector<PointTangent<T>>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const auto& x, const auto& y) { return same_tangent(x, y); });
 }
 
 /// Whether two vectors are the same to the last bit, their sizes included.
@@ -90,10 +93,13 @@ class SparseEngine {
   bool is_free(Eigen::Index row) const { return model_.free_index[row] >= 0; }
   /// `hold`: stiffness against motion of each contact node, the same in all directions, force per length; empty: none.
   bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
+  /// In place of factorise() where few points changed since (model/tangent_update.hpp); until the next factorise() all
+  /// solves are with these tangents. False, and nothing changed, where it does not pay or can't be.
+  bool update(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
   /// Whether the tangent has the other sign of its determinant than where all points stick: such a tangent belongs to a
   /// problem that has several solutions, or none, under some load.
   bool reversed() const;
-  /// K^T in place of K where `transposed`.
+  /// K^T in place of K where `transposed`; pre: that is not after update().
   BlockVector<T> solve(const BlockVector<T>& rows, bool transposed = false);
   /// The bodies' stiffness times engine increments (engine rows).
   Matrix<T> apply_stiffness(const Matrix<T>& u) const;
@@ -125,6 +131,7 @@ class SparseEngine {
   double stiffness_ = 0;  ///< largest diagonal entry, for the rounding of a residual
   LinearSolver<T> solver_;
   std::vector<PointTangent<T>> factorised_;
+  TangentUpdate update_;
   Vector<double> held_;
   bool analysed_ = false, valid_ = false;
 };
@@ -171,10 +178,13 @@ class CondensedEngine {
   bool is_free(Eigen::Index row) const { return free_[row]; }
   /// `hold`: stiffness against motion of each contact node, the same in all directions, force per length; empty: none.
   bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
+  /// In place of factorise() where few points changed since (model/tangent_update.hpp); until the next factorise() all
+  /// solves are with these tangents. False, and nothing changed, where it does not pay or can't be.
+  bool update(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
   /// Whether the tangent has the other sign of its determinant than where all points stick: such a tangent belongs to a
   /// problem that has several solutions, or none, under some load.
   bool reversed() const;
-  /// K^T in place of K where `transposed`.
+  /// K^T in place of K where `transposed`; pre: that is not after update().
   BlockVector<T> solve(const BlockVector<T>& rows, bool transposed = false);
   Matrix<T> apply_stiffness(const Matrix<T>& u) const { return condensation_->schur() * u; }
   Matrix<T> reduce(const Matrix<T>& rows) { return condensation_->reduce(rows); }
@@ -191,6 +201,9 @@ class CondensedEngine {
   long nonzeros() const { return static_cast<long>(unknowns()) * unknowns(); }
 
  private:
+  std::vector<int> point_rows(const ContactPoint& point) const;
+  Matrix<T> solve_factorised(const Matrix<T>& b, bool transposed) const;
+
   const Model& model_;
   const Slots<T>& slots_;
   bool unknown_multipliers_;
@@ -202,11 +215,14 @@ class CondensedEngine {
   Vector<T> load_;       ///< reduced load on the contact dofs
   bool symmetric_;
   std::vector<int> active_;  ///< multiplier rows in the factor: those of points that are not open
+  std::vector<int> place_;   ///< and where they stand in it; -1: not there
   Vector<T> open_diagonal_;  ///< of the other multiplier rows
+  Matrix<T> matrix_;         ///< that is factorised
   Eigen::PartialPivLU<Matrix<T>> lu_;
   Eigen::LLT<Matrix<T>> llt_;
   bool cholesky_ = false, valid_ = false;
   std::vector<PointTangent<T>> factorised_;
+  TangentUpdate update_;
   Vector<double> held_;
   std::string message_;
 };

@@ -97,6 +97,45 @@ void for_each_framed_tangent(const Model& model, const Slots<T>& slots, int b, S
   });
 }
 
+/// Whether a point's multipliers are their own rows alone.
+template <class T>
+bool is_open(const PointTangent<T>& tangent) {
+  return tangent.row_w.cwiseAbs().maxCoeff() == 0;
+}
+
+/// Takes tangents as an update of the factor of others. rows(p): rows of the factor of point p's entries.
+template <class T, class Rows, class Solve>
+bool update_factor(const Model& model, const Slots<T>& slots, const std::vector<PointTangent<T>>& factorised,
+                   const std::vector<PointTangent<T>>& tangents, bool unknown_multipliers, Rows&& rows,
+                   Eigen::Index size, Counters& counters, Solve&& solve, TangentUpdate& update) {
+  if constexpr (std::is_same_v<T, double>) {
+    std::vector<TangentUpdate::Change> changes;
+    for (std::size_t p = 0; p < tangents.size(); ++p) {
+      if (same_tangent(factorised[p], tangents[p])) continue;
+      if (changes.size() == TangentUpdate::most) return false;
+      TangentUpdate::Change change{static_cast<int>(p), rows(p), {}};
+      const auto n = static_cast<Eigen::Index>(change.rows.size());
+      change.block = Matrix<double>::Zero(n, n);
+      const auto add = [&](double sign) {
+        return [&change, sign](int r, int c, double x) { change.block(r, c) += sign * x; };
+      };
+      for_each_framed_entry(model, slots, change.point, tangents[p], unknown_multipliers, add(1));
+      for_each_framed_entry(model, slots, change.point, factorised[p], unknown_multipliers, add(-1));
+      changes.push_back(std::move(change));
+    }
+    return update.take(std::move(changes), size, counters, solve);
+  }
+  return false;
+}
+
+/// The solution with a factor and its update; only in double there are any.
+template <class T, class Solve, class Multiply>
+Matrix<T> solve_updated(const TangentUpdate& update, const Matrix<T>& b, Solve&& solve, Multiply&& multiply) {
+  if constexpr (std::is_same_v<T, double>)
+    if (!update.empty()) return update.solve(b, solve, multiply);
+  return solve(b);
+}
+
 /// Slip couples the normal into the tangential rows, not the other way round; with the radius of the cone fixed while
 /// the system is solved (that of known multipliers) nothing couples them.
 inline Symmetry symmetry_of(const Model& model, bool unknown_multipliers, ConeRadius cone) {
@@ -177,6 +216,7 @@ Vector<T> SparseEngine<T>::residual(const Vector<T>& u, const Vector<T>& contact
 template <class T>
 bool SparseEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters,
                                 const Vector<double>& hold) {
+  update_.clear();
   const bool same = detail::same_values(hold, held_) && detail::same_tangents(tangents, factorised_);
   if (valid_ && model_.effects.linear_bulk && same) return true;
   values_ = bulk_;
@@ -207,9 +247,19 @@ bool SparseEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents, Co
 }
 
 template <class T>
+bool SparseEngine<T>::update(const std::vector<PointTangent<T>>& tangents, Counters& counters,
+                             const Vector<double>& hold) {
+  if (!valid_ || !model_.effects.linear_bulk || !detail::same_values(hold, held_)) return false;
+  const auto rows = [&](std::size_t p) { return point_rows(model_.points[p]); };
+  return detail::update_factor<T>(
+      model_, slots_, factorised_, tangents, unknown_multipliers_, rows, size_, counters,
+      [&](const Matrix<T>& b) { return solver_.solve(b); }, update_);
+}
+
+template <class T>
 bool SparseEngine<T>::reversed() const {
   const bool odd = unknown_multipliers_ && model_.multiplier_count % 2 == 1;  // each multiplier turns the sign
-  return solver_.determinant_sign() != (odd ? -1 : 1);
+  return (solver_.determinant_sign() != (odd ? -1 : 1)) != update_.turns_sign();
 }
 
 template <class T>
@@ -218,7 +268,15 @@ BlockVector<T> SparseEngine<T>::solve(const BlockVector<T>& rows, bool transpose
   Matrix<T> b(size_, rows.u.cols());
   for (int i = 0; i < free; ++i) b.row(i) = rows.u.row(model_.free_dofs[i]);
   if (unknown_multipliers_) b.bottomRows(model_.multiplier_count) = rows.l;
-  const Matrix<T> x = solver_.solve(b, transposed);
+  const auto multiply = [&](const Matrix<T>& x) {
+    Matrix<T> product = Matrix<T>::Zero(size_, x.cols());
+    for (int j = 0; j < size_; ++j)
+      for (int k = pattern_->column_start[j]; k < pattern_->column_start[j + 1]; ++k)
+        product.row(pattern_->row[k]) += values_[k] * x.row(j);
+    return product;
+  };
+  const Matrix<T> x = detail::solve_updated<T>(
+      update_, b, [&](const Matrix<T>& r) { return solver_.solve(r, transposed); }, multiply);
   BlockVector<T> out{Matrix<T>::Zero(model_.dof_count(), b.cols()), Matrix<T>::Zero(model_.multiplier_count, b.cols())};
   for (int i = 0; i < free; ++i) out.u.row(model_.free_dofs[i]) = x.row(i);
   if (unknown_multipliers_) out.l = x.bottomRows(model_.multiplier_count);
@@ -386,38 +444,47 @@ Vector<T> CondensedEngine<T>::residual(const Vector<T>& u, const Vector<T>& cont
 }
 
 template <class T>
+std::vector<int> CondensedEngine<T>::point_rows(const ContactPoint& point) const {
+  const int D = model_.dimension;
+  std::vector<int> rows;
+  for (int n : point.places)
+    for (int i = 0; i < D; ++i) rows.push_back(free_place_[n * D + i]);
+  if (unknown_multipliers_)
+    for (int c = 0; c < point.components(); ++c) rows.push_back(place_[point.multiplier + c]);
+  return rows;
+}
+
+template <class T>
 bool CondensedEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters,
                                    const Vector<double>& hold) {
+  update_.clear();
   if (valid_ && detail::same_values(hold, held_) && detail::same_tangents(tangents, factorised_)) return true;
   const int D = model_.dimension, free = static_cast<int>(free_list_.size());
   active_.clear();
-  std::vector<int> place(model_.multiplier_count, -1);
+  place_.assign(model_.multiplier_count, -1);
   open_diagonal_ = Vector<T>::Constant(model_.multiplier_count, T(1));
   if (unknown_multipliers_)
     for (std::size_t p = 0; p < tangents.size(); ++p) {
-      const bool open = (tangents[p].row_w.cwiseAbs().maxCoeff() == 0);
+      const bool open = detail::is_open(tangents[p]);
       for (int c = 0; c < model_.points[p].components(); ++c) {
         const int k = model_.points[p].multiplier + c;
         if (open) {
           open_diagonal_[k] = tangents[p].row_l(c, c);
         } else {
-          place[k] = free + static_cast<int>(active_.size());
+          place_[k] = free + static_cast<int>(active_.size());
           active_.push_back(k);
         }
       }
     }
-  Matrix<T> K = Matrix<T>::Zero(free + active_.size(), free + active_.size());
+  Matrix<T>& K = matrix_;
+  K = Matrix<T>::Zero(free + active_.size(), free + active_.size());
   const auto& S = condensation_->schur();
   for (int j = 0; j < free; ++j)
     for (int i = 0; i < free; ++i) K(i, j) = S(free_list_[i], free_list_[j]);
   if (hold.size() > 0)
     for (int i = 0; i < free; ++i) K(i, i) += T(hold[free_list_[i] / D]);
   for (std::size_t p = 0; p < tangents.size(); ++p) {
-    const auto& point = model_.points[p];
-    std::vector<int> rows;
-    for (int n : point.places)
-      for (int i = 0; i < D; ++i) rows.push_back(free_place_[n * D + i]);
-    for (int c = 0; c < point.components(); ++c) rows.push_back(place[point.multiplier + c]);
+    const auto rows = point_rows(model_.points[p]);
     auto add = [&](int row, int column, const T& x) {
       if (rows[row] >= 0 && rows[column] >= 0) K(rows[row], rows[column]) += x;
     };
@@ -450,12 +517,34 @@ bool CondensedEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents,
 }
 
 template <class T>
+bool CondensedEngine<T>::update(const std::vector<PointTangent<T>>& tangents, Counters& counters,
+                                const Vector<double>& hold) {
+  if (!valid_ || !detail::same_values(hold, held_)) return false;
+  if (unknown_multipliers_)  // the factor has no rows for the multipliers of what was open then
+    for (std::size_t p = 0; p < tangents.size(); ++p)
+      if (detail::is_open(factorised_[p]) && !detail::same_tangent(factorised_[p], tangents[p])) return false;
+  const auto rows = [&](std::size_t p) { return point_rows(model_.points[p]); };
+  const auto solve = [&](const Matrix<T>& b) { return solve_factorised(b, false); };
+  return detail::update_factor<T>(model_, slots_, factorised_, tangents, unknown_multipliers_, rows,
+                                  static_cast<Eigen::Index>(free_list_.size() + active_.size()), counters, solve,
+                                  update_);
+}
+
+template <class T>
 bool CondensedEngine<T>::reversed() const {
-  if (cholesky_ || free_list_.size() + active_.size() == 0) return false;
+  if (cholesky_ || free_list_.size() + active_.size() == 0) return update_.turns_sign();
   double sign = static_cast<double>(lu_.permutationP().determinant());
   for (Eigen::Index i = 0; i < lu_.matrixLU().rows(); ++i)
     if (value(lu_.matrixLU()(i, i)) < 0) sign = -sign;
-  return sign != (active_.size() % 2 == 1 ? -1 : 1);  // each multiplier turns the sign
+  return (sign != (active_.size() % 2 == 1 ? -1 : 1)) != update_.turns_sign();  // each multiplier turns the sign
+}
+
+template <class T>
+Matrix<T> CondensedEngine<T>::solve_factorised(const Matrix<T>& b, bool transposed) const {
+  if (b.rows() == 0) return b;
+  if (cholesky_) return llt_.solve(b);
+  if (transposed) return lu_.transpose().solve(b);
+  return lu_.solve(b);
 }
 
 template <class T>
@@ -465,11 +554,9 @@ BlockVector<T> CondensedEngine<T>::solve(const BlockVector<T>& rows, bool transp
   Matrix<T> b(free + active_.size(), columns);
   for (int i = 0; i < free; ++i) b.row(i) = rows.u.row(free_list_[i]);
   for (std::size_t a = 0; a < active_.size(); ++a) b.row(free + a) = rows.l.row(active_[a]);
-  Matrix<T> x = b;
-  if (b.rows() > 0 && cholesky_)
-    x = llt_.solve(b);
-  else if (b.rows() > 0)
-    x = transposed ? Matrix<T>(lu_.transpose().solve(b)) : Matrix<T>(lu_.solve(b));
+  const Matrix<T> x = detail::solve_updated<T>(
+      update_, b, [&](const Matrix<T>& r) { return solve_factorised(r, transposed); },
+      [&](const Matrix<T>& y) { return Matrix<T>(matrix_ * y); });
   BlockVector<T> out{Matrix<T>::Zero(free_.size(), columns), Matrix<T>::Zero(model_.multiplier_count, columns)};
   for (int i = 0; i < free; ++i) out.u.row(free_list_[i]) = x.row(i);
   if (unknown_multipliers_) {

@@ -101,6 +101,38 @@ TEST(Loads, BodyForceOnAStandingColumn) {
   EXPECT_NEAR(r.derivative("u", "p0"), 0, 1e-15) << "weight and stiffness grow alike";
 }
 
+TEST(Loads, HaveDerivativesByTheirHistory) {
+  // u = F f(t) H / (E A), f(1/2) halfway between two numbers of the table
+  Scene s = of_box(2, 3, {2, 2}, 0);
+  s.legs = {{1, 2}};
+  s.loads = {{"block.top", Load::Kind::force, {0.0, -4.0}, {}}};
+  Table history = table({{0, 0.0}, {1, 0.0}});
+  history.points[0].second = with_slot(s, 0.5);
+  history.points[1].second = with_slot(s, 2);
+  s.loads[0].history = history;
+  s.supports = {support("block.bottom", {{'x', table({{0, 0.0}})}, {'y', table({{0, 0.0}})}})};
+  s.responses = {response("u", Kind::displacement, "block.top", "y")};
+  const auto r = run(s, MonolithicAL{});
+  const double unit = -4.0 * 3 / (1000 * 2);
+  for (const auto& [n, before, after] : {std::tuple{0, 0.5, 0.5}, {1, 0.0, 1.0}}) {
+    EXPECT_NEAR(r.value("u", n), unit * (0.5 * before + 2 * after), 1e-12) << n;
+    EXPECT_NEAR(r.derivative("u", "p0", n), unit * before, 1e-12) << n;
+    EXPECT_NEAR(r.derivative("u", "p1", n), unit * after, 1e-12) << n;
+  }
+}
+
+TEST(Bodies, HaveDerivativesByTheirThickness) {
+  Scene s = of_box(2, 3, {2, 2}, 0);
+  s.bodies[0].thickness = with_slot(s, 0.5);
+  s.loads = {{"block.top", Load::Kind::force, {0.0, -4.0}, {}}};
+  s.supports = {support("block.bottom", {{'x', table({{0, 0.0}})}, {'y', table({{0, 0.0}})}})};
+  s.responses = {response("u", Kind::displacement, "block.top", "y")};
+  const auto r = run(s, MonolithicAL{});
+  const double u = -4.0 * 3 / (1000 * 2 * 0.5);
+  EXPECT_NEAR(r.value("u"), u, 1e-12);
+  EXPECT_NEAR(r.derivative("u", "p0"), -u / 0.5, 1e-11);
+}
+
 TEST(Loads, BodyForceOfRevolutionIsConsistentOnTrianglesToo) {
   // N_a of two of the corners on the axis weigh r half as much as that of the third
   Scene s;

@@ -129,6 +129,20 @@ TEST(Acceleration, SparesMostAugmentationsWhereTheScaleIsSmall) {
     }
 }
 
+TEST(Augmentations, EndWithinTheirToleranceOfTheFixedPointHoweverSlowlyTheyGetThere) {
+  const auto scene = scenes::greco_plate(8);
+  const auto exact = run(scene, MonolithicAL{});
+  const auto& end = exact.trajectory.increments.back().state.contact.traction;
+  for (double multiple : {0.02, 0.1, 0.5}) {  // contractions of about 0.98, 0.92 and 0.7
+    auto method = plain(multiple);
+    method.tolerance = 1e-5;
+    const auto s = run(scene, method);
+    ASSERT_TRUE(is_converged(s.trajectory.status)) << s.trajectory.message;
+    const double error = (s.trajectory.increments.back().state.contact.traction - end).norm() / end.norm();
+    EXPECT_LE(error, 2 * method.tolerance) << multiple;  // a contraction is measured to some percent
+  }
+}
+
 TEST(InnerSolves, OnTheWayEndBeforePointsThatHardlySlipHaveMadeUpTheirMinds) {
   constexpr int cells = 100;
   for (bool adapt : {true, false}) {

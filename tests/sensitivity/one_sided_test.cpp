@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sensitivity/sided_geometry.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace stickslip {
@@ -205,6 +206,40 @@ TEST(OneSided, OfAPointOnAVertexThatItsMasterMovesHaveNone) {
     }
     ASSERT_TRUE(found.of);
     EXPECT_TRUE(std::isnan(found.at("u", "along").first) || std::isnan(found.at("u", "along").second));
+  }
+}
+
+TEST(OneSided, OfMatchingNodesFaceTheFacetThatTheyMoveTo) {
+  Scene s;
+  s.legs = {{1, 1}};
+  BoxMesh upper, lower;
+  upper.min = {parameter(s, "along", 0.0), 1.0};  // the nodes between move by the rest of their way to 1
+  upper.max = {1.0, 2.0};
+  upper.cells = {4, 1};
+  lower.min = {0.0, 0.0};
+  lower.max = {1.0, 1.0};
+  lower.cells = {4, 1};
+  s.bodies = {{"upper", upper, LinearElastic{1.0, 0.3}, "", 1.0}, {"lower", lower, LinearElastic{1.0, 0.3}, "", 1.0}};
+  s.contacts = {contact("touch", "upper.bottom", "lower.top")};
+  const Model model = make_model(s);
+  const auto places = make_slots<double>(model, s.as<double>()).points;
+  for (const int side : {-1, 1}) {
+    const auto pairing = sided_pairing(model, 0, side);
+    EXPECT_TRUE(pairing.kink);
+    int between = 0;
+    for (const auto& point : pairing.points) {
+      const double x = places(0, point.nodes[0]);
+      if (x < 0.1 || x > 0.9) continue;
+      ++between;
+      double farthest = 0;  // on the side that the point moves to
+      for (std::size_t n = 1; n < point.nodes.size(); ++n) {
+        const double way = side * (places(0, point.nodes[n]) - x);
+        EXPECT_GE(way, -1e-12) << x << " " << side;
+        farthest = larger(farthest, way);
+      }
+      EXPECT_NEAR(farthest, 0.25, 1e-12) << x << " " << side;
+    }
+    EXPECT_EQ(between, 3);
   }
 }
 

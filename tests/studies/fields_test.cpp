@@ -142,6 +142,26 @@ TEST(Fields, OfContactAreThoseOfTheSlaveNodes) {
   EXPECT_EQ(made.file().find("contact_state_sole"), std::string::npos) << "one contact alone needs no name";
 }
 
+TEST(Fields, OfContactWithABodyAreNotThoseOfItsMaster) {
+  Scene scene = block(Space::plane_strain);
+  scene.bodies.push_back({"base", BoxMesh{{0.0, -1.0}, {4.0, 0.0}, {1, 1}}, LinearElastic{1000, 0.25}, "", 1.0});
+  scene.obstacles.clear();
+  scene.contacts[0].master = "base.top";
+  Made made(scene);
+  auto& state = made.state();
+  state.contact.state = {ContactState::slip, ContactState::stick};
+  state.contact.traction << -6, 2, -5, 1;
+  const auto nodes = made.model().side("block.bottom").nodes;
+  const auto code = made.array("contact_state"), pressure = made.array("contact_pressure");
+  for (int n = 0; n < 8; ++n) {
+    const auto of = [&](double first, double second, double other) {
+      return n == nodes[0] ? first : n == nodes[1] ? second : other;
+    };
+    EXPECT_EQ(code[n], of(2, 1, -1)) << n;
+    EXPECT_EQ(pressure[n], of(6, 5, 0)) << n;
+  }
+}
+
 /// A point between a floor and a wall to its left; its contacts in this order.
 Scene corner() {
   Scene s;

@@ -125,6 +125,7 @@ TEST(Metrics, ComplementarityIsTheSmallerOfGapAndPressureAsTractions) {
   EXPECT_NEAR(of(-0.01, -10), 2.0 / 10, exact);  // a penetration
   EXPECT_NEAR(of(0.1, 10), 10.0 / 10, exact);    // apart, and pulled
   EXPECT_NEAR(of(-0.01, 1), 2.0 / 1, exact);     // a penetration that pulls
+  EXPECT_NEAR(of(0, 5), 5.0 / 5, exact);         // touching, and pulled
   EXPECT_EQ(of(0.1, 0), 0);
   EXPECT_EQ(of(0, -10), 0);
 }
@@ -344,7 +345,7 @@ TEST(Metrics, SummariesAddUpTheForcesOfEachContact) {
   scene.contacts.push_back(contact("end", "bar.end", "floor"));
   Made made(scene);
   auto& state = made.next();
-  state.contact.traction << -20, 4, -8, -2, 0, 0, -3;
+  state.contact.traction << -20, 6, -8, -2, 0, 0, -3;
   state.contact.gap << -0.25, 0.5, 1, -0.125;
   state.contact.state = {ContactState::stick, ContactState::slip, ContactState::open, ContactState::slip};
   const auto all = summarise(made.model, made.slots, state);
@@ -353,7 +354,7 @@ TEST(Metrics, SummariesAddUpTheForcesOfEachContact) {
   EXPECT_EQ(all[0].penetration, 0.25);
   EXPECT_NEAR(all[0].normal_force, 0.5 * 20 + 8, exact * 20);
   // on the slave: against the traction's tangent (-1, 0)
-  EXPECT_NEAR(all[0].tangential_force[0], 0.5 * 4 - 2, exact);
+  EXPECT_NEAR(all[0].tangential_force[0], 0.5 * 6 - 2, exact);
   EXPECT_NEAR(all[0].tangential_force[1], 0, exact);
   EXPECT_EQ(all[1].slip, 1);
   EXPECT_NEAR(all[1].normal_force, 3, exact);  // the cross-section is 1

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/model/slots.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -38,6 +40,30 @@ std::vector<double> areas(const Scene& scene) {
   std::vector<double> out;
   for (const auto& geometry : make_slots<double>(model, scene.as<double>()).geometry) out.push_back(geometry.area);
   return out;
+}
+
+TEST(SegmentNormals, HalveTheAngleBetweenTheTwoSurfaces) {
+  Scene s;
+  s.legs = {{1, 1}};
+  const double slope = 0.3;
+  QuadMesh upper;
+  upper.corners = {{{0.5, 1.0}, {1.5, 1.0 + slope}, {1.5, 2.0}, {0.5, 2.0}}};
+  upper.cells = {3, 2};
+  BoxMesh lower;
+  lower.min = {0.0, 0.0};
+  lower.max = {2.0, 1.0};
+  lower.cells = {5, 2};
+  s.bodies = {{"upper", upper, LinearElastic{1.0, 0.3}, "", 1.0}, {"lower", lower, LinearElastic{1.0, 0.3}, "", 1.0}};
+  s.contacts = {scenes::contact("touch", "upper.bottom", "lower.top")};
+  s.contacts[0].segment = true;
+  const Model model = make_model(s);
+  const auto slots = make_slots<double>(model, s.as<double>());
+  ASSERT_FALSE(model.points.empty());
+  const double half = std::atan(slope) / 2;  // between the master's (0, 1) and the slave's reversed (-sin, cos)
+  for (const auto& geometry : slots.geometry) {
+    EXPECT_NEAR(geometry.normal[0], -std::sin(half), 1e-14);
+    EXPECT_NEAR(geometry.normal[1], std::cos(half), 1e-14);
+  }
 }
 
 TEST(ContactPairs, FaceAFacetBetweenNodesAndAVertexOnThem) {

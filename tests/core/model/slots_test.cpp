@@ -213,6 +213,14 @@ TEST(NodalStiffness, AgainstABodyIsTheHarmonicMeanOfTheTwoSides) {
     const double a = rigid_master[p] / 2, b = rigid_slave[p] / 2;  // of the softer side alone
     EXPECT_NEAR(both[p], 2 * a * b / (a + b), 1e-12 * both[p]);    // the rigid side's share is 1e-15
   }
+  scene.bodies.pop_back();
+  std::get<LinearElastic>(scene.bodies[0].material).E = 1000.0;
+  scene.supports.erase(scene.supports.begin());
+  scene.obstacles = {{"floor", Plane{{0.0, 0.0}, {0.0, 1.0}}, {}}};
+  scene.contacts[0].master = "floor";
+  scene.responses.clear();
+  const auto alone = make_slots<double>(make_model(scene), scene.as<double>()).stiffness;
+  for (std::size_t p = 0; p < alone.size(); ++p) EXPECT_NEAR(rigid_master[p], 2 * alone[p], 1e-12 * alone[p]);
 }
 
 Vector<double> total(const Scene& scene, int load) {
@@ -244,6 +252,32 @@ TEST(Loads, ShareAForceByTributaryLength) {
   const Model model = make_model(scene);
   const auto slots = make_slots<double>(model, scene.as<double>());
   for (int node = 0; node < 5; ++node) EXPECT_DOUBLE_EQ(slots.loads[0][2 * node], node == 0 || node == 4 ? 1 : 2);
+}
+
+TEST(Loads, ShareAForceByTributaryLengthOfUnequalEdges) {
+  Scene scene;
+  scene.legs = {{1, 1}};
+  HalfDiskMesh disk;
+  disk.center = {0.0, 0.0};
+  disk.radius = 1.0;
+  disk.cells = {4, 3};
+  disk.grade = 3.0;
+  scene.bodies = {{"disk", disk, LinearElastic{1.0, 0.3}, "", 1.0}};
+  scene.loads = {scenes::force("disk.arc", {8.0, 0.0})};
+  const Model model = make_model(scene);
+  const auto slots = make_slots<double>(model, scene.as<double>());
+  const auto& side = model.bodies[0].mesh.sides.at("arc");
+  Vector<double> tributary = Vector<double>::Zero(model.node_count);
+  double longest = 0, shortest = 1;
+  for (const auto& facet : side.facets) {
+    const double length = (slots.points.col(facet[0]) - slots.points.col(facet[1])).norm();
+    for (int node : facet) tributary[node] += length / 2;
+    longest = larger(longest, length);
+    shortest = smaller(shortest, length);
+  }
+  ASSERT_GT(longest, 1.5 * shortest);
+  for (int node : side.nodes)
+    EXPECT_NEAR(slots.loads[0][2 * node], 8 * tributary[node] / tributary.sum(), 100 * epsilon) << node;
 }
 
 TEST(Loads, GiveAForceToTheNamedNodesAlone) {

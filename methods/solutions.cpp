@@ -1,4 +1,4 @@
-#include "methods/branches.hpp"
+#include "methods/solutions.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>

@@ -1,0 +1,77 @@
+/// Errors of results that are written by hand: over all steps, and by area.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "studies/study.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace stickslip {
+namespace {
+
+/// A block of two cells over a floor: contact points with areas 1/2, 1 and 1/2.
+std::shared_ptr<const Problem> block() {
+  Scene s;
+  s.legs = {{2, 2}};
+  const Number E = scenes::parameter(s, "E", 10.0);
+  s.bodies = {{"block", BoxMesh{{0.0, 0.0}, {2.0, 1.0}, {2, 1}}, LinearElastic{E, 0.25}, "", 1.0}};
+  s.obstacles = {{"floor", Plane{{0.0, 0.0}, {0.0, 1.0}}, {}}};
+  s.contacts = {scenes::contact("sole", "block.bottom", "floor")};
+  s.contacts[0].friction = 0.5;
+  s.responses = {scenes::response("u", Response::Kind::displacement, "block.top", "y")};
+  return std::make_shared<const Problem>(s);
+}
+
+/// A result of two steps, all of it zero.
+CaseResult nothing(const std::shared_ptr<const Problem>& problem) {
+  CaseResult result;
+  result.problem = problem;
+  result.trajectory.increments.resize(2);
+  result.steps.resize(2);
+  for (int n = 0; n < 2; ++n) {
+    result.trajectory.increments[n].state = initial_state<double>(problem->model);
+    result.steps[n].increment = &result.trajectory.increments[n];
+    result.steps[n].responses = Vector<double>::Zero(1);
+    result.steps[n].sensitivities = Matrix<double>::Zero(1, 1);
+  }
+  return result;
+}
+
+constexpr double exact = 1e-14;
+
+TEST(EnforcementErrors, AreTheLargestOfAllStepsOverTheLargestOfAllSteps) {
+  const auto problem = block();
+  CaseResult reference = nothing(problem), result = nothing(problem);
+  const auto set = [](CaseResult& of, int n, double response, double derivative) {
+    of.steps[n].responses[0] = response;
+    of.steps[n].sensitivities(0, 0) = derivative;
+  };
+  set(reference, 0, -8, 3);
+  set(reference, 1, 4, -6);
+  set(result, 0, -7, 5);    // off by 1 and 2
+  set(result, 1, 4.5, -7);  // by 1/2 and 1
+  const auto errors = enforcement_errors(result, reference);
+  EXPECT_NEAR(errors.at("response:u"), 1.0 / 8, exact);
+  EXPECT_NEAR(errors.at("sensitivity:u/E"), 2.0 / 6, exact);
+}
+
+TEST(EnforcementErrors, WeighTractionsByArea) {
+  const auto problem = block();
+  CaseResult reference = nothing(problem), result = nothing(problem);
+  auto& of = reference.trajectory.increments[1].state.contact.traction;
+  of << -4, 1, -3, 2, -2, 1;
+  auto& t = result.trajectory.increments[1].state.contact.traction;
+  t = of;
+  t[0] += 1;  // an end, area 1/2
+  t[3] += 1;  // the middle, area 1
+  for (std::size_t n = 0; n < 2; ++n) {
+    result.steps[n].increment = &result.trajectory.increments[n];
+    reference.steps[n].increment = &reference.trajectory.increments[n];
+  }
+  const auto errors = enforcement_errors(result, reference);
+  EXPECT_NEAR(errors.at("field:normal_traction"), std::sqrt(0.5 / (0.5 * 16 + 9 + 0.5 * 4)), exact);
+  EXPECT_NEAR(errors.at("field:tangential_traction"), std::sqrt(1 / (0.5 * 1 + 4 + 0.5 * 1)), exact);
+}
+
+}  // namespace
+}  // namespace stickslip
