@@ -390,8 +390,11 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
           tangents.push_back(point_tangent<T>(input, p, compact, multiplier, branch[p]));
       }
       if (!decided.empty()) detail::yield_decided(input, decided, tangents);
+      if (!redundant) {
+        const Stopwatch time(account.seconds.backsolve);
+        if (engine.update(tangents, account.counters, anchor.stiffness)) return true;
+      }
       const Stopwatch time(account.seconds.factorization);
-      if (!redundant && engine.update(tangents, account.counters, anchor.stiffness)) return true;
       return unknown ? factorise_sharing(engine, model, {}, std::move(tangents), redundant, account.counters,
                                          anchor.stiffness)
                      : engine.factorise(tangents, account.counters, anchor.stiffness);
