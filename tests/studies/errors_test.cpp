@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "studies/references.hpp"
 #include "studies/study.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -71,6 +72,29 @@ TEST(EnforcementErrors, WeighTractionsByArea) {
   const auto errors = enforcement_errors(result, reference);
   EXPECT_NEAR(errors.at("field:normal_traction"), std::sqrt(0.5 / (0.5 * 16 + 9 + 0.5 * 4)), exact);
   EXPECT_NEAR(errors.at("field:tangential_traction"), std::sqrt(1 / (0.5 * 1 + 4 + 0.5 * 1)), exact);
+}
+
+TEST(ReferenceValues, TakeTheModulusOfBothBodies) {
+  // Hertz: b = sqrt(4 F R / (pi E*)), 1/E* = sum (1 - nu^2) / E over both bodies, in plane stress sum 1 / E
+  for (const bool plane_stress : {false, true}) {
+    Scene s;
+    if (plane_stress) s.space = Space::plane_stress;
+    s.legs = {{1, 1}};
+    s.bodies = {{"upper", BoxMesh{{0.0, 1.0}, {1.0, 2.0}, {2, 1}}, LinearElastic{100.0, 0.25}, "", 1.0},
+                {"lower", BoxMesh{{0.0, 0.0}, {1.0, 1.0}, {2, 1}}, LinearElastic{300.0, 0.4}, "", 1.0}};
+    s.contacts = {scenes::contact("touch", "upper.bottom", "lower.top")};
+    s.responses = {scenes::response("width", Response::Kind::contact_half_width, "touch")};
+    CaseResult result = nothing(std::make_shared<const Problem>(s));
+    for (std::size_t n = 0; n < 2; ++n) {
+      result.steps[n].increment = &result.trajectory.increments[n];
+      result.trajectory.increments[n].state.contact.traction.setConstant(-1);
+    }
+    const auto reference = reference_values(
+        {{"analytic", "hertz_line"}, {"map", {{"width", "half_width"}}}, {"inputs", {{"force", 7}, {"radius", 3}}}},
+        result);
+    const double compliance = plane_stress ? 1 / 100.0 + 1 / 300.0 : (1 - 0.25 * 0.25) / 100 + (1 - 0.4 * 0.4) / 300;
+    EXPECT_NEAR(reference.responses.at("width"), std::sqrt(4 * 7 * 3 * compliance / M_PI), 1e-12);
+  }
 }
 
 }  // namespace
