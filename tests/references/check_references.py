@@ -149,8 +149,9 @@ def uniform():
 
 
 def balance():
-    """A corner with a support across a slope that it presses on: reaction, push of the slope and load balance."""
-    t, p = 2, 5
+    """A corner with a support across a slope that it presses on: reaction, push of the slope and load balance. The
+    shear presses the corner down: lifted, it would have no contact force for the reaction to leave out."""
+    t, p = -2, 5
     v, g = last({
         "space": "plane_strain",
         "bodies": {"block": {"mesh": {"box": {"min": [0, 0], "max": [2, 1], "cells": [3, 2]}},
