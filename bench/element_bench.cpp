@@ -3,7 +3,6 @@
 #include <benchmark/benchmark.h>
 
 #include "core/model/engine.hpp"
-#include "core/model/engine_impl.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace stickslip {

@@ -57,13 +57,15 @@ class Augmentations {
     // which moves nothing. Of a rho that small by itself the violation, held against its own tolerance, tells the error
     constexpr double not_falling = 1 - 1e-4;
     const double q = contraction_;
-    if (!settled_ || q == 0 || q > not_falling) return update();
+    if (q == 0 || q > not_falling) return update();
     return update() * std::max(1.0, q / (1 - q));
   }
   bool stalled() const { return settled_ && last_update_ > 0 && 2 * update_.norm() > last_update_; }
   /// The updates have not fallen for long: a rho far above the stiffness of the other body turns what the inner solves
   /// leave into tractions.
   bool exhausted() const { return settled_ && idle_ >= 50; }
+  /// Fast enough that updates which do not fall are rounding.
+  bool converges() const { return contraction_ > 0 && contraction_ < 0.9; }
   const std::vector<double>& violations() const { return violations_; }  ///< per point, length
   const std::vector<double>& last_violations() const { return last_violations_; }
   double violation() const {

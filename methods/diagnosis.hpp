@@ -111,7 +111,8 @@ void diagnose(const Model& model, const Slots<T>& slots, double time, bool preve
     return;
   }
   if (failed.status == Status::no_equilibrium) {
-    failed.message = detail::words_of_imbalance(model, slots, time, failed.state.contact.state);
+    if (unbalanced_body(model, slots, time) != balanced)
+      failed.message = detail::words_of_imbalance(model, slots, time, failed.state.contact.state);
     return;
   }
   if (failed.status != Status::singular) return;

@@ -17,20 +17,21 @@ struct Run {
   E& engine;
   Account account;
   bool several = false;  ///< increments may have several solutions (methods/motion.hpp)
+  std::shared_ptr<Condensation<T>> condensation = nullptr;  ///< where all branches are tried; made on demand
 };
 
 /// Where a method begins to look for an increment's solution, and what holds the bodies there.
 template <class T>
 struct Start {
-  const State<T>& from;  ///< the last increment's state, or a step of the motion
-  Anchor<T> anchor;      ///< of the motion; empty: the unmodified equations
-  bool roughly = true;   ///< whether a step of the motion is solved to the root of the tolerance alone
+  const State<T>& from;    ///< the last increment's state, or a step of the motion
+  Anchor<T> anchor;        ///< of the motion; empty: the unmodified equations
+  bool rough_step = true;  ///< whether a step of the motion is solved to the root of the tolerance alone
   bool is_step() const { return anchor.stiffness.size() > 0; }
   /// States that points resume which start on their cone: those of the last increment, where it starts there.
   std::vector<ContactState> resumed(const State<T>& previous) const {
     return &from == &previous ? previous.contact.state : std::vector<ContactState>{};
   }
-  double tolerance(double asked) const { return is_step() && roughly ? std::sqrt(asked) : asked; }
+  double tolerance(double asked) const { return is_step() && rough_step ? std::sqrt(asked) : asked; }
 };
 
 /// An equilibrium as the state that the next increment starts from. `multiplier`: the lambda it was found with.

@@ -4,8 +4,7 @@
 /// Plain semi-smooth Newton cycles where friction couples points strongly, and stops where points that all slip leave a
 /// body free to move. The motion does not: each step of it solves
 ///
-///   R(u, lambda) + alpha D (u - u_k) = 0,   u_{k+1} = u          an implicit Euler step of  D du/ds = -R,  ds =
-///   1/alpha
+///   R(u, lambda) + alpha D (u - u_k) = 0,   u_{k+1} = u      an implicit Euler step of  D du/ds = -R,  ds = 1 / alpha
 ///
 /// by the method itself, with D the local stiffness at the contact nodes, the same in all directions. Its tangent is
 /// regular, and for a large alpha the points know little of each other. alpha starts at 1, falls to a fifth after each
@@ -14,8 +13,10 @@
 ///
 /// Where there may be several solutions (a tangent on the way has the other sign of its determinant, friction may hold
 /// a body between surfaces, or mu reaches a critical value), the one is taken in whose branches the motion comes to
-/// rest: path, D and alpha say which, not rho and not the method. Proximal point method: R. T. Rockafellar, SIAM J.
-/// Control Optim. 14 (1976) 877-898; measured against others in core/README.md.
+/// rest: path, D and alpha say which, not rho and not the method. With few points the motion is followed by trying all
+/// branches (methods/solutions.hpp), which also tells that there is no solution, and the method starts from the one
+/// found. Proximal point method: R. T. Rockafellar, SIAM J. Control Optim. 14 (1976) 877-898; measured against others
+/// in core/README.md.
 #pragma once
 
 #include "methods/monolithic.hpp"
@@ -53,20 +54,99 @@ bool is_wedged(const Model& model, const Slots<T>& slots) {
   });
 }
 
-/// D of the contact nodes, force per length: the largest local stiffness of the points that a node belongs to.
-template <class T>
-Vector<double> damping(const Model& model, const Slots<T>& slots) {
-  Vector<double> stiffness = Vector<double>::Zero(static_cast<Eigen::Index>(model.contact_nodes.size()));
-  for (std::size_t p = 0; p < model.points.size(); ++p)
-    for (int place : model.points[p].places) stiffness[place] = std::max(stiffness[place], value(slots.stiffness[p]));
-  return stiffness;
-}
-
 /// Adds to an increment what an attempt at it cost.
 template <class T>
 void add_cost(const Increment<T>& attempt, std::vector<IterationRecord>& history, int& iterations) {
   history.insert(history.end(), attempt.history.begin(), attempt.history.end());
   iterations += attempt.newton;
+}
+
+/// Whether two states of an increment are the same solution, as far as a method's tolerance tells.
+template <class T>
+bool same_solution(const Model& model, const State<T>& a, const State<T>& b, double least_length) {
+  constexpr double same = 1e-6;
+  const int D = model.dimension;
+  const double length =
+      std::max({largest_nodal_norm(a.displacement, D), largest_nodal_norm(b.displacement, D), least_length});
+  const double traction = std::max(values(a.contact.traction).norm(), values(b.contact.traction).norm());
+  return largest_nodal_norm(Vector<T>(a.displacement - b.displacement), D) <= same * length &&
+         values(a.contact.traction - b.contact.traction).norm() <= same * traction;
+}
+
+/// All solutions of an increment with few contact points.
+template <class T>
+struct Solutions {
+  std::vector<State<T>> states;
+  std::optional<std::size_t> resting;  ///< the one that is taken (methods/solutions.hpp)
+  double motion = 0;                   ///< largest displacement of a contact node without any traction
+  bool complete = true;                ///< but for rounding, there are no others
+  bool feasible = true;                ///< some motion violates no constraint
+};
+
+/// Nothing where points are too many, or bodies can move although all of them stick.
+template <class M, class T, class E>
+std::optional<Solutions<T>> try_all_branches(const M& method, Run<T, E>& run, const State<T>& previous,
+                                             const std::vector<double>& factor, double time) {
+  if (!can_try_all_branches(run.model)) return std::nullopt;
+  if (!run.condensation) run.condensation = std::make_shared<Condensation<T>>(run.model, run.slots, Backend::automatic);
+  if (!run.condensation->valid()) return std::nullopt;
+  CondensedEngine<T> engine(run.model, run.slots, false, ConeRadius::augmented, run.condensation);
+  const auto initial = initial_regularisation(run.slots, method);
+  const auto rho = factor.empty() ? initial : adapted(initial, factor);
+  const ContactInput<T> input{run.model, run.slots, rho, previous.contact.placement, ConeRadius::augmented, time};
+  const Vector<T> u = engine.begin(time, previous.displacement), stored = stored_traction(run.model, previous);
+  const ContactProblem problem =
+      contact_problem(input, engine, u, run.condensation->schur(), prevents_penetration(method) ? nullptr : &stored);
+  const auto all = all_solutions(problem);
+  if (!all) return std::nullopt;
+  Solutions<T> solutions;
+  for (const auto& solution : *all) {
+    solutions.states.push_back(as_state(input, engine, u, problem, solution));
+    solutions.states.back().dissipation = previous.dissipation;
+  }
+  solutions.complete = !has_repeated_constraints(problem);
+  solutions.resting = resting_solution(problem, *all);
+  solutions.motion = largest_nodal_norm(u, run.model.dimension);
+  if (all->empty()) {
+    constexpr double nearly = 1e-6;  // what misses its branches by less is not taken for nothing
+    solutions.complete = solutions.complete && all_solutions(problem, 0, {}, nearly)->empty();
+    solutions.feasible = is_feasible(problem);
+  }
+  return solutions;
+}
+
+/// The increment in the solution that the motion comes to rest in, found by trying all branches; or why there is none.
+/// `direct`: what the method found on its own; `before`: scales before that. Nothing where branches can't be tried, or
+/// do not lead to a solution; nor, but as a last resort, where there may be solutions that they do not find.
+template <class M, class T, class E>
+std::optional<Increment<T>> take_resting_solution(const M& method, Run<T, E>& run, const State<T>& previous,
+                                                  const std::vector<double>& factor, double time,
+                                                  const Increment<T>& direct, const RunScales& before,
+                                                  bool as_last_resort = false) {
+  const auto solutions = try_all_branches(method, run, previous, factor, time);
+  if (!solutions || (!solutions->complete && !as_last_resort)) return std::nullopt;
+  if (solutions->states.empty()) {
+    if (direct.usable() || !solutions->complete) return std::nullopt;
+    Increment<T> failed = direct;
+    failed.status = solutions->feasible ? Status::no_equilibrium : Status::infeasible;
+    failed.message = solutions->feasible
+                         ? "no combination of open, stick and slip of the contact points balances the loads"
+                         : "the contacts contradict one another: whatever the bodies do, some point penetrates";
+    return failed;
+  }
+  if (!solutions->resting) return std::nullopt;
+  const State<T>& target = solutions->states[*solutions->resting];
+  if (direct.usable() && same_solution(run.model, direct.state, target, solutions->motion)) return direct;
+  const RunScales after = std::exchange(run.account.scales, before);
+  auto found = solve_increment(method, run, previous, factor, time, Start<T>{target, {}});
+  if (!found.usable() || !same_solution(run.model, found.state, target, solutions->motion)) {
+    run.account.scales = after;
+    return std::nullopt;
+  }
+  found.history.insert(found.history.begin(), direct.history.begin(), direct.history.end());
+  found.newton += direct.newton;
+  found.reversed |= direct.reversed;
+  return found;
 }
 
 /// Follows the overdamped motion from `previous` until the method solves the unmodified equations. `several`: there may
@@ -83,10 +163,10 @@ Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& prev
   const RunScales scales = run.account.scales;
   std::vector<IterationRecord> history;
   int iterations = 0;
-  bool roughly = !several;  // (multipliers that are not unique keep what a rough step leaves)
+  bool rough_step = !several;  // (multipliers that are not unique keep what a rough step leaves)
   const auto attempt = [&](const State<T>& from, double alpha) {
     run.account.scales = scales;  // iterates on the way do not count
-    Start<T> start{from, {}, roughly};
+    Start<T> start{from, {}, rough_step};
     if (alpha > 0) start.anchor = {alpha * D, to_compact(run.model, from.displacement)};
     auto found = solve_increment(method, run, previous, factor, time, start);
     add_cost(found, history, iterations);
@@ -119,8 +199,8 @@ Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& prev
       result.cut_off = false;
       result.message = "the motion does not come to rest";
     }
-    if (length == 0 && roughly)  // so near to rest that a rough step begins solved
-      roughly = false;
+    if (length == 0 && rough_step)  // so near to rest that a rough step begins solved
+      rough_step = false;
     else
       alpha *= faster;
   }
@@ -148,6 +228,8 @@ Increment<T> find_increment(const M& method, Run<T, E>& run, const State<T>& pre
     direct.status = Status::no_equilibrium;
     return direct;
   }
+  if (auto taken = detail::take_resting_solution(method, run, previous, factor, time, direct, before))
+    return std::move(*taken);
   const RunScales after = std::exchange(run.account.scales, before);
   auto rest = detail::follow_motion(method, run, previous, factor, time, several);
   // a multiplier that grows for ever makes any violation small against it
@@ -155,6 +237,9 @@ Increment<T> find_increment(const M& method, Run<T, E>& run, const State<T>& pre
   const bool grown = direct.status == Status::infeasible && values(rest.state.contact.traction).norm() >
                                                                 runaway * values(direct.state.contact.traction).norm();
   const bool better = rest.usable() && !grown;
+  if (!better && !solved)
+    if (auto taken = detail::take_resting_solution(method, run, previous, factor, time, direct, before, true))
+      return std::move(*taken);
   if (!better) run.account.scales = after;
   auto& taken = better ? rest : direct;
   const auto& other = better ? direct : rest;

@@ -237,15 +237,17 @@ void resume_on_cone(const ContactInput<T>& input, const Vector<T>& multiplier, c
 ///     lies between the two.
 /// `last`: field and branches of the last step; empty at the first.
 template <class T>
-std::vector<ContactState> step_branches(const Model& model, const ContactInput<T>& input, const ContactField<T>& field,
-                                        const Vector<T>& multiplier, const ContactField<T>& last) {
+std::vector<ContactState> step_branches(const Model& model, const ContactInput<T>& input, const Vector<T>& compact,
+                                        const ContactField<T>& field, const Vector<T>& multiplier,
+                                        const ContactField<T>& last) {
   std::vector<ContactState> branches = field.state;
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     const auto& point = model.points[p];
     if (branches[p] != ContactState::slip || point.tangents == 0 || value(input.slots.friction[point.contact]) == 0)
       continue;
-    bool apex = std::abs(value(field.traction[point.multiplier])) <= value(input.rho[p].normal) * point.tie_length;
-    const double tie = value(input.rho[p].tangential) * point.tie_length;
+    const double rounding = detail::tie_at(input, p, compact);
+    bool apex = std::abs(value(field.traction[point.multiplier])) <= value(input.rho[p].normal) * rounding;
+    const double tie = value(input.rho[p].tangential) * rounding;
     double along_last = 0;
     for (int a = 0; a < point.tangents; ++a) {
       const int k = point.multiplier + 1 + a;
@@ -379,7 +381,7 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
 
     const auto evaluated = at.field.state;
     if (iteration == 0 && !last.empty()) detail::resume_on_cone(input, multiplier, last, at.field);
-    auto branch = detail::step_branches(model, input, at.field, multiplier, directed);
+    auto branch = detail::step_branches(model, input, engine.compact(u), at.field, multiplier, directed);
     used = at.field.state;
     const auto factorise = [&] {
       std::vector<PointTangent<T>> tangents;

@@ -27,15 +27,14 @@ constexpr bool prevents_penetration(const Penalty&) { return false; }
 
 namespace detail {
 
-/// Points, closed in `field`, whose constraints could contradict others: not those with a slave node of their own that
-/// is free to follow along the normal.
+/// Points, closed in `field`, whose constraints could contradict others: not those whose slave node belongs to no other
+/// point and is free to follow along the normal.
 template <class T>
 std::vector<int> shared_points(const Model& model, const Slots<T>& slots, const ContactField<T>& field) {
   constexpr double across = 1e-6;  // of a normal: less is none
   std::vector<int> users(model.node_count, 0);
   for (std::size_t p = 0; p < model.points.size(); ++p)
-    if (field.state[p] != ContactState::open)
-      for (int node : model.points[p].nodes) ++users[node];
+    for (int node : model.points[p].nodes) ++users[node];
   std::vector<int> shared;
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const int node = model.points[p].nodes[0], D = model.dimension;
@@ -48,15 +47,24 @@ std::vector<int> shared_points(const Model& model, const Slots<T>& slots, const 
 }
 
 /// A point whose overlap no stiffness removes, in words; empty where there is none. One augmentation from the solution
-/// with 1e8 nodal stiffnesses, the closed points closed and tangential tractions as they are, leaves some 1e-8 of an
-/// overlap that bodies can yield to, and all of one that supports or other contacts prescribe: the force there is
-/// stiffness times overlap. It is made only where points share a node or are held by supports.
+/// with 1e8 nodal stiffnesses, tangential tractions as they are and points closed and opened until their tractions and
+/// gaps agree, leaves some 1e-8 of an overlap that bodies can yield to; but the overlap that supports or other contacts
+/// prescribe it leaves, there or where it was pushed to: the force is stiffness times overlap. It is made only where
+/// points share a node or are held by supports.
 template <class T, class E>
 std::string unyielding_point(Run<T, E>& run, const ContactInput<T>& found, const Equilibrium<T>& equilibrium) {
-  constexpr double stiff = 1e8, left = 1e-2, negligible = 1e-9;
+  constexpr double stiff = 1e8, left = 1e-5, negligible = 1e-9;
+  constexpr int most_rounds = 10;
   const Model& model = run.model;
   const auto shared = shared_points(model, run.slots, equilibrium.field);
-  if (shared.empty()) return "";
+  double worst = negligible * run.account.scales.length;
+  int point = -1;
+  for (int p : shared)
+    if (const double overlap = -value(equilibrium.field.gap[p]); overlap > worst) {
+      worst = overlap;
+      point = p;
+    }
+  if (point < 0) return "";
   RegularisationField<T> rho;
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const T nodal = T(stiff) * run.slots.stiffness[p] / run.slots.geometry[p].area;
@@ -64,30 +72,42 @@ std::string unyielding_point(Run<T, E>& run, const ContactInput<T>& found, const
   }
   const ContactInput<T> input{model, run.slots, rho, found.previous_placement, found.cone, found.time};
   const auto& traction = equilibrium.field.traction;
+  const auto closed = [&](int p) { return model.points[p].tangents > 0 ? ContactState::stick : ContactState::slip; };
   std::vector<ContactState> states = equilibrium.field.state;
   for (std::size_t p = 0; p < states.size(); ++p)
-    if (states[p] == ContactState::slip && model.points[p].tangents > 0) states[p] = ContactState::stick;
+    if (states[p] != ContactState::open) states[p] = closed(static_cast<int>(p));
   const Vector<T> compact = run.engine.compact(equilibrium.u);
-  const auto pushed = evaluate_contact<T>(input, compact, traction, &states);
-  ForceScale unused;
-  Vector<T> rows = run.engine.residual(equilibrium.u, contact_forces(model, run.slots, pushed.traction), unused);
-  for (Eigen::Index row = 0; row < rows.size(); ++row)
-    if (!run.engine.is_free(row)) rows[row] = T(0);
-  std::vector<PointTangent<T>> tangents;
-  for (int p = 0; p < static_cast<int>(model.points.size()); ++p)
-    tangents.push_back(point_tangent<T>(input, p, compact, traction, states[p]));
-  if (!run.engine.factorise(tangents, run.account.counters)) return "";
-  const Vector<T> u = equilibrium.u + run.engine.solve({-rows, {}}).u.col(0);
-  ++run.account.counters.backsolves;
-  const auto after = evaluate_contact<T>(input, run.engine.compact(u), traction, &states);
-  for (int p : shared) {
-    const double overlap = -value(equilibrium.field.gap[p]), rest = -value(after.gap[p]);
-    if (overlap > negligible * run.account.scales.length && rest > left * overlap)
-      return name_of_point(model, run.slots, p) + " overlaps by " + short_number(overlap) +
-             ", which no stiffness removes: supports or other contacts prescribe it, and the force is stiffness times "
-             "overlap";
+  double rest = 0;
+  for (int round = 0; round < most_rounds; ++round) {
+    const auto pushed = evaluate_contact<T>(input, compact, traction, &states);
+    ForceScale unused;
+    Vector<T> rows = run.engine.residual(equilibrium.u, contact_forces(model, run.slots, pushed.traction), unused);
+    for (Eigen::Index row = 0; row < rows.size(); ++row)
+      if (!run.engine.is_free(row)) rows[row] = T(0);
+    std::vector<PointTangent<T>> tangents;
+    for (int p = 0; p < static_cast<int>(model.points.size()); ++p)
+      tangents.push_back(point_tangent<T>(input, p, compact, traction, states[p]));
+    if (!run.engine.factorise(tangents, run.account.counters)) return "";
+    const Vector<T> u = equilibrium.u + run.engine.solve({-rows, {}}).u.col(0);
+    ++run.account.counters.backsolves;
+    const auto after = evaluate_contact<T>(input, run.engine.compact(u), traction, &states);
+    rest = 0;
+    bool settled = true;
+    for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+      const double gap = value(after.gap[p]);
+      const double trial = value(traction[model.points[p].multiplier]) + value(rho[p].normal) * gap;
+      const bool is_open = states[p] == ContactState::open;
+      rest = std::max(rest, -gap);
+      if (is_open ? -gap <= left * worst : trial <= 0) continue;
+      states[p] = is_open ? closed(p) : ContactState::open;
+      settled = false;
+    }
+    if (settled) break;
   }
-  return "";
+  if (rest <= left * worst) return "";
+  return name_of_point(model, run.slots, point) + " overlaps by " + short_number(worst) +
+         ", which no stiffness removes: supports or other contacts prescribe it, and the force is stiffness times "
+         "overlap";
 }
 
 }  // namespace detail

@@ -6,48 +6,104 @@
 namespace stickslip {
 namespace {
 
+constexpr long most_combinations = 4096;  // six points with friction
+
 /// A branch of a point; `sign` of t_T in slip.
 struct Branch {
   ContactState state = ContactState::open;
   double sign = 0;
 };
 
-std::vector<Branch> branches_of(const BranchProblem::Point& point) {
+std::vector<Branch> branches_of(const ContactProblem::Point& point) {
   if (point.tangential < 0) return {{ContactState::open, 0}, {ContactState::slip, 0}};
   return {{ContactState::open, 0}, {ContactState::stick, 0}, {ContactState::slip, -1}, {ContactState::slip, 1}};
 }
 
-/// The linear system of a combination.
+/// (I - P) g + P tau = g_f, and v = moved + lift (g - tau).
+struct Relation {
+  Matrix<double> of_g, of_tau;
+  Vector<double> free, moved;
+  Matrix<double> lift;
+};
+
+std::optional<Relation> relation(const ContactProblem& problem, double alpha, const Vector<double>& from) {
+  constexpr double singular = 1e-13;
+  const Matrix<double> BW = problem.directions * problem.weight.asDiagonal();
+  Matrix<double> K = problem.stiffness + BW * problem.directions.transpose();
+  Vector<double> f = problem.load - BW * problem.start;
+  if (alpha > 0) {
+    K.diagonal() += alpha * problem.damping;
+    f += alpha * problem.damping.cwiseProduct(from);
+  }
+  const Vector<double> scale = K.diagonal().cwiseMax(0).cwiseSqrt().cwiseInverse();
+  if (!scale.allFinite()) return std::nullopt;
+  const Eigen::LLT<Matrix<double>> factor(scale.asDiagonal() * K * scale.asDiagonal());
+  if (factor.info() != Eigen::Success || !(factor.rcond() > singular)) return std::nullopt;
+  const auto solve = [&](const Matrix<double>& b) -> Matrix<double> {
+    return scale.asDiagonal() * factor.solve(scale.asDiagonal() * b);
+  };
+  Relation r;
+  r.lift = solve(BW);
+  r.moved = solve(f);
+  r.of_tau = problem.directions.transpose() * r.lift;
+  r.of_g = Matrix<double>::Identity(r.of_tau.rows(), r.of_tau.cols()) - r.of_tau;
+  r.free = problem.start + problem.directions.transpose() * r.moved;
+  return r;
+}
+
+/// The linear system of a combination: its unknowns are g where a traction is given, tau elsewhere.
 struct System {
   Matrix<double> matrix;
   Vector<double> right;
 };
 
-System system_of(const BranchProblem& problem, const std::vector<Branch>& combination) {
-  const Eigen::Index n = problem.free.size();
-  System system{Matrix<double>::Identity(n, n), Vector<double>::Zero(n)};
+System system_of(const ContactProblem& problem, const Relation& r, const std::vector<Branch>& combination) {
+  System system{r.of_g, r.free};
   for (std::size_t p = 0; p < combination.size(); ++p) {
     const auto& point = problem.points[p];
     const auto& [state, sign] = combination[p];
     if (state == ContactState::open) continue;
-    system.matrix.row(point.normal) = problem.compliance.row(point.normal);
-    system.matrix(point.normal, point.normal) += point.yield_normal;
-    system.right[point.normal] = problem.free[point.normal];
-    if (point.tangential < 0) continue;
+    const int n = point.normal, t = point.tangential;
+    system.matrix.col(n) = r.of_tau.col(n) + point.yield_normal * r.of_g.col(n);
+    if (t < 0) continue;
     if (state == ContactState::slip) {
-      system.matrix(point.tangential, point.normal) = sign * point.friction;
-      continue;
+      system.matrix.col(n) -= sign * point.friction * r.of_tau.col(t);
+    } else {
+      system.matrix.col(t) = r.of_tau.col(t) + point.yield_tangential * r.of_g.col(t);
+      system.right += point.yield_tangential * point.stored * r.of_g.col(t);
     }
-    system.matrix.row(point.tangential) = problem.compliance.row(point.tangential);
-    system.matrix(point.tangential, point.tangential) += point.yield_tangential;
-    system.right[point.tangential] = problem.free[point.tangential] + point.yield_tangential * point.stored;
   }
   return system;
 }
 
+/// g and tau of a combination from the unknowns of its system.
+struct Outcome {
+  Vector<double> g, tau;
+};
+
+Outcome outcome_of(const ContactProblem& problem, const std::vector<Branch>& combination, const Vector<double>& x) {
+  Outcome out{x, Vector<double>::Zero(x.size())};
+  for (std::size_t p = 0; p < combination.size(); ++p) {
+    const auto& point = problem.points[p];
+    const auto& [state, sign] = combination[p];
+    if (state == ContactState::open) continue;
+    const int n = point.normal, t = point.tangential;
+    out.tau[n] = x[n];
+    out.g[n] = point.yield_normal * x[n];
+    if (t < 0) continue;
+    if (state == ContactState::slip) {
+      out.tau[t] = -sign * point.friction * x[n];
+    } else {
+      out.tau[t] = x[t];
+      out.g[t] = point.yield_tangential * (x[t] - point.stored);
+    }
+  }
+  return out;
+}
+
 /// Calls f(combination) for each combination of branches until it returns false.
 template <class F>
-void for_each_combination(const BranchProblem& problem, F&& f) {
+void for_each_combination(const ContactProblem& problem, F&& f) {
   std::vector<std::vector<Branch>> choices;
   for (const auto& point : problem.points) choices.push_back(branches_of(point));
   std::vector<std::size_t> digit(choices.size(), 0);
@@ -63,69 +119,133 @@ void for_each_combination(const BranchProblem& problem, F&& f) {
   }
 }
 
-/// Whether tractions of a combination satisfy what its branches presume, up to rounding.
-bool is_valid(const BranchProblem& problem, const std::vector<Branch>& combination, const Vector<double>& g,
-              const Vector<double>& t) {
-  constexpr double rounding = 1e-11;  // a dozen unknowns, condition numbers up to 1e4
-  const double length = rounding * std::max(g.cwiseAbs().maxCoeff(), problem.free.cwiseAbs().maxCoeff());
-  const double traction = rounding * t.cwiseAbs().maxCoeff();
+/// Whether an outcome satisfies what its branches presume, up to rounding: a share of what there is, and what the
+/// motion without tractions leaves of forces and gaps that are zero.
+bool is_valid(const ContactProblem& problem, const std::vector<Branch>& combination, const Outcome& at,
+              const Relation& r, double rounding) {
+  const double noise = 1e3 * unit_roundoff * r.moved.lpNorm<Eigen::Infinity>();
+  const double length = rounding * std::max(at.g.cwiseAbs().maxCoeff(), r.free.cwiseAbs().maxCoeff()) + noise;
+  const double traction = rounding * at.tau.cwiseAbs().maxCoeff() + noise;
   for (std::size_t p = 0; p < combination.size(); ++p) {
     const auto& point = problem.points[p];
     const auto& [state, sign] = combination[p];
-    const double normal = t[point.normal];
-    if (state == ContactState::open ? g[point.normal] < -length : normal > traction) return false;
+    const double normal = at.tau[point.normal];
+    if (state == ContactState::open ? at.g[point.normal] < -length : normal > traction) return false;
     if (state == ContactState::open || point.tangential < 0) continue;
-    const double tangential = t[point.tangential];
+    const double tangential = at.tau[point.tangential];
     if (state == ContactState::stick && std::abs(tangential) > -point.friction * normal + traction) return false;
-    const double plastic = g[point.tangential] - point.yield_tangential * (tangential - point.stored);
+    const double plastic = at.g[point.tangential] - point.yield_tangential * (tangential - point.stored);
     if (state == ContactState::slip && sign * plastic < -length) return false;
   }
   return true;
 }
 
+/// Whether a determinant is negative beyond rounding; two contacts on one node repeat one another, and leave some 1e-16
+/// of Hadamard's bound.
+bool is_reversed(const Matrix<double>& A) {
+  constexpr double rounding = 1e-12;
+  return A.determinant() < -rounding * A.colwise().norm().prod();
+}
+
 }  // namespace
 
-bool may_have_several(const BranchProblem& problem) {
-  constexpr double rounding = 1e-12;  // of Hadamard's bound: two contacts on one node repeat one another
+bool can_try_all_branches(const Model& model) {
+  long combinations = 1;
+  for (const auto& point : model.points) {
+    combinations *= point.tangents > 0 ? 4 : 2;
+    if (combinations > most_combinations) return false;
+  }
+  return model.dimension == 2 && model.effects.friction && !model.points.empty();
+}
+
+bool may_have_several(const ContactProblem& problem) {
+  const auto r = relation(problem, 0, {});
   bool found = false;
-  for_each_combination(problem, [&](const std::vector<Branch>& combination) {
-    const Matrix<double> A = system_of(problem, combination).matrix;
-    found = A.determinant() < -rounding * A.rowwise().norm().prod();
-    return !found;
-  });
+  if (r)
+    for_each_combination(problem, [&](const std::vector<Branch>& combination) {
+      found = is_reversed(system_of(problem, *r, combination).matrix);
+      return !found;
+    });
   return found;
 }
 
-std::vector<BranchSolution> all_solutions(const BranchProblem& problem) {
-  constexpr double same = 1e-9, singular = 1e-14;
+std::optional<std::vector<BranchSolution>> all_solutions(const ContactProblem& problem, double alpha,
+                                                         const Vector<double>& from, double rounding) {
+  constexpr double same = 1e-9, singular = 1e-13;
+  const auto r = relation(problem, alpha, from);
+  if (!r) return std::nullopt;
   std::vector<BranchSolution> solutions;
+  std::vector<Vector<double>> tractions;  // as lengths
   for_each_combination(problem, [&](const std::vector<Branch>& combination) {
-    const System system = system_of(problem, combination);
+    const System system = system_of(problem, *r, combination);
     const Eigen::PartialPivLU<Matrix<double>> lu(system.matrix);
     if (!(lu.rcond() > singular)) return true;
-    const Vector<double> t = lu.solve(system.right), g = problem.free - problem.compliance * t;
-    if (!t.allFinite() || !is_valid(problem, combination, g, t)) return true;
-    for (const auto& other : solutions) {
-      const double lengths = std::max({g.norm(), other.kinematics.norm(), problem.free.norm()});
-      const double tractions = std::max(t.norm(), other.traction.norm());
-      if ((g - other.kinematics).norm() <= same * lengths && (t - other.traction).norm() <= same * tractions)
+    const Outcome at = outcome_of(problem, combination, lu.solve(system.right));
+    if (!at.g.allFinite() || !is_valid(problem, combination, at, *r, rounding)) return true;
+    for (std::size_t k = 0; k < solutions.size(); ++k) {
+      const double length = std::max({at.g.norm(), solutions[k].kinematics.norm(), r->free.norm()});
+      const double traction = std::max(at.tau.norm(), tractions[k].norm());
+      if ((at.g - solutions[k].kinematics).norm() <= same * length && (at.tau - tractions[k]).norm() <= same * traction)
         return true;
     }
-    BranchSolution solution{{}, g, t};
+    BranchSolution solution;
     for (const auto& branch : combination) solution.state.push_back(branch.state);
+    solution.increment = r->moved + r->lift * (at.g - at.tau);
+    solution.kinematics = at.g;
+    solution.traction = at.tau.cwiseProduct(problem.weight).cwiseQuotient(problem.area);
+    solution.reversed = is_reversed(system.matrix);
+    tractions.push_back(at.tau);
     solutions.push_back(std::move(solution));
     return true;
   });
   return solutions;
 }
 
-bool can_try_all_branches(const Model& model) {
-  long combinations = 1;
-  for (const auto& point : model.points) {
-    combinations *= point.tangents > 0 ? 4 : 2;
-    if (combinations > BranchProblem::most_combinations) return false;
+bool has_repeated_constraints(const ContactProblem& problem) {
+  constexpr double singular = 1e-12;
+  const auto r = relation(problem, 0, {});
+  return !r || !(Eigen::PartialPivLU<Matrix<double>>(r->of_tau).rcond() > singular);
+}
+
+bool is_feasible(const ContactProblem& problem) {
+  ContactProblem smooth = problem;  // its solutions minimise a strictly convex energy where there is any motion at all
+  for (auto& point : smooth.points) point = {point.normal};
+  const auto solutions = all_solutions(smooth, 1, Vector<double>::Zero(problem.load.size()));
+  return !solutions || !solutions->empty();
+}
+
+std::optional<std::size_t> resting_solution(const ContactProblem& problem, const std::vector<BranchSolution>& all) {
+  constexpr double slower = 8, faster = 0.2, slowest = 1e9, fastest = 1e-15;
+  constexpr int most_steps = 300;
+  int moves = 0;
+  if (all.empty()) return std::nullopt;
+  if (all.size() == 1) return 0;
+  constexpr double rounding = 1e-9;  // of the largest solution
+  double reach = 0;
+  for (const auto& solution : all) reach = std::max(reach, solution.increment.norm());
+  Vector<double> v = Vector<double>::Zero(problem.load.size());
+  double alpha = 1, way = rounding * reach;
+  for (int step = 0; step < most_steps && alpha >= fastest && alpha <= slowest; ++step) {
+    const auto moved = all_solutions(problem, alpha, v);
+    const BranchSolution* next = nullptr;
+    double length = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; moved && k < moved->size(); ++k)
+      if (const double distance = ((*moved)[k].increment - v).norm(); distance < length) {
+        length = distance;
+        next = &(*moved)[k];
+      }
+    if (!next || (moves > 0 && length > way)) {  // it could as well belong to another branch
+      alpha *= slower;
+      continue;
+    }
+    ++moves;
+    way += length;
+    v = next->increment;
+    for (std::size_t k = 0; k < all.size(); ++k)
+      if (!all[k].reversed && all[k].state == next->state && (all[k].increment - v).norm() <= way) return k;
+    alpha *= faster;
   }
-  return model.dimension == 2 && model.effects.friction;
+  return std::nullopt;
 }
 
 bool exceeds_critical_friction(const Model& model, const Slots<double>& slots, const Matrix<double>& schur) {
@@ -137,100 +257,6 @@ bool exceeds_critical_friction(const Model& model, const Slots<double>& slots, c
     const Eigen::Vector2d n = geometry.normal, e = geometry.tangents.col(0);
     return slots.friction[point.contact] * std::abs(n.dot(own * e)) >= e.dot(own * e);
   });
-}
-
-std::optional<BranchProblem> branch_problem(const ContactInput<double>& input, const Vector<double>& displacement,
-                                            std::shared_ptr<Condensation<double>> condensation,
-                                            const Vector<double>* stored) {
-  const Model& model = input.model;
-  CondensedEngine<double> engine(model, input.slots, false, ConeRadius::augmented, condensation);
-  const Vector<double> u = engine.begin(input.time, displacement);
-  ForceScale unused;
-  const Vector<double> rows = engine.residual(u, Vector<double>::Zero(u.size()), unused);
-  const auto field =
-      evaluate_contact<double>(input, engine.compact(u), Vector<double>::Zero(model.multiplier_count), nullptr);
-  std::vector<Eigen::Index> free;
-  for (Eigen::Index i = 0; i < u.size(); ++i)
-    if (engine.is_free(i)) free.push_back(i);
-  BranchProblem problem;
-  Eigen::Index count = 0;
-  for (const auto& point : model.points) {
-    problem.points.push_back({static_cast<int>(count), point.tangents > 0 ? static_cast<int>(count + 1) : -1});
-    count += point.components();
-  }
-  Matrix<double> B = Matrix<double>::Zero(u.size(), count);  // columns: what a unit component does, in the frames
-  Vector<double> area(count);
-  problem.free.resize(count);
-  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
-    auto& at = problem.points[p];
-    const auto& point = model.points[p];
-    const auto& geometry = input.slots.geometry[p];
-    for (int c = 0; c < point.components(); ++c) {
-      Vector<double> column = Vector<double>::Zero(u.size());
-      const Vector<double> direction =
-          c == 0 ? Vector<double>(geometry.normal) : Vector<double>(geometry.tangents.col(0));
-      for (std::size_t n = 0; n < point.places.size(); ++n)
-        column.segment<2>(2 * point.places[n]) += geometry.weights[n] * direction;
-      B.col(at.normal + c) = into_frames(model, input.slots.frames, Layout::compact, std::move(column));
-      area[at.normal + c] = geometry.area;
-      problem.free[at.normal + c] = c == 0 ? field.gap[p] : field.slip[tangential_offset(model, p)];
-    }
-    at.friction = at.tangential < 0 ? 0 : input.slots.friction[point.contact];
-    if (!stored) continue;
-    at.yield_normal = 1 / input.rho[p].normal;
-    at.yield_tangential = 1 / input.rho[p].tangential;
-    at.stored = at.tangential < 0 ? 0 : (*stored)[point.multiplier + 1];
-  }
-  Matrix<double> stiffness(free.size(), free.size()), held(free.size(), count);
-  Vector<double> load(free.size());
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    for (std::size_t j = 0; j < free.size(); ++j) stiffness(i, j) = condensation->schur()(free[i], free[j]);
-    held.row(i) = B.row(free[i]);
-    load[i] = -rows[free[i]];
-  }
-  const Eigen::LLT<Matrix<double>> factor(stiffness);
-  if (factor.info() != Eigen::Success || !(factor.rcond() > 1e-13)) return std::nullopt;
-  const Matrix<double> lift = factor.solve(held) * area.asDiagonal();
-  const Vector<double> moved = factor.solve(load);
-  problem.compliance = held.transpose() * lift;
-  problem.free += held.transpose() * moved;
-  problem.unloaded = u;
-  problem.lift = Matrix<double>::Zero(u.size(), count);
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    problem.unloaded[free[i]] += moved[i];
-    problem.lift.row(free[i]) = lift.row(i);
-  }
-  return problem;
-}
-
-std::optional<std::vector<State<double>>> other_solutions(const ContactInput<double>& input,
-                                                          const Vector<double>& displacement,
-                                                          const State<double>& taken,
-                                                          std::shared_ptr<Condensation<double>> condensation,
-                                                          const Vector<double>* stored) {
-  constexpr double same = 1e-6;  // the taken one was found to a tolerance
-  const auto problem = branch_problem(input, displacement, condensation, stored);
-  if (!problem) return std::nullopt;
-  const Model& model = input.model;
-  CondensedEngine<double> engine(model, input.slots, false, ConeRadius::augmented, condensation);
-  engine.begin(input.time, displacement);
-  std::vector<State<double>> others;
-  for (const auto& solution : all_solutions(*problem)) {
-    State<double> other = taken;
-    const Vector<double> u = problem->unloaded - problem->lift * solution.traction;
-    other.displacement = engine.all(u);
-    other.multiplier = solution.traction;
-    other.contact = evaluate_contact<double>(input, engine.compact(u), solution.traction, &solution.state);
-    other.contact.traction = solution.traction;  // (laid out as multipliers are)
-    const double lengths =
-        std::max({largest_nodal_norm(other.displacement, 2), largest_nodal_norm(taken.displacement, 2),
-                  largest_nodal_norm(problem->unloaded, 2)});
-    const double tractions = std::max(solution.traction.norm(), taken.contact.traction.norm());
-    if (largest_nodal_norm(Vector<double>(other.displacement - taken.displacement), 2) > same * lengths ||
-        (solution.traction - taken.contact.traction).norm() > same * tractions)
-      others.push_back(std::move(other));
-  }
-  return others;
 }
 
 }  // namespace stickslip

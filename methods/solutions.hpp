@@ -1,13 +1,23 @@
-/// All solutions of one increment with few contact points, found by trying every branch of every point, in 2D.
+/// All solutions of one increment with few contact points, found by trying every branch of every point, in 2D, and
+/// which of them the bodies come to rest in.
 ///
-/// With the bodies condensed to the compliance H of the contact points (W times tributary areas) and what the
-/// regularisation yields, c = 1 / rho (0 where the constraint is exact), each combination of branches is a linear
-/// system for the tractions t, g = (g_N, dg_T) = g_0 - H t:
+/// With K the bodies' stiffness on the contact dofs, the columns of B what a unit of each component of w = (g_N, dg_T)
+/// does there, A the tributary areas and g_0 the components at a start, the increment v from there obeys
 ///
-///   open   t_N = t_T = 0                        valid where g_N >= 0
-///   closed g_N = c_N t_N                        valid where t_N <= 0
-///   stick  dg_T = c_T (t_T - lambda_T)          valid where |t_T| <= -mu t_N
-///   slip   t_T = -s mu t_N, s = -1 or 1         valid where s (dg_T - c_T (t_T - lambda_T)) >= 0
+///   K v + B A t = f,   g = g_0 + B^T v
+///
+/// Bodies may be free to move as a whole, so K + B W B^T is factorised (W: local stiffness of the points). It leaves a
+/// relation of g and of tractions as lengths, tau = A t / W:
+///
+///   (I - P) g + P tau = g_f,   P = B^T (K + B W B^T)^-1 B W
+///
+/// and each combination of branches a linear system for the rest, with the yield y of a regularised constraint (0 where
+/// it is exact) and the traction sigma it has stored:
+///
+///   open   tau_N = tau_T = 0                    valid where g_N >= 0
+///   closed g_N = y tau_N                        valid where tau_N <= 0
+///   stick  dg_T = y (tau_T - sigma)             valid where |tau_T| <= -mu tau_N
+///   slip   tau_T = -s mu tau_N, s = -1 or 1     valid where s (dg_T - y (tau_T - sigma)) >= 0
 ///
 /// If no combination has a negative determinant, the piecewise linear map is coherently oriented and the solution
 /// unique under every load: S. M. Robinson, Math. Oper. Res. 17 (1992) 691-714.
@@ -16,57 +26,141 @@
 #include <optional>
 
 #include "core/model/engine.hpp"
+#include "core/model/loading.hpp"
 
 namespace stickslip {
 
-/// The increment's problem on its contact points.
-struct BranchProblem {
-  /// Combinations that are tried at most: six points with friction.
-  static constexpr long most_combinations = 4096;
+/// An increment on its free contact dofs.
+struct ContactProblem {
   struct Point {
-    int normal = 0, tangential = -1;                ///< rows of H; tangential -1: without friction
+    int normal = 0, tangential = -1;                ///< components; tangential -1: without friction
     double friction = 0;                            ///< mu
-    double yield_normal = 0, yield_tangential = 0;  ///< c_N, c_T; length^3 per force
-    double stored = 0;                              ///< lambda_T; read where c_T > 0
+    double yield_normal = 0, yield_tangential = 0;  ///< y
+    double stored = 0;                              ///< sigma, length; read where y > 0
   };
   std::vector<Point> points;
-  Matrix<double> compliance;  ///< H, length^3 per force
-  Vector<double> free;        ///< g_0: gaps and slips without any traction
-  Vector<double> unloaded;    ///< engine dofs without any traction
-  Matrix<double> lift;        ///< and what each traction takes off them
+  std::vector<Eigen::Index> dofs;  ///< compact dofs that are free
+  Matrix<double> stiffness;        ///< K
+  Matrix<double> directions;       ///< B
+  Vector<double> load;             ///< f
+  Vector<double> start;            ///< g_0
+  Vector<double> weight, area;     ///< W and A, per component
+  Vector<double> damping;          ///< D of methods/motion.hpp
 };
 
-/// One solution: branches, and g and t in the rows of H.
+/// One solution: branches, increments of the free dofs, g and tractions t.
 struct BranchSolution {
   std::vector<ContactState> state;
-  Vector<double> kinematics, traction;
+  Vector<double> increment, kinematics, traction;
+  bool reversed = false;  ///< its combination has a negative determinant
 };
 
-/// Whether some combination has a negative determinant: under some loads there are several solutions then.
-bool may_have_several(const BranchProblem& problem);
-
-/// All solutions; those whose tractions differ by less than 1e-9 of the largest are one.
-std::vector<BranchSolution> all_solutions(const BranchProblem& problem);
-
-/// Solutions of an increment other than the one in `taken`, as states; nothing where not all can be tried. The problem
-/// is branch_problem's, with its arguments.
-std::optional<std::vector<State<double>>> other_solutions(const ContactInput<double>& input,
-                                                          const Vector<double>& displacement,
-                                                          const State<double>& taken,
-                                                          std::shared_ptr<Condensation<double>> condensation,
-                                                          const Vector<double>* stored);
-
-/// Whether a model has few enough points for it, in 2D, and friction.
+/// Whether a model has few enough points for it (4096 combinations), in 2D, and friction.
 bool can_try_all_branches(const Model& model);
+
+/// Whether some combination has a negative determinant: under some loads there are several solutions then. False where
+/// bodies can move although all points stick.
+bool may_have_several(const ContactProblem& problem);
+
+/// All solutions; those whose tractions differ by less than 1e-9 of the largest are one. Nothing where bodies can move
+/// although all points stick. With `alpha`: of the problem with alpha D (v - from) among its forces.
+/// `rounding`: share of lengths and of tractions by which a branch may be missed.
+inline constexpr double rounding_of_branches = 1e-11;  // a dozen unknowns, condition numbers up to 1e4
+std::optional<std::vector<BranchSolution>> all_solutions(const ContactProblem& problem, double alpha = 0,
+                                                         const Vector<double>& from = {},
+                                                         double rounding = rounding_of_branches);
+
+/// Whether constraints repeat one another, as those of two contacts on one node do: where they hold together tractions
+/// are not unique, and such solutions are not among all_solutions().
+bool has_repeated_constraints(const ContactProblem& problem);
+
+/// Whether some motion of the bodies violates no constraint.
+bool is_feasible(const ContactProblem& problem);
+
+/// Which of all solutions is taken: that in whose branches the overdamped motion from the start comes to rest, each
+/// step of it the solution nearest to the last (methods/motion.hpp). Its index; nothing where the motion comes to no
+/// rest.
+std::optional<std::size_t> resting_solution(const ContactProblem& problem, const std::vector<BranchSolution>& all);
 
 /// Whether mu of some point reaches k_t / |k_nt|, its slave node's stiffness with all other contact nodes held
 /// (`schur`: of the bodies on the contact dofs): in slip its tangent would have the other sign.
 bool exceeds_critical_friction(const Model& model, const Slots<double>& slots, const Matrix<double>& schur);
 
-/// The problem of an increment that starts from `displacement` (all dofs). `stored`: tractions of the penalty's
-/// history; nullptr: exact constraints, of which rho is no part. Nothing where the bodies can move as a whole.
-std::optional<BranchProblem> branch_problem(const ContactInput<double>& input, const Vector<double>& displacement,
-                                            std::shared_ptr<Condensation<double>> condensation,
-                                            const Vector<double>* stored);
+/// D of the contact nodes, force per length: the largest local stiffness of the points that a node belongs to.
+template <class T>
+Vector<double> damping(const Model& model, const Slots<T>& slots) {
+  Vector<double> stiffness = Vector<double>::Zero(static_cast<Eigen::Index>(model.contact_nodes.size()));
+  for (std::size_t p = 0; p < model.points.size(); ++p)
+    for (int place : model.points[p].places) stiffness[place] = std::max(stiffness[place], value(slots.stiffness[p]));
+  return stiffness;
+}
+
+/// An increment that starts from the displacements `from` (all dofs), whose loads and prescribed motions `engine` has
+/// begun: `u` is what its begin() returned. `stored`: tractions of the penalty's history; nullptr: exact constraints,
+/// of which rho is no part.
+template <class T>
+ContactProblem contact_problem(const ContactInput<T>& input, const CondensedEngine<T>& engine, const Vector<T>& u,
+                               const Matrix<T>& schur, const Vector<T>* stored) {
+  const Model& model = input.model;
+  ContactProblem problem;
+  for (Eigen::Index i = 0; i < u.size(); ++i)
+    if (engine.is_free(i)) problem.dofs.push_back(i);
+  ForceScale unused;
+  const Vector<double> rows = values(engine.residual(u, Vector<T>::Constant(u.size(), T(0)), unused));
+  const auto field =
+      evaluate_contact<T>(input, engine.compact(u), Vector<T>::Constant(model.multiplier_count, T(0)), nullptr);
+  Matrix<double> directions = Matrix<double>::Zero(u.size(), model.multiplier_count);
+  for (auto* v : {&problem.start, &problem.weight, &problem.area}) v->resize(model.multiplier_count);
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    const auto& point = model.points[p];
+    const auto& geometry = input.slots.geometry[p];
+    for (int c = 0; c < point.components(); ++c) {
+      Vector<T> column = Vector<T>::Constant(u.size(), T(0));
+      const Vector<T> direction = c == 0 ? Vector<T>(geometry.normal) : Vector<T>(geometry.tangents.col(0));
+      for (std::size_t n = 0; n < point.places.size(); ++n)
+        column.template segment<2>(2 * point.places[n]) += geometry.weights[n] * direction;
+      const int k = point.multiplier + c;
+      directions.col(k) = values(into_frames(model, input.slots.frames, Layout::compact, std::move(column)));
+      problem.weight[k] = value(input.slots.stiffness[p]);
+      problem.area[k] = value(geometry.area);
+      problem.start[k] = value(c == 0 ? field.gap[p] : field.slip[tangential_offset(model, p)]);
+    }
+    ContactProblem::Point at{point.multiplier, point.tangents > 0 ? point.multiplier + 1 : -1};
+    if (point.tangents > 0) at.friction = value(input.slots.friction[point.contact]);
+    if (stored) {
+      const double local = value(input.slots.stiffness[p]) / value(geometry.area);
+      at.yield_normal = local / value(input.rho[p].normal);
+      at.yield_tangential = local / value(input.rho[p].tangential);
+      if (point.tangents > 0) at.stored = value((*stored)[point.multiplier + 1]) / local;
+    }
+    problem.points.push_back(at);
+  }
+  const Vector<double> D = damping(model, input.slots);
+  const auto free = static_cast<Eigen::Index>(problem.dofs.size());
+  problem.stiffness.resize(free, free);
+  problem.directions.resize(free, model.multiplier_count);
+  problem.load.resize(free);
+  problem.damping.resize(free);
+  for (Eigen::Index i = 0; i < free; ++i) {
+    for (Eigen::Index j = 0; j < free; ++j) problem.stiffness(i, j) = value(schur(problem.dofs[i], problem.dofs[j]));
+    problem.directions.row(i) = directions.row(problem.dofs[i]);
+    problem.load[i] = -rows[problem.dofs[i]];
+    problem.damping[i] = D[problem.dofs[i] / model.dimension];
+  }
+  return problem;
+}
+
+/// A solution as a state, apart from its dissipation; `u` as above.
+template <class T>
+State<T> as_state(const ContactInput<T>& input, CondensedEngine<T>& engine, Vector<T> u, const ContactProblem& problem,
+                  const BranchSolution& solution) {
+  for (std::size_t i = 0; i < problem.dofs.size(); ++i) u[problem.dofs[i]] += T(solution.increment[i]);
+  State<T> state;
+  state.displacement = engine.all(u);
+  state.multiplier = solution.traction.template cast<T>();
+  state.contact = evaluate_contact<T>(input, engine.compact(u), state.multiplier, &solution.state);
+  state.contact.traction = state.multiplier;
+  return state;
+}
 
 }  // namespace stickslip

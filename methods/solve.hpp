@@ -6,6 +6,7 @@
 #include <cassert>
 #include <functional>
 
+#include "core/model/engine_price.hpp"
 #include "methods/diagnosis.hpp"
 #include "methods/motion.hpp"
 
@@ -33,32 +34,27 @@ namespace detail {
 
 /// Looks for all solutions of an increment that was solved, where there may be several and points are few.
 template <class T, class E, class M>
-void count_solutions(const M& method, const Run<T, E>& run, Workspace<T>& workspace, const State<T>& previous,
-                     double time, Increment<T>& increment) {
-  if constexpr (std::is_same_v<T, double>) {
-    if (!(run.several || increment.reversed) || !can_try_all_branches(run.model)) return;
-    auto condensation = workspace.condensation;
-    if (!condensation) condensation = std::make_shared<Condensation<double>>(run.model, run.slots, Backend::automatic);
-    if (!condensation->valid()) return;
-    const auto rho = adapted(initial_regularisation(run.slots, method), increment.rho_factor);
-    const ContactInput<double> input{run.model, run.slots, rho, previous.contact.placement, ConeRadius::augmented,
-                                     time};
-    const auto stored = stored_traction(run.model, previous);
-    auto others = other_solutions(input, previous.displacement, increment.state, condensation,
-                                  prevents_penetration(method) ? nullptr : &stored);
-    increment.counted = others.has_value();
-    if (others) increment.others = std::move(*others);
+void count_solutions(const M& method, Run<T, E>& run, const State<T>& previous, double time, Increment<T>& increment) {
+  if (!run.several && !increment.reversed) return;
+  auto all = try_all_branches(method, run, previous, increment.rho_factor, time);
+  increment.counted = all.has_value();
+  if (!all) return;
+  for (auto& state : all->states) {
+    if (same_solution(run.model, state, increment.state, all->motion)) continue;
+    state.dissipation = increment.state.dissipation;
+    increment.others.push_back(std::move(state));
   }
 }
 
 /// Where the branch of solutions that leads to an increment's solution ends and this jumps: the end of the thousandth
-/// of the increment in which at least a quarter of its motion falls. It is looked for where solutions were counted, and
-/// there were several at either end or a tangent on the way had the other sign of its determinant.
+/// of the increment in which at least a quarter of its motion falls, but not the first of a run. It is looked for where
+/// solutions were counted, and there were several at either end or a tangent on the way had the other sign of its
+/// determinant.
 template <class T, class E, class M>
 std::optional<double> find_jump(const M& method, Run<T, E>& run, const State<T>& previous,
                                 const std::vector<double>& factor, double start, double end, const State<T>& reached) {
   constexpr int halvings = 10;
-  constexpr double much = 0.25;
+  constexpr double much = 0.25, nothing = 1e-9;
   const auto moved = [&](const State<T>& from, const State<T>& to) {
     return largest_nodal_norm(Vector<T>(to.displacement - from.displacement), run.model.dimension);
   };
@@ -82,14 +78,14 @@ std::optional<double> find_jump(const M& method, Run<T, E>& run, const State<T>&
   run.account.scales = scales;
   run.account.trace = trace;
   const double all = moved(previous, reached);
-  if (!solved || all == 0 || moved(before, after) < much * all) return std::nullopt;
+  if (start == 0) return std::nullopt;  // what is applied at once moves bodies at once
+  if (!solved || all <= nothing * scales.length || moved(before, after) < much * all) return std::nullopt;
   return end;
 }
 
 /// Advances the trajectory to `target`; false where it gave up (the failed increment is then the last).
 template <class T, class E, class M>
-bool advance(const M& method, Run<T, E>& run, Workspace<T>& workspace, Trajectory<T>& trajectory, double target,
-             bool may_cut) {
+bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double target, bool may_cut) {
   constexpr double smallest = 1.0 / 1024, regrowth = 1.5;
   const std::size_t start_count = trajectory.increments.size();
   const double start = start_count ? trajectory.increments.back().time : 0;
@@ -112,7 +108,7 @@ bool advance(const M& method, Run<T, E>& run, Workspace<T>& workspace, Trajector
       increment.message = "the displacements are not finite";
     }
     if (increment.usable()) {
-      count_solutions(method, run, workspace, previous, next, increment);
+      count_solutions(method, run, previous, next, increment);
       const bool folded = increment.reversed || !increment.others.empty() ||
                           (!trajectory.increments.empty() && !trajectory.increments.back().others.empty());
       if (increment.counted && folded)
@@ -123,12 +119,14 @@ bool advance(const M& method, Run<T, E>& run, Workspace<T>& workspace, Trajector
       if (++easy >= 3) step *= regrowth;
       continue;
     }
-    const bool impossible = increment.status == Status::no_equilibrium ||
-                            (increment.status == Status::infeasible && !prevents_penetration(method));
+    const bool impossible = increment.status == Status::no_equilibrium
+                                ? unbalanced_body(run.model, run.slots, next) != balanced
+                                : increment.status == Status::infeasible && !prevents_penetration(method);
     if (!failed) failed = std::move(increment);
     easy = 0;
     step = (next - reached) / 2;
-    if (!may_cut || impossible || step < smallest * (target - start)) break;
+    const bool vanishes = !(reached + step > reached && reached + step < next);  // between neighbouring numbers
+    if (!may_cut || impossible || vanishes || step < smallest * (target - start)) break;
     ++cutbacks;
     ++run.account.counters.cutbacks;
   }
@@ -145,22 +143,22 @@ bool advance(const M& method, Run<T, E>& run, Workspace<T>& workspace, Trajector
 /// between surfaces; of few points, some combination of branches has a negative determinant; of many, a point could
 /// jump on its own, as mu exceeds k_t / |k_nt| of its stiffness with all others held.
 template <class T, class E>
-bool may_have_several(const Run<T, E>& run, Workspace<T>& workspace) {
+bool may_have_several(Run<T, E>& run) {
   const Model& model = run.model;
   if (!model.effects.friction) return false;
   if (is_wedged(model, run.slots)) return true;
   if constexpr (std::is_same_v<T, double>) {
-    auto condensation = workspace.condensation;
-    if (can_try_all_branches(model)) {
-      if (!condensation) condensation = std::make_shared<Condensation<double>>(model, run.slots, Backend::automatic);
-      if (!condensation->valid()) return false;
-      const RegularisationField<double> rho(model.points.size(), {1, 1});
-      const auto start = initial_state<double>(model);
-      const ContactInput<double> input{model, run.slots, rho, start.contact.placement};
-      const auto problem = branch_problem(input, start.displacement, condensation, nullptr);
-      return problem && may_have_several(*problem);
-    }
-    return condensation && exceeds_critical_friction(model, run.slots, condensation->schur());
+    if (!can_try_all_branches(model))
+      return run.condensation && exceeds_critical_friction(model, run.slots, run.condensation->schur());
+    if (!run.condensation)
+      run.condensation = std::make_shared<Condensation<double>>(model, run.slots, Backend::automatic);
+    if (!run.condensation->valid()) return false;
+    const RegularisationField<double> rho(model.points.size(), {1, 1});
+    const auto start = initial_state<double>(model);
+    CondensedEngine<double> engine(model, run.slots, false, ConeRadius::augmented, run.condensation);
+    const ContactInput<double> input{model, run.slots, rho, start.contact.placement};
+    const auto u = engine.begin(0, start.displacement);
+    return may_have_several(contact_problem<double>(input, engine, u, run.condensation->schur(), nullptr));
   }
   return false;
 }
@@ -168,14 +166,14 @@ bool may_have_several(const Run<T, E>& run, Workspace<T>& workspace) {
 template <class T, class E, class M>
 void march(const M& method, const Model& model, const Slots<T>& slots, E& engine, const RunOptions& options,
            Workspace<T>& workspace, Trajectory<T>& trajectory) {
-  Run<T, E> run{model, slots, engine, {}};
-  run.several = may_have_several(run, workspace);
+  Run<T, E> run{model, slots, engine, {}, false, workspace.condensation};
+  run.several = may_have_several(run);
   run.account.trace = options.trace;
   trajectory.initial = initial_state<T>(model);
   const auto& times = options.replay.empty() ? model.times : options.replay;
   for (double time : times) {
     const std::size_t before = trajectory.increments.size();
-    const bool reached = advance(method, run, workspace, trajectory, time, options.replay.empty());
+    const bool reached = advance(method, run, trajectory, time, options.replay.empty());
     for (std::size_t n = before; n < trajectory.increments.size(); ++n) {  // the first that is not plainly converged
       const auto& increment = trajectory.increments[n];
       if (increment.status == Status::converged || (trajectory.status != Status::converged && reached)) continue;
@@ -196,26 +194,29 @@ void march(const M& method, const Model& model, const Slots<T>& slots, E& engine
   trajectory.reduced_unknowns = engine.unknowns();
 }
 
-/// Whether the condensed engine is the cheaper one: the dense factor of the contact dofs against a sparse one of all
-/// (about 30 n^1.5 operations in 2D, at a third of the dense rate).
-inline bool condensed_pays(const Model& model) {
-  const double dense = std::pow(double(model.contact_nodes.size()) * model.dimension + model.multiplier_count, 3) / 1.5;
-  const double sparse = 100 * std::pow(double(model.free_dofs.size()), 1.5);
-  return dense < sparse || model.free_dofs.size() < 200;
-}
-
 }  // namespace detail
 
-/// Builds the engine a run asks for: condensed where the bodies are linear and it pays (or it is demanded).
+/// Price of a run by each engine.
+inline EnginePrice predict_price(const Model& model, const Method& method) {
+  const bool unknown = std::holds_alternative<MonolithicAL>(method);
+  const ConeRadius cone = std::visit([](const auto& m) { return cone_radius(m); }, method);
+  return predict_price(model, unknown, detail::symmetry_of(model, unknown, cone));
+}
+
+/// Whether a run condenses the bodies: where it is asked to, else where that is cheaper.
+inline bool condenses(const Model& model, const Method& method, LinearAlgebra::Engine engine) {
+  if (engine != LinearAlgebra::Engine::automatic) return engine == LinearAlgebra::Engine::condensed;
+  return prefers_condensed(model, predict_price(model, method));
+}
+
+/// Builds the engine a run asks for.
 template <class T>
 void make_engine(const Model& model, const Slots<T>& slots, const Method& method, const RunOptions& options,
                  Workspace<T>& workspace) {
   const bool unknown_multipliers = std::holds_alternative<MonolithicAL>(method);
   const ConeRadius cone = std::visit([](const auto& m) { return cone_radius(m); }, method);
-  using Kind = LinearAlgebra::Engine;
-  const Kind kind = options.linear_algebra.engine;
   auto& condensation = workspace.condensation;
-  if (kind == Kind::condensed || (kind == Kind::automatic && detail::condensed_pays(model))) {
+  if (condenses(model, method, options.linear_algebra.engine)) {
     if (!condensation) condensation = std::make_shared<Condensation<T>>(model, slots, options.backend);
     if (condensation->valid()) {
       workspace.engine.emplace(std::in_place_type<CondensedEngine<T>>, model, slots, unknown_multipliers, cone,

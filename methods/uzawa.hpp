@@ -82,6 +82,9 @@ inline NewtonOptions inner_options(const UzawaAL& method, double contraction) {
   return inner;
 }
 
+/// Augmentations in a row that change nothing but states: points at a tie go to and fro for ever.
+inline constexpr int patience_at_ties = 4;
+
 inline constexpr const char* frozen_advice =
     ", as a frozen cone does where the friction coefficient exceeds the slope of the load path; use the augmented cone";
 
@@ -89,6 +92,7 @@ inline constexpr const char* frozen_advice =
 struct Standing {
   Status status = Status::converged;
   bool done = false;
+  bool within = false;  ///< update and violation are within the tolerance, whatever the states do
   std::string message;
   double negligible = 0;  ///< a violation that counts as none: that of the tolerance, or of rounding
 };
@@ -106,9 +110,11 @@ Standing judge(const UzawaAL& method, const Slots<T>& slots, const Regularisatio
   const bool small = progress.error_left() <= method.tolerance * scales.traction;
   // where nothing falls any more, rounding may have met the condition of a stiff body on a soft one
   const bool at_roundoff = (progress.stalled() && progress.violation() <= gap && progress.update() <= traction) ||
-                           (progress.exhausted() && progress.violation() <= 1e3 * gap);
+                           (progress.exhausted() && progress.violation() <= 1e3 * gap) ||
+                           (progress.exhausted() && progress.converges() && progress.violation() <= violation);
   Standing now;
   now.negligible = std::max(violation, gap);
+  now.within = small && progress.violation() <= now.negligible;
   auto end = [&](Status status, std::string message = "") {
     now.status = status;
     now.done = true;
@@ -156,6 +162,7 @@ Increment<T> solve_increment(const UzawaAL& options, Run<T, E>& run, const State
   Accelerator<T> accelerator(method.acceleration);
   const auto cones = [&](Vector<T> x) { return detail::into_cones(model, run.slots, std::move(x)); };
   bool rough = !truncated;  // whether the next inner solve may end short of its tolerance
+  int within = 0;           // augmentations in a row that were
   while (true) {
     rough &= increment.augmentations + 1 < limit;
     const auto rho = adapted(initial, increment.rho_factor);
@@ -179,7 +186,10 @@ Increment<T> solve_increment(const UzawaAL& options, Run<T, E>& run, const State
     const double first = equilibrium.history.front().residual, rest = equilibrium.history.back().residual;
     progress.record(lambda, equilibrium.field, reach, first > 0 ? rest / first : 0);
     increment.contraction = progress.contraction();
-    const auto now = detail::judge(method, run.slots, rho, reach, run.account.scales, progress);
+    auto now = detail::judge(method, run.slots, rho, reach, run.account.scales, progress);
+    within = now.within && !equilibrium.rough ? within + 1 : 0;
+    rough &= !now.within;
+    now.done |= within >= detail::patience_at_ties;  // the states that still change are those of a tie
     const bool at_limit = increment.augmentations >= limit;
     detail::conclude(now, at_limit, increment);
     const bool over = now.done && !equilibrium.rough;

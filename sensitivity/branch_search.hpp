@@ -60,7 +60,20 @@ class BranchSearch {
   /// Leaves the derivative with the branches that it confirms in the block, and them in `at`.
   bool run() {
     if (weak_.empty()) return differentiate_increment(method_, problem_, previous_, increment_);
-    return by_flipping() || by_enumeration() || at_rounding();
+    const auto found = at_.contact;
+    if (by_flipping()) return true;
+    if (!unsettled_) {
+      at_.contact = found;
+      hold();
+      if (by_flipping() || by_enumeration()) return true;
+    }
+    return at_rounding();
+  }
+
+  /// Takes the branch of each weak point that holds most: a body that only friction or a contact about to open holds
+  /// has a regular tangent then.
+  void hold() {
+    for (const auto& w : weak_) take_branch(problem_.model, w.point, branches_of(problem_.model, w).front(), at_);
   }
 
  private:
@@ -71,7 +84,11 @@ class BranchSearch {
   };
 
   std::optional<Standing> differentiate() {
-    if (!differentiate_increment(method_, problem_, previous_, increment_)) return std::nullopt;
+    problem_.status = Status::singular;
+    if (!differentiate_increment(method_, problem_, previous_, increment_)) {
+      unsettled_ |= problem_.status == Status::cap;
+      return std::nullopt;
+    }
     Standing standing;
     for (const auto& w : weak_) {
       auto verdict =
@@ -130,7 +147,7 @@ class BranchSearch {
       count *= of_point.back().size();
       if (count > most) return false;
     }
-    for (std::size_t choice = 0; choice < count; ++choice) {
+    for (std::size_t choice = 0; choice < count && !unsettled_; ++choice) {
       std::size_t rest = choice;
       for (std::size_t k = 0; k < weak_.size(); ++k) {
         take_branch(problem_.model, weak_[k].point, of_point[k][rest % of_point[k].size()], at_);
@@ -163,15 +180,22 @@ class BranchSearch {
   double least_ = std::numeric_limits<double>::infinity();  ///< least_, best_: of the choices tried, the one
                                                             ///< that was contradicted least
   ContactField<double> best_;
+  bool unsettled_ = false;  ///< a scheme's passes did not settle: all that it takes, for each choice again
 };
 
 /// Differentiates one increment along one direction; its branches at ties become those that are confirmed. False where
-/// none are.
+/// none are; with `held` they become those that hold most then, and the derivative is theirs.
 template <class M, class E>
 bool differentiate_side(const M& method, Differentiation<E>& problem, const State<double>& previous,
-                        Increment<double>& increment, const Along& along) {
-  if (!detail::is_truncated(method))
-    return BranchSearch(method, problem, previous, increment, increment.state, increment.rho_factor, along).run();
+                        Increment<double>& increment, const Along& along, bool held = false) {
+  const auto search = [&](const Increment<double>& of, State<double>& at, const std::vector<double>& factor) {
+    BranchSearch branches(method, problem, previous, of, at, factor, along);
+    if (branches.run()) return true;
+    if (!held) return false;
+    branches.hold();
+    return differentiate_increment(method, problem, previous, of);
+  };
+  if (!detail::is_truncated(method)) return search(increment, increment.state, increment.rho_factor);
   // each augmentation starts from the derivative that the one before left
   auto& block = problem.blocks[0];
   const State<Direction> start = block.previous;
@@ -181,7 +205,7 @@ bool differentiate_side(const M& method, Differentiation<E>& problem, const Stat
     alone.time = increment.time;
     alone.sweeps = {sweep};
     auto& only = alone.sweeps[0];
-    found = BranchSearch(method, problem, previous, alone, only.state, only.rho_factor, along).run();
+    found = search(alone, only.state, only.rho_factor);
     if (!found) break;
     sweep = std::move(only);
     block.previous.contact.traction = block.current.contact.traction;

@@ -96,7 +96,7 @@ std::vector<WeakPoint> weak_points(const Model& model, const Slots<double>& slot
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     const auto& point = model.points[p];
     const double elastic = elastic_traction(slots, p);
-    const double negligible = std::max(weak_margin * largest, elastic * point.tie_length);
+    const double negligible = std::max(weak_margin * largest, elastic * tie_length(point, slots.geometry[p]));
     const Vector<double> z = trial(model, state, rho[p], p);
     const double tangential = z.tail(point.tangents).norm();
     const bool open = state.contact.state[p] == ContactState::open;
@@ -112,8 +112,11 @@ std::vector<WeakPoint> weak_points(const Model& model, const Slots<double>& slot
       if (at_apex) weak.push_back({p, Tie::line});
       continue;
     }
-    const double excess = tangential - bound, share = excess > 0 ? elastic / rho[p].tangential : -1;
-    if (share * excess <= weak_margin * bound) weak.push_back({p, Tie::slips});
+    const double excess = tangential - bound;
+    // of a small rho, (|z_T| - bound) / rho is rounding long before the slip itself is
+    const double slip = state.contact.slip.segment(tangential_offset(model, p), point.tangents).norm();
+    const double beyond = elastic * std::min(excess / rho[p].tangential, slip), inside = -excess;
+    if ((excess > 0 ? beyond : inside) <= weak_margin * bound) weak.push_back({p, Tie::slips});
   }
   return weak;
 }

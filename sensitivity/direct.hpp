@@ -242,7 +242,7 @@ typename LinearisedEquilibrium<E>::Rows LinearisedEquilibrium<E>::evaluate(
 template <class E>
 void LinearisedEquilibrium<E>::settle(const std::vector<ContactField<Direction>>& fields,
                                       const std::vector<Vector<Direction>>& lambda) {
-  const Matrix<double> all = problem_.engine.expand(increment_, -bulk_);
+  const Matrix<double> all = problem_.engine.expand(increment_, -bulk_, -reduced_);
   for (std::size_t b = 0; b < problem_.blocks.size(); ++b) {
     auto& block = problem_.blocks[b];
     block.current.displacement = u_[b];

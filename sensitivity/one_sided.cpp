@@ -20,7 +20,10 @@ Margins margins_of(const Model& model, const Slots<double>& slots, const State<d
   const double elastic = slots.stiffness[p] / slots.geometry[p].area;
   const bool open = contact.state[p] == ContactState::open;
   const double distance = open ? elastic * contact.gap[p] : pressure;
-  Margins margin{largest > 0 ? distance / largest : distance <= elastic * point.tie_length ? 0 : none, none};
+  Margins margin{largest > 0                                                  ? distance / largest
+                 : distance <= elastic * tie_length(point, slots.geometry[p]) ? 0
+                                                                              : none,
+                 none};
   const double bound = slots.friction[point.contact] * pressure;
   if (open || point.tangents == 0 || !(bound > 0)) return margin;
   const double reach = contact.state[p] == ContactState::stick
@@ -99,15 +102,15 @@ struct SideRun {
   }
 
   /// Increments first .. last - 1; `on_increment(n, increment)` after each, with the derivative in blocks[0].current
-  /// and the branches taken in increment. False where one was not found.
+  /// and the branches taken in increment. False where one was not found (`held`: differentiate_side).
   template <class F>
-  bool run(std::size_t first, std::size_t last, double side, F&& on_increment) {
+  bool run(std::size_t first, std::size_t last, double side, F&& on_increment, bool held = false) {
     Differentiation<E> problem{model, slots, engine, blocks, 1, {}};
     bool found = true;
     for (std::size_t n = first; n < last && found; ++n) {
       Increment<double> increment = trajectory.increments[n];
       const State<double>& previous = n == 0 ? trajectory.initial : trajectory.increments[n - 1].state;
-      found = differentiate_side(method, problem, previous, increment, {side, parameter, scales[n]});
+      found = differentiate_side(method, problem, previous, increment, {side, parameter, scales[n]}, held);
       if (!found) break;
       on_increment(n, increment);
       std::swap(blocks[0].previous, blocks[0].current);
@@ -233,10 +236,11 @@ std::optional<Trajectory<double>> consistent_at_ties(const Model& model, const S
   Trajectory<double> consistent = trajectory;
   auto search = [&](const auto& m, auto& engine) {
     SideRun run(m, model, slots, engine, trajectory, make_slots<Direction>(model, all_growing(model.scene)), 1);
-    run.run(0, trajectory.increments.size(), 1, [&](std::size_t n, Increment<double>& increment) {
+    const auto take = [&](std::size_t n, Increment<double>& increment) {
       consistent.increments[n].state.contact = increment.state.contact;
       consistent.increments[n].sweeps = std::move(increment.sweeps);
-    });
+    };
+    run.run(0, trajectory.increments.size(), 1, take, true);
     counters += run.counters;
   };
   std::visit([&](const auto& m) { std::visit([&](auto& engine) { search(m, engine); }, *workspace.engine); }, method);

@@ -68,7 +68,7 @@ class RecordedEquilibrium {
   /// Largest derivative by a nodal force, of those that were added up on the way.
   double force_weight(int objective) const {
     const auto largest = [](const auto& m) { return m.size() ? m.cwiseAbs().maxCoeff() : 0.0; };
-    return std::max(largest(weights_[objective]), largest(aside_[objective].u));
+    return std::max(largest(weights_[objective]), largest(aside_[objective].solution.u));
   }
   /// All that an objective has gathered so far, to go back to it.
   struct Gathered;
@@ -84,9 +84,13 @@ class RecordedEquilibrium {
   Vector<double> pull_back(int objective);
   void pull_back_bodies(int objective, const Vector<double>& weight);
   void clear_free(int objective);
+  /// An increment in engine layout that -c belongs to: c over all dofs, in the frames, and in engine rows.
+  struct Solution {
+    Matrix<double> u, c, reduced;
+  };
   template <class Which>
-  void seed_rows(int objective, const Matrix<double>& u, const Matrix<double>& c, Which&& which);
-  void put_aside(int objective, const Matrix<double>& u, const Matrix<double>& c);
+  void seed_rows(int objective, const Solution& solution, Which&& which);
+  void put_aside(int objective, const Solution& solution);
   std::vector<double>& by(int objective) { return problem_.objectives[objective].by; }
   Vector<double> gather(int objective, const Vector<Reverse>& at);
   static void seed(std::vector<double>& by, const Vector<Reverse>& at, const Vector<double>& derivative) {
@@ -106,7 +110,7 @@ class RecordedEquilibrium {
   std::vector<Vector<double>> weights_;     ///< per objective: a, gathered
   struct Aside {
     Vector<double> bodies;  ///< weights of the bodies' forces, still to be moved to what is prescribed
-    Matrix<double> u, c;    ///< solutions, engine layout, and their right-hand sides
+    Solution solution;
   };
   std::vector<Aside> aside_;  ///< per objective, where lambda is given
 };
@@ -137,7 +141,7 @@ RecordedEquilibrium<E>::RecordedEquilibrium(AdjointProblem<E>& problem, const St
     objective.by.resize(problem.slots_end);
     objective.by.resize(problem.tape.size(), 0);
     weights_.push_back(Vector<double>::Zero(model.dof_count()));
-    aside_.push_back({weights_.back(), {}, {}});
+    aside_.push_back({weights_.back(), {}});
   }
 }
 
@@ -233,40 +237,43 @@ void RecordedEquilibrium<E>::balance(int objective) {
     for (int dof : model.free_dofs) size = std::max(size, std::abs(c(dof, 0)));
     if (pass == 0) first = size;
     if (size == 0 || (pass > 0 && !redundant_ && size <= 1e-13 * first)) return;
-    const auto a = problem_.engine.solve({-problem_.engine.reduce(c), -l}, true);
+    const Matrix<double> reduced = problem_.engine.reduce(c);
+    const auto a = problem_.engine.solve({-reduced, -l}, true);
     ++problem_.counters.sensitivity_backsolves;
-    if (!unknown_) return put_aside(objective, a.u, c);
-    seed_rows(objective, a.u, c, [](int) { return true; });
+    if (!unknown_) return put_aside(objective, {a.u, c, reduced});
+    seed_rows(objective, {a.u, c, reduced}, [](int) { return true; });
     seed(by(objective), multiplier_rows_, a.l);
     pull_back_bodies(objective, pull_back(objective));
   }
 }
 
-/// Seeds the rows of free dofs with the solution that belongs to engine increments and right-hand side -c.
+/// Seeds the rows of free dofs with a solution.
 template <class E>
 template <class Which>
-void RecordedEquilibrium<E>::seed_rows(int objective, const Matrix<double>& u, const Matrix<double>& c, Which&& which) {
-  const Vector<double> weight =
-      into_frames(problem_.model, problem_.slots.frames, Layout::all, Vector<double>(problem_.engine.expand(u, -c)));
+void RecordedEquilibrium<E>::seed_rows(int objective, const Solution& solution, Which&& which) {
+  const Vector<double> all = problem_.engine.expand(solution.u, -solution.c, -solution.reduced);
+  const Vector<double> weight = into_frames(problem_.model, problem_.slots.frames, Layout::all, all);
   for (int dof : problem_.model.free_dofs)
     if (which(dof / problem_.model.dimension)) by(objective)[rows_[dof].at] += weight[dof];
 }
 
 /// Where lambda is given, it only feels the solution at the contact nodes; the rest is added up for finish().
 template <class E>
-void RecordedEquilibrium<E>::put_aside(int objective, const Matrix<double>& u, const Matrix<double>& c) {
+void RecordedEquilibrium<E>::put_aside(int objective, const Solution& solution) {
   const Model& model = problem_.model;
   const int D = model.dimension;
-  const Vector<double> compact =
-      into_frames(model, problem_.slots.frames, Layout::compact, problem_.engine.compact(Vector<double>(u.col(0))));
+  const Vector<double> compact = into_frames(model, problem_.slots.frames, Layout::compact,
+                                             problem_.engine.compact(Vector<double>(solution.u.col(0))));
   for (std::size_t n = 0; n < model.contact_nodes.size(); ++n)
     for (int i = 0; i < D; ++i)
       if (const int dof = model.contact_nodes[n] * D + i; model.free_index[dof] >= 0)
         by(objective)[rows_[dof].at] += compact[n * D + i];
   auto& aside = aside_[objective];
   aside.bodies += pull_back(objective);
-  aside.u = aside.u.size() ? Matrix<double>(aside.u + u) : u;
-  aside.c = aside.c.size() ? Matrix<double>(aside.c + c) : c;
+  const auto add = [](Matrix<double>& sum, const Matrix<double>& x) { sum = sum.size() ? Matrix<double>(sum + x) : x; };
+  add(aside.solution.u, solution.u);
+  add(aside.solution.c, solution.c);
+  add(aside.solution.reduced, solution.reduced);
   clear_free(objective);
 }
 
@@ -292,9 +299,9 @@ void RecordedEquilibrium<E>::restore(int objective, const Gathered& gathered) {
 template <class E>
 HistoryDerivative RecordedEquilibrium<E>::finish(int objective) {
   auto& aside = aside_[objective];
-  if (aside.u.size()) {
+  if (aside.solution.u.size()) {
     const auto& nodes = problem_.model.contact_nodes;
-    seed_rows(objective, aside.u, aside.c,
+    seed_rows(objective, aside.solution,
               [&](int node) { return !std::binary_search(nodes.begin(), nodes.end(), node); });
     aside.bodies += pull_back(objective);
     pull_back_bodies(objective, aside.bodies);

@@ -1,6 +1,7 @@
 #include "sensitivity/sided_geometry.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <optional>
 
@@ -95,7 +96,7 @@ bool meets(const PointGeometry<Direction>& a, const PointGeometry<Direction>& b,
 }  // namespace
 
 SidedPairing sided_pairing(const Model& model, int parameter, double side) {
-  constexpr double step = 1e-7;  // a tie is 1e-9 wide (core/contact/search.hpp), a free end 1e-6
+  constexpr double step = 1e-7, beyond_end = 2e-6;  // a tie is 1e-9 wide (core/contact/search.hpp), a free end 1e-6
   SidedPairing out;
   if (std::none_of(model.points.begin(), model.points.end(), may_leave)) return out;
   const auto numbers = seeded(model.scene, {parameter});
@@ -109,12 +110,21 @@ SidedPairing sided_pairing(const Model& model, int parameter, double side) {
     const auto* other = counterpart(out.points, point);
     out.kink |= !other || !same_part(*other, point);
   }
+  const auto beyond = paired_beside(model, points, numbers, side * beyond_end / fastest);
+  for (std::size_t p = 0; p < model.points.size(); ++p)
+    if (may_leave(model.points[p]) && !counterpart(beyond, model.points[p])) out.leaving.push_back(static_cast<int>(p));
+  const auto joins = [&](const ContactPoint& point) {
+    return !counterpart(model.points, point) && !counterpart(out.points, point);
+  };
+  const std::size_t beside = out.points.size();
+  std::copy_if(beyond.begin(), beyond.end(), std::back_inserter(out.points), joins);
+  out.kink |= !out.leaving.empty() || out.points.size() > beside;
   return out;
 }
 
 bool take_side(const Model& model, const SidedPairing& pairing, const std::vector<char>& engaged,
                Slots<Direction>& slots) {
-  bool continuous = true;
+  bool continuous = std::none_of(pairing.leaving.begin(), pairing.leaving.end(), [&](int p) { return engaged[p]; });
   Model sided = model;  // what the points face; their nodes stay
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];

@@ -4,7 +4,8 @@
 /// master node (segment integration), faces another part of the master as soon as the parameter moves. The contact is
 /// paired anew on nodes moved by 1e-7 of their mesh size to that side; the geometry there, as a function of the
 /// parameters, is taken at the nodes as they are. Where it is continuous in value its derivative is that of the side;
-/// where it jumps (the normal, at a corner of the master) there is none.
+/// where it jumps (the normal, at a corner of the master) there is none. Nor is there where a node slides off the end
+/// of the master or onto it, which pairing sees 1e-6 of a facet later.
 #pragma once
 
 #include "sensitivity/direct.hpp"
@@ -15,6 +16,7 @@ namespace stickslip {
 struct SidedPairing {
   bool kink = false;  ///< some point faces another part of the master than at the start
   std::vector<ContactPoint> points;
+  std::vector<int> leaving;  ///< points of the model that slide off
 };
 
 /// `parameter`: index in Scene::parameters; `side`: -1 or 1.

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "methods/increment.hpp"
 
@@ -51,16 +52,18 @@ Allowance allowance(const Model& model, const Slots<double>& slots, const Tolera
   const double most = scales.traction > scales.least_traction ? most_rounding : 100 * most_rounding;
   // Hundreds of terms meet in a row, and each rounds once; Uzawa's updates end at ten times that.
   constexpr double terms = 1e3;
-  double stiffest = 0, contact = 0, tie = 0;
+  double stiffest = 0, softest = std::numeric_limits<double>::infinity(), contact = 0, tie = 0;
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const double largest = std::max(rho[p].normal, rho[p].tangential);
     stiffest = std::max({stiffest, largest, slots.stiffness[p] / slots.geometry[p].area});
+    softest = std::min({softest, rho[p].normal, rho[p].tangential});
     contact = std::max(contact, slots.geometry[p].area * largest);
-    tie = std::max(tie, model.points[p].tie_length);
+    tie = std::max(tie, tie_length(model.points[p], slots.geometry[p]));
   }
+  const double yield = 10 * unit_roundoff * scales.traction / softest;  // a gap is seen as a traction over rho
   const double displacement = terms * unit_roundoff * (scales.reach + scales.length) + tie;
   return {scales.force * share(tolerance.force, (scales.stiffness + contact) * displacement, scales.force, most),
-          scales.length * share(tolerance.contact, displacement, scales.length, most),
+          scales.length * share(tolerance.contact, displacement + yield, scales.length, most),
           scales.traction * share(tolerance.contact, stiffest * displacement, scales.traction, most)};
 }
 

@@ -86,13 +86,13 @@ std::string explain(const Input& input, const Problem& problem) {
   text +=
       monolithic ? fmt::format(", {} multipliers\n", model.multiplier_count) : ", no multipliers among the unknowns\n";
   text += fmt::format("method: {}\n", to_json(input.method).dump());
-  const bool condensed =
-      input.linear_algebra.engine == LinearAlgebra::Engine::condensed ||
-      (input.linear_algebra.engine == LinearAlgebra::Engine::automatic && detail::condensed_pays(model));
-  text += condensed
+  text += condenses(model, input.method, input.linear_algebra.engine)
               ? fmt::format("linear algebra: bodies condensed once to {} contact dofs, Newton on a dense system\n",
                             model.contact_nodes.size() * model.dimension)
               : "linear algebra: one sparse factorisation an iteration, the bodies' part assembled once\n";
+  const EnginePrice price = predict_price(model, input.method);
+  text += fmt::format("  predicted: {:.2g} Gflop condensed, {:.2g} Gflop sparse\n", 1e-9 * price.condensed,
+                      1e-9 * price.sparse);
   text += "\nsimulated:\n";
   if (effects.contact) text += "  unilateral contact\n";
   if (effects.friction) text += "  Coulomb friction, path dependent (slip is remembered)\n";

@@ -54,7 +54,7 @@ void check_memory(const Problem& problem, const Input& input) {
                    static_cast<double>(model.points.size()), 0, false};
   if (estimated_bytes(size) > limit)
     throw ModelError("the bodies need " + too_much(estimated_bytes(size), limit) + "; try fewer cells", "/bodies");
-  size.condensed = engine == Engine::condensed || (engine == Engine::automatic && detail::condensed_pays(model));
+  size.condensed = condenses(model, input.method, engine);
   if (estimated_bytes(size) > limit)
     throw ModelError("the bodies, condensed to " + shown(size.contact_dofs) + " contact dofs, need " +
                          too_much(estimated_bytes(size), limit) + R"(; try {"engine": "sparse"}, or fewer cells)",

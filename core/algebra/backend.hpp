@@ -1,7 +1,8 @@
 /// The factorisations behind LinearSolver, one class a library. Private to core/algebra: include linear_solver.hpp.
 ///
 /// Each class holds one pattern, analysed in its constructor, and offers
-///   Factorisation factorise(const T* values)                    a new factor, or why there is none
+///   Factorisation factorise(const T* values)                    a new factor, or why there is none; throws
+///                                                               std::bad_alloc where memory ends
 ///   void solve(const Matrix<T>& b, Matrix<T>& x, bool transposed)  sets x; pre: the last factorise() was done
 ///   std::string name() const                                    library, version, kind, ordering
 ///   long factor_nonzeros() const                                entries of the last factor
@@ -23,7 +24,7 @@ struct Factorisation {
     done,
     not_positive_definite,  ///< a Cholesky met a pivot that is not positive: another kind may still succeed
     singular,               ///< an exact zero pivot
-    failed                  ///< no memory, or an error of the library
+    failed                  ///< an error of the library
   };
   Outcome outcome = Outcome::done;
   std::string message;  ///< empty where done
@@ -38,9 +39,14 @@ struct Factorisation {
 /// Supernodal Cholesky factorisation; reads the lower triangle.
 class CholmodFactor {
  public:
-  /// Throws std::runtime_error where the analysis fails (memory).
-  explicit CholmodFactor(std::shared_ptr<const Pattern> pattern);
+  /// The last `kept` rows are eliminated last. Throws std::bad_alloc where memory ends, std::runtime_error where the
+  /// analysis fails otherwise.
+  CholmodFactor(std::shared_ptr<const Pattern> pattern, int kept);
   Factorisation factorise(const double* values);
+  /// Of a factor, which is not made; throws as the constructor does.
+  static FactorSize predict(std::shared_ptr<const Pattern> pattern, int kept);
+  /// L_kk L_kk^T of the kept rows. pre: the last factorise() was done.
+  Matrix<double> schur_complement() const;
   void solve(const Matrix<double>& b, Matrix<double>& x, bool transposed);
   std::string name() const;
   long factor_nonzeros() const;
@@ -56,7 +62,7 @@ class CholmodFactor {
 /// Multifrontal LU factorisation, symmetric strategy (pivots on the diagonal preferred), METIS ordering.
 class UmfpackFactor {
  public:
-  /// Throws std::runtime_error where the analysis fails (memory).
+  /// Throws std::bad_alloc where memory ends, std::runtime_error where the analysis fails otherwise.
   explicit UmfpackFactor(std::shared_ptr<const Pattern> pattern);
   Factorisation factorise(const double* values);
   void solve(const Matrix<double>& b, Matrix<double>& x, bool transposed);
@@ -75,7 +81,7 @@ class UmfpackFactor {
 /// symmetric ones read the lower triangle.
 class MumpsFactor {
  public:
-  /// Throws std::runtime_error where the analysis fails (memory).
+  /// Throws std::bad_alloc where memory ends, std::runtime_error where the analysis fails otherwise.
   MumpsFactor(std::shared_ptr<const Pattern> pattern, Symmetry symmetry);
   Factorisation factorise(const double* values);
   void solve(const Matrix<double>& b, Matrix<double>& x, bool transposed);

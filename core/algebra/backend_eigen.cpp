@@ -4,6 +4,7 @@
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 #include "core/algebra/backend.hpp"
 
@@ -76,6 +77,7 @@ Factorisation EigenFactor<T>::factorise(const T* values) {
   if (empty != filled.end())
     return {Outcome::singular, "column " + std::to_string(empty - filled.begin()) + " is zero"};
   d.lu.factorize(d.matrix);
+  if (d.lu.lastErrorMessage().find("MEMORY") != std::string::npos) throw std::bad_alloc();
   if (d.lu.info() != Eigen::Success) {
     // The elimination stopped at the last row that got a place; the column there is the one without a pivot.
     const int step = d.lu.rowsPermutation().indices().maxCoeff();

@@ -77,6 +77,7 @@ MumpsFactor::MumpsFactor(std::shared_ptr<const Pattern> pattern, Symmetry symmet
   d.mumps.irn = d.row.data();
   d.mumps.jcn = d.column.data();
   const int status = d.run(job_analyse);
+  if (status == -5 || status == -7 || status == -13) throw std::bad_alloc();
   if (status < 0)
     throw std::runtime_error("MUMPS could not analyse the matrix (INFOG(1) = " + std::to_string(status) + ")");
 }
@@ -97,7 +98,7 @@ Factorisation MumpsFactor::factorise(const double* values) {
     d.icntl(14) *= 2;
     status = d.run(job_factorise);
   }
-  if (status == -13 || status == -8 || status == -9) return {Outcome::failed, "MUMPS: not enough memory"};
+  if (status == -13 || status == -8 || status == -9) throw std::bad_alloc();
   const bool cholesky = d.symmetry == Symmetry::positive_definite;
   // MUMPS goes on past a negative pivot, without the pivoting that such a matrix needs; INFOG(12) counts them.
   if (status == -40 || (status >= 0 && cholesky && d.infog(12) > 0))

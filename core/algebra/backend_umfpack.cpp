@@ -74,6 +74,7 @@ UmfpackFactor::UmfpackFactor(std::shared_ptr<const Pattern> pattern)
   Data& d = *data_;
   const int n = d.pattern->size;
   const int status = umfpack_di_symbolic(n, n, d.starts(), d.rows(), nullptr, &d.symbolic, d.control, d.info);
+  if (status == UMFPACK_ERROR_out_of_memory) throw std::bad_alloc();
   if (status < UMFPACK_OK)
     throw std::runtime_error("UMFPACK could not analyse the matrix (status " + std::to_string(status) + ")");
 }
@@ -83,7 +84,7 @@ Factorisation UmfpackFactor::factorise(const double* values) {
   Data& d = *data_;
   umfpack_di_free_numeric(&d.numeric);
   const int status = umfpack_di_numeric(d.starts(), d.rows(), values, d.symbolic, &d.numeric, d.control, d.info);
-  if (status == UMFPACK_ERROR_out_of_memory) return {Outcome::failed, "UMFPACK: not enough memory"};
+  if (status == UMFPACK_ERROR_out_of_memory) throw std::bad_alloc();
   if (status < UMFPACK_OK) return {Outcome::failed, "UMFPACK: error " + std::to_string(status)};
   d.read_pivots();
   if (status == UMFPACK_WARNING_singular_matrix) {

@@ -1,6 +1,7 @@
 /// What all backends share: choice, counters, fallback, singularity, backward error, refinement, condition estimate.
 #include "core/algebra/linear_solver.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -9,6 +10,7 @@
 #include <stdexcept>
 
 #include "core/algebra/backend.hpp"
+#include "core/algebra/norm_estimate.hpp"
 
 // OpenBLAS where it is loaded, null elsewhere: the BLAS is the system's choice at run time, not ours at link time.
 extern "C" {
@@ -90,41 +92,6 @@ double one_norm(const Pattern& pattern, const T* values, const Scaling* scaling)
   return norm;
 }
 
-/// Estimate of the 1-norm of an operator and the vector that shows it, by apply(x) and its adjoint; a lower bound,
-/// rarely off by more than 3. N. J. Higham, ACM Trans. Math. Softw. 14 (1988) 381-396, algorithm 4.1 (after Hager).
-template <class T, class Apply, class Adjoint>
-std::pair<double, Vector<T>> one_norm_estimate(int n, Apply apply, Adjoint adjoint) {
-  const auto sign = [](const T& x) { return std::abs(x) > 0 ? x / std::abs(x) : T(1); };
-  Vector<T> v = apply(Vector<T>::Constant(n, T(1.0 / n)));
-  double estimate = v.template lpNorm<1>();
-  if (n == 1) return {estimate, v};
-  Vector<T> signs = v.unaryExpr(sign);
-  Vector<T> gradient = adjoint(signs);
-  Eigen::Index largest = -1;
-  for (int iteration = 2; iteration <= 5; ++iteration) {
-    Eigen::Index j = 0;
-    const double steepest = gradient.cwiseAbs().maxCoeff(&j);
-    if (largest >= 0 && steepest <= std::abs(gradient[largest])) break;
-    largest = j;
-    Vector<T> w = apply(Vector<T>::Unit(n, j));
-    const double norm_w = w.template lpNorm<1>();
-    const Vector<T> new_signs = w.unaryExpr(sign);
-    if (norm_w <= estimate) break;
-    estimate = norm_w;
-    v = std::move(w);
-    if (new_signs == signs) break;
-    signs = new_signs;
-    gradient = adjoint(signs);
-  }
-  // A vector of alternating sign catches what cancels in the ones above.
-  Vector<T> alternating(n);
-  for (int i = 0; i < n; ++i) alternating[i] = T((i % 2 ? -1.0 : 1.0) * (1 + static_cast<double>(i) / (n - 1)));
-  Vector<T> w = apply(alternating);
-  const double norm_w = 2 * w.template lpNorm<1>() / (3.0 * n);
-  if (norm_w > estimate) return {norm_w, w};
-  return {estimate, v};
-}
-
 std::string scientific(double x) {
   char text[32];
   std::snprintf(text, sizeof text, "%.1e", x);
@@ -144,13 +111,14 @@ Backend preferred(Symmetry symmetry, int size) {
 }
 
 template <class T>
-std::unique_ptr<Factor<T>> make_factor(Backend backend, std::shared_ptr<const Pattern> pattern, Symmetry symmetry) {
+std::unique_ptr<Factor<T>> make_factor(Backend backend, std::shared_ptr<const Pattern> pattern, Symmetry symmetry,
+                                       [[maybe_unused]] int kept) {
   if constexpr (std::is_same_v<T, double>) {
     // CHOLMOD knows positive definite matrices alone.
     if (backend == Backend::automatic || (backend == Backend::cholmod && symmetry != Symmetry::positive_definite))
       backend = preferred(symmetry, pattern->size);
 #ifdef STICKSLIP_WITH_CHOLMOD
-    if (backend == Backend::cholmod) return std::make_unique<Factor<T>>(CholmodFactor(std::move(pattern)));
+    if (backend == Backend::cholmod) return std::make_unique<Factor<T>>(CholmodFactor(std::move(pattern), kept));
 #endif
 #ifdef STICKSLIP_WITH_UMFPACK
     if (backend == Backend::umfpack) return std::make_unique<Factor<T>>(UmfpackFactor(std::move(pattern)));
@@ -169,6 +137,7 @@ struct LinearSolver<T>::Implementation {
   Backend requested = Backend::automatic;
   std::shared_ptr<const Pattern> pattern;
   Symmetry symmetry = Symmetry::general;
+  int kept = 0;                       ///< rows at the end, of schur_complement()
   std::vector<T> values;              ///< of the last factorise(): the caller's may be overwritten by then
   std::unique_ptr<Factor<T>> first;   ///< of the kind the symmetry asks for
   std::unique_ptr<Factor<T>> second;  ///< for a matrix that was not positive definite after all; made on demand
@@ -288,7 +257,7 @@ template <class T>
 LinearSolver<T>& LinearSolver<T>::operator=(LinearSolver&&) noexcept = default;
 
 template <class T>
-void LinearSolver<T>::analyse(std::shared_ptr<const Pattern> pattern, Symmetry symmetry) {
+void LinearSolver<T>::analyse(std::shared_ptr<const Pattern> pattern, Symmetry symmetry, int kept) {
   Implementation& s = *implementation_;
   s.usable = false;
   s.last = nullptr;
@@ -296,7 +265,8 @@ void LinearSolver<T>::analyse(std::shared_ptr<const Pattern> pattern, Symmetry s
   s.first.reset();  // before the new one: two sets of factors need not be held
   s.pattern = std::move(pattern);
   s.symmetry = symmetry;
-  if (s.pattern->size > 0) s.first = make_factor<T>(s.requested, s.pattern, symmetry);
+  s.kept = kept;
+  if (s.pattern->size > 0) s.first = make_factor<T>(s.requested, s.pattern, symmetry, kept);
   s.last = s.first.get();
   ++s.counters.analyses;
 }
@@ -324,7 +294,7 @@ bool LinearSolver<T>::factorise(const T* values) {
     Factorisation result = s.factorise(*s.first);
     if (result.outcome == Outcome::not_positive_definite) {
       if (!s.second) {
-        s.second = make_factor<T>(s.requested, s.pattern, Symmetry::indefinite);
+        s.second = make_factor<T>(s.requested, s.pattern, Symmetry::indefinite, s.kept);
         ++s.counters.analyses;
       }
       ++s.counters.fallbacks;
@@ -333,8 +303,6 @@ bool LinearSolver<T>::factorise(const T* values) {
     s.message = result.outcome == Outcome::done ? s.singularity(result.smallest_pivot) : result.message;
     if (result.outcome == Outcome::singular) s.message = "singular: " + s.message;
     s.determinant_sign = result.determinant_sign;
-  } catch (const std::bad_alloc&) {
-    s.message = "not enough memory for the factors";
   } catch (const std::runtime_error& error) {  // the fallback's analysis
     s.message = error.what();
   }
@@ -363,6 +331,26 @@ Matrix<T> LinearSolver<T>::solve(const Matrix<T>& right_hand_sides, bool transpo
   }
   s.backward_error = check.error;
   return x;
+}
+
+template <class T>
+Matrix<T> LinearSolver<T>::schur_complement() {
+  Implementation& s = *implementation_;
+  if (!s.usable) throw std::logic_error("LinearSolver: Schur complement without a factorisation");
+#ifdef STICKSLIP_WITH_CHOLMOD
+  if constexpr (std::is_same_v<T, double>)
+    if (const auto* cholesky = std::get_if<CholmodFactor>(s.last)) return cholesky->schur_complement();
+#endif
+  constexpr int columns_at_a_time = 64;
+  const int eliminated = s.pattern->size - s.kept;
+  Matrix<T> inverse(s.kept, s.kept);
+  for (int first = 0; first < s.kept; first += columns_at_a_time) {
+    const int count = std::min(columns_at_a_time, s.kept - first);
+    Matrix<T> unit = Matrix<T>::Zero(s.pattern->size, count);
+    unit.block(eliminated + first, 0, count, count).setIdentity();
+    inverse.middleCols(first, count) = solve(unit).bottomRows(s.kept);
+  }
+  return inverse.partialPivLu().inverse();
 }
 
 template <class T>
@@ -434,6 +422,16 @@ bool has_backend(Backend backend) {
 #endif
   }
   return false;
+}
+
+FactorSize predict_factor(std::shared_ptr<const Pattern> pattern, [[maybe_unused]] int kept) {
+  if (pattern->size == 0) return {};
+#ifdef STICKSLIP_WITH_CHOLMOD
+  return CholmodFactor::predict(std::move(pattern), kept);
+#else
+  const double n = pattern->size;  // nested dissection of a square of cells, two unknowns a node
+  return {60 * std::pow(n, 1.5), 6 * n * std::log2(n + 1)};
+#endif
 }
 
 std::vector<std::string> linear_solver_libraries() {

@@ -46,17 +46,23 @@ class LinearSolver {
   LinearSolver(LinearSolver&&) noexcept;
   LinearSolver& operator=(LinearSolver&&) noexcept;
 
-  /// Orders and analyses the pattern (kept by reference-counted pointer, so it may not change afterwards).
-  void analyse(std::shared_ptr<const Pattern> pattern, Symmetry symmetry);
+  /// Orders and analyses the pattern (kept by reference-counted pointer, so it may not change afterwards). `kept`: how
+  /// many rows, at its end, schur_complement() is to keep; a backend that can orders them last.
+  void analyse(std::shared_ptr<const Pattern> pattern, Symmetry symmetry, int kept = 0);
 
   /// Factorises the values (one per entry of the pattern). A Cholesky that meets a pivot that is not positive falls
   /// back to LDL^T or LU (`fallbacks` counts it). Returns false where the matrix is singular to working precision or
-  /// not finite; `message` then says which pivot or row. pre: analyse().
+  /// not finite; `message` then says which pivot or row. pre: analyse(). Throws std::bad_alloc where memory ends.
   bool factorise(const T* values);
 
   /// Solves A X = B (or A^T X = B, without conjugation) for all columns of B in one call and returns X.
   /// pre: the last factorise() returned true.
   Matrix<T> solve(const Matrix<T>& right_hand_sides, bool transposed = false);
+
+  /// Schur complement of all other rows on the kept ones, A_kk - A_ko A_oo^-1 A_ok: L_kk L_kk^T of a Cholesky factor
+  /// that has them last (CHOLMOD), else the inverse of the kept block of A^-1, by a back-solve for each. pre: the last
+  /// factorise() returned true.
+  Matrix<T> schur_complement();
 
   /// Sign of the determinant of the last factor, +1 or -1 (complex: of the real part of its phase).
   int determinant_sign() const;
@@ -77,6 +83,15 @@ class LinearSolver {
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
+
+/// What a factor will be, known before there is one.
+struct FactorSize {
+  double flops = 0;    ///< additions and multiplications
+  double entries = 0;  ///< that are not zero
+};
+/// Of the Cholesky factor of a pattern, its last `kept` rows eliminated last, by CHOLMOD's symbolic analysis; without
+/// CHOLMOD as if it were of a square of cells in the plane.
+FactorSize predict_factor(std::shared_ptr<const Pattern> pattern, int kept);
 
 /// Names of the backends built in, for provenance: {"CHOLMOD 3.0.14", "UMFPACK 5.7.9", "MUMPS 5.5.1", "Eigen 3.4.0"}.
 std::vector<std::string> linear_solver_libraries();

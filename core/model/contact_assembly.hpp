@@ -101,6 +101,17 @@ PointGeometry<U> promote(const PointGeometry<T>& g) {
   return out;
 }
 
+/// tie_length() of a point at compact displacements.
+template <class T>
+double tie_at(const ContactInput<T>& input, int p, const Vector<T>& compact) {
+  const auto& point = input.model.points[p];
+  const int D = input.model.dimension;
+  double reach = 0;
+  for (int place : point.places)
+    for (int i = 0; i < D; ++i) reach = std::max(reach, std::abs(value(compact[place * D + i])));
+  return tie_length(point, input.slots.geometry[p], reach);
+}
+
 }  // namespace detail
 
 /// Local unknowns of all points. `compact`: displacements of the contact nodes; `multiplier`: lambda; `states`: the
@@ -123,7 +134,7 @@ ContactField<T> evaluate_contact(const ContactInput<T>& input, const Vector<T>& 
           input.slots.geometry[p], detail::relative_displacement<T, D>(input, p, compact),
           detail::gather_traction<T, Tangents>(multiplier, point.multiplier),
           detail::previous_placement<T, Tangents>(input, p), input.rho[p], input.slots.friction[point.contact],
-          input.cone, point.tie_length, states ? &(*states)[p] : nullptr);
+          input.cone, detail::tie_at<T>(input, p, compact), states ? &(*states)[p] : nullptr);
       field.state[p] = outcome.state;
       field.gap[p] = outcome.gap;
       field.traction[point.multiplier] = outcome.traction.normal;
@@ -197,9 +208,8 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
       lambda.tangential[a].d[D + 1 + a] = input.rho[p].tangential;
       previous[a] = Probe(input.previous_placement[tangential_offset(input.model, p) + a]);
     }
-    const auto outcome = evaluate_point<Probe, D, Tangents>(geometry, w, lambda, previous, rho,
-                                                            Probe(input.slots.friction[point.contact]), input.cone,
-                                                            point.tie_length, &state);
+    const auto outcome = evaluate_point<Probe, D, Tangents>(
+        geometry, w, lambda, previous, rho, Probe(input.slots.friction[point.contact]), input.cone, 0, &state);
     const Vec<Probe, D> force = point_force<Probe, D, Tangents>(geometry, outcome.traction);
     PointTangent<T> tangent{Matrix<T>(D, D), Matrix<T>(D, C), Matrix<T>(C, D), Matrix<T>(C, C)};
     for (int i = 0; i < D; ++i) {

@@ -50,7 +50,7 @@ struct ContactPoint {
   bool shares_normal = false;  ///< deformable continua on both sides: the normal is the bisector of the two
   int slave_body = 0;
   double mesh_size = 0;   ///< local size of the slave side, 0 for a lumped point
-  double tie_length = 0;  ///< gaps up to this are rounding of the coordinates
+  double tie_length = 0;  ///< an initial gap up to this may be rounding of the coordinates
   int multiplier = 0;     ///< offset of its components in the multiplier vector
   int tangents = 0;       ///< 0 (frictionless) or D - 1
   int components() const { return 1 + tangents; }

@@ -45,6 +45,15 @@ struct Slots {
                                            ///< one degree; empty where no obstacle rotates
 };
 
+/// What rounding may make of a point's gap, length: that of its coordinates; where their initial gap is exactly zero,
+/// that of the displacements alone, so that contacts which begin closed have the same branches under every load,
+/// however small. `reach`: largest displacement of its nodes.
+template <class T>
+double tie_length(const ContactPoint& point, const PointGeometry<T>& geometry, double reach = 0) {
+  constexpr double terms = 256;  // that meet in a displacement, and some condition
+  return value(geometry.gap) == 0 ? terms * unit_roundoff * reach : point.tie_length;
+}
+
 namespace detail {
 
 template <class T>

@@ -49,8 +49,9 @@ TEST(Engines, SolveWithTheDerivativeOfTheResidual) {
         Counters counters;
         engine.begin(1.0, problem.u);
         ASSERT_TRUE(engine.factorise(problem.tangents(), counters)) << engine.message();
-        const auto step = engine.solve({engine.reduce(r), l});
-        const Vector<double> du = engine.expand(step.u, r);
+        const Matrix<double> reduced = engine.reduce(r);
+        const auto step = engine.solve({reduced, l});
+        const Vector<double> du = engine.expand(step.u, r, reduced);
         auto rows = along(problem, du, step.l.size() ? Vector<double>(step.l) : Vector<double>(), unknown);
         for (const auto& constraint : problem.model.constraints) {
           EXPECT_EQ(du[constraint.dof], 0);
@@ -126,7 +127,7 @@ TEST(Engines, ApplyTheStiffnessThatTheyCondense) {
     for (int i = 0; i < contacts; ++i)
       if (!condensed.is_free(i)) du.row(i).setZero();
     const Matrix<double> none = Matrix<double>::Zero(problem.model.dof_count(), 2);
-    const Matrix<double> full = sparse.apply_stiffness(condensed.expand(du, none));
+    const Matrix<double> full = sparse.apply_stiffness(condensed.expand(du, none, condensed.reduce(none)));
     const Matrix<double> small = condensed.apply_stiffness(du);
     const double largest = largest_entry(small);
     for (int i = 0; i < contacts; ++i)
@@ -135,7 +136,7 @@ TEST(Engines, ApplyTheStiffnessThatTheyCondense) {
         EXPECT_LE(largest_entry(full.row(dof) - small.row(i)), solved * largest);
       }
     // forces that the bulk has for the same displacements
-    const Vector<double> whole = condensed.expand(du.col(0), none.col(0));
+    const Vector<double> whole = condensed.expand(du.col(0), none.col(0), condensed.reduce(none.col(0)));
     const Vector<double> forces = bulk_forces(problem.model, problem.slots, whole);
     for (int dof : problem.model.free_dofs) EXPECT_NEAR(full(dof, 0), forces[dof], solved * largest);
   }
@@ -149,7 +150,8 @@ TEST(Engines, ReduceRowsToTheWorkTheyDoOnContactMotions) {
   const Vector<double> reduced = condensed.reduce(r);
   for (Eigen::Index i = 0; i < reduced.size(); ++i) {
     if (!condensed.is_free(i)) continue;
-    const Vector<double> motion = condensed.expand(Vector<double>::Unit(reduced.size(), i), none);
+    const Vector<double> motion =
+        condensed.expand(Vector<double>::Unit(reduced.size(), i), none, condensed.reduce(none));
     EXPECT_NEAR(reduced[i], motion.dot(r.col(0)), solved * motion.norm() * r.norm());
   }
 }

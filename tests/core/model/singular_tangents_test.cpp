@@ -100,18 +100,5 @@ TEST(SingularTangents, ThatAreNotFiniteAreNotTakenForTheOnesBefore) {
   check(problem.condensed(true));
 }
 
-TEST(Condensation, OfABodyThatNothingHoldsWithoutContactIsRefused) {
-  auto scene = scenes::two_boxes(5, 7);
-  BoxMesh loose;
-  loose.min = {5.0, 5.0};
-  loose.max = {6.0, 6.0};
-  loose.cells = {3, 3};
-  scene.bodies.push_back({"loose", loose, LinearElastic{1000.0, 0.3}, "", 1.0});
-  const EngineProblem problem(scene);
-  const auto condensation = problem.condensation();
-  EXPECT_FALSE(condensation->valid());
-  EXPECT_FALSE(condensation->message().empty());
-}
-
 }  // namespace
 }  // namespace stickslip

@@ -1,0 +1,80 @@
+#include "core/model/body_matrix.hpp"
+
+#include <algorithm>
+
+namespace stickslip {
+
+void RowLists::add(const std::vector<int>& rows) {
+  row.insert(row.end(), rows.begin(), rows.end());
+  start.push_back(static_cast<int>(row.size()));
+}
+
+RowLists element_rows(const Model& model, const std::vector<int>& row_of_dof) {
+  const int D = model.dimension;
+  RowLists lists;
+  for (const auto& body : model.bodies)
+    for (int e = 0; e < body.mesh.element_count(); ++e) {
+      for (int node : detail::element_nodes(body, e))
+        for (int i = 0; i < D; ++i) lists.row.push_back(row_of_dof[node * D + i]);
+      lists.start.push_back(static_cast<int>(lists.row.size()));
+    }
+  return lists;
+}
+
+std::shared_ptr<Pattern> make_pattern(int size, const RowLists& lists) {
+  std::vector<int> start(size + 1, 0), member(lists.row.size());  // which lists each row belongs to
+  for (int row : lists.row)
+    if (row >= 0) ++start[row + 1];
+  for (int row = 0; row < size; ++row) start[row + 1] += start[row];
+  std::vector<int> filled(start.begin(), start.end() - 1);
+  for (int list = 0; list < lists.count(); ++list)
+    for (int k = lists.start[list]; k < lists.start[list + 1]; ++k)
+      if (lists.row[k] >= 0) member[filled[lists.row[k]]++] = list;
+  auto pattern = std::make_shared<Pattern>();
+  pattern->size = size;
+  pattern->column_start.push_back(0);
+  std::vector<int> last_column(size, -1), column;  // where a row was met last
+  for (int j = 0; j < size; ++j) {
+    column.assign(1, j);
+    last_column[j] = j;
+    for (int m = start[j]; m < start[j + 1]; ++m)
+      for (int k = lists.start[member[m]]; k < lists.start[member[m] + 1]; ++k)
+        if (const int row = lists.row[k]; row >= 0 && last_column[row] != j) {
+          last_column[row] = j;
+          column.push_back(row);
+        }
+    std::sort(column.begin(), column.end());
+    pattern->row.insert(pattern->row.end(), column.begin(), column.end());
+    pattern->column_start.push_back(static_cast<int>(pattern->row.size()));
+  }
+  return pattern;
+}
+
+int locate(const Pattern& pattern, int row, int column) {
+  const auto first = pattern.row.begin() + pattern.column_start[column];
+  const auto last = pattern.row.begin() + pattern.column_start[column + 1];
+  return static_cast<int>(std::lower_bound(first, last, row) - pattern.row.begin());
+}
+
+template <class T>
+std::vector<T> assemble_bodies(const Model& model, const Slots<T>& slots, const RowLists& lists,
+                               const Pattern& pattern) {
+  std::vector<T> values(pattern.nonzeros(), T(0));
+  int list = 0;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    for_each_framed_tangent(model, slots, static_cast<int>(b), [&](const auto&, const auto& K) {
+      const int* rows = lists.row.data() + lists.start[list];
+      const int count = lists.start[list + 1] - lists.start[list];
+      for (int c = 0; c < count; ++c)
+        for (int r = 0; r < count; ++r)
+          if (rows[r] >= 0 && rows[c] >= 0) values[locate(pattern, rows[r], rows[c])] += K(r, c);
+      ++list;
+    });
+  return values;
+}
+
+template std::vector<double> assemble_bodies(const Model&, const Slots<double>&, const RowLists&, const Pattern&);
+template std::vector<std::complex<double>> assemble_bodies(const Model&, const Slots<std::complex<double>>&,
+                                                           const RowLists&, const Pattern&);
+
+}  // namespace stickslip

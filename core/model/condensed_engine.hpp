@@ -1,0 +1,73 @@
+/// The engine that has linear bodies condensed to their contact dofs.
+#pragma once
+
+#include "core/algebra/dense_factor.hpp"
+#include "core/model/condensation.hpp"
+#include "core/model/engine_parts.hpp"
+
+namespace stickslip {
+
+template <class T>
+class CondensedEngine {
+ public:
+  CondensedEngine(const Model& model, const Slots<T>& slots, bool unknown_multipliers, ConeRadius cone,
+                  std::shared_ptr<Condensation<T>> condensation);
+
+  Vector<T> begin(double time, const Vector<T>& displacement);
+  Vector<T> compact(const Vector<T>& u) const { return out_of_frames(model_, slots_.frames, Layout::compact, u); }
+  Vector<T> all(const Vector<T>& u);
+  Vector<T> residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const;
+  bool is_free(Eigen::Index row) const { return free_[row]; }
+  /// `hold`: stiffness against motion of each contact node, the same in all directions, force per length; empty: none.
+  bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
+  /// In place of factorise() where few points changed since (model/tangent_update.hpp); until the next factorise() all
+  /// solves are with these tangents. False, and nothing changed, where it does not pay or can't be.
+  bool update(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
+  /// Whether the tangent has the other sign of its determinant than where all points stick: such a tangent belongs to a
+  /// problem that has several solutions, or none, under some load.
+  bool reversed() const;
+  /// K^T in place of K where `transposed`; pre: that is not after update().
+  BlockVector<T> solve(const BlockVector<T>& rows, bool transposed = false);
+  Matrix<T> apply_stiffness(const Matrix<T>& u) const { return condensation_->schur() * u; }
+  Matrix<T> reduce(const Matrix<T>& rows) { return condensation_->reduce(rows); }
+  Matrix<T> expand(const Matrix<T>& u, const Matrix<T>& rows, const Matrix<T>& reduced) {
+    return out_of_frames(model_, slots_.frames, Layout::all, condensation_->expand(u, rows, reduced));
+  }
+  Matrix<T> scatter(const Matrix<T>& compact) const { return compact; }
+  double condition_estimate() const { return valid_ ? factor_.condition_estimate() : 0; }
+  std::string name() const;
+  const std::string& message() const { return factor_.message(); }
+  int unknowns() const {
+    return static_cast<int>(free_list_.size()) + (unknown_multipliers_ ? model_.multiplier_count : 0);
+  }
+  long nonzeros() const { return static_cast<long>(unknowns()) * unknowns(); }
+
+ private:
+  std::vector<int> point_rows(const ContactPoint& point) const;
+
+  const Model& model_;
+  const Slots<T>& slots_;
+  bool unknown_multipliers_;
+  std::shared_ptr<Condensation<T>> condensation_;
+  std::vector<char> free_;
+  std::vector<int> free_list_, free_place_;
+  Vector<T> rest_;               ///< all dofs: prescribed values outside the contact, zero elsewhere
+  Matrix<T> rest_rows_;          ///< f_ext - K rest, all dofs
+  Vector<T> load_;               ///< reduced load on the contact dofs
+  double largest_external_ = 0;  ///< nodal force of the loads
+  bool symmetric_;
+  std::vector<int> active_;  ///< multiplier rows in the factor: those of points that are not open
+  std::vector<int> place_;   ///< and where they stand in it; -1: not there
+  Vector<T> open_diagonal_;  ///< of the other multiplier rows
+  Matrix<T> matrix_;         ///< that is factorised
+  DenseFactor<T> factor_;
+  bool valid_ = false;
+  std::vector<PointTangent<T>> factorised_;
+  TangentUpdate update_;
+  Vector<double> held_;
+};
+
+extern template class CondensedEngine<double>;
+extern template class CondensedEngine<std::complex<double>>;
+
+}  // namespace stickslip

@@ -1,0 +1,153 @@
+/// What both engines of model/engine.hpp are made of: their vectors, and a contact point's share of a tangent.
+#pragma once
+
+#include <vector>
+
+#include "core/algebra/linear_solver.hpp"
+#include "core/model/contact_assembly.hpp"
+#include "core/model/frames.hpp"
+#include "core/model/tangent_update.hpp"
+
+namespace stickslip {
+
+/// K [du; dl] = [r_u; r_l]: one column a right-hand side; l is the scaled multiplier lambda / rho.
+template <class T>
+struct BlockVector {
+  Matrix<T> u, l;
+};
+
+/// Scales that a residual is measured against.
+struct ForceScale {
+  double force = 0;     ///< largest nodal force of any kind
+  double rounding = 0;  ///< what rounding alone may leave in a row
+};
+
+/// Largest Euclidean norm of the nodal vectors (D consecutive entries) of the primal parts; NaN where one is.
+template <class T>
+double largest_nodal_norm(const Vector<T>& v, int D) {
+  double largest = 0;
+  for (Eigen::Index n = 0; n + D <= v.size(); n += D) {
+    double squares = 0;
+    for (int i = 0; i < D; ++i) squares += value(v[n + i]) * value(v[n + i]);
+    double norm = std::sqrt(squares);
+    if (!(squares > 1e-280 && squares < 1e280)) {  // squares that overflow or vanish though the numbers do not
+      norm = 0;
+      for (int i = 0; i < D; ++i) norm = std::hypot(norm, value(v[n + i]));
+    }
+    largest = larger(largest, norm);
+  }
+  return largest;
+}
+
+namespace detail {
+
+/// Whether two tangents of a point are the same up to rounding.
+template <class T>
+bool same_tangent(const PointTangent<T>& a, const PointTangent<T>& b) {
+  const double scale = std::max(a.force_w.cwiseAbs().maxCoeff(), a.row_l.cwiseAbs().maxCoeff());
+  const auto close = [&](const Matrix<T>& x, const Matrix<T>& y) {
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      if (!(std::abs(x.data()[i] - y.data()[i]) <= 1e-14 * scale)) return false;
+    return true;
+  };
+  return close(a.force_w, b.force_w) && close(a.force_l, b.force_l) && close(a.row_w, b.row_w) &&
+         close(a.row_l, b.row_l);
+}
+
+/// Whether two sets of point tangents are, so that a factor can be used again.
+template <class T>
+bool same_tangents(const std::vector<PointTangent<T>>& a, const std::vector<PointTangent<T>>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const auto& x, const auto& y) { return same_tangent(x, y); });
+}
+
+/// Whether two vectors are the same to the last bit, their sizes included.
+inline bool same_values(const Vector<double>& a, const Vector<double>& b) { return a.size() == b.size() && a == b; }
+
+/// Adds one point's tangent to a matrix through add(row index in rows, column index in rows, value), where rows are
+/// the point's displacement rows (node-major) followed by its multiplier rows (if unknown).
+template <class T, class Add>
+void for_each_entry(const PointGeometry<T>& geometry, const PointTangent<T>& tangent, bool unknown_multipliers,
+                    Add&& add) {
+  const int D = static_cast<int>(tangent.force_w.rows()), C = static_cast<int>(tangent.row_l.rows());
+  const int nodes = static_cast<int>(geometry.weights.size());
+  for (int n = 0; n < nodes; ++n)
+    for (int i = 0; i < D; ++i) {
+      for (int m = 0; m < nodes; ++m)
+        for (int j = 0; j < D; ++j)
+          add(n * D + i, m * D + j, geometry.weights[n] * geometry.weights[m] * tangent.force_w(i, j));
+      if (unknown_multipliers)
+        for (int c = 0; c < C; ++c) {
+          add(n * D + i, nodes * D + c, geometry.weights[n] * tangent.force_l(i, c));
+          add(nodes * D + c, n * D + i, geometry.weights[n] * tangent.row_w(c, i));
+        }
+    }
+  if (unknown_multipliers)
+    for (int r = 0; r < C; ++r)
+      for (int c = 0; c < C; ++c) add(nodes * D + r, nodes * D + c, tangent.row_l(r, c));
+}
+
+/// The same in the frames of the nodes.
+template <class T, class Add>
+void for_each_framed_entry(const Model& model, const Slots<T>& slots, int p, const PointTangent<T>& tangent,
+                           bool unknown_multipliers, Add&& add) {
+  const auto& geometry = slots.geometry[p];
+  if (model.framed.empty()) return for_each_entry(geometry, tangent, unknown_multipliers, add);
+  const auto rows = geometry.weights.size() * model.dimension + (unknown_multipliers ? tangent.row_l.rows() : 0);
+  Matrix<T> K = Matrix<T>::Constant(rows, rows, T(0));
+  for_each_entry(geometry, tangent, unknown_multipliers, [&](int r, int c, const T& x) { K(r, c) += x; });
+  K = into_frames(model, slots.frames, model.points[p].nodes, std::move(K));
+  for (int c = 0; c < rows; ++c)
+    for (int r = 0; r < rows; ++r) add(r, c, K(r, c));
+}
+
+/// Whether a point's multipliers are their own rows alone.
+template <class T>
+bool is_open(const PointTangent<T>& tangent) {
+  return tangent.row_w.cwiseAbs().maxCoeff() == 0;
+}
+
+/// Takes tangents as an update of the factor of others. rows(p): rows of the factor of point p's entries.
+template <class T, class Rows, class Solve>
+bool update_factor(const Model& model, const Slots<T>& slots, const std::vector<PointTangent<T>>& factorised,
+                   const std::vector<PointTangent<T>>& tangents, bool unknown_multipliers, Rows&& rows,
+                   Eigen::Index size, Counters& counters, Solve&& solve, TangentUpdate& update) {
+  if constexpr (std::is_same_v<T, double>) {
+    std::vector<TangentUpdate::Change> changes;
+    for (std::size_t p = 0; p < tangents.size(); ++p) {
+      if (same_tangent(factorised[p], tangents[p])) continue;
+      if (changes.size() == TangentUpdate::most) return false;
+      TangentUpdate::Change change{static_cast<int>(p), rows(p), {}};
+      const auto n = static_cast<Eigen::Index>(change.rows.size());
+      change.block = Matrix<double>::Zero(n, n);
+      const auto add = [&](double sign) {
+        return [&change, sign](int r, int c, double x) { change.block(r, c) += sign * x; };
+      };
+      for_each_framed_entry(model, slots, change.point, tangents[p], unknown_multipliers, add(1));
+      for_each_framed_entry(model, slots, change.point, factorised[p], unknown_multipliers, add(-1));
+      changes.push_back(std::move(change));
+    }
+    return update.take(std::move(changes), size, counters, solve);
+  }
+  return false;
+}
+
+/// The solution with a factor and its update; only in double there are any.
+template <class T, class Solve, class Multiply>
+Matrix<T> solve_updated(const TangentUpdate& update, const Matrix<T>& b, Solve&& solve, Multiply&& multiply) {
+  if constexpr (std::is_same_v<T, double>)
+    if (!update.empty()) return update.solve(b, solve, multiply);
+  return solve(b);
+}
+
+/// Slip couples the normal into the tangential rows, not the other way round; with the radius of the cone fixed while
+/// the system is solved (that of known multipliers) nothing couples them.
+inline Symmetry symmetry_of(const Model& model, bool unknown_multipliers, ConeRadius cone) {
+  const bool fixed_radius = cone == ConeRadius::multiplier && !unknown_multipliers;
+  if (model.effects.friction && !fixed_radius) return Symmetry::general;
+  return unknown_multipliers ? Symmetry::indefinite : Symmetry::positive_definite;
+}
+
+}  // namespace detail
+
+}  // namespace stickslip

@@ -1,0 +1,24 @@
+/// What a run costs by each engine, predicted before it from counts alone: the choice, and so the bits of the results,
+/// hang on no clock.
+#pragma once
+
+#include "core/algebra/linear_solver.hpp"
+#include "core/model/model.hpp"
+
+namespace stickslip {
+
+/// Floating-point operations, those that are bound by memory or run on dense blocks weighed by how fast they are beside
+/// the operations of a sparse factorisation.
+struct EnginePrice {
+  double sparse = 0, condensed = 0;
+};
+
+/// Price of all increments of a scene and their derivatives. `unknown_multipliers`: those are unknowns of the tangents;
+/// `symmetry`: of the tangents. The bodies' factor is analysed for it (predict_factor).
+EnginePrice predict_price(const Model& model, bool unknown_multipliers, Symmetry symmetry);
+
+/// Whether the bodies are to be condensed. Below 200 unknowns they are, whatever the price: there the calls cost more
+/// than the operations.
+bool prefers_condensed(const Model& model, const EnginePrice& price);
+
+}  // namespace stickslip

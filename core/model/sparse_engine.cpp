@@ -1,0 +1,156 @@
+#include "core/model/sparse_engine.hpp"
+
+#include "core/model/body_matrix.hpp"
+#include "core/model/loading.hpp"
+
+namespace stickslip {
+
+template <class T>
+SparseEngine<T>::SparseEngine(const Model& model, const Slots<T>& slots, bool unknown_multipliers, ConeRadius cone,
+                              Backend backend)
+    : model_(model),
+      slots_(slots),
+      unknown_multipliers_(unknown_multipliers),
+      symmetry_(detail::symmetry_of(model, unknown_multipliers, cone)),
+      size_(static_cast<int>(model.free_dofs.size()) + (unknown_multipliers ? model.multiplier_count : 0)),
+      solver_(backend) {
+  auto lists = element_rows(model, model.free_index);
+  for (const auto& point : model.points) lists.add(point_rows(point));
+  pattern_ = make_pattern(size_, lists);
+  for (const auto& point : model.points) {
+    const auto rows = point_rows(point);
+    std::vector<int> map;
+    for (int row : rows)
+      for (int column : rows) map.push_back(row < 0 || column < 0 ? -1 : locate(*pattern_, row, column));
+    point_map_.push_back(std::move(map));
+  }
+  bulk_ = assemble_bodies(model, slots, lists, *pattern_);
+  for (int i = 0; i < static_cast<int>(model.free_dofs.size()); ++i)
+    stiffness_ = std::max(stiffness_, value(bulk_[locate(*pattern_, i, i)]));
+}
+
+template <class T>
+std::vector<int> SparseEngine<T>::point_rows(const ContactPoint& point) const {
+  std::vector<int> rows;
+  const int D = model_.dimension;
+  for (int node : point.nodes)
+    for (int i = 0; i < D; ++i) rows.push_back(model_.free_index[node * D + i]);
+  if (unknown_multipliers_)
+    for (int c = 0; c < point.components(); ++c)
+      rows.push_back(static_cast<int>(model_.free_dofs.size()) + point.multiplier + c);
+  return rows;
+}
+
+template <class T>
+Vector<T> SparseEngine<T>::begin(double time, const Vector<T>& displacement) {
+  external_ = into_frames(model_, slots_.frames, Layout::all, external_forces(model_, slots_, time));
+  Vector<T> u = displacement;
+  prescribe(model_, slots_, time, u);
+  return into_frames(model_, slots_.frames, Layout::all, std::move(u));
+}
+
+template <class T>
+Vector<T> SparseEngine<T>::residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const {
+  Vector<T> rows = into_frames(model_, slots_.frames, Layout::all, bulk_forces(model_, slots_, all(u)));
+  const int D = model_.dimension;
+  scale.force = std::max(
+      {scale.force, largest_nodal_norm(rows, D), largest_nodal_norm(external_, D), largest_nodal_norm(contact, D)});
+  scale.rounding = unit_roundoff * stiffness_ * largest_nodal_norm(u, D);
+  rows -= external_;
+  add_compact(model_, into_frames(model_, slots_.frames, Layout::compact, contact), rows);
+  return rows;
+}
+
+template <class T>
+bool SparseEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters,
+                                const Vector<double>& hold) {
+  update_.clear();
+  const bool same = detail::same_values(hold, held_) && detail::same_tangents(tangents, factorised_);
+  if (valid_ && model_.effects.linear_bulk && same) return true;
+  values_ = bulk_;
+  for (Eigen::Index n = 0; n < hold.size(); ++n)
+    for (int i = 0; i < model_.dimension; ++i)
+      if (const int row = model_.free_index[model_.contact_nodes[n] * model_.dimension + i]; row >= 0)
+        values_[locate(*pattern_, row, row)] += T(hold[n]);
+  for (std::size_t p = 0; p < tangents.size(); ++p) {
+    const auto& map = point_map_[p];
+    const int n = static_cast<int>(std::lround(std::sqrt(static_cast<double>(map.size()))));
+    auto add = [&](int row, int column, const T& x) {
+      if (const int entry = map[row * n + column]; entry >= 0) values_[entry] += x;
+    };
+    detail::for_each_framed_entry(model_, slots_, static_cast<int>(p), tangents[p], unknown_multipliers_, add);
+  }
+  ++counters.assemblies;
+  if (!analysed_) {
+    solver_.analyse(pattern_, symmetry_);
+    ++counters.analyses;
+    analysed_ = true;
+  }
+  const long before = solver_.counters().factorizations;
+  valid_ = solver_.factorise(values_.data());
+  counters.factorizations += solver_.counters().factorizations - before;
+  factorised_ = tangents;
+  held_ = hold;
+  return valid_;
+}
+
+template <class T>
+bool SparseEngine<T>::update(const std::vector<PointTangent<T>>& tangents, Counters& counters,
+                             const Vector<double>& hold) {
+  if (!valid_ || !model_.effects.linear_bulk || !detail::same_values(hold, held_)) return false;
+  const auto rows = [&](std::size_t p) { return point_rows(model_.points[p]); };
+  return detail::update_factor<T>(
+      model_, slots_, factorised_, tangents, unknown_multipliers_, rows, size_, counters,
+      [&](const Matrix<T>& b) { return solver_.solve(b); }, update_);
+}
+
+template <class T>
+bool SparseEngine<T>::reversed() const {
+  const bool odd = unknown_multipliers_ && model_.multiplier_count % 2 == 1;  // each multiplier turns the sign
+  return (solver_.determinant_sign() != (odd ? -1 : 1)) != update_.turns_sign();
+}
+
+template <class T>
+BlockVector<T> SparseEngine<T>::solve(const BlockVector<T>& rows, bool transposed) {
+  const int free = static_cast<int>(model_.free_dofs.size());
+  Matrix<T> b(size_, rows.u.cols());
+  for (int i = 0; i < free; ++i) b.row(i) = rows.u.row(model_.free_dofs[i]);
+  if (unknown_multipliers_) b.bottomRows(model_.multiplier_count) = rows.l;
+  const auto multiply = [&](const Matrix<T>& x) {
+    Matrix<T> product = Matrix<T>::Zero(size_, x.cols());
+    for (int j = 0; j < size_; ++j)
+      for (int k = pattern_->column_start[j]; k < pattern_->column_start[j + 1]; ++k)
+        product.row(pattern_->row[k]) += values_[k] * x.row(j);
+    return product;
+  };
+  const Matrix<T> x = detail::solve_updated<T>(
+      update_, b, [&](const Matrix<T>& r) { return solver_.solve(r, transposed); }, multiply);
+  BlockVector<T> out{Matrix<T>::Zero(model_.dof_count(), b.cols()), Matrix<T>::Zero(model_.multiplier_count, b.cols())};
+  for (int i = 0; i < free; ++i) out.u.row(model_.free_dofs[i]) = x.row(i);
+  if (unknown_multipliers_) out.l = x.bottomRows(model_.multiplier_count);
+  return out;
+}
+
+template <class T>
+Matrix<T> SparseEngine<T>::apply_stiffness(const Matrix<T>& u) const {
+  Matrix<T> rows = Matrix<T>::Zero(u.rows(), u.cols());
+  for (std::size_t j = 0; j < model_.free_dofs.size(); ++j)
+    for (int k = pattern_->column_start[j]; k < pattern_->column_start[j + 1]; ++k)
+      if (pattern_->row[k] < static_cast<int>(model_.free_dofs.size()))
+        rows.row(model_.free_dofs[pattern_->row[k]]) += bulk_[k] * u.row(model_.free_dofs[j]);
+  return rows;
+}
+
+template <class T>
+Matrix<T> SparseEngine<T>::scatter(const Matrix<T>& compact) const {
+  Matrix<T> rows = Matrix<T>::Zero(model_.dof_count(), compact.cols());
+  const int D = model_.dimension;
+  for (std::size_t n = 0; n < model_.contact_nodes.size(); ++n)
+    for (int i = 0; i < D; ++i) rows.row(model_.contact_nodes[n] * D + i) += compact.row(n * D + i);
+  return rows;
+}
+
+template class SparseEngine<double>;
+template class SparseEngine<std::complex<double>>;
+
+}  // namespace stickslip

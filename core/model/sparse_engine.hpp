@@ -1,0 +1,72 @@
+/// The engine that has the bodies in full.
+#pragma once
+
+#include "core/model/engine_parts.hpp"
+
+namespace stickslip {
+
+/// The bodies in full: one sparse matrix over the free dofs and the multipliers, its pattern fixed for every contact
+/// state, the bodies' part assembled once.
+template <class T>
+class SparseEngine {
+ public:
+  /// `unknown_multipliers`: the monolithic method's layout, [free dofs; multipliers]. `cone`: of all its systems.
+  SparseEngine(const Model& model, const Slots<T>& slots, bool unknown_multipliers, ConeRadius cone, Backend backend);
+
+  Vector<T> begin(double time, const Vector<T>& displacement);  ///< all dofs, prescribed values at `time` set
+  Vector<T> compact(const Vector<T>& u) const {
+    return out_of_frames(model_, slots_.frames, Layout::compact, to_compact(model_, u));
+  }
+  Vector<T> all(const Vector<T>& u) const { return out_of_frames(model_, slots_.frames, Layout::all, u); }
+  /// f_int - f_ext + contact.
+  Vector<T> residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const;
+  bool is_free(Eigen::Index row) const { return model_.free_index[row] >= 0; }
+  /// `hold`: stiffness against motion of each contact node, the same in all directions, force per length; empty: none.
+  bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
+  /// In place of factorise() where few points changed since (model/tangent_update.hpp); until the next factorise() all
+  /// solves are with these tangents. False, and nothing changed, where it does not pay or can't be.
+  bool update(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
+  /// Whether the tangent has the other sign of its determinant than where all points stick: such a tangent belongs to a
+  /// problem that has several solutions, or none, under some load.
+  bool reversed() const;
+  /// K^T in place of K where `transposed`; pre: that is not after update().
+  BlockVector<T> solve(const BlockVector<T>& rows, bool transposed = false);
+  /// The bodies' stiffness times engine increments (engine rows).
+  Matrix<T> apply_stiffness(const Matrix<T>& u) const;
+  /// Rows over all dofs, in the frames -> engine rows.
+  Matrix<T> reduce(const Matrix<T>& rows) { return rows; }
+  /// The increment over all dofs, in the axes, that belongs to an engine increment and to such rows.
+  Matrix<T> expand(const Matrix<T>& u, const Matrix<T>& /*rows*/, const Matrix<T>& /*reduced*/) {
+    return out_of_frames(model_, slots_.frames, Layout::all, u);
+  }
+  Matrix<T> scatter(const Matrix<T>& compact) const;  ///< compact rows -> engine rows
+  double condition_estimate() { return solver_.condition_estimate(); }
+  std::string name() const { return solver_.name().empty() ? "sparse" : "sparse, " + solver_.name(); }
+  const std::string& message() const { return solver_.message(); }
+  int unknowns() const { return size_; }
+  long nonzeros() const { return pattern_->nonzeros(); }
+
+ private:
+  std::vector<int> point_rows(const ContactPoint& point) const;
+
+  const Model& model_;
+  const Slots<T>& slots_;
+  bool unknown_multipliers_;
+  Symmetry symmetry_;
+  int size_;
+  Vector<T> external_;  ///< in the frames
+  std::shared_ptr<Pattern> pattern_;
+  std::vector<std::vector<int>> point_map_;  ///< per point: entry of each (row, column) pair of its rows, -1 if fixed
+  std::vector<T> bulk_, values_;
+  double stiffness_ = 0;  ///< largest diagonal entry, for the rounding of a residual
+  LinearSolver<T> solver_;
+  std::vector<PointTangent<T>> factorised_;
+  TangentUpdate update_;
+  Vector<double> held_;
+  bool analysed_ = false, valid_ = false;
+};
+
+extern template class SparseEngine<double>;
+extern template class SparseEngine<std::complex<double>>;
+
+}  // namespace stickslip
