@@ -215,6 +215,8 @@ constexpr const char* study_parts = R"({
     "oneOf": [{"required": ["method"]}, {"required": ["analytic", "map"]}, {"required": ["values"]},
               {"required": ["overkill"]}]}},
   "errors": {"type": "array", "items": {"type": "string", "pattern": "^kkt$|^response:|^sensitivity:|^field:"}},
+  "accuracy": {"description": "relative errors at which the report names the cheapest method", "type": "array",
+    "minItems": 1, "maxItems": 6, "items": {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}},
   "timing": {"type": "object", "additionalProperties": false, "properties": {
     "repeat": {"$ref": "#/$defs/count", "maximum": 1000}}}
 })";

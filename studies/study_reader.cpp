@@ -70,6 +70,15 @@ std::optional<MethodSweep> read_method_sweep(const JsonNode& node, Lists lists) 
   return sweep;
 }
 
+/// The accuracies of the page's verdict; they stay in the study as given.
+void check_accuracies(const JsonNode& node) {
+  constexpr std::size_t most_columns = 6;
+  const bool is_list = node.value().is_array() && !node.value().empty() && node.value().size() <= most_columns;
+  if (!is_list) return node.must_be("a list of up to six relative errors, as in [1e-2, 1e-4, 1e-6]");
+  constexpr Rule relative_error{"a number > 0 and < 1", [](double x) { return x > 0 && x < 1; }};
+  for (const JsonNode& error : node.elements()) error.number(relative_error);
+}
+
 /// Keys of an object in the scene; none where there is no such object.
 std::vector<std::string> names_in(const json& scene, const char* part) {
   std::vector<std::string> names;
@@ -384,7 +393,8 @@ std::optional<Study> read_study(const std::string& file, Diagnostics& diagnostic
   Study study;
   study.document = *std::move(document);
   const JsonNode root(study.document, diagnostics);
-  if (!root.is_object({{"scene"}, {"$schema", "title", "methods", "vary", "refine", "reference", "errors", "timing"}}))
+  if (!root.is_object(
+          {{"scene"}, {"$schema", "title", "methods", "vary", "refine", "reference", "errors", "accuracy", "timing"}}))
     return std::nullopt;
   if (const auto schema = root.find("$schema")) schema->text();
   if (const auto title = root.find("title")) study.title = title->text().value_or("");
@@ -438,6 +448,7 @@ std::optional<Study> read_study(const std::string& file, Diagnostics& diagnostic
     study.errors.clear();
     read_errors(*errors, scene_root, study.errors);
   }
+  if (const auto accuracy = root.find("accuracy")) check_accuracies(*accuracy);
   if (const auto timing = root.find("timing"); timing && timing->is_object({{}, {"repeat"}}))
     if (const auto repeat = timing->find("repeat")) study.repeat = repeat->count(1, most_rounds).value_or(0);
   if (const double count = cell_count(study); count > most_cells)

@@ -250,14 +250,14 @@ std::optional<Scene> lay_out(const json& picture) {
   return scene;
 }
 
-std::string in_words(const Scene& scene) {
+std::string in_words(const Scene& scene, bool with_close_up) {
   const std::string scale =
       scene.scale == 1
           ? std::string("displacements at true scale")
           : fmt::format("displacements {} times enlarged (bodies that touch may seem to overlap)", number(scene.scale));
   return fmt::format("Reference solution at the last step: {} elements, {} contact points; {}.{}",
                      scene.mesh.elements.size(), scene.contact.size(), scale,
-                     scene.zooms ? " Right: the contact at true scale." : "");
+                     scene.zooms && with_close_up ? " Right: the contact at true scale." : "");
 }
 
 /// Nodes and contact points where they are drawn, and elements by their nodes.
@@ -282,7 +282,36 @@ json rows_of(const Scene& scene, const std::vector<Point>& nodes) {
   return rows;
 }
 
+/// Bodies and obstacles, in a frame.
+void draw_bodies(const Scene& scene, const json& obstacles, const std::vector<Point>& nodes, const Frame& frame,
+                 bool with_mesh, Drawing& drawing) {
+  draw_obstacles(obstacles, frame, drawing);
+  draw_elements(scene.mesh, nodes, frame, scene.peak, with_mesh, drawing);
+  draw_outlines(scene.mesh, nodes, frame, drawing);
+}
+
 }  // namespace
+
+std::optional<Plate> draw_overview(const json& picture) {
+  if (!picture.is_object()) return std::nullopt;
+  const auto scene = lay_out(picture);
+  if (!scene) return std::nullopt;
+  constexpr double wide = 640, lowest = 160, highest = 330;
+  constexpr std::size_t lines_up_to = 1500;
+  const double height = std::clamp(wide * scene->whole.height() / scene->whole.width(), lowest, highest);
+  const std::string title = "The scene", text = in_words(*scene, false);
+  Drawing drawing(wide, height + 44, title, text);
+  const Frame frame(scene->whole, wide, height, 0);
+  const auto nodes = deformed(scene->mesh, scene->scale);
+  drawing.clip(Path().rectangle(0, 0, wide, height));
+  draw_bodies(*scene, array_at(picture, "obstacles"), nodes, frame, scene->mesh.elements.size() <= lines_up_to,
+              drawing);
+  draw_contact(scene->contact, scene->scale, frame, drawing);
+  drawing.unclip();
+  draw_stresses(scene->peak, height + 12, drawing);
+  if (!scene->contact.empty()) draw_states(height + 12, drawing);
+  return Plate{"overview", title, text, drawing, {}, rows_of(*scene, nodes)};
+}
 
 std::optional<Plate> draw_picture(const json& picture) {
   if (!picture.is_object()) return std::nullopt;
@@ -292,16 +321,14 @@ std::optional<Plate> draw_picture(const json& picture) {
   const double gap = 24, wide = scene->zooms ? 560 : canvas, inset = 416;
   const double tall = std::clamp(wide * scene->whole.height() / scene->whole.width(), 120.0, tallest);
   const double height = scene->zooms ? std::max(tall, inset) : tall;
-  const std::string title = "Deformed bodies and contact states", text = in_words(*scene);
+  const std::string title = "Deformed bodies and contact states", text = in_words(*scene, true);
   Drawing drawing(canvas, height + 44, title, text);
   constexpr std::size_t lines_up_to = 4000;  // more mesh lines than that are one grey
 
   const Frame main(scene->whole, wide, height, 0);
   const auto exaggerated = deformed(scene->mesh, scene->scale);
   drawing.clip(Path().rectangle(0, 0, wide, height));
-  draw_obstacles(obstacles, main, drawing);
-  draw_elements(scene->mesh, exaggerated, main, scene->peak, scene->mesh.elements.size() <= lines_up_to, drawing);
-  draw_outlines(scene->mesh, exaggerated, main, drawing);
+  draw_bodies(*scene, obstacles, exaggerated, main, scene->mesh.elements.size() <= lines_up_to, drawing);
   if (scene->zooms) {
     const Box box = close_up(scene->contact, scene->scale);
     drawing.path(
@@ -315,9 +342,7 @@ std::optional<Plate> draw_picture(const json& picture) {
     const Frame close(scene->zoom, inset, inset, wide + gap);
     const auto actual = deformed(scene->mesh, 1);
     drawing.clip(Path().rectangle(wide + gap, 0, inset, inset));
-    draw_obstacles(obstacles, close, drawing);
-    draw_elements(scene->mesh, actual, close, scene->peak, true, drawing);
-    draw_outlines(scene->mesh, actual, close, drawing);
+    draw_bodies(*scene, obstacles, actual, close, true, drawing);
     draw_contact(scene->contact, 1, close, drawing);
     drawing.unclip();
     drawing.path(Path().rectangle(wide + gap, 0.5, inset - 1, inset - 1), {"ink"});

@@ -13,4 +13,7 @@ namespace stickslip::report {
 /// to draw (one node, three dimensions, no picture).
 std::optional<Plate> draw_picture(const nlohmann::json& picture);
 
+/// The same without the close-up, for half the width of a page.
+std::optional<Plate> draw_overview(const nlohmann::json& picture);
+
 }  // namespace stickslip::report

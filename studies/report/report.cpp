@@ -21,6 +21,7 @@
 #include "studies/report/records.hpp"
 #include "studies/report/sample.hpp"
 #include "studies/report/tables.hpp"
+#include "studies/report/verdict.hpp"
 
 namespace stickslip {
 
@@ -282,7 +283,40 @@ std::string findings(const Study& study, const Study& shown) {
         "<p class=\"note\">Of {} runs ({}) the charts and tables show {}: scene variants evenly spaced, or "
         "settings of one. The sentences above, and the profiles, are of all; so is results.jsonl.</p>\n",
         study.cells.size(), escape(statuses(study)), shown.cells.size());
-  return out + settings_table(shown);
+  const std::string settings = settings_table(shown);
+  return settings.empty() ? out : out + folded("Default, tuned and strict settings side by side", settings);
+}
+
+/// The chart beside the verdict: the worst response of the main variant against work.
+std::optional<Figure> first_chart(const Study& study) {
+  auto figure = work_precision(study, Against::same_mesh, Of::responses);
+  if (!figure) figure = work_precision(study, Against::discretization, Of::responses);
+  if (!figure) return std::nullopt;
+  json rows = json::array();
+  for (auto& row : figure->rows)
+    if (std::all_of(figure->choices.begin(), figure->choices.end(), [&](const Choice& choice) {
+          return choice.several || choice.chosen.empty() || at(row, choice.field) == choice.chosen.front();
+        }))
+      rows.push_back(std::move(row));
+  figure->rows = std::move(rows);
+  figure->choices.clear();
+  figure->panels.erase(figure->panels.begin() + 1, figure->panels.end());
+  figure->panels.front().title.clear();
+  figure->panels.front().spec["height"] = 250;
+  figure->id = "first";
+  figure->title = "What accuracy costs";
+  figure->text = "Error of the worst response. Lower left is better.";
+  return figure;
+}
+
+/// What a reader sees first: the scene, a chart of what `study` shows of `all`, and who is the cheapest.
+std::string first_screen(const Study& all, const Study& study, Figures& figures) {
+  auto overview = draw_overview(study.picture);
+  if (const std::string title = text_at(study.description, "scene_title"); overview && !title.empty())
+    overview->title = title;
+  const std::string scene = figures.show(std::move(overview)), chart = figures.show(first_chart(study));
+  const std::string sights = scene.empty() && chart.empty() ? "" : "<div class=\"first\">" + scene + chart + "</div>\n";
+  return sights + verdict(all);
 }
 
 std::string of_errors(const Study& all, const Study& study, Of of, Figures& figures) {
@@ -313,26 +347,8 @@ std::string of_solver(const Study& study, Figures& figures) {
   return out + figures.show(work_precision(study, Against::coulomb, Of::responses));
 }
 
-/// `study`: what of `all` is shown run by run.
-std::vector<Section> sections_of(const Study& all, const Study& study, Figures& figures) {
-  return {
-      {"findings", "What came out", findings(all, study)},
-      {"reading", "How to read this", how_to_read(all)},
-      {"responses", "Accuracy against cost: responses", of_errors(all, study, Of::responses, figures)},
-      {"sensitivities", "Accuracy against cost: sensitivities", of_errors(all, study, Of::sensitivities, figures)},
-      {"knobs", "Turning the knobs", of_knobs(study, figures)},
-      {"solution", "The solution", of_solution(study, figures)},
-      {"solver", "The solver at work", of_solver(study, figures)},
-      {"results", "All results",
-       study.cells.empty() ? std::string() : results_table(study) + values_table(study) + status_table(study)},
-      {"study", "What was simulated", the_study(all)},
-      {"provenance", "Provenance",
-       provenance(all) + folded("Licences of the chart library in this file",
-                                "<pre>" + escape(embedded::third_party_notices()) + "</pre>\n")},
-  };
-}
-
-std::string intro(const Study& study) {
+/// Scene, methods and options that tell no run from another.
+std::string what_was_run(const Study& study) {
   std::string out;
   if (const std::string scene = text_at(study.description, "scene_title"); !scene.empty())
     out += "<p>Scene: " + escape(scene) + "</p>\n";
@@ -348,6 +364,25 @@ std::string intro(const Study& study) {
   return out;
 }
 
+/// `study`: what of `all` is shown run by run.
+std::vector<Section> sections_of(const Study& all, const Study& study, Figures& figures) {
+  return {
+      {"findings", "What came out", findings(all, study)},
+      {"responses", "Accuracy against cost: responses", of_errors(all, study, Of::responses, figures)},
+      {"sensitivities", "Accuracy against cost: sensitivities", of_errors(all, study, Of::sensitivities, figures)},
+      {"knobs", "Turning the knobs", of_knobs(study, figures)},
+      {"solution", "The solution", of_solution(study, figures)},
+      {"solver", "The solver at work", of_solver(study, figures)},
+      {"results", "All results",
+       study.cells.empty() ? std::string() : results_table(study) + values_table(study) + status_table(study)},
+      {"reading", "How to read this", how_to_read(all)},
+      {"study", "What was simulated", what_was_run(all) + the_study(all)},
+      {"provenance", "Provenance",
+       provenance(all) + folded("Licences of the chart library in this file",
+                                "<pre>" + escape(embedded::third_party_notices()) + "</pre>\n")},
+  };
+}
+
 /// The template with each {{name}} replaced once; what is put in is not searched again.
 std::string fill(std::string_view page, const std::map<std::string, std::string, std::less<>>& parts) {
   std::string out;
@@ -361,6 +396,7 @@ std::string fill(std::string_view page, const std::map<std::string, std::string,
 
 std::string page_of(const Study& study, const Study& shown, Figures& figures) {
   const std::string title = text_at(study.description, "title");
+  const std::string first = "<section id=\"verdict\">\n" + first_screen(study, shown, figures) + "</section>\n";
   std::string navigation, content;
   for (const auto& section : sections_of(study, shown, figures)) {
     if (section.content.empty()) continue;
@@ -370,7 +406,7 @@ std::string page_of(const Study& study, const Study& shown, Figures& figures) {
   }
   return fill(embedded::page_html(), {{"title", escape(title.empty() ? "Frictional contact study" : title)},
                                       {"css", std::string(embedded::page_css())},
-                                      {"intro", intro(study)},
+                                      {"first", first},
                                       {"navigation", navigation},
                                       {"content", content},
                                       {"vega", embed_script(embedded::vega_js())},

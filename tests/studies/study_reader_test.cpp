@@ -52,6 +52,7 @@ constexpr const char* study_text = R"({
                 {"values": {"press": 1.5, "press/mu": 0}},
                 {"method": {"monolithic_al": {"scale": 5}}}],
   "errors": ["response:*", "kkt"],
+  "accuracy": [0.05, 1e-3],
   "timing": {"repeat": 4}
 })";
 
@@ -342,7 +343,9 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenStudy{"pattern_of_nothing", R"("response:*")", R"(@"response:pres")", "/errors/0",
                     R"(matches nothing in the scene; did you mean "response:press"?)"},
         BrokenStudy{"pattern_of_no_field", R"("response:*")", R"(@"field:x*")", "/errors/0", "matches nothing"},
-        BrokenStudy{"repeat", R"("repeat": 4)", R"("repeat": @0)", "/timing/repeat", "must be a whole number from 1"}),
+        BrokenStudy{"repeat", R"("repeat": 4)", R"("repeat": @0)", "/timing/repeat", "must be a whole number from 1"},
+        BrokenStudy{"accuracy", R"([0.05, 1e-3])", R"([0.05, @2])", "/accuracy/1", "must be a number > 0 and < 1"},
+        BrokenStudy{"accuracies", R"([0.05, 1e-3])", R"(@[])", "/accuracy", "must be a list of up to six"}),
     [](const auto& info) { return std::string(info.param.name); });
 
 TEST_F(StudyReader, TakesAnOverkillReferenceFromAFinerMeshOfTheSameCell) {

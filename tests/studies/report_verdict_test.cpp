@@ -1,0 +1,124 @@
+/// Who is the cheapest at which accuracy, on the first screen of a report.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "studies/report/verdict.hpp"
+#include "tests/studies/recorded_study.hpp"
+#include "tests/studies/report_page.hpp"
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+using recorded::cell;
+using recorded::description;
+using recorded::three_methods;
+using testing::HasSubstr;
+using testing::Not;
+
+class ReportVerdict : public recorded::StudyOnDisk {
+ protected:
+  std::string verdict_of(const json& about, const std::vector<json>& cells) {
+    record(about, cells);
+    return report::verdict(study());
+  }
+};
+
+/// The cells of a method's row, tags dropped.
+std::vector<std::string> row(const std::string& verdict, const std::string& method) {
+  const std::string head = "<th scope=\"row\">" + method + "</th>";
+  const auto from = verdict.find(head);
+  std::vector<std::string> cells;
+  if (from == std::string::npos) return cells;
+  const std::string text = verdict.substr(from, verdict.find("</tr>", from) - from);
+  for (std::size_t at = text.find("<td"); at != std::string::npos; at = text.find("<td", at + 1)) {
+    std::string cell = text.substr(at, text.find("</td>", at) - at), out;
+    bool inside = false;
+    for (const char c : cell) {
+      if (c == '<') inside = true;
+      if (!inside) out += c;
+      if (c == '>') inside = false;
+    }
+    cells.push_back(out);
+  }
+  return cells;
+}
+
+// Works (a back-solve is a tenth of a factorisation): penalty 16.8 up to 1e7, 21.6 at 1e9; Uzawa 24 and 48;
+// monolithic 12. The mesh itself is off by 0.01.
+TEST_F(ReportVerdict, NamesTheCheapestSettingOfEachMethodAtEachAccuracy) {
+  const std::string verdict = verdict_of(description(), three_methods());
+  const auto penalty = row(verdict, "Penalty"), uzawa = row(verdict, "Uzawa AL"), exact = row(verdict, "Monolithic AL");
+  ASSERT_EQ(penalty.size(), 7u);  // responses at 1 %, 1e-4, 1e-6 and the mesh's; derivatives at three
+  EXPECT_THAT(penalty[0], HasSubstr("stiffness=1000"));
+  EXPECT_THAT(penalty[0], HasSubstr("work 17"));
+  EXPECT_THAT(penalty[1], HasSubstr("stiffness=1e5"));
+  EXPECT_THAT(penalty[2], HasSubstr("stiffness=1e7"));
+  EXPECT_THAT(penalty[3], HasSubstr("stiffness=1000"));
+  EXPECT_THAT(uzawa[1], HasSubstr("tolerance=1e-4"));
+  EXPECT_THAT(uzawa[2], HasSubstr("tolerance=1e-8"));
+  for (const auto& entry : exact) {
+    EXPECT_THAT(entry, HasSubstr("work 12"));
+    EXPECT_THAT(entry, HasSubstr("&#9733;"));
+  }
+  EXPECT_THAT(verdict, HasSubstr("mesh: 1 %"));
+  EXPECT_THAT(verdict,
+              HasSubstr("To 1 % the response is cheapest by <b>Monolithic AL</b>: 10 factorisations and 20 "
+                        "back-solves where Penalty (stiffness=1000) takes 14 factorisations and 28 back-solves"));
+  EXPECT_THAT(verdict, HasSubstr("the derivative is cheapest by <b>Monolithic AL</b>"));
+}
+
+TEST_F(ReportVerdict, TakesTheAccuraciesOfTheStudy) {
+  json about = description();
+  about["accuracy"] = {1e-8, 0.05};
+  const auto penalty = row(verdict_of(about, three_methods()), "Penalty");
+  ASSERT_EQ(penalty.size(), 5u);
+  EXPECT_THAT(penalty[0], HasSubstr("stiffness=1000"));  // the coarsest first
+  EXPECT_THAT(penalty[1], HasSubstr("stiffness=1e9"));
+}
+
+TEST_F(ReportVerdict, SaysHowNearAMethodCame) {
+  const std::vector<json> cells = {cell("penalty", {{"stiffness", 100.0}}, 1e-3, 10),
+                                   cell("monolithic_al", json::object(), 0, 10)};
+  const auto penalty = row(verdict_of(description(), cells), "Penalty");
+  EXPECT_EQ(penalty[1], "best 0.1 %");
+  auto failed = cells;
+  failed[0]["status"] = "cycle";
+  EXPECT_EQ(row(verdict_of(description(), failed), "Penalty")[1], "no run");
+}
+
+TEST_F(ReportVerdict, NamesBothWhereWorkIsTheSame) {
+  const std::vector<json> cells = {cell("penalty", {{"stiffness", 1e5}}, 1e-5, 10),
+                                   cell("monolithic_al", json::object(), 0, 10)};
+  const std::string verdict = verdict_of(description(), cells);
+  EXPECT_THAT(verdict, HasSubstr("<b>Penalty (stiffness=1e5)</b> and <b>Monolithic AL</b>"));
+  EXPECT_THAT(row(verdict, "Penalty")[0], HasSubstr("&#9733;"));
+}
+
+TEST_F(ReportVerdict, NamesTheFasterWhereTheClockDisagrees) {
+  std::vector<json> cells = {cell("penalty", {{"stiffness", 1e5}}, 1e-5, 14),
+                             cell("monolithic_al", json::object(), 0, 10)};
+  cells[0]["cost"]["seconds"]["total"] = 5;
+  const std::string verdict = verdict_of(description(), cells);
+  EXPECT_THAT(verdict, HasSubstr("by the clock Penalty (stiffness=1e5) was faster"));
+  EXPECT_THAT(row(verdict, "Penalty")[0], HasSubstr("fastest"));
+  EXPECT_THAT(row(verdict, "Monolithic AL")[0], HasSubstr("&#9733;"));
+  EXPECT_THAT(row(verdict, "Monolithic AL")[0], Not(HasSubstr("fastest")));
+}
+
+TEST_F(ReportVerdict, IsSilentWithoutErrors) {
+  auto cells = three_methods();
+  for (auto& c : cells) c["errors"] = json::object();
+  EXPECT_EQ(verdict_of(description(), cells), "");
+}
+
+TEST_F(ReportVerdict, ComesFirstOnThePage) {
+  record(description(), three_methods());
+  const std::string text = recorded::without_scripts(page());
+  EXPECT_LT(text.find("class=\"verdict\""), text.find("id=\"findings\""));
+  EXPECT_LT(text.find("What accuracy costs"), text.find("class=\"verdict\""));
+  EXPECT_LT(text.find("id=\"findings\""), text.find("id=\"reading\""));
+}
+
+}  // namespace
+}  // namespace stickslip
