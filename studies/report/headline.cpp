@@ -31,14 +31,9 @@ struct Measure {
   double Cell::*seconds;
 };
 
-/// Factorisations and back-solves of the cell, those of the derivatives included where they are what is measured.
+/// Work and, where they were measured, seconds.
 std::string spent(const Cell& cell, const Measure& measure) {
-  const bool derivative = measure.prefix == "sensitivity:";
-  const double factorizations =
-      cell.count("factorizations") - (derivative ? 0 : cell.count("sensitivity_factorizations"));
-  const double backsolves = cell.count("backsolves") + (derivative ? cell.count("sensitivity_backsolves") : 0);
-  std::string out =
-      counted(std::lround(factorizations), "factorisation") + " and " + counted(std::lround(backsolves), "back-solve");
+  std::string out = work_in_words(cell, measure.prefix == "sensitivity:" ? Of::sensitivities : Of::responses);
   if (cell.*measure.seconds > 0) out += fmt::format(" ({} s)", number(cell.*measure.seconds, 2));
   return out;
 }
@@ -231,6 +226,15 @@ std::vector<std::string> warning_sentences(const Study& study) {
 }
 
 }  // namespace
+
+std::string work_in_words(const Cell& cell, Of of) {
+  const bool derivative = of == Of::sensitivities;
+  const double factorizations =
+      cell.count("factorizations") - (derivative ? 0 : cell.count("sensitivity_factorizations"));
+  const double backsolves = cell.count("backsolves") + (derivative ? cell.count("sensitivity_backsolves") : 0);
+  return counted(std::lround(factorizations), "factorisation") + " and " +
+         counted(std::lround(backsolves), "back-solve");
+}
 
 std::vector<std::string> headline(const Study& study) {
   if (study.cells.empty()) return {"The study has no results yet."};

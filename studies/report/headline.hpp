@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "studies/report/records.hpp"
+#include "studies/report/settings.hpp"
 
 namespace stickslip::report {
 
@@ -12,5 +13,8 @@ namespace stickslip::report {
 /// sensitivities, within one accuracy (1e-6, or the strictest decade any run reached); how penalty's error follows its
 /// stiffness; what the mesh itself costs in accuracy; what failed. At least one sentence.
 std::vector<std::string> headline(const Study& study);
+
+/// "4 factorisations and 19 back-solves" of a run, those of the derivatives included where they are what is asked for.
+std::string work_in_words(const Cell& cell, Of of);
 
 }  // namespace stickslip::report

@@ -8,10 +8,10 @@
 #include <set>
 #include <sstream>
 
+#include "studies/report/headline.hpp"
 #include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
 #include "studies/report/settings.hpp"
-#include "studies/wording.hpp"
 
 namespace stickslip::report {
 namespace {
@@ -172,15 +172,6 @@ std::string entry(const Study& study, const std::string& family, const Measure& 
                                : "");
 }
 
-std::string spent(const Cell& cell, const Measure& measure) {
-  const bool derivative = measure.of == Of::sensitivities;
-  const double factorizations =
-      cell.count("factorizations") - (derivative ? 0 : cell.count("sensitivity_factorizations"));
-  const double backsolves = cell.count("backsolves") + (derivative ? cell.count("sensitivity_backsolves") : 0);
-  return counted(std::lround(factorizations), "factorisation") + " and " +
-         counted(std::lround(backsolves), "back-solve");
-}
-
 /// Who is the cheapest at the first accuracy that any method reaches, and what the others need.
 std::string reason(const Study& study, const Measure& measure) {
   for (const auto& level : measure.levels) {
@@ -192,10 +183,11 @@ std::string reason(const Study& study, const Measure& measure) {
       if (is_least(column, measure, *run))
         winners += (winners.empty() ? "<b>" : " and <b>") + escape(named(*run)) + "</b>";
       else
-        others += (others.empty() ? " where " : ", ") + escape(named(*run)) + " takes " + spent(*run, measure);
+        others +=
+            (others.empty() ? " where " : ", ") + escape(named(*run)) + " takes " + work_in_words(*run, measure.of);
     }
     std::string out = "To " + level.title + " the " + measure.noun() + " is cheapest by " + winners + ": " +
-                      spent(*column.least, measure) + others;
+                      work_in_words(*column.least, measure.of) + others;
     for (const Cell* run : column.runs)
       if (run && is_fastest(column, measure, *run))
         out += fmt::format("; by the clock {} was faster ({} for {})", escape(named(*run)),
