@@ -13,4 +13,9 @@ Trajectory<double> solve(const Model& model, const Slots<double>& slots, const M
   return solve_in<double>(model, slots, method, options, none);
 }
 
+void solve(const Model& model, const Slots<double>& slots, const Method& method, const RunOptions& options,
+           Workspace<double>& workspace, Trajectory<double>& trajectory) {
+  solve_in<double>(model, slots, method, options, workspace, trajectory);
+}
+
 }  // namespace stickslip

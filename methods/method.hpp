@@ -11,5 +11,8 @@ Trajectory<double> solve(const Model& model, const Slots<double>& slots, const M
                          const RunOptions& options, Workspace<double>& workspace);
 Trajectory<double> solve(const Model& model, const Slots<double>& slots, const Method& method,
                          const RunOptions& options = {});
+/// The same into an empty trajectory, which grows step by step (RunOptions::on_step).
+void solve(const Model& model, const Slots<double>& slots, const Method& method, const RunOptions& options,
+           Workspace<double>& workspace, Trajectory<double>& trajectory);
 
 }  // namespace stickslip

@@ -7,9 +7,8 @@
 ///   R(u, lambda) + alpha D (u - u_k) = 0,   u_{k+1} = u      an implicit Euler step of  D du/ds = -R,  ds = 1 / alpha
 ///
 /// by the method itself, with D the local stiffness at the contact nodes, the same in all directions. Its tangent is
-/// regular, and for a large alpha the points know little of each other. alpha starts at 1, falls to a fifth after each
-/// step and grows eightfold where one fails. After each step the method tries without the term: nothing but a solution
-/// of the unmodified equations counts.
+/// regular, and for a large alpha the points know little of each other (alpha: methods/motion_pace.hpp). After each
+/// step the method tries without the term: nothing but a solution of the unmodified equations counts.
 ///
 /// Where there may be several solutions (a tangent on the way has the other sign of its determinant, friction may hold
 /// a body between surfaces, or mu reaches a critical value), the one is taken in whose branches the motion comes to
@@ -20,6 +19,7 @@
 #pragma once
 
 #include "methods/monolithic.hpp"
+#include "methods/motion_pace.hpp"
 #include "methods/penalty.hpp"
 #include "methods/solutions.hpp"
 #include "methods/statics.hpp"
@@ -54,11 +54,12 @@ bool is_wedged(const Model& model, const Slots<T>& slots) {
   });
 }
 
-/// Adds to an increment what an attempt at it cost.
+/// Adds to an increment what an attempt at it cost that was made before.
 template <class T>
-void add_cost(const Increment<T>& attempt, std::vector<IterationRecord>& history, int& iterations) {
-  history.insert(history.end(), attempt.history.begin(), attempt.history.end());
-  iterations += attempt.newton;
+void add_cost(const Increment<T>& before, Increment<T>& increment) {
+  increment.history.insert(increment.history.begin(), before.history.begin(), before.history.end());
+  increment.newton += before.newton;
+  increment.reversed |= before.reversed;
 }
 
 /// Whether two states of an increment are the same solution, as far as a method's tolerance tells.
@@ -115,37 +116,32 @@ std::optional<Solutions<T>> try_all_branches(const M& method, Run<T, E>& run, co
   return solutions;
 }
 
-/// The increment in the solution that the motion comes to rest in, found by trying all branches; or why there is none.
-/// `direct`: what the method found on its own; `before`: scales before that. Nothing where branches can't be tried, or
-/// do not lead to a solution; nor, but as a last resort, where there may be solutions that they do not find.
+/// An increment that `direct` did not solve and that has no solution, with the reason.
+template <class T>
+Increment<T> without_solution(Increment<T> direct, bool feasible) {
+  direct.status = feasible ? Status::no_equilibrium : Status::infeasible;
+  direct.message = feasible ? "no combination of open, stick and slip of the contact points balances the loads"
+                            : "the contacts contradict one another: whatever the bodies do, some point penetrates";
+  return direct;
+}
+
+/// The increment in the solution of all that the motion comes to rest in; nothing where it comes to none, or the method
+/// does not stay there. `direct`: what the method found on its own; `before`: scales before that.
 template <class M, class T, class E>
 std::optional<Increment<T>> take_resting_solution(const M& method, Run<T, E>& run, const State<T>& previous,
                                                   const std::vector<double>& factor, double time,
                                                   const Increment<T>& direct, const RunScales& before,
-                                                  bool as_last_resort = false) {
-  const auto solutions = try_all_branches(method, run, previous, factor, time);
-  if (!solutions || (!solutions->complete && !as_last_resort)) return std::nullopt;
-  if (solutions->states.empty()) {
-    if (direct.usable() || !solutions->complete) return std::nullopt;
-    Increment<T> failed = direct;
-    failed.status = solutions->feasible ? Status::no_equilibrium : Status::infeasible;
-    failed.message = solutions->feasible
-                         ? "no combination of open, stick and slip of the contact points balances the loads"
-                         : "the contacts contradict one another: whatever the bodies do, some point penetrates";
-    return failed;
-  }
-  if (!solutions->resting) return std::nullopt;
-  const State<T>& target = solutions->states[*solutions->resting];
-  if (direct.usable() && same_solution(run.model, direct.state, target, solutions->motion)) return direct;
+                                                  const Solutions<T>& solutions) {
+  if (!solutions.resting) return std::nullopt;
+  const State<T>& target = solutions.states[*solutions.resting];
+  if (direct.usable() && same_solution(run.model, direct.state, target, solutions.motion)) return direct;
   const RunScales after = std::exchange(run.account.scales, before);
   auto found = solve_increment(method, run, previous, factor, time, Start<T>{target, {}});
-  if (!found.usable() || !same_solution(run.model, found.state, target, solutions->motion)) {
+  if (!found.usable() || !same_solution(run.model, found.state, target, solutions.motion)) {
     run.account.scales = after;
     return std::nullopt;
   }
-  found.history.insert(found.history.begin(), direct.history.begin(), direct.history.end());
-  found.newton += direct.newton;
-  found.reversed |= direct.reversed;
+  add_cost(direct, found);
   return found;
 }
 
@@ -156,9 +152,6 @@ std::optional<Increment<T>> take_resting_solution(const M& method, Run<T, E>& ru
 template <class M, class T, class E>
 Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& previous, const std::vector<double>& factor,
                            double time, bool several) {
-  constexpr double slower = 8, faster = 0.2, slowest = 1e9, fastest = 1e-15;  // below it the term is rounding
-  constexpr double farthest = 1;
-  constexpr int most_steps = 300;
   const Vector<double> D = damping(run.model, run.slots);
   const RunScales scales = run.account.scales;
   std::vector<IterationRecord> history;
@@ -169,29 +162,30 @@ Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& prev
     Start<T> start{from, {}, rough_step};
     if (alpha > 0) start.anchor = {alpha * D, to_compact(run.model, from.displacement)};
     auto found = solve_increment(method, run, previous, factor, time, start);
-    add_cost(found, history, iterations);
+    history.insert(history.end(), found.history.begin(), found.history.end());
+    iterations += found.newton;
     return found;
+  };
+  const auto distance = [&](const State<T>& from, const State<T>& to) {
+    return largest_nodal_norm(Vector<T>(to.displacement - from.displacement), run.model.dimension);
   };
   Increment<T> result;
   State<T> rest = previous;
-  double alpha = 1, way = 0;
-  for (int step = 0; step < most_steps && alpha >= fastest && alpha <= slowest; ++step) {
-    auto moved = attempt(rest, alpha);
-    const double length =
-        largest_nodal_norm(Vector<T>(moved.state.displacement - rest.displacement), run.model.dimension);
-    const bool strays = several && way > 0 && length > farthest * way;
-    if (!moved.usable() || strays) {
-      alpha *= slower;
+  MotionPace pace;
+  while (pace.goes_on()) {
+    auto moved = attempt(rest, pace.alpha());
+    const double length = distance(rest, moved.state);
+    if (!moved.usable() || (several && !pace.allows(length))) {
+      pace.fail();
       if (moved.usable()) moved.status = Status::cycle;
       moved.cut_off = false;  // a step is no solution, whatever becomes of it
       result = std::move(moved);
       continue;
     }
-    way += length;
+    pace.move(length);
     rest = std::move(moved.state);
     result = attempt(rest, 0);
-    const bool near = largest_nodal_norm(Vector<T>(result.state.displacement - rest.displacement),
-                                         run.model.dimension) <= farthest * way;
+    const bool near = pace.is_near(distance(rest, result.state));
     const bool settled = !several || (near && result.state.contact.state == rest.contact.state);
     if (result.usable() && settled) break;
     if (result.usable()) {
@@ -202,7 +196,7 @@ Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& prev
     if (length == 0 && rough_step)  // so near to rest that a rough step begins solved
       rough_step = false;
     else
-      alpha *= faster;
+      pace.hasten();
   }
   result.history = std::move(history);
   result.newton = iterations;
@@ -228,8 +222,14 @@ Increment<T> find_increment(const M& method, Run<T, E>& run, const State<T>& pre
     direct.status = Status::no_equilibrium;
     return direct;
   }
-  if (auto taken = detail::take_resting_solution(method, run, previous, factor, time, direct, before))
-    return std::move(*taken);
+  const auto all = detail::try_all_branches(method, run, previous, factor, time);
+  const auto take_among_all = [&] {
+    return detail::take_resting_solution(method, run, previous, factor, time, direct, before, *all);
+  };
+  if (all && all->complete) {
+    if (all->states.empty() && !solved) return detail::without_solution(std::move(direct), all->feasible);
+    if (auto taken = take_among_all()) return std::move(*taken);
+  }
   const RunScales after = std::exchange(run.account.scales, before);
   auto rest = detail::follow_motion(method, run, previous, factor, time, several);
   // a multiplier that grows for ever makes any violation small against it
@@ -237,15 +237,14 @@ Increment<T> find_increment(const M& method, Run<T, E>& run, const State<T>& pre
   const bool grown = direct.status == Status::infeasible && values(rest.state.contact.traction).norm() >
                                                                 runaway * values(direct.state.contact.traction).norm();
   const bool better = rest.usable() && !grown;
-  if (!better && !solved)
-    if (auto taken = detail::take_resting_solution(method, run, previous, factor, time, direct, before, true))
+  if (!better && !solved && all && !all->complete)  // as a last resort
+    if (auto taken = take_among_all()) {
+      detail::add_cost(rest, *taken);
       return std::move(*taken);
+    }
   if (!better) run.account.scales = after;
   auto& taken = better ? rest : direct;
-  const auto& other = better ? direct : rest;
-  taken.history.insert(taken.history.begin(), other.history.begin(), other.history.end());
-  taken.newton += other.newton;
-  taken.reversed |= other.reversed;
+  detail::add_cost(better ? direct : rest, taken);
   return std::move(taken);
 }
 

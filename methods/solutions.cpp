@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "methods/motion_pace.hpp"
+
 namespace stickslip {
 namespace {
 
@@ -215,18 +217,15 @@ bool is_feasible(const ContactProblem& problem) {
 }
 
 std::optional<std::size_t> resting_solution(const ContactProblem& problem, const std::vector<BranchSolution>& all) {
-  constexpr double slower = 8, faster = 0.2, slowest = 1e9, fastest = 1e-15;
-  constexpr int most_steps = 300;
-  int moves = 0;
+  constexpr double rounding = 1e-9;  // of the largest solution
   if (all.empty()) return std::nullopt;
   if (all.size() == 1) return 0;
-  constexpr double rounding = 1e-9;  // of the largest solution
   double reach = 0;
   for (const auto& solution : all) reach = std::max(reach, solution.increment.norm());
   Vector<double> v = Vector<double>::Zero(problem.load.size());
-  double alpha = 1, way = rounding * reach;
-  for (int step = 0; step < most_steps && alpha >= fastest && alpha <= slowest; ++step) {
-    const auto moved = all_solutions(problem, alpha, v);
+  MotionPace pace(rounding * reach);
+  while (pace.goes_on()) {
+    const auto moved = all_solutions(problem, pace.alpha(), v);
     const BranchSolution* next = nullptr;
     double length = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; moved && k < moved->size(); ++k)
@@ -234,16 +233,15 @@ std::optional<std::size_t> resting_solution(const ContactProblem& problem, const
         length = distance;
         next = &(*moved)[k];
       }
-    if (!next || (moves > 0 && length > way)) {  // it could as well belong to another branch
-      alpha *= slower;
+    if (!next || !pace.allows(length)) {
+      pace.fail();
       continue;
     }
-    ++moves;
-    way += length;
+    pace.move(length);
     v = next->increment;
     for (std::size_t k = 0; k < all.size(); ++k)
-      if (!all[k].reversed && all[k].state == next->state && (all[k].increment - v).norm() <= way) return k;
-    alpha *= faster;
+      if (!all[k].reversed && all[k].state == next->state && pace.is_near((all[k].increment - v).norm())) return k;
+    pace.hasten();
   }
   return std::nullopt;
 }

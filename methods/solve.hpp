@@ -180,7 +180,14 @@ void march(const M& method, const Model& model, const Slots<T>& slots, E& engine
       trajectory.status = increment.status;
       trajectory.message = increment.message;
     }
-    if (options.on_step) options.on_step();
+    if (options.on_step) {
+      double aside = 0;  // what follows a run is no part of it
+      {
+        const Stopwatch clock(aside);
+        options.on_step();
+      }
+      trajectory.seconds.total -= aside;
+    }
     if (!reached) break;
   }
   if (!options.replay.empty())
@@ -228,13 +235,12 @@ void make_engine(const Model& model, const Slots<T>& slots, const Method& method
                            options.backend);
 }
 
-/// Runs a method through a model. pre: its options go together (`conflict`). `model` and `slots` must outlive the
-/// workspace's engine.
+/// Runs a method through a model into an empty trajectory, which grows step by step. pre: the method's options go
+/// together (`conflict`). `model` and `slots` must outlive the workspace's engine.
 template <class T>
-Trajectory<T> solve_in(const Model& model, const Slots<T>& slots, const Method& method, const RunOptions& options,
-                       Workspace<T>& workspace) {
+void solve_in(const Model& model, const Slots<T>& slots, const Method& method, const RunOptions& options,
+              Workspace<T>& workspace, Trajectory<T>& trajectory) {
   assert(std::visit([](const auto& m) { return conflict(m).option.empty(); }, method));
-  Trajectory<T> trajectory;
   const Stopwatch total(trajectory.seconds.total);
   const bool reused = workspace.condensation != nullptr;
   {
@@ -248,6 +254,12 @@ Trajectory<T> solve_in(const Model& model, const Slots<T>& slots, const Method& 
                    *workspace.engine);
       },
       method);
+}
+template <class T>
+Trajectory<T> solve_in(const Model& model, const Slots<T>& slots, const Method& method, const RunOptions& options,
+                       Workspace<T>& workspace) {
+  Trajectory<T> trajectory;
+  solve_in(model, slots, method, options, workspace, trajectory);
   return trajectory;
 }
 

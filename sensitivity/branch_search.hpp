@@ -19,13 +19,13 @@ template <class M>
 constexpr bool is_truncated(const M&) {
   return false;
 }
-inline bool is_truncated(const UzawaAL& method) { return method.sensitivity == UzawaAL::Sensitivity::truncated; }
+inline bool is_truncated(const UzawaAL& method) { return method.scheme() == UzawaAL::Sensitivity::truncated; }
 template <class M>
 constexpr double oversize_of(const M&) {
   return 1;
 }
 inline double oversize_of(const UzawaAL& method) {
-  const bool oversized = method.sensitivity == UzawaAL::Sensitivity::oversized;
+  const bool oversized = method.scheme() == UzawaAL::Sensitivity::oversized;
   return oversized ? method.oversize.value_or(UzawaAL::automatic_oversize) : 1;
 }
 
@@ -59,7 +59,7 @@ class BranchSearch {
 
   /// Leaves the derivative with the branches that it confirms in the block, and them in `at`.
   bool run() {
-    if (weak_.empty()) return differentiate_increment(method_, problem_, previous_, increment_);
+    if (weak_.empty()) return differentiate_alone(method_, problem_, previous_, increment_);
     const auto found = at_.contact;
     if (by_flipping()) return true;
     if (!unsettled_) {
@@ -85,7 +85,7 @@ class BranchSearch {
 
   std::optional<Standing> differentiate() {
     problem_.status = Status::singular;
-    if (!differentiate_increment(method_, problem_, previous_, increment_)) {
+    if (!differentiate_alone(method_, problem_, previous_, increment_)) {
       unsettled_ |= problem_.status == Status::cap;
       return std::nullopt;
     }
@@ -165,7 +165,7 @@ class BranchSearch {
     constexpr double most = 1e3;  // 1e-7 of the derivatives: a point is weak up to 1e-8, as its derivative then is
     if (!(least_ <= most)) return false;
     at_.contact = best_;
-    return differentiate_increment(method_, problem_, previous_, increment_);
+    return differentiate_alone(method_, problem_, previous_, increment_);
   }
 
   const M& method_;
@@ -193,7 +193,7 @@ bool differentiate_side(const M& method, Differentiation<E>& problem, const Stat
     if (branches.run()) return true;
     if (!held) return false;
     branches.hold();
-    return differentiate_increment(method, problem, previous, of);
+    return differentiate_alone(method, problem, previous, of);
   };
   if (!detail::is_truncated(method)) return search(increment, increment.state, increment.rho_factor);
   // each augmentation starts from the derivative that the one before left

@@ -1,17 +1,16 @@
 #include "sensitivity/differentiate.hpp"
 
 #include "core/model/response.hpp"
-#include "sensitivity/monolithic.hpp"
+#include "sensitivity/branch_search.hpp"
 #include "sensitivity/one_sided.hpp"
-#include "sensitivity/penalty.hpp"
-#include "sensitivity/uzawa.hpp"
 
 namespace stickslip {
 namespace {
 
 /// Derivatives of an increment with those of responses that can tie replaced by what they are on one side, where that
 /// is more than rounding of the motion makes of it.
-Matrix<double> with_ties(const Model& model, const std::vector<ParameterBlock>& blocks, Matrix<double> of, Ties side) {
+Matrix<double> with_ties(const Model& model, const std::vector<ParameterBlock>& blocks,
+                         const std::vector<State<Direction>>& at, Matrix<double> of, Ties side) {
   constexpr double rounding = 1e-9;
   const auto& responses = model.scene.responses;
   for (int i = 0; i < static_cast<int>(responses.size()); ++i) {
@@ -23,10 +22,10 @@ Matrix<double> with_ties(const Model& model, const std::vector<ParameterBlock>& 
       per_length = std::max(per_length, value(slots.stiffness[p]) / value(slots.geometry[p].area));
     }
     for (std::size_t b = 0; b < blocks.size(); ++b) {
-      const Direction on_side = evaluate_response(model, blocks[b].slots, i, blocks[b].current, {}, side);
+      const Direction on_side = evaluate_response(model, blocks[b].slots, i, at[b], {}, side);
       const auto first = static_cast<Eigen::Index>(b) * directions;
       Direction::Gradient motion = Direction::Gradient::Zero();
-      for (const auto& u : blocks[b].current.displacement) motion = motion.max(u.d.abs());
+      for (const auto& u : at[b].displacement) motion = motion.max(u.d.abs());
       for (Eigen::Index j = first; j < std::min(first + directions, of.cols()); ++j) {
         const double apart = std::abs(on_side.d[j - first] - of(i, j));
         if (apart > rounding * per_length * motion[j - first]) of(i, j) = on_side.d[j - first];
@@ -36,68 +35,160 @@ Matrix<double> with_ties(const Model& model, const std::vector<ParameterBlock>& 
   return of;
 }
 
-template <class E, class M>
-void run(const M& method, Differentiation<E>& problem, const Trajectory<double>& trajectory, Gradients& gradients) {
-  const Model& model = problem.model;
-  const State<double>* previous = &trajectory.initial;
-  const auto& asked = model.scene.responses;
-  const bool ties = std::any_of(asked.begin(), asked.end(), can_tie);
-  for (const auto& increment : trajectory.increments) {
-    if (!differentiate_increment(method, problem, *previous, increment)) {
-      gradients.status = problem.status;
-      gradients.message = problem.message;
-      return;
-    }
-    if (problem.record) gradients.records.push_back(*problem.record);
-    std::vector<Vector<Direction>> responses;
-    for (auto& block : problem.blocks)
-      responses.push_back(evaluate_responses(model, block.slots, block.current, increment.time));
-    gradients.of.push_back(gather(
-        problem.blocks, problem.parameters, [&](auto&, int b) -> auto& { return responses[b]; }));
-    if (ties) {
-      gradients.below.push_back(with_ties(model, problem.blocks, gradients.of.back(), Ties::below));
-      gradients.above.push_back(with_ties(model, problem.blocks, gradients.of.back(), Ties::above));
-    }
-    gradients.last_displacement = gather(
-        problem.blocks, problem.parameters,
-        [](ParameterBlock & block, int) -> auto& { return block.current.displacement; });
-    for (auto& block : problem.blocks) std::swap(block.previous, block.current);
-    previous = &increment.state;
-  }
+/// Whether the tangents that a scheme solves with are those of the method's last iterations.
+template <class M>
+constexpr bool keeps_tangents(const M&) {
+  return true;
+}
+bool keeps_tangents(const UzawaAL& method) {
+  return method.scheme() == UzawaAL::Sensitivity::iterated || method.scheme() == UzawaAL::Sensitivity::truncated;
+}
+
+/// Whether a factorisation of the engine costs as much as many solves.
+template <class T>
+constexpr bool has_costly_factors(const CondensedEngine<T>&) {
+  return false;
+}
+template <class T>
+constexpr bool has_costly_factors(const SparseEngine<T>&) {
+  return true;
 }
 
 }  // namespace
 
+struct Derivatives::Progress {
+  const Model& model;
+  const Slots<double>& slots;
+  const Method& method;
+  Workspace<double>& workspace;
+  Gradients gradients;
+  std::vector<ParameterBlock> blocks;
+  std::size_t done = 0;    ///< increments
+  double largest = 0;      ///< traction_scale of those
+  bool postponed = false;  ///< what is left needs the whole run
+  bool failed = false;
+
+  int parameters() const { return static_cast<int>(model.scene.parameters.size()); }
+
+  void begin() {
+    for (int first = 0; first < parameters(); first += directions) {
+      std::vector<int> of_block;
+      for (int j = first; j < std::min(parameters(), first + directions); ++j) of_block.push_back(j);
+      ParameterBlock block{
+          make_slots<Direction>(model, seeded(model.scene, of_block)), initial_state<Direction>(model), {}};
+      block.previous.displacement.resize(0);  // those of the increments are expanded together
+      block.current = block.previous;
+      blocks.push_back(std::move(block));
+    }
+  }
+
+  /// Differentiates the increments up to `end`, as many together as their columns fit into one solve.
+  void advance(const Trajectory<double>& trajectory, std::size_t end) {
+    constexpr int columns = 16;  // more save little time and take much memory
+    if (blocks.empty()) begin();
+    const std::size_t together = std::max(1, columns / parameters());
+    std::visit(
+        [&](const auto& m) {
+          std::visit(
+              [&](auto& engine) {
+                while (done < end && !failed) take(m, engine, trajectory, std::min(end, done + together));
+              },
+              *workspace.engine);
+        },
+        method);
+  }
+
+  template <class M, class E>
+  void take(const M& m, E& engine, const Trajectory<double>& trajectory, std::size_t end) {
+    Differentiation<E> problem{model, slots, engine, blocks, parameters(), {}};
+    const auto& increments = trajectory.increments;
+    std::vector<PseudoLoad> loads;
+    if (!detail::is_truncated(m)) {  // (which has one for each augmentation)
+      for (std::size_t n = done; n < end; ++n)
+        loads.push_back(pseudo_load(problem, increments[n].state.displacement, increments[n].time));
+      reduce(problem, loads);
+    }
+    std::vector<Unexpanded> unexpanded;
+    std::vector<std::vector<State<Direction>>> reached;
+    for (std::size_t n = done; n < end && !failed; ++n) {
+      if (!loads.empty()) problem.prepared = std::move(loads[n - done]);
+      const State<double>& previous = n == 0 ? trajectory.initial : increments[n - 1].state;
+      failed = !differentiate_increment(m, problem, previous, increments[n]);
+      if (failed) {
+        gradients.status = problem.status;
+        gradients.message = problem.message;
+        break;
+      }
+      if (problem.record) gradients.records.push_back(*problem.record);
+      unexpanded.push_back(std::move(*problem.unexpanded));
+      reached.emplace_back();
+      for (auto& block : blocks) {
+        reached.back().push_back(block.current);
+        std::swap(block.previous, block.current);
+      }
+    }
+    auto displacements = expand(problem, std::move(unexpanded));
+    for (std::size_t k = 0; k < displacements.size(); ++k) {
+      for (std::size_t b = 0; b < blocks.size(); ++b) reached[k][b].displacement = std::move(displacements[k][b]);
+      evaluate(reached[k], increments[done++].time);
+    }
+    gradients.counters += problem.counters;
+  }
+
+  void evaluate(const std::vector<State<Direction>>& at, double time) {
+    std::vector<Vector<Direction>> responses;
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+      responses.push_back(evaluate_responses(model, blocks[b].slots, at[b], time));
+    gradients.of.push_back(gather(
+        blocks, parameters(), [&](auto&, int b) -> auto& { return responses[b]; }));
+    const auto& asked = model.scene.responses;
+    if (std::any_of(asked.begin(), asked.end(), can_tie)) {
+      gradients.below.push_back(with_ties(model, blocks, at, gradients.of.back(), Ties::below));
+      gradients.above.push_back(with_ties(model, blocks, at, gradients.of.back(), Ties::above));
+    }
+    gradients.last_displacement = gather(
+        blocks, parameters(), [&](auto&, int b) -> auto& { return at[b].displacement; });
+  }
+};
+
+Derivatives::Derivatives(const Model& model, const Slots<double>& slots, const Method& method,
+                         Workspace<double>& workspace)
+    : progress_(new Progress{model, slots, method, workspace, {}, {}}) {}
+Derivatives::~Derivatives() = default;
+
+void Derivatives::follow(const Trajectory<double>& trajectory) {
+  Progress& now = *progress_;
+  if (now.parameters() == 0 || now.postponed) return;
+  const Stopwatch time(now.gradients.seconds);
+  const bool worthwhile =
+      std::visit([](const auto& m) { return keeps_tangents(m); }, now.method) &&
+      std::visit([](const auto& engine) { return has_costly_factors(engine); }, *now.workspace.engine);
+  const auto& increments = trajectory.increments;
+  for (std::size_t n = now.done; n < increments.size() && increments[n].usable(); ++n) {
+    now.largest = std::max(now.largest, traction_scale(now.model, now.slots, increments[n].state));
+    now.postponed |= !worthwhile || has_ties(now.model, now.slots, now.method, increments[n], now.largest);
+    if (now.postponed) return;
+    now.advance(trajectory, n + 1);
+  }
+}
+
+Gradients Derivatives::finish(const Trajectory<double>& trajectory) {
+  Progress& now = *progress_;
+  if (now.parameters() == 0) return {};
+  {
+    const Stopwatch time(now.gradients.seconds);
+    Counters search;
+    const auto consistent = consistent_at_ties(now.model, now.slots, now.method, trajectory, now.workspace, search);
+    now.advance(consistent ? *consistent : trajectory, trajectory.increments.size());
+    now.gradients.search = search;
+    now.gradients.counters += search;
+  }
+  return std::move(now.gradients);
+}
+
 Gradients differentiate(const Model& model, const Slots<double>& slots, const Method& method,
                         const Trajectory<double>& trajectory, Workspace<double>& workspace) {
-  Gradients gradients;
-  const int parameters = static_cast<int>(model.scene.parameters.size());
-  if (parameters == 0) return gradients;
-  const Stopwatch time(gradients.seconds);
-  const auto consistent = consistent_at_ties(model, slots, method, trajectory, workspace, gradients.search);
-  std::vector<ParameterBlock> blocks;
-  for (int b = 0; b * directions < parameters; ++b) {
-    std::vector<int> of_block;
-    for (int j = b * directions; j < std::min(parameters, (b + 1) * directions); ++j) of_block.push_back(j);
-    ParameterBlock block{
-        make_slots<Direction>(model, seeded(model.scene, of_block)), initial_state<Direction>(model), {}};
-    block.current = block.previous;
-    blocks.push_back(std::move(block));
-  }
-  std::visit(
-      [&](const auto& m) {
-        std::visit(
-            [&](auto& engine) {
-              using E = std::decay_t<decltype(engine)>;
-              Differentiation<E> problem{model, slots, engine, blocks, parameters, {}};
-              run(m, problem, consistent ? *consistent : trajectory, gradients);
-              gradients.counters = problem.counters;
-              gradients.counters += gradients.search;
-            },
-            *workspace.engine);
-      },
-      method);
-  return gradients;
+  return Derivatives(model, slots, method, workspace).finish(trajectory);
 }
 
 }  // namespace stickslip

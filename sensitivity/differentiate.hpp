@@ -2,6 +2,7 @@
 /// that matches the method that ran.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,26 @@ struct Gradients {
   double seconds = 0;
 };
 
-/// `workspace`: that of the run (its engine is used and left with another factor). The trajectory is not changed.
+/// Derivatives of a run: all at its end, or as it goes, where a step's last factor is worth more than solving for many
+/// steps at once.
+class Derivatives {
+ public:
+  /// All must outlive it; the workspace is that of the run (its engine is used, and left with another factor).
+  Derivatives(const Model& model, const Slots<double>& slots, const Method& method, Workspace<double>& workspace);
+  ~Derivatives();
+
+  /// Takes in what a run has reached, after each of its steps, while the engine holds the last increment's factor.
+  void follow(const Trajectory<double>& trajectory);
+  /// The derivatives of the whole run, which follow() may have had parts of.
+  Gradients finish(const Trajectory<double>& trajectory);
+
+ private:
+  struct Progress;
+  std::unique_ptr<Progress> progress_;
+};
+
+/// The derivatives of a run that has ended. `workspace`: that of the run (its engine is used and left with another
+/// factor). The trajectory is not changed.
 Gradients differentiate(const Model& model, const Slots<double>& slots, const Method& method,
                         const Trajectory<double>& trajectory, Workspace<double>& workspace);
 

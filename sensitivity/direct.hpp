@@ -10,65 +10,10 @@
 /// [MTV94], [SLK10]
 #pragma once
 
-#include <optional>
-
-#include "sensitivity/differentiate.hpp"
+#include "sensitivity/differentiation.hpp"
 #include "sensitivity/tangent.hpp"
 
 namespace stickslip {
-
-/// Parameters differentiated in one sweep.
-inline constexpr int directions = 4;
-using Direction = Dual<directions>;
-
-/// Numbers of the scene with up to `directions` parameters seeded, each in a direction of its own.
-inline Numbers<Direction> seeded(const Scene& scene, const std::vector<int>& parameters) {
-  auto numbers = scene.as<Direction>();
-  for (std::size_t d = 0; d < parameters.size(); ++d)
-    for (const auto& [slot, weight] : scene.parameters[parameters[d]].slots) numbers.at_slot[slot].d[d] += weight;
-  return numbers;
-}
-
-/// Slots and running state of up to `directions` parameters.
-struct ParameterBlock {
-  Slots<Direction> slots;
-  State<Direction> previous, current;
-};
-
-/// Everything a scheme reads to differentiate one increment.
-template <class E>
-struct Differentiation {
-  const Model& model;
-  const Slots<double>& slots;
-  E& engine;
-  std::vector<ParameterBlock>& blocks;
-  int parameters = 0;
-  Counters counters;
-  Status status = Status::singular;  ///< where a scheme fails: that it could not factorise, or cap
-  std::string message;
-  std::optional<SchemeRecord> record;  ///< of the last increment
-};
-
-/// A vector as dual numbers without derivative.
-inline Vector<Direction> lift(const Vector<double>& v) {
-  return v.unaryExpr([](double x) { return Direction(x); });
-}
-
-/// Columns of derivatives out of the blocks, and back. `pick` selects the dual vector of a block.
-template <class Pick>
-Matrix<double> gather(std::vector<ParameterBlock>& blocks, int parameters, Pick&& pick) {
-  Matrix<double> out;
-  for (int j = 0; j < parameters; ++j) {
-    const Vector<Direction>& v = pick(blocks[j / directions], j / directions);
-    if (j == 0) out.resize(v.size(), parameters);
-    for (Eigen::Index i = 0; i < v.size(); ++i) out(i, j) = v[i].d[j % directions];
-  }
-  return out;
-}
-inline void add_derivatives(Vector<Direction>& v, const Matrix<double>& columns, int block) {
-  for (int d = 0; d < directions && block * directions + d < columns.cols(); ++d)
-    for (Eigen::Index i = 0; i < v.size(); ++i) v[i].d[d] += columns(i, block * directions + d);
-}
 
 /// rho of a method with its derivatives, per block; `factor`: adaption, empty for none.
 template <class M, class E>
@@ -91,12 +36,18 @@ class LinearisedEquilibrium {
                         bool unknown, const Vector<double>& previous_placement);
 
   bool valid() const { return valid_; }
+  /// Whether the last solve has solved its problem. A singular tangent has solutions where constraints repeat one
+  /// another, and none where the response jumps or turns with an infinite slope: then this is false, with the message.
+  bool is_solved() {
+    if (!consistent_) problem_.message = "the tangent of the converged state is singular: the derivative is infinite";
+    return consistent_;
+  }
 
   /// Solves for the derivative given D lambda (per block; read as a seed, also where lambda is unknown: then zero) and
   /// returns the fields t_hat with all derivatives in. Adds D lambda to `lambda` where it is unknown.
   std::vector<ContactField<Direction>> solve(std::vector<Vector<Direction>>& lambda);
 
-  /// Completes the state of every block from the last solve.
+  /// Completes the state of every block from the last solve, but for the displacements, which are left unexpanded.
   void settle(const std::vector<ContactField<Direction>>& fields, const std::vector<Vector<Direction>>& lambda);
 
   /// Largest derivatives, by parameter, of the contact displacements, then and now, and of the forces of bodies and
@@ -107,10 +58,11 @@ class LinearisedEquilibrium {
         problem_.parameters, [&](auto& block, int) -> auto& { return block.previous.contact.placement; });
     return largest(compact_).cwiseMax(largest(then));
   }
-  Vector<double> load() const { return largest(reduced_); }
+  Vector<double> load() const { return largest(load_.reduced); }
 
  private:
   static constexpr int refinements = 2;
+  static constexpr double unsolved = 1e-6;  // share of the first rows that a solvable problem does not keep
   static Vector<double> largest(const Matrix<double>& columns) {
     if (columns.rows() == 0) return Vector<double>::Zero(columns.cols());
     return columns.cwiseAbs().colwise().maxCoeff();
@@ -136,10 +88,9 @@ class LinearisedEquilibrium {
   const RegularisationField<double>& rho_;
   ConeRadius cone_;
   double time_;
-  bool unknown_, valid_ = false;
-  bool redundant_ = false;            ///< constraints repeat one another: the tangent yields, and is used twice
-  std::vector<Vector<Direction>> u_;  ///< per block: value, and the derivative of prescribed motion
-  Matrix<double> bulk_, reduced_;     ///< pseudo-load of the bodies, all dofs and engine rows
+  bool unknown_, valid_ = false, consistent_ = true;
+  bool redundant_ = false;  ///< constraints repeat one another: the tangent yields, and is used twice
+  PseudoLoad load_;
   Matrix<double> increment_, compact_;
 };
 
@@ -157,20 +108,16 @@ LinearisedEquilibrium<E>::LinearisedEquilibrium(Differentiation<E>& problem, con
       unknown_(unknown) {
   const Model& model = problem.model;
   const ContactInput<double> primal{model, problem.slots, rho, previous_placement, cone, time};
-  valid_ = factorise_converged(problem, primal, at, unknown, redundant_);
+  valid_ = factorise_converged(problem, primal, at, unknown, false, redundant_);
   if (!valid_) return;
-  std::vector<Vector<Direction>> rows;
-  for (auto& block : problem.blocks) {
-    Vector<Direction> u = lift(at.displacement), prescribed = u;
-    prescribe(model, block.slots, time, prescribed);
-    for (Eigen::Index i = 0; i < u.size(); ++i) u[i].d = prescribed[i].d;
-    const Vector<Direction> balance = bulk_forces(model, block.slots, u) - external_forces(model, block.slots, time);
-    rows.push_back(into_frames(model, block.slots.frames, Layout::all, balance));
-    u_.push_back(std::move(u));
+  if (problem.prepared) {
+    load_ = std::move(*problem.prepared);
+    problem.prepared.reset();
+    return;
   }
-  bulk_ = gather(
-      problem.blocks, problem.parameters, [&](auto&, int b) -> auto& { return rows[b]; });
-  reduced_ = problem.engine.reduce(bulk_);
+  std::vector<PseudoLoad> alone{pseudo_load(problem, at.displacement, time)};
+  reduce(problem, alone);
+  load_ = std::move(alone[0]);
 }
 
 template <class E>
@@ -178,9 +125,10 @@ std::vector<ContactField<Direction>> LinearisedEquilibrium<E>::solve(std::vector
   const Model& model = problem_.model;
   const int blocks = static_cast<int>(problem_.blocks.size()), parameters = problem_.parameters;
   std::vector<Vector<Direction>> compact;
-  for (int b = 0; b < blocks; ++b) compact.push_back(to_compact(model, u_[b]));
+  for (int b = 0; b < blocks; ++b) compact.push_back(to_compact(model, load_.displacement[b]));
   increment_ = Matrix<double>();
   Rows rows = evaluate(compact, lambda);
+  const Vector<double> asked = largest(rows.u).cwiseMax(largest(rows.l));
   for (int pass = 0;; ++pass) {
     const auto step = problem_.engine.solve({-rows.u, -rows.l});
     problem_.counters.sensitivity_backsolves += parameters;
@@ -197,8 +145,10 @@ std::vector<ContactField<Direction>> LinearisedEquilibrium<E>::solve(std::vector
       if (unknown_) add_derivatives(lambda[b], multiplier, b);
     }
     rows = evaluate(compact, lambda);
-    if (!unknown_ || pass == refinements || (rows.accurate && !redundant_)) return std::move(rows.fields);
+    if (!unknown_ || pass == refinements || (rows.accurate && !redundant_)) break;
   }
+  if (redundant_) consistent_ = ((largest(rows.u).cwiseMax(largest(rows.l)) - asked * unsolved).array() <= 0).all();
+  return std::move(rows.fields);
 }
 
 /// Rows of the derivative problem at the derivatives reached so far. `accurate`: what is left of the displacement rows
@@ -224,7 +174,7 @@ typename LinearisedEquilibrium<E>::Rows LinearisedEquilibrium<E>::evaluate(
         problem_.blocks, problem_.parameters, [&](auto&, int b) -> auto& { return of[b]; });
   };
   const Matrix<double> contact = columns(forces);
-  rows.u = reduced_ + problem_.engine.scatter(contact);
+  rows.u = load_.reduced + problem_.engine.scatter(contact);
   if (unknown_) rows.l = columns(multiplier_rows);
   if (!unknown_ || increment_.size() == 0) return rows;
   const Matrix<double> internal = problem_.engine.apply_stiffness(increment_);
@@ -242,16 +192,25 @@ typename LinearisedEquilibrium<E>::Rows LinearisedEquilibrium<E>::evaluate(
 template <class E>
 void LinearisedEquilibrium<E>::settle(const std::vector<ContactField<Direction>>& fields,
                                       const std::vector<Vector<Direction>>& lambda) {
-  const Matrix<double> all = problem_.engine.expand(increment_, -bulk_, -reduced_);
   for (std::size_t b = 0; b < problem_.blocks.size(); ++b) {
     auto& block = problem_.blocks[b];
-    block.current.displacement = u_[b];
-    add_derivatives(block.current.displacement, all, static_cast<int>(b));
     block.current.multiplier = lambda[b];
     block.current.contact = fields[b];
     block.current.dissipation =
         dissipated(input(static_cast<int>(b)), fields[b], lambda[b], block.previous.dissipation);
   }
+  problem_.unexpanded = {std::move(load_), increment_};
+}
+
+/// Differentiates one increment by itself: its state, displacements included, is then in the blocks.
+template <class M, class E>
+bool differentiate_alone(const M& method, Differentiation<E>& problem, const State<double>& previous,
+                         const Increment<double>& increment) {
+  if (!differentiate_increment(method, problem, previous, increment)) return false;
+  auto displacement = expand(problem, {std::move(*problem.unexpanded)});
+  for (std::size_t b = 0; b < problem.blocks.size(); ++b)
+    problem.blocks[b].current.displacement = std::move(displacement[0][b]);
+  return true;
 }
 
 }  // namespace stickslip

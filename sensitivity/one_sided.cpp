@@ -44,8 +44,8 @@ std::vector<double> traction_scales(const Model& model, const Slots<double>& slo
 
 /// Weak points of all equilibria that the scheme differentiates in an increment.
 template <class M>
-bool has_ties(const M& method, const Model& model, const Slots<double>& slots, const Increment<double>& increment,
-              double largest) {
+bool has_ties_of(const M& method, const Model& model, const Slots<double>& slots, const Increment<double>& increment,
+                 double largest) {
   const auto weak = [&](const State<double>& at, const std::vector<double>& factor) {
     return !weak_points(model, slots, at, detail::own_rho(method, slots, factor), cone_radius(method), largest).empty();
   };
@@ -59,8 +59,7 @@ std::size_t first_tie(const Model& model, const Slots<double>& slots, const Meth
                       const Trajectory<double>& trajectory) {
   const auto scales = traction_scales(model, slots, trajectory);
   std::size_t n = 0;
-  const auto smooth = [&](const auto& m) { return !has_ties(m, model, slots, trajectory.increments[n], scales[n]); };
-  while (n < scales.size() && std::visit(smooth, method)) ++n;
+  while (n < scales.size() && !has_ties(model, slots, method, trajectory.increments[n], scales[n])) ++n;
   return n;
 }
 
@@ -202,6 +201,11 @@ Margins margins(const Model& model, const Slots<double>& slots, const State<doub
     least = {std::min(least.open, of_point.open), std::min(least.slip, of_point.slip)};
   }
   return least;
+}
+
+bool has_ties(const Model& model, const Slots<double>& slots, const Method& method, const Increment<double>& increment,
+              double largest) {
+  return std::visit([&](const auto& m) { return has_ties_of(m, model, slots, increment, largest); }, method);
 }
 
 std::optional<OneSided> one_sided_derivatives(const Model& model, const Slots<double>& slots, const Method& method,

@@ -44,6 +44,11 @@ struct OneSided {
 std::optional<OneSided> one_sided_derivatives(const Model& model, const Slots<double>& slots, const Method& method,
                                               const Trajectory<double>& trajectory, Workspace<double>& workspace);
 
+/// Whether some contact point is about to change its state in an increment. `largest`: traction_scale of the run so
+/// far.
+bool has_ties(const Model& model, const Slots<double>& slots, const Method& method, const Increment<double>& increment,
+              double largest);
+
 /// The trajectory with the branches of its ties chosen along one direction of all parameters; none where it has no
 /// ties. Adds what that took to `counters`.
 std::optional<Trajectory<double>> consistent_at_ties(const Model& model, const Slots<double>& slots,

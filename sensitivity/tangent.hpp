@@ -6,23 +6,29 @@
 
 namespace stickslip {
 
-/// Factorises the tangent at a state, in its branches (the last one that Newton had is a step old). `problem`: where
-/// engine, counters and message are. `unknown`: lambda is part of p. `redundant`: constraints repeat one another, so
-/// that the tangent yields and a solution takes a pass more. False, with the message, where it is singular.
+/// Prepares the engine to solve with the tangent at a state, in its branches: an update of the factor it has where that
+/// differs by little (the last one of Newton's is the same, but in space), a factorisation otherwise. `problem`: where
+/// engine, counters and message are. `unknown`: lambda is part of p. `transposed`: solves will be, for which there are
+/// no updates. `redundant`: constraints repeat one another, so that the tangent yields and a solution takes a pass
+/// more. False, with the message, where it is singular.
 template <class Problem>
 bool factorise_converged(Problem& problem, const ContactInput<double>& input, const State<double>& at, bool unknown,
-                         bool& redundant) {
+                         bool transposed, bool& redundant) {
   const Model& model = problem.model;
   const Vector<double> compact = to_compact(model, at.displacement);
   const Vector<double> multiplier = multiplier_on_rays(input, at);
   std::vector<PointTangent<double>> tangents;
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p)
     tangents.push_back(point_tangent<double>(input, p, compact, multiplier, at.contact.state[p]));
-  const long before = problem.counters.factorizations;
-  const bool valid = unknown ? factorise_sharing(problem.engine, model, decided_elsewhere(model, problem.slots),
-                                                 std::move(tangents), redundant, problem.counters)
-                             : problem.engine.factorise(tangents, problem.counters);
-  problem.counters.sensitivity_factorizations += problem.counters.factorizations - before;
+  const auto decided = unknown ? decided_elsewhere(model, problem.slots) : std::vector<char>();
+  Counters spent;
+  const bool updated = !transposed && decided.empty() && problem.engine.update(tangents, spent);
+  spent.sensitivity_backsolves = std::exchange(spent.backsolves, 0);
+  const bool valid =
+      updated || (unknown ? factorise_sharing(problem.engine, model, decided, std::move(tangents), redundant, spent)
+                          : problem.engine.factorise(tangents, spent));
+  spent.sensitivity_factorizations = spent.factorizations;
+  problem.counters += spent;
   if (!valid) problem.message = "the tangent of the converged state is singular: " + problem.engine.message();
   return valid;
 }

@@ -7,7 +7,8 @@
 ///   derivative
 ///                   of the truncated algorithm, for a loop that was cut off or stopped at a coarse tolerance
 ///   oversized       one pass with kappa_s rho in place of rho, states frozen: error O(1/kappa_s), no iteration [SZ00]
-///   preconditioned  the iterated scheme with kappa_s rho in place of rho: the fixed point is that of rho, for it is
+///   preconditioned  (the default, but with a frozen cone) the iterated scheme with kappa_s rho in place of rho: the
+///   fixed point is that of rho, for it is
 ///                   Dg = 0 and D t_T = D(bound m), where rho stands nowhere; the error shrinks by
 ///                   1 / (1 + kappa_s rho s_min) a pass, so that four to six passes reach rounding whatever q was
 ///
@@ -89,13 +90,31 @@ inline State<double> restated(const Model& model, State<double> at, const Regula
   return at;
 }
 
+/// Passes between which a change must have fallen far enough to get to its end within a limit.
+class Progress {
+ public:
+  static constexpr int limit = 20000;
+  /// Whether there is no hope: at the rate of the last `window` passes, `change` does not fall to `enough` in what is
+  /// left of the limit. A linear iteration slows down, as its fast modes die out, and never speeds up.
+  bool is_hopeless(int pass, double change, double enough) {
+    if (pass % window != 0) return false;
+    const double before = std::exchange(last_, change);
+    if (!(before > 0) || !(enough > 0)) return false;
+    const double rate = std::log(change / before), wanted = std::log(enough / change);
+    return rate >= 0 || wanted / rate * window > limit - pass;
+  }
+
+ private:
+  static constexpr int window = 500;
+  double last_ = 0;
+};
+
 /// Iterates D lambda until the change, extrapolated by its own contraction, is below `tolerance` of D lambda or at the
 /// rounding of rho Dg, for every parameter. Dg is rounded as its terms are and as the forces are that balance in it: of
 /// a thickness, on which the tractions do not depend, nothing but that rounding is left.
 template <class E>
 bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, const RegularisationField<double>& rho,
              std::vector<Vector<Direction>>& lambda, std::vector<ContactField<Direction>>& fields, double tolerance) {
-  constexpr int limit = 20000;
   double stiffest = 0, yielding = 0;  // rho; rho of a unit of force on the local stiffness
   for (std::size_t p = 0; p < rho.size(); ++p) {
     stiffest = std::max(stiffest, rho[p].normal);
@@ -104,13 +123,15 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
   Eigen::ArrayXd last = Eigen::ArrayXd::Zero(problem.parameters), carried = last;
   auto columns = [&](auto&& pick) { return gather(problem.blocks, problem.parameters, pick); };
   auto& record = problem.record.emplace();
-  for (int pass = 1; pass <= limit; ++pass) {
+  Progress progress;
+  for (int pass = 1; pass <= Progress::limit; ++pass) {
     const Matrix<double> before = columns([&](auto&, int b) -> auto& { return lambda[b]; });
     fields = linearised.solve(lambda);
     const Matrix<double> after = columns([&](auto&, int b) -> auto& { return fields[b].traction; });
     update(lambda, fields);
     const Vector<double> floors = 8 * unit_roundoff * (stiffest * linearised.reach() + yielding * linearised.load());
     bool settled = true;
+    double slowest = 0;  // largest change over what would be enough
     record = {pass, 1, 0};
     for (int j = 0; j < problem.parameters && after.rows() > 0; ++j) {
       const double change = (after.col(j) - before.col(j)).cwiseAbs().maxCoeff();
@@ -123,15 +144,18 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
       // Constraints that repeat one another push each other's multiplier for ever by what rounding left between them. A
       // slow mode would need more than `limit` passes at such a q, and not start at so small a change.
       const bool drifts = pass > 10 && q > 1 - 1e-4 && change <= 1e-11 * std::max(size, carried[j]);
-      settled &=
-          change == 0 || stalled || drifts || (q < 1 && pass > 2 && left <= std::max(tolerance * size, floors[j]));
+      const double enough = std::max(tolerance * size, floors[j]);
+      const bool ended = change == 0 || stalled || drifts || (q < 1 && pass > 2 && left <= enough);
+      if (!ended) slowest = std::max(slowest, change / enough);
+      settled &= ended;
       if (last[j] > 0 && change > floors[j]) record.contraction = std::max(record.contraction, q);
       last[j] = change;
     }
     if (settled) return true;
+    if (progress.is_hopeless(pass, slowest, 1)) break;
   }
   problem.status = Status::cap;
-  problem.message = "the derivatives did not settle in 20000 passes; try a larger scale";
+  problem.message = "the derivatives do not settle in 20000 passes; try a larger scale";
   return false;
 }
 
@@ -183,11 +207,11 @@ template <class E>
 bool differentiate_increment(const UzawaAL& method, Differentiation<E>& problem, const State<double>& previous,
                              const Increment<double>& increment) {
   using Sensitivity = UzawaAL::Sensitivity;
-  if (method.sensitivity == Sensitivity::truncated)
+  if (method.scheme() == Sensitivity::truncated)
     return detail::differentiate_augmentations(method, problem, previous, increment);
-  if (method.sensitivity == Sensitivity::preconditioned)
+  if (method.scheme() == Sensitivity::preconditioned)
     return detail::differentiate_preconditioned(method, problem, previous, increment);
-  const bool oversized = method.sensitivity == Sensitivity::oversized;
+  const bool oversized = method.scheme() == Sensitivity::oversized;
   const double oversize = oversized ? method.oversize.value_or(UzawaAL::automatic_oversize) : 1;
   RegularisationField<double> rho;
   auto linearised = detail::linearise(method, problem, previous, increment.state, increment.rho_factor, oversize,
@@ -227,7 +251,6 @@ bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, 
                   Vector<double>& left) {
   constexpr double tolerance = 1e-14;
   constexpr double noise = 1e4 * unit_roundoff;  // changes below it that do not fall any more are rounding
-  constexpr int limit = 20000;
   recorded.balance(objective);
   const Vector<double> asked = recorded.take_multiplier(objective);
   left = asked;
@@ -238,7 +261,8 @@ bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, 
   Accelerator<double> accelerator(UzawaAL::Acceleration::anderson);
   Vector<double> x = asked;
   bool plain = true;  // whether x is the last image, so that `left` is a term of the series
-  for (int pass = 1; pass <= limit; ++pass) {
+  Progress progress;
+  for (int pass = 1; pass <= Progress::limit; ++pass) {
     recorded.seed_traction(objective, x);
     recorded.balance(objective);
     const Vector<double> image = asked + recorded.take_multiplier(objective);
@@ -252,13 +276,14 @@ bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, 
     const bool settled = change <= (pass > 2 ? negligible : 4 * unit_roundoff * largest);
     const bool stalled = q >= 1 && pass > 2 && change <= noise * scale;
     if (left.cwiseAbs().maxCoeff() <= negligible || (plain && (settled || stalled))) return true;
+    if (progress.is_hopeless(pass, left.cwiseAbs().maxCoeff(), negligible)) break;
     last = change;
     recorded.restore(objective, start);
     x = accelerator.next(x, image, true, q, [](Vector<double> v) { return v; });
     plain = x == image;
   }
   problem.status = Status::cap;
-  problem.message = "the adjoint did not settle in 20000 passes; try a larger scale";
+  problem.message = "the adjoint does not settle in 20000 passes; try a larger scale";
   return false;
 }
 
@@ -341,11 +366,10 @@ template <class E>
 bool pull_back_increment(const UzawaAL& method, AdjointProblem<E>& problem, const State<double>& previous,
                          const Increment<double>& increment) {
   using Sensitivity = UzawaAL::Sensitivity;
-  if (method.sensitivity == Sensitivity::truncated)
-    return detail::pull_back_sweeps(method, problem, previous, increment);
-  if (method.sensitivity == Sensitivity::preconditioned)
+  if (method.scheme() == Sensitivity::truncated) return detail::pull_back_sweeps(method, problem, previous, increment);
+  if (method.scheme() == Sensitivity::preconditioned)
     return detail::pull_back_preconditioned(method, problem, previous, increment);
-  const bool oversized = method.sensitivity == Sensitivity::oversized;
+  const bool oversized = method.scheme() == Sensitivity::oversized;
   const double oversize = oversized ? method.oversize.value_or(UzawaAL::automatic_oversize) : 1;
   RecordedEquilibrium<E> recorded(problem, previous, increment.state,
                                   detail::recorded_regularisation(method, problem, increment.rho_factor, oversize),

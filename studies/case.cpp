@@ -71,13 +71,16 @@ bool has_tangent(const Trajectory<double>& trajectory) {
          status != Status::no_equilibrium;
 }
 
-void differentiate_case(Workspace<double>& workspace, CaseResult& result) {
+bool is_adjoint(const Model& model) { return model.scene.sensitivity_mode == SensitivityMode::adjoint; }
+
+/// `derivatives`: what followed the run, unless it is adjoint.
+void differentiate_case(Workspace<double>& workspace, Derivatives& derivatives, CaseResult& result) {
   const auto& [model, slots, unused] = *result.problem;
-  if (model.scene.sensitivity_mode == SensitivityMode::adjoint) {
+  if (is_adjoint(model)) {
     result.gradients = adjoint(model, slots, result.method, result.trajectory, workspace);
     return;
   }
-  result.gradients = differentiate(model, slots, result.method, result.trajectory, workspace);
+  result.gradients = derivatives.finish(result.trajectory);
   result.gradients.of_objectives = objective_gradients(model, slots, result.trajectory, result.gradients);
   const Stopwatch time(result.gradients.seconds);
   result.one_sided = one_sided_derivatives(model, slots, result.method, result.trajectory, workspace);
@@ -163,7 +166,7 @@ void check_responses(const Model& model, const Slots<double>& slots) {
 
 bool StepResult::has_kink(const Scene& scene, const Method& method, std::size_t response, std::size_t parameter) const {
   const auto* uzawa = std::get_if<UzawaAL>(&method);
-  const bool oversized = uzawa && uzawa->sensitivity == UzawaAL::Sensitivity::oversized;
+  const bool oversized = uzawa && uzawa->scheme() == UzawaAL::Sensitivity::oversized;
   const double rounding = oversized ? 10 / uzawa->oversize.value_or(UzawaAL::automatic_oversize) : 1e-9;
   const double below = backward(response, parameter), above = forward(response, parameter);
   const double value = scene.parameters[parameter].value, size = value == 0 ? 0 : std::abs(responses[response] / value);
@@ -202,7 +205,13 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
   result.problem = problem;
   result.method = method;
   Workspace<double> workspace{condensation, {}};
-  result.trajectory = solve(problem->model, problem->slots, method, options, workspace);
+  Derivatives derivatives(problem->model, problem->slots, result.method, workspace);
+  RunOptions followed = options;
+  followed.on_step = [&] {
+    if (!is_adjoint(problem->model)) derivatives.follow(result.trajectory);
+    if (options.on_step) options.on_step();
+  };
+  solve(problem->model, problem->slots, method, followed, workspace, result.trajectory);
   condensation = workspace.condensation;
   std::visit([&](auto& engine) { result.nonzeros = engine.nonzeros(); }, *workspace.engine);
   const auto errors = check_accuracy(problem->model, problem->slots, method, result.trajectory);
@@ -211,7 +220,7 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
     if (result.trajectory.counters.newton > 0)  // otherwise nothing was factorised
       result.condition_estimate =
           std::visit([](auto& engine) { return engine.condition_estimate(); }, *workspace.engine);
-    differentiate_case(workspace, result);
+    differentiate_case(workspace, derivatives, result);
   }
   result.steps = gather_steps(result, errors);
   result.objectives = objective_values(problem->model, problem->slots, result.trajectory);

@@ -50,7 +50,8 @@ void visit_options(UzawaAL& method, Visitor&& visit) {
             {{"none", Acceleration::none}, {"aitken", Acceleration::aitken}, {"anderson", Acceleration::anderson}}});
   visit("cone", method.cone, Words<Cone>{{{"augmented", Cone::augmented}, {"frozen", Cone::frozen}}});
   visit("sensitivity", method.sensitivity,
-        Words<Sensitivity>{{{"iterated", Sensitivity::iterated},
+        Words<Sensitivity>{{{"auto", Sensitivity::automatic},
+                            {"iterated", Sensitivity::iterated},
                             {"truncated", Sensitivity::truncated},
                             {"oversized", Sensitivity::oversized},
                             {"preconditioned", Sensitivity::preconditioned}}});
@@ -249,8 +250,8 @@ void check_option_names(const JsonNode& node, const std::string& method, const s
 
 /// Reports an oversize that the scheme of derivatives takes no notice of.
 void check_oversize(const JsonNode& options, const UzawaAL& method) {
-  const bool used = method.sensitivity == UzawaAL::Sensitivity::oversized ||
-                    method.sensitivity == UzawaAL::Sensitivity::preconditioned;
+  const auto scheme = method.scheme();
+  const bool used = scheme == UzawaAL::Sensitivity::oversized || scheme == UzawaAL::Sensitivity::preconditioned;
   if (method.oversize && !used)
     options.find("oversize")->error_at_key(R"(belongs to the sensitivity "oversized" or "preconditioned")");
 }
@@ -308,8 +309,9 @@ json method_schema(OptionLists lists) {
 
 json to_json(const Method& method) {
   json options = json::object();
-  Method copy = method;
-  std::visit([&](auto& chosen) { visit_options(chosen, Writer{options}); }, copy);
+  Method used = method;
+  if (auto* uzawa = std::get_if<UzawaAL>(&used)) uzawa->sensitivity = uzawa->scheme();
+  std::visit([&](auto& chosen) { visit_options(chosen, Writer{options}); }, used);
   return {{std::string(name_of(method)), options}};
 }
 

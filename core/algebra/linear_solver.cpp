@@ -204,6 +204,19 @@ struct LinearSolver<T>::Implementation {
   /// row holds rounding noise alone (displacements that are zero by symmetry); there the denominator is that of
   /// M. Arioli, J. W. Demmel, I. S. Duff, SIAM J. Matrix Anal. Appl. 10 (1989) 165-190, with the matrix equilibrated.
   Check check(const Matrix<T>& solution, const Matrix<T>& b, bool transposed) {
+    Check result{0, Matrix<T>(b.rows(), b.cols())};
+    for (Eigen::Index first = 0; first < b.cols(); first += checked_together) {
+      const Eigen::Index count = std::min<Eigen::Index>(checked_together, b.cols() - first);
+      const Check part = check_columns(solution.middleCols(first, count), b.middleCols(first, count), transposed);
+      result.error = larger(result.error, part.error);
+      result.residual.middleCols(first, count) = part.residual;
+    }
+    return result;
+  }
+
+  static constexpr int checked_together = 8;  // that fit into registers
+
+  Check check_columns(const Matrix<T>& solution, const Matrix<T>& b, bool transposed) {
     const bool as_rows = transposed || symmetry != Symmetry::general;  // a gather is faster than a scatter
     const RowMajor<T> x = solution.array();
     const RowMajor<double> size_of_x = x.abs();
@@ -211,6 +224,8 @@ struct LinearSolver<T>::Implementation {
     RowMajor<double> denominator = r.abs();
     if (x.cols() == 1)
       subtract_product<1>(*pattern, values.data(), as_rows, x, size_of_x, r, denominator);
+    else if (x.cols() == checked_together)
+      subtract_product<checked_together>(*pattern, values.data(), as_rows, x, size_of_x, r, denominator);
     else
       subtract_product<0>(*pattern, values.data(), as_rows, x, size_of_x, r, denominator);
     Check result{0, r.matrix()};

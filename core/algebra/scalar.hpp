@@ -58,6 +58,8 @@ struct Dual {
   friend Dual operator+(const Dual& a, const Dual& b) { return {a.v + b.v, a.d + b.d}; }
   friend Dual operator-(const Dual& a, const Dual& b) { return {a.v - b.v, a.d - b.d}; }
   friend Dual operator*(const Dual& a, const Dual& b) { return {a.v * b.v, a.d * b.v + b.d * a.v}; }
+  friend Dual operator*(const Dual& a, const S& b) { return {a.v * b, a.d * b}; }
+  friend Dual operator*(const S& a, const Dual& b) { return {a * b.v, a * b.d}; }
   friend Dual operator/(const Dual& a, const Dual& b) {
     const S q = a.v / b.v;
     return {q, (a.d - b.d * q) / b.v};
@@ -106,6 +108,17 @@ template <int N, class S>
 bool vanishes(const Dual<N, S>& x) {
   return vanishes(x.v) && (x.d == S(0)).all();
 }
+
+/// Whether no derivative rides on x: what depends on such numbers alone may be computed without.
+template <int N>
+bool is_constant(const Dual<N>& x) {
+  return (x.d == 0).all();
+}
+/// Whether is_constant can tell.
+template <class T>
+inline constexpr bool tells_constants = false;
+template <int N>
+inline constexpr bool tells_constants<Dual<N>> = true;
 
 /// The larger one; NaN where either is, so that what is not a number never passes for a small one.
 inline double larger(double a, double b) { return std::isnan(a) || a > b ? a : b; }

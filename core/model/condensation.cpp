@@ -77,11 +77,16 @@ Matrix<T> Condensation<T>::solve(const Matrix<T>& rows, const Matrix<T>& last) {
 template <class T>
 Matrix<T> Condensation<T>::reduce(const Matrix<T>& rows) {
   Matrix<T> reduced = contact_rows(rows);
-  const bool at_rest =
-      std::all_of(interior_.begin(), interior_.end(), [&](int dof) { return rows.row(dof).isZero(0); });
-  if (at_rest) return reduced;
-  const Matrix<T> x = solve(rows, Matrix<T>::Zero(contacts_, rows.cols())).bottomRows(contacts_);
-  reduced += schur_ * x + shift_.template cast<T>().asDiagonal() * x;
+  std::vector<Eigen::Index> inside;  // columns with something to reduce: many a parameter does not touch the bodies
+  for (Eigen::Index c = 0; c < rows.cols(); ++c)
+    if (std::any_of(interior_.begin(), interior_.end(), [&](int dof) { return rows(dof, c) != T(0); }))
+      inside.push_back(c);
+  if (inside.empty()) return reduced;
+  Matrix<T> picked(rows.rows(), inside.size());
+  for (std::size_t k = 0; k < inside.size(); ++k) picked.col(k) = rows.col(inside[k]);
+  const Matrix<T> x = solve(picked, Matrix<T>::Zero(contacts_, picked.cols())).bottomRows(contacts_);
+  const Matrix<T> moved = schur_ * x + shift_.template cast<T>().asDiagonal() * x;
+  for (std::size_t k = 0; k < inside.size(); ++k) reduced.col(inside[k]) += moved.col(k);
   return reduced;
 }
 

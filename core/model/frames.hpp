@@ -9,13 +9,6 @@ namespace stickslip {
 /// How nodal vectors are laid out: all nodes, or those of the contact.
 enum class Layout { all, compact };
 
-/// Index of a node in Model::framed, or -1.
-inline int framed_index(const Model& model, int node) {
-  const auto found = std::lower_bound(model.framed.begin(), model.framed.end(), node,
-                                      [](const FramedNode& framed, int sought) { return framed.node < sought; });
-  return found == model.framed.end() || found->node != node ? -1 : static_cast<int>(found - model.framed.begin());
-}
-
 namespace detail {
 
 /// Calls f(Q, first row of the node) for each framed node of the layout.

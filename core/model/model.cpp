@@ -147,6 +147,25 @@ ResponsePlace locate_response(const Model& model, const Points<double>& points, 
   return place;
 }
 
+/// Elements that have a node of a side whose reaction is a response.
+ElementLists elements_at_reactions(const Model& model) {
+  std::vector<char> wanted(model.node_count, 0);
+  for (const auto& response : model.scene.responses)
+    if (response.kind == Response::Kind::reaction)
+      for (int node : model.side(response.on).nodes) wanted[node] = 1;
+  ElementLists lists(model.bodies.size());
+  for (std::size_t b = 0; b < lists.size(); ++b) {
+    const auto& body = model.bodies[b];
+    const int nodes = nodes_of(body.mesh.shape);
+    for (int e = 0; e < body.mesh.element_count(); ++e) {
+      const auto begin = body.mesh.connectivity.begin() + static_cast<std::ptrdiff_t>(e) * nodes;
+      if (std::any_of(begin, begin + nodes, [&](int node) { return wanted[body.first_node + node] != 0; }))
+        lists[b].push_back(e);
+    }
+  }
+  return lists;
+}
+
 }  // namespace
 
 SideSet resolve_side(const Scene& scene, const std::vector<BodyMesh>& bodies, const std::string& text) {
@@ -249,6 +268,7 @@ Model make_model(const Scene& scene, Seconds& spent) {
     if (nodes.count(framed.node)) framed.place = place_of(framed.node);
   for (const auto& response : scene.responses)
     model.response_places.push_back(locate_response(model, points, response));
+  model.at_reactions = elements_at_reactions(model);
   model.times = step_ends(scene);
   model.effects.sensitivity = !scene.parameters.empty();
   return model;

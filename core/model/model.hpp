@@ -2,6 +2,7 @@
 /// not depend on a number (nodes, dofs, contact points, active effects); what does is in Slots<T>. Immutable.
 #pragma once
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -97,6 +98,9 @@ struct ResponsePlace {
   int contact_point = -1;
 };
 
+/// Elements of each body.
+using ElementLists = std::vector<std::vector<int>>;
+
 struct Model {
   Scene scene;
   int dimension = 2;
@@ -111,6 +115,7 @@ struct Model {
   std::vector<int> contact_nodes;              ///< ascending; all nodes of all contact points
   std::vector<DesignVelocity> velocities;      ///< one per shape motion
   std::vector<ResponsePlace> response_places;  ///< per response
+  ElementLists at_reactions;                   ///< that have a node of a side whose reaction is a response
   std::vector<double> times;                   ///< ends of the increments, breakpoints of every table included
   Effects effects;
 
@@ -134,6 +139,13 @@ Model make_model(const Scene& scene, Seconds& spent);
 
 /// "a.b - a.c" resolved on the meshes of a scene; used by make_model and by the scene reader's checks.
 SideSet resolve_side(const Scene& scene, const std::vector<BodyMesh>& bodies, const std::string& expression);
+
+/// Index of a node in Model::framed, or -1.
+inline int framed_index(const Model& model, int node) {
+  const auto found = std::lower_bound(model.framed.begin(), model.framed.end(), node,
+                                      [](const FramedNode& framed, int sought) { return framed.node < sought; });
+  return found == model.framed.end() || found->node != node ? -1 : static_cast<int>(found - model.framed.begin());
+}
 
 /// Calls f with the space dimension as a compile-time constant: f.template operator()<D>().
 template <class F>

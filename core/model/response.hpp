@@ -177,7 +177,7 @@ T contact_response(const Model& model, const Slots<T>& slots, const Response& re
 /// Nodal forces of a state that some responses read, all dofs; empty where none does.
 template <class T>
 struct NodalForces {
-  Vector<T> internal;  ///< bulk_forces
+  Vector<T> internal;  ///< bulk_forces, of the elements that are read
   Vector<T> held;      ///< support_forces
 };
 
@@ -226,7 +226,9 @@ Vector<T> evaluate_responses(const Model& model, const Slots<T>& slots, const St
   };
   const bool reaction = asked(Response::Kind::reaction);
   NodalForces<T> forces;
-  if (reaction || asked(Response::Kind::strain_energy)) forces.internal = bulk_forces(model, slots, state.displacement);
+  const bool energy = asked(Response::Kind::strain_energy);  // of all elements; a reaction needs those at its support
+  if (reaction || energy)
+    forces.internal = bulk_forces(model, slots, state.displacement, energy ? nullptr : &model.at_reactions);
   if (reaction) forces.held = support_forces(model, slots, nodal_balance(model, slots, state, forces.internal, time));
   Vector<T> out(responses.size());
   for (std::size_t i = 0; i < responses.size(); ++i)

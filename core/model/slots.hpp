@@ -183,9 +183,11 @@ PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point,
 
 }  // namespace detail
 
-/// Internal nodal forces of all bodies, dof-wise. u: all dofs.
+/// Internal nodal forces of all bodies, dof-wise. u: all dofs. `only`: elements that are visited, per body; nullptr:
+/// all.
 template <class T>
-Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>& u);
+Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>& u,
+                      const ElementLists* only = nullptr);
 
 /// Nodal forces of a load at history = 1, all dofs.
 template <class T>

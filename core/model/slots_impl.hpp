@@ -59,21 +59,53 @@ void with_element(const BodyMesh& body, F&& f) {
 
 }  // namespace detail
 
+namespace detail {
+
+/// Whether no derivative rides on any entry.
+template <class A>
+bool is_constant(const A& entries) {
+  return std::all_of(entries.data(), entries.data() + entries.size(),
+                     [](const auto& x) { return stickslip::is_constant(x); });
+}
+
+/// Forces of one element of a continuum. Derivatives are computed of what depends on them alone: most parameters touch
+/// few elements, and those of a material no gradient.
+template <class T, class Shape, Kinematics kinematics>
+Mat<T, 2, Shape::nodes> forces_of_element(const LinearElasticLaw<T>& law, const Mat<T, 2, Shape::nodes>& coordinates,
+                                          const Mat<T, 2, Shape::nodes>& u, const T& thickness) {
+  if constexpr (tells_constants<T>) {
+    if (stickslip::is_constant(thickness) && is_constant(coordinates)) {
+      const Mat<double, 2, Shape::nodes> fixed = values(coordinates);
+      if (!stickslip::is_constant(law.lame) || !stickslip::is_constant(law.shear) || !is_constant(u))
+        return element_forces<T, Shape, kinematics, double>(law, fixed, u, value(thickness));
+      const LinearElasticLaw<double> plain(value(law.lame), value(law.shear));
+      const Mat<double, 2, Shape::nodes> forces =
+          element_forces<double, Shape, kinematics>(plain, fixed, values(u), value(thickness));
+      return forces.unaryExpr([](double x) { return T(x); });
+    }
+  }
+  return element_forces<T, Shape, kinematics>(law, coordinates, u, thickness);
+}
+
+}  // namespace detail
+
 template <class T>
-Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>& u) {
+Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>& u, const ElementLists* only) {
   const int D = model.dimension;
   Vector<T> forces = Vector<T>::Constant(model.dof_count(), T(0));
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const auto& body = model.bodies[b];
+    const int count = only ? static_cast<int>((*only)[b].size()) : body.mesh.element_count();
+    const auto element = [&](int k) { return only ? (*only)[b][k] : k; };
     if (is_continuum(body.mesh.shape)) {
       const auto& law = std::get<LinearElasticLaw<T>>(slots.laws[b]);
       const T& thickness = slots.depths[b].thickness;
       detail::with_element(body, [&]<class Shape, Kinematics kinematics>() {
         std::array<int, Shape::nodes> nodes;
-        for (int e = 0; e < body.mesh.element_count(); ++e) {
+        for (int k = 0; k < count; ++k) {
           for (int a = 0; a < Shape::nodes; ++a)
-            nodes[a] = body.first_node + body.mesh.connectivity[e * Shape::nodes + a];
-          const auto f = element_forces<T, Shape, kinematics>(
+            nodes[a] = body.first_node + body.mesh.connectivity[element(k) * Shape::nodes + a];
+          const auto f = detail::forces_of_element<T, Shape, kinematics>(
               law, detail::gather_coordinates<T, Shape>(slots.points, nodes.data()),
               detail::gather_displacements<T, Shape>(u, nodes.data()), thickness);
           for (int a = 0; a < Shape::nodes; ++a)
@@ -82,8 +114,8 @@ Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>
       });
       continue;
     }
-    for (int e = 0; e < body.mesh.element_count(); ++e) {
-      const auto nodes = detail::element_nodes(body, e);
+    for (int k = 0; k < count; ++k) {
+      const auto nodes = detail::element_nodes(body, element(k));
       const Matrix<T> K = detail::lumped_tangent(model, slots, static_cast<int>(b), nodes);
       for (int a = 0; a < 2; ++a)
         for (int i = 0; i < D; ++i)
@@ -140,9 +172,23 @@ std::vector<Matrix<T>> nodal_stiffness(const Model& model, const Slots<T>& slots
   return blocks;
 }
 
+/// Whether supports hold a contact node along a direction.
+template <class T>
+bool is_held(const Model& model, const Slots<T>& slots, int node, const Vector<double>& direction) {
+  constexpr double across = 1e-6;  // of a direction: less is none
+  const int D = model.dimension, framed = framed_index(model, node);
+  for (int i = 0; i < D; ++i) {
+    if (model.free_index[node * D + i] < 0) continue;
+    const double along = framed < 0 ? direction[i] : values(slots.frames[framed]).col(i).dot(direction);
+    if (std::abs(along) > across) return false;
+  }
+  return true;
+}
+
 /// k_i of each contact point: harmonic mean of n.K_ii n at the interpolated slave and at the interpolated master nodes
-/// (slave only if the master is rigid). Where a node has next to no stiffness along n (bars along their axis), the mean
-/// over all directions stands in for it.
+/// (slave only if the master is rigid). Where supports hold one side in a direction of the contact and the other not,
+/// at least that of the other: it alone yields there. Where a node has next to no stiffness along n (bars along their
+/// axis), the mean over all directions stands in for it.
 template <class T>
 std::vector<T> contact_stiffness(const Model& model, const Slots<T>& slots) {
   const auto blocks = nodal_stiffness(model, slots);
@@ -169,7 +215,24 @@ std::vector<T> contact_stiffness(const Model& model, const Slots<T>& slots) {
       else
         master += -geometry.weights[i] * k;
     }
-    stiffness.push_back(point.obstacle >= 0 ? slave : T(2) * slave * master / (slave + master));
+    if (point.obstacle >= 0) {
+      stiffness.push_back(slave);
+      continue;
+    }
+    T k = T(2) * slave * master / (slave + master);
+    const auto holds = [&](auto first, auto last, const Vector<double>& direction) {
+      return std::all_of(first, last, [&](int node) { return is_held(model, slots, node, direction); });
+    };
+    const auto middle = point.nodes.begin() + point.slave_nodes;
+    for (int c = 0; c < point.components(); ++c) {
+      const Vector<double> direction = c == 0 ? values(geometry.normal) : values(geometry.tangents.col(c - 1));
+      const bool slave_held = holds(point.nodes.begin(), middle, direction);
+      const bool master_held = holds(middle, point.nodes.end(), direction);
+      if (slave_held == master_held) continue;
+      const T& yielding = slave_held ? master : slave;
+      if (value(yielding) > value(k)) k = yielding;
+    }
+    stiffness.push_back(k);
   }
   return stiffness;
 }
@@ -213,9 +276,9 @@ Slots<T> make_slots(const Model& model, const Numbers<T>& numbers, Points<T> poi
   for (const auto& contact : model.scene.contacts)
     slots.friction.push_back(contact.friction ? numbers(*contact.friction) : T(0));
   for (const auto& point : model.points) slots.geometry.push_back(detail::initial_geometry(model, point, slots));
+  for (const auto& framed : model.framed) slots.frames.push_back(nodal_frame(model.scene, framed, numbers));
   slots.stiffness = contact_stiffness(model, slots);
   for (const auto& load : model.scene.loads) slots.loads.push_back(load_vector(model, load, slots));
-  for (const auto& framed : model.framed) slots.frames.push_back(nodal_frame(model.scene, framed, numbers));
   const auto& obstacles = model.scene.obstacles;
   if (std::any_of(obstacles.begin(), obstacles.end(), [](const auto& o) { return o.rotate.has_value(); }))
     for (int p = 0; p < static_cast<int>(model.points.size()); ++p)

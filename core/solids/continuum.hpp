@@ -107,9 +107,10 @@ struct Gradient {
       for (int p = 0; p < 3; ++p) f(p, p, exchange(i, a));
   }
 
-  /// Displacement gradient of nodal displacements (2 x nodes).
-  Mat<T, rows> of(const Mat<T, 2, nodes>& u) const {
-    Mat<T, rows> H = Mat<T, rows>::Constant(T(0));
+  /// Displacement gradient of nodal displacements (2 x nodes), in their scalar: T, or a Dual built on it.
+  template <class U>
+  Mat<U, rows> of(const Mat<U, 2, nodes>& u) const {
+    Mat<U, rows> H = Mat<U, rows>::Constant(U(0));
     for (int a = 0; a < nodes; ++a)
       for (int i = 0; i < 2; ++i) for_each(i, a, [&](int p, int q, const T& b) { H(p, q) += b * u(i, a); });
     return H;
@@ -159,18 +160,18 @@ void for_each_gradient(const Mat<T, 2, Shape::nodes>& coordinates, const T& dept
   }
 }
 
-/// Internal nodal forces, 2 x nodes.
-template <class T, class Shape, Kinematics kinematics = Kinematics::plane, class Law>
-Mat<T, 2, Shape::nodes> element_forces(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates,
-                                       const Mat<T, 2, Shape::nodes>& u, const T& depth = T(1)) {
+/// Internal nodal forces, 2 x nodes. G, the scalar of the geometry, is T, or double where no derivative rides on it.
+template <class T, class Shape, Kinematics kinematics = Kinematics::plane, class G = T, class Law>
+Mat<T, 2, Shape::nodes> element_forces(const Law& law, const std::type_identity_t<Mat<G, 2, Shape::nodes>>& coordinates,
+                                       const Mat<T, 2, Shape::nodes>& u, const std::type_identity_t<G>& depth = G(1)) {
   Mat<T, 2, Shape::nodes> forces = Mat<T, 2, Shape::nodes>::Constant(T(0));
-  for_each_gradient<T, Shape, kinematics>(coordinates, depth, [&](const auto& gradient) {
+  for_each_gradient<G, Shape, kinematics>(coordinates, depth, [&](const auto& gradient) {
     constexpr int rows = stress_dimension(kinematics);
     Mat<T, rows> sigma = law.template stress<T, rows>(gradient.of(u));
-    for (int k = 0; k < rows * rows; ++k) sigma.data()[k] *= gradient.volume;
+    for (int k = 0; k < rows * rows; ++k) sigma.data()[k] = sigma.data()[k] * gradient.volume;
     for (int a = 0; a < Shape::nodes; ++a)
       for (int i = 0; i < 2; ++i)
-        gradient.for_each(i, a, [&](int p, int q, const T& b) { forces(i, a) += sigma(p, q) * b; });
+        gradient.for_each(i, a, [&](int p, int q, const G& b) { forces(i, a) += sigma(p, q) * b; });
   });
   return forces;
 }

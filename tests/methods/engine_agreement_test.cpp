@@ -43,10 +43,10 @@ std::vector<Snapshot> run_through(LinearAlgebra::Engine kind, const Model& model
   std::vector<Snapshot> snapshots;
   std::visit(
       [&](auto& engine) {
-        Differentiation<std::decay_t<decltype(engine)>> problem{model, slots, engine, blocks, parameters, {}, {}};
+        Differentiation<std::decay_t<decltype(engine)>> problem{model, slots, engine, blocks, parameters, {}};
         const State<double>* previous = &trajectory.initial;
         for (const auto& increment : trajectory.increments) {
-          ASSERT_TRUE(differentiate_increment(method, problem, *previous, increment)) << problem.message;
+          ASSERT_TRUE(differentiate_alone(method, problem, *previous, increment)) << problem.message;
           const auto& state = increment.state;
           snapshots.push_back(
               {state.contact.state, state.displacement, state.contact.traction,

@@ -118,6 +118,82 @@ TEST(UzawaUpdates, EndAtTheRoundingOfAStiffBodyOnASoftOne) {
               1e-8 * expected.steps.back().responses[0]);  // both to 1e-10, times 9000 / 13
 }
 
+/// Two blocks, one upon the other, pressed together; `held`: what holds the upper one, or more of the lower.
+json two_blocks(double upper, double lower, const json& held) {
+  json scene = json::parse(R"({
+    "bodies": {"up": {"mesh": {"box": {"min": [0, 1], "max": [2, 2], "cells": [4, 4]}},
+                      "material": {"linear_elastic": {"E": 1, "nu": 0.3}}},
+               "low": {"mesh": {"box": {"min": [-0.5, 0], "max": [2.5, 1], "cells": [5, 4]}},
+                       "material": {"linear_elastic": {"E": 1, "nu": 0.3}}}},
+    "contacts": {"c": {"slave": "up.bottom", "master": "low.top", "friction": 0.3}},
+    "supports": [{"on": "low.bottom", "move": {"x": 0, "y": 0}}],
+    "loads": [{"on": "up.top", "traction": [0, -0.01], "history": [[0, 0], [1, 1]]}],
+    "time": {"end": 1, "steps": 2},
+    "responses": {"d": {"displacement": {"on": "up.top", "component": "y"}},
+                  "N": {"contact_force": {"contact": "c", "component": "normal"}}}})");
+  scene["bodies"]["up"]["material"]["linear_elastic"]["E"] = upper;
+  scene["bodies"]["low"]["material"]["linear_elastic"]["E"] = lower;
+  scene["loads"][0]["traction"][1] = -0.01 * std::min(upper, lower);
+  for (const auto& support : held) scene["supports"].push_back(support);
+  return scene;
+}
+
+// A node that a support holds does not yield, however soft its body is: the other body alone does, and rho must suit
+// it.
+TEST(UzawaUpdates, ConvergeWhereASupportHoldsTheSofterSideOfAContact) {
+  struct Case {
+    double upper, lower;
+    const char* held;
+  };
+  for (const auto& [upper, lower, held] :
+       {Case{1, 1e6, R"([{"on": "up.left", "move": {"x": 0}}])"},
+        Case{1, 1e6,
+             R"([{"on": "up.left & up.bottom", "move": {"x": 0, "y": 0}}, {"on": "up.right", "move": {"x": 0}}])"},
+        Case{1e6, 1, R"([{"on": "up.left", "move": {"x": 0}}, {"on": "low.top", "move": {"x": 0}}])"},
+        Case{1e6, 1, R"([{"on": "up.left", "move": {"x": 0}}, {"on": "low.top", "move": {"x": 0, "y": 0}}])"}}) {
+    const json scene = two_blocks(upper, lower, json::parse(held));
+    const auto result = run(scene, json::parse(R"({"uzawa_al": {}})"));
+    const auto expected = run(scene, json::parse(R"({"monolithic_al": {}})"));
+    ASSERT_TRUE(is_converged(result.status())) << upper << held << result.message();
+    ASSERT_TRUE(is_converged(expected.status())) << upper << held << expected.message();
+    for (int i = 0; i < 2; ++i)  // both to 1e-10, times what rounding makes of 1e6
+      EXPECT_NEAR(result.steps.back().responses[i], expected.steps.back().responses[i],
+                  1e-7 * std::abs(expected.steps.back().responses[i]))
+          << upper << held;
+  }
+}
+
+// A scale of a billionth leaves nearly all of an error to the next pass: that it will not settle shows early.
+TEST(IteratedDerivatives, ThatDoNotSettleAreGivenUpEarly) {
+  json scene = block({4, 2}, 0.3, 0.1, 1);
+  scene["parameters"] = {{"mu", "/contacts/sole/friction"}, {"E", "/bodies/block/material/linear_elastic/E"}};
+  const auto result = run(scene, json::parse(R"({"uzawa_al": {"sensitivity": "iterated", "scale": 1e-7, "adapt": false,
+                                                  "tolerance": 1e-3, "max_augmentations": 20000}})"));
+  EXPECT_EQ(result.gradients.status, Status::cap) << result.message();
+  EXPECT_NE(result.gradients.message.find("do not settle in 20000 passes"), std::string::npos);
+  EXPECT_LE(result.gradients.counters.sensitivity_backsolves, 2 * 2000);  // 2 parameters; the limit is 20000 passes
+}
+
+// At the critical friction of its spring, mu = k_t / k_nt, a point slips off with an infinite slope.
+TEST(OneSidedDerivatives, AreNotGivenWhereTheSlopeIsInfinite) {
+  const json scene = json::parse(R"({
+    "bodies": {"m": {"mesh": {"point": {"at": [0, 0]}},
+                     "material": {"grounded_spring": {"stiffness": [[1, 0.5], [0.5, 1]]}}}},
+    "obstacles": {"p": {"plane": {"point": [0, 0], "normal": [0, 1]}}},
+    "contacts": {"c": {"slave": "m.node", "master": "p", "friction": 2}},
+    "loads": [{"on": "m.node", "force": [-2, -1], "history": [[0, 0], [1, 1]]}],
+    "time": {"end": 1, "steps": 1},
+    "responses": {"u": {"displacement": {"on": "m.node", "component": "x"}}},
+    "parameters": {"pull": "/loads/0/force/0"}})");
+  const auto result = run(scene, json::parse(R"({"monolithic_al": {}})"));
+  ASSERT_TRUE(is_converged(result.status())) << result.message();
+  const auto& step = result.steps.back();
+  EXPECT_FALSE(step.differentiable);
+  ASSERT_GT(step.backward.size(), 0);
+  EXPECT_TRUE(std::isnan(step.backward(0, 0))) << step.backward(0, 0);  // pulled harder it slips
+  EXPECT_EQ(step.forward(0, 0), 0);                                     // pulled less it sticks
+}
+
 TEST(Scales, OfAMillionthNeedNoOtherPath) {
   const auto belt = cases::load(std::string(STICKSLIP_SOURCE_DIR) + "/studies/scenes/belt.json");
   const auto expected = run(belt, json::parse(R"({"monolithic_al": {}})"));

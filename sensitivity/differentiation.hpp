@@ -1,0 +1,131 @@
+/// What direct differentiation carries, and the bodies' share in it, which may be had for several increments at once:
+/// the engine solves many right-hand sides for little more than one.
+#pragma once
+
+#include <optional>
+
+#include "core/model/loading.hpp"
+#include "sensitivity/differentiate.hpp"
+
+namespace stickslip {
+
+/// Parameters differentiated in one sweep.
+inline constexpr int directions = 4;
+using Direction = Dual<directions>;
+
+/// Numbers of the scene with up to `directions` parameters seeded, each in a direction of its own.
+inline Numbers<Direction> seeded(const Scene& scene, const std::vector<int>& parameters) {
+  auto numbers = scene.as<Direction>();
+  for (std::size_t d = 0; d < parameters.size(); ++d)
+    for (const auto& [slot, weight] : scene.parameters[parameters[d]].slots) numbers.at_slot[slot].d[d] += weight;
+  return numbers;
+}
+
+/// Slots and running state of up to `directions` parameters.
+struct ParameterBlock {
+  Slots<Direction> slots;
+  State<Direction> previous, current;
+};
+
+/// What parameters and prescribed motions do to the bodies' balance in an increment whose free displacements are held:
+/// it does not depend on the derivatives so far.
+struct PseudoLoad {
+  std::vector<Vector<Direction>> displacement;  ///< per block: with the derivative of prescribed motion
+  Matrix<double> rows, reduced;                 ///< a column a parameter: all dofs, and the engine's rows
+};
+
+/// Derivatives of an increment's displacements, to be expanded from the engine's dofs.
+struct Unexpanded {
+  PseudoLoad load;
+  Matrix<double> increment;  ///< engine dofs
+};
+
+/// Everything a scheme reads to differentiate one increment.
+template <class E>
+struct Differentiation {
+  const Model& model;
+  const Slots<double>& slots;
+  E& engine;
+  std::vector<ParameterBlock>& blocks;
+  int parameters = 0;
+  Counters counters;
+  Status status = Status::singular;  ///< where a scheme fails: that it could not factorise, or cap
+  std::string message = {};
+  std::optional<SchemeRecord> record = std::nullopt;    ///< of the last increment
+  std::optional<PseudoLoad> prepared = std::nullopt;    ///< of the next increment; empty: the scheme makes it
+  std::optional<Unexpanded> unexpanded = std::nullopt;  ///< of the last increment, for expand()
+};
+
+/// A vector as dual numbers without derivative.
+inline Vector<Direction> lift(const Vector<double>& v) {
+  return v.unaryExpr([](double x) { return Direction(x); });
+}
+
+/// Columns of derivatives out of the blocks, and back. `pick` selects the dual vector of a block.
+template <class Pick>
+Matrix<double> gather(std::vector<ParameterBlock>& blocks, int parameters, Pick&& pick) {
+  Matrix<double> out;
+  for (int j = 0; j < parameters; ++j) {
+    const Vector<Direction>& v = pick(blocks[j / directions], j / directions);
+    if (j == 0) out.resize(v.size(), parameters);
+    for (Eigen::Index i = 0; i < v.size(); ++i) out(i, j) = v[i].d[j % directions];
+  }
+  return out;
+}
+inline void add_derivatives(Vector<Direction>& v, const Matrix<double>& columns, int block) {
+  for (int d = 0; d < directions && block * directions + d < columns.cols(); ++d)
+    for (Eigen::Index i = 0; i < v.size(); ++i) v[i].d[d] += columns(i, block * directions + d);
+}
+
+/// The pseudo-load of the bodies at displacements of all dofs, not yet reduced.
+template <class E>
+PseudoLoad pseudo_load(const Differentiation<E>& problem, const Vector<double>& displacement, double time) {
+  const Model& model = problem.model;
+  PseudoLoad load;
+  std::vector<Vector<Direction>> rows;
+  for (auto& block : problem.blocks) {
+    Vector<Direction> u = lift(displacement), prescribed = u;
+    prescribe(model, block.slots, time, prescribed);
+    for (Eigen::Index i = 0; i < u.size(); ++i) u[i].d = prescribed[i].d;
+    const Vector<Direction> balance = bulk_forces(model, block.slots, u) - external_forces(model, block.slots, time);
+    rows.push_back(into_frames(model, block.slots.frames, Layout::all, balance));
+    load.displacement.push_back(std::move(u));
+  }
+  load.rows = gather(
+      problem.blocks, problem.parameters, [&](auto&, int b) -> auto& { return rows[b]; });
+  return load;
+}
+
+/// Reduces several pseudo-loads in one solve.
+template <class E>
+void reduce(Differentiation<E>& problem, std::vector<PseudoLoad>& loads) {
+  const int parameters = problem.parameters, count = static_cast<int>(loads.size());
+  Matrix<double> rows(problem.model.dof_count(), count * parameters);
+  for (int n = 0; n < count; ++n) rows.middleCols(n * parameters, parameters) = loads[n].rows;
+  const Matrix<double> reduced = problem.engine.reduce(rows);
+  for (int n = 0; n < count; ++n) loads[n].reduced = reduced.middleCols(n * parameters, parameters);
+}
+
+/// Displacements of all dofs with their derivatives, per increment and block, in one solve.
+template <class E>
+std::vector<std::vector<Vector<Direction>>> expand(Differentiation<E>& problem, std::vector<Unexpanded> increments) {
+  const int parameters = problem.parameters, count = static_cast<int>(increments.size());
+  if (count == 0) return {};
+  const auto join = [&](auto&& part) {
+    Matrix<double> all(part(increments[0]).rows(), count * parameters);
+    for (int n = 0; n < count; ++n) all.middleCols(n * parameters, parameters) = part(increments[n]);
+    return all;
+  };
+  const Matrix<double> all = problem.engine.expand(join([](auto& of) -> auto& { return of.increment; }),
+                                                   join([](auto& of) { return Matrix<double>(-of.load.rows); }),
+                                                   join([](auto& of) { return Matrix<double>(-of.load.reduced); }));
+  std::vector<std::vector<Vector<Direction>>> displacements;
+  for (int n = 0; n < count; ++n) {
+    displacements.push_back(std::move(increments[n].load.displacement));
+    for (std::size_t b = 0; b < displacements[n].size(); ++b)
+      add_derivatives(displacements[n][b], all.middleCols(n * parameters, parameters), static_cast<int>(b));
+  }
+  return displacements;
+}
+
+}  // namespace stickslip
