@@ -15,7 +15,7 @@ done
 
 dpkg-deb -x "$package" "$root/system"
 doc=$root/system/usr/share/doc/stickslip
-for file in "$root/system/usr/share/man/man1/stickslip.1" "$doc/LICENSE" "$doc/THIRD_PARTY_NOTICES" "$doc/README.md" \
+for file in "$root/system/usr/share/man/man1/stickslip.1" "$doc/LICENSE" "$doc/copyright" "$doc/THIRD_PARTY_NOTICES" "$doc/README.md" \
   "$root/system/usr/share/bash-completion/completions/stickslip"; do
   [ -s "$file" ] || { echo "the package lacks $file"; exit 1; }
 done
