@@ -60,7 +60,7 @@ std::shared_ptr<Condensation<double>> condense(const Problem& problem, const Run
 CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method, const RunOptions& options,
                     std::shared_ptr<Condensation<double>>& condensation);
 
-/// result.json (README, "What a run leaves"). `scene_text`: what the hash is of.
+/// result.json (docs/results.md). `scene_text`: what the hash is of.
 nlohmann::json result_json(const CaseResult& result, const std::string& scene_text);
 /// Parts of it that a study's row has too.
 nlohmann::json cost_json(const CaseResult& result);

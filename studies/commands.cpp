@@ -1,6 +1,6 @@
 #include "studies/commands.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
@@ -101,14 +101,32 @@ json check_json(const GradientCheck& check) {
           {"rejected", check.rejected},      {"entries", entries}};
 }
 
-/// trace.csv, and of scenes with few contact points cones.svg.
-void write_trace(const std::filesystem::path& directory, const Problem& problem, const Trace& trace) {
+/// trace.csv, and of scenes with few contact points cones.svg; returns their names.
+std::vector<std::string> write_trace(const std::filesystem::path& directory, const Problem& problem,
+                                     const Trace& trace) {
   write_file_atomically(directory / "trace.csv", trace_csv(problem, trace));
   const auto paths = cone_paths(problem, trace);
-  if (paths.empty()) return;
+  if (paths.empty()) return {"trace.csv"};
   const std::string& title = problem.model.scene.title;
   write_file_atomically(directory / "cones.svg",
                         report::draw_cones(paths, title.empty() ? "Friction cones" : title).svg_file());
+  return {"trace.csv", "cones.svg"};
+}
+
+/// Adds the files of a folder to those that a run has written.
+void add_files(const std::filesystem::path& folder, const std::vector<std::string>& names,
+               std::vector<std::string>& written) {
+  for (const auto& name : names) written.push_back(printable((folder / name).string()));
+}
+
+/// A line for each option: name, default, meaning. `before`: what the names begin with.
+void print_options(const nlohmann::ordered_json& options, const std::string& before) {
+  for (const auto& [name, option] : options.items())
+    if (option.contains("properties"))
+      print_options(option.at("properties"), before + name + "/");
+    else
+      fmt::print("  {:<22} {:<12} {}\n", before + name, option.at("default").dump(),
+                 option.at("description").get<std::string>());
 }
 
 }  // namespace
@@ -140,22 +158,25 @@ int run_command(const RunArguments& arguments) {
   const auto result = simulate(*loaded, on_step, arguments.trace ? &trace : nullptr);
   progress.reset();
   json document;
+  std::vector<std::string> written;
   if (!writes) {
     document = result_json(result, canonical_text(loaded->input));
   } else {
     document = write_result(directory, *loaded, result);
+    add_files(directory, result_files(*loaded, result), written);
     if (arguments.trace) {
-      write_trace(directory, *loaded->problem, trace);
+      add_files(directory, write_trace(directory, *loaded->problem, trace), written);
     } else {  // of an earlier run
       for (const char* file : {"trace.csv", "cones.svg"}) std::filesystem::remove(directory / file);
     }
     if (!arguments.json) {
       if (arguments.trace) std::cout << trace_table(trace) << '\n';
       print_summary(result);
-      fmt::print("\nwritten: {0}/result.json, {0}/fields.pvd\n", printable(directory.string()));
     }
   }
-  if (!arguments.export_to.empty() && !result.trajectory.increments.empty()) export_system(arguments.export_to, result);
+  if (!arguments.export_to.empty() && !result.trajectory.increments.empty())
+    add_files(arguments.export_to, export_system(arguments.export_to, result), written);
+  if (!arguments.json) fmt::print("\nwritten: {}\n", fmt::join(written, ", "));
   if (arguments.json) std::cout << json_text(document, 2) << '\n';
   for (const auto& warning : document["warnings"])
     fmt::print(stderr, "warning ({}): {}; {}\n", warning["code"].get<std::string>(),
@@ -220,15 +241,16 @@ int gradcheck_command(const RunArguments& arguments) {
 }
 
 int methods_command(bool as_json) {
-  json all = json::object();
-  for (const auto& name : method_names()) all.update(to_json(*default_method(name)));
   if (as_json) {
+    json all = json::object();
+    for (const auto& name : method_names()) all.update(to_json(*default_method(name)));
     std::cout << all.dump(2) << '\n';
     return done;
   }
-  for (const auto& [name, options] : all.items()) {
+  const auto schema = method_schema(OptionLists::refused);
+  for (const auto& [name, method] : schema.at("properties").items()) {
     fmt::print("{}\n", name);
-    for (const auto& [option, standard] : options.items()) fmt::print("  {:<18} {}\n", option, standard.dump());
+    print_options(method.at("properties"), "");
   }
   fmt::print("\nclosed forms, as a study's reference (inputs -> what they give)\n");
   for (const auto& form : closed_forms()) {

@@ -103,7 +103,7 @@ Where a support is inclined, a row is a direction of its frame, not an axis. Wha
 
 }  // namespace
 
-void export_system(const std::filesystem::path& folder, const CaseResult& result) {
+std::vector<std::string> export_system(const std::filesystem::path& folder, const CaseResult& result) {
   const auto& model = result.problem->model;
   const auto& slots = result.problem->slots;
   const auto& increment = result.trajectory.increments.back();
@@ -141,6 +141,7 @@ void export_system(const std::filesystem::path& folder, const CaseResult& result
   write_file_atomically(folder / "rows.csv", rows_csv(model, slots));
   write_file_atomically(folder / "points.csv", points_csv(model, state));
   write_file_atomically(folder / "README", fmt::format(readme, increment.time, K_free.rows(), G.cols()));
+  return {"K.mtx", "G.mtx", "lambda.mtx", "f.mtx", "u.mtx", "g.mtx", "rows.csv", "points.csv", "README"};
 }
 
 }  // namespace stickslip

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "studies/case.hpp"
 
@@ -13,7 +15,8 @@ namespace stickslip {
 ///   K u + G lambda = f       free displacements, u prescribed elsewhere
 ///   G^T u + g = area * (gap; slip since the start)      closed form of the kinematics, with what is prescribed in g
 ///
-/// (n x n, n x m; m: 1 + tangents for each contact point). pre: the run has an increment. Throws std::system_error.
-void export_system(const std::filesystem::path& folder, const CaseResult& result);
+/// (n x n, n x m; m: 1 + tangents for each contact point). Returns the names of the files. pre: the run has an
+/// increment. Throws std::system_error.
+std::vector<std::string> export_system(const std::filesystem::path& folder, const CaseResult& result);
 
 }  // namespace stickslip

@@ -150,6 +150,16 @@ json numbers_json(const std::vector<Number>& numbers) {
   return out;
 }
 
+/// Every `every`-th step and the last one; 0: the last alone.
+std::vector<std::size_t> steps_with_fields(const CaseResult& result, int every) {
+  std::vector<std::size_t> steps;
+  for (std::size_t n = 0; n < result.steps.size(); ++n)
+    if (n + 1 == result.steps.size() || (every > 0 && (n + 1) % every == 0)) steps.push_back(n);
+  return steps;
+}
+
+std::string field_file(std::size_t step) { return fmt::format("fields_{:04}.vtu", step + 1); }
+
 }  // namespace
 
 Vector<double> traction_vector(const Problem& problem, const State<double>& state, int p) {
@@ -163,14 +173,18 @@ Vector<double> traction_vector(const Problem& problem, const State<double>& stat
 
 void write_fields(const std::filesystem::path& directory, const CaseResult& result, int every) {
   std::vector<PvdEntry> entries;
-  for (std::size_t n = 0; n < result.steps.size(); ++n) {
-    const bool last = n + 1 == result.steps.size();
-    if (!last && (every == 0 || (n + 1) % every != 0)) continue;
-    const std::string file = fmt::format("fields_{:04}.vtu", n + 1);
-    write_vtu(directory / file, fields_of(result, result.steps[n], last));
+  for (const std::size_t n : steps_with_fields(result, every)) {
+    const std::string file = field_file(n);
+    write_vtu(directory / file, fields_of(result, result.steps[n], n + 1 == result.steps.size()));
     entries.push_back({result.steps[n].increment->time, file});
   }
   write_pvd(directory / "fields.pvd", entries);
+}
+
+std::vector<std::string> field_files(const CaseResult& result, int every) {
+  std::vector<std::string> files{"fields.pvd"};
+  for (const std::size_t n : steps_with_fields(result, every)) files.push_back(field_file(n));
+  return files;
 }
 
 json picture_json(const CaseResult& result) {

@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
 
 #include "studies/case.hpp"
 
@@ -16,6 +18,9 @@ namespace stickslip {
 /// the pressures and of the tractions, and the smallest gap; the four fields of each contact NAME alone then follow,
 /// contact_state_NAME and so on.
 void write_fields(const std::filesystem::path& directory, const CaseResult& result, int every);
+
+/// Names of the files that write_fields writes, in order.
+std::vector<std::string> field_files(const CaseResult& result, int every);
 
 /// Force per area on the slave at contact point p.
 Vector<double> traction_vector(const Problem& problem, const State<double>& state, int p);

@@ -41,7 +41,7 @@ class JsonDocument {
   void remove(const std::string& pointer);
 
   /// Carries out an override "POINTER=VALUE". VALUE is JSON; where the document holds a string it may also be bare
-  /// text. The pointer must exist and may not name an object; otherwise that is a fault and nothing changes.
+  /// text. The pointer, or the object around it, must exist, and it may not name an object; else nothing changes.
   void override_value(const std::string& assignment, Diagnostics&);
 
  private:

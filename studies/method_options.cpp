@@ -19,21 +19,33 @@ template <class E>
 struct Words {
   std::vector<std::pair<std::string, E>> values;
 };
-// One list of options a method; it serves reading, writing and the names in messages. A number with a slot is a
-// Number, one that only steers the iteration a double.
+/// Name of an option, its meaning, and values that show how it is written ("" where the default does), as JSON.
+struct Option {
+  const char *name, *about, *examples = "";
+  operator const char*() const { return name; }
+};
+
+// One list of options a method; it serves reading, writing, describing and the names in messages. A number with a slot
+// is a Number, one that only steers the iteration a double.
+
+constexpr const char* rho_examples = R"(["auto", 100, {"absolute": 2400}])";
+constexpr Option newton_option{"newton", "Newton's method within an increment"};
 
 template <class Visitor>
 void visit_options(NewtonOptions& newton, Visitor&& visit) {
-  visit("tolerance", newton.tolerance, below_one);
-  visit("max_iterations", newton.max_iterations);
-  visit("line_search", newton.line_search);
+  visit(Option{"tolerance", "residual at which it stops, relative to the scale of each residual"}, newton.tolerance,
+        below_one);
+  visit(Option{"max_iterations", "of each solve; beyond: status cap"}, newton.max_iterations);
+  visit(Option{"line_search", "backtracking where a full step stays in its active set and the residual does not fall"},
+        newton.line_search);
 }
 
 template <class Visitor>
 void visit_options(Penalty& method, Visitor&& visit) {
-  visit("stiffness", method.stiffness);
-  visit("tangential_ratio", method.tangential_ratio);
-  visit("newton", method.newton);
+  visit(Option{"stiffness", "penalty in multiples of the local nodal stiffness (auto: 1e3), or absolute", rho_examples},
+        method.stiffness);
+  visit(Option{"tangential_ratio", "tangential over normal penalty", "[0.5]"}, method.tangential_ratio);
+  visit(newton_option, method.newton);
 }
 
 template <class Visitor>
@@ -41,30 +53,41 @@ void visit_options(UzawaAL& method, Visitor&& visit) {
   using Acceleration = UzawaAL::Acceleration;
   using Cone = UzawaAL::Cone;
   using Sensitivity = UzawaAL::Sensitivity;
-  visit("scale", method.scale);
-  visit("tolerance", method.tolerance, below_one);
-  visit("max_augmentations", method.max_augmentations);
-  visit("adapt", method.adapt);
-  visit("acceleration", method.acceleration,
+  visit(Option{"scale", "rho in multiples of the local nodal stiffness (auto: 10), or absolute", rho_examples},
+        method.scale);
+  visit(Option{"tolerance", "relative error left in the multiplier, and violation, at which the updates stop"},
+        method.tolerance, below_one);
+  visit(Option{"max_augmentations", "of an increment; beyond: status cap, with the last iterate as the result"},
+        method.max_augmentations);
+  visit(Option{"adapt", "multiplies rho by 4 where an augmentation left more than a quarter of the violation"},
+        method.adapt);
+  visit(Option{"acceleration", "extrapolation of the updates; anderson takes several of the last, aitken two"},
+        method.acceleration,
         Words<Acceleration>{
             {{"none", Acceleration::none}, {"aitken", Acceleration::aitken}, {"anderson", Acceleration::anderson}}});
-  visit("cone", method.cone, Words<Cone>{{{"augmented", Cone::augmented}, {"frozen", Cone::frozen}}});
-  visit("sensitivity", method.sensitivity,
+  visit(
+      Option{"cone", "frozen: radius of the last augmentation, symmetric; fails where friction is large, and says so"},
+      method.cone, Words<Cone>{{{"augmented", Cone::augmented}, {"frozen", Cone::frozen}}});
+  visit(Option{"sensitivity", "scheme of the derivatives (auto: preconditioned; with a frozen cone iterated)"},
+        method.sensitivity,
         Words<Sensitivity>{{{"auto", Sensitivity::automatic},
                             {"iterated", Sensitivity::iterated},
                             {"truncated", Sensitivity::truncated},
                             {"oversized", Sensitivity::oversized},
                             {"preconditioned", Sensitivity::preconditioned}}});
-  visit("oversize", method.oversize, above_one);
-  visit("newton", method.newton);
+  visit(Option{"oversize", "factor on rho of the schemes oversized (auto: 1e3) and preconditioned", R"(["auto", 1e4])"},
+        method.oversize, above_one);
+  visit(newton_option, method.newton);
 }
 
 template <class Visitor>
 void visit_options(MonolithicAL& method, Visitor&& visit) {
   using Cone = MonolithicAL::Cone;
-  visit("scale", method.scale);
-  visit("cone", method.cone, Words<Cone>{{{"augmented", Cone::augmented}, {"multiplier", Cone::multiplier}}});
-  visit("newton", method.newton);
+  visit(Option{"scale", "rho in multiples of the local nodal stiffness (auto: 1), or absolute", rho_examples},
+        method.scale);
+  visit(Option{"cone", "radius by the trial pressure, or by the multiplier: same solution, another path"}, method.cone,
+        Words<Cone>{{{"augmented", Cone::augmented}, {"multiplier", Cone::multiplier}}});
+  visit(newton_option, method.newton);
 }
 
 /// Names of the options of a method, or of newton.
@@ -174,54 +197,66 @@ struct Writer {
   }
 };
 
-/// Describes the options of one object by JSON Schemas, with their defaults.
+/// Describes the options of one object by JSON Schemas, with meaning, default and examples.
 struct Describer {
-  json& properties;
+  using Schema = nlohmann::ordered_json;
+  Schema& properties;
   OptionLists lists;
 
-  void add(const char* name, const json& schema, const json& standard) {
-    properties[name] = lists == OptionLists::refused
-                           ? schema
-                           : json{{"anyOf", {schema, {{"type", "array"}, {"minItems", 1}, {"items", schema}}}}};
-    if (!standard.is_null()) properties[name]["default"] = standard;
+  void add(const Option& option, const Schema& schema, const char* title, const Schema& standard) {
+    Schema& own = properties[option.name];
+    own["description"] = option.about;
+    own["title"] = title;
+    if (lists == OptionLists::refused)
+      own.update(schema);
+    else
+      own["anyOf"] = {schema, {{"type", "array"}, {"minItems", 1}, {"items", schema}}};
+    if (!standard.is_null()) own["default"] = standard;
+    own["examples"] = *option.examples ? Schema::parse(option.examples) : Schema::array({standard});
   }
-  void operator()(const char* name, const Regularisation&) {
-    const json number{{"type", "number"}, {"exclusiveMinimum", 0}};
-    json absolute = json::object();
-    Describer{absolute, lists}.add("absolute", number, {});
-    const json object{
+  void operator()(const Option& option, const Regularisation&) {
+    const Schema number{{"type", "number"}, {"exclusiveMinimum", 0}};
+    Schema absolute = Schema::object();
+    Describer{absolute, lists}.add({"absolute", "rho itself (force per length cubed)", "[2400]"}, number, "number > 0",
+                                   {});
+    const Schema object{
         {"type", "object"}, {"required", {"absolute"}}, {"additionalProperties", false}, {"properties", absolute}};
-    add(name, {{"anyOf", {{{"const", "auto"}}, number, object}}}, "auto");
+    add(option, {{"anyOf", {{{"const", "auto"}}, number, object}}}, R"("auto", number > 0 or object)", "auto");
   }
-  void operator()(const char* name, const Number& option) {
-    add(name, {{"type", "number"}, {"exclusiveMinimum", 0}}, option.value);
+  void operator()(const Option& option, const Number& value) {
+    add(option, {{"type", "number"}, {"exclusiveMinimum", 0}}, "number > 0", value.value);
   }
-  void operator()(const char* name, double option, const Rule& rule) {
-    json schema{{"type", "number"}, {"description", rule.text}, {"exclusiveMinimum", rule.holds(0.5) ? 0 : 1}};
+  static Schema ruled(const Rule& rule) {
+    Schema schema{{"type", "number"}, {"exclusiveMinimum", rule.holds(0.5) ? 0 : 1}};
     if (!rule.holds(1.5)) schema["exclusiveMaximum"] = 1;
-    add(name, schema, option);
+    return schema;
   }
-  void operator()(const char* name, const std::optional<double>& option, const Rule& rule) {
-    json own = json::object();
-    Describer{own, OptionLists::refused}(name, option.value_or(2), rule);
-    own[name].erase("default");
-    add(name, {{"anyOf", {{{"const", "auto"}}, own[name]}}}, option ? json(*option) : json("auto"));
+  void operator()(const Option& option, double value, const Rule& rule) { add(option, ruled(rule), rule.text, value); }
+  void operator()(const Option& option, const std::optional<double>& value, const Rule& rule) {
+    add(option, {{"anyOf", {{{"const", "auto"}}, ruled(rule)}}}, (R"("auto" or )" + std::string(rule.text)).c_str(),
+        value ? Schema(*value) : Schema("auto"));
   }
-  void operator()(const char* name, int option) { add(name, {{"type", "integer"}, {"minimum", 1}}, option); }
-  void operator()(const char* name, bool option) { add(name, {{"type", "boolean"}}, option); }
+  void operator()(const Option& option, int value) {
+    add(option, {{"type", "integer"}, {"minimum", 1}}, "whole number >= 1", value);
+  }
+  void operator()(const Option& option, bool value) { add(option, {{"type", "boolean"}}, "true or false", value); }
   template <class E>
-  void operator()(const char* name, E option, const Words<E>& words) {
-    json allowed = json::array(), standard;
-    for (const auto& [word, value] : words.values) {
+  void operator()(const Option& option, E value, const Words<E>& words) {
+    Schema allowed = Schema::array(), standard;
+    for (const auto& [word, each] : words.values) {
       allowed.push_back(word);
-      if (value == option) standard = word;
+      if (each == value) standard = word;
     }
-    add(name, {{"enum", allowed}}, standard);
+    add(option, {{"enum", allowed}}, "one of the words", standard);
   }
-  void operator()(const char* name, NewtonOptions newton) {
-    json own = json::object();
+  void operator()(const Option& option, NewtonOptions newton) {
+    Schema own = Schema::object();
     visit_options(newton, Describer{own, lists});
-    properties[name] = {{"type", "object"}, {"additionalProperties", false}, {"properties", own}};
+    properties[option.name] = {{"description", option.about},
+                               {"type", "object"},
+                               {"examples", {{{"max_iterations", 50}}}},
+                               {"additionalProperties", false},
+                               {"properties", own}};
   }
 };
 
@@ -293,18 +328,20 @@ std::optional<Method> read_method(const JsonNode& node, SceneReading& reading) {
   return method;
 }
 
-json method_schema(OptionLists lists) {
-  json methods = json::object();
+nlohmann::ordered_json method_schema(OptionLists lists) {
+  using Schema = nlohmann::ordered_json;
+  Schema methods = Schema::object();
   for_each_method([&]<class M>(M method) {
-    json options = json::object();
+    Schema options = Schema::object();
     visit_options(method, Describer{options, lists});
-    methods[std::string(M::name)] = {{"type", "object"}, {"additionalProperties", false}, {"properties", options}};
+    methods[std::string(M::name)] = {{"description", "all options may be left out"},
+                                     {"type", "object"},
+                                     {"examples", {Schema::object()}},
+                                     {"additionalProperties", false},
+                                     {"properties", options}};
   });
-  return {{"type", "object"},
-          {"minProperties", 1},
-          {"maxProperties", 1},
-          {"additionalProperties", false},
-          {"properties", methods}};
+  return {{"type", "object"},   {"title", "one of the following"}, {"minProperties", 1},
+          {"maxProperties", 1}, {"additionalProperties", false},   {"properties", methods}};
 }
 
 json to_json(const Method& method) {

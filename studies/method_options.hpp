@@ -25,8 +25,8 @@ std::optional<Method> read_method(const JsonNode&, SceneReading&);
 /// Whether an option may be a list of values, as in the "methods" of a study.
 enum class OptionLists { refused, swept };
 
-/// JSON Schema of {"NAME": {options}}.
-nlohmann::json method_schema(OptionLists);
+/// JSON Schema of {"NAME": {options}}, options in the order of their list.
+nlohmann::ordered_json method_schema(OptionLists);
 
 /// {"NAME": {every option, as used}}.
 nlohmann::json to_json(const Method&);

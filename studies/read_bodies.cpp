@@ -274,6 +274,37 @@ bool fits(const JsonNode& node, const MeshDescription& description, const std::s
   return false;
 }
 
+/// The mesh with cells that are all alike; none where it has no grade, or one that makes no difference.
+std::optional<MeshDescription> without_grade(const MeshDescription& description) {
+  return std::visit(
+      []<class M>(const M& mesh) -> std::optional<MeshDescription> {
+        if constexpr (requires { mesh.grade; }) {
+          M even = mesh;
+          even.grade = 1.0;
+          if (mesh.grade.value != 1) return even;
+        }
+        return std::nullopt;
+      },
+      description);
+}
+
+/// Reports the inverted element `bad`: at the grade, where cells that are all alike would be sound.
+void report_inverted(const JsonNode& node, const MeshDescription& description, const Mesh& mesh,
+                     const Points<double>& points, int bad, const SceneReading& reading) {
+  std::string fault = "element " + std::to_string(bad + 1) + " is inverted or flat; its corners are";
+  const int n = nodes_of(mesh.shape);
+  for (int a = 0; a < n; ++a) {
+    const auto x = points.col(mesh.connectivity[bad * n + a]);
+    fault += " (" + shown(x[0]) + ", " + shown(x[1]) + ")";
+  }
+  const auto even = without_grade(description);
+  if (even && !first_inverted_element(mesh, make_points<double>(*even, mesh, reading.scene.as<double>())))
+    for (const auto& [kind, generator] : node.members())
+      if (const auto grade = generator.find("grade"))
+        return grade->error("is " + shown(grade->value()) + "; with it " + fault + "; try one nearer to 1");
+  node.error(fault);
+}
+
 /// Makes the mesh and looks at it; none where it is at fault.
 std::optional<Mesh> check_mesh(const JsonNode& body, const JsonNode& node, const MeshDescription& description,
                                const std::string& element, SceneReading& reading) {
@@ -294,13 +325,7 @@ std::optional<Mesh> check_mesh(const JsonNode& body, const JsonNode& node, const
     return std::nullopt;
   }
   if (const auto bad = first_inverted_element(mesh, points)) {
-    std::string corners;
-    const int n = nodes_of(mesh.shape);
-    for (int a = 0; a < n; ++a) {
-      const auto x = points.col(mesh.connectivity[*bad * n + a]);
-      corners += " (" + shown(x[0]) + ", " + shown(x[1]) + ")";
-    }
-    node.error("element " + std::to_string(*bad + 1) + " is inverted or flat; its corners are" + corners);
+    report_inverted(node, description, mesh, points, *bad, reading);
     return std::nullopt;
   }
   return mesh;

@@ -94,6 +94,20 @@ void read_loaded_body(const JsonNode& on, SceneReading& reading) {
     on.error("is " + in_quotes(*name) + ", a point without a volume; use force on " + in_quotes(*name + ".node"));
 }
 
+/// Whether the amount of a load is written as a table in time, which its "history" is for; reported where it is.
+bool varies_in_time(const JsonNode& amount, Load::Kind kind, const SceneReading& reading) {
+  const auto& value = amount.value();
+  const bool one_number = kind == Load::Kind::pressure;
+  const bool table =
+      value.is_object() ||
+      (value.is_array() &&
+       (one_number || std::any_of(value.begin(), value.end(), [](const auto& each) { return each.is_structured(); })));
+  if (table)
+    amount.must_be((one_number ? "a number" : "an array of " + std::to_string(reading.dimension()) + " numbers") +
+                   R"(, which "history" scales in time: "history": [[0, 0], [1, 1]])");
+  return table;
+}
+
 void read_load(const JsonNode& node, SceneReading& reading) {
   const std::map<std::string, Load::Kind> kinds{{"traction", Load::Kind::traction},
                                                 {"pressure", Load::Kind::pressure},
@@ -103,7 +117,9 @@ void read_load(const JsonNode& node, SceneReading& reading) {
   if (!kind) return;
   Load load;
   load.kind = kinds.at(kind->first);
-  if (load.kind == Load::Kind::pressure)
+  if (varies_in_time(kind->second, load.kind, reading))
+    load.vector.clear();
+  else if (load.kind == Load::Kind::pressure)
     load.vector = {reading.number(kind->second, any_number)};
   else
     load.vector = reading.vector(kind->second, reading.dimension());

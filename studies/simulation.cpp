@@ -104,4 +104,10 @@ nlohmann::json write_result(const std::filesystem::path& directory, const Simula
   return document;
 }
 
+std::vector<std::string> result_files(const Simulation& simulation, const CaseResult& result) {
+  std::vector<std::string> files{"result.json"};
+  for (auto& file : field_files(result, fields_every(simulation.input.output))) files.push_back(std::move(file));
+  return files;
+}
+
 }  // namespace stickslip

@@ -8,6 +8,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "studies/case.hpp"
 #include "studies/scene_reader.hpp"
@@ -41,8 +42,11 @@ CaseResult simulate(const Simulation& simulation, const std::function<void()>& o
 void remove_fields(const std::filesystem::path& directory);
 
 /// Writes DIR/result.json and DIR/fields.pvd with its .vtu files, in place of an earlier run's; returns the former
-/// (README, "What a run leaves"). Throws std::system_error where the disk refuses.
+/// (docs/results.md). Throws std::system_error where the disk refuses.
 nlohmann::json write_result(const std::filesystem::path& directory, const Simulation& simulation,
                             const CaseResult& result);
+
+/// Names of the files that write_result writes.
+std::vector<std::string> result_files(const Simulation& simulation, const CaseResult& result);
 
 }  // namespace stickslip

@@ -1,5 +1,5 @@
 /// A study: every cell (a method with its options on a variant of the scene) is run, measured against the references,
-/// and recorded as one line of DIR/results.jsonl as soon as it is done. (README, "Study files")
+/// and recorded as one line of DIR/results.jsonl as soon as it is done. (docs/study.md)
 #pragma once
 
 #include <map>

@@ -31,7 +31,7 @@ class CellRunner {
   CellRunner(const Study& study, const std::vector<CellInput>& cells, MeshFiles& meshes)
       : study_(study), cells_(cells), meshes_(meshes) {}
 
-  /// The line of results.jsonl (README, "What a run leaves"). Whatever the cell throws is a row too: of status `cap`
+  /// The line of results.jsonl (docs/results.md). Whatever the cell throws is a row too: of status `cap`
   /// where there was not enough memory, `failed` where the program broke down, with the reason as its message.
   nlohmann::json row(std::size_t cell);
   /// The row of a cell that left nothing.

@@ -1,5 +1,5 @@
 /// Study files (JSON): one scene, methods with the options to sweep, numbers to vary, mesh levels; expanded to cells,
-/// of which each is one complete scene. The format is described in README.md, "Study files".
+/// of which each is one complete scene. The format is described in docs/study.md.
 #pragma once
 
 #include <map>

@@ -11,8 +11,8 @@
 
 namespace stickslip {
 
-/// The warnings of a run, each with its body or contact and the measured value, largest over the steps (README,
-/// "What a run leaves"):
+/// The warnings of a run, each with its body or contact and the measured value, largest over the steps
+/// (docs/results.md):
 ///   large_strain, large_rotation   above 5 % or 5 degrees in an element
 ///   large_sliding  slip of a closed point along a master that is deformable or curved, above half a slave element
 ///   idle_friction  none of the points of a contact with friction has slipped in any step

@@ -1,5 +1,6 @@
-/// The schemas against the readers: every object has the keys that the reader allows there, and a validator that is not
-/// ours takes what the reader takes and refuses what it refuses.
+/// The schemas against the readers: every object has the keys that the reader allows there, what a key stands for where
+/// it is left out is what the reader takes, and a validator that is not ours takes what the reader takes and refuses
+/// what it refuses. Every key is described, with an example that is valid.
 #include "studies/schema.hpp"
 
 #include <gtest/gtest.h>
@@ -14,6 +15,7 @@
 #include <sstream>
 
 #include "studies/scene_reader.hpp"
+#include "studies/simulation.hpp"
 #include "studies/study_reader.hpp"
 
 namespace stickslip {
@@ -188,6 +190,81 @@ TEST(Schema, HasInEveryObjectTheKeysThatTheReaderAllows) {
   EXPECT_GT(compared, 50) << "objects were found and compared";
 }
 
+/// Calls f(name, property) for every property, wherever it stands; conditions ("if", "then", "else") have none.
+template <class F>
+void for_each_property(const json& node, F&& f) {
+  if (!node.is_structured()) return;
+  for (const auto& [key, inner] : node.items()) {
+    if (node.is_object() && (key == "if" || key == "then" || key == "else" || key == "oneOf" || key == "examples"))
+      continue;
+    if (node.is_object() && key == "properties")
+      for (const auto& [name, property] : inner.items()) f(name, property);
+    for_each_property(inner, f);
+  }
+}
+
+TEST(Schema, DescribesEveryKeyAndShowsAnExample) {
+  for (const json& schema : {json(scene_schema()), json(study_schema())}) {
+    int count = 0;
+    for_each_property(schema, [&](const std::string& name, const json& property) {
+      ++count;
+      EXPECT_GT(property.value("description", "").size(), 3u) << name << ": " << property;
+      const json& whole = resolved(schema, property);
+      const bool shown = property.contains("examples") || whole.contains("examples") || whole.contains("enum") ||
+                         whole.value("type", "") == "boolean";
+      EXPECT_TRUE(shown) << name << ": " << property;
+    });
+    EXPECT_GT(count, 40) << "keys were found";
+  }
+}
+
+/// All that the solver makes of a scene; its faults where it has any.
+json outcome(const json& scene) {
+  Diagnostics diagnostics;
+  const auto document = JsonDocument::parse(scene.dump(), (scenes_folder / "scene.json").string(), diagnostics);
+  const auto simulation = document ? prepare(*document, {}, std::nullopt, diagnostics) : std::nullopt;
+  if (!simulation) return {{"faults", diagnostics.text()}};
+  const json result = result_json(simulate(*simulation), "");
+  return {{"method", result.at("method")},
+          {"steps", result.at("steps")},
+          {"fields", {simulation->input.output.fields, simulation->input.output.every}}};
+}
+
+TEST(Schema, NamesTheDefaultsOfTheReader) {
+  const json schema = scene_schema();
+  std::vector<json> scenes = rich_scenes();
+  scenes.push_back(json::parse(R"({
+    "bodies": {
+      "ring": {"mesh": {"ring": {"center": [0, 0], "inner": 1, "outer": 2, "cells": [1, 8]}},
+               "material": {"linear_elastic": {"E": 1000, "nu": 0.25}}},
+      "disk": {"mesh": {"disk": {"center": [0, 0], "radius": 1, "cells": [2, 2]}},
+               "material": {"linear_elastic": {"E": 1000, "nu": 0.25}}}},
+    "contacts": {"fit": {"slave": "disk.arc", "master": "ring.inner"}},
+    "supports": [{"on": "ring.outer", "move": {"x": 0, "y": 0}}, {"on": "disk.arc", "move": {"x": 0}}],
+    "loads": [{"on": "disk", "body_force": [0, 1]}],
+    "time": {"end": 1, "steps": 1}, "responses": {"p": {"contact_pressure": {"contact": "fit"}}},
+    "method": {"monolithic_al": {}}})"));
+  int compared = 0;
+  for (const json& scene : scenes) {
+    const json expected = outcome(scene);
+    EXPECT_FALSE(expected.contains("faults")) << expected;
+    for_each_object(schema, schema, scene, "", [&](const std::string& pointer, const json& at) {
+      const json properties = resolved(schema, at).value("properties", json::object());
+      for (const auto& [key, property] : properties.items()) {
+        const json::json_pointer place(pointer + "/" + key);
+        if (!property.contains("default") || scene.contains(place)) continue;
+        json changed = scene;
+        changed[place] = property["default"];
+        const json found = outcome(changed);
+        if (found.contains("faults")) continue;  // the key does not go with what is there
+        EXPECT_EQ(found, expected) << place << " = " << property["default"];
+        ++compared;
+      }
+    });
+  }
+  EXPECT_GT(compared, 40) << "defaults were found and compared";
+}
+
 #ifdef STICKSLIP_PYTHON_WITH_JSONSCHEMA
 /// Runs Python's jsonschema: every document of `valid` must pass, every one of `invalid` must not.
 void validate(const json& schema, const json& valid, const json& invalid) {
@@ -230,6 +307,21 @@ TEST(Schema, TakesEveryShippedFileAndRefusesUnknownKeysInIt) {
                       });
     }
     validate(schema, valid, invalid);
+  }
+}
+
+TEST(Schema, ShowsExamplesThatAreValid) {
+  for (const json& schema : {json(scene_schema()), json(study_schema())}) {
+    json properties = json::object(), documents = json::array();
+    for_each_property(schema, [&](const std::string& name, const json& property) {
+      const std::string key = name + " " + std::to_string(properties.size());
+      properties[key] = property;
+      for (const json& example : property.value("examples", json::array()))
+        documents.push_back({key + ": " + example.dump(), {{key, example}}});
+    });
+    ASSERT_GT(documents.size(), 40u);
+    const json all{{"type", "object"}, {"properties", properties}, {"$defs", schema["$defs"]}};
+    validate(all, documents, json::array({{"an example of nothing", json::array({1})}}));
   }
 }
 

@@ -1,0 +1,158 @@
+#!/usr/bin/env python3
+"""key_tables.py STICKSLIP [--check | --self-test]: prints the tables of keys in docs/*.md from `STICKSLIP schema`.
+
+A table stands between the lines `<!-- keys FILE PATH -->` and `<!-- end of keys -->`; FILE is scene or study. PATH leads
+to an object, as in bodies/NAME/mesh, loads/[], $defs/value; what has a table of its own is not repeated in the tables
+around it. With --check nothing is written: exit code 1 where a table differs from the schema, or where a key has none.
+"""
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+DOCS = pathlib.Path(__file__).resolve().parent.parent / "docs"
+BLOCK = re.compile(r"(<!-- keys (\w+) ?(\S*) -->\n).*?(<!-- end of keys -->)", re.S)
+LISTS_OF_OPTIONS = "swept_method"  # the options of "method" once more, each also as a list
+
+
+class Tables:
+    """Tables of a schema; `own`: paths that have one. `shown` gathers the properties that were given a row."""
+
+    def __init__(self, schema, own):
+        self.schema, self.own, self.shown = schema, own, set()
+
+    def resolved(self, node):
+        """The node together with the definition that it refers to, and the name of that."""
+        if "$ref" not in node:
+            return node, None
+        name = node["$ref"].rsplit("/", 1)[1]
+        return {**self.resolved(self.schema["$defs"][name])[0], **node}, name
+
+    def children(self, node):
+        """(name, schema, whether required) of what an object or a list holds, whichever alternative it is."""
+        for name, inner in node.get("properties", {}).items():
+            self.shown.add(id(inner))
+            yield name, inner, name in node.get("required", [])
+        for name, inner in (("NAME", node.get("additionalProperties")), ("[]", node.get("items"))):
+            if isinstance(inner, dict):
+                yield name, inner, False
+        for alternative in node.get("anyOf", []):
+            yield from self.children(alternative)
+
+    def rows(self, path, node, prefix=""):
+        """(key, schema, whether required) of all below a path."""
+        for name, inner, required in self.children(node):
+            inner, definition = self.resolved(inner)
+            for each in [inner] if name in node.get("properties", {}) else [inner, *inner.get("anyOf", [])]:
+                if "description" in each:
+                    yield prefix + name, each, required
+            below = f"{path}/{name}".lstrip("/")
+            if below not in self.own and definition != LISTS_OF_OPTIONS and f"$defs/{definition}" not in self.own:
+                yield from self.rows(below, inner, f"{prefix}{name}/")
+
+    def at(self, path):
+        if path.startswith("$defs/"):
+            return self.resolved(self.schema["$defs"][path.removeprefix("$defs/")])[0]
+        node = self.schema
+        for part in path.split("/") if path else []:
+            node = self.resolved(next(inner for name, inner, _ in self.children(node) if name == part))[0]
+        return node
+
+    def table(self, path):
+        lines = []  # neighbours that differ in their names alone share a line
+        for key, node, required in self.rows(path, self.at(path)):
+            cells = [kind(node), standard(node, required), node["description"], example(key, node)]
+            object_ = key.rpartition("/")[0]
+            if lines and lines[-1][1][:3] == cells[:3] and lines[-1][0][0].rpartition("/")[0] == object_:
+                lines[-1][0].append(key)
+            else:
+                lines.append(([key], cells))
+        head = "| key | type | default | meaning | example |\n|---|---|---|---|---|\n"
+        return head + "".join(f"| {', '.join(f'`{key}`' for key in keys)} | {' | '.join(cells)} |\n"
+                              for keys, cells in lines)
+
+
+def kind(node):
+    if "enum" in node:
+        return ", ".join(f"`{value}`" for value in node["enum"])
+    if "title" in node:
+        return node["title"].removeprefix("a ")
+    return {"boolean": "true or false", "string": "text"}.get(node["type"], node["type"])
+
+
+def shown(value):
+    """A value as files hold it; 1000 for the 1000.0 that numbers become on the way."""
+    return re.sub(r"(?<=\d)\.0(?=[,\]} ]|$)", "", json.dumps(value))
+
+
+def standard(node, required):
+    if "default" in node:
+        return f"`{shown(node['default'])}`"
+    return "required" if required else ""
+
+
+def example(key, node):
+    values = node.get("examples") or node.get("enum", [])[-1:]
+    if not values and node.get("type") == "boolean":
+        values = [not node["default"]]
+    name = key.rsplit("/", 1)[-1]
+    head = "" if name in ("NAME", "[]") else json.dumps(name) + ": "
+    return ", ".join(f"`{head}{shown(value)}`" for value in values)
+
+
+def described(node):
+    """(name, schema) of all properties that are described, wherever they stand."""
+    if isinstance(node, list):
+        for each in node:
+            yield from described(each)
+    elif isinstance(node, dict):
+        for name, inner in node.get("properties", {}).items():
+            if isinstance(inner, dict) and "description" in inner:
+                yield name, inner
+        for name, inner in node.items():
+            if name not in ("examples", "default"):
+                yield from described(inner)
+
+
+def compare(pages, schemas):
+    """Pages with the tables of the schemas, and what was wrong with them."""
+    own = {file: {m.group(3) for text in pages.values() for m in BLOCK.finditer(text) if m.group(2) == file}
+           for file in schemas}
+    # what both files may hold is explained with the scene
+    shared = {path for path in own["scene"] if path.startswith("$defs/")}
+    tables = {file: Tables(schema, own[file] | shared) for file, schema in schemas.items()}
+    new = {path: BLOCK.sub(lambda m: m.group(1) + tables[m.group(2)].table(m.group(3)) + m.group(4), text)
+           for path, text in pages.items()}
+    wrong = [f"{path}: its tables are not those of the schema" for path in pages if new[path] != pages[path]]
+    own_parts = {"scene": schemas["scene"], "study": {**schemas["study"], "$defs": {}}}
+    wrong += [f"the key {name} of a {file} is in no table" for file, parts in own_parts.items()
+              for name, node in described(parts) if id(node) not in tables[file].shown]
+    return new, wrong
+
+
+def self_test(pages, schemas):
+    """What must be seen: a changed word, a table that is gone."""
+    path, text = next((path, text) for path, text in pages.items() if "<!-- keys scene loads/[] -->" in text)
+    for changed in (text.replace("force per volume", "force"), text.replace("<!-- keys scene $defs/move -->", "")):
+        if changed == text or not compare({**pages, path: changed}, schemas)[1]:
+            sys.exit("a fault in the tables is not seen")
+
+
+def main():
+    program, mode = sys.argv[1], sys.argv[2:]
+    pages = {path: path.read_text() for path in sorted(DOCS.glob("*.md"))}
+    schemas = {file: json.loads(subprocess.run([program, "schema", file], check=True, capture_output=True).stdout)
+               for file in ("scene", "study")}
+    if mode == ["--self-test"]:
+        return self_test(pages, schemas)
+    new, wrong = compare(pages, schemas)
+    if mode == ["--check"] and wrong:
+        sys.exit("\n".join(wrong + ["tools/key_tables.py build/release/stickslip prints them anew"]))
+    for path, text in new.items():
+        if mode != ["--check"] and text != pages[path]:
+            path.write_text(text)
+
+
+if __name__ == "__main__":
+    main()
