@@ -9,12 +9,12 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "sensitivity/gradcheck.hpp"
 #include "studies/atomic_file.hpp"
 #include "studies/closed_forms.hpp"
 #include "studies/directory_lock.hpp"
 #include "studies/explain.hpp"
 #include "studies/export_system.hpp"
+#include "studies/gradient_report.hpp"
 #include "studies/input_fault.hpp"
 #include "studies/method_options.hpp"
 #include "studies/printing.hpp"
@@ -81,26 +81,6 @@ void print_summary(const CaseResult& result) {
     fmt::print("  a contact point is about to change state: these hold on one side only (result.json: one_sided)\n");
 }
 
-json check_json(const GradientCheck& check) {
-  static const char* const verdicts[] = {"agrees", "differs", "not checked"};
-  json entries = json::array();
-  for (const auto& e : check.entries)
-    entries.push_back({{"response", e.response},
-                       {"parameter", e.parameter},
-                       {"time", e.time},
-                       {"computed", e.computed},
-                       {"difference", e.difference},
-                       {"error", e.error},
-                       {"estimate", e.estimate},
-                       {"allowed", e.allowed},
-                       {"scale", e.scale},
-                       {"step", e.step},
-                       {"verdict", verdicts[static_cast<int>(e.verdict)]}});
-  return {{"status", name_of(check.status)}, {"message", check.message},
-          {"passed", check.passed()},        {"runs", check.runs},
-          {"rejected", check.rejected},      {"entries", entries}};
-}
-
 /// trace.csv, and of scenes with few contact points cones.svg; returns their names.
 std::vector<std::string> write_trace(const std::filesystem::path& directory, const Problem& problem,
                                      const Trace& trace) {
@@ -137,9 +117,7 @@ int run_command(const RunArguments& arguments) {
   const bool writes = !arguments.json || !arguments.output.empty();
   const auto directory = output_directory(arguments.output, arguments.scene);
   if (!arguments.export_to.empty()) check_folder(arguments.export_to);
-  if (writes && holds(directory, "study.json"))
-    throw InputFault(directory.string() + ": holds a study; -o DIR writes to another directory");
-  if (writes) prepare_directory(directory, {"result.json", "fields.pvd"});
+  if (writes) prepare_run_directory(directory);
   std::optional<DirectoryLock> lock;
   if (writes) lock.emplace(directory);
   if (!arguments.export_to.empty()) prepare_directory(arguments.export_to, {"README"});
@@ -197,46 +175,37 @@ int explain_command(const RunArguments& arguments) {
 int gradcheck_command(const RunArguments& arguments) {
   const auto loaded = load(arguments);
   if (!loaded) return bad_input;
-  const auto& model = loaded->problem->model;
-  if (model.scene.parameters.empty() || model.scene.responses.empty()) {
-    std::cerr << arguments.scene << ": gradcheck needs parameters and responses\n";
-    return bad_input;
-  }
   GradientCheck check;
   {
     std::optional<Progress> bar;
-    check = check_gradients(model, loaded->input.method, run_options(loaded->input), [&](int, int total) {
+    check = check_gradients(*loaded, arguments.scene, [&](int, int total) {
       if (!bar) bar.emplace(std::cerr, progress_style_of_stderr(), "difference runs", total);
       bar->advance();
     });
   }
-  if (arguments.json) {
+  if (arguments.json)
     std::cout << json_text(check_json(check), 2) << '\n';
-  } else {
-    static const char* const verdicts[] = {"agrees", "DIFFERS", "not checked"};
-    fmt::print("{} by {}: {} difference runs, {} of them through other contact states\n", printable(arguments.scene),
-               name_of(loaded->input.method), check.runs, check.rejected);
-    fmt::print("{:<16} {:<12} {:>9} {:>18} {:>18} {:>9} {:>9}  {}\n", "response", "parameter", "time", "computed",
-               "difference", "error", "allowed", "verdict");
-    for (const auto& e : check.entries)
-      fmt::print("{:<16} {:<12} {:>9.4g} {:>18.10e} {:>18.10e} {:>9.1e} {:>9.1e}  {}\n", e.response, e.parameter,
-                 e.time, e.computed, e.difference, e.error, e.allowed, verdicts[static_cast<int>(e.verdict)]);
-    fmt::print("error and allowed are relative to the largest derivative of the run (or response / parameter)\n");
-  }
+  else
+    fmt::print("{} by {}: {}", printable(arguments.scene), name_of(loaded->input.method), check_table(check));
   if (check.passed()) return done;
-  if (check.entries.empty()) fmt::print(stderr, "{}: {}\n", name_of(check.status), check.message);
-  const auto count = [&](GradientCheck::Verdict verdict) {
-    return std::count_if(check.entries.begin(), check.entries.end(),
-                         [&](const auto& entry) { return entry.verdict == verdict; });
-  };
-  if (const auto differ = count(GradientCheck::Verdict::differs); differ > 0)
-    fmt::print(stderr, "{} of {} derivatives differ\n", differ, check.entries.size());
-  if (const auto unchecked = count(GradientCheck::Verdict::not_checked); unchecked > 0)
-    fmt::print(
-        stderr,
-        "{} of {} derivatives are not checked: no difference step tells them to three digits, as of what is zero "
-        "but for rounding, or near a change of contact states\n",
-        unchecked, check.entries.size());
+  std::cerr << check_faults(check);
+  return not_solved;
+}
+
+int study_command(const StudyArguments& arguments) {
+  Diagnostics diagnostics;
+  const auto study = run_study(arguments, std::cerr, diagnostics);
+  if (!study) {
+    std::cerr << diagnostics.text();
+    return bad_input;
+  }
+  fmt::print("{} cells, {} run now, {} of these without a converged result (kept as rows)\nreport: {}\n", study->cells,
+             study->run, study->failed, printable((study->directory / "report.html").string()));
+  if (study->lost == 0) return done;
+  fmt::print(stderr,
+             "{} cells have no row: their processes were ended from outside, by the system where memory runs out; "
+             "--resume runs them again, fewer --jobs need less memory at once\n",
+             study->lost);
   return not_solved;
 }
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "studies/run_study.hpp"
+
 namespace stickslip {
 
 struct RunArguments {
@@ -16,15 +18,6 @@ struct RunArguments {
   bool json = false;      ///< one JSON document on standard output and nothing else
   bool trace = false;     ///< print every iterate, and write trace.csv
   std::string export_to;  ///< directory for the linear system of the last step; empty: none
-};
-
-struct StudyArguments {
-  std::string study;
-  std::string output;         ///< directory; empty: results/NAME, the name of the file without .json
-  bool resume = false;        ///< keep the rows that are there
-  bool restart = false;       ///< delete them; with neither they are a fault
-  std::string shard = "1/1";  ///< share of the cells, "i/N"
-  int jobs = 1;               ///< processes of the accuracy pass
 };
 
 struct CompareArguments {

@@ -1,4 +1,5 @@
-/// The study command: cells to rows, rows to a report.
+#include "studies/run_study.hpp"
+
 #include <fmt/core.h>
 #include <signal.h>
 #include <unistd.h>
@@ -6,12 +7,11 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
-#include <iostream>
 #include <nlohmann/json.hpp>
-#include <optional>
+#include <ostream>
+#include <vector>
 
 #include "studies/atomic_file.hpp"
-#include "studies/commands.hpp"
 #include "studies/directory_lock.hpp"
 #include "studies/explain.hpp"
 #include "studies/fields.hpp"
@@ -31,7 +31,6 @@ namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
-constexpr int done = 0, bad_input = 2, not_solved = 3;
 
 /// A study that was found valid, and where its results go.
 struct Plan {
@@ -123,7 +122,17 @@ std::ptrdiff_t rows_of_other_shards(const Plan& plan, const RowsById& rows) {
 }
 
 struct Tally {
-  int run = 0, failed = 0;
+  long run = 0, failed = 0;
+};
+
+/// Who is told of a study that runs.
+struct Listener {
+  std::ostream& log;
+  const std::function<void()>& on_run;  ///< after each run
+
+  void end_of_run() const {
+    if (on_run) on_run();
+  }
 };
 
 /// A cell in words: its label and variant.
@@ -139,12 +148,13 @@ bool from_outside(int signal) {
 }
 
 /// The accuracy pass: runs what is missing and records each cell as soon as it is done.
-Tally run_missing(const Plan& plan, const DirectoryLock& lock, CellRunner& runner, int jobs, RowsById& rows) {
+Tally run_missing(const Plan& plan, const DirectoryLock& lock, const Listener& listener, CellRunner& runner, int jobs,
+                  RowsById& rows) {
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < plan.cells.size(); ++i)
     if (rows.count(plan.cells[i].id) == 0) missing.push_back(i);
   Tally tally;
-  Progress progress(std::cerr, progress_style_of_stderr(), "cells", static_cast<long>(plan.cells.size()));
+  Progress progress(listener.log, progress_style_of_stderr(), "cells", static_cast<long>(plan.cells.size()));
   progress.skip(static_cast<long>(plan.cells.size() - missing.size()));
   const auto record = [&](const CellInput& cell, json row) {
     lock.check();
@@ -157,6 +167,7 @@ Tally run_missing(const Plan& plan, const DirectoryLock& lock, CellRunner& runne
     }
     rows[cell.id] = std::move(row);
     progress.advance();
+    listener.end_of_run();
   };
   run_in_processes(
       jobs, missing.size(), [&](std::size_t i) { return json_text(runner.row(missing[i])); },
@@ -172,7 +183,8 @@ Tally run_missing(const Plan& plan, const DirectoryLock& lock, CellRunner& runne
 }
 
 /// The timing pass: serial, over the cells that converged; what is recorded is not run again.
-void time_cells(const Plan& plan, const DirectoryLock& lock, CellRunner& runner, const RowsById& rows) {
+void time_cells(const Plan& plan, const DirectoryLock& lock, const Listener& listener, CellRunner& runner,
+                const RowsById& rows) {
   std::vector<std::size_t> cells;
   std::vector<std::string> keys;
   for (std::size_t i = 0; i < plan.cells.size(); ++i)
@@ -188,7 +200,7 @@ void time_cells(const Plan& plan, const DirectoryLock& lock, CellRunner& runner,
   auto runs = timing_plan(keys, plan.study.repeat);
   std::erase_if(runs, known);
   if (runs.empty()) return;
-  Progress progress(std::cerr, progress_style_of_stderr(), "timed runs", static_cast<long>(runs.size()));
+  Progress progress(listener.log, progress_style_of_stderr(), "timed runs", static_cast<long>(runs.size()));
   for (const auto& run : runs) {
     const std::size_t cell = cells[run.cell];
     json seconds;
@@ -200,14 +212,15 @@ void time_cells(const Plan& plan, const DirectoryLock& lock, CellRunner& runner,
     lock.check();
     if (!seconds.is_null()) append_timing(plan.directory, plan.cells[cell].id, run.round, seconds);
     progress.advance();
+    listener.end_of_run();
   }
 }
 
 /// Puts what the timing pass measured into the rows: cost.seconds the least, cost.timing how many runs and the median.
-void take_timings(const fs::path& directory, RowsById& rows) {
+void take_timings(const fs::path& directory, std::ostream& log, RowsById& rows) {
   int damaged = 0;
   const auto timings = read_timings(directory, &damaged);
-  if (damaged > 0) std::cerr << "note: " << damaged << " line(s) of timings.jsonl are damaged and were left out\n";
+  if (damaged > 0) log << "note: " << damaged << " line(s) of timings.jsonl are damaged and were left out\n";
   for (const auto& [id, rounds] : timings) {
     const auto row = rows.find(id);
     if (row == rows.end()) continue;
@@ -235,13 +248,13 @@ void draw_showcase(const Plan& plan, CellRunner& runner, json& described) {
 }
 
 /// A picture that cannot be drawn, as for want of memory, is missing in the report; the rows are what counts.
-void try_to_draw(const Plan& plan, CellRunner& runner, json& described) {
+void try_to_draw(const Plan& plan, std::ostream& log, CellRunner& runner, json& described) {
   try {
     draw_showcase(plan, runner, described);
   } catch (const std::system_error&) {
     throw;  // the disk's
   } catch (const std::exception& error) {
-    std::cerr << printable(fmt::format("note: there is no picture of the solution: {}", error.what())) << '\n';
+    log << printable(fmt::format("note: there is no picture of the solution: {}", error.what())) << '\n';
   }
 }
 
@@ -286,7 +299,7 @@ class InterruptNote {
   static inline pid_t owner_ = 0;
 };
 
-int carry_out(const Plan& plan, const StudyArguments& arguments, MeshFiles& meshes) {
+StudyOutcome carry_out(const Plan& plan, const StudyArguments& arguments, const Listener& listener, MeshFiles& meshes) {
   if (holds(plan.directory, "result.json"))
     throw InputFault(plan.directory.string() + ": holds the result of a run; -o DIR writes to another directory");
   prepare_directory(plan.directory, {"results.jsonl", "timings.jsonl", "study.json", "picture.json", "report.html"},
@@ -310,41 +323,31 @@ int carry_out(const Plan& plan, const StudyArguments& arguments, MeshFiles& mesh
   if (const auto others = rows_of_other_shards(plan, rows); others > 0)
     notes.push_back(
         fmt::format("{} row(s) of this study that are not of shard {} stay as they are", others, plan.shard.text()));
-  for (const auto& note : notes) std::cerr << "note: " << printable(note) << '\n';
+  for (const auto& note : notes) listener.log << "note: " << printable(note) << '\n';
   CellRunner runner(plan.study, plan.cells, meshes);
-  const Tally tally = run_missing(plan, lock, runner, arguments.jobs, rows);
+  const Tally tally = run_missing(plan, lock, listener, runner, arguments.jobs, rows);
   lock.check();
-  if (!drawn && !plan.cells.empty()) try_to_draw(plan, runner, described);
-  time_cells(plan, lock, runner, rows);
+  if (!drawn && !plan.cells.empty()) try_to_draw(plan, listener.log, runner, described);
+  time_cells(plan, lock, listener, runner, rows);
   lock.check();
-  take_timings(plan.directory, rows);
+  take_timings(plan.directory, listener.log, rows);
   write_rows(plan.directory, plan.ids, rows);
   const auto recorded =
       std::count_if(plan.cells.begin(), plan.cells.end(), [&](const auto& cell) { return rows.count(cell.id) > 0; });
   rows.clear();  // the report reads them again, and not all of each
   write_report(plan.directory);
-  fmt::print("{} cells, {} run now, {} of these without a converged result (kept as rows)\nreport: {}\n",
-             plan.cells.size(), tally.run, tally.failed, printable((plan.directory / "report.html").string()));
-  if (recorded == std::ssize(plan.cells)) return done;
-  fmt::print(stderr,
-             "{} cells have no row: their processes were ended from outside, by the system where memory runs out; "
-             "--resume runs them again, fewer --jobs need less memory at once\n",
-             std::ssize(plan.cells) - recorded);
-  return not_solved;
+  return {plan.directory, std::ssize(plan.cells), tally.run, tally.failed, std::ssize(plan.cells) - recorded};
 }
 
 }  // namespace
 
-int study_command(const StudyArguments& arguments) {
-  Diagnostics diagnostics;
+std::optional<StudyOutcome> run_study(const StudyArguments& arguments, std::ostream& log, Diagnostics& diagnostics,
+                                      const std::function<void()>& on_run) {
   MeshFiles meshes;
   const auto plan = make_plan(arguments, meshes, diagnostics);
-  if (!plan) {
-    std::cerr << diagnostics.text();
-    return bad_input;
-  }
-  std::cerr << diagnostics.notes_text();
-  return carry_out(*plan, arguments, meshes);
+  if (!plan) return std::nullopt;
+  log << diagnostics.notes_text();
+  return carry_out(*plan, arguments, {log, on_run}, meshes);
 }
 
 }  // namespace stickslip

@@ -4,6 +4,7 @@
 
 #include "studies/atomic_file.hpp"
 #include "studies/fields.hpp"
+#include "studies/input_fault.hpp"
 #include "studies/printing.hpp"
 #include "studies/size_estimate.hpp"
 
@@ -74,6 +75,12 @@ CaseResult simulate(const Simulation& simulation, const std::function<void()>& o
   options.trace = trace;
   std::shared_ptr<Condensation<double>> condensation;
   return run_case(simulation.problem, simulation.input.method, options, condensation);
+}
+
+void prepare_run_directory(const std::filesystem::path& directory) {
+  if (holds(directory, "study.json"))
+    throw InputFault(directory.string() + ": holds a study; -o DIR writes to another directory");
+  prepare_directory(directory, {"result.json", "fields.pvd"});
 }
 
 void remove_fields(const std::filesystem::path& directory) {

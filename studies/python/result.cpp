@@ -34,9 +34,9 @@ ContactTable contact_table(const Problem& problem, const State<double>& state, i
       tangents = std::max(tangents, model.points[p].tangents);
     }
   const auto count = static_cast<Eigen::Index>(points.size());
-  ContactTable table{{}, {}, Vector<double>(count), Vector<double>(count), Vector<double>(count), {}, {}};
+  ContactTable table{{}, {}, Vector<double>(count), Vector<double>(count), Vector<double>(count), {}, {}, {}};
   table.traction.resize(model.dimension, count);
-  table.slip = Matrix<double>::Zero(tangents, count);
+  table.shear = table.slip = Matrix<double>::Zero(tangents, count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const int p = points[i];
     const auto& point = model.points[p];
@@ -46,6 +46,7 @@ ContactTable contact_table(const Problem& problem, const State<double>& state, i
     table.gap[i] = state.contact.gap[p];
     table.area[i] = problem.slots.geometry[p].area;
     table.traction.col(i) = traction_vector(problem, state, p);
+    table.shear.col(i).head(point.tangents) = -state.contact.traction.segment(point.multiplier + 1, point.tangents);
     table.slip.col(i).head(point.tangents) =
         state.contact.slip.segment(point.tangents ? tangential_offset(model, p) : 0, point.tangents);
   }
@@ -55,7 +56,7 @@ ContactTable contact_table(const Problem& problem, const State<double>& state, i
 }  // namespace
 
 RunResult gather(Simulation simulation, CaseResult result) {
-  RunResult run{std::move(simulation), std::move(result), {}, {}, {}, {}, {}, {}, {}};
+  RunResult run{std::move(simulation), std::move(result), {}, {}, {}, {}, {}};
   gather_series(run);
   const auto& model = run.simulation.problem->model;
   for (const auto& step : run.result.steps) {

@@ -16,6 +16,7 @@ struct ContactTable {
   Vector<double> gap;                ///< negative: penetration
   Vector<double> area;               ///< tributary
   Matrix<double> traction;           ///< dimension x points: force per area on the slave
+  Matrix<double> shear;              ///< tangents x points: its part along them; no rows where frictionless
   Matrix<double> slip;               ///< tangents x points, in this increment; no rows where frictionless
 };
 
@@ -30,8 +31,6 @@ struct ElementTable {
 struct RunResult {
   Simulation simulation;
   CaseResult result;
-  std::string document;                       ///< the text of result.json
-  std::vector<std::string> notes;             ///< of the reader
   Vector<double> times;                       ///< of the steps
   Matrix<double> responses;                   ///< steps x responses
   std::vector<Matrix<double>> sensitivities;  ///< per response: steps x parameters; not a number where none is known
@@ -39,7 +38,7 @@ struct RunResult {
   std::vector<ElementTable> elements;               ///< per body
 };
 
-/// Gathers the arrays of a result; `document` and `notes` are left to the caller.
+/// Gathers the arrays of a result.
 RunResult gather(Simulation simulation, CaseResult result);
 
 }  // namespace stickslip

@@ -1,4 +1,4 @@
-"""The Python module: numbers of closed forms, arrays that are views into the result, faults, folders, Ctrl-C.
+"""The Python module, scenes: numbers of closed forms, arrays that are views into the solver, faults, folders, Ctrl-C.
 
 PYTHONPATH=build/python/python STICKSLIP_SCENES=studies/scenes python3 tests/studies/python_test.py
 """
@@ -7,10 +7,12 @@ import gc
 import json
 import os
 import pathlib
+import pickle
 import signal
 import tempfile
 import threading
 import time
+import types
 import unittest
 import weakref
 
@@ -77,6 +79,8 @@ class Values(unittest.TestCase):
         # the residual is converged to 1e-10 or better of the load of 20
         np.testing.assert_allclose(total, [-4.8, 20], rtol=1e-9)
         np.testing.assert_allclose(sole["traction"][:, 1], sole["pressure"], rtol=1e-15)
+        # the tangent of a plane is horizontal; which way it points is its own
+        np.testing.assert_allclose(np.abs(sole["shear"][:, 0]), np.abs(sole["traction"][:, 0]), rtol=1e-15)
         half = result.contact("sole", 0)
         np.testing.assert_allclose((half["pressure"] * half["area"]).sum(), 10, rtol=1e-9)
         self.assertTrue(np.all(result.coordinates[sole["nodes"], 1] == 0))
@@ -115,12 +119,13 @@ class Views(unittest.TestCase):
             **{key: sole[key] for key in sole},
         }
 
-    def test_every_array_looks_into_the_result(self):
-        for (name, first), second in zip(self.arrays().items(), self.arrays().values()):
+    def test_every_array_looks_into_the_memory_of_the_run(self):
+        memory = self.result.displacement().base
+        self.assertEqual(type(memory).__name__, "Memory")
+        for name, array in self.arrays().items():
             with self.subTest(name):
-                self.assertIs(first.base, self.result)
-                self.assertFalse(first.flags.owndata)
-                self.assertEqual(first.ctypes.data, second.ctypes.data)
+                self.assertIs(array.base, memory)
+                self.assertFalse(array.flags.owndata)
 
     def test_no_array_can_be_written_to(self):
         for name, array in self.arrays().items():
@@ -141,13 +146,10 @@ class Views(unittest.TestCase):
         np.testing.assert_array_equal(u, copy)
         self.assertEqual(len(others), 3)
 
-    def test_the_result_goes_with_its_last_array(self):
+    def test_the_memory_goes_with_its_last_array(self):
         u = self.result.displacement()
         gone = []
-        holder = u.base
-        self.assertIs(holder, self.result)
-        del holder
-        weakref.finalize(self.result, gone.append, True)
+        weakref.finalize(u.base, gone.append, True)
         self.result = None
         gc.collect()
         self.assertEqual(gone, [])
@@ -164,6 +166,21 @@ class Views(unittest.TestCase):
         with self.assertRaises(KeyError):
             self.result.displacement_derivative("nu")
 
+    def test_a_pickled_result_is_the_same_with_arrays_of_its_own(self):
+        first = self.arrays()
+        text, document = repr(self.result), self.result.document
+        self.result = pickle.loads(pickle.dumps(self.result))
+        for name, array in self.arrays().items():
+            with self.subTest(name):
+                np.testing.assert_array_equal(array, first[name])
+                self.assertFalse(np.shares_memory(array, first[name]))
+        self.assertEqual((repr(self.result), self.result.document), (text, document))
+        self.assertEqual(self.result.contacts, ["sole"])
+
+    def test_the_representation_says_what_ran_and_what_came_out(self):
+        self.assertEqual(repr(self.result), "<stickslip.Result by monolithic_al: converged, 2 steps to t = 1, "
+                                            "responses: press, shift>")
+
 
 class Input(unittest.TestCase):
     def test_method_and_set_change_the_scene(self):
@@ -179,6 +196,9 @@ class Input(unittest.TestCase):
         scene["bodies"]["block"]["mesh"]["box"]["cells"] = [np.int64(12), np.int64(6)]
         np.testing.assert_array_equal(stickslip.run(scene).displacement(), stickslip.run(plate()).displacement())
 
+    def test_any_mapping_is_a_scene(self):
+        self.assertTrue(stickslip.run(types.MappingProxyType(plate(3))).converged)
+
     def test_all_faults_of_a_dict_are_named_without_lines(self):
         scene = plate()
         scene["contacts"]["sole"]["fricton"] = 1
@@ -187,7 +207,8 @@ class Input(unittest.TestCase):
             stickslip.run(scene)
         faults = caught.exception.faults
         self.assertEqual(len(faults), 2)
-        self.assertTrue(any(f.startswith("scene: /contacts/sole/fricton: ") and "friction" in f for f in faults), faults)
+        self.assertTrue(any(f.startswith("scene: /contacts/sole/fricton: ") and '"friction"' in f for f in faults),
+                        faults)
         self.assertTrue(any(f.startswith("scene: /time/steps: ") for f in faults), faults)
         for fault in faults:
             self.assertIn(fault, str(caught.exception))
@@ -213,11 +234,20 @@ class Input(unittest.TestCase):
         with self.assertRaises(stickslip.InputError):
             stickslip.run(plate(), method="magic")
 
+    def test_an_input_error_survives_pickling(self):
+        with self.assertRaises(stickslip.InputError) as caught:
+            stickslip.run(plate(), method="magic")
+        copy = pickle.loads(pickle.dumps(caught.exception))
+        self.assertIsInstance(copy, stickslip.InputError)
+        self.assertEqual((str(copy), copy.faults), (str(caught.exception), caught.exception.faults))
+
     def test_what_json_cannot_hold_is_refused(self):
         with self.assertRaises(stickslip.InputError):
             stickslip.run(plate(), set={"/contacts/sole/friction": float("nan")})
         with self.assertRaises((TypeError, AttributeError)):
             stickslip.run({"bodies": object()})
+        with self.assertRaises(TypeError):
+            stickslip.run(3)
 
     def test_warnings_are_those_of_the_document(self):
         scene = plate(3)
@@ -238,6 +268,17 @@ class Input(unittest.TestCase):
         self.assertEqual(result.document["status"], result.status)
         self.assertEqual(len(result.times), len(result.document["steps"]))
 
+    def test_a_failed_solve_is_raised_where_that_is_asked_for(self):
+        scene = plate(3)
+        self.assertTrue(stickslip.run(scene, check=True).converged)
+        scene["loads"][0]["traction"] = [2, -5]
+        with self.assertRaises(stickslip.NotConverged) as caught:
+            stickslip.run(scene, check=True)
+        result = caught.exception.result
+        self.assertEqual(str(caught.exception), f"{result.status}: {result.message}")
+        self.assertFalse(result.converged)
+        self.assertEqual(str(pickle.loads(pickle.dumps(caught.exception))), str(caught.exception))
+
 
 class Surroundings(unittest.TestCase):
     def test_a_folder_gets_the_result_and_the_fields(self):
@@ -247,9 +288,16 @@ class Surroundings(unittest.TestCase):
             self.assertEqual(written, result.document)
             self.assertTrue((pathlib.Path(folder) / "new" / "fields.pvd").exists())
 
-    def test_a_disk_that_refuses_is_an_os_error(self):
-        with tempfile.NamedTemporaryFile() as file, self.assertRaises(OSError):
-            stickslip.run(plate(3), folder=pathlib.Path(file.name) / "below_a_file")
+    def test_a_folder_that_cannot_be_is_refused_before_the_run(self):
+        with tempfile.NamedTemporaryFile() as file, self.assertRaises(stickslip.InputError) as caught:
+            stickslip.run(plate(20, 100000), folder=pathlib.Path(file.name) / "below_a_file")  # minutes
+        self.assertIn("below_a_file", caught.exception.faults[0])
+
+    def test_a_folder_of_a_study_is_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            (pathlib.Path(folder) / "study.json").write_text("{}")
+            with self.assertRaisesRegex(stickslip.InputError, "holds a study"):
+                stickslip.run(plate(3), folder=folder)
 
     def test_other_threads_run_while_it_solves(self):
         count, stop = 0, threading.Event()

@@ -1,0 +1,234 @@
+"""Scenes: what is run, explained and checked, and what comes out."""
+
+import json
+from os import PathLike, fspath
+from typing import Any, Dict, List, Mapping, Optional, Union
+
+import numpy as np
+
+from stickslip import _stickslip
+
+Scene = Union[Mapping[str, Any], str, "PathLike[str]"]
+Arrays = Dict[str, np.ndarray]
+
+
+class NotConverged(RuntimeError):
+    """A run that ended without a solution, raised where `check=True` asks for it. str() is its status and message."""
+
+    result: "Result"
+    """What there is of it."""
+
+    def __init__(self, result: "Result"):
+        super().__init__(result)
+        self.result = result
+
+    def __str__(self) -> str:
+        return f"{self.result.status}: {self.result.message}"
+
+
+class Result:
+    """What a run left, all of it: the steps that the scene asked for, with their derivatives.
+
+    Arrays of a run are read-only views into the memory of the solver and keep it alive; none is a copy. Those of a
+    result that was pickled are its own. Units are those of the scene.
+
+    Attributes
+    ----------
+    status : str
+        "converged", "converged_at_roundoff", or why not: "inaccurate", "cap", "cycle", "stagnated", "infeasible",
+        "no_equilibrium", "singular", "inverted_element", "not_finite" (README, "What a run leaves").
+    converged : bool
+        Whether it is one of the first two.
+    message : str
+        What went wrong, where, and what to try; "" where nothing did.
+    notes : list of str
+        What the reader had to say of a valid scene.
+    title, method : str
+        Title of the scene; "penalty", "uzawa_al" or "monolithic_al".
+    times : ndarray, (steps,)
+        End of each step; a step that failed is the last.
+    responses : dict of ndarray, (steps,)
+        By name.
+    sensitivities : dict of dict of ndarray, (steps,)
+        By response and parameter: derivative of the response, as its method computed it, by the parameter; NaN where it
+        is not known.
+    coordinates : ndarray, (nodes, dimension)
+        Initial.
+    elements : dict of ndarray of int, (elements, nodes of one)
+        By body: the nodes of each element, corners first.
+    """
+
+    status: str
+    converged: bool
+    message: str
+    notes: List[str]
+    title: str
+    method: str
+    times: np.ndarray
+    responses: Arrays
+    sensitivities: Dict[str, Arrays]
+    coordinates: np.ndarray
+    elements: Arrays
+
+    def __init__(self, state: Dict[str, Any]):
+        document = json.loads(state["document"])
+        self.status = document["status"]
+        self.converged = self.status in ("converged", "converged_at_roundoff")
+        self.message = document["message"]
+        self.title = document["scene"]["title"]
+        (self.method,) = document["method"]
+        self.notes = state["notes"]
+        self.times = state["times"]
+        self.responses = state["responses"]
+        self.sensitivities = state["sensitivities"]
+        self.coordinates = state["coordinates"]
+        self.elements = state["elements"]
+        self._displacements = state["displacements"]
+        self._displacement_derivatives = state["displacement_derivatives"]
+        self._contacts = state["contacts"]
+        self._document = state["document"]
+
+    @property
+    def document(self) -> Dict[str, Any]:
+        """The content of result.json (README, "What a run leaves"), made anew by each access."""
+        return json.loads(self._document)
+
+    @property
+    def warnings(self) -> List[Dict[str, Any]]:
+        """What is no failure and should be known: dicts of `code`, `where`, `value`, `remedy` and `text`."""
+        return self.document["warnings"]
+
+    @property
+    def objectives(self) -> Dict[str, Dict[str, Any]]:
+        """By name: `value`, and `gradient` by parameter. Empty where the scene has none."""
+        return self.document.get("objectives", {})
+
+    @property
+    def contacts(self) -> List[str]:
+        """Names of the contacts, as `contact` takes them."""
+        return list(self._contacts)
+
+    def displacement(self, step: int = -1) -> np.ndarray:
+        """Displacement of the nodes at the end of a step, (nodes, dimension). IndexError where there is no such."""
+        return self._displacements[step]
+
+    def displacement_derivative(self, parameter: str) -> np.ndarray:
+        """Derivative of the displacement of the last step by a parameter, (nodes, dimension).
+
+        KeyError where the scene has no such parameter, ValueError where the derivatives were not found.
+        """
+        known = any(parameter in of for of in self.sensitivities.values())
+        if known and parameter not in self._displacement_derivatives:
+            raise ValueError(f"the derivatives were not found: {self.message}")
+        return self._displacement_derivatives[parameter]
+
+    def contact(self, name: str, step: int = -1) -> Arrays:
+        """The points of a contact at the end of a step, by key.
+
+        nodes : (points,), slave node of each, a row of `coordinates`
+        state : (points,), 0 open, 1 stick, 2 slip
+        pressure : (points,), force per area, positive in compression
+        traction : (points, dimension), force per area on the slave, pressure and friction together
+        shear : (points, tangents), its part along the contact's tangents; it opposes the slip
+        gap : (points,), negative: penetration
+        slip : (points, tangents), of the last increment, along the same tangents
+        area : (points,), tributary area; a force is the sum of traction times area
+
+        KeyError where there is no such contact, IndexError where there is no such step.
+        """
+        return self._contacts[name][step]
+
+    def __repr__(self) -> str:
+        end = f" to t = {self.times[-1]:g}" if len(self.times) else ""
+        title = f" {self.title!r}" if self.title else ""
+        return (f"<stickslip.Result{title} by {self.method}: {self.status}, {len(self.times)} steps{end}, "
+                f"responses: {', '.join(self.responses) or 'none'}>")
+
+
+class Gradcheck:
+    """Every derivative of a scene, at every step, held against central differences of the solver itself.
+
+    Attributes
+    ----------
+    passed : bool
+        Something was checked, and nothing differs or was left unchecked; bool() of the check too.
+    status, message : str
+        Of the run itself, as in Result.
+    faults : str
+        Why it did not pass; "" where it did.
+    runs, rejected : int
+        Runs for differences, and how many of them were thrown out for passing through other contact states.
+    entries : list of dict
+        One for each response and parameter, at the step where the error is largest: `response`, `parameter`, `time`,
+        `computed` and `difference` (the derivative, by the method and by differences), `error` (the distance of the two
+        over `scale`), `estimate` of the error of the difference itself and what is `allowed`, both over `scale` too,
+        relative `step` of the parameter, `verdict` ("agrees", "differs", "not checked").
+        pandas.DataFrame(check.entries) is a table of them.
+    """
+
+    def __init__(self, document: Dict[str, Any], table: str, faults: str):
+        self.passed: bool = document["passed"]
+        self.status: str = document["status"]
+        self.message: str = document["message"]
+        self.runs: int = document["runs"]
+        self.rejected: int = document["rejected"]
+        self.entries: List[Dict[str, Any]] = document["entries"]
+        self.faults = faults
+        self._table = table
+
+    def __bool__(self) -> bool:
+        return self.passed
+
+    def __str__(self) -> str:
+        """The table that the command prints."""
+        return self._table + self.faults
+
+    def __repr__(self) -> str:
+        agree = sum(entry["verdict"] == "agrees" for entry in self.entries)
+        return f"<stickslip.Gradcheck: {agree} of {len(self.entries)} derivatives agree, {self.runs} difference runs>"
+
+
+def run(scene: Scene, method: Optional[str] = None, set: Mapping[str, Any] = {},
+        folder: Union[str, "PathLike[str]", None] = None, check: bool = False) -> Result:
+    """Simulates a scene.
+
+    Parameters
+    ----------
+    scene
+        Path of a scene file, or a dict of the same content; numpy's arrays and numbers may stand in it. Mesh files of a
+        dict are looked for in the current folder.
+    method
+        "penalty", "uzawa_al" or "monolithic_al" in place of the scene's.
+    set
+        {JSON pointer: value}: values of the scene to be changed, as --set of the command.
+    folder
+        Where result.json and the fields (.vtu) are written; None: nowhere.
+    check
+        Raise NotConverged where there is no solution. Without it the status of the result says so.
+
+    Raises InputError with all faults of the scene, OSError where the disk refuses. Other threads of Python run while it
+    solves; Ctrl-C ends it after the step at hand.
+    """
+    result = Result(_stickslip.run(_plain(scene), method, dict(set), folder))
+    if check and not result.converged:
+        raise NotConverged(result)
+    return result
+
+
+def explain(scene: Scene, method: Optional[str] = None, set: Mapping[str, Any] = {}) -> str:
+    """What would be simulated, and what would not, in words; nothing is solved. Arguments and faults as of `run`."""
+    return _stickslip.explain(_plain(scene), method, dict(set))
+
+
+def gradcheck(scene: Scene, method: Optional[str] = None, set: Mapping[str, Any] = {}) -> Gradcheck:
+    """Holds every derivative of a scene against differences; print(gradcheck(scene)) is the command's table.
+
+    Arguments and faults as of `run`; a scene without parameters or responses is an InputError. Ctrl-C ends it after the
+    run at hand.
+    """
+    document, table, faults = _stickslip.gradcheck(_plain(scene), method, dict(set))
+    return Gradcheck(json.loads(document), table, faults)
+
+
+def _plain(scene: Scene) -> Union[Dict[str, Any], str]:
+    return dict(scene) if isinstance(scene, Mapping) else fspath(scene)

@@ -1,0 +1,126 @@
+"""Studies: many runs, their errors and costs, as a table."""
+
+import json
+import warnings
+from os import PathLike, fspath
+from typing import Any, Dict, List, Union
+
+from stickslip import _stickslip
+
+Path = Union[str, "PathLike[str]"]
+Row = Dict[str, Any]
+Table = Any
+"""pandas.DataFrame, or a list of Row where there is no pandas."""
+
+
+def study(study: Path, folder: Union[Path, None] = None, resume: bool = False, restart: bool = False, jobs: int = 1,
+          shard: str = "1/1") -> Table:
+    """Runs a study file and returns what it recorded, as `load_study` does.
+
+    Parameters
+    ----------
+    study
+        Path of the study file.
+    folder
+        For results.jsonl, report.html and figures; None: results/NAME, the name of the file without .json.
+    resume, restart
+        Of cells that the folder has already: keep those of this study and run what is missing, or delete them. With
+        neither they are an InputError.
+    jobs
+        Processes that run cells at once; seconds are measured apart, by one.
+    shard
+        "i/N": every N-th cell alone, from the i-th on.
+
+    Raises InputError with all faults of study, scene and folder. Progress goes to sys.stderr. Ctrl-C ends it after the
+    run at hand; finished cells are kept, and resume=True goes on.
+    """
+    directory, lost = _stickslip.study(fspath(study), "" if folder is None else fspath(folder), resume, restart, shard,
+                                       jobs)
+    if lost:
+        warnings.warn(f"{lost} cells have no row: their processes were ended from outside; resume=True runs them again",
+                      RuntimeWarning, stacklevel=2)
+    return load_study(directory)
+
+
+def load_study(folder: Path) -> Table:
+    """The rows of a study: a pandas.DataFrame, or, where there is no pandas, a list of dicts with the same keys.
+
+    One row a cell, one column for each of these; what a cell has not is missing (NaN, or no key).
+
+    id, label, method, status, converged, message
+        `label` names the method with the options that tell its runs apart.
+    the name of an option, as "stiffness" or "newton.tolerance"
+        Of the options that are swept: its value.
+    a JSON pointer, as "/contacts/sole/friction"
+        Of what is varied in the scene: its value.
+    refine
+        Mesh level.
+    response:NAME, sensitivity:NAME/PARAMETER, objective:NAME
+        At the last step, in units of the scene.
+    enforcement:response:NAME, enforcement:sensitivity:NAME/PARAMETER, ..., discretization:..., kkt:NAME
+        Relative errors: against the reference on the same mesh, against the other references, and of equilibrium and
+        Coulomb's law.
+    factorizations, backsolves, newton, augmentations, ...
+        Counts, equal on every machine.
+    work, sensitivity_work
+        In factorisations, of the solution alone and with its derivatives: counts, a back-solve weighed as measured in
+        this study.
+    seconds, sensitivity_seconds, peak_memory_mb
+        Of this machine; `sensitivity_seconds` are those of the solution and its derivatives together.
+    curve, along
+        The curve of a work-precision diagram that the row is on, and the value of the option that runs along it.
+
+    Raises InputError where the folder has no study. Rows that are damaged or missing are a RuntimeWarning.
+    """
+    recorded = json.loads(_stickslip.study_cells(folder))
+    if recorded["faults"]:
+        warnings.warn(f"{fspath(folder)}/results.jsonl: {recorded['faults']}", RuntimeWarning, stacklevel=2)
+    if recorded["unrecorded"]:
+        warnings.warn(f"{fspath(folder)}: {recorded['unrecorded']} cells of the study have no row", RuntimeWarning,
+                      stacklevel=2)
+    rows = [_flat(cell) for cell in recorded["cells"]]
+    try:
+        import pandas
+    except ImportError:
+        return rows
+    table = pandas.DataFrame(rows)
+    options = [name for cell in recorded["cells"] for name in (*cell["knobs"], *cell["row"].get("vary", {}))]
+    first = list(dict.fromkeys(["id", "label", "method", "status", "converged", "message", *options]))
+    return table[first + [name for name in table.columns if name not in first]]
+
+
+def _flat(cell: Dict[str, Any]) -> Row:
+    row = cell["row"]
+    out: Row = {"id": row["id"], "label": cell["label"], "method": cell["method"], "status": row["status"],
+                "converged": cell["converged"], "message": row.get("message", "")}
+    out.update(cell["knobs"])
+    out.update(row.get("vary", {}))
+    out["refine"] = row.get("refine", 0)
+    for name, value in row.get("responses", {}).items():
+        out[f"response:{name}"] = _number(value)
+    for name, of in row.get("sensitivities", {}).items():
+        for parameter, value in of.items():
+            out[f"sensitivity:{name}/{parameter}"] = _number(value)
+    for name, of in row.get("objectives", {}).items():
+        out[f"objective:{name}"] = _number(of["value"])
+    for kind in ("enforcement", "discretization", "kkt"):
+        for name, value in row.get("errors", {}).get(kind, {}).items():
+            out[f"{kind}:{name}"] = _number(value)
+    cost = row.get("cost", {})
+    out.update(cost.get("counts", {}))
+    for name in ("work", "sensitivity_work", "seconds", "sensitivity_seconds"):
+        out[name] = cell[name] if cost else float("nan")
+    out["peak_memory_mb"] = cost.get("peak_memory_mb", float("nan"))
+    out["curve"] = cell["curve"]
+    out["along"] = _number(cell["along"])
+    return out
+
+
+def _number(value: Any) -> float:
+    """What is not finite stands as null in JSON."""
+    return float("nan") if value is None else value
+
+
+def rows_of(table: Table) -> List[Row]:
+    """The rows of what load_study() gives, or of a part of it, as dicts."""
+    return table.to_dict("records") if hasattr(table, "to_dict") else list(table)

@@ -1,0 +1,98 @@
+"""Tractions of a contact and work-precision diagrams, drawn by matplotlib.
+
+Each function draws into `ax`, or into axes of its own where that is None, and returns the axes.
+"""
+
+from typing import Any, Optional
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from stickslip._scene import Result
+from stickslip._study import Table, rows_of
+
+STATES = ("open", "stick", "slip")
+COLOURS = {"penalty": "tab:blue", "uzawa_al": "tab:orange", "monolithic_al": "tab:green"}
+MARKERS = "os^Dv"
+EXACT = 1e-16
+"""Where an error of exactly 0 is drawn: below every error that rounding leaves."""
+
+
+def tractions(result: Result, contact: Optional[str] = None, step: int = -1, ax: Any = None) -> Any:
+    """Pressure, and shear where there is friction, along a contact at the end of a step; points that slip are marked.
+
+    The abscissa is the initial coordinate along which the contact is longest. Shear in 2D has its sign, that of the
+    force on the slave along the contact's tangent; in 3D, which has two tangents, it is its size. `contact` may be left
+    out where the scene has one.
+    """
+    if contact is None:
+        if len(result.contacts) != 1:
+            raise ValueError(f"contact is to be one of {', '.join(result.contacts)}")
+        (contact,) = result.contacts
+    table = result.contact(contact, step)
+    places = result.coordinates[table["nodes"]]
+    axis = int(np.argmax(np.ptp(places, axis=0)))
+    order = np.argsort(places[:, axis], kind="stable")
+    x, pressure, state = places[order, axis], table["pressure"][order], table["state"][order]
+    ax = plt.subplots()[1] if ax is None else ax
+    ax.plot(x, pressure, "k-", label="pressure")
+    if tangents := table["shear"].shape[1]:
+        shear = table["shear"][order, 0] if tangents == 1 else np.linalg.norm(table["shear"][order], axis=1)
+        slips = state == STATES.index("slip")
+        ax.plot(x, shear, "-", color="tab:red", label="shear" if tangents == 1 else "|shear|")
+        ax.plot(x[slips], shear[slips], "o", color="tab:red", markersize=4, label="slip")
+    ax.set(title=f"{contact}, t = {result.times[step]:g}", xlabel="xyz"[axis], ylabel="force per area")
+    ax.legend()
+    return ax
+
+
+def work_precision(study: Table, of: str = "response", against: str = "enforcement", work: str = "work",
+                   ax: Any = None) -> Any:
+    """Error against work of the runs of a study: lower left is better.
+
+    A curve is one method along its option on one variant of the scene.
+
+    Parameters
+    ----------
+    study
+        What `load_study` gives, or some of its rows.
+    of
+        "response" or "sensitivity": the worst error of all responses, or of all derivatives; or one of them,
+        "response:press", "sensitivity:press/mu".
+    against
+        "enforcement" (the reference on the same mesh: what the method adds) or "discretization" (the other references).
+    work
+        "work" in factorisations, "seconds", or a column of counts. Of sensitivities the first two are those of the
+        solution and its derivatives together.
+
+    Runs that did not converge are crosses and on no curve. Errors of exactly 0 are drawn at 1e-16. ValueError where no
+    row has such an error.
+    """
+    prefix = f"{against}:{of}" + ("" if ":" in of else ":")
+    column = f"sensitivity_{work}" if of.startswith("sensitivity") and work in ("work", "seconds") else work
+    curves: dict = {}
+    for row in rows_of(study):
+        variant = ", ".join(f"{name} = {row[name]}" for name in row if name.startswith("/") or name == "refine")
+        names = [name for name in row if (name == prefix if ":" in of else name.startswith(prefix))]
+        errors = [abs(row[name]) for name in names if np.isfinite(row[name])]
+        if errors and row.get(column, 0) > 0:
+            curves.setdefault((row["method"], row["curve"], variant), []).append(
+                (row["along"], row[column], max(max(errors), EXACT), row["converged"]))
+    if not curves:
+        raise ValueError(f"no row of the study has an error {prefix}... and {column}")
+    ax = plt.subplots()[1] if ax is None else ax
+    several = len({variant for _, _, variant in curves}) > 1
+    drawn: dict = {}  # curves of each method, which share its colour
+    for (method, name, variant), points in curves.items():
+        marker = MARKERS[drawn.setdefault(method, 0) % len(MARKERS)]
+        drawn[method] += 1
+        name += f", {variant}" if several else ""
+        along, cost, error, converged = (np.array(column) for column in zip(*sorted(points, key=lambda p: p[0])))
+        converged = converged.astype(bool)
+        (line,) = ax.plot(cost[converged], error[converged], marker=marker, color=COLOURS.get(method), label=name)
+        ax.plot(cost[~converged], error[~converged], "x", color=line.get_color())
+    units = {"work": "work (factorisations)", "seconds": "seconds"}
+    ax.set(xscale="log", yscale="log", xlabel=units.get(work, work.replace("_", " ")),
+           ylabel=f"relative error of the {of}", title=f"{against} error".capitalize())
+    ax.legend()
+    return ax
