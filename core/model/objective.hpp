@@ -1,4 +1,4 @@
-/// Objectives: scalars over time, sums of what single steps contribute (README, "Scene files").
+/// Objectives: scalars over time, sums of what single steps contribute (docs/scene.md).
 #pragma once
 
 #include "core/model/response.hpp"

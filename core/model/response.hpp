@@ -1,4 +1,4 @@
-/// Responses: scalars of a state, in any scalar, so that their derivatives are the same code (README, "Scene files").
+/// Responses: scalars of a state, in any scalar, so that their derivatives are the same code (docs/scene.md).
 #pragma once
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 
 namespace stickslip {
 
-/// The whole set (README, "What a run leaves").
+/// The whole set (docs/results.md).
 enum class Status {
   converged,
   converged_at_roundoff,  ///< the tolerance lies below the rounding of the residual itself

@@ -1,5 +1,5 @@
 /// Scene: the plain description of one problem, as the user wrote it, before anything is computed from it.
-/// README, "Scene files", says what a file may hold; studies/scene_reader builds it from JSON.
+/// docs/scene.md says what a file may hold; studies/scene_reader builds it from JSON.
 ///
 /// Every physical or geometric number is a Number: its value and its slot in `Scene::numbers`. A Numbers<T> gives all
 /// of them in the scalar T, so a parameter, a difference step and a complex step are the same thing: a change of some

@@ -7,7 +7,7 @@
 
 namespace stickslip {
 
-/// The whole set (README, "What a run leaves").
+/// The whole set (docs/results.md).
 enum class WarningCode {
   large_strain,    ///< value: largest component of strain
   large_rotation,  ///< value: degrees

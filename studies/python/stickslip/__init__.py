@@ -6,7 +6,7 @@
 
 `run` simulates a scene, `explain` says what it holds, `gradcheck` holds every derivative against differences, `study`
 compares methods and `load_study` reads what a study recorded. `stickslip.plots` draws tractions and work-precision
-diagrams (matplotlib). Scenes and studies are the files of the command line, described in README.md; units are those of
+diagrams (matplotlib). Scenes and studies are the files of the command line, described in docs/; units are those of
 the scene, which are to be consistent.
 """
 

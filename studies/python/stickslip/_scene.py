@@ -36,7 +36,7 @@ class Result:
     ----------
     status : str
         "converged", "converged_at_roundoff", or why not: "inaccurate", "cap", "cycle", "stagnated", "infeasible",
-        "no_equilibrium", "singular", "inverted_element", "not_finite" (README, "What a run leaves").
+        "no_equilibrium", "singular", "inverted_element", "not_finite" (docs/results.md).
     converged : bool
         Whether it is one of the first two.
     message : str
@@ -90,7 +90,7 @@ class Result:
 
     @property
     def document(self) -> Dict[str, Any]:
-        """The content of result.json (README, "What a run leaves"), made anew by each access."""
+        """The content of result.json (docs/results.md), made anew by each access."""
         return json.loads(self._document)
 
     @property
