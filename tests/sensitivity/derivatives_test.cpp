@@ -1,0 +1,122 @@
+/// What derivatives cost: those that follow a run against those at its end, several increments at once against one at a
+/// time, and the elements that are visited.
+#include <gtest/gtest.h>
+
+#include "core/model/response.hpp"
+#include "sensitivity/branch_search.hpp"
+#include "tests/support/largest.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace stickslip {
+namespace {
+
+using Kind = LinearAlgebra::Engine;
+
+struct Differentiated {
+  Trajectory<double> trajectory;
+  Gradients gradients;
+};
+
+Differentiated run(const Model& model, const Slots<double>& slots, const Method& method, Kind engine, bool follow) {
+  Differentiated out;
+  Workspace<double> workspace;
+  RunOptions options;
+  options.linear_algebra.engine = engine;
+  Derivatives derivatives(model, slots, method, workspace);
+  if (follow) options.on_step = [&] { derivatives.follow(out.trajectory); };
+  solve(model, slots, method, options, workspace, out.trajectory);
+  out.gradients = derivatives.finish(out.trajectory);
+  return out;
+}
+
+void expect_same(const std::vector<Matrix<double>>& found, const std::vector<Matrix<double>>& expected,
+                 const std::string& what) {
+  ASSERT_EQ(found.size(), expected.size()) << what;
+  double size = 0;
+  for (const auto& of : expected) size = larger(size, largest_entry(of));
+  for (std::size_t n = 0; n < found.size(); ++n)  // rounding, by condition numbers up to 1e4
+    EXPECT_LE(largest_entry(Matrix<double>(found[n] - expected[n])), 1e-11 * size) << what << " " << n;
+}
+
+TEST(Derivatives, ThatFollowARunFactoriseNothing) {
+  UzawaAL iterated;
+  iterated.sensitivity = UzawaAL::Sensitivity::iterated;
+  for (const Method& method : {Method(Penalty{}), Method(iterated), Method(MonolithicAL{})}) {
+    const auto scene = scenes::two_boxes(6, 4);
+    const Model model = make_model(scene);
+    const auto slots = make_slots<double>(model, scene.as<double>());
+    const auto following = run(model, slots, method, Kind::sparse, true);
+    const auto at_the_end = run(model, slots, method, Kind::sparse, false);
+    ASSERT_TRUE(is_converged(following.trajectory.status)) << following.trajectory.message;
+    ASSERT_TRUE(is_converged(following.gradients.status)) << following.gradients.message;
+    EXPECT_EQ(following.gradients.counters.sensitivity_factorizations, 0) << name_of(method);
+    EXPECT_GT(at_the_end.gradients.counters.sensitivity_factorizations, 0) << name_of(method);
+    EXPECT_EQ(following.trajectory.counters.factorizations, at_the_end.trajectory.counters.factorizations);
+    const auto &with = following.trajectory.increments, &without = at_the_end.trajectory.increments;
+    ASSERT_EQ(with.size(), without.size());
+    for (std::size_t n = 0; n < with.size(); ++n)  // to the last bit
+      EXPECT_EQ(with[n].state.displacement, without[n].state.displacement) << name_of(method) << n;
+    expect_same(following.gradients.of, at_the_end.gradients.of, std::string(name_of(method)));
+  }
+}
+
+TEST(Derivatives, OfSeveralIncrementsAtOnceAreThoseOfOneAtATime) {
+  for (const Method& method : {Method(Penalty{}), Method(UzawaAL{}), Method(MonolithicAL{})}) {
+    Scene scene = scenes::driven_block();
+    scene.legs = {{scene.legs.back().end, 11}};
+    const Model model = make_model(scene);
+    const auto slots = make_slots<double>(model, scene.as<double>());
+    Workspace<double> workspace;
+    RunOptions options;
+    options.linear_algebra.engine = Kind::condensed;
+    const auto trajectory = solve(model, slots, method, options, workspace);
+    const auto together = differentiate(model, slots, method, trajectory, workspace);
+    ASSERT_TRUE(is_converged(together.status)) << together.message;
+    std::vector<ParameterBlock> blocks;
+    const int parameters = static_cast<int>(scene.parameters.size());
+    for (int first = 0; first < parameters; first += directions) {
+      std::vector<int> of_block;
+      for (int j = first; j < std::min(parameters, first + directions); ++j) of_block.push_back(j);
+      const auto initial = initial_state<Direction>(model);
+      blocks.push_back({make_slots<Direction>(model, seeded(scene, of_block)), initial, initial});
+    }
+    std::vector<Matrix<double>> alone;
+    std::visit(
+        [&](const auto& m, auto& engine) {
+          Differentiation<std::decay_t<decltype(engine)>> problem{model, slots, engine, blocks, parameters, {}};
+          const State<double>* previous = &trajectory.initial;
+          for (const auto& increment : trajectory.increments) {
+            ASSERT_TRUE(differentiate_alone(m, problem, *previous, increment)) << problem.message;
+            std::vector<Vector<Direction>> responses;
+            for (auto& block : blocks) {
+              responses.push_back(evaluate_responses(model, block.slots, block.current, increment.time));
+              std::swap(block.previous, block.current);
+            }
+            alone.push_back(gather(
+                blocks, parameters, [&](auto&, int b) -> auto& { return responses[b]; }));
+            previous = &increment.state;
+          }
+        },
+        method, *workspace.engine);
+    expect_same(together.of, alone, std::string(name_of(method)));
+  }
+}
+
+// A reaction needs the forces at its support alone: elsewhere, elements could be anything.
+TEST(Responses, OfReactionsVisitTheElementsAtTheirSupport) {
+  const auto scene = scenes::greco_plate(6);
+  const Model model = make_model(scene);
+  std::size_t visited = 0, all = 0;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    visited += model.at_reactions[b].size();
+    all += static_cast<std::size_t>(model.bodies[b].mesh.element_count());
+  }
+  const bool asks = std::any_of(scene.responses.begin(), scene.responses.end(),
+                                [](const Response& r) { return r.kind == Response::Kind::reaction; });
+  ASSERT_TRUE(asks);
+  EXPECT_GT(visited, 0u);
+  EXPECT_LE(visited, all / 6);  // a side of a square of 6 x 6
+}
+
+}  // namespace
+}  // namespace stickslip
