@@ -38,22 +38,16 @@ struct UzawaAL {
   static constexpr double automatic_oversize = 1e3;  ///< of the oversized scheme
   enum class Acceleration { none, aitken, anderson };
   enum class Cone { augmented, frozen };
-  enum class Sensitivity { automatic, iterated, truncated, oversized, preconditioned };
+  enum class Sensitivity { iterated, truncated, oversized, preconditioned };
   Regularisation scale;
   double tolerance = 1e-10;     ///< error left in the multiplier (relative), and violation; 0 < tolerance < 1
   int max_augmentations = 200;  ///< inner solves per increment; >= 1
   bool adapt = true;            ///< multiply rho by 4 where an augmentation did not shrink the violation by 4
   Acceleration acceleration = Acceleration::none;  ///< of the updates of lambda (methods/acceleration.hpp)
   Cone cone = Cone::augmented;  ///< radius -mu z_N (augmented), or -mu lambda_N of the last augmentation (frozen)
-  Sensitivity sensitivity = Sensitivity::automatic;
+  Sensitivity sensitivity = Sensitivity::iterated;
   std::optional<double> oversize;  ///< kappa_s of the oversized and the preconditioned scheme, > 1; none: automatic
   NewtonOptions newton;
-
-  /// The scheme of the derivatives: where it is left open, the cheapest exact one.
-  Sensitivity scheme() const {
-    if (sensitivity != Sensitivity::automatic) return sensitivity;
-    return cone == Cone::frozen ? Sensitivity::iterated : Sensitivity::preconditioned;
-  }
 };
 
 /// Options of a method that do not go together: the name of the one to change, and why; empty where all do.
@@ -66,12 +60,12 @@ inline OptionConflict conflict(const UzawaAL& m) {
     return {
         "sensitivity",
         "is \"truncated\", which differentiates every update as it was made; the weights of an acceleration are not "
-        "differentiated; allowed with it: auto, iterated, oversized, preconditioned"};
+        "differentiated; allowed with it: iterated, oversized, preconditioned"};
   const bool stiffened = m.sensitivity == Sensitivity::oversized || m.sensitivity == Sensitivity::preconditioned;
   if (m.cone == UzawaAL::Cone::frozen && stiffened)
     return {"sensitivity",
             "relies on a stiffer factor, which leaves the error of a frozen cone as it is (it shrinks by mu/s a pass "
-            "whatever the scale); allowed with it: auto, iterated, truncated"};
+            "whatever the scale); allowed with it: iterated, truncated"};
   return {};
 }
 template <class M>

@@ -148,7 +148,7 @@ Increment<T> solve_increment(const UzawaAL& options, Run<T, E>& run, const State
   const Model& model = run.model;
   UzawaAL method = options;
   method.tolerance = start.tolerance(options.tolerance);
-  const bool truncated = method.scheme() == UzawaAL::Sensitivity::truncated;
+  const bool truncated = method.sensitivity == UzawaAL::Sensitivity::truncated;
   const int limit = method.max_augmentations * (std::is_same_v<T, double> || truncated ? 1 : 20);
   Increment<T> increment;
   increment.rho_factor = previous_factor.empty() ? std::vector<double>(model.points.size(), 1.0) : previous_factor;

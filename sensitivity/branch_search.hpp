@@ -19,13 +19,13 @@ template <class M>
 constexpr bool is_truncated(const M&) {
   return false;
 }
-inline bool is_truncated(const UzawaAL& method) { return method.scheme() == UzawaAL::Sensitivity::truncated; }
+inline bool is_truncated(const UzawaAL& method) { return method.sensitivity == UzawaAL::Sensitivity::truncated; }
 template <class M>
 constexpr double oversize_of(const M&) {
   return 1;
 }
 inline double oversize_of(const UzawaAL& method) {
-  const bool oversized = method.scheme() == UzawaAL::Sensitivity::oversized;
+  const bool oversized = method.sensitivity == UzawaAL::Sensitivity::oversized;
   return oversized ? method.oversize.value_or(UzawaAL::automatic_oversize) : 1;
 }
 

@@ -41,7 +41,7 @@ constexpr bool keeps_tangents(const M&) {
   return true;
 }
 bool keeps_tangents(const UzawaAL& method) {
-  return method.scheme() == UzawaAL::Sensitivity::iterated || method.scheme() == UzawaAL::Sensitivity::truncated;
+  return method.sensitivity == UzawaAL::Sensitivity::iterated || method.sensitivity == UzawaAL::Sensitivity::truncated;
 }
 
 /// Whether a factorisation of the engine costs as much as many solves.
@@ -83,7 +83,8 @@ struct Derivatives::Progress {
   }
 
   /// Differentiates the increments up to `end`, as many together as their columns fit into one solve.
-  void advance(const Trajectory<double>& trajectory, std::size_t end) {
+  /// `follows`: the engine has the factor of the last of them.
+  void advance(const Trajectory<double>& trajectory, std::size_t end, bool follows) {
     constexpr int columns = 16;  // more save little time and take much memory
     if (blocks.empty()) begin();
     const std::size_t together = std::max(1, columns / parameters());
@@ -91,7 +92,7 @@ struct Derivatives::Progress {
         [&](const auto& m) {
           std::visit(
               [&](auto& engine) {
-                while (done < end && !failed) take(m, engine, trajectory, std::min(end, done + together));
+                while (done < end && !failed) take(m, engine, trajectory, std::min(end, done + together), follows);
               },
               *workspace.engine);
         },
@@ -99,8 +100,9 @@ struct Derivatives::Progress {
   }
 
   template <class M, class E>
-  void take(const M& m, E& engine, const Trajectory<double>& trajectory, std::size_t end) {
+  void take(const M& m, E& engine, const Trajectory<double>& trajectory, std::size_t end, bool follows) {
     Differentiation<E> problem{model, slots, engine, blocks, parameters(), {}};
+    problem.follows = follows;
     const auto& increments = trajectory.increments;
     std::vector<PseudoLoad> loads;
     if (!detail::is_truncated(m)) {  // (which has one for each augmentation)
@@ -168,7 +170,7 @@ void Derivatives::follow(const Trajectory<double>& trajectory) {
     now.largest = std::max(now.largest, traction_scale(now.model, now.slots, increments[n].state));
     now.postponed |= !worthwhile || has_ties(now.model, now.slots, now.method, increments[n], now.largest);
     if (now.postponed) return;
-    now.advance(trajectory, n + 1);
+    now.advance(trajectory, n + 1, n + 1 == increments.size());
   }
 }
 
@@ -179,7 +181,7 @@ Gradients Derivatives::finish(const Trajectory<double>& trajectory) {
     const Stopwatch time(now.gradients.seconds);
     Counters search;
     const auto consistent = consistent_at_ties(now.model, now.slots, now.method, trajectory, now.workspace, search);
-    now.advance(consistent ? *consistent : trajectory, trajectory.increments.size());
+    now.advance(consistent ? *consistent : trajectory, trajectory.increments.size(), false);
     now.gradients.search = search;
     now.gradients.counters += search;
   }

@@ -36,13 +36,6 @@ class LinearisedEquilibrium {
                         bool unknown, const Vector<double>& previous_placement);
 
   bool valid() const { return valid_; }
-  /// Whether the last solve has solved its problem. A singular tangent has solutions where constraints repeat one
-  /// another, and none where the response jumps or turns with an infinite slope: then this is false, with the message.
-  bool is_solved() {
-    if (!consistent_) problem_.message = "the tangent of the converged state is singular: the derivative is infinite";
-    return consistent_;
-  }
-
   /// Solves for the derivative given D lambda (per block; read as a seed, also where lambda is unknown: then zero) and
   /// returns the fields t_hat with all derivatives in. Adds D lambda to `lambda` where it is unknown.
   std::vector<ContactField<Direction>> solve(std::vector<Vector<Direction>>& lambda);
@@ -62,7 +55,6 @@ class LinearisedEquilibrium {
 
  private:
   static constexpr int refinements = 2;
-  static constexpr double unsolved = 1e-6;  // share of the first rows that a solvable problem does not keep
   static Vector<double> largest(const Matrix<double>& columns) {
     if (columns.rows() == 0) return Vector<double>::Zero(columns.cols());
     return columns.cwiseAbs().colwise().maxCoeff();
@@ -88,7 +80,7 @@ class LinearisedEquilibrium {
   const RegularisationField<double>& rho_;
   ConeRadius cone_;
   double time_;
-  bool unknown_, valid_ = false, consistent_ = true;
+  bool unknown_, valid_ = false;
   bool redundant_ = false;  ///< constraints repeat one another: the tangent yields, and is used twice
   PseudoLoad load_;
   Matrix<double> increment_, compact_;
@@ -108,7 +100,7 @@ LinearisedEquilibrium<E>::LinearisedEquilibrium(Differentiation<E>& problem, con
       unknown_(unknown) {
   const Model& model = problem.model;
   const ContactInput<double> primal{model, problem.slots, rho, previous_placement, cone, time};
-  valid_ = factorise_converged(problem, primal, at, unknown, false, redundant_);
+  valid_ = factorise_converged(problem, primal, at, unknown, problem.follows, redundant_);
   if (!valid_) return;
   if (problem.prepared) {
     load_ = std::move(*problem.prepared);
@@ -128,7 +120,6 @@ std::vector<ContactField<Direction>> LinearisedEquilibrium<E>::solve(std::vector
   for (int b = 0; b < blocks; ++b) compact.push_back(to_compact(model, load_.displacement[b]));
   increment_ = Matrix<double>();
   Rows rows = evaluate(compact, lambda);
-  const Vector<double> asked = largest(rows.u).cwiseMax(largest(rows.l));
   for (int pass = 0;; ++pass) {
     const auto step = problem_.engine.solve({-rows.u, -rows.l});
     problem_.counters.sensitivity_backsolves += parameters;
@@ -145,10 +136,8 @@ std::vector<ContactField<Direction>> LinearisedEquilibrium<E>::solve(std::vector
       if (unknown_) add_derivatives(lambda[b], multiplier, b);
     }
     rows = evaluate(compact, lambda);
-    if (!unknown_ || pass == refinements || (rows.accurate && !redundant_)) break;
+    if (!unknown_ || pass == refinements || (rows.accurate && !redundant_)) return std::move(rows.fields);
   }
-  if (redundant_) consistent_ = ((largest(rows.u).cwiseMax(largest(rows.l)) - asked * unsolved).array() <= 0).all();
-  return std::move(rows.fields);
 }
 
 /// Rows of the derivative problem at the derivatives reached so far. `accurate`: what is left of the displacement rows

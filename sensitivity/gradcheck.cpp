@@ -104,7 +104,7 @@ bool GradientCheck::passed() const {
 Method as_claimed(const Method& method) {
   Method claimed = method;
   std::visit([](auto& m) { m.newton.tolerance = std::min(m.newton.tolerance, 1e-14); }, claimed);
-  if (auto* uzawa = std::get_if<UzawaAL>(&claimed); uzawa && uzawa->scheme() != UzawaAL::Sensitivity::truncated) {
+  if (auto* uzawa = std::get_if<UzawaAL>(&claimed); uzawa && uzawa->sensitivity != UzawaAL::Sensitivity::truncated) {
     uzawa->tolerance = std::min(uzawa->tolerance, 1e-14);
     uzawa->max_augmentations = std::max(uzawa->max_augmentations, 20000);
   }
@@ -217,7 +217,7 @@ GradientCheck check_gradients(const Model& model, const Method& given, const Run
     if (trajectory.increments[n].requested) ends[n] = trajectory.increments[n].time;
   last.back() = ends.back();
   const auto* uzawa = std::get_if<UzawaAL>(&method);
-  const bool approximate = uzawa && uzawa->scheme() == UzawaAL::Sensitivity::oversized;
+  const bool approximate = uzawa && uzawa->sensitivity == UzawaAL::Sensitivity::oversized;
   const double scheme = approximate ? 10 / uzawa->oversize.value_or(UzawaAL::automatic_oversize) : base_tolerance;
   const int responses = static_cast<int>(scene.responses.size());
   for (int j = 0; j < static_cast<int>(scene.parameters.size()); ++j) {

@@ -6,14 +6,14 @@
 
 namespace stickslip {
 
-/// Prepares the engine to solve with the tangent at a state, in its branches: an update of the factor it has where that
-/// differs by little (the last one of Newton's is the same, but in space), a factorisation otherwise. `problem`: where
-/// engine, counters and message are. `unknown`: lambda is part of p. `transposed`: solves will be, for which there are
-/// no updates. `redundant`: constraints repeat one another, so that the tangent yields and a solution takes a pass
-/// more. False, with the message, where it is singular.
+/// Prepares the engine to solve with the tangent at a state, in its branches. `problem`: where engine, counters and
+/// message are. `unknown`: lambda is part of p. `follows`: the engine has the factor of Newton's last iteration, whose
+/// tangent is the same, but for directions in space: it is used as it is, or updated. `redundant`: constraints repeat
+/// one another, so that the tangent yields and a solution takes a pass more. False, with the message, where it is
+/// singular.
 template <class Problem>
 bool factorise_converged(Problem& problem, const ContactInput<double>& input, const State<double>& at, bool unknown,
-                         bool transposed, bool& redundant) {
+                         bool follows, bool& redundant) {
   const Model& model = problem.model;
   const Vector<double> compact = to_compact(model, at.displacement);
   const Vector<double> multiplier = multiplier_on_rays(input, at);
@@ -22,7 +22,7 @@ bool factorise_converged(Problem& problem, const ContactInput<double>& input, co
     tangents.push_back(point_tangent<double>(input, p, compact, multiplier, at.contact.state[p]));
   const auto decided = unknown ? decided_elsewhere(model, problem.slots) : std::vector<char>();
   Counters spent;
-  const bool updated = !transposed && decided.empty() && problem.engine.update(tangents, spent);
+  const bool updated = follows && decided.empty() && problem.engine.update(tangents, spent);
   spent.sensitivity_backsolves = std::exchange(spent.backsolves, 0);
   const bool valid =
       updated || (unknown ? factorise_sharing(problem.engine, model, decided, std::move(tangents), redundant, spent)

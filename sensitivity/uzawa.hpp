@@ -7,7 +7,7 @@
 ///   derivative
 ///                   of the truncated algorithm, for a loop that was cut off or stopped at a coarse tolerance
 ///   oversized       one pass with kappa_s rho in place of rho, states frozen: error O(1/kappa_s), no iteration [SZ00]
-///   preconditioned  (the default, but with a frozen cone) the iterated scheme with kappa_s rho in place of rho: the
+///   preconditioned  the iterated scheme with kappa_s rho in place of rho: the
 ///   fixed point is that of rho, for it is
 ///                   Dg = 0 and D t_T = D(bound m), where rho stands nowhere; the error shrinks by
 ///                   1 / (1 + kappa_s rho s_min) a pass, so that four to six passes reach rounding whatever q was
@@ -207,11 +207,11 @@ template <class E>
 bool differentiate_increment(const UzawaAL& method, Differentiation<E>& problem, const State<double>& previous,
                              const Increment<double>& increment) {
   using Sensitivity = UzawaAL::Sensitivity;
-  if (method.scheme() == Sensitivity::truncated)
+  if (method.sensitivity == Sensitivity::truncated)
     return detail::differentiate_augmentations(method, problem, previous, increment);
-  if (method.scheme() == Sensitivity::preconditioned)
+  if (method.sensitivity == Sensitivity::preconditioned)
     return detail::differentiate_preconditioned(method, problem, previous, increment);
-  const bool oversized = method.scheme() == Sensitivity::oversized;
+  const bool oversized = method.sensitivity == Sensitivity::oversized;
   const double oversize = oversized ? method.oversize.value_or(UzawaAL::automatic_oversize) : 1;
   RegularisationField<double> rho;
   auto linearised = detail::linearise(method, problem, previous, increment.state, increment.rho_factor, oversize,
@@ -366,10 +366,11 @@ template <class E>
 bool pull_back_increment(const UzawaAL& method, AdjointProblem<E>& problem, const State<double>& previous,
                          const Increment<double>& increment) {
   using Sensitivity = UzawaAL::Sensitivity;
-  if (method.scheme() == Sensitivity::truncated) return detail::pull_back_sweeps(method, problem, previous, increment);
-  if (method.scheme() == Sensitivity::preconditioned)
+  if (method.sensitivity == Sensitivity::truncated)
+    return detail::pull_back_sweeps(method, problem, previous, increment);
+  if (method.sensitivity == Sensitivity::preconditioned)
     return detail::pull_back_preconditioned(method, problem, previous, increment);
-  const bool oversized = method.scheme() == Sensitivity::oversized;
+  const bool oversized = method.sensitivity == Sensitivity::oversized;
   const double oversize = oversized ? method.oversize.value_or(UzawaAL::automatic_oversize) : 1;
   RecordedEquilibrium<E> recorded(problem, previous, increment.state,
                                   detail::recorded_regularisation(method, problem, increment.rho_factor, oversize),

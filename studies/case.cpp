@@ -166,7 +166,7 @@ void check_responses(const Model& model, const Slots<double>& slots) {
 
 bool StepResult::has_kink(const Scene& scene, const Method& method, std::size_t response, std::size_t parameter) const {
   const auto* uzawa = std::get_if<UzawaAL>(&method);
-  const bool oversized = uzawa && uzawa->scheme() == UzawaAL::Sensitivity::oversized;
+  const bool oversized = uzawa && uzawa->sensitivity == UzawaAL::Sensitivity::oversized;
   const double rounding = oversized ? 10 / uzawa->oversize.value_or(UzawaAL::automatic_oversize) : 1e-9;
   const double below = backward(response, parameter), above = forward(response, parameter);
   const double value = scene.parameters[parameter].value, size = value == 0 ? 0 : std::abs(responses[response] / value);

@@ -68,10 +68,8 @@ void visit_options(UzawaAL& method, Visitor&& visit) {
   visit(
       Option{"cone", "frozen: radius of the last augmentation, symmetric; fails where friction is large, and says so"},
       method.cone, Words<Cone>{{{"augmented", Cone::augmented}, {"frozen", Cone::frozen}}});
-  visit(Option{"sensitivity", "scheme of the derivatives (auto: preconditioned; with a frozen cone iterated)"},
-        method.sensitivity,
-        Words<Sensitivity>{{{"auto", Sensitivity::automatic},
-                            {"iterated", Sensitivity::iterated},
+  visit(Option{"sensitivity", "scheme of the derivatives"}, method.sensitivity,
+        Words<Sensitivity>{{{"iterated", Sensitivity::iterated},
                             {"truncated", Sensitivity::truncated},
                             {"oversized", Sensitivity::oversized},
                             {"preconditioned", Sensitivity::preconditioned}}});
@@ -285,8 +283,8 @@ void check_option_names(const JsonNode& node, const std::string& method, const s
 
 /// Reports an oversize that the scheme of derivatives takes no notice of.
 void check_oversize(const JsonNode& options, const UzawaAL& method) {
-  const auto scheme = method.scheme();
-  const bool used = scheme == UzawaAL::Sensitivity::oversized || scheme == UzawaAL::Sensitivity::preconditioned;
+  const bool used = method.sensitivity == UzawaAL::Sensitivity::oversized ||
+                    method.sensitivity == UzawaAL::Sensitivity::preconditioned;
   if (method.oversize && !used)
     options.find("oversize")->error_at_key(R"(belongs to the sensitivity "oversized" or "preconditioned")");
 }
@@ -346,9 +344,8 @@ nlohmann::ordered_json method_schema(OptionLists lists) {
 
 json to_json(const Method& method) {
   json options = json::object();
-  Method used = method;
-  if (auto* uzawa = std::get_if<UzawaAL>(&used)) uzawa->sensitivity = uzawa->scheme();
-  std::visit([&](auto& chosen) { visit_options(chosen, Writer{options}); }, used);
+  Method copy = method;
+  std::visit([&](auto& chosen) { visit_options(chosen, Writer{options}); }, copy);
   return {{std::string(name_of(method)), options}};
 }
 

@@ -174,26 +174,6 @@ TEST(IteratedDerivatives, ThatDoNotSettleAreGivenUpEarly) {
   EXPECT_LE(result.gradients.counters.sensitivity_backsolves, 2 * 2000);  // 2 parameters; the limit is 20000 passes
 }
 
-// At the critical friction of its spring, mu = k_t / k_nt, a point slips off with an infinite slope.
-TEST(OneSidedDerivatives, AreNotGivenWhereTheSlopeIsInfinite) {
-  const json scene = json::parse(R"({
-    "bodies": {"m": {"mesh": {"point": {"at": [0, 0]}},
-                     "material": {"grounded_spring": {"stiffness": [[1, 0.5], [0.5, 1]]}}}},
-    "obstacles": {"p": {"plane": {"point": [0, 0], "normal": [0, 1]}}},
-    "contacts": {"c": {"slave": "m.node", "master": "p", "friction": 2}},
-    "loads": [{"on": "m.node", "force": [-2, -1], "history": [[0, 0], [1, 1]]}],
-    "time": {"end": 1, "steps": 1},
-    "responses": {"u": {"displacement": {"on": "m.node", "component": "x"}}},
-    "parameters": {"pull": "/loads/0/force/0"}})");
-  const auto result = run(scene, json::parse(R"({"monolithic_al": {}})"));
-  ASSERT_TRUE(is_converged(result.status())) << result.message();
-  const auto& step = result.steps.back();
-  EXPECT_FALSE(step.differentiable);
-  ASSERT_GT(step.backward.size(), 0);
-  EXPECT_TRUE(std::isnan(step.backward(0, 0))) << step.backward(0, 0);  // pulled harder it slips
-  EXPECT_EQ(step.forward(0, 0), 0);                                     // pulled less it sticks
-}
-
 TEST(Scales, OfAMillionthNeedNoOtherPath) {
   const auto belt = cases::load(std::string(STICKSLIP_SOURCE_DIR) + "/studies/scenes/belt.json");
   const auto expected = run(belt, json::parse(R"({"monolithic_al": {}})"));
