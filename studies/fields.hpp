@@ -20,7 +20,8 @@ void write_fields(const std::filesystem::path& directory, const CaseResult& resu
 /// Force per area on the slave at contact point p.
 Vector<double> traction_vector(const Problem& problem, const State<double>& state, int p);
 
-/// The last step as the report's picture: points, elements, displacement, von Mises stress, contact points, obstacles.
+/// The last step as the report's picture: points, elements, displacement, von Mises stress, contact points, obstacles
+/// as at the start with what they moved by since, and the kinds of the responses by name.
 nlohmann::json picture_json(const CaseResult& result);
 
 }  // namespace stickslip
