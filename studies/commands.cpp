@@ -15,6 +15,8 @@
 #include "studies/directory_lock.hpp"
 #include "studies/explain.hpp"
 #include "studies/export_system.hpp"
+#include "studies/fields.hpp"
+#include "studies/film.hpp"
 #include "studies/input_fault.hpp"
 #include "studies/method_options.hpp"
 #include "studies/printing.hpp"
@@ -101,6 +103,19 @@ json check_json(const GradientCheck& check) {
           {"rejected", check.rejected},      {"entries", entries}};
 }
 
+/// picture.json, with what a study's rows hold of it, and the report; without `report` those of an earlier run go.
+void write_pictures(const std::filesystem::path& directory, const CaseResult& result, bool report) {
+  for (const char* file : {"picture.json", "report.html"}) std::filesystem::remove(directory / file);
+  if (!report) return;
+  json picture = picture_json(result);
+  if (!picture.is_null()) {
+    picture["interface"] = interface_json(result);
+    picture["film"] = film_json(result);
+    write_file_atomically(directory / "picture.json", json_text(picture));
+  }
+  write_run_report(directory);
+}
+
 /// trace.csv, and of scenes with few contact points cones.svg.
 void write_trace(const std::filesystem::path& directory, const Problem& problem, const Trace& trace) {
   write_file_atomically(directory / "trace.csv", trace_csv(problem, trace));
@@ -119,9 +134,15 @@ int run_command(const RunArguments& arguments) {
   const bool writes = !arguments.json || !arguments.output.empty();
   const auto directory = output_directory(arguments.output, arguments.scene);
   if (!arguments.export_to.empty()) check_folder(arguments.export_to);
+  if (!writes && arguments.report) throw InputFault("--report: with --json nothing is written; give -o DIR too");
   if (writes && holds(directory, "study.json"))
     throw InputFault(directory.string() + ": holds a study; -o DIR writes to another directory");
-  if (writes) prepare_directory(directory, {"result.json", "fields.pvd"});
+  std::vector<std::string> files = {"result.json", "fields.pvd"}, folders;
+  if (arguments.report) {
+    files.insert(files.end(), {"picture.json", "report.html"});
+    folders.emplace_back("figures");
+  }
+  if (writes) prepare_directory(directory, files, folders);
   std::optional<DirectoryLock> lock;
   if (writes) lock.emplace(directory);
   if (!arguments.export_to.empty()) prepare_directory(arguments.export_to, {"README"});
@@ -149,10 +170,12 @@ int run_command(const RunArguments& arguments) {
     } else {  // of an earlier run
       for (const char* file : {"trace.csv", "cones.svg"}) std::filesystem::remove(directory / file);
     }
+    write_pictures(directory, result, arguments.report);
     if (!arguments.json) {
       if (arguments.trace) std::cout << trace_table(trace) << '\n';
       print_summary(result);
-      fmt::print("\nwritten: {0}/result.json, {0}/fields.pvd\n", printable(directory.string()));
+      fmt::print("\nwritten: {0}/result.json, {0}/fields.pvd{1}\n", printable(directory.string()),
+                 arguments.report ? ", " + printable((directory / "report.html").string()) : "");
     }
   }
   if (!arguments.export_to.empty() && !result.trajectory.increments.empty()) export_system(arguments.export_to, result);
@@ -246,9 +269,16 @@ int schema_command(const std::string& kind) {
 }
 
 int report_command(const std::string& directory) {
-  if (!holds(directory, "results.jsonl"))
+  const bool of_run = holds(directory, "result.json");
+  if (!of_run && !holds(directory, "results.jsonl"))
     throw InputFault(directory + ": there is no results.jsonl; run `stickslip study` first");
   const DirectoryLock lock(directory);
+  if (of_run) {
+    prepare_directory(directory, {"report.html"}, {"figures"});
+    write_run_report(directory);
+    fmt::print("{}\n", printable((std::filesystem::path(directory) / "report.html").string()));
+    return done;
+  }
   check_records(directory);
   const auto stored = read_rows(directory, [](json& row) { row = json::object(); });  // what counts is which there are
   if (!stored.sound()) std::cerr << printable("note: " + directory + "/results.jsonl: " + stored.faults()) << '\n';
