@@ -6,6 +6,7 @@
 
 #include "core/model/response.hpp"
 #include "studies/case.hpp"
+#include "studies/contact_points.hpp"
 #include "studies/json_document.hpp"
 #include "studies/method_options.hpp"
 #include "studies/provenance.hpp"
@@ -16,10 +17,6 @@ namespace stickslip {
 namespace {
 
 using nlohmann::json;
-
-const char* name_of(ContactState state) {
-  return state == ContactState::open ? "open" : state == ContactState::stick ? "stick" : "slip";
-}
 
 /// JSON has no infinity.
 json finite(double x) { return std::isfinite(x) ? json(x) : json(nullptr); }
@@ -199,24 +196,38 @@ json regularisation_json(const CaseResult& result) {
   return {{"absolute", {{"min", low}, {"max", high}}}, {"multiple", {{"min", low_multiple}, {"max", high_multiple}}}};
 }
 
+std::vector<double> arc_of(const Problem& problem, int contact) {
+  std::vector<double> arc;
+  const ContactPoint* last = nullptr;
+  for (const auto& point : problem.model.points) {
+    if (point.contact != contact) continue;
+    const auto& x = problem.slots.points;
+    arc.push_back(last ? arc.back() + (x.col(point.nodes[0]) - x.col(last->nodes[0])).norm() : 0);
+    last = &point;
+  }
+  return arc;
+}
+
+const char* state_name(const ContactPoint& point, ContactState state) {
+  if (state == ContactState::open) return "open";
+  if (point.tangents == 0) return "closed";
+  return state == ContactState::stick ? "stick" : "slip";
+}
+
 json interface_json(const CaseResult& result) {
   json contacts = json::object();
   if (result.steps.empty()) return contacts;
   const auto& [model, slots, unused] = *result.problem;
   const auto& state = result.steps.back().increment->state;
   for (std::size_t c = 0; c < model.scene.contacts.size(); ++c) {
-    json x = json::array(), y = json::array(), arc = json::array(), area = json::array(), gap = json::array(),
-         slip = json::array(), normal = json::array(), tangential = json::array(), states = json::array();
-    double along = 0;
-    const ContactPoint* last = nullptr;
+    const json arc = arc_of(*result.problem, static_cast<int>(c));
+    json x = json::array(), y = json::array(), area = json::array(), gap = json::array(), slip = json::array(),
+         normal = json::array(), tangential = json::array(), states = json::array();
     for (std::size_t p = 0; p < model.points.size(); ++p) {
       const auto& point = model.points[p];
       if (point.contact != static_cast<int>(c)) continue;
-      if (last) along += (slots.points.col(point.nodes[0]) - slots.points.col(last->nodes[0])).norm();
-      last = &point;
       x.push_back(slots.points(0, point.nodes[0]));
       y.push_back(slots.points(1, point.nodes[0]));
-      arc.push_back(along);
       area.push_back(slots.geometry[p].area);
       gap.push_back(finite(state.contact.gap[p]));
       normal.push_back(finite(state.contact.traction[point.multiplier]));
@@ -225,7 +236,7 @@ json interface_json(const CaseResult& result) {
       const auto s = state.contact.placement.segment(tangential_offset(model, static_cast<int>(p)), point.tangents);
       tangential.push_back(finite(plane ? t[0] : t.norm()));
       slip.push_back(finite(plane ? s[0] : s.norm()));
-      states.push_back(name_of(state.contact.state[p]));
+      states.push_back(state_name(point, state.contact.state[p]));
     }
     contacts[model.scene.contacts[c].name] = {
         {"x", x},         {"y", y},       {"arc", arc},       {"area", area},

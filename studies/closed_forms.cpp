@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace stickslip {
 namespace {
@@ -31,8 +32,28 @@ Out hertz_line(const In& in, Space) {
   return {{"half_width", b}, {"peak_pressure", D(2) * P / (D(pi) * b)}};
 }
 
-ClosedForm::Tractions hertz_tractions(const Quantities<double>& all, double x) {
-  return {all.at("peak_pressure") * half_ellipse(x, all.at("half_width")), 0};
+using Curve = std::vector<ClosedForm::Tractions>;
+
+constexpr int samples = 400;  // of a curve that bends
+
+double hertz_pressure(const Quantities<double>& all, double x) {
+  return all.at("peak_pressure") * half_ellipse(x, all.at("half_width"));
+}
+
+/// Pressure and tangential traction at distances up to `reach` on either side.
+template <class At>
+Curve symmetric_curve(double reach, At at) {
+  Curve curve;
+  for (int i = 0; i <= samples; ++i) {
+    const double x = reach * (2.0 * i / samples - 1);
+    const auto [pressure, tangential] = at(x);
+    curve.push_back({x, pressure, tangential});
+  }
+  return curve;
+}
+
+Curve hertz_tractions(const Quantities<double>& all, double) {
+  return symmetric_curve(1.3 * all.at("half_width"), [&](double x) { return std::pair{hertz_pressure(all, x), 0.0}; });
 }
 
 Out cattaneo_mindlin(const In& in, Space space) {
@@ -43,17 +64,25 @@ Out cattaneo_mindlin(const In& in, Space space) {
   return out;
 }
 
-ClosedForm::Tractions cattaneo_tractions(const Quantities<double>& all, double x) {
-  auto at = hertz_tractions(all, x);
-  const double c = all.at("stick_half_width"), bound = all.at("friction");
-  at.tangential = bound * at.pressure;
-  if (c > 0) at.tangential -= bound * all.at("peak_pressure") * c / all.at("half_width") * half_ellipse(x, c);
-  return at;
+Curve cattaneo_tractions(const Quantities<double>& all, double) {
+  const double b = all.at("half_width"), c = all.at("stick_half_width"), bound = all.at("friction");
+  return symmetric_curve(1.3 * b, [&](double x) {
+    const double pressure = hertz_pressure(all, x);
+    const double held = c > 0 ? bound * all.at("peak_pressure") * c / b * half_ellipse(x, c) : 0;
+    return std::pair{pressure, bound * pressure - held};
+  });
 }
 
 Out flat_punch(const In& in, Space) {
   const D &P = in.at("force"), &a = in.at("half_width");
   return {{"centre_pressure", P / (D(pi) * a)}, {"mean_pressure", P / (D(2) * a)}};
+}
+
+Curve flat_punch_tractions(const Quantities<double>& all, double) {
+  const double a = all.at("half_width"), inside = 0.999;  // of the width: at its edge the pressure is infinite
+  return symmetric_curve(inside * a, [&](double x) {
+    return std::pair{all.at("force") / (pi * std::sqrt(a * a - x * x)), 0.0};
+  });
 }
 
 Out press_fit(const In& in, Space space) {
@@ -79,7 +108,27 @@ Out belt(const In& in, Space) {
     log_ratio = n * log((D(1) + mu * t) / (D(1) - mu * t));
   }
   const D ratio = exp(log_ratio);
-  return {{"ratio", ratio}, {"tight", in.at("slack") * ratio}};
+  const D tight = in.at("slack") * ratio;
+  return {{"ratio", ratio}, {"tight", tight}, {"tight_reaction", -tight}};
+}
+
+Curve press_fit_tractions(const Quantities<double>& all, double length) {
+  return {{0, all.at("pressure"), 0}, {length, all.at("pressure"), 0}};
+}
+
+Curve belt_tractions(const Quantities<double>& all, double length) {
+  if (!all.count("radius")) return {};
+  const double R = all.at("radius"), slack = all.at("slack"), bound = all.at("friction");
+  const bool polygon = all.count("nodes") > 0;
+  const int n = polygon ? static_cast<int>(all.at("nodes")) : samples;
+  const double growth = std::pow(all.at("ratio"), 1.0 / n), chord = 2 * R * std::sin(all.at("angle") * pi / 360 / n);
+  Curve curve;
+  for (int i = 0; polygon ? i < n : i <= n; ++i) {
+    const double tension = slack * std::pow(growth, i);
+    const double pressure = polygon ? tension * (1 + growth) / (2 * R) : tension / R;
+    curve.push_back({polygon ? chord * i : length * i / n, pressure, bound * pressure});
+  }
+  return curve;
 }
 
 Out pull_out(const In& in, Space) {
@@ -144,7 +193,8 @@ const std::vector<ClosedForm>& closed_forms() {
        "rigid flat punch on a half plane [J85 2.8]",
        {force, {"half_width", "half the width of the punch", positive}},
        {{"centre_pressure", "pressure at the middle"}, {"mean_pressure", "force over width"}},
-       flat_punch},
+       flat_punch,
+       flat_punch_tractions},
       {"press_fit",
        "ring pressed into a ring of the same material [Lame]",
        {{"inner", "bore of the inner ring", positive},
@@ -159,15 +209,22 @@ const std::vector<ClosedForm>& closed_forms() {
         {"u_inner", "of the inner ring's outside"},
         {"u_rim", "of the outer ring's rim"},
         {"slip_torque", "per length, at which all slips (with friction)"}},
-       press_fit},
+       press_fit,
+       press_fit_tractions,
+       ClosedForm::Over::arc},
       {"belt",
        "belt on a drum, about to slip [Euler, Eytelwein]",
        {{"slack", "tension of the slack end", positive},
         friction,
         {"angle", "wrapped, degrees", positive},
-        {"nodes", "of a polygonal belt [a smooth one]", positive, false}},
-       {{"tight", "tension of the tight end"}, {"ratio", "tight over slack"}},
-       belt},
+        {"nodes", "of a polygonal belt [a smooth one]", positive, false},
+        {"radius", "of the drum, for the tractions along it", positive, false}},
+       {{"tight", "tension of the tight end"},
+        {"tight_reaction", "minus that: of a support that pulls the end down"},
+        {"ratio", "tight over slack"}},
+       belt,
+       belt_tractions,
+       ClosedForm::Over::arc},
       {"pull_out",
        "bar drawn against friction along it",
        {{"force", "at the end", positive},

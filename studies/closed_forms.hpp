@@ -14,7 +14,8 @@
 ///                   u_rim = (p R / E1) 2 R Ro / (Ro^2 - R^2) at Ro. Full slip needs the torque 2 pi R^2 mu p.
 /// belt              [Euler 1769, Eytelwein 1808] on a drum, wrapped by b: T2 = T1 e^(mu b). Where it touches at n
 ///                   nodes that turn by b/n each: balance of a node gives T2 = T1 ((1 + mu t)/(1 - mu t))^n,
-///                   t = tan(b / 2n).
+///                   t = tan(b / 2n). On a drum of radius R the pressure is T/R, at a node of a polygon the mean of
+///                   both its bars' over R; the traction along is mu times that.
 /// pull_out          a bar EA drawn by P against a limit friction f per length, far end not reached: N' = f over the
 ///                   slip length P/f, so u = P^2/(2 EA f), work of friction P^3/(6 EA f). Unloading slips back over
 ///                   P/(2f) and leaves u/2; a full cycle between P and -P costs 2 P^3/(3 EA f).
@@ -46,17 +47,22 @@ struct ClosedForm {
     bool required = true;     ///< of an input: without it there is no answer
     bool of_contact = false;  ///< of an input: taken from the scene's first contact where it is not given
   };
-  /// Tractions of a contact at a distance x from its centre.
+  /// Tractions of a contact at a place.
   struct Tractions {
-    double pressure = 0, tangential = 0;
+    double place = 0, pressure = 0, tangential = 0;
   };
+  /// What a place is: the distance from the centre of pressure along x, or the length along the contact's points from
+  /// the first.
+  enum class Over { distance, arc };
 
   std::string name, about;
   std::vector<Quantity> inputs, outputs;
   /// The formula. pre: `inputs` holds all that are required, and each is as its rule says.
   Quantities<Dual<1>> (*evaluate)(const Quantities<Dual<1>>& inputs, Space space);
-  /// Of inputs and outputs together, "half_width" among them; nullptr where the form has no curve.
-  Tractions (*tractions)(const Quantities<double>& all, double x) = nullptr;
+  /// Along a contact of that length, places ascending; `all`: inputs and outputs together. Empty where it takes an
+  /// input that is not given. nullptr where the form has no curve.
+  std::vector<Tractions> (*tractions)(const Quantities<double>& all, double length) = nullptr;
+  Over over = Over::distance;
 
   /// The outputs; empty where the inputs are not those of the closed form (one is missing or not as its rule says, as a
   /// pressing force of an open contact) or where it has no finite answer.

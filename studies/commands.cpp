@@ -14,6 +14,8 @@
 #include "studies/directory_lock.hpp"
 #include "studies/explain.hpp"
 #include "studies/export_system.hpp"
+#include "studies/fields.hpp"
+#include "studies/film.hpp"
 #include "studies/gradient_report.hpp"
 #include "studies/input_fault.hpp"
 #include "studies/method_options.hpp"
@@ -81,6 +83,19 @@ void print_summary(const CaseResult& result) {
     fmt::print("  a contact point is about to change state: these hold on one side only (result.json: one_sided)\n");
 }
 
+/// picture.json, with what a study's rows hold of it, and the report; without `report` those of an earlier run go.
+void write_pictures(const std::filesystem::path& directory, const CaseResult& result, bool report) {
+  for (const char* file : {"picture.json", "report.html"}) std::filesystem::remove(directory / file);
+  if (!report) return;
+  json picture = picture_json(result);
+  if (!picture.is_null()) {
+    picture["interface"] = interface_json(result);
+    picture["film"] = film_json(result);
+    write_file_atomically(directory / "picture.json", json_text(picture));
+  }
+  write_run_report(directory);
+}
+
 /// trace.csv, and of scenes with few contact points cones.svg; returns their names.
 std::vector<std::string> write_trace(const std::filesystem::path& directory, const Problem& problem,
                                      const Trace& trace) {
@@ -117,7 +132,8 @@ int run_command(const RunArguments& arguments) {
   const bool writes = !arguments.json || !arguments.output.empty();
   const auto directory = output_directory(arguments.output, arguments.scene);
   if (!arguments.export_to.empty()) check_folder(arguments.export_to);
-  if (writes) prepare_run_directory(directory);
+  if (!writes && arguments.report) throw InputFault("--report: with --json nothing is written; give -o DIR too");
+  if (writes) prepare_run_directory(directory, arguments.report);
   std::optional<DirectoryLock> lock;
   if (writes) lock.emplace(directory);
   if (!arguments.export_to.empty()) prepare_directory(arguments.export_to, {"README"});
@@ -147,6 +163,8 @@ int run_command(const RunArguments& arguments) {
     } else {  // of an earlier run
       for (const char* file : {"trace.csv", "cones.svg"}) std::filesystem::remove(directory / file);
     }
+    write_pictures(directory, result, arguments.report);
+    if (arguments.report) add_files(directory, {"report.html"}, written);
     if (!arguments.json) {
       if (arguments.trace) std::cout << trace_table(trace) << '\n';
       print_summary(result);
@@ -237,9 +255,16 @@ int schema_command(const std::string& kind) {
 }
 
 int report_command(const std::string& directory) {
-  if (!holds(directory, "results.jsonl"))
+  const bool of_run = holds(directory, "result.json");
+  if (!of_run && !holds(directory, "results.jsonl"))
     throw InputFault(directory + ": there is no results.jsonl; run `stickslip study` first");
   const DirectoryLock lock(directory);
+  if (of_run) {
+    prepare_directory(directory, {"report.html"}, {"figures"});
+    write_run_report(directory);
+    fmt::print("{}\n", printable((std::filesystem::path(directory) / "report.html").string()));
+    return done;
+  }
   check_records(directory);
   const auto stored = read_rows(directory, [](json& row) { row = json::object(); });  // what counts is which there are
   if (!stored.sound()) std::cerr << printable("note: " + directory + "/results.jsonl: " + stored.faults()) << '\n';

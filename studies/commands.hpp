@@ -16,6 +16,7 @@ struct RunArguments {
   std::vector<std::string> overrides;
   std::string output;     ///< directory; empty: results/NAME OF THE SCENE (with `json`: nothing is written)
   bool json = false;      ///< one JSON document on standard output and nothing else
+  bool report = false;    ///< write report.html, and picture.json, which it draws
   bool trace = false;     ///< print every iterate, and write trace.csv
   std::string export_to;  ///< directory for the linear system of the last step; empty: none
 };

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "studies/contact_points.hpp"
+#include "studies/response_kinds.hpp"
 #include "studies/strains.hpp"
 #include "studies/vtu.hpp"
 
@@ -160,6 +162,33 @@ std::vector<std::size_t> steps_with_fields(const CaseResult& result, int every) 
 
 std::string field_file(std::size_t step) { return fmt::format("fields_{:04}.vtu", step + 1); }
 
+/// The shape at the start, and what it moved by until `time`: a displacement, and where it rotates an angle in degrees
+/// about a center.
+json obstacle_json(const Obstacle& obstacle, double time, const Numbers<double>& numbers) {
+  json shape;
+  if (const auto* plane = std::get_if<Plane>(&obstacle.shape)) {
+    shape["plane"] = {{"point", numbers_json(plane->point)}, {"normal", numbers_json(plane->normal)}};
+  } else if (const auto* circle = std::get_if<Circle>(&obstacle.shape)) {
+    shape["circle"] = {{"center", {circle->center[0].value, circle->center[1].value}},
+                       {"radius", circle->radius.value},
+                       {"inside", circle->inside}};
+  } else if (const auto* polyline = std::get_if<Polyline>(&obstacle.shape)) {
+    json vertices = json::array();
+    for (const auto& x : polyline->points) vertices.push_back({x[0].value, x[1].value});
+    if (polyline->closed) vertices.push_back(vertices.front());
+    shape["polyline"] = {{"points", vertices}};
+  }
+  json moved = {{"by", {0.0, 0.0}}};
+  for (const auto& [axis, table] : obstacle.move)
+    if (axis < 'z') moved["by"][axis == 'x' ? 0 : 1] = evaluate(table, time, numbers);
+  if (obstacle.rotate) {
+    moved["degrees"] = evaluate(obstacle.rotate->angle, time, numbers);
+    moved["center"] = numbers_json(obstacle.rotate->center);
+  }
+  if (!obstacle.move.empty() || obstacle.rotate) shape.begin().value()["moved"] = moved;
+  return shape;
+}
+
 }  // namespace
 
 Vector<double> traction_vector(const Problem& problem, const State<double>& state, int p) {
@@ -208,7 +237,6 @@ json picture_json(const CaseResult& result) {
       mises.push_back(von_mises(stress.col(column)));
     }
   }
-  static const char* const state_names[] = {"open", "stick", "slip"};
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     const auto& point = model.points[p];
     const int node = point.nodes[0];
@@ -217,28 +245,17 @@ json picture_json(const CaseResult& result) {
                        {"x", problem.slots.points(0, node) + u(0, node)},
                        {"y", problem.slots.points(1, node) + u(1, node)},
                        {"node", node},
-                       {"state", state_names[static_cast<int>(state.contact.state[p])]},
+                       {"state", state_name(point, state.contact.state[p])},
                        {"normal", state.contact.traction[point.multiplier]},
                        {"tangential", point.tangents == 1 ? t[0] : t.norm()}});
   }
-  for (const auto& obstacle : model.scene.obstacles) {
-    if (const auto* plane = std::get_if<Plane>(&obstacle.shape)) {
-      obstacles.push_back(
-          {{"plane", {{"point", numbers_json(plane->point)}, {"normal", numbers_json(plane->normal)}}}});
-    } else if (const auto* circle = std::get_if<Circle>(&obstacle.shape)) {
-      obstacles.push_back({{"circle",
-                            {{"center", {circle->center[0].value, circle->center[1].value}},
-                             {"radius", circle->radius.value},
-                             {"inside", circle->inside}}}});
-    } else if (const auto* polyline = std::get_if<Polyline>(&obstacle.shape)) {
-      json vertices = json::array();
-      for (const auto& x : polyline->points) vertices.push_back({x[0].value, x[1].value});
-      if (polyline->closed) vertices.push_back(vertices.front());
-      obstacles.push_back({{"polyline", {{"points", vertices}}}});
-    }
-  }
-  return {{"points", points}, {"elements", elements}, {"displacement", displacement}, {"von_mises", mises},
-          {"bodies", bodies}, {"body_names", names},  {"contact", contact},           {"obstacles", obstacles}};
+  for (const auto& obstacle : model.scene.obstacles)
+    obstacles.push_back(obstacle_json(obstacle, result.steps.back().increment->time, problem.slots.numbers));
+  json responses = json::object();
+  for (const auto& response : model.scene.responses) responses[response.name] = name_of(response.kind);
+  return {{"points", points},   {"elements", elements},   {"displacement", displacement},
+          {"von_mises", mises}, {"bodies", bodies},       {"body_names", names},
+          {"contact", contact}, {"obstacles", obstacles}, {"responses", responses}};
 }
 
 }  // namespace stickslip

@@ -25,7 +25,8 @@ std::vector<std::string> field_files(const CaseResult& result, int every);
 /// Force per area on the slave at contact point p.
 Vector<double> traction_vector(const Problem& problem, const State<double>& state, int p);
 
-/// The last step as the report's picture: points, elements, displacement, von Mises stress, contact points, obstacles.
+/// The last step as the report's picture: points, elements, displacement, von Mises stress, contact points, obstacles
+/// as at the start with what they moved by since, and the kinds of the responses by name.
 nlohmann::json picture_json(const CaseResult& result);
 
 }  // namespace stickslip

@@ -1,6 +1,9 @@
 #include "studies/film.hpp"
 
 #include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "studies/contact_points.hpp"
 
 namespace stickslip {
 
@@ -15,10 +18,10 @@ nlohmann::json film_json(const CaseResult& result) {
     times.push_back(result.steps[n].increment->time);
     std::vector<std::string> states(model.scene.contacts.size());
     const auto& field = result.steps[n].increment->state.contact;
-    for (std::size_t p = 0; p < model.points.size(); ++p)
-      states[static_cast<std::size_t>(model.points[p].contact)] += field.state[p] == ContactState::open    ? 'o'
-                                                                   : field.state[p] == ContactState::stick ? 'k'
-                                                                                                           : 's';
+    for (std::size_t p = 0; p < model.points.size(); ++p) {
+      const std::string_view name = state_name(model.points[p], field.state[p]);
+      states[static_cast<std::size_t>(model.points[p].contact)] += name == "stick" ? 'k' : name.front();
+    }
     for (std::size_t c = 0; c < states.size(); ++c) contacts[model.scene.contacts[c].name].push_back(states[c]);
   }
   return {{"times", times}, {"contacts", contacts}};

@@ -8,7 +8,8 @@
 namespace stickslip {
 
 /// {"times": [...], "contacts": {NAME: ["ooks", ...]}}: per contact one text a step, per point (in the order of
-/// interface_json()) one letter: o open, k sticks, s slips. Of long runs some 48 steps, evenly spaced, with the last.
+/// interface_json()) one letter: o open, k sticks, s slips, c touches without friction. Of long runs some 48 steps,
+/// evenly spaced, with the last.
 nlohmann::json film_json(const CaseResult& result);
 
 }  // namespace stickslip

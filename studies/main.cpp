@@ -57,6 +57,7 @@ int main(int argc, char** argv) {
   auto& run_app = *app.add_subcommand("run", "simulate a scene");
   add_scene(run_app, run);
   run_app.add_option("-o,--output", run.output, "directory for result.json and fields")->check(names_something);
+  run_app.add_flag("--report", run.report, "write report.html: bodies, histories, tractions, contact states");
   run_app.add_flag("--trace", run.trace, "print every iterate of Newton's method; written to trace.csv too");
   run_app.add_option("--export", run.export_to, "directory for K, G, lambda, ... of the last step (Matrix Market)")
       ->check(names_something);
@@ -82,8 +83,8 @@ int main(int argc, char** argv) {
   add_scene(explain_app, explain);
   auto& gradcheck_app = *app.add_subcommand("gradcheck", "hold every sensitivity against differences");
   add_scene(gradcheck_app, gradcheck);
-  auto& report_app = *app.add_subcommand("report", "rebuild report.html from recorded results");
-  report_app.add_option("DIR", directory, "directory of a study")->required();
+  auto& report_app = *app.add_subcommand("report", "rebuild report.html of a study or a run from recorded results");
+  report_app.add_option("DIR", directory, "directory of a study or a run")->required();
   auto& methods_app = *app.add_subcommand("methods", "list the methods and their options");
   methods_app.add_flag("--json", methods_json, "as JSON");
   auto& schema_app = *app.add_subcommand("schema", "print the JSON Schema of scene or study files, for editors");

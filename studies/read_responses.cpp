@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 
+#include "studies/response_kinds.hpp"
 #include "studies/scene_reading.hpp"
 
 namespace stickslip {
@@ -163,6 +164,10 @@ void read_objective(const std::string& name, const JsonNode& node, SceneReading&
 }
 
 }  // namespace
+
+std::string_view name_of(Response::Kind kind) {
+  return std::find_if(kinds.begin(), kinds.end(), [&](const Kind& each) { return each.kind == kind; })->name;
+}
 
 void read_responses(const JsonNode& node, SceneReading& reading) {
   if (!node.is_map("responses by name")) return;

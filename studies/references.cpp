@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "studies/closed_forms.hpp"
+#include "studies/contact_points.hpp"
 
 namespace stickslip {
 namespace {
@@ -95,21 +96,22 @@ double tangential_sign(const CaseResult& result) {
   return sum < 0 ? -1 : 1;
 }
 
-/// Reference tractions along the first contact, over its initial abscissa; none where nothing presses there.
+/// Reference tractions along the first contact, over its initial abscissa "x" or its arc "s"; none where nothing
+/// presses there, or the form has no curve for these inputs.
 json curves_of(const ClosedForm& form, const CaseResult& result, const Quantities<double>& all) {
-  const double centre = pressure_centre(result), sign = tangential_sign(result), b = all.at("half_width");
-  if (!std::isfinite(centre)) return {};
+  const bool over_arc = form.over == ClosedForm::Over::arc;
+  const auto arc = arc_of(*result.problem, 0);
+  const double begin = over_arc ? 0 : pressure_centre(result), sign = tangential_sign(result);
+  const auto curve = form.tractions(all, arc.empty() ? 0 : arc.back());
+  if (!std::isfinite(begin) || curve.empty()) return {};
   json place = json::array(), normal = json::array(), tangential = json::array();
-  constexpr int samples = 400;
-  for (int i = 0; i <= samples; ++i) {
-    const double x = 1.3 * b * (2.0 * i / samples - 1);
-    const auto at = form.tractions(all, x);
-    place.push_back(centre + x);
+  for (const auto& at : curve) {
+    place.push_back(begin + at.place);
     normal.push_back(-at.pressure);
     tangential.push_back(sign * at.tangential);
   }
   return {{result.problem->model.scene.contacts.front().name,
-           {{"x", place}, {"normal", normal}, {"tangential", tangential}}}};
+           {{over_arc ? "s" : "x", place}, {"normal", normal}, {"tangential", tangential}}}};
 }
 
 ReferenceValues from_values(const json& values) {

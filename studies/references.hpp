@@ -13,7 +13,8 @@ namespace stickslip {
 struct ReferenceValues {
   std::map<std::string, double> responses;
   std::map<std::string, std::map<std::string, double>> sensitivities;  ///< response -> parameter
-  nlohmann::json curves;  ///< per contact: {"x", "normal", "tangential"}; null where the closed form has none
+  /// Per contact {"x" or "s" (length along its points), "normal", "tangential"}; null where the closed form has none.
+  nlohmann::json curves;
 };
 
 /// One entry of a study's "reference" at the last step of `result`:

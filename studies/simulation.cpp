@@ -77,10 +77,15 @@ CaseResult simulate(const Simulation& simulation, const std::function<void()>& o
   return run_case(simulation.problem, simulation.input.method, options, condensation);
 }
 
-void prepare_run_directory(const std::filesystem::path& directory) {
+void prepare_run_directory(const std::filesystem::path& directory, bool report) {
   if (holds(directory, "study.json"))
     throw InputFault(directory.string() + ": holds a study; -o DIR writes to another directory");
-  prepare_directory(directory, {"result.json", "fields.pvd"});
+  std::vector<std::string> files = {"result.json", "fields.pvd"}, folders;
+  if (report) {
+    files.insert(files.end(), {"picture.json", "report.html"});
+    folders.emplace_back("figures");
+  }
+  prepare_directory(directory, files, folders);
 }
 
 void remove_fields(const std::filesystem::path& directory) {

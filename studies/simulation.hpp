@@ -38,9 +38,9 @@ RunOptions run_options(const Input& input);
 /// is there, gathers every iterate.
 CaseResult simulate(const Simulation& simulation, const std::function<void()>& on_step = {}, Trace* trace = nullptr);
 
-/// Makes the directory of a run ready to be written to. Throws InputFault where it holds a study or cannot be written
-/// to.
-void prepare_run_directory(const std::filesystem::path& directory);
+/// Makes the directory of a run, and of its `report`, ready to be written to. Throws InputFault where it holds a study
+/// or cannot be written to.
+void prepare_run_directory(const std::filesystem::path& directory, bool report = false);
 
 /// Removes the fields_NNNN.vtu of an earlier run, which would stand beside those of the next.
 void remove_fields(const std::filesystem::path& directory);

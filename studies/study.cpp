@@ -4,6 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "studies/contact_points.hpp"
+
 namespace stickslip {
 namespace {
 
@@ -35,8 +37,10 @@ double traction_difference(const CaseResult& result, const CaseResult& reference
   return std::sqrt(relative(difference, size));
 }
 
-/// Linear interpolation in a curve of ascending x; 0 outside.
+/// Linear interpolation in a curve of ascending x; 0 outside, but for the rounding of a place at its ends.
 double at(const json& x, const json& y, double where) {
+  const double first = x.front(), last = x.back(), rounding = 1e-9 * (last - first);
+  if (where >= first - rounding && where <= last + rounding) where = std::clamp(where, first, last);
   for (std::size_t i = 1; i < x.size(); ++i)
     if (where >= x[i - 1].get<double>() && where <= x[i].get<double>()) {
       const double s = (where - x[i - 1].get<double>()) / (x[i].get<double>() - x[i - 1].get<double>());
@@ -51,13 +55,17 @@ double curve_difference(const CaseResult& result, const std::string& contact, co
   const auto& model = result.problem->model;
   const auto& t = result.steps.back().increment->state.contact.traction;
   const int index = model.contact_index(contact);
+  const auto arc = arc_of(*result.problem, index);
+  const bool over_arc = curve.contains("s");
   double difference = 0, size = 0;
+  std::size_t n = 0;  // of the contact's points
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
-    if (point.contact != index || (!normal && point.tangents != 1)) continue;
+    if (point.contact != index) continue;
+    const double where = over_arc ? arc[n++] : result.problem->slots.points(0, point.nodes[0]);
+    if (!normal && point.tangents != 1) continue;
     const double area = result.problem->slots.geometry[p].area;
-    const double exact =
-        at(curve["x"], curve[normal ? "normal" : "tangential"], result.problem->slots.points(0, point.nodes[0]));
+    const double exact = at(curve[over_arc ? "s" : "x"], curve[normal ? "normal" : "tangential"], where);
     const double d = t[point.multiplier + (normal ? 0 : 1)] - exact;
     difference += area * d * d;
     size += area * exact * exact;

@@ -57,8 +57,8 @@ json brief(const json& steps) {
   json out = json::array();
   for (const auto& step : steps) {
     json kept = json::object();
-    for (const char* name :
-         {"time", "status", "newton", "augmentations", "cutbacks", "history", "contraction", "sensitivity_scheme"})
+    for (const char* name : {"time", "status", "newton", "augmentations", "cutbacks", "history", "responses",
+                             "contraction", "sensitivity_scheme"})
       if (step.contains(name)) kept[name] = step[name];
     out.push_back(std::move(kept));
   }

@@ -7,7 +7,7 @@ set -euo pipefail
 # libopenblas0-serial is named because SuiteSparse would else bring the reference BLAS, which is 3 to 6 times slower;
 # libmumps-seq-5.5 with libmumps-headers-dev, because libmumps-seq-dev would bring an MPI development tree.
 packages=(g++ cmake ninja-build libeigen3-dev libsuitesparse-dev libopenblas0-serial libmumps-seq-5.5
-  libmumps-headers-dev nlohmann-json3-dev libcli11-dev libfmt-dev)
+  libmumps-headers-dev nlohmann-json3-dev libcli11-dev libfmt-dev fonts-liberation)
 case "${1:-}" in
   "") ;;
   test) packages+=(libgtest-dev libgmock-dev libbenchmark-dev librapidcheck-dev python3-jsonschema

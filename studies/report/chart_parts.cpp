@@ -17,6 +17,8 @@ using nlohmann::json;
 
 namespace {
 
+constexpr double equally_good = 1e-12;  ///< errors of a response below this are rounding, and order no runs
+
 /// Okabe and Ito's palette, which stays apart for all common forms of colour vision; without its yellow, which is lost
 /// on white.
 std::string color_of(const Study& study, const std::string& family) {
@@ -32,8 +34,20 @@ std::string color_of(const Study& study, const std::string& family) {
   return spare[other % spare.size()];
 }
 
+/// Another shade of a colour for each further series of a method: lighter, darker, lighter still, ...
+std::string shade(const std::string& color, std::size_t count) {
+  constexpr std::array<double, 5> toward = {0, 0.45, -0.45, 0.65, -0.65};  // white 1, black -1
+  const double by = toward[count % toward.size()];
+  std::string out = "#";
+  for (std::size_t i = 1; i + 1 < color.size(); i += 2) {
+    const double part = std::stoi(color.substr(i, 2), nullptr, 16);
+    out += fmt::format("{:02X}", std::lround(by >= 0 ? part + by * (255 - part) : part * (1 + by)));
+  }
+  return out;
+}
+
 const char* number_label =
-    "datum.value == 0 ? '0' : abs(datum.value) < 0.01 || abs(datum.value) >= 1e4 ? "
+    "datum.value == 0 ? '0' : abs(datum.value) < 1e-3 || abs(datum.value) >= 1e4 ? "
     "replace(format(datum.value, '~e'), '+', '') : format(datum.value, '~r')";
 
 json series_channel(const char* range) {
@@ -41,17 +55,13 @@ json series_channel(const char* range) {
           {"type", "nominal"},
           {"title", nullptr},
           {"scale", {{"domain", "$series"}, {"range", range}}},
-          {"legend", {{"orient", "bottom"}, {"symbolFillColor", "transparent"}}}};
+          {"legend", nullptr}};
 }
 
-/// Dash of a line or size of a marker, without a share in the legend, whose markers they would dash and resize: legends
-/// of one field are merged, so these go by `line`, which has the same values.
-json quiet_channel(const char* range) {
+json ordinal_channel(const char* range) {
   json out = series_channel(range);
-  out["field"] = "line";
   out["type"] = "ordinal";
   out["scale"]["type"] = "ordinal";
-  out["legend"] = nullptr;
   return out;
 }
 
@@ -67,8 +77,8 @@ void SeriesList::add(const std::string& name, const std::string& family) {
   const auto method = static_cast<std::size_t>(at), own = std::min(study_.families.size(), shapes.size() - 1);
   const std::size_t count = count_[family]++;
   const std::size_t shape = count == 0 ? method % shapes.size() : own + further_++ % (shapes.size() - own);
-  list.push_back({name, color_of(study_, family), shapes[shape], dashes[(method + 3 * count) % dashes.size()],
-                  sizes[static_cast<std::size_t>(at) % sizes.size()]});
+  list.push_back({name, shade(color_of(study_, family), count), shapes[shape],
+                  dashes[(method + 3 * count) % dashes.size()], sizes[static_cast<std::size_t>(at) % sizes.size()]});
 }
 
 std::size_t SeriesList::place(const std::string& name) const {
@@ -96,7 +106,7 @@ void show_zeros(json& rows, const std::string& field) {
     // Where everything is 0 the rounding unit stands for the smallest value.
     const double smallest = found == least.end() ? std::numeric_limits<double>::epsilon() : found->second;
     r["zero"] = v == 0;
-    r["shown"] = v > 0 ? v : std::pow(10, std::floor(std::log10(smallest)) - 1);
+    r["shown"] = v > 0 ? v : std::pow(10, std::floor(std::log10(smallest)) - 1.5);
   }
 }
 
@@ -203,12 +213,28 @@ json tooltip(const std::vector<std::pair<std::string, std::string>>& fields) {
   return out;
 }
 
+namespace {
+
+/// The point nearest to the pointer, wherever in the chart that is: its tooltip shows, and its marker stands out.
+json near_the_pointer() {
+  return {{"name", "near"},
+          {"select", {{"type", "point"}, {"on", "pointerover"}, {"clear", "pointerout"}, {"nearest", true}}}};
+}
+
+json words_beside(const char* which, const char* align, int dx) {
+  return {{"transform", only_if(which)},
+          {"mark", {{"type", "text"}, {"align", align}, {"dx", dx}, {"dy", -8}, {"fontSize", 11}, {"color", "$ink"}}},
+          {"encoding", {{"text", {{"field", "tag"}}}}}};
+}
+
+}  // namespace
+
 json curves(const std::string& description, const json& x, const json& y, const json& tips) {
   json line = {{"transform", only_if("!datum.failed && !datum.guide")},
                {"mark", {{"type", "line"}, {"strokeWidth", 2}}},
                {"encoding",
                 {{"color", series_channel("$colors")},
-                 {"strokeDash", quiet_channel("$dashes")},
+                 {"strokeDash", ordinal_channel("$dashes")},
                  {"detail", {{"field", "line"}}},
                  {"order", {{"field", "order"}, {"type", "quantitative"}}}}}};
   json points = {{"transform", only_if("!datum.failed && !datum.guide && !datum.unmarked")},
@@ -216,17 +242,17 @@ json curves(const std::string& description, const json& x, const json& y, const 
                  {"encoding",
                   {{"color", series_channel("$colors")},
                    {"shape", series_channel("$shapes")},
-                   {"size", quiet_channel("$sizes")},
-                   {"tooltip", tips}}}};
+                   {"size", ordinal_channel("$sizes")},
+                   {"strokeWidth", {{"condition", {{"param", "near"}, {"empty", false}, {"value", 4}}}, {"value", 2}}},
+                   {"tooltip", tips}}},
+                 {"params", json::array({near_the_pointer()})}};
   json failures = {
       {"transform", only_if("datum.failed")},
       {"mark",
        {{"type", "point"}, {"shape", "M-1,-1L1,1M-1,1L1,-1"}, {"size", 110}, {"strokeWidth", 2.5}, {"opacity", 1}}},
       {"encoding", {{"color", series_channel("$colors")}, {"tooltip", tips}}}};
-  json tags = {
-      {"transform", only_if("isValid(datum.tag) && datum.tag != ''")},
-      {"mark", {{"type", "text"}, {"align", "left"}, {"dx", 9}, {"dy", -8}, {"fontSize", 11}, {"color", "$ink"}}},
-      {"encoding", {{"text", {{"field", "tag"}}}}}};
+  json tags = words_beside("isValid(datum.tag) && !datum.tag_left", "left", 9);
+  json tags_left = words_beside("isValid(datum.tag) && datum.tag_left", "right", -9);
   json ground = {
       {"transform", json::array({{{"filter", "datum.zero && !datum.guide"}},
                                  {{"aggregate", json::array({{{"op", "min"}, {"field", "shown"}, {"as", "shown"}}})},
@@ -243,12 +269,12 @@ json curves(const std::string& description, const json& x, const json& y, const 
                                 {"x", 0},
                                 {"color", "$ink"},
                                 {"fontSize", 11},
-                                {"text", "on this line: exactly 0"}}}}})}};
-  for (json* layer : {&line, &points, &failures, &tags}) {
+                                {"text", "exactly 0"}}}}})}};
+  for (json* layer : {&line, &points, &failures, &tags, &tags_left}) {
     (*layer)["encoding"]["x"] = x;
     (*layer)["encoding"]["y"] = y;
   }
-  json layers = json::array({ground, line, points, failures, tags});
+  json layers = json::array({ground, line, points, failures, tags, tags_left});
   return {{"description", description},
           {"width", "container"},
           {"height", 330},
@@ -257,56 +283,23 @@ json curves(const std::string& description, const json& x, const json& y, const 
           {"layer", layers}};
 }
 
-void tag_ends(json& rows, const std::string& text_field) {
-  constexpr double word_width = 0.16, word_height = 0.05;  // of a word, in widths and heights of a chart
-  using Place = std::array<double, 3>;  // height, and the places across in the charts against work and seconds
-  const auto place = [](const json& r) {
-    const auto logarithm = [&](const char* field) { return std::log10(r[field].get<double>()); };
-    return Place{logarithm("shown"), logarithm("work"), logarithm("seconds")};
-  };
-  Place least, most;
-  least.fill(std::numeric_limits<double>::infinity());
-  most.fill(-std::numeric_limits<double>::infinity());
-  std::map<std::string, std::pair<json*, json*>> ends;
-  for (auto& r : rows) {
-    if (r.value("failed", false) || r.value(text_field, "").empty()) continue;
-    auto& [first, last] = ends[r.value("line", "") + '\n' + r.value("quantity", "") + '\n' + r.value("scene", "")];
-    if (!first || r["order"] < (*first)["order"]) first = &r;
-    if (!last || r["order"] > (*last)["order"]) last = &r;
-    const Place at = place(r);
-    for (std::size_t i = 0; i < at.size(); ++i)
-      if (std::isfinite(at[i])) {
-        least[i] = std::min(least[i], at[i]);
-        most[i] = std::max(most[i], at[i]);
-      }
-  }
-  std::map<std::string, std::vector<Place>> taken;  // by what is shown at once
-  for (auto& [key, pair] : ends) {
-    const auto apart = [&](const Place& a, const Place& b) {
-      const auto far = [&](std::size_t i, double room) { return std::abs(a[i] - b[i]) > room * (most[i] - least[i]); };
-      const auto drawn = [&](std::size_t i) { return std::isfinite(a[i]) && std::isfinite(b[i]); };
-      return far(0, word_height) || ((far(1, word_width) || !drawn(1)) && (far(2, word_width) || !drawn(2)));
-    };
-    if (pair.first == pair.second || !apart(place(*pair.first), place(*pair.second))) continue;
-    for (json* r : {pair.first, pair.second}) {
-      auto& others = taken[r->value("quantity", "") + '\n' + r->value("scene", "")];
-      const Place at = place(*r);
-      if (!std::all_of(others.begin(), others.end(), [&](const Place& other) { return apart(at, other); })) continue;
-      (*r)["tag"] = (*r)[text_field];
-      others.push_back(at);
-    }
-  }
-}
-
 const Cell* best_cell(const Study& study, const std::string& family) {
   const Cell* best = nullptr;
-  const auto rank = [](const Cell& c) {
-    constexpr double none = std::numeric_limits<double>::infinity();
-    return std::make_tuple(worst(c.enforcement, "response:").value_or(none), worst(c.kkt, "").value_or(none));
+  const auto error = [](const Cell& c) {
+    return worst(c.enforcement, "response:").value_or(std::numeric_limits<double>::infinity());
   };
+  const auto rank = [](const Cell& c) {
+    return std::make_tuple(at(c.record, "default") != true, c.work, worst(c.kkt, "").value_or(0));
+  };
+  for (const auto& cell : study.cells) {
+    if (cell.family != family || !cell.converged || cell.variant != study.main_variant) continue;
+    if (!best || error(cell) < error(*best)) best = &cell;
+  }
+  if (!best) return nullptr;
+  const double as_good = std::max(error(*best), equally_good);
   for (const auto& cell : study.cells)
-    if (cell.family == family && cell.converged && cell.variant == study.main_variant)
-      if (!best || rank(cell) <= rank(*best)) best = &cell;
+    if (cell.family == family && cell.converged && cell.variant == study.main_variant && error(cell) <= as_good)
+      if (error(*best) > as_good || rank(cell) < rank(*best)) best = &cell;
   return best;
 }
 

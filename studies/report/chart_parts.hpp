@@ -11,9 +11,9 @@
 
 namespace stickslip::report {
 
-/// The series of a figure, each once. Colour and size go by method, dash by the place among the method's series,
-/// starting with another one for each method. The first series of each method has a marker of its own; further ones
-/// share the others.
+/// The series of a figure, each once. Colour and size go by method, the colour's shade and the dash by the place among
+/// the method's series, starting with another dash for each method. The first series of each method has a marker of its
+/// own; further ones share the others.
 class SeriesList {
  public:
   explicit SeriesList(const Study& study) : study_(study) {}
@@ -34,7 +34,8 @@ class SeriesList {
 nlohmann::json row_of(const Cell& cell);
 
 /// Adds `shown` to each row: `field` where it is positive. Where it is exactly 0, which no logarithmic axis can hold,
-/// a decade below the smallest other value of the same choice, with `zero` set, so that the point is kept and named.
+/// more than a decade below the smallest other value of the same choice, with `zero` set, so that the point is kept,
+/// and stands off the values that the axis names.
 void show_zeros(nlohmann::json& rows, const std::string& field);
 
 /// Texts of `field` in the rows (of one panel), each once.
@@ -77,8 +78,9 @@ nlohmann::json tooltip(const std::vector<std::pair<std::string, std::string>>& f
 nlohmann::json curves(const std::string& description, const nlohmann::json& x, const nlohmann::json& y,
                       const nlohmann::json& tips);
 
-/// Marks the ends of each line with the knob's value there, so that a reader sees which way it runs. Not those of a
-/// line that stays in one place, where the knob does nothing; of words that would cover each other the first stays.
-void tag_ends(nlohmann::json& rows, const std::string& text_field);
+/// Writes beside the lines of a work-precision chart: the option's value at both ends, so that a reader sees which way
+/// a line runs, and the name of its series, so that grey print needs no legend. A line that stays in one place, where
+/// the option does nothing, has its name alone. Of words that would cover others the shorter is tried, then none.
+void tag_lines(nlohmann::json& rows, const std::string& text_field);
 
 }  // namespace stickslip::report

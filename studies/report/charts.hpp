@@ -21,7 +21,8 @@ struct Series {
 };
 
 /// One coordinate system. `spec` is Vega-Lite over the data set "rows"; the strings "$series", "$colors", "$shapes",
-/// "$dashes", "$sizes" stand for the series that are in the rows shown, "$ink" for the colour of the text.
+/// "$dashes", "$sizes" stand for the series that are in the rows shown, "$ink" for the colour of the text. A title
+/// "{field}" of an axis stands for what the rows shown have there.
 struct Panel {
   std::string title;
   nlohmann::json spec;
@@ -45,6 +46,7 @@ struct Figure {
   std::vector<Series> series;
   std::vector<Panel> panels;
   std::vector<Choice> choices;
+  std::string folded;  ///< why a reader may pass it by: it is then folded behind its title and this; "" shows it
 };
 
 /// A drawing that needs no script.
@@ -53,6 +55,7 @@ struct Plate {
   Drawing drawing;
   Table table;                                    ///< a summary in words; may have no rows
   nlohmann::json rows = nlohmann::json::array();  ///< what is drawn, and all that its CSV holds
+  std::string folded = {};                        ///< as Figure's
 };
 
 enum class Against { same_mesh, discretization, coulomb };  ///< enforcement, discretisation, the KKT measures
@@ -75,13 +78,17 @@ std::optional<Figure> iterations_against_knob(const Study& study, const std::vec
 /// Residual per iteration of the step that took most iterations (of a failed run, the last), main variant.
 std::optional<Figure> convergence_histories(const Study& study);
 
+/// Every response over time and every force along every displacement, main variant, a curve a run; what the study gives
+/// as exact stands at the end of time. Nothing where no run recorded responses of two steps.
+std::optional<Figure> response_histories(const Study& study);
+
 /// Pressure and tangential traction along the interface at the last step with the closed form, and the difference from
 /// the most accurate cell, main variant.
 std::optional<Figure> tractions(const Study& study);
 
 /// Share of the problems (scene variants, each with several accuracies) that each method solves within a factor of the
-/// least work, and within a given work: default, tuned and strict settings side by side. Nothing where fewer than two
-/// problems, or two settings, can be told apart.
+/// least work, and within a given work: default, tuned and strict settings side by side. Nothing of a single scene,
+/// where the settings side by side say it, or of a single setting.
 std::optional<Figure> profiles(const Study& study, Of of);
 
 /// For each setting and scene variant the range of the knob in which it converges, as a bar; failures as crosses.
@@ -95,8 +102,8 @@ std::optional<Plate> film_of_states(const Study& study);
 /// Groups of knobs that share an axis: stiffness and scale, both multiples of the local nodal stiffness, are one.
 std::vector<std::vector<std::string>> knob_groups(const Study& study);
 
-/// The converged cell of `family` in the main variant with the smallest enforcement error (then kkt, then the last);
-/// nullptr where none converged.
+/// The converged cell of `family` in the main variant with the smallest enforcement error; of those whose error is no
+/// more than rounding the default setting, else the one with least work. nullptr where none converged.
 const Cell* best_cell(const Study& study, const std::string& family);
 
 }  // namespace stickslip::report

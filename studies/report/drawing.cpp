@@ -2,38 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <map>
-
+#include "studies/report/drawing_parts.hpp"
 #include "studies/report/html.hpp"
 
 namespace stickslip::report {
 namespace {
 
-/// Named colours in the light scheme, those of page.css.
-const std::map<std::string, std::string, std::less<>>& light() {
-  static const std::map<std::string, std::string, std::less<>> colors = {
-      {"ink", "#1b1d21"}, {"soft", "#5b616b"}, {"line", "#d5d8dd"}, {"paper", "#ffffff"}};
-  return colors;
-}
-
-std::string in_light(const std::string& color) {
-  if (color.empty()) return "none";
-  const auto named = light().find(color);
-  return named == light().end() ? color : named->second;
-}
-
 std::string in_page(const std::string& color) {
   if (color.empty()) return "none";
-  return light().count(color) ? "var(--" + color + ")" : color;
-}
-
-/// A number without what carries nothing: "12.5", "3".
-std::string short_number(double value) {
-  std::string text = fmt::format("{:.2f}", value);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text == "-0" ? "0" : text;
+  return is_named(color) ? "var(--" + color + ")" : color;
 }
 
 std::string svg_path(const Path& path) {
@@ -43,99 +20,6 @@ std::string svg_path(const Path& path) {
     for (std::size_t i = 0; i < piece.at.size(); ++i) out += (i ? " " : "") + short_number(piece.at[i]);
   }
   return out;
-}
-
-// --- PDF -----------------------------------------------------------------------------------------------------------
-
-/// Widths of Helvetica's characters 32 to 126, thousandths of the size. [Adobe font metrics of Helvetica]
-constexpr std::array<int, 95> helvetica = {
-    278, 278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333,  278, 278, 556, 556, 556,
-    556, 556, 556, 556, 556, 556, 556, 278, 278, 584, 584, 584, 556, 1015, 667, 667, 722, 722, 667,
-    611, 778, 722, 278, 500, 667, 556, 833, 722, 778, 667, 778, 722, 667,  611, 722, 667, 944, 667,
-    667, 611, 278, 278, 278, 469, 556, 333, 556, 556, 500, 556, 556, 278,  556, 556, 222, 222, 500,
-    222, 833, 556, 556, 556, 556, 333, 500, 278, 556, 500, 722, 500, 500,  500, 334, 260, 334, 584};
-
-/// Characters of a text in UTF-8, those beyond ASCII as '?' but for a few that the font has.
-std::string in_font(std::string_view text) {
-  std::string out;
-  for (std::size_t i = 0; i < text.size();) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const std::size_t length = byte < 0x80 ? 1 : byte < 0xE0 ? 2 : byte < 0xF0 ? 3 : 4;
-    if (length == 1) {
-      out += byte < 32 || byte == 127 ? ' ' : static_cast<char>(byte);
-    } else if (length == 2 && (byte == 0xC2 || byte == 0xC3) && i + 1 < text.size()) {
-      out += static_cast<char>((byte & 0x03) << 6 | (static_cast<unsigned char>(text[i + 1]) & 0x3F));  // Latin-1
-    } else {
-      out += '?';
-    }
-    i += length;
-  }
-  return out;
-}
-
-std::string pdf_string(std::string_view text) {
-  std::string out = "(";
-  for (const char c : in_font(text)) {
-    if (c == '(' || c == ')' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + ")";
-}
-
-/// "r g b" of "#RRGGBB".
-std::string pdf_color(const std::string& color) {
-  const std::string hex = in_light(color);
-  std::string out;
-  for (std::size_t i = 1; i + 1 < hex.size(); i += 2)
-    out += fmt::format("{:.3f} ", std::stoi(hex.substr(i, 2), nullptr, 16) / 255.0);
-  return out;
-}
-
-std::string pdf_pieces(const Path& path) {
-  std::string out;
-  for (const auto& piece : path.pieces) {
-    for (const double v : piece.at) out += short_number(v) + " ";
-    out += piece.kind == 'M' ? "m " : piece.kind == 'L' ? "l " : piece.kind == 'C' ? "c " : "h ";
-  }
-  return out;
-}
-
-std::string pdf_path(const Path& path, const Style& style) {
-  std::string out;
-  if (!style.fill.empty()) out += pdf_color(style.fill) + "rg ";
-  if (!style.stroke.empty()) {
-    out += pdf_color(style.stroke) + "RG " + short_number(style.width) + " w [";
-    for (const double d : style.dash) out += short_number(d) + " ";
-    out += "] 0 d ";
-  }
-  out += pdf_pieces(path);
-  return out + (style.fill.empty() ? "S" : style.stroke.empty() ? "f" : "B") + "\n";
-}
-
-std::string pdf_text(double x, double y, const std::string& text, const TextStyle& style) {
-  const double shift = text_width(text, style.size) * (style.anchor == Anchor::start    ? 0
-                                                       : style.anchor == Anchor::middle ? 0.5
-                                                                                        : 1);
-  // The page is flipped, so that y runs down; the letters are flipped back.
-  const std::string matrix = style.upwards ? fmt::format("0 -1 -1 0 {} {}", short_number(x), short_number(y + shift))
-                                           : fmt::format("1 0 0 -1 {} {}", short_number(x - shift), short_number(y));
-  return fmt::format("BT /{} {} Tf {}rg {} Tm {} Tj ET\n", style.bold ? "B" : "F", short_number(style.size),
-                     pdf_color(style.color), matrix, pdf_string(text));
-}
-
-/// Objects 1 ... n of a PDF file, in order, with the table of their places.
-std::string pdf_file(const std::vector<std::string>& objects) {
-  std::string out = "%PDF-1.4\n%\xE2\xE3\xCF\xD3\n";
-  std::vector<std::size_t> places;
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    places.push_back(out.size());
-    out += fmt::format("{} 0 obj\n{}\nendobj\n", i + 1, objects[i]);
-  }
-  const std::size_t table = out.size();
-  out += fmt::format("xref\n0 {}\n0000000000 65535 f \n", objects.size() + 1);
-  for (const std::size_t place : places) out += fmt::format("{:010} 00000 n \n", place);
-  return out + fmt::format("trailer\n<< /Size {} /Root 1 0 R /Info {} 0 R >>\nstartxref\n{}\n%%EOF\n",
-                           objects.size() + 1, objects.size(), table);
 }
 
 }  // namespace
@@ -206,15 +90,6 @@ class Drawing::SvgWriter {
   int clips_ = 0;
 };
 
-/// The items as the content of a PDF page.
-class Drawing::PdfWriter {
- public:
-  std::string operator()(const Shape& shape) const { return pdf_path(shape.path, shape.style); }
-  std::string operator()(const Text& item) const { return pdf_text(item.x, item.y, item.text, item.style); }
-  std::string operator()(const Clip& clip) const { return "q " + pdf_pieces(clip.path) + "W n\n"; }
-  std::string operator()(const Unclip&) const { return "Q\n"; }
-};
-
 std::string Drawing::inline_svg() const {
   std::string out = fmt::format(
       "<svg class=\"plot text\" viewBox=\"0 0 {0} {1}\" style=\"max-width:{0}px\" role=\"img\"><title>{2}</title>"
@@ -236,22 +111,6 @@ std::string Drawing::svg_file() const {
   return out + "</svg>\n";
 }
 
-std::string Drawing::pdf() const {
-  constexpr double points = 0.75;  // a pixel of CSS is 1/96 inch, a point 1/72
-  std::string content = fmt::format("{} 0 0 {} 0 {} cm 1 j\n", points, -points, short_number(points * height_));
-  for (const auto& item : items_) content += std::visit(PdfWriter(), item);
-  const auto font = [](const char* name) {
-    return fmt::format("<< /Type /Font /Subtype /Type1 /BaseFont /{} /Encoding /WinAnsiEncoding >>", name);
-  };
-  return pdf_file({"<< /Type /Catalog /Pages 2 0 R >>", "<< /Type /Pages /Kids [3 0 R] /Count 1 >>",
-                   fmt::format("<< /Type /Page /Parent 2 0 R /MediaBox [0 0 {} {}] /Contents 4 0 R "
-                               "/Resources << /Font << /F 5 0 R /B 6 0 R >> >> >>",
-                               short_number(points * width_), short_number(points * height_)),
-                   fmt::format("<< /Length {} >>\nstream\n{}endstream", content.size(), content), font("Helvetica"),
-                   font("Helvetica-Bold"),
-                   fmt::format("<< /Title {} /Subject {} >>", pdf_string(title_), pdf_string(description_))});
-}
-
 Path marker(std::string_view shape, double x, double y) {
   Path path;
   const auto polygon = [&](std::initializer_list<std::pair<double, double>> corners) {
@@ -267,16 +126,6 @@ Path marker(std::string_view shape, double x, double y) {
   if (shape == "cross") return path.move(x - 4, y).line(x + 4, y).move(x, y - 4).line(x, y + 4);
   if (shape == "failed") return path.move(x - 4, y - 4).line(x + 4, y + 4).move(x - 4, y + 4).line(x + 4, y - 4);
   return path.circle(x, y, 4);
-}
-
-double text_width(std::string_view text, double size) {
-  double width = 0;
-  for (const char c : in_font(text)) {
-    const int place = static_cast<unsigned char>(c) - 32;
-    width +=
-        place >= 0 && place < static_cast<int>(helvetica.size()) ? helvetica[static_cast<std::size_t>(place)] : 556;
-  }
-  return width * size / 1000;
 }
 
 }  // namespace stickslip::report

@@ -1,10 +1,12 @@
-/// A line drawing, written once and given out as SVG (inside a page or as a file of its own) and as PDF.
+/// A line drawing, written once and given out as SVG (inside a page or as a file of its own), as PDF and
+/// as PGF.
 ///
 /// Coordinates are pixels of SVG, y down; a pixel is 0.75 points of PDF. Colours are "#RRGGBB" or one of the names ink,
 /// soft, line, paper: in a page these follow its light or dark scheme, in files they are those of the light one. ""
 /// draws nothing.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -78,7 +80,12 @@ class Drawing {
 
   std::string inline_svg() const;
   std::string svg_file() const;
+  /// Its fonts are embedded, where the program was built with them.
   std::string pdf() const;
+  /// For LaTeX, which sets the texts in the font of the document.
+  std::string pgf() const;
+  /// Moves, lines and curves of all shapes.
+  std::size_t pieces() const;
 
  private:
   struct Shape {
@@ -98,6 +105,7 @@ class Drawing {
   using Item = std::variant<Shape, Text, Clip, Unclip>;
   class SvgWriter;
   class PdfWriter;
+  class PgfWriter;
 
   double width_, height_;
   std::string title_, description_;

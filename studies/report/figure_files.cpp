@@ -25,17 +25,21 @@ std::string csv_cell(const json& value) {
 }
 
 /// How a row is drawn, as opposed to what it says.
-const std::set<std::string> only_looks = {"guide_tag", "line", "of_cell", "order", "tag", "unmarked"};
+const std::set<std::string> only_looks = {"guide_tag", "line",     "of_cell",  "order", "shown",
+                                          "tag",       "tag_left", "unmarked", "zero"};
 
 void write_drawing(const fs::path& stem, const Drawing& drawing) {
   write_file_atomically(stem.string() + ".svg", drawing.svg_file());
   write_file_atomically(stem.string() + ".pdf", drawing.pdf());
+  constexpr std::size_t most_pieces = 20'000;  // TeX's memory holds some ten times that
+  if (drawing.pieces() <= most_pieces) write_file_atomically(stem.string() + ".pgf", drawing.pgf());
 }
 
 void clear(const fs::path& directory) {
   std::vector<fs::path> old;
   for (const auto& entry : fs::directory_iterator(directory))
-    if (const auto kind = entry.path().extension(); kind == ".svg" || kind == ".pdf" || kind == ".csv")
+    if (const auto kind = entry.path().extension();
+        kind == ".svg" || kind == ".pdf" || kind == ".pgf" || kind == ".csv")
       old.push_back(entry.path());
   for (const auto& file : old) fs::remove(file);
 }

@@ -15,9 +15,9 @@ std::vector<std::string> columns_of(const nlohmann::json& rows);
 /// Rows of a chart as comma-separated values (RFC 4180), the header first; numbers read back to the same bits.
 std::string to_csv(const nlohmann::json& rows);
 
-/// Writes DIR/figures anew: NAME.svg and NAME.pdf of each panel with what the report shows at first, and the figure's
-/// rows, of all that can be chosen, as ID.csv. Other files there stay; those of the three kinds go, since they are of a
-/// former report.
+/// Writes DIR/figures anew: NAME.svg, NAME.pdf and NAME.pgf (but of a very fine mesh) of each panel with what the
+/// report shows at first, and the figure's rows, of all that can be chosen, as ID.csv. Other files there stay; those of
+/// the four kinds go, since they are of a former report.
 void write_figures(const std::filesystem::path& directory, const std::vector<Figure>& figures,
                    const std::vector<Plate>& plates);
 

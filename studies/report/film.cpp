@@ -16,7 +16,7 @@ namespace {
 /// States of one contact in one run: a text a step, a letter a point.
 struct Strip {
   const Cell* cell;
-  std::string contact;
+  std::string contact, title;
   std::vector<std::string> steps;
   std::vector<double> times;
 };
@@ -27,7 +27,7 @@ void add_strips(const Cell& cell, std::vector<Strip>& strips) {
   std::vector<double> times;
   for (const auto& time : array_at(film, "times")) times.push_back(time.is_number() ? time.get<double>() : 0);
   for (const auto& [contact, states] : object_at(film, "contacts").items()) {
-    Strip strip{&cell, contact, {}, times};
+    Strip strip{&cell, contact, in_words(cell) + ", " + contact, {}, times};
     for (const auto& state : states)
       if (state.is_string()) strip.steps.push_back(state);
     const bool even = std::all_of(strip.steps.begin(), strip.steps.end(),
@@ -39,17 +39,35 @@ void add_strips(const Cell& cell, std::vector<Strip>& strips) {
 
 struct Look {
   char letter;
-  const char *words, *fill;
+  const char *words, *name, *fill;
 };
 /// Dark, middle and light, so that grey print tells them apart.
-constexpr std::array<Look, 3> looks = {
-    {{'k', "sticks", "#0072B2"}, {'s', "slips", "#E69F00"}, {'o', "open", "#ffffff"}}};
+constexpr std::array<Look, 4> looks = {{{'k', "sticks", "stick", "#0072B2"},
+                                        {'s', "slips", "slip", "#E69F00"},
+                                        {'c', "touches", "touch", "#7a7f87"},
+                                        {'o', "open", "open", "#ffffff"}}};
+
+/// Those that occur; stick and slip go together.
+std::vector<Look> looks_of(const std::vector<Strip>& strips) {
+  const auto present = [&](char letter) {
+    return std::any_of(strips.begin(), strips.end(), [&](const Strip& strip) {
+      return std::any_of(strip.steps.begin(), strip.steps.end(),
+                         [&](const auto& step) { return step.find(letter) != std::string::npos; });
+    });
+  };
+  std::vector<Look> out;
+  for (const auto& look : looks) {
+    const bool rubs = look.letter == 'k' || look.letter == 's';
+    if (rubs ? present('k') || present('s') : present(look.letter)) out.push_back(look);
+  }
+  return out;
+}
 
 constexpr double strip_width = 292, strip_height = 170, gap = 40, head = 20, foot = 30, indent = 34;
 
 /// The strip as a grid, steps downwards, points to the right; one path a state.
 void draw_strip(const Strip& strip, double left, double top, Drawing& drawing) {
-  drawing.text(left, top - 6, in_words(*strip.cell) + ", " + strip.contact, {Anchor::start, 11});
+  drawing.text(left, top - 6, strip.title, {Anchor::start, 11});
   const double width = strip_width / static_cast<double>(strip.steps.front().size());
   const double height = strip_height / static_cast<double>(strip.steps.size());
   for (const auto& look : looks) {
@@ -81,9 +99,9 @@ void draw_strip(const Strip& strip, double left, double top, Drawing& drawing) {
                {Anchor::end, 10, "soft"});
 }
 
-void draw_legend(double y, Drawing& drawing) {
+void draw_legend(const std::vector<Strip>& strips, double y, Drawing& drawing) {
   double x = indent;
-  for (const auto& look : looks) {
+  for (const auto& look : looks_of(strips)) {
     drawing.path(Path().rectangle(x, y, 16, 12), {"ink", look.fill, 1, {}});
     drawing.text(x + 22, y + 10, look.words);
     x += 90;
@@ -93,11 +111,13 @@ void draw_legend(double y, Drawing& drawing) {
 
 Table tabulate(const std::vector<Strip>& strips) {
   Table table;
-  table.header = {"method", "contact", "time", "stick", "slip", "open"};
+  const auto present = looks_of(strips);
+  table.header = {"method", "contact", "time"};
+  for (const auto& look : present) table.header.emplace_back(look.name);
   for (const auto& strip : strips)
     for (std::size_t n = 0; n < strip.steps.size(); ++n) {
       std::vector<std::string> row = {strip.cell->label, strip.contact, number(strip.times[n], 6)};
-      for (const auto& look : looks)
+      for (const auto& look : present)
         row.push_back(std::to_string(std::count(strip.steps[n].begin(), strip.steps[n].end(), look.letter)));
       table.rows.push_back(row);
     }
@@ -115,6 +135,20 @@ json rows_of(const std::vector<Strip>& strips) {
   return rows;
 }
 
+/// Where all runs say the same of every contact, leaves those of the first run alone, and returns true.
+bool keep_one_of_equals(std::vector<Strip>& strips) {
+  const auto* first = strips.front().cell;
+  const auto twin = [&](const Strip& strip) {
+    return std::any_of(strips.begin(), strips.end(), [&](const Strip& other) {
+      return other.cell == first && other.contact == strip.contact && other.steps == strip.steps;
+    });
+  };
+  if (strips.back().cell == first || !std::all_of(strips.begin(), strips.end(), twin)) return false;
+  std::erase_if(strips, [&](const Strip& strip) { return strip.cell != first; });
+  for (auto& strip : strips) strip.title = "all runs, " + strip.contact;
+  return true;
+}
+
 }  // namespace
 
 std::optional<Plate> film_of_states(const Study& study) {
@@ -124,14 +158,19 @@ std::optional<Plate> film_of_states(const Study& study) {
     if (cell.variant == study.main_variant && std::find(shown.begin(), shown.end(), cell.label) != shown.end())
       add_strips(cell, strips);
   if (strips.empty()) return std::nullopt;
+  const bool agree = keep_one_of_equals(strips);
   constexpr std::size_t most = 12;
   const std::size_t left_out = strips.size() - std::min(strips.size(), most);
   strips.resize(strips.size() - left_out);
-  const std::string title = "Film of the contact: what sticks, slips and is open, step by step";
-  std::string text =
-      "Time runs downwards, the contact points stand side by side in the order of their numbers; the most accurate run "
-      "of each method and the one furthest off. Where two pictures differ, the methods disagree on the state of a "
-      "point.";
+  const std::string title = "Film of the contact: the state of each point, step by step";
+  std::string text = "Time runs downwards, the contact points stand side by side in the order of their numbers";
+  if (agree)
+    text += "; the same in the most accurate run of each method and in the one furthest off";
+  else if (study.cells.size() > 1)
+    text +=
+        "; the most accurate run of each method and the one furthest off. Where two pictures differ, the methods "
+        "disagree on the state of a point";
+  text += ".";
   if (left_out > 0) text += fmt::format(" {} more are left out.", left_out);
   const std::size_t columns = std::min<std::size_t>(strips.size(), 2);
   const double cell_width = indent + strip_width + gap / 2, cell_height = head + strip_height + foot;
@@ -146,7 +185,7 @@ std::optional<Plate> film_of_states(const Study& study) {
   for (std::size_t i = 0; i < strips.size(); ++i)
     draw_strip(strips[i], indent + cell_width * static_cast<double>(i % columns),
                head + cell_height * static_cast<double>(i / columns), plate.drawing);
-  draw_legend(bottom, plate.drawing);
+  draw_legend(strips, bottom, plate.drawing);
   return plate;
 }
 

@@ -202,7 +202,17 @@ std::string failure_sentence(const Study& study) {
       failed, study.cells.size(), kinds);
 }
 
-/// A sentence for each kind of warning and place, in the words of the run where it is worst.
+}  // namespace
+
+std::string work_in_words(const Cell& cell, Of of) {
+  const bool derivative = of == Of::sensitivities;
+  const double factorizations =
+      cell.count("factorizations") - (derivative ? 0 : cell.count("sensitivity_factorizations"));
+  const double backsolves = cell.count("backsolves") + (derivative ? cell.count("sensitivity_backsolves") : 0);
+  return counted(std::lround(factorizations), "factorisation") + " and " +
+         counted(std::lround(backsolves), "back-solve");
+}
+
 std::vector<std::string> warning_sentences(const Study& study) {
   struct Kind {
     long runs = 0;
@@ -220,20 +230,10 @@ std::vector<std::string> warning_sentences(const Study& study) {
     }
   std::vector<std::string> out;
   for (const auto& [key, kind] : kinds)
-    out.push_back(
-        fmt::format("Warning ({}, {} of {} runs): {}.", key.first, kind.runs, study.cells.size(), kind.words));
+    out.push_back(study.cells.size() == 1 ? fmt::format("Warning ({}): {}.", key.first, kind.words)
+                                          : fmt::format("Warning ({}, {} of {} runs): {}.", key.first, kind.runs,
+                                                        study.cells.size(), kind.words));
   return out;
-}
-
-}  // namespace
-
-std::string work_in_words(const Cell& cell, Of of) {
-  const bool derivative = of == Of::sensitivities;
-  const double factorizations =
-      cell.count("factorizations") - (derivative ? 0 : cell.count("sensitivity_factorizations"));
-  const double backsolves = cell.count("backsolves") + (derivative ? cell.count("sensitivity_backsolves") : 0);
-  return counted(std::lround(factorizations), "factorisation") + " and " +
-         counted(std::lround(backsolves), "back-solve");
 }
 
 std::vector<std::string> headline(const Study& study) {

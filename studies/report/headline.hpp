@@ -14,6 +14,9 @@ namespace stickslip::report {
 /// stiffness; what the mesh itself costs in accuracy; what failed. At least one sentence.
 std::vector<std::string> headline(const Study& study);
 
+/// A sentence for each kind of warning and place, in the words of the run where it is worst.
+std::vector<std::string> warning_sentences(const Study& study);
+
 /// "4 factorisations and 19 back-solves" of a run, those of the derivatives included where they are what is asked for.
 std::string work_in_words(const Cell& cell, Of of);
 

@@ -10,6 +10,7 @@ std::optional<Figure> convergence_histories(const Study& study) {
   Figure figure;
   SeriesList series(study);
   figure.id = "histories";
+  figure.folded = "of each run";
   figure.title = "Convergence: residual per iteration in the hardest step";
   figure.text =
       "For each run, the load step that took most iterations (of a run that failed, the last). The residual "

@@ -76,15 +76,42 @@ std::string slug(std::string_view text) {
 
 std::string number(double value, int digits) {
   if (!std::isfinite(value)) return {};
-  // printf writes 1e+06 and 1e-06; people write 1e6 and 1e-6.
-  std::string text = fmt::format("{:.{}g}", value, digits);
-  if (const std::size_t e = text.find('e'); e != std::string::npos) {
-    std::size_t first = text.find_first_not_of("+-0", e + 1);
-    if (first == std::string::npos) first = text.size() - 1;
-    text = text.substr(0, e + 1) + (text[e + 1] == '-' ? "-" : "") + text.substr(first);
+  if (value == 0) return "0";
+  std::string text = fmt::format("{:.{}e}", value, digits - 1);
+  const std::size_t e = text.find('e');
+  const int power = std::atoi(text.c_str() + e + 1);
+  if (power >= -3 && power < 4) return fmt::format("{:.{}g}", value, std::max(digits, power + 1));
+  text.erase(e);
+  if (text.find('.') != std::string::npos) {
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
   }
-  return text;
+  return text + "e" + std::to_string(power);
 }
+
+std::string exact_number(double value) {
+  constexpr int most = 17;  // significant digits that tell any two numbers apart
+  int digits = 1;
+  while (digits < most && std::strtod(number(value, digits).c_str(), nullptr) != value) ++digits;
+  return number(value, digits);
+}
+
+std::string with_exact_numbers(const std::string& text) {
+  std::string out;
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t sign = text.find('=', from);
+    if (sign == std::string::npos) return out + text.substr(from);
+    const std::size_t end = std::min(text.find_first_of(" =,", sign + 1), text.size());
+    const std::string value = text.substr(sign + 1, end - sign - 1);
+    out += text.substr(from, sign + 1 - from);
+    const double number = std::strtod(value.c_str(), nullptr);
+    out += reads_as_number(value) && std::isfinite(number) ? exact_number(number) : value;
+    from = end;
+  }
+  return out;
+}
+
+std::string whole(double count) { return fmt::format("{:.0f}", count); }
 
 std::string plain(const nlohmann::json& value) {
   if (value.is_string()) return value.get<std::string>();
@@ -130,6 +157,11 @@ std::string take_out_constant_columns(Table& table) {
     for (auto& row : table.rows) row.erase(row.begin() + at);
   }
   return out.empty() ? out : "In every row: " + out + ".";
+}
+
+std::string compact_html(Table table, std::string_view caption) {
+  const std::string constant = take_out_constant_columns(table);
+  return (constant.empty() ? "" : "<p class=\"note\">" + escape(constant) + "</p>\n") + to_html(table, caption);
 }
 
 std::string folded(std::string_view summary, std::string_view content) {

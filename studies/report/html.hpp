@@ -22,10 +22,21 @@ std::string embed_script(std::string_view code);
 /// `text` as an HTML id or a file's name: small letters and digits; what else stands between them becomes one '-'.
 std::string slug(std::string_view text);
 
-/// Shortest usual form with `digits` significant digits; not finite: "".
+/// `digits` significant digits, with a power of ten below 0.001 and from 10000 on: "0.5", "1e5", "1.5e-4"; of larger
+/// numbers all digits before the point. Not finite: "".
 std::string number(double value, int digits = 3);
 
-/// JSON as a short text: a string bare, a number by number(), null "", anything else dumped.
+/// The same with as many digits as it takes to read back the same.
+std::string exact_number(double value);
+
+/// A text with the numbers that follow a '=' in the style of exact_number().
+std::string with_exact_numbers(const std::string& text);
+
+/// A count, whole.
+std::string whole(double count);
+
+/// JSON as a short text: a string bare, a number by number() or, of a whole one, all digits, null "", anything else
+/// dumped.
 std::string plain(const nlohmann::json& value);
 
 /// A table. Cells are plain text and are escaped here; a cell that reads as a number is set flush right; a column
@@ -40,6 +51,9 @@ std::string to_html(const Table& table, std::string_view caption);
 /// Takes out of a table of several rows the columns, but for the first, that say the same in each. What they say, as a
 /// sentence ("In every row: scene a, cutbacks 0."); "" where there are none.
 std::string take_out_constant_columns(Table& table);
+
+/// The table without its constant columns, which a line above it names.
+std::string compact_html(Table table, std::string_view caption);
 
 /// <details> with a summary (escaped) around `content` (HTML).
 std::string folded(std::string_view summary, std::string_view content);

@@ -39,8 +39,8 @@ void rows_along(const Study& study, const std::vector<std::string>& knobs, Serie
     if (knob) {
       r["series"] = series_of(cell, name);
       r["line"] = r["series"];
-      r["knob"] = r["order"] = *knob->value;
-      r["knob_name"] = name;
+      r["option_value"] = r["order"] = *knob->value;
+      r["option"] = name;
       series.add(r["series"], cell.family);
       add(r, cell);
     } else if (with_knob.count(cell.family) == 0 && &cell == best_cell(study, cell.family)) {
@@ -48,7 +48,7 @@ void rows_along(const Study& study, const std::vector<std::string>& knobs, Serie
       r["unmarked"] = true;
       series.add(r["series"], cell.family);
       for (const double x : {low, high}) {
-        r["knob"] = r["order"] = x;
+        r["option_value"] = r["order"] = x;
         add(r, cell);
       }
     }
@@ -59,9 +59,9 @@ void rows_along(const Study& study, const std::vector<std::string>& knobs, Serie
 void add_guides(json& rows) {
   std::map<std::tuple<std::string, std::string, std::string, std::string>, std::vector<std::pair<double, double>>> runs;
   for (const auto& r : rows)
-    if (r["family"] == "penalty" && r.value("knob_name", "") == "stiffness" && !r["failed"].get<bool>() &&
+    if (r["family"] == "penalty" && r.value("option", "") == "stiffness" && !r["failed"].get<bool>() &&
         r["error"].get<double>() > 0)
-      runs[{r["panel"], r["quantity"], r["scene"], r["series"]}].emplace_back(r["knob"], r["error"]);
+      runs[{r["panel"], r["quantity"], r["scene"], r["series"]}].emplace_back(r["option_value"], r["error"]);
   for (auto& [key, points] : runs) {
     std::sort(points.begin(), points.end());
     const auto least = std::min_element(points.begin(), points.end(),
@@ -74,7 +74,7 @@ void add_guides(json& rows) {
       r["guide"] = true;
       r["failed"] = false;
       r["line"] = "guide " + std::get<3>(key);
-      r["knob"] = r["order"] = end.first;
+      r["option_value"] = r["order"] = end.first;
       // Set off by a factor of 3, so that a curve that follows it is not hidden.
       r["error"] = middle.second * middle.first / end.first / 3;
       r["guide_tag"] = end.first == least->first ? "slope -1" : "";
@@ -140,16 +140,17 @@ std::optional<Figure> error_against_knob(const Study& study, const std::vector<s
                            "what its tolerance leaves, which may, and rounding. "
                          : "";
   figure.text += "Crosses are runs that did not converge.";
-  const json tips = tooltip({{"label", "method"}, {"knob", "option"}, {"error", "error"}, {"status", "status"}});
+  const json tips =
+      tooltip({{"label", "method"}, {"option_value", "value of the option"}, {"error", "error"}, {"status", "status"}});
   for (const std::string panel : {"responses", "sensitivities"}) {
     if (distinct(figure.rows, "quantity", panel).empty()) continue;
     const bool derivative = panel == "sensitivities";
-    const json x = channel("knob", knob_title(knobs), true);
+    const json x = channel("option_value", knob_title(knobs), true);
     const json y =
         channel("shown", derivative ? "relative error of the sensitivity" : "relative error of the response", true);
     json spec = with_guides(curves(figure.title + ", " + panel, x, y, tips), x, y);
     spec["transform"] = only_if("datum.panel == '" + panel + "'");
-    figure.panels.push_back({panel, spec, "knob", "shown", true, true, panel, false});
+    figure.panels.push_back({panel, spec, "option_value", "shown", true, true, panel, false});
     offer(figure, derivative ? "Sensitivity" : "Response", "quantity", "", panel);
   }
   offer(figure, "Scene", "scene", study.main_variant);
@@ -167,24 +168,26 @@ std::optional<Figure> iterations_against_knob(const Study& study, const std::vec
   SeriesList series(study);
   figure.id = slug("iterations-" + knobs.front());
   figure.title = "Iterations against " + knob_title(knobs);
+  figure.folded = "totals of the whole run";
   figure.text = "Totals of the whole run. Crosses are runs that did not converge, at what they had spent by then.";
   rows_along(study, knobs, series, [&](json r, const Cell& cell) {
     for (const auto& [panel, count] : counted_along_knobs)
       if (cell.count(count) > 0) {
         r["panel"] = panel;
-        r["shown"] = cell.count(count);
+        r["count"] = cell.count(count);
         figure.rows.push_back(r);
       }
   });
   if (figure.rows.empty()) return std::nullopt;
   figure.series = series.list;
-  const json tips = tooltip({{"label", "method"}, {"knob", "option"}, {"shown", "iterations"}, {"status", "status"}});
+  const json tips =
+      tooltip({{"label", "method"}, {"option_value", "value of the option"}, {"count", "count"}, {"status", "status"}});
   for (const auto& [panel, unused] : counted_along_knobs) {
     if (distinct(figure.rows, "label", panel).empty()) continue;
-    json spec = curves(figure.title + ", " + panel, channel("knob", knob_title(knobs), true),
-                       channel("shown", panel, true), tips);
+    json spec = curves(figure.title + ", " + panel, channel("option_value", knob_title(knobs), true),
+                       channel("count", panel, true), tips);
     spec["transform"] = only_if("datum.panel == '" + panel + "'");
-    figure.panels.push_back({panel, spec, "knob", "shown", true, true, panel, false});
+    figure.panels.push_back({panel, spec, "option_value", "count", true, true, panel, false});
   }
   offer(figure, "Scene", "scene", study.main_variant);
   return figure;

@@ -17,6 +17,14 @@
     return rows.filter((row) => tests.every((test) => test(row)));
   }
 
+  /** A number as everywhere on the page: a power of ten below 0.001 and from 10000 on. */
+  function numeral(x) {
+    if (x === 0 || (Math.abs(x) >= 1e-3 && Math.abs(x) < 1e4)) return String(+x.toPrecision(6));
+    return Number.isInteger(x) && Math.abs(x) < 1e7 && x % 1000 ? String(x) :
+        x.toExponential(5).replace(/\.?0*e\+?/, 'e');
+  }
+  const shown = (value) => typeof value === 'number' ? numeral(value) : String(value ?? '');
+
   /** The specification with the words $series, $colors, ... replaced by the series that occur in the rows. */
   function filled(spec, series, rows, width) {
     const names = new Set(rows.map((row) => row.series));
@@ -35,7 +43,10 @@
     for (const layer of copy.layer)
       for (const [name, room] of [['x', width - 110], ['y', copy.height]]) {
         const channel = layer.encoding?.[name];
-        if (channel?.scale) fitAxis(channel, rows.map((row) => row[channel.field]));
+        if (channel?.scale) fitAxis(channel, rows.filter((row) => !(row.zero && name === 'y')).map((row) => row[channel.field]));
+        const ground = name === 'y' && rows.find((row) => row.zero)?.[channel?.field];
+        if (channel?.scale && ground) addGround(channel, ground);
+        if (channel?.title?.startsWith('{')) channel.title = rows[0]?.[channel.title.slice(1, -1)] ?? '';
         if (channel?.title) channel.title = wrapped(channel.title, room / 7);
       }
     return copy;
@@ -56,6 +67,7 @@
   function fitAxis(channel, values) {
     const log = channel.scale.type === 'log';
     const usable = values.filter((value) => Number.isFinite(value) && (!log || value > 0));
+    if (!usable.length) return;
     let low = usable.reduce((a, b) => Math.min(a, b), Infinity);
     let high = usable.reduce((a, b) => Math.max(a, b), -Infinity);
     if (log && high < 10 * low && 'domainMin' in channel.scale) {
@@ -68,6 +80,13 @@
     if (low === high) channel.scale.domain = [low - (Math.abs(low) || 1), low + (Math.abs(low) || 1)];
   }
 
+  /** The place of exact zeros, off the values that the axis names. */
+  function addGround(channel, ground) {
+    channel.axis.values = [ground, ...(channel.axis.values ?? []).filter((tick) => tick > 5 * ground)];
+    channel.axis.labelExpr = `datum.value <= ${ground * 1.01} ? '0' : ${channel.axis.labelExpr}`;
+    if (channel.scale.domain) channel.scale.domain = [ground, Math.max(...channel.scale.domain)];
+  }
+
   /** Powers of ten around two exponents, thinned out to nine or so; over few decades also 2 and 5 times them. */
   function logTicks(low, high) {
     const step = Math.max(1, Math.ceil((high - low + 1) / 9)), ticks = [];
@@ -76,20 +95,49 @@
     return ticks;
   }
 
-  /** Columns of a legend so that the longest of `names` has room. */
-  function legendColumns(names, width) {
-    const longest = names.reduce((most, name) => Math.max(most, name.length), 0);
-    return Math.max(1, Math.floor(width / (7 * longest + 50)));
+  const markers = {
+    'circle': 'M18,8a4,4 0 1,0 8,0a4,4 0 1,0 -8,0', 'square': 'M18,4h8v8h-8Z', 'diamond': 'M22,3l5,5l-5,5l-5,-5Z',
+    'triangle-up': 'M22,3l5,9h-10Z', 'triangle-down': 'M22,13l5,-9h-10Z', 'triangle-left': 'M17,8l9,5v-10Z',
+    'triangle-right': 'M27,8l-9,5v-10Z', 'cross': 'M18,8h8M22,4v8',
+  };
+  const switchedOff = new WeakMap();  // by figure, names of series
+
+  /** A button for each series that is among the rows: it takes the series out of all panels and puts it back. */
+  function drawLegend(figure, series, rows) {
+    const names = new Set(rows.map((row) => row.series)), off = switchedOff.get(figure) ?? new Set();
+    const present = series.filter((s) => names.has(s.name));
+    const place = figure.querySelector('.legend');
+    place.replaceChildren();
+    for (const s of present.length > 1 ? present : []) {
+      const button = place.appendChild(document.createElement('button'));
+      const color = s.color === '$ink' ? css('--ink') : s.color;
+      button.type = 'button';
+      button.setAttribute('aria-pressed', !off.has(s.name));
+      button.innerHTML = `<svg width="44" height="16" aria-hidden="true" fill="none" stroke="${color}" stroke-width="2">` +
+          `<path d="M0,8H44" stroke-dasharray="${s.dash.at(-1) ? s.dash : 'none'}"/><path d="${markers[s.shape]}"/></svg>`;
+      button.append(s.name);
+      button.addEventListener('click', () => {
+        off.has(s.name) ? off.delete(s.name) : off.add(s.name);
+        switchedOff.set(figure, off);
+        draw(figure).catch(console.error);
+      });
+    }
   }
 
-  function config(names, width) {
+  /** What the pointer is near to, numbers in the page's style. */
+  function tooltipTable(value, sanitize) {
+    const lines = Object.entries(value).map(([key, entry]) =>
+        `<tr><td class="key">${sanitize(key)}</td><td class="value">${sanitize(shown(entry))}</td></tr>`);
+    return `<table>${lines.join('')}</table>`;
+  }
+
+  function config() {
     const ink = css('--ink'), soft = css('--soft'), line = css('--line');
     return {
       background: 'transparent',
       font: 'system-ui, sans-serif',
       axis: {labelColor: ink, titleColor: ink, gridColor: line, domainColor: soft, tickColor: soft, labelFontSize: 12,
              titleFontSize: 12, titleFontWeight: 'normal', titleLimit: Math.min(420, innerWidth - 110)},
-      legend: {columns: legendColumns(names, width), labelLimit: width - 110, labelColor: ink, titleColor: ink, labelFontSize: 12, symbolStrokeWidth: 2},
       view: {stroke: line},
     };
   }
@@ -101,22 +149,28 @@
       Object.fromEntries(data.fields.map((field, i) => [field, values[i]]).filter(([, value]) => value !== null))));
 
   async function draw(figure) {
-    const data = dataOf(figure), rows = chosenRows(figure, data);
+    const data = dataOf(figure), all = chosenRows(figure, data), off = switchedOff.get(figure);
+    const rows = off ? all.filter((row) => !off.has(row.series)) : all;
     const panels = figure.querySelectorAll('.panel');
+    const inPanels = [];
     for (const [i, spec] of data.panels.entries()) {
       const panel = panels[i];
       if (panel.closest('details:not([open])')) continue;  // has no width yet; drawn when it is opened
       const only = spec.usermeta.panel;
-      const own = only ? rows.filter((row) => row.panel === only) : rows;
-      const names = [...new Set(own.map((row) => row.series ?? ''))];
+      const own = (only ? rows.filter((row) => row.panel === only) : rows)
+          .map((row) => row.tag?.length > 12 && panel.clientWidth < 400 ? {...row, tag: undefined} : row);
+      panel.hidden = !all.some((row) => !only || row.panel === only);
+      if (panel.hidden) continue;
+      inPanels.push(...(only ? all.filter((row) => row.panel === only) : all));
       await vegaEmbed(panel.querySelector('.vega'), filled(spec, data.series, own, panel.clientWidth), {
-        mode: 'vega-lite', renderer: 'svg', config: config(names, panel.clientWidth), logLevel: vega.Error,
+        mode: 'vega-lite', renderer: 'svg', config: config(), logLevel: vega.Error,
         actions: {export: true, source: false, compiled: false, editor: false},
-        tooltip: {theme: dark.matches ? 'dark' : 'light'},
+        tooltip: {theme: dark.matches ? 'dark' : 'light', formatTooltip: tooltipTable},
         downloadFileName: figure.id + '-' + i,
       });
       panel.querySelector('.static').hidden = true;
     }
+    drawLegend(figure, data.series, inPanels);
   }
 
   /** The rows that are chosen as a table, below the chart. */
@@ -131,7 +185,7 @@
       const row = parent.appendChild(document.createElement('tr'));
       for (const text of texts) {
         const cell = row.appendChild(document.createElement(kind));
-        cell.textContent = text ?? '';
+        cell.textContent = shown(text);
         if (typeof text === 'number') cell.className = 'n';
       }
     };
@@ -161,6 +215,15 @@
       folded.addEventListener('toggle', () => folded.open && draw(figure).catch(console.error));
   }
   dark.addEventListener('change', () => drawn.forEach((figure) => draw(figure).catch(console.error)));
+
+  // Paper has no folds: charts and tables are whole there; licences, and the data of charts, stay away.
+  let unfolded = [];
+  addEventListener('beforeprint', () => {
+    unfolded = [...document.querySelectorAll(
+        'details.fold:not([open]), details:not([open]):not(figure details):has(> .wide)')];
+    for (const details of unfolded) details.open = true;
+  });
+  addEventListener('afterprint', () => unfolded.forEach((details) => (details.open = false)));
 
   // Each table can be taken along.
   for (const table of document.querySelectorAll('table')) {

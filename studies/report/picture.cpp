@@ -11,6 +11,7 @@
 #include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
 #include "studies/report/picture_contact.hpp"
+#include "studies/report/picture_obstacles.hpp"
 
 namespace stickslip::report {
 
@@ -29,11 +30,6 @@ struct Mesh {
   std::vector<double> stress;              ///< one an element, or empty
   std::vector<int> body;                   ///< one an element, or empty
 };
-
-bool is_point(const json& value) {
-  return value.is_array() && value.size() == 2 && value[0].is_number() && value[1].is_number();
-}
-Point to_point(const json& value) { return {value[0].get<double>(), value[1].get<double>()}; }
 
 /// The plane mesh of picture.json; no points where it is not one.
 Mesh read_mesh(const json& picture) {
@@ -134,61 +130,7 @@ void draw_elements(const Mesh& mesh, const std::vector<Point>& at, const Frame& 
   drawing.path(std::move(lines), {"ink", "", 2, {}});
 }
 
-/// The stretch of a plane that covers the window, whichever of its points is named.
-Path plane_shape(Point p, Point n, const Frame& frame) {
-  const double length = std::hypot(n.x, n.y);
-  if (length == 0) return {};
-  n = {n.x / length, n.y / length};
-  const double reach = 2 * (frame.window().width() + frame.window().height());
-  const Point middle{(frame.window().min.x + frame.window().max.x) / 2,
-                     (frame.window().min.y + frame.window().max.y) / 2};
-  const double off = (middle.x - p.x) * n.x + (middle.y - p.y) * n.y;
-  p = {middle.x - off * n.x, middle.y - off * n.y};
-  Path path;
-  for (const auto& [along, across] : {std::pair{-1, 0}, {1, 0}, {1, 1}, {-1, 1}}) {
-    const double x = p.x + reach * (along * n.y - across * n.x), y = p.y - reach * (along * n.x + across * n.y);
-    path.empty() ? path.move(frame.x(x), frame.y(y)) : path.line(frame.x(x), frame.y(y));
-  }
-  return path.close();
-}
-
 constexpr double canvas = 1000, tallest = 520;  // of the picture; the legend comes below
-
-/// A solid: hatched, in grey print too.
-void hatch(const Path& shape, Drawing& drawing) {
-  Path lines;
-  for (double x = -tallest; x < canvas; x += 9) lines.move(x, tallest).line(x + tallest, 0);
-  drawing.clip(shape);
-  drawing.path(std::move(lines), {"soft", "", 1, {}});
-  drawing.unclip();
-}
-
-void draw_obstacles(const json& obstacles, const Frame& frame, Drawing& drawing) {
-  const Style edge{"ink", "", 1.2, {}};
-  for (const auto& obstacle : obstacles) {
-    if (!obstacle.is_object() || obstacle.empty()) continue;
-    const std::string kind = obstacle.begin().key();
-    const json& data = obstacle.begin().value();
-    Path shape;
-    bool solid = true;
-    if (kind == "plane" && is_point(at(data, "point")) && is_point(at(data, "normal"))) {
-      shape = plane_shape(to_point(data["point"]), to_point(data["normal"]), frame);
-    } else if ((kind == "circle" || kind == "cylinder") && is_point(at(data, "center")) &&
-               at(data, "radius").is_number()) {
-      const Point c = to_point(data["center"]);
-      shape.circle(frame.x(c.x), frame.y(c.y), frame.length(data["radius"]));
-      solid = at(data, "inside") != true;
-    } else if (kind == "polyline") {
-      solid = false;
-      for (const auto& p : data.is_array() ? data : array_at(data, "points"))
-        if (is_point(p))
-          shape.empty() ? shape.move(frame.x(p[0]), frame.y(p[1])) : shape.line(frame.x(p[0]), frame.y(p[1]));
-    }
-    if (shape.empty()) continue;
-    if (solid) hatch(shape, drawing);
-    drawing.path(std::move(shape), edge);
-  }
-}
 
 /// A square around the contact points that touch (around all where none does), and some room; empty without points.
 Box close_up(const std::vector<ContactPoint>& contact, double scale) {
@@ -282,15 +224,20 @@ json rows_of(const Scene& scene, const std::vector<Point>& nodes) {
   return rows;
 }
 
-/// Bodies and obstacles, in a frame.
-void draw_bodies(const Scene& scene, const json& obstacles, const std::vector<Point>& nodes, const Frame& frame,
-                 bool with_mesh, Drawing& drawing) {
-  draw_obstacles(obstacles, frame, drawing);
+/// Bodies and obstacles, in a frame; displacements of obstacles enlarged by `scale`.
+void draw_bodies(const Scene& scene, const json& obstacles, double scale, const std::vector<Point>& nodes,
+                 const Frame& frame, bool with_mesh, Drawing& drawing) {
+  draw_obstacles(obstacles, scale, frame, drawing);
   draw_elements(scene.mesh, nodes, frame, scene.peak, with_mesh, drawing);
   draw_outlines(scene.mesh, nodes, frame, drawing);
 }
 
 }  // namespace
+
+bool has_close_up(const json& picture) {
+  const auto scene = picture.is_object() ? lay_out(picture) : std::nullopt;
+  return scene && scene->zooms;
+}
 
 std::optional<Plate> draw_overview(const json& picture) {
   if (!picture.is_object()) return std::nullopt;
@@ -304,12 +251,12 @@ std::optional<Plate> draw_overview(const json& picture) {
   const Frame frame(scene->whole, wide, height, 0);
   const auto nodes = deformed(scene->mesh, scene->scale);
   drawing.clip(Path().rectangle(0, 0, wide, height));
-  draw_bodies(*scene, array_at(picture, "obstacles"), nodes, frame, scene->mesh.elements.size() <= lines_up_to,
-              drawing);
+  draw_bodies(*scene, array_at(picture, "obstacles"), scene->scale, nodes, frame,
+              scene->mesh.elements.size() <= lines_up_to, drawing);
   draw_contact(scene->contact, scene->scale, frame, drawing);
   drawing.unclip();
   draw_stresses(scene->peak, height + 12, drawing);
-  if (!scene->contact.empty()) draw_states(height + 12, drawing);
+  draw_states(scene->contact, height + 12, drawing);
   return Plate{"overview", title, text, drawing, {}, rows_of(*scene, nodes)};
 }
 
@@ -328,7 +275,7 @@ std::optional<Plate> draw_picture(const json& picture) {
   const Frame main(scene->whole, wide, height, 0);
   const auto exaggerated = deformed(scene->mesh, scene->scale);
   drawing.clip(Path().rectangle(0, 0, wide, height));
-  draw_bodies(*scene, obstacles, exaggerated, main, scene->mesh.elements.size() <= lines_up_to, drawing);
+  draw_bodies(*scene, obstacles, scene->scale, exaggerated, main, scene->mesh.elements.size() <= lines_up_to, drawing);
   if (scene->zooms) {
     const Box box = close_up(scene->contact, scene->scale);
     drawing.path(
@@ -342,13 +289,13 @@ std::optional<Plate> draw_picture(const json& picture) {
     const Frame close(scene->zoom, inset, inset, wide + gap);
     const auto actual = deformed(scene->mesh, 1);
     drawing.clip(Path().rectangle(wide + gap, 0, inset, inset));
-    draw_bodies(*scene, obstacles, actual, close, true, drawing);
+    draw_bodies(*scene, obstacles, 1, actual, close, true, drawing);
     draw_contact(scene->contact, 1, close, drawing);
     drawing.unclip();
     drawing.path(Path().rectangle(wide + gap, 0.5, inset - 1, inset - 1), {"ink"});
   }
   draw_stresses(scene->peak, height + 12, drawing);
-  if (!scene->contact.empty()) draw_states(height + 12, drawing);
+  draw_states(scene->contact, height + 12, drawing);
   return Plate{"picture", title, text, drawing, {}, rows_of(*scene, exaggerated)};
 }
 

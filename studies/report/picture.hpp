@@ -13,6 +13,9 @@ namespace stickslip::report {
 /// to draw (one node, three dimensions, no picture).
 std::optional<Plate> draw_picture(const nlohmann::json& picture);
 
+/// Whether draw_picture() shows the contact apart, and so more than draw_overview().
+bool has_close_up(const nlohmann::json& picture);
+
 /// The same without the close-up, for half the width of a page.
 std::optional<Plate> draw_overview(const nlohmann::json& picture);
 

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
+#include <tuple>
 
 #include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
@@ -19,11 +21,13 @@ void draw_state(const std::string& state, double x, double y, const std::string&
   else if (state == "slip")
     drawing.path(Path().move(x, y - 5).line(x + 4.5, y + 3).line(x - 4.5, y + 3).close(),
                  {"#000000", "#E69F00", 0.8, {}}, tooltip);
+  else if (state == "closed")
+    drawing.path(Path().circle(x, y, 3), {"#000000", "#5b616b", 0.8, {}}, tooltip);
   else
     drawing.path(Path().circle(x, y, 3), {"#333333", "#ffffff", 1, {}}, tooltip);
 }
 
-int hold(const std::string& state) { return state == "stick" ? 2 : state == "slip" ? 1 : 0; }
+int hold(const std::string& state) { return state == "stick" ? 2 : state == "open" ? 0 : 1; }
 
 std::string in_words(const ContactPoint& c) {
   return fmt::format("{}: {}, normal traction {}, tangential {}", c.name, c.state, plain(c.normal),
@@ -75,9 +79,17 @@ void draw_contact(const std::vector<ContactPoint>& contact, double scale, const 
   }
 }
 
-void draw_states(double y, Drawing& drawing) {
+void draw_states(const std::vector<ContactPoint>& contact, double y, Drawing& drawing) {
+  const auto present = [&](const std::string& state) {
+    return std::any_of(contact.begin(), contact.end(), [&](const ContactPoint& c) { return c.state == state; });
+  };
+  const bool rubs = present("stick") || present("slip");
   double x = 400;
-  for (const auto& [state, words] : {std::pair{"stick", "sticks"}, {"slip", "slips"}, {"open", "open"}}) {
+  for (const auto& [state, words, shown] : {std::tuple{"stick", "sticks", rubs},
+                                            {"slip", "slips", rubs},
+                                            {"closed", "touches", present("closed")},
+                                            {"open", "open", present("open")}}) {
+    if (!shown) continue;
     draw_state(state, x, y + 8, "", drawing);
     drawing.text(x + 10, y + 12, words);
     x += 80;

@@ -25,10 +25,11 @@ struct ContactPoint {
 std::vector<ContactPoint> read_contact(const nlohmann::json& contact, const std::vector<Point>& displacement);
 
 /// Contact points inside the window, at the mesh's scale, with the states and tractions as a tooltip. A node that is in
-/// several contacts has one symbol, of the state that holds most (stick, then slip, then open), and tells of all.
+/// several contacts has one symbol, of the state that holds most (stick, then slip or touch, then open), and tells of
+/// all.
 void draw_contact(const std::vector<ContactPoint>& contact, double scale, const Frame& frame, Drawing& drawing);
 
-/// The legend, with its upper edge at y.
-void draw_states(double y, Drawing& drawing);
+/// The legend of the states that the points are in, with its upper edge at y; stick and slip go together.
+void draw_states(const std::vector<ContactPoint>& contact, double y, Drawing& drawing);
 
 }  // namespace stickslip::report

@@ -3,12 +3,18 @@
 
 #include <algorithm>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 namespace stickslip::report {
 
 struct Point {
   double x = 0, y = 0;
 };
+
+inline bool is_point(const nlohmann::json& value) {
+  return value.is_array() && value.size() == 2 && value[0].is_number() && value[1].is_number();
+}
+inline Point to_point(const nlohmann::json& value) { return {value[0].get<double>(), value[1].get<double>()}; }
 
 struct Box {
   Point min{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};

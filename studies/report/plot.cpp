@@ -32,6 +32,7 @@ bool is_shown(const Figure& figure, const Panel& panel, const json& row) {
 struct Frame {
   std::vector<const json*> rows, guides;
   Axis x, y;
+  std::optional<double> ground;  ///< where exact zeros stand, off what the axis names
 };
 
 /// The channel of an axis, with its title; null where no layer has one.
@@ -42,9 +43,11 @@ json channel_of(const json& spec, const std::string& name) {
   return nullptr;
 }
 
-std::string axis_text(const json& spec, const std::string& name) {
+/// A title "{field}" is what the row has there.
+std::string axis_text(const json& spec, const std::string& name, const json& row) {
   const json channel = channel_of(spec, name);
-  return channel.is_null() ? std::string() : channel["title"].get<std::string>();
+  const std::string title = channel.is_null() ? std::string() : channel["title"].get<std::string>();
+  return title.starts_with('{') ? row.value(title.substr(1, title.size() - 2), "") : title;
 }
 
 /// Whether nothing can lie below the least value of the axis.
@@ -53,15 +56,12 @@ bool is_bounded(const json& spec, const std::string& name) {
   return !channel.is_null() && channel["scale"].contains("domainMin");
 }
 
-/// A tick as the page writes it.
-std::string tick_text(double value) {
-  const double size = std::abs(value);
-  if (value == 0 || (size >= 0.01 && size < 1e4)) return number(value);
-  const double exponent = std::floor(std::log10(size) + 1e-9);  // of 1e-5 too, whose logarithm may be rounded down
-  return fmt::format("{}e{}", number(value / std::pow(10, exponent)), exponent);
-}
-
 double number_of(const json& row, const std::string& field) { return row[field].get<double>(); }
+
+std::optional<double> ground_of(const std::vector<const json*>& rows, const Panel& panel) {
+  const auto zero = std::find_if(rows.begin(), rows.end(), [](const json* r) { return r->value("zero", false); });
+  return zero == rows.end() ? std::nullopt : std::optional(number_of(**zero, panel.y));
+}
 
 std::optional<Frame> frame_of(const Figure& figure, const Panel& panel) {
   std::vector<const json*> rows, guides;
@@ -79,32 +79,32 @@ std::optional<Frame> frame_of(const Figure& figure, const Panel& panel) {
   const auto [x_low, x_high] = bounds(panel.x);
   const auto [y_low, y_high] = bounds(panel.y);
   return Frame{rows, guides, Axis(x_low, x_high, panel.x_log, left, right, is_bounded(panel.spec, "x")),
-               Axis(y_low, y_high, panel.y_log, bottom, top)};
+               Axis(y_low, y_high, panel.y_log, bottom, top), ground_of(rows, panel)};
 }
 
 void draw_axes(const Frame& frame, const json& spec, Drawing& drawing) {
   const Style grid{"line"};
   for (const double tick : frame.x.ticks()) {
     drawing.line(frame.x(tick), top, frame.x(tick), bottom, grid);
-    drawing.text(frame.x(tick), bottom + 16, tick_text(tick), {Anchor::middle});
+    drawing.text(frame.x(tick), bottom + 16, number(tick), {Anchor::middle});
   }
   for (const double tick : frame.y.ticks()) {
+    if (frame.ground && tick < 5 * *frame.ground) continue;
     drawing.line(left, frame.y(tick), right, frame.y(tick), grid);
-    drawing.text(left - 6, frame.y(tick) + 4, tick_text(tick), {Anchor::end});
+    drawing.text(left - 6, frame.y(tick) + 4, number(tick), {Anchor::end});
   }
   drawing.path(Path().move(left, top).line(left, bottom).line(right, bottom), {"ink"});
-  drawing.text((left + right) / 2, bottom + 36, axis_text(spec, "x"), {Anchor::middle});
-  drawing.text(14, (top + bottom) / 2, axis_text(spec, "y"), {Anchor::middle, 12, "ink", true});
+  drawing.text((left + right) / 2, bottom + 36, axis_text(spec, "x", *frame.rows.front()), {Anchor::middle});
+  drawing.text(14, (top + bottom) / 2, axis_text(spec, "y", *frame.rows.front()), {Anchor::middle, 12, "ink", true});
 }
 
 /// The line on which exact zeros stand, where there are any.
-void draw_ground(const Frame& frame, const Panel& panel, Drawing& drawing) {
-  const auto zero =
-      std::find_if(frame.rows.begin(), frame.rows.end(), [](const json* r) { return r->value("zero", false); });
-  if (zero == frame.rows.end()) return;
-  const double y = frame.y(number_of(**zero, panel.y));
+void draw_ground(const Frame& frame, Drawing& drawing) {
+  if (!frame.ground) return;
+  const double y = frame.y(*frame.ground);
   drawing.line(left, y, right, y, {"ink", "", 1, {1, 3}});
-  drawing.text(left + 4, y - 4, "on this line: exactly 0", {Anchor::start, 11});
+  drawing.text(left - 6, y + 4, "0", {Anchor::end});
+  drawing.text(left + 4, y - 4, "exactly 0", {Anchor::start, 11});
 }
 
 /// Lines that theory gives.
@@ -120,14 +120,14 @@ void draw_guides(const Frame& frame, const Panel& panel, Drawing& drawing) {
   for (const auto& [name, path] : lines) drawing.path(path, {"ink", "", 1, {3, 3}});
 }
 
-/// The option's values at the ends of curves.
+/// The names of curves, and the option's values at their ends.
 void draw_tags(const Frame& frame, const Panel& panel, Drawing& drawing) {
   constexpr double size = 11, aside = 9, above = 8;
   for (const json* row : frame.rows) {
     const std::string tag = row->value("tag", "");
     if (tag.empty()) continue;
     const double x = frame.x(number_of(*row, panel.x)), y = frame.y(number_of(*row, panel.y));
-    const bool fits = x + aside + text_width(tag, size) < width;
+    const bool fits = !row->value("tag_left", false) && x + aside + text_width(tag, size) < width;
     drawing.text(fits ? x + aside : x - aside, y - above, tag, {fits ? Anchor::start : Anchor::end, size});
   }
 }
@@ -213,7 +213,7 @@ std::optional<Drawing> draw_plot(const Figure& figure, const Panel& panel) {
   if (!frame) return std::nullopt;
   Drawing drawing(width, bottom, figure.title + (panel.title.empty() ? "" : ", " + panel.title), figure.text);
   draw_axes(*frame, panel.spec, drawing);
-  draw_ground(*frame, panel, drawing);
+  draw_ground(*frame, drawing);
   draw_guides(*frame, panel, drawing);
   double legend = bottom + 58;
   for (const auto& series : figure.series) {

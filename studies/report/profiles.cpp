@@ -39,7 +39,7 @@ void add_stairs(Figure& figure, const json& base, std::vector<double> places, st
   const auto add = [&](double x, double y, bool corner) {
     json r = base;
     r["x"] = x;
-    r["shown"] = y;
+    r["share"] = y;
     r["order"] = order++;
     r["unmarked"] = !corner;
     figure.rows.push_back(r);
@@ -79,14 +79,14 @@ void describe(Figure& figure, const Study& study, Of of, std::size_t problems) {
   figure.title =
       derivative ? "Profiles: sensitivities solved for a given work" : "Profiles: problems solved for a given work";
   figure.text = fmt::format(
-      "{} problems: {} with each accuracy asked for, from 1e-2 down to 1e-10, that some run reaches "
+      "{} problems: each of the {} scenes with each accuracy asked for, from 1e-2 down to 1e-10, that some run reaches "
       "there. The first chart shows the share of them that a method solves within a factor of the least work any of "
       "the methods needs (Dolan and More's performance profile): left is fast, high is dependable. The second shows "
       "the "
       "share solved with a given work (data profile). A line that stays below 1 has lost the rest: runs that failed or "
       "missed the accuracy. Default: no option given. Tuned: the cheapest of the settings tried for each problem, as "
       "one knows it only afterwards. Strict: the most accurate setting of each scene.",
-      problems, study.variants.size() == 1 ? "the scene" : fmt::format("each of the {} scenes", study.variants.size()));
+      problems, study.variants.size());
 }
 
 }  // namespace
@@ -94,7 +94,7 @@ void describe(Figure& figure, const Study& study, Of of, std::size_t problems) {
 std::optional<Figure> profiles(const Study& study, Of of) {
   const auto problems = problems_of(study, of);
   const auto all = contestants(study, problems, of);
-  if (problems.size() < 2 || all.size() < 2) return std::nullopt;
+  if (study.variants.size() < 2 || all.size() < 2) return std::nullopt;
   Figure figure;
   describe(figure, study, of, problems.size());
   const auto solved = solve_all(all, problems, of);
@@ -111,7 +111,7 @@ std::optional<Figure> profiles(const Study& study, Of of) {
   for (std::size_t c = 0; c < all.size(); ++c) {
     const std::string name = name_of(all[c]);
     series.add(name, all[c].family);
-    json base = {{"series", name}, {"line", name}, {"family", all[c].family}, {"failed", false}, {"zero", false}};
+    json base = {{"series", name}, {"line", name}, {"family", all[c].family}, {"failed", false}};
     base["panel"] = "factor";
     add_stairs(figure, base, solved[c].factor, problems.size(), 1, 1.3 * largest_factor);
     base["panel"] = "work";
@@ -119,10 +119,10 @@ std::optional<Figure> profiles(const Study& study, Of of) {
   }
   figure.series = series.list;
   const auto panel = [&](const std::string& name, const std::string& title, const json& x) {
-    const json tips = tooltip({{"series", "method"}, {"x", x["title"].get<std::string>()}, {"shown", "share solved"}});
-    json spec = curves(figure.title + ", " + title, x, channel("shown", "share of the problems solved", false), tips);
+    const json tips = tooltip({{"series", "method"}, {"x", x["title"].get<std::string>()}, {"share", "share solved"}});
+    json spec = curves(figure.title + ", " + title, x, channel("share", "share of the problems solved", false), tips);
     spec["transform"] = only_if("datum.panel == '" + name + "'");
-    figure.panels.push_back({title, spec, "x", "shown", true, false, name, false});
+    figure.panels.push_back({title, spec, "x", "share", true, false, name, false});
   };
   json factor = channel("x", "work over the least work for the problem", true);
   factor["scale"] = {{"type", "log"}, {"nice", false}, {"domainMin", 1}};  // nothing takes less than the least work

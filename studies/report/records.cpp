@@ -33,15 +33,16 @@ std::map<std::string, double> errors_at(const json& errors, const std::string& k
 
 Knob read_knob(const std::string& name, const json& value) {
   if (const json& absolute = at(value, "absolute"); absolute.is_number())
-    return {name + " (absolute)", plain(absolute), absolute.get<double>()};
-  if (value.is_number()) return {name, plain(value), value.get<double>()};
+    return {name + " (absolute)", exact_number(absolute), absolute.get<double>()};
+  if (value.is_number()) return {name, exact_number(value), value.get<double>()};
   return {name, plain(value), std::nullopt};
 }
 
 std::string scene_text(const json& vary) {
   std::string out;
   for (const auto& [pointer, value] : vary.items())
-    out += fmt::format("{}{} = {}", out.empty() ? "" : ", ", pointer, plain(value));
+    out += fmt::format("{}{} = {}", out.empty() ? "" : ", ", pointer,
+                       value.is_number() ? exact_number(value) : plain(value));
   return out;
 }
 
@@ -54,7 +55,7 @@ Cell read_cell(json&& row) {
   else if (method.is_string())
     cell.family = method.get<std::string>();
   for (const auto& [name, value] : object_at(record, "knobs").items()) cell.knobs.push_back(read_knob(name, value));
-  cell.label = text_at(record, "label");
+  cell.label = with_exact_numbers(text_at(record, "label"));
   if (cell.label.empty()) {
     cell.label = cell.family;
     for (const auto& knob : cell.knobs) cell.label += " " + knob.name + "=" + knob.text;
@@ -151,7 +152,7 @@ void complete_knobs(std::vector<Cell>& cells) {
       if (known != cell.knobs.end() && !known->value)
         known->value = value;
       else if (known == cell.knobs.end() && value)
-        cell.knobs.push_back({name, plain(json(*value)), value});
+        cell.knobs.push_back({name, exact_number(*value), value});
     }
 }
 
@@ -230,6 +231,28 @@ Study read_study(const std::filesystem::path& directory) {
   study.variants = distinct(study.cells, [](const Cell& c) { return c.variant; });
   study.main_variant = main_variant_of(study);
   attach_curves(study, directory);
+  return study;
+}
+
+Study read_run(const std::filesystem::path& directory) {
+  Study study;
+  json result = read_json(directory / "result.json");
+  if (!result.is_object()) throw InputFault((directory / "result.json").string() + ": is no result of a run");
+  study.picture = read_json(directory / "picture.json");
+  study.description = {{"title", text_at(at(result, "scene"), "title")}};
+  if (const json& steps = array_at(result, "steps"); !steps.empty())
+    for (const char* part : {"responses", "sensitivities"}) {
+      json values = object_at(steps.back(), part);
+      result[part] = std::move(values);
+    }
+  result["errors"] = json::object();
+  for (const char* part : {"interface", "film"})
+    if (study.picture.is_object()) result[part] = at(study.picture, part);
+  study.cells.push_back(read_cell(std::move(result)));
+  study.families = {study.cells.front().family};
+  study.variants = {""};
+  study.ratio = measured_ratio(study.cells);
+  measure_work(study.cells.front(), study.ratio.empty() ? 0 : study.ratio.begin()->second);
   return study;
 }
 

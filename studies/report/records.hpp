@@ -55,6 +55,10 @@ struct Study {
 /// Reads `directory`. Throws InputFault where there is no results.jsonl or study.json is no JSON.
 Study read_study(const std::filesystem::path& directory);
 
+/// Reads the result of a run, with what picture.json holds beside it, as a study of one cell. Throws InputFault where
+/// result.json is none.
+Study read_run(const std::filesystem::path& directory);
+
 /// "Penalty", "Uzawa AL", "Monolithic AL"; another key as it stands.
 std::string family_name(const std::string& family);
 

@@ -1,4 +1,4 @@
-/// The report of a study: one HTML file that needs no network, from recorded results alone.
+/// The report of a study or of a run: one HTML file that needs no network, from recorded results alone.
 #pragma once
 
 #include <filesystem>
@@ -14,5 +14,8 @@ namespace stickslip {
 /// and pressure is drawn positive, for the analytic curves too; an analytic curve's `s` is the contact's `arc`, its `x`
 /// (used where present) the contact's `x`; contact points of picture.json stand at their deformed place.
 void write_report(const std::filesystem::path& directory);
+
+/// The same of the run in `directory`, from result.json and, where it is there, picture.json.
+void write_run_report(const std::filesystem::path& directory);
 
 }  // namespace stickslip

@@ -15,16 +15,6 @@ namespace stickslip::report {
 
 using nlohmann::json;
 
-namespace {
-
-/// The table without its constant columns, which a line above it names.
-std::string compact(Table table, const char* caption) {
-  const std::string constant = take_out_constant_columns(table);
-  return (constant.empty() ? "" : "<p class=\"note\">" + escape(constant) + "</p>\n") + to_html(table, caption);
-}
-
-}  // namespace
-
 std::string settings_table(const Study& study) {
   const auto target = target_error(study, Of::responses);
   if (!target) return {};
@@ -52,8 +42,8 @@ std::string settings_table(const Study& study) {
       if (!cell) continue;
       table.rows.push_back({problems[i].variant, family_name(each.family), name_of(each.setting), cell->label,
                             shown(worst(cell->enforcement, "response:")),
-                            shown(worst(cell->enforcement, "sensitivity:")), number(cell->count("newton"), 9),
-                            number(cell->count("augmentations"), 9), number(cell->work), number(cell->sensitivity_work),
+                            shown(worst(cell->enforcement, "sensitivity:")), whole(cell->count("newton")),
+                            whole(cell->count("augmentations")), number(cell->work), number(cell->sensitivity_work),
                             number(cell->seconds), cell->status});
       const bool solved = each.work(i, problems, Of::responses).has_value();
       table.rows.back().push_back(solved ? "yes" : "no");
@@ -66,7 +56,7 @@ std::string settings_table(const Study& study) {
              "settings tried whose worst response is within {} of the exact contact conditions, known only afterwards. "
              "Strict: the most accurate setting tried. The last column says what failed or missed that accuracy.</p>\n",
              number(*target)) +
-         compact(table, "Default, tuned and strict settings");
+         compact_html(table, "Default, tuned and strict settings");
 }
 
 std::string status_table(const Study& study) {
@@ -91,7 +81,7 @@ std::string status_table(const Study& study) {
       }
       const Cell& cell = *found->second;
       failed = failed || !cell.converged;
-      row.push_back(cell.converged ? fmt::format("ok, {} Newton", number(cell.count("newton"), 9)) : cell.status);
+      row.push_back(cell.converged ? fmt::format("ok, {} Newton", whole(cell.count("newton"))) : cell.status);
     }
     table.rows.push_back(row);
     table.row_classes.emplace_back(failed ? "failed" : "");
@@ -148,7 +138,7 @@ std::string results_table(const Study& study) {
   const auto shown = [](const std::optional<double>& v) { return v ? number(*v) : std::string(); };
   for (const auto& cell : study.cells) {
     const json &cost = at(cell.record, "cost"), &seconds = at(cost, "seconds");
-    const auto count = [&](const char* name) { return number(cell.count(name), 9); };
+    const auto count = [&](const char* name) { return whole(cell.count(name)); };
     const auto recorded = [](const json& v) { return v.is_number() ? number(v.get<double>()) : std::string(); };
     const std::string status = status_in_words(cell);
     errors.rows.push_back({cell.label, cell.variant, status, shown(worst(cell.enforcement, "response:")),
@@ -163,7 +153,7 @@ std::string results_table(const Study& study) {
     errors.row_classes.emplace_back(cell.converged ? "" : "failed");
   }
   costs.row_classes = errors.row_classes;
-  return compact(errors, "All runs: errors") + compact(costs, "All runs: costs") + messages(study);
+  return compact_html(errors, "All runs: errors") + compact_html(costs, "All runs: costs") + messages(study);
 }
 
 namespace {
@@ -217,7 +207,7 @@ std::string values_table(const Study& study) {
     table.row_classes.emplace_back(cell.converged ? "" : "failed");
   }
   return folded("Values of responses and sensitivities at the last step, and of objectives",
-                compact(table, "Responses and sensitivities at the last step, objectives"));
+                compact_html(table, "Responses and sensitivities at the last step, objectives"));
 }
 
 }  // namespace stickslip::report

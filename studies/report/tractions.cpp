@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <tuple>
 
 #include "studies/report/chart_parts.hpp"
@@ -32,8 +33,33 @@ void add_traction(json& rows, const json& base, const char* panel, double s, dou
   json r = base;
   r["panel"] = panel;
   r["s"] = r["order"] = s;
-  r["error"] = value;
+  r["value"] = value;
   rows.push_back(r);
+}
+
+/// Of each contact keeps the rows where some run touches, and a third of that stretch on either side; true where others
+/// were left out.
+bool keep_near_the_contact(json& rows) {
+  struct Stretch {
+    double low = INFINITY, high = -INFINITY;
+    bool near(double s) const {
+      const double room = (high - low) / 3;
+      return !(high > low) || (s >= low - room && s <= high + room);
+    }
+  };
+  std::map<std::string, Stretch> touching;
+  for (const auto& r : rows)
+    if (r["panel"] == "pressure" && r["value"] != 0) {
+      Stretch& stretch = touching[r["contact"]];
+      stretch.low = std::min(stretch.low, r["s"].get<double>());
+      stretch.high = std::max(stretch.high, r["s"].get<double>());
+    }
+  json kept = json::array();
+  for (const auto& r : rows)
+    if (touching[r["contact"]].near(r["s"])) kept.push_back(r);
+  const bool any = kept.size() < rows.size();
+  rows = std::move(kept);
+  return any;
 }
 
 }  // namespace
@@ -106,6 +132,7 @@ std::optional<Figure> tractions(const Study& study) {
     }
   }
   if (figure.rows.empty()) return std::nullopt;
+  const bool far_left_out = keep_near_the_contact(figure.rows);
 
   const std::string closed = "closed form" + (closed_name.empty() ? "" : " (" + closed_name + ")");
   json closed_rows = json::array();  // first, so that the runs are drawn over them
@@ -125,26 +152,29 @@ std::optional<Figure> tractions(const Study& study) {
 
   json differences = json::array(), others = json::array();
   for (auto& r : figure.rows) (r["panel"] == "difference" ? differences : others).push_back(r);
-  show_zeros(differences, "error");
+  show_zeros(differences, "value");
   for (auto& r : others) {
-    r["shown"] = r["error"];
-    r["zero"] = false;
+    r["shown"] = r["value"];
   }
   figure.rows = others;
   for (auto& r : differences) figure.rows.push_back(r);
 
-  figure.text = fmt::format(
-      "Pressure is positive in compression. The last panel is the distance, point by point, from "
-      "the most accurate run ({}), relative to its largest traction: there the methods come "
-      "apart where the curves above lie on each other. Shown at first are the most accurate run "
-      "of each method and the one furthest off.",
-      in_words(*reference));
-  const json tips = tooltip({{"series", "run"}, {"s", "position"}, {"error", "value"}, {"state", "state"}});
+  figure.text = "Pressure is positive in compression.";
+  if (far_left_out) figure.text += " Open points far from what touches are left out.";
+  if (!differences.empty())
+    figure.text += fmt::format(
+        " The last panel is the distance, point by point, from the most accurate run ({}), relative to its largest "
+        "traction: there the methods come apart where the curves above lie on each other. Shown at first are the most "
+        "accurate run of each method and the one furthest off.",
+        in_words(*reference));
+  const json tips = tooltip({{"series", "run"}, {"s", "position"}, {"value", "value"}, {"state", "state"}});
   for (const auto& [panel, title, logarithmic] :
        {std::tuple{std::string("pressure"), "pressure p", false},
         std::tuple{std::string("tangential traction"), "tangential traction q", false},
         std::tuple{std::string("difference"), "difference / largest traction", true}}) {
-    if (distinct(figure.rows, "label", panel).empty()) continue;
+    if (std::none_of(figure.rows.begin(), figure.rows.end(),
+                     [&](const json& r) { return r["panel"] == panel && r["value"] != 0; }))
+      continue;
     json spec = curves(figure.title + ": " + title, channel("s", "position along the interface", false),
                        channel("shown", title, logarithmic), tips);
     spec["transform"] = only_if("datum.panel == '" + panel + "'");

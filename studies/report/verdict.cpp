@@ -4,19 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <set>
-#include <sstream>
 
 #include "studies/report/headline.hpp"
 #include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
 #include "studies/report/settings.hpp"
+#include "studies/wording.hpp"
 
 namespace stickslip::report {
 namespace {
 
 constexpr double much_the_same = 1.05;  ///< work or seconds within 5 % of the least name no winner
+constexpr double rounding = 1e-12;      ///< what sixteen digits leave: no mesh errs by so little
 constexpr double much_faster = 1.25;    ///< seconds of runs this short vary by some 20 %
 
 /// An accuracy that is asked for.
@@ -60,15 +60,8 @@ std::optional<double> own_error(const Study& study, const std::string& prefix) {
   return best ? worst(best->discretization, prefix) : std::nullopt;
 }
 
-/// Three digits, with a power of ten outside 0.001 to 10000: "0.5", "1e5", "1e-4".
-std::string short_number(double x, int digits = 3) {
-  if (x == 0 || (std::abs(x) >= 1e-3 && std::abs(x) < 1e4)) return fmt::format("{:.{}g}", x, std::max(digits, 4));
-  const int power = static_cast<int>(std::floor(std::log10(std::abs(x)) + 1e-9));
-  return number(x / std::pow(10, power), digits) + "e" + std::to_string(power);
-}
-
 std::string percent(double error) {
-  return error >= 1e-3 && error < 1 ? number(100 * error, 2) + " %" : short_number(error, 2);
+  return error >= 1e-3 && error < 1 ? number(100 * error, 2) + " %" : number(error, 2);
 }
 
 std::optional<Measure> measure_of(const Study& study, Of of) {
@@ -85,48 +78,54 @@ std::optional<Measure> measure_of(const Study& study, Of of) {
   if (asked.empty()) asked = {1e-2, 1e-4, 1e-6};
   std::sort(asked.rbegin(), asked.rend());
   for (const double error : asked) measure.levels.push_back({percent(error), error});
-  if (const auto own = own_error(study, measure.prefix()); measure.on_same_mesh && own && *own > 0)
+  if (const auto own = own_error(study, measure.prefix()); measure.on_same_mesh && own && *own > rounding)
     measure.levels.push_back({"mesh: " + percent(*own), *own});
   return measure;
 }
 
-/// The options that tell a run from others of its method, numbers in one style; "default" where there are none.
+/// The options that tell a run from others of its method; "default" where there are none.
 std::string setting_of(const Cell& cell) {
-  std::istringstream words(series_of(cell, "").substr(family_name(cell.family).size()));
-  std::string out;
-  for (std::string word; words >> word;) {
-    const std::size_t sign = word.find('=');
-    char* end = nullptr;
-    const std::string text = sign == std::string::npos ? "" : word.substr(sign + 1);
-    const double value = std::strtod(text.c_str(), &end);
-    if (!text.empty() && *end == '\0') word = word.substr(0, sign + 1) + short_number(value);
-    out += (out.empty() ? "" : " ") + word;
-  }
-  return out.empty() ? "default" : out;
+  const std::string options = series_of(cell, "").substr(family_name(cell.family).size());
+  return options.empty() ? "default" : options.substr(1);
 }
 
-std::string named(const Cell& cell) {
-  const std::string setting = setting_of(cell);
-  return family_name(cell.family) + (setting == "default" ? "" : " (" + setting + ")");
-}
+/// A run, and how many others of its method do the same for the same work.
+struct Choice {
+  const Cell* run = nullptr;  ///< nullptr: none
+  int equals = 0;
+
+  std::string setting() const {
+    const std::string own = setting_of(*run);
+    return equals == 0 ? own : own + " or " + counted(equals, "other");
+  }
+  std::string name() const { return family_name(run->family) + (setting() == "default" ? "" : " (" + setting() + ")"); }
+};
 
 std::string seconds_in_words(double seconds) {
   return seconds < 0.1 ? number(1e3 * seconds, 2) + " ms" : number(seconds, 2) + " s";
 }
 
-/// The run of a method that reaches an accuracy with least work; nullptr where none does.
-const Cell* cheapest(const std::vector<const Cell*>& runs, const Measure& measure, double level) {
-  const Cell* best = nullptr;
+/// The run of a method that reaches an accuracy with least work; of equals the default setting, else the first.
+Choice cheapest(const std::vector<const Cell*>& runs, const Measure& measure, double level) {
+  constexpr double same = 1 + 1e-9;  // counts are whole: what differs, differs by more
+  Choice best;
   for (const Cell* cell : runs) {
     const auto error = measure.error(*cell);
-    if (error && *error <= level && (!best || measure.work(*cell) < measure.work(*best))) best = cell;
+    if (!error || *error > level) continue;
+    const double work = measure.work(*cell), least = best.run ? measure.work(*best.run) : INFINITY;
+    if (work * same < least) {
+      best = {cell, 0};
+    } else if (work <= least * same) {
+      ++best.equals;
+      if (at(cell->record, "default") == true) best.run = cell;
+    }
   }
   return best;
 }
 
 /// Of an accuracy: the cheapest run of each method, the least work among them, and the least seconds.
 struct Column {
-  std::vector<const Cell*> runs;  ///< per method; nullptr: not reached
+  std::vector<Choice> runs;       ///< per method
   const Cell* least = nullptr;    ///< by work
   const Cell* fastest = nullptr;  ///< by seconds, where they were measured
 };
@@ -134,8 +133,9 @@ struct Column {
 Column column_of(const Study& study, const Measure& measure, double level) {
   Column column;
   for (const auto& family : study.families) {
-    const Cell* run = cheapest(runs_of(study, family), measure, level);
-    column.runs.push_back(run);
+    const Choice choice = cheapest(runs_of(study, family), measure, level);
+    column.runs.push_back(choice);
+    const Cell* run = choice.run;
     if (!run) continue;
     if (!column.least || measure.work(*run) < measure.work(*column.least)) column.least = run;
     if (measure.seconds(*run) > 0 && (!column.fastest || measure.seconds(*run) < measure.seconds(*column.fastest)))
@@ -155,7 +155,8 @@ bool is_fastest(const Column& column, const Measure& measure, const Cell& cell) 
 }
 
 std::string entry(const Study& study, const std::string& family, const Measure& measure, const Column& column,
-                  const Cell* run) {
+                  const Choice& choice) {
+  const Cell* run = choice.run;
   if (!run) {
     std::optional<double> nearest;
     for (const Cell* cell : runs_of(study, family))
@@ -165,7 +166,7 @@ std::string entry(const Study& study, const std::string& family, const Measure& 
   const bool least = is_least(column, measure, *run), fastest = is_fastest(column, measure, *run);
   std::string cost = "work " + number(measure.work(*run), 2);
   if (measure.seconds(*run) > 0) cost += " &middot; " + escape(seconds_in_words(measure.seconds(*run)));
-  return fmt::format("<td{}>{}<br><small>{}{}</small></td>", least ? " class=\"least\"" : "", escape(setting_of(*run)),
+  return fmt::format("<td{}>{}<br><small>{}{}</small></td>", least ? " class=\"least\"" : "", escape(choice.setting()),
                      cost,
                      least     ? " &#9733;"
                      : fastest ? " fastest"
@@ -178,20 +179,20 @@ std::string reason(const Study& study, const Measure& measure) {
     const Column column = column_of(study, measure, level.error);
     if (!column.least) continue;
     std::string winners, others;
-    for (const Cell* run : column.runs) {
-      if (!run) continue;
-      if (is_least(column, measure, *run))
-        winners += (winners.empty() ? "<b>" : " and <b>") + escape(named(*run)) + "</b>";
+    for (const Choice& choice : column.runs) {
+      if (!choice.run) continue;
+      const std::string name = escape(choice.name());
+      if (is_least(column, measure, *choice.run))
+        winners += (winners.empty() ? "<b>" : " and <b>") + name + "</b>";
       else
-        others +=
-            (others.empty() ? " where " : ", ") + escape(named(*run)) + " takes " + work_in_words(*run, measure.of);
+        others += (others.empty() ? " where " : ", ") + name + " takes " + work_in_words(*choice.run, measure.of);
     }
     std::string out = "To " + level.title + " the " + measure.noun() + " is cheapest by " + winners + ": " +
                       work_in_words(*column.least, measure.of) + others;
-    for (const Cell* run : column.runs)
-      if (run && is_fastest(column, measure, *run))
-        out += fmt::format("; by the clock {} was faster ({} for {})", escape(named(*run)),
-                           escape(seconds_in_words(measure.seconds(*run))),
+    for (const Choice& choice : column.runs)
+      if (choice.run && is_fastest(column, measure, *choice.run))
+        out += fmt::format("; by the clock {} was faster ({} for {})", escape(choice.name()),
+                           escape(seconds_in_words(measure.seconds(*choice.run))),
                            escape(seconds_in_words(measure.seconds(*column.least))));
     return out + ".";
   }

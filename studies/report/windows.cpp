@@ -109,7 +109,7 @@ json rows_of(const std::vector<Window>& windows) {
   json rows = json::array();
   for (const auto& window : windows)
     for (const auto& run : window.runs) {
-      rows.push_back({{"series", window.name}, {"knob", run.knob}, {"status", run.cell->status}});
+      rows.push_back({{"series", window.name}, {"option_value", run.knob}, {"status", run.cell->status}});
       if (const auto error = accuracy(*run.cell, Of::responses)) rows.back()["error"] = *error;
     }
   return rows;
@@ -137,7 +137,8 @@ std::optional<Plate> robustness_windows(const Study& study, const std::vector<st
               : std::string());
   const Axis x(low, high, true, left, right);
   const double top = 8, bottom = top + row_height * static_cast<double>(windows.size()) + 4;
-  Plate plate{"windows-" + slug(knobs.front()), title, text, Drawing(width, bottom, title, text), {}, rows_of(windows)};
+  Plate plate{
+      "windows-" + slug(knobs.front()), title, text, Drawing(width, bottom, title, text), {}, rows_of(windows), ""};
   draw_scale(x, top, bottom, knob_title(knobs), plate.drawing);
   plate.table.header = {"method and scene", "runs", "converges from ... to", "fails at"};
   for (std::size_t i = 0; i < windows.size(); ++i) {
@@ -147,6 +148,9 @@ std::optional<Plate> robustness_windows(const Study& study, const std::vector<st
         {windows[i].name, std::to_string(windows[i].runs.size()), stretches(windows[i]), failures(windows[i])});
     plate.table.row_classes.emplace_back(plate.table.rows.back().back().empty() ? "" : "failed");
   }
+  const auto& classes = plate.table.row_classes;
+  if (std::all_of(classes.begin(), classes.end(), [](const auto& failed) { return failed.empty(); }))
+    plate.folded = "every run converged";
   plate.drawing.set_height(draw_legend(target, bottom + 54, plate.drawing));
   return plate;
 }

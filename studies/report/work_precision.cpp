@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "studies/report/chart_parts.hpp"
 #include "studies/report/look_up.hpp"
@@ -12,6 +15,32 @@ namespace {
 const std::map<std::string, double>& errors_of(const Cell& cell, Against against) {
   if (against == Against::same_mesh) return cell.enforcement;
   return against == Against::discretization ? cell.discretization : cell.kkt;
+}
+
+/// Where most runs are off by the same, or by what they enforce contact with alone, that says it all.
+std::string why_it_may_be_folded(const Study& study, Against against, Of of) {
+  if (against != Against::discretization) return "";
+  const std::string prefix = of == Of::sensitivities ? "sensitivity:" : "response:";
+  std::vector<double> errors;
+  std::ptrdiff_t of_method = 0;
+  for (const auto& cell : study.cells) {
+    const auto error = worst(cell.discretization, prefix), own = worst(cell.enforcement, prefix);
+    if (!error || !cell.converged || cell.variant != study.main_variant) continue;
+    constexpr double alike = 5, rounding = 1e-12;
+    errors.push_back(*error);
+    of_method += *error <= rounding || (own && *error <= alike * *own && *own <= alike * *error);
+  }
+  if (errors.size() < 3) return "";
+  const auto most = [&](std::ptrdiff_t n) { return 3 * n >= 2 * std::ssize(errors); };
+  if (most(of_method))
+    return fmt::format("{} of {} runs are off by what they enforce contact with, as above", of_method, errors.size());
+  std::sort(errors.begin(), errors.end());
+  const double middle = errors[errors.size() / 2];
+  const auto near =
+      std::count_if(errors.begin(), errors.end(), [&](double e) { return std::abs(e - middle) <= 0.1 * middle; });
+  return most(near)
+             ? fmt::format("{} of {} runs are off by {}, whatever their method", near, errors.size(), number(middle, 2))
+             : "";
 }
 
 }  // namespace
@@ -43,14 +72,14 @@ std::optional<Figure> work_precision(const Study& study, Against against, Of of)
       r["seconds"] = seconds;
       const Knob* value = find_knob(cell, knob);
       r["order"] = value && value->value ? *value->value : 0;
-      if (value) r["knob"] = value->text;
+      if (value) r["setting"] = value->text;
       figure.rows.push_back(r);
       series.add(name, cell.family);
     }
   }
   if (figure.rows.empty()) return std::nullopt;
   show_zeros(figure.rows, "error");
-  tag_ends(figure.rows, "knob");
+  tag_lines(figure.rows, "setting");
   figure.series = series.list;
 
   const std::string what = derivative ? "sensitivities" : "responses";
@@ -90,6 +119,7 @@ std::optional<Figure> work_precision(const Study& study, Against against, Of of)
     y_title = "measure";
   }
   figure.text += derivative ? "Costs are those of the solution and its derivatives together." : "";
+  figure.folded = against == Against::coulomb ? "of the final states" : why_it_may_be_folded(study, against, of);
   const json y = channel("shown", y_title, true);
   const json tips = tooltip({{"label", "method"},
                              {"error", "error"},

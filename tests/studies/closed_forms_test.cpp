@@ -149,5 +149,47 @@ TEST(ClosedForms, CarryTheForcesInTheirTractions) {
   EXPECT_NEAR(tangential, 0.93616, 1e-4);
 }
 
+/// Tractions of a form for the inputs of an example, on a contact of that length.
+std::vector<ClosedForm::Tractions> tractions_of(const Example& example, double length) {
+  Quantities<double> all = example.in;
+  for (const auto& [name, quantity] : evaluate(example)) all[name] = value(quantity);
+  return find_closed_form(example.form)->tractions(all, length);
+}
+
+/// The pressures of a polygonal belt hold its bars' tensions, node by node, and their friction is what these differ by.
+TEST(ClosedForms, TractionsOfABeltHoldItsTensions) {
+  const double slack = 2, mu = 0.3, radius = 1.5, turn = std::acos(-1.0) / 8, chord = 2 * radius * std::sin(turn / 2);
+  const Example belt{
+      "belt", {{"slack", slack}, {"friction", mu}, {"angle", 180}, {"nodes", 8}, {"radius", radius}}, {}};
+  const auto curve = tractions_of(belt, 7 * chord);
+  ASSERT_EQ(curve.size(), 8u);
+  double tension = slack;
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    EXPECT_NEAR(curve[i].place, chord * static_cast<double>(i), 1e-13);
+    const double next = tension + curve[i].tangential * chord / std::cos(turn / 2);
+    EXPECT_NEAR(curve[i].pressure * chord, (tension + next) * std::sin(turn / 2), 1e-13 * next);
+    EXPECT_DOUBLE_EQ(curve[i].tangential, mu * curve[i].pressure);
+    tension = next;
+  }
+  EXPECT_NEAR(tension, slack * 2.6010497114, 1e-9);
+  EXPECT_TRUE(tractions_of({"belt", {{"slack", 1}, {"friction", mu}, {"angle", 180}}, {}}, 1).empty());  // no radius
+}
+
+TEST(ClosedForms, ThePressureOfAPressFitIsTheSameAllAround) {
+  const auto curve =
+      tractions_of({"press_fit",
+                    {{"inner", 1}, {"interface", 2}, {"outer", 4}, {"interference", 0.01}, {"E", 1000}, {"nu", 0.3}},
+                    {}},
+                   3);
+  ASSERT_EQ(curve.size(), 2u);
+  EXPECT_EQ(curve.back().place, 3);
+  for (const auto& at : curve) EXPECT_NEAR(at.pressure, 1.6483516484, 1e-10);
+}
+
+TEST(ClosedForms, ThePressureUnderAPunchCarriesItsForce) {
+  const auto curve = tractions_of({"flat_punch", {{"force", 3}, {"half_width", 2}}, {}}, 4);
+  EXPECT_NEAR(curve[curve.size() / 2].pressure, 3 / (2 * std::acos(-1.0)), 1e-14);
+}
+
 }  // namespace
 }  // namespace stickslip

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <set>
 
 #include "studies/atomic_file.hpp"
 #include "studies/film.hpp"
@@ -276,6 +277,35 @@ TEST(Fields, APictureHasPlacesStatesAndTractionsOfEachContact) {
   EXPECT_EQ(picture["contact"][1]["name"], "left");
   EXPECT_EQ(picture["contact"][1]["state"], "open");
   EXPECT_EQ(film_json(made.result)["contacts"], (json{{"down", {"k"}}, {"left", {"o"}}}));
+}
+
+TEST(Fields, AFrictionlessPointTouchesAndDoesNotSlip) {
+  json scene = disk_between_plates();
+  scene["contacts"]["under"].erase("friction");
+  const auto result = cases::run(scene, {{"monolithic_al", json::object()}}, "disk.json");
+  ASSERT_TRUE(is_converged(result.status())) << result.message();
+  std::set<std::string> under, over;
+  for (const auto& point : picture_json(result)["contact"])
+    (point["name"] == "under" ? under : over).insert(point["state"].get<std::string>());
+  EXPECT_TRUE(under.count("closed"));
+  EXPECT_FALSE(under.count("slip") || under.count("stick"));
+  EXPECT_FALSE(over.count("closed"));
+  EXPECT_NE(film_json(result)["contacts"]["under"].back().get<std::string>().find('c'), std::string::npos);
+  for (const auto& state : interface_json(result)["under"]["state"]) EXPECT_NE(state, "slip");
+}
+
+TEST(Fields, APictureSaysWhatItsObstaclesMovedBy) {
+  json scene = disk_between_plates();
+  scene["obstacles"]["low"]["rotate"] = {{"center", {0, -1}}, {"angle", {{0, 0}, {1, 0.1}}}};
+  scene["responses"] = {{"u", {{"displacement", {{"at", {0, 0}}, {"component", "x"}}}}}};
+  const auto result = cases::run(scene, {{"monolithic_al", json::object()}}, "disk.json");
+  const json picture = picture_json(result);
+  const json &low = picture["obstacles"][0]["plane"], &top = picture["obstacles"][1]["plane"];
+  EXPECT_EQ(top["point"], (json{0.0, 1.0}));  // where it began
+  EXPECT_EQ(top["moved"]["by"], (json{0.0, -0.05}));
+  EXPECT_EQ(low["moved"]["degrees"], 0.1);
+  EXPECT_EQ(low["moved"]["center"], (json{0.0, -1.0}));
+  EXPECT_EQ(picture["responses"], (json{{"u", "displacement"}}));
 }
 
 }  // namespace

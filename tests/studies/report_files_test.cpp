@@ -5,7 +5,9 @@
 
 #include "studies/report/charts.hpp"
 #include "studies/report/cone_picture.hpp"
+#include "studies/report/embedded.hpp"
 #include "studies/report/figure_files.hpp"
+#include "studies/report/font_subset.hpp"
 #include "studies/report/plot.hpp"
 #include "tests/studies/recorded_study.hpp"
 #include "tests/support/largest.hpp"
@@ -39,6 +41,17 @@ std::vector<json> with_failure() {
   return cells;
 }
 
+/// The same runs again in a second scene.
+std::vector<json> in_two_scenes(std::vector<json> cells) {
+  auto all = cells;
+  for (auto& c : cells) {
+    c["id"] = c["id"].get<std::string>() + "-again";
+    c["vary"] = {{"/contacts/sole/friction", 0.3}};
+    all.push_back(c);
+  }
+  return all;
+}
+
 // --- robustness windows --------------------------------------------------------------------------------------------
 
 TEST_F(ReportCharts, WindowsEndWhereARunFailed) {
@@ -46,7 +59,7 @@ TEST_F(ReportCharts, WindowsEndWhereARunFailed) {
   const auto plate = report::robustness_windows(study(), {"stiffness"});
   ASSERT_TRUE(plate);
   ASSERT_EQ(plate->table.rows.size(), 1u);
-  EXPECT_THAT(plate->table.rows[0], ElementsAre("Penalty", "4", "1e3 to 1e5, 1e9", "1e7 (not_finite)"));
+  EXPECT_THAT(plate->table.rows[0], ElementsAre("Penalty", "4", "1000 to 1e5, 1e9", "1e7 (not_finite)"));
 }
 
 TEST_F(ReportCharts, WindowsAreOneForEachSettingAndScene) {
@@ -82,7 +95,7 @@ TEST_F(ReportCharts, TunedIsTheCheapestThatIsAccurateEnoughAndStrictTheMostAccur
 }
 
 TEST_F(ReportCharts, ProfilesAreStaircasesOfSharesSolved) {
-  record(description(), three_methods());
+  record(description(), in_two_scenes(three_methods()));
   const auto figure = report::profiles(study(), Of::responses);
   ASSERT_TRUE(figure);
   // Accuracies 1e-2 ... 1e-10, all reached by the monolithic run, the last by it alone, and always for the least work.
@@ -90,8 +103,8 @@ TEST_F(ReportCharts, ProfilesAreStaircasesOfSharesSolved) {
   for (const auto& row : figure->rows) {
     if (row["panel"] != "factor") continue;
     const std::string name = row["series"];
-    EXPECT_GE(row["shown"].get<double>(), before[name]) << name;
-    before[name] = last[name] = row["shown"];
+    EXPECT_GE(row["share"].get<double>(), before[name]) << name;
+    before[name] = last[name] = row["share"];
     EXPECT_GE(row["x"].get<double>(), 1);
   }
   EXPECT_EQ(last.at("Monolithic AL, tuned"), 1);
@@ -102,16 +115,21 @@ TEST_F(ReportCharts, ProfilesAreStaircasesOfSharesSolved) {
     }
 }
 
+TEST_F(ReportCharts, ThereAreNoProfilesOfASingleScene) {
+  record(description(), three_methods());
+  EXPECT_FALSE(report::profiles(study(), Of::responses));
+}
+
 TEST_F(ReportCharts, ProfilesKeepAMethodThatSolvesNothing) {
   auto cells = three_methods();
   for (auto& c : cells)
     if (c["method"].contains("uzawa_al")) c["status"] = "cap";
-  record(description(), cells);
+  record(description(), in_two_scenes(cells));
   const auto figure = report::profiles(study(), Of::responses);
   ASSERT_TRUE(figure);
   double most = -1;
   for (const auto& row : figure->rows)
-    if (row["series"] == "Uzawa AL, tuned") most = larger(most, row["shown"].get<double>());
+    if (row["series"] == "Uzawa AL, tuned") most = larger(most, row["share"].get<double>());
   EXPECT_EQ(most, 0);
 }
 
@@ -124,8 +142,29 @@ TEST_F(ReportCharts, FilmCountsStatesAtEveryStep) {
   const auto plate = report::film_of_states(study());
   ASSERT_TRUE(plate);
   EXPECT_THAT(plate->table.header, ElementsAre("method", "contact", "time", "stick", "slip", "open"));
-  EXPECT_THAT(plate->table.rows[0], ElementsAre(cells[0]["label"].get<std::string>(), "sole", "0.5", "2", "0", "1"));
-  EXPECT_THAT(plate->table.rows[1], ElementsAre(cells[0]["label"].get<std::string>(), "sole", "1", "1", "1", "1"));
+  EXPECT_THAT(plate->table.rows[0], ElementsAre("penalty stiffness=1000", "sole", "0.5", "2", "0", "1"));
+  EXPECT_THAT(plate->table.rows[1], ElementsAre("penalty stiffness=1000", "sole", "1", "1", "1", "1"));
+}
+
+TEST_F(ReportCharts, FilmShowsOnceWhatAllRunsAgreeOn) {
+  auto cells = three_methods();
+  for (auto& c : cells) c["film"] = {{"times", {0.5, 1}}, {"contacts", {{"sole", {"okk", "sko"}}}}};
+  record(description(), cells);
+  EXPECT_THAT(report::film_of_states(study())->text, HasSubstr("the same in the most accurate run of each method"));
+  EXPECT_EQ(report::film_of_states(study())->table.rows.size(), 2u);
+  cells.back()["film"]["contacts"]["sole"][1] = "kko";  // of the monolithic run
+  record(description(), cells);
+  EXPECT_THAT(report::film_of_states(study())->text, HasSubstr("Where two pictures differ"));
+  EXPECT_GT(report::film_of_states(study())->table.rows.size(), 2u);
+}
+
+TEST_F(ReportCharts, AFrictionlessFilmTouchesAndDoesNotSlip) {
+  auto cells = three_methods();
+  for (auto& c : cells) c["film"] = {{"times", {0.5, 1}}, {"contacts", {{"sole", {"occ", "cco"}}}}};
+  record(description(), cells);
+  const auto plate = report::film_of_states(study());
+  EXPECT_THAT(plate->table.header, ElementsAre("method", "contact", "time", "touch", "open"));
+  EXPECT_THAT(plate->drawing.inline_svg(), testing::AllOf(HasSubstr(">touches<"), Not(HasSubstr("slips"))));
 }
 
 TEST_F(ReportCharts, ThereIsNoFilmOfOnePointOrOneStepOrOfABrokenRecord) {
@@ -175,8 +214,8 @@ TEST(ReportCones, HaveNumbersAlongBothAxes) {
 
 // --- files ---------------------------------------------------------------------------------------------------------
 
-TEST_F(ReportCharts, EveryFigureIsAFileInThreeFormats) {
-  record(description(), with_failure());
+TEST_F(ReportCharts, EveryFigureIsAFileInFourFormats) {
+  record(description(), in_two_scenes(with_failure()));
   page();
   std::set<std::string> stems;
   for (const auto& entry : std::filesystem::directory_iterator(directory_ / "figures"))
@@ -192,18 +231,32 @@ TEST_F(ReportCharts, EveryFigureIsAFileInThreeFormats) {
     EXPECT_THAT(svg, Not(HasSubstr("nan"))) << stem;
     EXPECT_THAT(pdf, testing::StartsWith("%PDF-1.4")) << stem;
     EXPECT_THAT(pdf, testing::EndsWith("%%EOF\n")) << stem;
+    EXPECT_THAT(file(stem + ".pgf"), testing::EndsWith("\\end{pgfpicture}%\n\\endgroup%\n")) << stem;
   }
   EXPECT_THAT(file("windows-stiffness.csv"),
-              testing::StartsWith("series,status,error,knob\r\nPenalty,converged,0.001,1000\r\n"));
+              testing::StartsWith("series,status,error,option_value\r\nPenalty,converged,0.001,1000\r\n"));
 }
 
 /// The places in the table at the end of a PDF are those of its objects: else a reader has to repair it.
+TEST(ReportDrawing, PgfHasItsTextsAsLatexSetsThem) {
+  report::Drawing drawing(200, 100, "title", "description");
+  drawing.text(20, 40, "50 % of {a_b}", {report::Anchor::end, 12, "#D55E00"});
+  drawing.line(0, 0, 200, 100, {"ink", "", 2, {4, 2}});
+  const std::string pgf = drawing.pgf();
+  EXPECT_THAT(pgf, HasSubstr("\\pgftext[right,base,x=15bp,y=45bp]"));
+  EXPECT_THAT(pgf, HasSubstr("50 \\% of \\{a\\_b\\}}"));
+  EXPECT_THAT(pgf, HasSubstr("\\definecolor{stickslip}{HTML}{D55E00}"));
+  EXPECT_THAT(pgf, HasSubstr("\\pgfpathmoveto{\\pgfpoint{0bp}{75bp}}%\n\\pgfpathlineto{\\pgfpoint{150bp}{0bp}}"));
+  EXPECT_THAT(pgf, HasSubstr("\\pgfsetdash{{3bp}{1.5bp}}{0bp}"));
+}
+
 TEST_F(ReportCharts, FiguresHoldWhatThePagesChartsShow) {
   record(description(), three_methods());
   page();
   const std::string work = file("enforcement-responses-against-work-factorisations.svg");
-  EXPECT_THAT(work, HasSubstr("on this line: exactly 0"));
-  for (const char* option : {">1000<", ">1e9<", ">0.0001<", ">1e-8<"}) EXPECT_THAT(work, HasSubstr(option));
+  EXPECT_THAT(work, HasSubstr(">exactly 0<"));
+  for (const char* option : {">1000<", ">Penalty 1e9<", ">1e-4<", ">Uzawa AL 1e-8<", ">Monolithic AL<"})
+    EXPECT_THAT(work, HasSubstr(option));
   EXPECT_THAT(file("error-stiffness-responses.svg"), HasSubstr(">slope -1<"));
 }
 
@@ -216,7 +269,7 @@ TEST(ReportAxis, HasNoRoomBelowABound) {
 }
 
 TEST_F(ReportCharts, PdfObjectsStandWhereItsTableSays) {
-  record(description(), three_methods());
+  record(description(), in_two_scenes(three_methods()));
   page();
   const std::string pdf = file("profiles-data-profile.pdf");
   const std::size_t start = pdf.rfind("startxref\n");
@@ -235,6 +288,33 @@ TEST_F(ReportCharts, PdfObjectsStandWhereItsTableSays) {
     table >> place >> generation >> kind;
     EXPECT_EQ(pdf.substr(place, std::to_string(i).size() + 6), std::to_string(i) + " 0 obj");
   }
+}
+
+/// What a journal asks for. A PDF without its fonts names Helvetica alone.
+TEST_F(ReportCharts, PdfsCarryTheirFonts) {
+  if (report::embedded::upright_font().empty()) GTEST_SKIP() << "built without Liberation Sans";
+  record(description(), three_methods());
+  page();
+  for (const auto& entry : std::filesystem::directory_iterator(directory_ / "figures")) {
+    if (entry.path().extension() != ".pdf") continue;
+    const std::string pdf = file(entry.path().filename());
+    EXPECT_THAT(pdf, testing::AllOf(HasSubstr("/FontFile2 "), Not(HasSubstr("/Helvetica")))) << entry.path();
+    EXPECT_LT(pdf.size(), 200'000u) << entry.path();
+  }
+}
+
+/// Accents are made of two outlines, whose numbers change with the subset.
+TEST(ReportFont, ASubsetHoldsItsCharactersAndIsSmall) {
+  const auto font = report::embedded::upright_font();
+  if (font.empty()) GTEST_SKIP() << "built without Liberation Sans";
+  const auto subset = report::subset_of(font, {'A', '1', ' ', 0xE9});
+  EXPECT_LT(subset.file.size(), 10'000u);
+  EXPECT_EQ(subset.advances.at('A'), 667);  // as in Helvetica
+  EXPECT_EQ(subset.advances.at('1'), 556);
+  EXPECT_GT(subset.cap_height, 600);
+  const auto again = report::subset_of(subset.file, {'A', 0xE9});  // it reads as a font itself
+  EXPECT_EQ(again.advances.at(0xE9), subset.advances.at(0xE9));
+  EXPECT_GT(again.advances.at(0xE9), 0);
 }
 
 TEST_F(ReportCharts, FiguresOfAFormerReportDoNotStay) {

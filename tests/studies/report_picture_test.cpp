@@ -44,6 +44,36 @@ TEST(ReportPicture, DrawsContactPointsAtTheirEnlargedPlaces) {
     }
 }
 
+TEST(ReportPicture, DrawsObstaclesWhereTheyHaveMovedTo) {
+  const auto svg = [](double y, const json& moved) {
+    json drawn = picture();
+    json& plane = drawn["obstacles"][0]["plane"];
+    plane["point"][1] = y;
+    if (!moved.is_null()) plane["moved"] = moved;
+    return report::draw_picture(drawn)->drawing.inline_svg();
+  };
+  ASSERT_NE(svg(0, nullptr), svg(-0.25, nullptr));
+  EXPECT_EQ(svg(0, {{"by", {0, -0.25}}}), svg(-0.25, nullptr));  // displacements are at true scale here
+  EXPECT_EQ(svg(0, {{"by", {0, 0}}, {"degrees", 0}, {"center", {1, 0}}}), svg(0, nullptr));
+  EXPECT_NE(svg(0, {{"by", {0, 0}}, {"degrees", 5}, {"center", {1, 0}}}), svg(0, nullptr));
+}
+
+TEST(ReportPicture, EnlargesTheMotionOfObstaclesAsThatOfBodies) {
+  json small = picture(), larger = picture();
+  for (json* drawn : {&small, &larger})
+    for (auto& u : (*drawn)["displacement"]) u = {0, 1e-4};  // 500 times enlarged
+  small["obstacles"][0]["plane"]["moved"] = {{"by", {0, -1e-4}}};
+  larger["obstacles"][0]["plane"]["point"][1] = -0.05;
+  EXPECT_EQ(report::draw_overview(small)->drawing.inline_svg(), report::draw_overview(larger)->drawing.inline_svg());
+}
+
+TEST(ReportPicture, AFrictionlessContactTouchesAndDoesNotSlip) {
+  json smooth = picture();
+  for (auto& c : smooth["contact"]) c["state"] = "closed";
+  EXPECT_THAT(report::draw_picture(smooth)->drawing.inline_svg(),
+              AllOf(HasSubstr(">touches<"), Not(HasSubstr(">slips<")), Not(HasSubstr(">open<"))));
+}
+
 TEST(ReportPicture, HasNoWordsForStatesWhereNothingCanTouch) {
   json alone = picture();
   alone["contact"] = json::array();

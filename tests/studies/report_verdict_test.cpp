@@ -62,9 +62,10 @@ TEST_F(ReportVerdict, NamesTheCheapestSettingOfEachMethodAtEachAccuracy) {
     EXPECT_THAT(entry, HasSubstr("&#9733;"));
   }
   EXPECT_THAT(verdict, HasSubstr("mesh: 1 %"));
-  EXPECT_THAT(verdict,
-              HasSubstr("To 1 % the response is cheapest by <b>Monolithic AL</b>: 10 factorisations and 20 "
-                        "back-solves where Penalty (stiffness=1000) takes 14 factorisations and 28 back-solves"));
+  EXPECT_THAT(
+      verdict,
+      HasSubstr("To 1 % the response is cheapest by <b>Monolithic AL</b>: 10 factorisations and 20 "
+                "back-solves where Penalty (stiffness=1000 or 2 others) takes 14 factorisations and 28 back-solves"));
   EXPECT_THAT(verdict, HasSubstr("the derivative is cheapest by <b>Monolithic AL</b>"));
 }
 
@@ -93,6 +94,15 @@ TEST_F(ReportVerdict, NamesBothWhereWorkIsTheSame) {
   const std::string verdict = verdict_of(description(), cells);
   EXPECT_THAT(verdict, HasSubstr("<b>Penalty (stiffness=1e5)</b> and <b>Monolithic AL</b>"));
   EXPECT_THAT(row(verdict, "Penalty")[0], HasSubstr("&#9733;"));
+}
+
+TEST_F(ReportVerdict, SaysHowManySettingsDoTheSameAndNamesTheDefault) {
+  std::vector<json> cells;
+  for (const double scale : {0.1, 1.0, 10.0}) cells.push_back(cell("monolithic_al", {{"scale", scale}}, 0, 10));
+  cells[1]["default"] = true;
+  EXPECT_THAT(row(verdict_of(description(), cells), "Monolithic AL")[0], HasSubstr("scale=1 or 2 others"));
+  cells[0]["cost"]["counts"]["factorizations"] = 9;
+  EXPECT_THAT(row(verdict_of(description(), cells), "Monolithic AL")[0], HasSubstr("scale=0.1work"));
 }
 
 TEST_F(ReportVerdict, NamesTheFasterWhereTheClockDisagrees) {

@@ -147,6 +147,34 @@ TEST_F(StudyCell, KeepsTheErrorsOfEveryReferenceAndTheFirstOfEachName) {
   EXPECT_EQ(errors["enforcement"]["response:shift"], errors["by_reference"][2]["errors"]["response:shift"]);
 }
 
+/// What a history is drawn from.
+TEST_F(StudyCell, RowsHoldTheResponsesOfEveryStep) {
+  const auto [study, cells] = read(block(), {{"methods", {{{"monolithic_al", json::object()}}}}});
+  const json row = CellRunner(study, cells, meshes_).row(0);
+  ASSERT_GE(row["steps"].size(), 1u);
+  for (const auto& step : row["steps"]) EXPECT_TRUE(step["responses"]["shift"].is_number());
+  EXPECT_EQ(row["steps"].back()["responses"], row["responses"]);
+}
+
+/// The shipped study of the belt: its tensions and, node by node, its tractions are those of the polygon.
+TEST_F(StudyCell, TheBeltIsHeldAgainstItsClosedForm) {
+  const auto scenes = std::filesystem::path(STICKSLIP_SOURCE_DIR) / "studies" / "scenes";
+  json scene = json::parse(std::ifstream(scenes / "belt.json"), nullptr, true, true),
+       shipped = json::parse(std::ifstream(scenes / "belt.study.json"), nullptr, true, true);
+  shipped["methods"] = {{{"monolithic_al", json::object()}}};
+  shipped.erase("timing");
+  const auto [study, cells] = read(scene, shipped);
+  ASSERT_EQ(cells.size(), 2u);  // two coefficients of friction
+  CellRunner runner(study, cells, meshes_);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const json errors = runner.row(i)["errors"]["discretization"];
+    // the bars are a hundred times as stiff as the pull that stretches them: condition 1e5 or so
+    for (const char* name : {"response:tight", "sensitivity:tight/mu", "sensitivity:tight/T1", "field:normal_traction",
+                             "field:tangential_traction"})
+      EXPECT_LT(errors.value(name, 1.0), 1e-8) << name;
+  }
+}
+
 /// A radius that is a parameter is known when the cell is run.
 TEST_F(StudyCell, AClosedFormWithoutAnAnswerGivesNoErrors) {
   json scene = block();

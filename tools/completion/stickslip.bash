@@ -10,7 +10,7 @@ _stickslip() {
   fi
   local options=--help
   case $command in
-    run) options+=" --method --set --json --output --trace --export" ;;
+    run) options+=" --method --set --json --output --report --trace --export" ;;
     explain | gradcheck) options+=" --method --set --json" ;;
     study) options+=" --output --resume --restart --shard --jobs" ;;
     merge) options+=" --output" ;;

@@ -1,0 +1,16 @@
+/// What files say of a contact's points.
+#pragma once
+
+#include <vector>
+
+#include "studies/case.hpp"
+
+namespace stickslip {
+
+/// Length along the points of a contact, in their order, from the first.
+std::vector<double> arc_of(const Problem& problem, int contact);
+
+/// "open", "stick" or "slip"; "closed" of a frictionless point that touches, which neither holds nor rubs.
+const char* state_name(const ContactPoint& point, ContactState state);
+
+}  // namespace stickslip

@@ -1,0 +1,21 @@
+/// What the writers of a drawing (SVG, PDF, PGF) share.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace stickslip::report {
+
+/// Whether a colour is one of the names ink, soft, line, paper.
+bool is_named(const std::string& color);
+
+/// "#RRGGBB" in the light scheme; "none" of "".
+std::string in_light(const std::string& color);
+
+/// A number without what carries nothing: "12.5", "3".
+std::string short_number(double value);
+
+/// Latin-1 of a text in UTF-8: what lies beyond it is '?'.
+std::string in_font(std::string_view text);
+
+}  // namespace stickslip::report

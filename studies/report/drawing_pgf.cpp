@@ -1,0 +1,129 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "studies/report/drawing.hpp"
+#include "studies/report/drawing_parts.hpp"
+
+namespace stickslip::report {
+namespace {
+
+/// A text as LaTeX sets it.
+std::string tex_text(const std::string& text) {
+  std::string out;
+  for (const char c : text) switch (c) {
+      case '\\':
+        out += "\\textbackslash{}";
+        break;
+      case '~':
+        out += "\\textasciitilde{}";
+        break;
+      case '^':
+        out += "\\textasciicircum{}";
+        break;
+      case '<':
+        out += "\\textless{}";
+        break;
+      case '>':
+        out += "\\textgreater{}";
+        break;
+      case '&':
+      case '%':
+      case '$':
+      case '#':
+      case '_':
+      case '{':
+      case '}':
+        out += '\\';
+        out += c;
+        break;
+      default:
+        out += static_cast<unsigned char>(c) < 32 ? ' ' : c;
+    }
+  return out;
+}
+
+}  // namespace
+
+/// The items as commands of PGF's basic layer. A pixel is 0.75 bp, y up.
+class Drawing::PgfWriter {
+ public:
+  explicit PgfWriter(double height) : height_(height) {}
+
+  std::string operator()(const Shape& shape) const {
+    const auto& style = shape.style;
+    std::string out = "\\begin{pgfscope}" + path(shape.path);
+    if (!style.fill.empty()) out += color("fill", style.fill);
+    if (!style.stroke.empty()) {
+      out += color("stroke", style.stroke) + "\\pgfsetlinewidth{" + length(style.width) + "}";
+      std::string dash;
+      for (const double d : style.dash) dash += "{" + length(d) + "}";
+      if (!dash.empty()) out += "\\pgfsetdash{" + dash + "}{0bp}";
+    }
+    const char* const use = style.fill.empty() ? "stroke" : style.stroke.empty() ? "fill" : "fill,stroke";
+    return out + "\\pgfusepath{" + use + "}\\end{pgfscope}%\n";
+  }
+
+  std::string operator()(const Text& item) const {
+    const auto& style = item.style;
+    const char* const anchor = style.anchor == Anchor::start ? "left," : style.anchor == Anchor::end ? "right," : "";
+    const std::string size = short_number(points * style.size), skip = short_number(1.2 * points * style.size);
+    return fmt::format(
+        "\\begin{{pgfscope}}{}\\pgftext[{}base,x={},y={}{}]{{\\fontsize{{{}}}{{{}}}\\selectfont{} "
+        "{}}}\\end{{pgfscope}}%\n",
+        color("text", style.color), anchor, length(item.x), length(height_ - item.y), style.upwards ? ",rotate=90" : "",
+        size, skip, style.bold ? "\\bfseries" : "", tex_text(item.text));
+  }
+
+  std::string operator()(const Clip& clip) const {
+    return "\\begin{pgfscope}" + path(clip.path) + "\\pgfusepath{clip}%\n";
+  }
+
+  std::string operator()(const Unclip&) const { return "\\end{pgfscope}%\n"; }
+
+  static std::string length(double pixels) { return short_number(points * pixels) + "bp"; }
+
+ private:
+  static constexpr double points = 0.75;
+  double height_;
+
+  static std::string color(const char* of, const std::string& name) {
+    const std::string define = "\\definecolor{stickslip}{HTML}{" + in_light(name).substr(1) + "}";
+    return define +
+           (std::string(of) == "text" ? "\\color{stickslip}" : fmt::format("\\pgfset{}color{{stickslip}}", of));
+  }
+
+  std::string path(const Path& path) const {
+    std::string out;
+    for (const auto& piece : path.pieces) {
+      out += piece.kind == 'M'   ? "\\pgfpathmoveto"
+             : piece.kind == 'L' ? "\\pgfpathlineto"
+             : piece.kind == 'C' ? "\\pgfpathcurveto"
+                                 : "\\pgfpathclose";
+      for (std::size_t i = 0; i + 1 < piece.at.size(); i += 2)
+        out += "{\\pgfpoint{" + length(piece.at[i]) + "}{" + length(height_ - piece.at[i + 1]) + "}}";
+      out += "%\n";
+    }
+    return out;
+  }
+};
+
+std::string Drawing::pgf() const {
+  std::string out =
+      "% \\usepackage{pgf} and \\input this file; texts are in the font of the document.\n\\begingroup%\n"
+      "\\begin{pgfpicture}%\n\\pgfpathrectangle{\\pgfpointorigin}{\\pgfpoint{" +
+      PgfWriter::length(width_) + "}{" + PgfWriter::length(height_) + "}}\\pgfusepath{use as bounding box}%\n" +
+      "\\pgfsetroundjoin%\n";
+  PgfWriter write(height_);
+  for (const auto& item : items_) out += std::visit(write, item);
+  return out + "\\end{pgfpicture}%\n\\endgroup%\n";
+}
+
+std::size_t Drawing::pieces() const {
+  std::size_t count = 0;
+  for (const auto& item : items_)
+    if (const auto* shape = std::get_if<Shape>(&item)) count += shape->path.pieces.size();
+  return count;
+}
+
+}  // namespace stickslip::report

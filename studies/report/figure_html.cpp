@@ -1,0 +1,135 @@
+#include "studies/report/figure_html.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <set>
+
+#include "studies/report/figure_files.hpp"
+#include "studies/report/html.hpp"
+#include "studies/report/look_up.hpp"
+#include "studies/report/plot.hpp"
+
+namespace stickslip::report {
+
+using nlohmann::json;
+
+namespace {
+
+std::string control(const Choice& choice) {
+  const std::string data = fmt::format("data-field=\"{}\" data-when-field=\"{}\" data-when=\"{}\"",
+                                       escape(choice.field), escape(choice.when_field), escape(choice.when));
+  const auto is_chosen = [&](const std::string& option) {
+    return std::find(choice.chosen.begin(), choice.chosen.end(), option) != choice.chosen.end();
+  };
+  std::string out;
+  if (!choice.several) {
+    for (const auto& option : choice.options)
+      out += fmt::format("<option value=\"{0}\"{1}>{0}</option>", escape(option), is_chosen(option) ? " selected" : "");
+    return fmt::format("<label>{}: <select autocomplete=\"off\" {}>{}</select></label>\n", escape(choice.label), data,
+                       out);
+  }
+  for (const auto& option : choice.options)
+    out += fmt::format("<label><input type=\"checkbox\" autocomplete=\"off\" value=\"{0}\"{1}> {0}</label>",
+                       escape(option), is_chosen(option) ? " checked" : "");
+  return fmt::format("<details class=\"several\"><summary>{}</summary><div {}>{}</div></details>\n",
+                     escape(choice.label), data, out);
+}
+
+/// The panel for readers without scripts; "" where it has nothing to draw.
+std::string plain_picture(const Figure& figure, const Panel& panel) {
+  const auto drawing = draw_plot(figure, panel);
+  return drawing ? drawing->inline_svg() : std::string();
+}
+
+/// Six digits are more than a chart shows, in a third of the bytes. The files beside the page hold all of them.
+json rounded(const json& value) {
+  return value.is_number_float() ? json(std::strtod(fmt::format("{:.6g}", value.get<double>()).c_str(), nullptr))
+                                 : value;
+}
+
+/// The title, but of a folded figure, whose fold has it, and what is said below it.
+std::string caption(const std::string& id, const std::string& title, const std::string& text, const std::string& fold) {
+  const std::string head = fold.empty() ? fmt::format("<h3 id=\"{}-title\">{}</h3>", id, escape(title)) : "";
+  return "<figcaption>" + head + "<p>" + escape(text) + "</p></figcaption>\n";
+}
+
+std::string behind_a_fold(const std::string& id, const std::string& title, const std::string& fold,
+                          const std::string& figure) {
+  if (fold.empty()) return figure;
+  return fmt::format(
+      "<details class=\"fold\"><summary><span id=\"{}-title\">{}</span> <small>({})</small></summary>\n{}</details>\n",
+      id, escape(title), escape(fold), figure);
+}
+
+std::string to_html(const Figure& figure) {
+  std::string open, folded_panels;
+  json specs = json::array();
+  for (const bool folded : {false, true})
+    for (const auto& panel : figure.panels)
+      if (panel.folded == folded) {
+        json spec = panel.spec;
+        spec["usermeta"] = {{"panel", panel.only}};
+        specs.push_back(spec);
+        (folded ? folded_panels : open) += fmt::format(
+            "<div class=\"panel\"><h4>{}</h4><div class=\"vega\"></div><div class=\"static\">{}</div></div>\n",
+            escape(panel.title), plain_picture(figure, panel));
+      }
+  json series = json::array();
+  for (const auto& s : figure.series)
+    series.push_back({{"name", s.name}, {"color", s.color}, {"shape", s.shape}, {"dash", s.dash}, {"size", s.size}});
+  // Rows as arrays under one list of fields: half the bytes of objects.
+  std::set<std::string> fields;
+  for (const auto& row : figure.rows)
+    for (const auto& [field, value] : row.items()) fields.insert(field);
+  json rows = json::array();
+  for (const auto& row : figure.rows) {
+    json values = json::array();
+    for (const auto& field : fields) values.push_back(rounded(at(row, field)));
+    rows.push_back(values);
+  }
+  std::string controls;
+  for (const auto& choice : figure.choices) controls += control(choice);
+  std::string out = fmt::format("<figure data-chart id=\"{0}\" aria-labelledby=\"{0}-title\">\n", figure.id) +
+                    caption(figure.id, figure.title, figure.text, figure.folded);
+  if (!controls.empty()) out += "<div class=\"choices\">" + controls + "</div>\n";
+  out += "<div class=\"legend\"></div>\n<div class=\"panels\">" + open + "</div>\n";
+  if (!folded_panels.empty())
+    out += "<details class=\"panels-folded\"><summary>More views</summary><div class=\"panels\">" + folded_panels +
+           "</div></details>\n";
+  out += "<details class=\"data\"><summary>Data of this chart</summary></details>\n";
+  out += fmt::format("<script type=\"application/json\" id=\"{}-data\">{}</script>\n</figure>\n", figure.id,
+                     embed({{"fields", fields},
+                            {"columns", columns_of(figure.rows)},
+                            {"rows", rows},
+                            {"series", series},
+                            {"panels", specs}}));
+  return behind_a_fold(figure.id, figure.title, figure.folded, out);
+}
+
+std::string to_html(const Plate& plate) {
+  const std::string figure = fmt::format(
+      "<figure class=\"plate\" id=\"{0}\" aria-labelledby=\"{0}-title\">\n{1}<div class=\"drawn\" role=\"region\" "
+      "tabindex=\"0\" aria-label=\"{2}\">{3}</div>\n{4}</figure>\n",
+      plate.id, caption(plate.id, plate.title, plate.text, plate.folded), escape(plate.title),
+      plate.drawing.inline_svg(),
+      plate.table.rows.empty() ? "" : folded("Data of this chart", report::to_html(plate.table, plate.title)));
+  return behind_a_fold(plate.id, plate.title, plate.folded, figure);
+}
+
+}  // namespace
+
+std::string Figures::show(std::optional<Figure> figure) {
+  if (!figure) return {};
+  figures.push_back(*std::move(figure));
+  return to_html(figures.back());
+}
+
+std::string Figures::show(std::optional<Plate> plate) {
+  if (!plate) return {};
+  plates.push_back(*std::move(plate));
+  return to_html(plates.back());
+}
+
+}  // namespace stickslip::report

@@ -1,0 +1,94 @@
+#include "studies/report/picture_obstacles.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "studies/report/look_up.hpp"
+
+namespace stickslip::report {
+
+using nlohmann::json;
+
+namespace {
+
+/// What an obstacle moved by, enlarged: u = by + angle x (X - center), linear as small strain is.
+class Motion {
+ public:
+  Motion(const json& moved, double scale) {
+    if (is_point(at(moved, "by"))) by_ = to_point(moved["by"]);
+    by_ = {scale * by_.x, scale * by_.y};
+    if (!is_point(at(moved, "center"))) return;
+    center_ = to_point(moved["center"]);
+    angle_ = scale * number_at(moved, "degrees") * std::acos(-1.0) / 180;
+  }
+  Point place(Point p) const {
+    return {p.x + by_.x - angle_ * (p.y - center_.y), p.y + by_.y + angle_ * (p.x - center_.x)};
+  }
+  Point direction(Point n) const { return {n.x - angle_ * n.y, n.y + angle_ * n.x}; }
+
+ private:
+  Point by_, center_;
+  double angle_ = 0;
+};
+
+/// The stretch of a plane that covers the window, whichever of its points is named.
+Path plane_shape(Point p, Point n, const Frame& frame) {
+  const double length = std::hypot(n.x, n.y);
+  if (length == 0) return {};
+  n = {n.x / length, n.y / length};
+  const double reach = 2 * (frame.window().width() + frame.window().height());
+  const Point middle{(frame.window().min.x + frame.window().max.x) / 2,
+                     (frame.window().min.y + frame.window().max.y) / 2};
+  const double off = (middle.x - p.x) * n.x + (middle.y - p.y) * n.y;
+  p = {middle.x - off * n.x, middle.y - off * n.y};
+  Path path;
+  for (const auto& [along, across] : {std::pair{-1, 0}, {1, 0}, {1, 1}, {-1, 1}}) {
+    const double x = p.x + reach * (along * n.y - across * n.x), y = p.y - reach * (along * n.x + across * n.y);
+    path.empty() ? path.move(frame.x(x), frame.y(y)) : path.line(frame.x(x), frame.y(y));
+  }
+  return path.close();
+}
+
+/// A solid: hatched, in grey print too.
+void hatch(const Path& shape, Drawing& drawing) {
+  constexpr double widest = 1000, tallest = 520;  // of a picture
+  Path lines;
+  for (double x = -tallest; x < widest; x += 9) lines.move(x, tallest).line(x + tallest, 0);
+  drawing.clip(shape);
+  drawing.path(std::move(lines), {"soft", "", 1, {}});
+  drawing.unclip();
+}
+
+}  // namespace
+
+void draw_obstacles(const json& obstacles, double scale, const Frame& frame, Drawing& drawing) {
+  const Style edge{"ink", "", 1.2, {}};
+  for (const auto& obstacle : obstacles) {
+    if (!obstacle.is_object() || obstacle.empty()) continue;
+    const std::string kind = obstacle.begin().key();
+    const json& data = obstacle.begin().value();
+    const Motion motion(at(data, "moved"), scale);
+    Path shape;
+    bool solid = true;
+    if (kind == "plane" && is_point(at(data, "point")) && is_point(at(data, "normal"))) {
+      shape = plane_shape(motion.place(to_point(data["point"])), motion.direction(to_point(data["normal"])), frame);
+    } else if ((kind == "circle" || kind == "cylinder") && is_point(at(data, "center")) &&
+               at(data, "radius").is_number()) {
+      const Point c = motion.place(to_point(data["center"]));
+      shape.circle(frame.x(c.x), frame.y(c.y), frame.length(data["radius"]));
+      solid = at(data, "inside") != true;
+    } else if (kind == "polyline") {
+      solid = false;
+      for (const auto& vertex : data.is_array() ? data : array_at(data, "points")) {
+        if (!is_point(vertex)) continue;
+        const Point p = motion.place(to_point(vertex));
+        shape.empty() ? shape.move(frame.x(p.x), frame.y(p.y)) : shape.line(frame.x(p.x), frame.y(p.y));
+      }
+    }
+    if (shape.empty()) continue;
+    if (solid) hatch(shape, drawing);
+    drawing.path(std::move(shape), edge);
+  }
+}
+
+}  // namespace stickslip::report

@@ -1,0 +1,126 @@
+#include "studies/report/run_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "studies/report/about.hpp"
+#include "studies/report/headline.hpp"
+#include "studies/report/html.hpp"
+#include "studies/report/look_up.hpp"
+#include "studies/report/picture.hpp"
+#include "studies/report/tables.hpp"
+#include "studies/wording.hpp"
+
+namespace stickslip::report {
+
+using nlohmann::json;
+
+namespace {
+
+std::string how_it_ended(const Cell& cell) {
+  const std::size_t steps = array_at(cell.record, "steps").size();
+  std::string out =
+      fmt::format("{}, {}: {} with {}", family_name(cell.family), counted(static_cast<long>(steps), "step"),
+                  cell.status, work_in_words(cell, Of::sensitivities));
+  if (cell.sensitivity_seconds > 0) out += fmt::format(" in {} s", number(cell.sensitivity_seconds, 2));
+  const std::string message = text_at(cell.record, "message");
+  return out + (message.empty() ? "" : ": " + message) + ".";
+}
+
+/// Whether a contact has no friction, so that what touches there does not slip.
+bool is_frictionless(const Study& run, const std::string& contact) {
+  const json& points = array_at(run.picture, "contact");
+  return at(at(run.cells.front().record, "effects"), "friction") == false ||
+         std::any_of(points.begin(), points.end(),
+                     [&](const json& p) { return at(p, "name") == contact && at(p, "state") == "closed"; });
+}
+
+/// Points of a contact by state in a step: open, stick and slip, or open and touch.
+std::vector<std::pair<const char*, double>> states_of(const json& step, const std::string& contact, bool frictionless) {
+  const json& counts = at(object_at(step, "contacts"), contact);
+  const double open = number_at(counts, "open"), stick = number_at(counts, "stick"), slip = number_at(counts, "slip");
+  if (frictionless) return {{"open", open}, {"touch", stick + slip}};
+  return {{"open", open}, {"stick", stick}, {"slip", slip}};
+}
+
+/// What the solver and the contacts did in each step.
+std::string steps_table(const Study& run) {
+  const Cell& cell = run.cells.front();
+  Table table;
+  table.header = {"time", "status", "Newton", "augmentations", "cutbacks", "worst KKT measure"};
+  const json& steps = array_at(cell.record, "steps");
+  if (steps.empty()) return "";
+  std::vector<std::pair<std::string, bool>> contacts;  // and whether there is no friction
+  for (const auto& [contact, unused] : object_at(steps.front(), "contacts").items()) {
+    contacts.emplace_back(contact, is_frictionless(run, contact));
+    for (const auto& [state, n] : states_of(steps.front(), contact, contacts.back().second))
+      table.header.push_back(contact + ": " + state);
+  }
+  constexpr std::size_t most = 1000;
+  const std::size_t stride = (steps.size() + most - 1) / most;
+  for (std::size_t n = 0; n < steps.size(); ++n) {
+    if ((steps.size() - 1 - n) % stride != 0) continue;
+    const json& step = steps[n];
+    double worst = 0;
+    for (const auto& [measure, value] : object_at(step, "kkt").items())
+      if (value.is_number()) worst = std::max(worst, value.get<double>());
+    std::vector<std::string> row = {number(number_at(step, "time"), 6), text_at(step, "status"),
+                                    whole(number_at(step, "newton")),   whole(number_at(step, "augmentations")),
+                                    whole(number_at(step, "cutbacks")), number(worst)};
+    for (const auto& [contact, frictionless] : contacts)
+      for (const auto& [state, points] : states_of(step, contact, frictionless)) row.push_back(whole(points));
+    table.rows.push_back(row);
+    const std::string status = text_at(step, "status");
+    table.row_classes.emplace_back(status.starts_with("converged") ? "" : "failed");
+  }
+  return compact_html(table, "Steps");
+}
+
+/// Responses and their derivatives at the last step, a line each.
+std::string last_values(const Cell& cell) {
+  Table table;
+  table.header = {"response", "value"};
+  const json& sensitivities = object_at(cell.record, "sensitivities");
+  for (const auto& [response, by] : sensitivities.items())
+    for (const auto& [parameter, unused] : by.items())
+      if (const std::string title = "d / d " + parameter;
+          std::find(table.header.begin(), table.header.end(), title) == table.header.end())
+        table.header.push_back(title);
+  for (const auto& [response, value] : object_at(cell.record, "responses").items()) {
+    std::vector<std::string> row = {response, value.is_number() ? number(value, 10) : ""};
+    for (std::size_t column = 2; column < table.header.size(); ++column) {
+      const json& slope = at(at(sensitivities, response), table.header[column].substr(6));
+      row.push_back(slope.is_number() ? number(slope, 8) : "");
+    }
+    table.rows.push_back(row);
+  }
+  return table.rows.empty() ? "" : to_html(table, "Responses at the last step, and their derivatives");
+}
+
+}  // namespace
+
+std::string first_of_run(const Study& run, Figures& figures) {
+  const std::string scene = figures.show(draw_overview(run.picture)), histories = figures.show(response_histories(run));
+  std::string out = scene + histories;
+  if (!out.empty()) out = "<div class=\"first\">" + out + "</div>\n";
+  out += "<p class=\"reason\">" + escape(how_it_ended(run.cells.front())) + "</p>\n";
+  for (const auto& warning : warning_sentences(run)) out += "<p class=\"warning\">" + escape(warning) + "</p>\n";
+  if (run.picture.is_null())
+    out += "<p class=\"note\">The bodies and tractions were not recorded; <code>run --report</code> does.</p>\n";
+  return out + last_values(run.cells.front());
+}
+
+std::vector<Section> sections_of_run(const Study& run, Figures& figures) {
+  std::string solution;
+  if (has_close_up(run.picture)) solution += figures.show(draw_picture(run.picture));
+  solution += figures.show(tractions(run));
+  solution += figures.show(film_of_states(run));
+  auto convergence = convergence_histories(run);
+  if (convergence) convergence->folded.clear();
+  return {{"solution", "The solution", solution},
+          {"solver", "The solver at work", figures.show(std::move(convergence)) + steps_table(run)},
+          {"provenance", "Provenance", provenance(run)}};
+}
+
+}  // namespace stickslip::report

@@ -1,0 +1,87 @@
+/// The page of a single run.
+#include <gmock/gmock.h>
+
+#include "studies/fields.hpp"
+#include "studies/film.hpp"
+#include "studies/report/report.hpp"
+#include "tests/studies/recorded_study.hpp"
+#include "tests/studies/report_page.hpp"
+#include "tests/support/cases.hpp"
+
+namespace stickslip {
+namespace {
+
+using recorded::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+namespace fs = std::filesystem;
+
+const fs::path scenes = fs::path(STICKSLIP_SOURCE_DIR) / "studies" / "scenes";
+
+class ReportOfARun : public recorded::StudyOnDisk {
+ protected:
+  /// What `run --report` leaves of a shipped scene, and its page without scripts.
+  std::string page_of(const std::string& scene, bool with_picture = true) {
+    const auto document = cases::load(scenes / (scene + ".json"));
+    const auto result = cases::run(document, document["method"], scenes / (scene + ".json"));
+    std::ofstream(directory_ / "result.json") << result_json(result, "").dump();
+    if (with_picture) {
+      json drawn = picture_json(result);
+      drawn["interface"] = interface_json(result);
+      drawn["film"] = film_json(result);
+      std::ofstream(directory_ / "picture.json") << drawn.dump();
+    }
+    return written();
+  }
+  std::string written() {
+    write_run_report(directory_);
+    std::ifstream in(directory_ / "report.html");
+    return recorded::without_scripts({std::istreambuf_iterator<char>(in), {}});
+  }
+};
+
+TEST_F(ReportOfARun, HasPictureHistoriesStatesAndValues) {
+  const std::string html = page_of("belt");
+  EXPECT_THAT(html, AllOf(HasSubstr("<h1>Belt over a drum: tension from friction</h1>"), HasSubstr("id=\"overview\""),
+                          HasSubstr("id=\"response-histories\""), HasSubstr("id=\"tractions\""),
+                          HasSubstr("id=\"film\""), HasSubstr("Monolithic AL, 4 steps: converged with"),
+                          HasSubstr("<th scope=\"col\">d / d mu</th>"), HasSubstr("<caption>Steps")));
+  EXPECT_THAT(html, AllOf(Not(HasSubstr("most accurate run of each method")), Not(HasSubstr("class=\"verdict\""))));
+  EXPECT_TRUE(fs::exists(directory_ / "figures" / "response-histories.csv"));
+}
+
+TEST_F(ReportOfARun, OfAFrictionlessSceneDoesNotSayThatItSlips) {
+  const std::string html = page_of("press_fit");
+  EXPECT_THAT(html, AllOf(HasSubstr("fit: touch"), HasSubstr(">touches<"), Not(HasSubstr("fit: slip")),
+                          Not(HasSubstr(">slips<")), Not(HasSubstr("tangential traction q"))));
+}
+
+TEST_F(ReportOfARun, WithoutAPictureSaysHowToGetOne) {
+  const std::string html = page_of("slider", false);
+  EXPECT_THAT(html, AllOf(HasSubstr("run --report"), HasSubstr("id=\"response-histories\""), HasSubstr("mu")));
+}
+
+TEST_F(ReportOfARun, EscapesHostileNames) {
+  page_of("stop");
+  json result = json::parse(std::ifstream(directory_ / "result.json"));
+  const std::string hostile = "<img src=x onerror=alert(1)>";
+  result["scene"]["title"] = result["message"] = result["status"] = hostile;
+  for (auto& step : result["steps"]) {
+    step["responses"][hostile] = 1;
+    step["sensitivities"][hostile] = {{hostile, 2}};
+    step["contacts"][hostile] = {{"open", 1}};
+  }
+  std::ofstream(directory_ / "result.json") << result.dump();
+  const std::string html = written();
+  for (const auto& tag : recorded::tags_of(html)) EXPECT_NE(tag.name, "img");
+  EXPECT_THAT(html, HasSubstr("&lt;img src=x"));
+}
+
+TEST_F(ReportOfARun, SaysThatAnEditedResultIsNone) {
+  std::ofstream(directory_ / "result.json") << "[]";
+  EXPECT_THROW(write_run_report(directory_), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace stickslip
