@@ -155,12 +155,12 @@ struct Derivatives::Progress {
 
 Derivatives::Derivatives(const Model& model, const Slots<double>& slots, const Method& method,
                          Workspace<double>& workspace)
-    : progress_(new Progress{model, slots, method, workspace, {}, {}}) {}
+    : progress_(model.scene.parameters.empty() ? nullptr : new Progress{model, slots, method, workspace, {}, {}}) {}
 Derivatives::~Derivatives() = default;
 
 void Derivatives::follow(const Trajectory<double>& trajectory) {
+  if (!progress_ || progress_->postponed) return;  // no parameters: there is nothing to differentiate
   Progress& now = *progress_;
-  if (now.parameters() == 0 || now.postponed) return;
   const Stopwatch time(now.gradients.seconds);
   const bool worthwhile =
       std::visit([](const auto& m) { return keeps_tangents(m); }, now.method) &&
@@ -175,8 +175,8 @@ void Derivatives::follow(const Trajectory<double>& trajectory) {
 }
 
 Gradients Derivatives::finish(const Trajectory<double>& trajectory) {
+  if (!progress_) return {};
   Progress& now = *progress_;
-  if (now.parameters() == 0) return {};
   {
     const Stopwatch time(now.gradients.seconds);
     Counters search;
