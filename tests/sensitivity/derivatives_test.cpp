@@ -54,8 +54,11 @@ TEST(Derivatives, ThatFollowARunFactoriseNothing) {
     EXPECT_EQ(following.trajectory.counters.factorizations, at_the_end.trajectory.counters.factorizations);
     const auto &with = following.trajectory.increments, &without = at_the_end.trajectory.increments;
     ASSERT_EQ(with.size(), without.size());
-    for (std::size_t n = 0; n < with.size(); ++n)  // to the last bit
-      EXPECT_EQ(with[n].state.displacement, without[n].state.displacement) << name_of(method) << n;
+    for (std::size_t n = 0; n < with.size();
+         ++n) {  // to rounding: an update may reach the same tangent by other columns
+      const Vector<double> change = with[n].state.displacement - without[n].state.displacement;
+      EXPECT_LE(largest_entry(change), 1e-12 * largest_entry(without[n].state.displacement)) << name_of(method) << n;
+    }
     expect_same(following.gradients.of, at_the_end.gradients.of, std::string(name_of(method)));
   }
 }
