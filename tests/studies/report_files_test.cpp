@@ -255,7 +255,7 @@ TEST_F(ReportCharts, FiguresHoldWhatThePagesChartsShow) {
   page();
   const std::string work = file("enforcement-responses-against-work-factorisations.svg");
   EXPECT_THAT(work, HasSubstr(">exactly 0<"));
-  for (const char* option : {">1000<", ">Penalty 1e9<", ">1e-4<", ">Uzawa AL 1e-8<", ">Monolithic AL<"})
+  for (const char* option : {">1000<", ">Penalty 1e9<", ">Uzawa AL 1e-4<", ">1e-8<", ">Monolithic AL<"})
     EXPECT_THAT(work, HasSubstr(option));
   EXPECT_THAT(file("error-stiffness-responses.svg"), HasSubstr(">slope -1<"));
 }
