@@ -31,17 +31,15 @@ namespace detail {
 /// point and is free to follow along the normal.
 template <class T>
 std::vector<int> shared_points(const Model& model, const Slots<T>& slots, const ContactField<T>& field) {
-  constexpr double across = 1e-6;  // of a normal: less is none
   std::vector<int> users(model.node_count, 0);
   for (std::size_t p = 0; p < model.points.size(); ++p)
     for (int node : model.points[p].nodes) ++users[node];
   std::vector<int> shared;
   for (std::size_t p = 0; p < model.points.size(); ++p) {
-    const int node = model.points[p].nodes[0], D = model.dimension;
-    bool free = false;
-    for (int i = 0; i < D && framed_index(model, node) < 0; ++i)
-      free |= model.free_index[node * D + i] >= 0 && std::abs(value(slots.geometry[p].normal[i])) > across;
-    if (field.state[p] != ContactState::open && (!free || users[node] > 1)) shared.push_back(static_cast<int>(p));
+    if (field.state[p] == ContactState::open) continue;
+    const int node = model.points[p].nodes[0];
+    if (users[node] > 1 || is_held(model, slots, node, values(slots.geometry[p].normal)))
+      shared.push_back(static_cast<int>(p));
   }
   return shared;
 }

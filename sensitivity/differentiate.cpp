@@ -35,14 +35,13 @@ Matrix<double> with_ties(const Model& model, const std::vector<ParameterBlock>& 
   return of;
 }
 
-/// Whether the tangents that a scheme solves with are those of the method's last iterations.
+/// Whether the tangents that a scheme solves with are those of the method's last iterations. (Truncated Uzawa solves
+/// with one for each augmentation.)
 template <class M>
 constexpr bool keeps_tangents(const M&) {
   return true;
 }
-bool keeps_tangents(const UzawaAL& method) {
-  return method.sensitivity == UzawaAL::Sensitivity::iterated || method.sensitivity == UzawaAL::Sensitivity::truncated;
-}
+bool keeps_tangents(const UzawaAL& method) { return method.sensitivity == UzawaAL::Sensitivity::iterated; }
 
 /// Whether a factorisation of the engine costs as much as many solves.
 template <class T>
@@ -71,15 +70,9 @@ struct Derivatives::Progress {
   int parameters() const { return static_cast<int>(model.scene.parameters.size()); }
 
   void begin() {
-    for (int first = 0; first < parameters(); first += directions) {
-      std::vector<int> of_block;
-      for (int j = first; j < std::min(parameters(), first + directions); ++j) of_block.push_back(j);
-      ParameterBlock block{
-          make_slots<Direction>(model, seeded(model.scene, of_block)), initial_state<Direction>(model), {}};
-      block.previous.displacement.resize(0);  // those of the increments are expanded together
-      block.current = block.previous;
-      blocks.push_back(std::move(block));
-    }
+    blocks = parameter_blocks(model);
+    for (auto& block : blocks)  // displacements of the increments are expanded together
+      for (auto* state : {&block.previous, &block.current}) state->displacement.resize(0);
   }
 
   /// Differentiates the increments up to `end`, as many together as their columns fit into one solve.

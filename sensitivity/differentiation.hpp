@@ -27,6 +27,19 @@ struct ParameterBlock {
   State<Direction> previous, current;
 };
 
+/// Blocks of all the scene's parameters, at the initial state.
+inline std::vector<ParameterBlock> parameter_blocks(const Model& model) {
+  const int parameters = static_cast<int>(model.scene.parameters.size());
+  std::vector<ParameterBlock> blocks;
+  for (int first = 0; first < parameters; first += directions) {
+    std::vector<int> of_block;
+    for (int j = first; j < std::min(parameters, first + directions); ++j) of_block.push_back(j);
+    const auto initial = initial_state<Direction>(model);
+    blocks.push_back({make_slots<Direction>(model, seeded(model.scene, of_block)), initial, initial});
+  }
+  return blocks;
+}
+
 /// What parameters and prescribed motions do to the bodies' balance in an increment whose free displacements are held:
 /// it does not depend on the derivatives so far.
 struct PseudoLoad {

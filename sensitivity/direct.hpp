@@ -36,9 +36,10 @@ class LinearisedEquilibrium {
                         bool unknown, const Vector<double>& previous_placement);
 
   bool valid() const { return valid_; }
-  /// Solves for the derivative given D lambda (per block; read as a seed, also where lambda is unknown: then zero) and
-  /// returns the fields t_hat with all derivatives in. Adds D lambda to `lambda` where it is unknown.
-  std::vector<ContactField<Direction>> solve(std::vector<Vector<Direction>>& lambda);
+  /// Solves for the derivative given D lambda (per block; read as a seed, also where lambda is unknown: then zero).
+  /// `fields`: t_hat with all derivatives in. Adds D lambda to `lambda` where it is unknown. False where the tangent
+  /// turns out to be singular.
+  bool solve(std::vector<Vector<Direction>>& lambda, std::vector<ContactField<Direction>>& fields);
 
   /// Completes the state of every block from the last solve, but for the displacements, which are left unexpanded.
   void settle(const std::vector<ContactField<Direction>>& fields, const std::vector<Vector<Direction>>& lambda);
@@ -64,6 +65,8 @@ class LinearisedEquilibrium {
     std::vector<ContactField<Direction>> fields;
     bool accurate = true;
   };
+  /// One solve by the factor: adds to the increment, to the compact displacements and, where unknown, to lambda.
+  void improve(const Rows& rows, std::vector<Vector<Direction>>& compact, std::vector<Vector<Direction>>& lambda);
   Rows evaluate(const std::vector<Vector<Direction>>& compact, const std::vector<Vector<Direction>>& lambda);
   ContactInput<Direction> input(int block) const {
     return {problem_.model,
@@ -75,6 +78,7 @@ class LinearisedEquilibrium {
   }
 
   Differentiation<E>& problem_;
+  ContactInput<double> primal_;
   const State<double>& at_;
   std::vector<RegularisationField<Direction>> rho_blocks_;
   const RegularisationField<double>& rho_;
@@ -82,6 +86,7 @@ class LinearisedEquilibrium {
   double time_;
   bool unknown_, valid_ = false;
   bool redundant_ = false;  ///< constraints repeat one another: the tangent yields, and is used twice
+  bool unproven_ = false;   ///< the factor is Newton's last, and has not been seen to solve these rows
   PseudoLoad load_;
   Matrix<double> increment_, compact_;
 };
@@ -92,15 +97,15 @@ LinearisedEquilibrium<E>::LinearisedEquilibrium(Differentiation<E>& problem, con
                                                 std::vector<RegularisationField<Direction>> rho_blocks, ConeRadius cone,
                                                 double time, bool unknown, const Vector<double>& previous_placement)
     : problem_(problem),
+      primal_{problem.model, problem.slots, rho, previous_placement, cone, time},
       at_(at),
       rho_blocks_(std::move(rho_blocks)),
       rho_(rho),
       cone_(cone),
       time_(time),
       unknown_(unknown) {
-  const Model& model = problem.model;
-  const ContactInput<double> primal{model, problem.slots, rho, previous_placement, cone, time};
-  valid_ = factorise_converged(problem, primal, at, unknown, problem.follows, redundant_);
+  unproven_ = problem.follows && reuse_factor(problem, primal_, at, unknown);
+  valid_ = unproven_ || factorise_converged(problem, primal_, at, unknown, redundant_);
   if (!valid_) return;
   if (problem.prepared) {
     load_ = std::move(*problem.prepared);
@@ -113,30 +118,43 @@ LinearisedEquilibrium<E>::LinearisedEquilibrium(Differentiation<E>& problem, con
 }
 
 template <class E>
-std::vector<ContactField<Direction>> LinearisedEquilibrium<E>::solve(std::vector<Vector<Direction>>& lambda) {
-  const Model& model = problem_.model;
-  const int blocks = static_cast<int>(problem_.blocks.size()), parameters = problem_.parameters;
+bool LinearisedEquilibrium<E>::solve(std::vector<Vector<Direction>>& lambda,
+                                     std::vector<ContactField<Direction>>& fields) {
   std::vector<Vector<Direction>> compact;
-  for (int b = 0; b < blocks; ++b) compact.push_back(to_compact(model, load_.displacement[b]));
+  for (const auto& displacement : load_.displacement) compact.push_back(to_compact(problem_.model, displacement));
   increment_ = Matrix<double>();
+  compact_ = Matrix<double>::Zero(compact[0].size(), problem_.parameters);
   Rows rows = evaluate(compact, lambda);
   for (int pass = 0;; ++pass) {
-    const auto step = problem_.engine.solve({-rows.u, -rows.l});
-    problem_.counters.sensitivity_backsolves += parameters;
-    increment_ = pass == 0 ? step.u : Matrix<double>(increment_ + step.u);
-    Matrix<double> moved(compact[0].size(), parameters), multiplier = step.l;
-    for (int j = 0; j < parameters; ++j) moved.col(j) = problem_.engine.compact(step.u.col(j));
-    compact_ = pass == 0 ? moved : Matrix<double>(compact_ + moved);
-    if (unknown_)
-      for (std::size_t p = 0; p < model.points.size(); ++p)
-        for (int c = 0; c < model.points[p].components(); ++c)
-          multiplier.row(model.points[p].multiplier + c) *= c == 0 ? rho_[p].normal : rho_[p].tangential;
-    for (int b = 0; b < blocks; ++b) {
-      add_derivatives(compact[b], moved, b);
-      if (unknown_) add_derivatives(lambda[b], multiplier, b);
-    }
+    improve(rows, compact, lambda);
     rows = evaluate(compact, lambda);
-    if (!unknown_ || pass == refinements || (rows.accurate && !redundant_)) return std::move(rows.fields);
+    if (std::exchange(unproven_, false) && !rows.accurate) {
+      valid_ = factorise_converged(problem_, primal_, at_, unknown_, redundant_);
+      if (!valid_) return false;
+    } else if (!unknown_ || pass == refinements || (rows.accurate && !redundant_)) {
+      fields = std::move(rows.fields);
+      return true;
+    }
+  }
+}
+
+template <class E>
+void LinearisedEquilibrium<E>::improve(const Rows& rows, std::vector<Vector<Direction>>& compact,
+                                       std::vector<Vector<Direction>>& lambda) {
+  const Model& model = problem_.model;
+  const auto step = problem_.engine.solve({-rows.u, -rows.l});
+  problem_.counters.sensitivity_backsolves += problem_.parameters;
+  increment_ = increment_.size() == 0 ? step.u : Matrix<double>(increment_ + step.u);
+  Matrix<double> moved(compact_.rows(), compact_.cols()), multiplier = step.l;
+  for (int j = 0; j < problem_.parameters; ++j) moved.col(j) = problem_.engine.compact(step.u.col(j));
+  compact_ += moved;
+  if (unknown_)
+    for (std::size_t p = 0; p < model.points.size(); ++p)
+      for (int c = 0; c < model.points[p].components(); ++c)
+        multiplier.row(model.points[p].multiplier + c) *= c == 0 ? rho_[p].normal : rho_[p].tangential;
+  for (int b = 0; b < static_cast<int>(compact.size()); ++b) {
+    add_derivatives(compact[b], moved, b);
+    if (unknown_) add_derivatives(lambda[b], multiplier, b);
   }
 }
 
@@ -165,7 +183,7 @@ typename LinearisedEquilibrium<E>::Rows LinearisedEquilibrium<E>::evaluate(
   const Matrix<double> contact = columns(forces);
   rows.u = load_.reduced + problem_.engine.scatter(contact);
   if (unknown_) rows.l = columns(multiplier_rows);
-  if (!unknown_ || increment_.size() == 0) return rows;
+  if ((!unknown_ && !unproven_) || increment_.size() == 0) return rows;
   const Matrix<double> internal = problem_.engine.apply_stiffness(increment_);
   rows.u += internal;
   for (Eigen::Index i = 0; i < rows.u.rows(); ++i)

@@ -17,7 +17,8 @@ bool differentiate_increment(const MonolithicAL& method, Differentiation<E>& pro
   LinearisedEquilibrium<E> linearised(problem, increment.state, rho, regularisation_blocks(method, problem),
                                       cone_radius(method), increment.time, true, previous.contact.placement);
   if (!linearised.valid()) return false;
-  const auto fields = linearised.solve(lambda);
+  std::vector<ContactField<Direction>> fields;
+  if (!linearised.solve(lambda, fields)) return false;
   linearised.settle(fields, lambda);
   return true;
 }

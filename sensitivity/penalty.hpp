@@ -18,7 +18,9 @@ bool differentiate_increment(const Penalty& method, Differentiation<E>& problem,
   LinearisedEquilibrium<E> linearised(problem, increment.state, rho, regularisation_blocks(method, problem),
                                       ConeRadius::augmented, increment.time, false, previous.contact.placement);
   if (!linearised.valid()) return false;
-  linearised.settle(linearised.solve(lambda), lambda);
+  std::vector<ContactField<Direction>> fields;
+  if (!linearised.solve(lambda, fields)) return false;
+  linearised.settle(fields, lambda);
   return true;
 }
 

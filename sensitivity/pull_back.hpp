@@ -134,7 +134,7 @@ RecordedEquilibrium<E>::RecordedEquilibrium(AdjointProblem<E>& problem, const St
     for (int c = 0; c < model.points[p].components(); ++c)
       scale_[model.points[p].multiplier + c] = c == 0 ? values[p].normal : values[p].tangential;
   const ContactInput<double> input{model, problem.slots, values, previous.contact.placement, cone, time};
-  valid_ = factorise_converged(problem, input, at, unknown, false, redundant_);
+  valid_ = factorise_converged(problem, input, at, unknown, redundant_);
   if (!valid_) return;
   record(previous, rho, cone, time, objectives);
   for (auto& objective : problem.objectives) {

@@ -6,31 +6,51 @@
 
 namespace stickslip {
 
-/// Prepares the engine to solve with the tangent at a state, in its branches. `problem`: where engine, counters and
-/// message are. `unknown`: lambda is part of p. `follows`: the engine has the factor of Newton's last iteration, whose
-/// tangent is the same, but for directions in space: it is used as it is, or updated. `redundant`: constraints repeat
-/// one another, so that the tangent yields and a solution takes a pass more. False, with the message, where it is
-/// singular.
-template <class Problem>
-bool factorise_converged(Problem& problem, const ContactInput<double>& input, const State<double>& at, bool unknown,
-                         bool follows, bool& redundant) {
-  const Model& model = problem.model;
-  const Vector<double> compact = to_compact(model, at.displacement);
+/// Tangents of all points at a converged state, in its branches.
+inline std::vector<PointTangent<double>> converged_tangents(const ContactInput<double>& input,
+                                                            const State<double>& at) {
+  const Vector<double> compact = to_compact(input.model, at.displacement);
   const Vector<double> multiplier = multiplier_on_rays(input, at);
   std::vector<PointTangent<double>> tangents;
-  for (int p = 0; p < static_cast<int>(model.points.size()); ++p)
+  for (int p = 0; p < static_cast<int>(input.model.points.size()); ++p)
     tangents.push_back(point_tangent<double>(input, p, compact, multiplier, at.contact.state[p]));
-  const auto decided = unknown ? decided_elsewhere(model, problem.slots) : std::vector<char>();
+  return tangents;
+}
+
+/// Prepares the engine to solve with the tangent at a converged state. `problem`: where engine, counters and message
+/// are. `unknown`: lambda is part of p. `redundant`: constraints repeat one another, so that the tangent yields and a
+/// solution takes a pass more. False, with the message, where it is singular.
+template <class Problem>
+bool factorise_converged(Problem& problem, const ContactInput<double>& input, const State<double>& at, bool unknown,
+                         bool& redundant) {
+  auto tangents = converged_tangents(input, at);
   Counters spent;
-  const bool updated = follows && decided.empty() && problem.engine.update(tangents, spent);
+  bool valid;
+  if (unknown) {
+    const auto decided = decided_elsewhere(problem.model, problem.slots);
+    valid = factorise_sharing(problem.engine, problem.model, decided, std::move(tangents), redundant, spent);
+  } else {
+    valid = problem.engine.factorise(tangents, spent);
+  }
   spent.sensitivity_backsolves = std::exchange(spent.backsolves, 0);
-  const bool valid =
-      updated || (unknown ? factorise_sharing(problem.engine, model, decided, std::move(tangents), redundant, spent)
-                          : problem.engine.factorise(tangents, spent));
   spent.sensitivity_factorizations = spent.factorizations;
   problem.counters += spent;
   if (!valid) problem.message = "the tangent of the converged state is singular: " + problem.engine.message();
   return valid;
+}
+
+/// The same with the factor that the engine has of Newton's last iteration, whose tangent is that of the converged
+/// state but for directions in space: it is used as it is, or updated. False where that cannot be. What it solves is to
+/// be checked.
+template <class Problem>
+bool reuse_factor(Problem& problem, const ContactInput<double>& input, const State<double>& at, bool unknown) {
+  if (unknown && !decided_elsewhere(problem.model, problem.slots).empty()) return false;
+  Counters spent;
+  const bool updated = problem.engine.update(converged_tangents(input, at), spent);
+  spent.sensitivity_backsolves = std::exchange(spent.backsolves, 0);
+  spent.sensitivity_factorizations = spent.factorizations;
+  problem.counters += spent;
+  return updated;
 }
 
 }  // namespace stickslip

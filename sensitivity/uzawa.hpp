@@ -126,7 +126,7 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
   Progress progress;
   for (int pass = 1; pass <= Progress::limit; ++pass) {
     const Matrix<double> before = columns([&](auto&, int b) -> auto& { return lambda[b]; });
-    fields = linearised.solve(lambda);
+    if (!linearised.solve(lambda, fields)) return false;
     const Matrix<double> after = columns([&](auto&, int b) -> auto& { return fields[b].traction; });
     update(lambda, fields);
     const Vector<double> floors = 8 * unit_roundoff * (stiffest * linearised.reach() + yielding * linearised.load());
@@ -155,7 +155,7 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
     if (progress.is_hopeless(pass, slowest, 1)) break;
   }
   problem.status = Status::cap;
-  problem.message = "the derivatives do not settle in 20000 passes; try a larger scale";
+  problem.message = "the derivatives would not settle in 20000 passes; try a larger scale";
   return false;
 }
 
@@ -170,7 +170,8 @@ bool differentiate_augmentations(const UzawaAL& method, Differentiation<E>& prob
     if (!linearised.valid()) return false;
     for (std::size_t b = 0; b < lambda.size(); ++b)
       for (Eigen::Index k = 0; k < lambda[b].size(); ++k) lambda[b][k].v = sweep.state.multiplier[k];
-    const auto fields = linearised.solve(lambda);
+    std::vector<ContactField<Direction>> fields;
+    if (!linearised.solve(lambda, fields)) return false;
     linearised.settle(fields, lambda);
     update(lambda, fields);
   }
@@ -220,10 +221,10 @@ bool differentiate_increment(const UzawaAL& method, Differentiation<E>& problem,
   auto lambda = detail::carried_multiplier(problem, increment.state.multiplier);
   std::vector<ContactField<Direction>> fields;
   if (oversized) {
-    fields = linearised.solve(lambda);
+    if (!linearised.solve(lambda, fields)) return false;
     problem.record = {1, oversize, 0};
   } else if (!detail::iterate(problem, linearised, rho, lambda, fields, 1e-13)) {
-    problem.message += detail::other_scheme;
+    if (problem.status == Status::cap) problem.message += detail::other_scheme;
     return false;
   }
   linearised.settle(fields, lambda);
@@ -283,7 +284,7 @@ bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, 
     plain = x == image;
   }
   problem.status = Status::cap;
-  problem.message = "the adjoint does not settle in 20000 passes; try a larger scale";
+  problem.message = "the adjoint would not settle in 20000 passes; try a larger scale";
   return false;
 }
 

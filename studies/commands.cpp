@@ -21,6 +21,7 @@
 #include "studies/method_options.hpp"
 #include "studies/printing.hpp"
 #include "studies/progress.hpp"
+#include "studies/report/figure_files.hpp"
 #include "studies/report/report.hpp"
 #include "studies/result_rows.hpp"
 #include "studies/schema.hpp"
@@ -86,7 +87,7 @@ void print_summary(const CaseResult& result) {
 /// picture.json, with what a study's rows hold of it, and the report; without `report` those of an earlier run go.
 void write_pictures(const std::filesystem::path& directory, const CaseResult& result, bool report) {
   for (const char* file : {"picture.json", "report.html"}) std::filesystem::remove(directory / file);
-  if (!report) return;
+  if (!report) return report::remove_figures(directory);
   json picture = picture_json(result);
   if (!picture.is_null()) {
     picture["interface"] = interface_json(result);

@@ -189,6 +189,49 @@ json obstacle_json(const Obstacle& obstacle, double time, const Numbers<double>&
   return shape;
 }
 
+/// Nodes of all bodies, what moved and stresses them, and their elements by nodes.
+json bodies_json(const Problem& problem, const State<double>& state) {
+  const auto& model = problem.model;
+  json points = json::array(), displacement = json::array(), elements = json::array(), bodies = json::array(),
+       mises = json::array(), names = json::array();
+  const Matrix<double> u = nodal(model, state.displacement), stress = element_stress(problem, state);
+  for (int node = 0; node < model.node_count; ++node) {
+    points.push_back(point_json(problem.slots.points.col(node)));
+    displacement.push_back(point_json(u.col(node)));
+  }
+  int column = 0;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    names.push_back(model.scene.bodies[b].name);
+    for (int e = 0; e < model.bodies[b].mesh.element_count(); ++e, ++column) {
+      elements.push_back(detail::element_nodes(model.bodies[b], e));
+      bodies.push_back(b);
+      mises.push_back(von_mises(stress.col(column)));
+    }
+  }
+  return {{"points", points}, {"displacement", displacement}, {"elements", elements},
+          {"bodies", bodies}, {"body_names", names},          {"von_mises", mises}};
+}
+
+/// Contact points where they have moved to, with their states and tractions.
+json contact_json(const Problem& problem, const State<double>& state) {
+  const auto& model = problem.model;
+  const Matrix<double> u = nodal(model, state.displacement);
+  json contact = json::array();
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    const auto& point = model.points[p];
+    const int node = point.nodes[0];
+    const auto t = state.contact.traction.segment(point.multiplier + 1, point.tangents);
+    contact.push_back({{"name", model.scene.contacts[point.contact].name},
+                       {"x", problem.slots.points(0, node) + u(0, node)},
+                       {"y", problem.slots.points(1, node) + u(1, node)},
+                       {"node", node},
+                       {"state", state_name(point, state.contact.state[p])},
+                       {"normal", state.contact.traction[point.multiplier]},
+                       {"tangential", point.tangents == 1 ? t[0] : t.norm()}});
+  }
+  return contact;
+}
+
 }  // namespace
 
 Vector<double> traction_vector(const Problem& problem, const State<double>& state, int p) {
@@ -217,45 +260,18 @@ std::vector<std::string> field_files(const CaseResult& result, int every) {
 }
 
 json picture_json(const CaseResult& result) {
-  const auto& problem = *result.problem;
-  const auto& model = problem.model;
   if (result.steps.empty()) return nullptr;
-  const auto& state = result.steps.back().increment->state;
-  json points = json::array(), displacement = json::array(), elements = json::array(), bodies = json::array(),
-       mises = json::array(), contact = json::array(), obstacles = json::array(), names = json::array();
-  const Matrix<double> u = nodal(model, state.displacement), stress = element_stress(problem, state);
-  for (int node = 0; node < model.node_count; ++node) {
-    points.push_back(point_json(problem.slots.points.col(node)));
-    displacement.push_back(point_json(u.col(node)));
-  }
-  int column = 0;
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    names.push_back(model.scene.bodies[b].name);
-    for (int e = 0; e < model.bodies[b].mesh.element_count(); ++e, ++column) {
-      elements.push_back(detail::element_nodes(model.bodies[b], e));
-      bodies.push_back(b);
-      mises.push_back(von_mises(stress.col(column)));
-    }
-  }
-  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
-    const auto& point = model.points[p];
-    const int node = point.nodes[0];
-    const auto t = state.contact.traction.segment(point.multiplier + 1, point.tangents);
-    contact.push_back({{"name", model.scene.contacts[point.contact].name},
-                       {"x", problem.slots.points(0, node) + u(0, node)},
-                       {"y", problem.slots.points(1, node) + u(1, node)},
-                       {"node", node},
-                       {"state", state_name(point, state.contact.state[p])},
-                       {"normal", state.contact.traction[point.multiplier]},
-                       {"tangential", point.tangents == 1 ? t[0] : t.norm()}});
-  }
-  for (const auto& obstacle : model.scene.obstacles)
-    obstacles.push_back(obstacle_json(obstacle, result.steps.back().increment->time, problem.slots.numbers));
-  json responses = json::object();
-  for (const auto& response : model.scene.responses) responses[response.name] = name_of(response.kind);
-  return {{"points", points},   {"elements", elements},   {"displacement", displacement},
-          {"von_mises", mises}, {"bodies", bodies},       {"body_names", names},
-          {"contact", contact}, {"obstacles", obstacles}, {"responses", responses}};
+  const auto& problem = *result.problem;
+  const auto& scene = problem.model.scene;
+  const auto& last = *result.steps.back().increment;
+  json picture = bodies_json(problem, last.state);
+  picture["contact"] = contact_json(problem, last.state);
+  picture["obstacles"] = json::array();
+  for (const auto& obstacle : scene.obstacles)
+    picture["obstacles"].push_back(obstacle_json(obstacle, last.time, problem.slots.numbers));
+  picture["responses"] = json::object();
+  for (const auto& response : scene.responses) picture["responses"][response.name] = name_of(response.kind);
+  return picture;
 }
 
 }  // namespace stickslip

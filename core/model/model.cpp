@@ -149,9 +149,12 @@ ResponsePlace locate_response(const Model& model, const Points<double>& points, 
 
 /// Elements that have a node of a side whose reaction is a response.
 ElementLists elements_at_reactions(const Model& model) {
+  const auto& responses = model.scene.responses;
+  const auto is_reaction = [](const Response& response) { return response.kind == Response::Kind::reaction; };
+  if (std::none_of(responses.begin(), responses.end(), is_reaction)) return {};
   std::vector<char> wanted(model.node_count, 0);
-  for (const auto& response : model.scene.responses)
-    if (response.kind == Response::Kind::reaction)
+  for (const auto& response : responses)
+    if (is_reaction(response))
       for (int node : model.side(response.on).nodes) wanted[node] = 1;
   ElementLists lists(model.bodies.size());
   for (std::size_t b = 0; b < lists.size(); ++b) {

@@ -115,7 +115,7 @@ struct Model {
   std::vector<int> contact_nodes;              ///< ascending; all nodes of all contact points
   std::vector<DesignVelocity> velocities;      ///< one per shape motion
   std::vector<ResponsePlace> response_places;  ///< per response
-  ElementLists at_reactions;                   ///< that have a node of a side whose reaction is a response
+  ElementLists at_reactions;                   ///< with a node of a side whose reaction is asked for; empty: none is
   std::vector<double> times;                   ///< ends of the increments, breakpoints of every table included
   Effects effects;
 

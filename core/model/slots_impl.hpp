@@ -57,10 +57,6 @@ void with_element(const BodyMesh& body, F&& f) {
   });
 }
 
-}  // namespace detail
-
-namespace detail {
-
 /// Whether no derivative rides on any entry.
 template <class A>
 bool is_constant(const A& entries) {
@@ -185,10 +181,32 @@ bool is_held(const Model& model, const Slots<T>& slots, int node, const Vector<d
   return true;
 }
 
-/// k_i of each contact point: harmonic mean of n.K_ii n at the interpolated slave and at the interpolated master nodes
-/// (slave only if the master is rigid). Where supports hold one side in a direction of the contact and the other not,
-/// at least that of the other: it alone yields there. Where a node has next to no stiffness along n (bars along their
-/// axis), the mean over all directions stands in for it.
+/// k_i between the slave's and the master's stiffness: their harmonic mean, as springs in series. Where supports hold
+/// one side along a direction of the contact and not the other, that other alone yields there, and its stiffness is
+/// k_i (their sum, where each yields alone along another direction). Supports decide, not sizes: k_i is smooth in both.
+template <class T>
+T stiffness_between(const Model& model, const Slots<T>& slots, int p, const T& slave, const T& master) {
+  const auto& point = model.points[p];
+  const auto& geometry = slots.geometry[p];
+  const auto middle = point.nodes.begin() + point.slave_nodes;
+  bool slave_yields = false, master_yields = false;  // alone
+  for (int c = 0; c < point.components(); ++c) {
+    const Vector<double> direction = c == 0 ? values(geometry.normal) : values(geometry.tangents.col(c - 1));
+    const auto held = [&](int node) { return is_held(model, slots, node, direction); };
+    const bool slave_held = std::all_of(point.nodes.begin(), middle, held);
+    const bool master_held = std::all_of(middle, point.nodes.end(), held);
+    slave_yields |= master_held && !slave_held;
+    master_yields |= slave_held && !master_held;
+  }
+  if (slave_yields && master_yields) return slave + master;
+  if (slave_yields) return slave;
+  if (master_yields) return master;
+  return T(2) * slave * master / (slave + master);
+}
+
+/// k_i of each contact point, from n.K_ii n at the interpolated slave and at the interpolated master nodes (slave only
+/// if the master is rigid). Where a node has next to no stiffness along n (bars along their axis), the mean over all
+/// directions stands in for it.
 template <class T>
 std::vector<T> contact_stiffness(const Model& model, const Slots<T>& slots) {
   const auto blocks = nodal_stiffness(model, slots);
@@ -204,7 +222,7 @@ std::vector<T> contact_stiffness(const Model& model, const Slots<T>& slots) {
     return value(k) > 1e-6 * value(mean) ? k : mean;
   };
   std::vector<T> stiffness;
-  for (std::size_t p = 0; p < model.points.size(); ++p) {
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     const auto& point = model.points[p];
     const auto& geometry = slots.geometry[p];
     T slave{}, master{};
@@ -215,24 +233,7 @@ std::vector<T> contact_stiffness(const Model& model, const Slots<T>& slots) {
       else
         master += -geometry.weights[i] * k;
     }
-    if (point.obstacle >= 0) {
-      stiffness.push_back(slave);
-      continue;
-    }
-    T k = T(2) * slave * master / (slave + master);
-    const auto holds = [&](auto first, auto last, const Vector<double>& direction) {
-      return std::all_of(first, last, [&](int node) { return is_held(model, slots, node, direction); });
-    };
-    const auto middle = point.nodes.begin() + point.slave_nodes;
-    for (int c = 0; c < point.components(); ++c) {
-      const Vector<double> direction = c == 0 ? values(geometry.normal) : values(geometry.tangents.col(c - 1));
-      const bool slave_held = holds(point.nodes.begin(), middle, direction);
-      const bool master_held = holds(middle, point.nodes.end(), direction);
-      if (slave_held == master_held) continue;
-      const T& yielding = slave_held ? master : slave;
-      if (value(yielding) > value(k)) k = yielding;
-    }
-    stiffness.push_back(k);
+    stiffness.push_back(point.obstacle >= 0 ? slave : stiffness_between(model, slots, p, slave, master));
   }
   return stiffness;
 }

@@ -14,7 +14,7 @@ template <class T>
 struct LinearElasticLaw {
   T lame, shear;
 
-  LinearElasticLaw(const T& first, const T& second) : lame(first), shear(second) {}
+  LinearElasticLaw(const T& lambda, const T& G) : lame(lambda), shear(G) {}
   LinearElasticLaw(const T& E, const T& nu, Space space) {
     lame = E * nu / ((T(1) + nu) * (T(1) - T(2) * nu));
     shear = E / (T(2) * (T(1) + nu));

@@ -35,6 +35,7 @@ void write_drawing(const fs::path& stem, const Drawing& drawing) {
   if (drawing.pieces() <= most_pieces) write_file_atomically(stem.string() + ".pgf", drawing.pgf());
 }
 
+/// Removes the figures that a folder holds.
 void clear(const fs::path& directory) {
   std::vector<fs::path> old;
   for (const auto& entry : fs::directory_iterator(directory))
@@ -66,6 +67,13 @@ std::string to_csv(const json& rows) {
   add_line(csv_text);
   for (const auto& row : rows) add_line([&](const std::string& field) { return csv_cell(at(row, field)); });
   return out;
+}
+
+void remove_figures(const fs::path& directory) {
+  const auto folder = directory / "figures";
+  if (!fs::is_directory(folder)) return;
+  clear(folder);
+  if (fs::is_empty(folder)) fs::remove(folder);
 }
 
 void write_figures(const fs::path& directory, const std::vector<Figure>& figures, const std::vector<Plate>& plates) {

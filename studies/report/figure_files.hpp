@@ -21,4 +21,7 @@ std::string to_csv(const nlohmann::json& rows);
 void write_figures(const std::filesystem::path& directory, const std::vector<Figure>& figures,
                    const std::vector<Plate>& plates);
 
+/// Removes those files of a former report.
+void remove_figures(const std::filesystem::path& directory);
+
 }  // namespace stickslip::report

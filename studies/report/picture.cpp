@@ -197,8 +197,8 @@ std::string in_words(const Scene& scene, bool with_close_up) {
       scene.scale == 1
           ? std::string("displacements at true scale")
           : fmt::format("displacements {} times enlarged (bodies that touch may seem to overlap)", number(scene.scale));
-  return fmt::format("Reference solution at the last step: {} elements, {} contact points; {}.{}",
-                     scene.mesh.elements.size(), scene.contact.size(), scale,
+  return fmt::format("At the last step: {} elements, {} contact points; {}.{}", scene.mesh.elements.size(),
+                     scene.contact.size(), scale,
                      scene.zooms && with_close_up ? " Right: the contact at true scale." : "");
 }
 

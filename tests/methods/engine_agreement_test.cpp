@@ -32,14 +32,7 @@ std::vector<Snapshot> run_through(LinearAlgebra::Engine kind, const Model& model
   EXPECT_TRUE(is_converged(trajectory.status)) << trajectory.message;
   EXPECT_TRUE(trajectory.engine.starts_with(kind == LinearAlgebra::Engine::sparse ? "sparse" : "condensed"));
   const int parameters = static_cast<int>(model.scene.parameters.size());
-  std::vector<ParameterBlock> blocks;
-  for (int first = 0; first < parameters; first += directions) {
-    auto numbers = model.scene.as<Direction>();
-    for (int d = 0; d < directions && first + d < parameters; ++d)
-      for (const auto& [slot, weight] : model.scene.parameters[first + d].slots) numbers.at_slot[slot].d[d] += weight;
-    const auto initial = initial_state<Direction>(model);
-    blocks.push_back({make_slots<Direction>(model, numbers), initial, initial});
-  }
+  auto blocks = parameter_blocks(model);
   std::vector<Snapshot> snapshots;
   std::visit(
       [&](auto& engine) {

@@ -30,12 +30,12 @@ Differentiated run(const Model& model, const Slots<double>& slots, const Method&
 }
 
 void expect_same(const std::vector<Matrix<double>>& found, const std::vector<Matrix<double>>& expected,
-                 const std::string& what) {
+                 const std::string& what, double tolerance = 1e-11) {  // rounding, by condition numbers up to 1e4
   ASSERT_EQ(found.size(), expected.size()) << what;
   double size = 0;
   for (const auto& of : expected) size = larger(size, largest_entry(of));
-  for (std::size_t n = 0; n < found.size(); ++n)  // rounding, by condition numbers up to 1e4
-    EXPECT_LE(largest_entry(Matrix<double>(found[n] - expected[n])), 1e-11 * size) << what << " " << n;
+  for (std::size_t n = 0; n < found.size(); ++n)
+    EXPECT_LE(largest_entry(Matrix<double>(found[n] - expected[n])), tolerance * size) << what << " " << n;
 }
 
 TEST(Derivatives, ThatFollowARunFactoriseNothing) {
@@ -54,13 +54,28 @@ TEST(Derivatives, ThatFollowARunFactoriseNothing) {
     EXPECT_EQ(following.trajectory.counters.factorizations, at_the_end.trajectory.counters.factorizations);
     const auto &with = following.trajectory.increments, &without = at_the_end.trajectory.increments;
     ASSERT_EQ(with.size(), without.size());
-    for (std::size_t n = 0; n < with.size();
-         ++n) {  // to rounding: an update may reach the same tangent by other columns
+    for (std::size_t n = 0; n < with.size(); ++n) {
+      // (to rounding: the next increment goes on from a factor that is updated differently)
       const Vector<double> change = with[n].state.displacement - without[n].state.displacement;
       EXPECT_LE(largest_entry(change), 1e-12 * largest_entry(without[n].state.displacement)) << name_of(method) << n;
     }
     expect_same(following.gradients.of, at_the_end.gradients.of, std::string(name_of(method)));
   }
+}
+
+// A penalty of 1e7 nodal stiffnesses magnifies what is left of a gap's derivative in a factor updated by rows that were
+// not quite these: it is seen, and the tangent factorised.
+TEST(Derivatives, ThatFollowARunFactoriseWhereTheFactorIsNotEnough) {
+  const auto scene = scenes::two_boxes(6, 4);
+  const Model model = make_model(scene);
+  const auto slots = make_slots<double>(model, scene.as<double>());
+  const Method method = Penalty{scenes::relative(1e7)};
+  const auto following = run(model, slots, method, Kind::sparse, true);
+  const auto at_the_end = run(model, slots, method, Kind::sparse, false);
+  ASSERT_TRUE(is_converged(following.trajectory.status)) << following.trajectory.message;
+  ASSERT_TRUE(is_converged(following.gradients.status)) << following.gradients.message;
+  EXPECT_GT(following.gradients.counters.sensitivity_factorizations, 0);
+  expect_same(following.gradients.of, at_the_end.gradients.of, "penalty", 1e-7);  // u times 1e7, with slack
 }
 
 TEST(Derivatives, OfSeveralIncrementsAtOnceAreThoseOfOneAtATime) {
@@ -75,14 +90,8 @@ TEST(Derivatives, OfSeveralIncrementsAtOnceAreThoseOfOneAtATime) {
     const auto trajectory = solve(model, slots, method, options, workspace);
     const auto together = differentiate(model, slots, method, trajectory, workspace);
     ASSERT_TRUE(is_converged(together.status)) << together.message;
-    std::vector<ParameterBlock> blocks;
+    auto blocks = parameter_blocks(model);
     const int parameters = static_cast<int>(scene.parameters.size());
-    for (int first = 0; first < parameters; first += directions) {
-      std::vector<int> of_block;
-      for (int j = first; j < std::min(parameters, first + directions); ++j) of_block.push_back(j);
-      const auto initial = initial_state<Direction>(model);
-      blocks.push_back({make_slots<Direction>(model, seeded(scene, of_block)), initial, initial});
-    }
     std::vector<Matrix<double>> alone;
     std::visit(
         [&](const auto& m, auto& engine) {
