@@ -71,6 +71,8 @@ class Augmentations {
   double violation() const {
     return violations_.empty() ? 0 : *std::max_element(violations_.begin(), violations_.end());
   }
+  /// Whether all that is left is what a nodal force makes of the tractions, and of the gaps through k.
+  bool is_within(double force) const;
   bool alternates() const { return undone_ >= patience; }
   /// Whether the derivative that rides on the scalar (the oracle's) still falls, asked once the primal has settled.
   bool derivative_moves() {
@@ -182,6 +184,17 @@ bool Augmentations<T>::yields(const Vector<T>& multiplier, const ContactField<T>
     const double pushed = compliance * std::abs(by[c]);
     const double before = detail::constraint(model_, field_, p, c), now = detail::constraint(model_, field, p, c);
     if (pushed > telling * reach && std::abs(now - before) <= nothing * pushed) return false;
+  }
+  return true;
+}
+
+template <class T>
+bool Augmentations<T>::is_within(double force) const {
+  for (int p = 0; p < static_cast<int>(model_.points.size()); ++p) {
+    const auto& point = model_.points[p];
+    const double update = update_.segment(point.multiplier, point.components()).norm();
+    if (violations_[p] * value(slots_.stiffness[p]) > force || update * value(slots_.geometry[p].area) > force)
+      return false;
   }
   return true;
 }

@@ -117,9 +117,10 @@ template <class T, class E>
 Evaluation<T> evaluate(E& engine, const ContactInput<T>& input, const Vector<T>& u, const Vector<T>& multiplier,
                        bool unknown, double prescribed, const RunScales& of_run, const Anchor<T>& anchor) {
   constexpr double rounding_factor = 100;  // several hundred terms meet in a row; each rounds once
-  // Rounding of this share of the forces means displacements 1e9 times those that the forces cause: a body that drifts
-  // off on a nearly singular tangent, and no equilibrium that rounding hides; unless supports move it as far.
-  constexpr double adrift = 1e-5, carried = 10;
+  // Rounding of this share of the forces means displacements 1e9 times those that they cause in the stiffest body: one
+  // that drifts off on a nearly singular tangent, and no equilibrium that rounding hides; unless supports move it as
+  // far, or a softer one yields as far.
+  constexpr double adrift = 1e-5, carried = 10, yielded = 1e3;
   const Model& model = input.model;
   Evaluation<T> at;
   RunScales& scales = at.scales;
@@ -130,7 +131,8 @@ Evaluation<T> evaluate(E& engine, const ContactInput<T>& input, const Vector<T>&
   at.rows_u = engine.residual(u, acting_forces(input, compact, at.field.traction, anchor), force);
   scales.force = force.force;
   double contact_rounding = 0, distance = 0, elastic = 0,
-         stiffest = 0;  // elastic: largest k / A; stiffest: largest rho
+         stiffest = 0;                                       // elastic: largest k / A; stiffest: largest rho
+  double softest = std::numeric_limits<double>::infinity();  // least k
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
     const double area = value(input.slots.geometry[p].area), stiffness = value(input.slots.stiffness[p]);
@@ -151,6 +153,7 @@ Evaluation<T> evaluate(E& engine, const ContactInput<T>& input, const Vector<T>&
     if (at.field.state[p] != ContactState::open)  // an initial gap rounds as a displacement does
       distance = std::max(distance, std::abs(value(input.slots.geometry[p].gap)));
     elastic = std::max(elastic, stiffness / area);
+    softest = std::min(softest, stiffness);
     stiffest = std::max(stiffest, value(input.rho[p].normal));
   }
   const double reach = largest_nodal_norm(compact, model.dimension);
@@ -158,7 +161,7 @@ Evaluation<T> evaluate(E& engine, const ContactInput<T>& input, const Vector<T>&
     if (!engine.is_free(row)) at.rows_u[row] = T(0);
   at.residuals.equilibrium = ratio(largest_nodal_norm(at.rows_u, model.dimension), scales.force);
   const double bulk_floor = rounding_factor * ratio(force.rounding, scales.force);
-  if (bulk_floor <= adrift || reach <= carried * prescribed)
+  if (bulk_floor <= adrift || reach <= carried * prescribed || softest * reach <= yielded * scales.force)
     at.residuals.floor_equilibrium =
         bulk_floor +
         rounding_factor * ratio(unit_roundoff * contact_rounding * std::max(reach, distance), scales.force);

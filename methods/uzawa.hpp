@@ -97,10 +97,11 @@ struct Standing {
   double negligible = 0;  ///< a violation that counts as none: that of the tolerance, or of rounding
 };
 
-/// `reach`: largest displacement of a contact node.
+/// `reach`: largest displacement of a contact node; `noise`: force that rounding leaves of the inner solve, 0 where the
+/// tolerance ended it.
 template <class T>
 Standing judge(const UzawaAL& method, const Slots<T>& slots, const RegularisationField<T>& rho, double reach,
-               const RunScales& scales, const Augmentations<T>& progress) {
+               double noise, const RunScales& scales, const Augmentations<T>& progress) {
   const double gap = 10 * unit_roundoff * reach, violation = method.tolerance * scales.length;
   double stiffest = 0, friction = 0;
   for (const auto& r : rho) stiffest = std::max(stiffest, value(r.normal));
@@ -108,8 +109,11 @@ Standing judge(const UzawaAL& method, const Slots<T>& slots, const Regularisatio
   // in slip the bound passes the rounding of the pressure on
   const double traction = (1 + friction) * (stiffest * gap + 10 * unit_roundoff * scales.traction);
   const bool small = progress.error_left() <= method.tolerance * scales.traction;
+  // a stiff body on a soft one: what its rounding leaves to the tractions, and to the gaps through the soft one
+  const bool drowned = noise > 0 && progress.stalled() && progress.is_within(10 * noise);
   // where nothing falls any more, rounding may have met the condition of a stiff body on a soft one
-  const bool at_roundoff = (progress.stalled() && progress.violation() <= gap && progress.update() <= traction) ||
+  const bool at_roundoff = drowned ||
+                           (progress.stalled() && progress.violation() <= gap && progress.update() <= traction) ||
                            (progress.exhausted() && progress.violation() <= 1e3 * gap) ||
                            (progress.exhausted() && progress.converges() && progress.violation() <= violation);
   Standing now;
@@ -184,9 +188,12 @@ Increment<T> solve_increment(const UzawaAL& options, Run<T, E>& run, const State
 
     const double reach = largest_nodal_norm(run.engine.compact(equilibrium.u), model.dimension);
     const double first = equilibrium.history.front().residual, rest = equilibrium.history.back().residual;
+    const double noise = equilibrium.status == Status::converged_at_roundoff
+                             ? equilibrium.history.back().equilibrium * run.account.scales.force
+                             : 0;
     progress.record(lambda, equilibrium.field, reach, first > 0 ? rest / first : 0);
     increment.contraction = progress.contraction();
-    auto now = detail::judge(method, run.slots, rho, reach, run.account.scales, progress);
+    auto now = detail::judge(method, run.slots, rho, reach, noise, run.account.scales, progress);
     within = now.within && !equilibrium.rough ? within + 1 : 0;
     rough &= !now.within;
     now.done |= within >= detail::patience_at_ties;  // the states that still change are those of a tie

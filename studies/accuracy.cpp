@@ -39,6 +39,7 @@ ElasticLayer layer_of(const M& m, const RegularisationField<double>&) {
 /// What is explained of the defects of one increment.
 struct Allowance {
   double force = 0, length = 0, traction = 0;
+  bool drowned = false;  ///< forces of the bodies round by more than is accepted
 };
 
 /// A share of a scale: what the tolerance leaves, and what rounding does, which counts up to `most`.
@@ -62,9 +63,13 @@ Allowance allowance(const Model& model, const Slots<double>& slots, const Tolera
   }
   const double yield = 10 * unit_roundoff * scales.traction / softest;  // a gap is seen as a traction over rho
   const double displacement = terms * unit_roundoff * (scales.reach + scales.length) + tie;
+  // what rounding leaves of the forces, Uzawa's updates turn into tractions, and into gaps through the local stiffness
+  const double in_bodies = scales.force > 0 ? scales.stiffness * displacement / scales.force : 0;
+  const double passed_on = std::min(in_bodies, most);
   return {scales.force * share(tolerance.force, (scales.stiffness + contact) * displacement, scales.force, most),
-          scales.length * share(tolerance.contact, displacement + yield, scales.length, most),
-          scales.traction * share(tolerance.contact, stiffest * displacement, scales.traction, most)};
+          scales.length * (share(tolerance.contact, displacement + yield, scales.length, most) + passed_on),
+          scales.traction * (share(tolerance.contact, stiffest * displacement, scales.traction, most) + passed_on),
+          in_bodies > most};
 }
 
 /// A defect of an increment, as its component of the method-blind error, and how it compares with what is explained.
@@ -135,9 +140,12 @@ Accuracy assess(const Model& model, const Slots<double>& slots, const Method& me
                   accuracy.faults.emplace_back();
                   if (found.excess == 0) return;
                   const bool penalty = std::holds_alternative<Penalty>(method);
+                  const std::string why =
+                      allowed.drowned ? "forces of the stiffest body, as far as it moves, round by more than is "
+                                        "accepted; hold it by supports, make it an obstacle, or try a smaller "
+                                      : "which neither the method nor rounding explains; try a smaller ";
                   accuracy.faults.back() = "the method-blind error \"" + std::string(found.component) + "\" is " +
-                                           short_number(found.value) + " at " + found.where +
-                                           ", which neither the method nor rounding explains; try a smaller " +
+                                           short_number(found.value) + " at " + found.where + ", " + why +
                                            (penalty ? "stiffness" : "scale");
                 });
   return accuracy;

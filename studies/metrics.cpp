@@ -63,9 +63,13 @@ void enlarge(const Model& model, const Slots<double>& slots, const State<double>
   }
   scales.least_traction = telling * stiffest * (scales.reach + scales.length);
   scales.traction = larger(scales.traction, scales.least_traction);
-  scales.force = larger(scales.force, telling * scales.stiffness * scales.reach);
-  for (const auto& forces : {bulk_forces(model, slots, state.displacement), external_forces(model, slots, time),
-                             contact_forces(model, slots, state.contact.traction)})
+  const Vector<double> loads = external_forces(model, slots, time);
+  // A load is exact: above the rounding of the bodies' forces it tells how large forces are, be it ever so small.
+  const double rounding = 10 * unit_roundoff * scales.stiffness * scales.reach;
+  if (!(largest_nodal_norm(loads, D) > rounding))
+    scales.force = larger(scales.force, telling * scales.stiffness * scales.reach);
+  for (const auto& forces :
+       {bulk_forces(model, slots, state.displacement), loads, contact_forces(model, slots, state.contact.traction)})
     scales.force = larger(scales.force, largest_nodal_norm(forces, D));
 }
 

@@ -25,7 +25,8 @@ struct KktError {
 };
 
 /// What the errors are relative to, at an increment: the largest of the run so far, but no less than 1e-9 of what the
-/// largest displacement makes of lengths, tractions (k / A) and forces, of which rounding leaves little.
+/// largest displacement makes of lengths, tractions (k / A) and, where no load tells their size, forces, of which
+/// rounding leaves little.
 struct KktScales {
   double length = 0, traction = 0, force = 0;
   double least_traction = 0;  ///< that share

@@ -163,6 +163,25 @@ TEST(UzawaUpdates, ConvergeWhereASupportHoldsTheSofterSideOfAContact) {
   }
 }
 
+// The forces of a stiff body that a soft one carries round as its stiffness times the soft one's displacements do:
+// 1e-16 over the ratio of the stiffnesses. Up to 1e-4 that is a solution at rounding; beyond, the message says what it
+// is.
+TEST(StiffBodies, AreCarriedByAMasterAsSoftAsRoundingAllows) {
+  for (const char* held : {R"([{"on": "up.left", "move": {"x": 0}}])", "[]"})
+    for (const auto& method : {R"({"penalty": {}})", R"({"uzawa_al": {}})", R"({"monolithic_al": {}})"}) {
+      for (const double ratio : {1e-6, 1e-9, 1e-11}) {
+        const auto result = run(two_blocks(1, ratio, json::parse(held)), json::parse(method));
+        ASSERT_TRUE(is_converged(result.status())) << method << held << ratio << result.message();
+        const double force = 0.02 * ratio;  // that of the load, 0.01 over a length of 2
+        EXPECT_NEAR(result.steps.back().responses[1], force, 1e-4 * force) << method << held << ratio;
+      }
+      const auto drowned = run(two_blocks(1, 1e-13, json::parse(held)), json::parse(method));
+      EXPECT_FALSE(is_converged(drowned.status())) << method << held;
+      const bool told = drowned.message().find("forces of the stiffest body") != std::string::npos;
+      EXPECT_TRUE(told || drowned.status() != Status::inaccurate) << drowned.message();
+    }
+}
+
 // What a support holds decides which stiffness rho takes, and not which side is stiffer: where both are the same, the
 // solution of a penalty, which depends on rho, has one derivative.
 TEST(Penalties, AreSmoothInTheStiffnessOfEqualBodies) {
