@@ -3,6 +3,7 @@
 
 #include "core/model/engine.hpp"
 #include "sensitivity/rays.hpp"
+#include "sensitivity/redundancy.hpp"
 
 namespace stickslip {
 
@@ -19,23 +20,25 @@ inline std::vector<PointTangent<double>> converged_tangents(const ContactInput<d
 
 /// Prepares the engine to solve with the tangent at a converged state. `problem`: where engine, counters and message
 /// are. `unknown`: lambda is part of p. `redundant`: constraints repeat one another, so that the tangent yields and a
-/// solution takes a pass more. False, with the message, where it is singular.
+/// solution takes a pass more. False, with the message, where it is singular for another reason.
 template <class Problem>
 bool factorise_converged(Problem& problem, const ContactInput<double>& input, const State<double>& at, bool unknown,
                          bool& redundant) {
   auto tangents = converged_tangents(input, at);
   Counters spent;
-  bool valid;
-  if (unknown) {
-    const auto decided = decided_elsewhere(problem.model, problem.slots);
-    valid = factorise_sharing(problem.engine, problem.model, decided, std::move(tangents), redundant, spent);
-  } else {
-    valid = problem.engine.factorise(tangents, spent);
-  }
+  const auto decided = unknown ? decided_elsewhere(problem.model, problem.slots) : std::vector<char>();
+  const bool valid =
+      unknown ? factorise_sharing(problem.engine, problem.model, decided, std::move(tangents), redundant, spent)
+              : problem.engine.factorise(tangents, spent);
   spent.sensitivity_backsolves = std::exchange(spent.backsolves, 0);
   spent.sensitivity_factorizations = spent.factorizations;
   problem.counters += spent;
   if (!valid) problem.message = "the tangent of the converged state is singular: " + problem.engine.message();
+  if (valid && redundant && !constraints_repeat(problem.model, problem.slots, at.contact.state, decided)) {
+    problem.message =
+        "the tangent of the converged state is singular: it is about to lose its balance, and has no derivative";
+    return false;
+  }
   return valid;
 }
 

@@ -211,3 +211,22 @@ Slots<T> make_slots(const Model& model, const Numbers<T>& numbers);
 }  // namespace stickslip
 
 #include "core/model/slots_impl.hpp"
+
+namespace stickslip {
+
+// Compiled once, in slots.cpp: of what each source would compile again, these took the most time.
+extern template Vector<double> bulk_forces(const Model&, const Slots<double>&, const Vector<double>&,
+                                           const ElementLists*);
+extern template Vector<double> load_vector(const Model&, const Load&, const Slots<double>&);
+extern template Points<double> initial_points(const Model&, const Numbers<double>&);
+extern template Slots<double> make_slots(const Model&, const Numbers<double>&, Points<double>);
+extern template Slots<double> make_slots(const Model&, const Numbers<double>&);
+extern template Vector<std::complex<double>> bulk_forces(const Model&, const Slots<std::complex<double>>&,
+                                                         const Vector<std::complex<double>>&, const ElementLists*);
+extern template Vector<std::complex<double>> load_vector(const Model&, const Load&, const Slots<std::complex<double>>&);
+extern template Points<std::complex<double>> initial_points(const Model&, const Numbers<std::complex<double>>&);
+extern template Slots<std::complex<double>> make_slots(const Model&, const Numbers<std::complex<double>>&,
+                                                       Points<std::complex<double>>);
+extern template Slots<std::complex<double>> make_slots(const Model&, const Numbers<std::complex<double>>&);
+
+}  // namespace stickslip

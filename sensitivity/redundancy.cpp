@@ -1,0 +1,89 @@
+#include "sensitivity/redundancy.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <map>
+
+namespace stickslip {
+namespace {
+
+/// Below this share of its length a row is the others' sum: coordinates round at 1e-16, and angles differ by more.
+constexpr double independent = 1e-8;
+
+/// Constraint rows of a closed point over the free dofs (node * D + i, along the axes of the support).
+std::vector<std::map<int, double>> rows_of(const Model& model, const Slots<double>& slots, int p, ContactState state,
+                                           const std::vector<char>& decided) {
+  const auto& point = model.points[p];
+  const auto& geometry = slots.geometry[p];
+  const int D = model.dimension, components = state == ContactState::stick ? point.components() : 1;
+  std::vector<std::map<int, double>> rows;
+  for (int c = 0; c < components; ++c) {
+    if (!decided.empty() && decided[point.multiplier + c]) continue;
+    const Vector<double> direction = c == 0 ? geometry.normal : geometry.tangents.col(c - 1);
+    auto& row = rows.emplace_back();
+    for (std::size_t n = 0; n < point.nodes.size(); ++n) {
+      const int node = point.nodes[n], framed = framed_index(model, node);
+      for (int i = 0; i < D; ++i) {
+        const double along = framed < 0 ? direction[i] : slots.frames[framed].col(i).dot(direction);
+        if (model.free_index[node * D + i] >= 0 && along != 0) row[node * D + i] += geometry.weights[n] * along;
+      }
+    }
+  }
+  return rows;
+}
+
+/// Whether rows are independent of one another on the dofs that `counts` lets in.
+template <class Counts>
+bool are_independent(const std::vector<std::map<int, double>>& rows, Counts&& counts) {
+  std::map<int, int> column;
+  for (const auto& row : rows)
+    for (const auto& [dof, weight] : row)
+      if (counts(dof)) column.try_emplace(dof, static_cast<int>(column.size()));
+  const auto height = static_cast<Eigen::Index>(rows.size()), width = static_cast<Eigen::Index>(column.size());
+  if (height > width) return false;
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(height, width);
+  for (Eigen::Index k = 0; k < height; ++k) {
+    for (const auto& [dof, weight] : rows[k])
+      if (counts(dof)) matrix(k, column.at(dof)) = weight;
+    if (matrix.row(k).norm() > 0) matrix.row(k).normalize();
+  }
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor(matrix.transpose());
+  factor.setThreshold(independent);
+  return factor.rank() == height;
+}
+
+}  // namespace
+
+bool constraints_repeat(const Model& model, const Slots<double>& slots, const std::vector<ContactState>& states,
+                        const std::vector<char>& decided) {
+  constexpr std::size_t most = 500;  // rows of a dense factorisation; beyond, constraints count as repeated
+  std::vector<int> left, users(model.node_count, 0);
+  std::vector<std::vector<std::map<int, double>>> rows(model.points.size());
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    if (states[p] == ContactState::open) continue;
+    rows[p] = rows_of(model, slots, p, states[p], decided);
+    left.push_back(p);
+    for (int node : model.points[p].nodes) ++users[node];
+  }
+  // Rows that are independent on nodes of their own depend on no others: they go, and may leave others alone.
+  const auto stands_alone = [&](int p) {
+    return are_independent(rows[p], [&](int dof) { return users[dof / model.dimension] == 1; });
+  };
+  for (std::size_t before = left.size() + 1; left.size() < before;) {
+    before = left.size();
+    std::vector<int> rest;
+    for (int p : left) {
+      if (!stands_alone(p)) {
+        rest.push_back(p);
+        continue;
+      }
+      for (int node : model.points[p].nodes) --users[node];
+    }
+    left = std::move(rest);
+  }
+  std::vector<std::map<int, double>> joined;
+  for (int p : left) joined.insert(joined.end(), rows[p].begin(), rows[p].end());
+  return joined.size() > most || !are_independent(joined, [](int) { return true; });
+}
+
+}  // namespace stickslip
