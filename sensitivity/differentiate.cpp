@@ -5,6 +5,11 @@
 #include "sensitivity/one_sided.hpp"
 
 namespace stickslip {
+
+template Vector<Direction> bulk_forces(const Model&, const Slots<Direction>&, const Vector<Direction>&,
+                                       const ElementLists*);
+template Slots<Direction> make_slots(const Model&, const Numbers<Direction>&);
+
 namespace {
 
 /// Derivatives of an increment with those of responses that can tie replaced by what they are on one side, where that
@@ -43,6 +48,24 @@ constexpr bool keeps_tangents(const M&) {
 }
 bool keeps_tangents(const UzawaAL& method) { return method.sensitivity == UzawaAL::Sensitivity::iterated; }
 
+/// Whether a response reads displacements of nodes that are in no contact.
+bool reads_inside(const Model& model) {
+  const auto is_inside = [&](int node) {
+    return !std::binary_search(model.contact_nodes.begin(), model.contact_nodes.end(), node);
+  };
+  for (std::size_t i = 0; i < model.scene.responses.size(); ++i) {
+    const Response& response = model.scene.responses[i];
+    if (response.kind == Response::Kind::reaction || response.kind == Response::Kind::strain_energy) return true;
+    if (response.kind != Response::Kind::displacement) continue;
+    const auto& place = model.response_places[i].nodes;
+    if (std::any_of(place.begin(), place.end(), [&](const auto& node) { return is_inside(node.first); })) return true;
+    if (!place.empty()) continue;
+    const auto nodes = model.side(response.on).nodes;
+    if (std::any_of(nodes.begin(), nodes.end(), is_inside)) return true;
+  }
+  return false;
+}
+
 /// Whether a factorisation of the engine costs as much as many solves.
 template <class T>
 constexpr bool has_costly_factors(const CondensedEngine<T>&) {
@@ -60,8 +83,9 @@ struct Derivatives::Progress {
   const Slots<double>& slots;
   const Method& method;
   Workspace<double>& workspace;
-  Gradients gradients;
-  std::vector<ParameterBlock> blocks;
+  const bool inside = reads_inside(model);
+  Gradients gradients = {};
+  std::vector<ParameterBlock> blocks = {};
   std::size_t done = 0;    ///< increments
   double largest = 0;      ///< traction_scale of those
   bool postponed = false;  ///< what is left needs the whole run
@@ -122,12 +146,31 @@ struct Derivatives::Progress {
         std::swap(block.previous, block.current);
       }
     }
-    auto displacements = expand(problem, std::move(unexpanded));
+    gradients.counters += problem.counters;
+    if (unexpanded.empty()) return;
+    const bool is_last = !failed && end == increments.size();
+    auto displacements = displacements_of(problem, std::move(unexpanded), is_last);
     for (std::size_t k = 0; k < displacements.size(); ++k) {
       for (std::size_t b = 0; b < blocks.size(); ++b) reached[k][b].displacement = std::move(displacements[k][b]);
       evaluate(reached[k], increments[done++].time);
     }
-    gradients.counters += problem.counters;
+    if (is_last)
+      gradients.last_displacement = gather(
+          blocks, parameters(), [&](auto&, int b) -> auto& { return reached.back()[b].displacement; });
+  }
+
+  /// Displacements of increments, expanded where a response reads them, and the last one's of the run.
+  template <class E>
+  std::vector<std::vector<Vector<Direction>>> displacements_of(Differentiation<E>& problem,
+                                                               std::vector<Unexpanded> increments, bool is_last) {
+    std::vector<std::vector<Vector<Direction>>> displacements;
+    if (!inside) {
+      const std::size_t unread = increments.size() - (is_last ? 1 : 0);
+      for (std::size_t k = 0; k < unread; ++k) displacements.push_back(at_contact(problem, std::move(increments[k])));
+      increments.erase(increments.begin(), increments.begin() + static_cast<std::ptrdiff_t>(unread));
+    }
+    for (auto& expanded : expand(problem, std::move(increments))) displacements.push_back(std::move(expanded));
+    return displacements;
   }
 
   void evaluate(const std::vector<State<Direction>>& at, double time) {
@@ -141,14 +184,12 @@ struct Derivatives::Progress {
       gradients.below.push_back(with_ties(model, blocks, at, gradients.of.back(), Ties::below));
       gradients.above.push_back(with_ties(model, blocks, at, gradients.of.back(), Ties::above));
     }
-    gradients.last_displacement = gather(
-        blocks, parameters(), [&](auto&, int b) -> auto& { return at[b].displacement; });
   }
 };
 
 Derivatives::Derivatives(const Model& model, const Slots<double>& slots, const Method& method,
                          Workspace<double>& workspace)
-    : progress_(model.scene.parameters.empty() ? nullptr : new Progress{model, slots, method, workspace, {}, {}}) {}
+    : progress_(model.scene.parameters.empty() ? nullptr : new Progress{model, slots, method, workspace}) {}
 Derivatives::~Derivatives() = default;
 
 void Derivatives::follow(const Trajectory<double>& trajectory) {

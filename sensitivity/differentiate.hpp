@@ -27,7 +27,7 @@ struct Gradients {
   std::vector<Matrix<double>> below, above;
   Matrix<double> of_objectives;       ///< objectives x parameters; empty where it failed
   std::vector<SchemeRecord> records;  ///< per increment; empty but for Uzawa
-  Matrix<double> last_displacement;   ///< of the last differentiated increment: all dofs x parameters
+  Matrix<double> last_displacement;   ///< of the last increment: all dofs x parameters; empty where the scheme failed
   Counters counters;
   Counters search;  ///< of these, what it took to find the branches of ties (sensitivity/one_sided.hpp)
   double seconds = 0;

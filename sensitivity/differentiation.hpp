@@ -13,6 +13,11 @@ namespace stickslip {
 inline constexpr int directions = 4;
 using Direction = Dual<directions>;
 
+// Compiled once, in differentiate.cpp.
+extern template Vector<Direction> bulk_forces(const Model&, const Slots<Direction>&, const Vector<Direction>&,
+                                              const ElementLists*);
+extern template Slots<Direction> make_slots(const Model&, const Numbers<Direction>&);
+
 /// Numbers of the scene with up to `directions` parameters seeded, each in a direction of its own.
 inline Numbers<Direction> seeded(const Scene& scene, const std::vector<int>& parameters) {
   auto numbers = scene.as<Direction>();
@@ -118,6 +123,22 @@ void reduce(Differentiation<E>& problem, std::vector<PseudoLoad>& loads) {
   for (int n = 0; n < count; ++n) rows.middleCols(n * parameters, parameters) = loads[n].rows;
   const Matrix<double> reduced = problem.engine.reduce(rows);
   for (int n = 0; n < count; ++n) loads[n].reduced = reduced.middleCols(n * parameters, parameters);
+}
+
+/// Displacements of all dofs with their derivatives at supports and contact nodes; elsewhere without, which saves the
+/// solve.
+template <class E>
+std::vector<Vector<Direction>> at_contact(Differentiation<E>& problem, Unexpanded increment) {
+  const Model& model = problem.model;
+  Matrix<double> all = Matrix<double>::Zero(model.dof_count(), problem.parameters);
+  for (int j = 0; j < problem.parameters; ++j) {
+    Vector<double> column = all.col(j);
+    add_compact<double>(model, problem.engine.compact(increment.increment.col(j)), column);
+    all.col(j) = column;
+  }
+  auto displacements = std::move(increment.load.displacement);
+  for (std::size_t b = 0; b < displacements.size(); ++b) add_derivatives(displacements[b], all, static_cast<int>(b));
+  return displacements;
 }
 
 /// Displacements of all dofs with their derivatives, per increment and block, in one solve.

@@ -160,7 +160,7 @@ void LinearisedEquilibrium<E>::improve(const Rows& rows, std::vector<Vector<Dire
 
 /// Rows of the derivative problem at the derivatives reached so far. `accurate`: what is left of the displacement rows
 /// is rounding, measured by the derivatives of the forces that should balance in them. It is not where a large rho
-/// magnifies the rounding of Dg; lambda then takes the defect up in another pass.
+/// magnifies the rounding of Dg: an unknown lambda then takes the defect up in another pass, a given one can't.
 template <class E>
 typename LinearisedEquilibrium<E>::Rows LinearisedEquilibrium<E>::evaluate(
     const std::vector<Vector<Direction>>& compact, const std::vector<Vector<Direction>>& lambda) {
@@ -188,10 +188,14 @@ typename LinearisedEquilibrium<E>::Rows LinearisedEquilibrium<E>::evaluate(
   rows.u += internal;
   for (Eigen::Index i = 0; i < rows.u.rows(); ++i)
     if (!problem_.engine.is_free(i)) rows.u.row(i).setZero();
+  double stiffest = 0;  // contact, force per length
+  for (std::size_t p = 0; p < rho_.size() && !unknown_; ++p)
+    stiffest = std::max(stiffest, problem_.slots.geometry[p].area * std::max(rho_[p].normal, rho_[p].tangential));
   for (Eigen::Index j = 0; j < rows.u.cols() && rows.u.rows() > 0; ++j) {
     const double size = contact.rows() ? contact.col(j).cwiseAbs().maxCoeff() : 0;
-    rows.accurate &=
-        rows.u.col(j).cwiseAbs().maxCoeff() <= 1e-12 * std::max(size, internal.col(j).cwiseAbs().maxCoeff());
+    const double magnified = contact.rows() ? 8 * unit_roundoff * stiffest * compact_.col(j).cwiseAbs().maxCoeff() : 0;
+    rows.accurate &= rows.u.col(j).cwiseAbs().maxCoeff() <=
+                     std::max(magnified, 1e-12 * std::max(size, internal.col(j).cwiseAbs().maxCoeff()));
   }
   return rows;
 }

@@ -114,6 +114,35 @@ TEST(Derivatives, OfSeveralIncrementsAtOnceAreThoseOfOneAtATime) {
   }
 }
 
+// Where no response reads the inside of a body, displacements are expanded at the last increment alone: the derivatives
+// are those that come with all of them.
+TEST(Derivatives, OfContactResponsesNeedNoDisplacementsInside) {
+  const Scene full = scenes::two_boxes(6, 4);
+  Scene contact_alone = full;
+  std::erase_if(contact_alone.responses, [](const Response& r) {
+    return r.kind == Response::Kind::strain_energy || r.kind == Response::Kind::reaction;
+  });
+  for (const Method& method : {Method(Penalty{}), Method(UzawaAL{}), Method(MonolithicAL{})}) {
+    const auto differentiated = [&](const Scene& scene) {
+      const Model model = make_model(scene);
+      return run(model, make_slots<double>(model, scene.as<double>()), method, Kind::condensed, false).gradients;
+    };
+    const auto found = differentiated(contact_alone), expected = differentiated(full);
+    ASSERT_TRUE(is_converged(found.status)) << found.message;
+    ASSERT_EQ(found.of.size(), expected.of.size());
+    std::vector<Matrix<double>> kept;
+    for (std::size_t n = 0; n < expected.of.size(); ++n) {
+      Matrix<double> rows(found.of[n].rows(), found.of[n].cols());
+      for (std::size_t i = 0; i < contact_alone.responses.size(); ++i)
+        for (std::size_t k = 0; k < full.responses.size(); ++k)
+          if (full.responses[k].name == contact_alone.responses[i].name) rows.row(i) = expected.of[n].row(k);
+      kept.push_back(rows);
+    }
+    expect_same(found.of, kept, std::string(name_of(method)));
+    expect_same({found.last_displacement}, {expected.last_displacement}, "displacement");
+  }
+}
+
 // A reaction needs the forces at its support alone: elsewhere, elements could be anything.
 TEST(Responses, OfReactionsVisitTheElementsAtTheirSupport) {
   const auto scene = scenes::greco_plate(6);
