@@ -338,7 +338,9 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
   int extra = detail::extra_iterations<T>(), steady = 0, presumptions = 3;
   double step_length = 1;
   const double prescribed = detail::prescribed_motion(model, input.slots, input.time);
+  const long points = static_cast<long>(model.points.size());
   auto at = detail::evaluate(engine, input, u, multiplier, unknown, prescribed, account.scales, anchor);
+  account.counters.contact_evaluations += points;
   for (int iteration = 0;; ++iteration) {
     result.history.push_back(detail::record(at, used, step_length));
     result.history.back().changed = iteration == 0 ? 0 : result.history.back().changed;
@@ -416,7 +418,10 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
     BlockVector<T> step;
     {
       const Stopwatch time(account.seconds.backsolve);
-      if (branch != evaluated) detail::rows_in(engine, input, u, multiplier, unknown, branch, anchor, at);
+      if (branch != evaluated) {
+        detail::rows_in(engine, input, u, multiplier, unknown, branch, anchor, at);
+        account.counters.contact_evaluations += points;
+      }
       step = engine.solve({-at.rows_u, unknown ? Matrix<T>(-at.rows_l) : Matrix<T>()});
       ++account.counters.backsolves;
     }
@@ -436,6 +441,7 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
       const Vector<T> u1 = u0 + T(length) * step.u.col(0);
       const Vector<T> multiplier1 = unknown ? Vector<T>(multiplier0 + T(length) * step.l.col(0)) : multiplier0;
       auto trial = detail::evaluate(engine, input, u1, multiplier1, unknown, prescribed, account.scales, anchor);
+      account.counters.contact_evaluations += points;
       const double merit = trial.residuals.largest();
       if (merit < best || !std::isfinite(best)) {
         best = merit;

@@ -89,6 +89,7 @@ std::string unyielding_point(Run<T, E>& run, const ContactInput<T>& found, const
     const Vector<T> u = equilibrium.u + run.engine.solve({-rows, {}}).u.col(0);
     ++run.account.counters.backsolves;
     const auto after = evaluate_contact<T>(input, run.engine.compact(u), traction, &states);
+    run.account.counters.contact_evaluations += 2 * static_cast<long>(model.points.size());
     rest = 0;
     bool settled = true;
     for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {

@@ -183,7 +183,7 @@ Increment<T> solve_increment(const UzawaAL& options, Run<T, E>& run, const State
     };
     if (equilibrium.status == Status::cycle && !is_globalised(method)) increment.message += detail::frozen_advice;
     if (!is_converged(equilibrium.status)) return keep();
-    if (truncated)
+    if (truncated && model.effects.sensitivity)
       increment.sweeps.push_back({settle(run, input, equilibrium, previous.dissipation), increment.rho_factor});
 
     const double reach = largest_nodal_norm(run.engine.compact(equilibrium.u), model.dimension);

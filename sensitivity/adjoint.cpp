@@ -1,6 +1,7 @@
 #include "sensitivity/adjoint.hpp"
 
 #include "core/model/objective.hpp"
+#include "core/model/storage.hpp"
 #include "sensitivity/monolithic.hpp"
 #include "sensitivity/one_sided.hpp"
 #include "sensitivity/penalty.hpp"
@@ -95,6 +96,18 @@ void pull_back_bodies(const Model& model, const Slots<Reverse>& slots, Tape& tap
     });
 }
 
+DerivativeStorage storage_of(const Recording& recording, const std::vector<Backward>& objectives) {
+  DerivativeStorage storage;
+  storage.slots = slot_bytes(recording.slots).all();
+  storage.tape = recording.tape.bytes();
+  for (const auto& objective : objectives) {
+    storage.adjoints += static_cast<long>(objective.by.capacity() * sizeof(double));
+    for (const auto* pairs : {&objective.weights, &objective.motions})
+      for (const auto& vector : *pairs) storage.adjoints += bytes_of(vector);
+  }
+  return storage;
+}
+
 template <class E, class M>
 bool run(const M& method, AdjointProblem<E>& problem, const Trajectory<double>& trajectory) {
   const Model& model = problem.model;
@@ -159,7 +172,12 @@ Gradients adjoint(const Model& model, const Slots<double>& slots, const Method& 
   const auto& scene = model.scene;
   if (scene.objectives.empty() || scene.parameters.empty()) return gradients;
   const Stopwatch time(gradients.seconds);
-  const auto consistent = consistent_at_ties(model, slots, method, trajectory, workspace, gradients.counters);
+  std::optional<Trajectory<double>> consistent;
+  {
+    const Stopwatch searching(gradients.search_seconds);
+    consistent = consistent_at_ties(model, slots, method, trajectory, workspace, gradients.search);
+  }
+  gradients.counters += gradients.search;
   Recording recording(model);
   Tape& tape = recording.tape;
   std::vector<Backward> objectives(scene.objectives.size());
@@ -178,6 +196,7 @@ Gradients adjoint(const Model& model, const Slots<double>& slots, const Method& 
   if (!done) return gradients;
   for (auto& objective : objectives) objective.by.resize(tape.size());
   pull_back_bodies(model, recording.slots, tape, objectives);
+  gradients.storage = storage_of(recording, objectives);
   gradients.of_objectives = Matrix<double>::Zero(objectives.size(), scene.parameters.size());
   for (std::size_t i = 0; i < objectives.size(); ++i) {
     const Vector<double> by = recording.by_numbers(model, objectives[i].by);

@@ -1,6 +1,7 @@
 #include "sensitivity/differentiate.hpp"
 
 #include "core/model/response.hpp"
+#include "core/model/storage.hpp"
 #include "sensitivity/branch_search.hpp"
 #include "sensitivity/one_sided.hpp"
 
@@ -76,6 +77,23 @@ constexpr bool has_costly_factors(const SparseEngine<T>&) {
   return true;
 }
 
+/// Bytes of pseudo-loads and solutions.
+long solve_bytes(const std::vector<Unexpanded>& increments) {
+  long bytes = 0;
+  for (const auto& [load, increment] : increments) {
+    for (const auto& displacement : load.displacement) bytes += bytes_of(displacement);
+    for (const auto* of : {&load.rows, &load.reduced, &increment}) bytes += bytes_of(*of);
+  }
+  return bytes;
+}
+
+long state_bytes(const std::vector<std::vector<State<Direction>>>& increments) {
+  long bytes = 0;
+  for (const auto& blocks : increments)
+    for (const auto& state : blocks) bytes += state_bytes(state).all();
+  return bytes;
+}
+
 }  // namespace
 
 struct Derivatives::Progress {
@@ -97,14 +115,14 @@ struct Derivatives::Progress {
     blocks = parameter_blocks(model);
     for (auto& block : blocks)  // displacements of the increments are expanded together
       for (auto* state : {&block.previous, &block.current}) state->displacement.resize(0);
+    for (const auto& block : blocks) gradients.storage.slots += slot_bytes(block.slots).all();
   }
 
   /// Differentiates the increments up to `end`, as many together as their columns fit into one solve.
   /// `follows`: the engine has the factor of the last of them.
   void advance(const Trajectory<double>& trajectory, std::size_t end, bool follows) {
-    constexpr int columns = 16;  // more save little time and take much memory
     if (blocks.empty()) begin();
-    const std::size_t together = std::max(1, columns / parameters());
+    const std::size_t together = std::max(1, columns_together / parameters());
     std::visit(
         [&](const auto& m) {
           std::visit(
@@ -148,12 +166,15 @@ struct Derivatives::Progress {
     }
     gradients.counters += problem.counters;
     if (unexpanded.empty()) return;
+    auto& storage = gradients.storage;
+    storage.loads = std::max(storage.loads, solve_bytes(unexpanded));
     const bool is_last = !failed && end == increments.size();
     auto displacements = displacements_of(problem, std::move(unexpanded), is_last);
     for (std::size_t k = 0; k < displacements.size(); ++k) {
       for (std::size_t b = 0; b < blocks.size(); ++b) reached[k][b].displacement = std::move(displacements[k][b]);
       evaluate(reached[k], increments[done++].time);
     }
+    storage.states = std::max(storage.states, state_bytes(reached));
     if (is_last)
       gradients.last_displacement = gather(
           blocks, parameters(), [&](auto&, int b) -> auto& { return reached.back()[b].displacement; });
@@ -214,7 +235,11 @@ Gradients Derivatives::finish(const Trajectory<double>& trajectory) {
   {
     const Stopwatch time(now.gradients.seconds);
     Counters search;
-    const auto consistent = consistent_at_ties(now.model, now.slots, now.method, trajectory, now.workspace, search);
+    std::optional<Trajectory<double>> consistent;
+    {
+      const Stopwatch searching(now.gradients.search_seconds);
+      consistent = consistent_at_ties(now.model, now.slots, now.method, trajectory, now.workspace, search);
+    }
     now.advance(consistent ? *consistent : trajectory, trajectory.increments.size(), false);
     now.gradients.search = search;
     now.gradients.counters += search;

@@ -10,11 +10,23 @@
 
 namespace stickslip {
 
+/// Right-hand sides of several increments that are solved at once: more save little time and take much memory.
+inline constexpr int columns_together = 16;
+
 /// What a scheme did in one increment, where it iterates; Uzawa's do.
 struct SchemeRecord {
   int passes = 0;          ///< back-solves a parameter
   double oversize = 1;     ///< kappa_s, the factor on rho in the factorised tangent
   double contraction = 0;  ///< largest last ratio of the changes of D lambda from pass to pass; 0: not measured
+};
+
+/// Memory that derivatives took, in bytes, each kind at its most.
+struct DerivativeStorage {
+  long slots = 0;     ///< of dual numbers, or of reverse ones
+  long states = 0;    ///< direct: those of the increments solved together
+  long loads = 0;     ///< direct: their pseudo-loads, and the solutions
+  long tape = 0;      ///< adjoint
+  long adjoints = 0;  ///< adjoint: derivatives by the tape's entries, and the bodies' pairs of all increments
 };
 
 struct Gradients {
@@ -31,6 +43,8 @@ struct Gradients {
   Counters counters;
   Counters search;  ///< of these, what it took to find the branches of ties (sensitivity/one_sided.hpp)
   double seconds = 0;
+  double search_seconds = 0;  ///< of these, for `search`
+  DerivativeStorage storage;
 };
 
 /// Derivatives of a run: all at its end, or as it goes, where a step's last factor is worth more than solving for many

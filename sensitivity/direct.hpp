@@ -167,6 +167,7 @@ typename LinearisedEquilibrium<E>::Rows LinearisedEquilibrium<E>::evaluate(
   const int blocks = static_cast<int>(problem_.blocks.size());
   Rows rows;
   std::vector<Vector<Direction>> forces, multiplier_rows;
+  problem_.counters.contact_evaluations += blocks * static_cast<long>(problem_.model.points.size());
   for (int b = 0; b < blocks; ++b) {
     const auto& slots = problem_.blocks[b].slots;
     rows.fields.push_back(evaluate_contact<Direction>(input(b), compact[b], lambda[b], &at_.contact.state));

@@ -163,6 +163,7 @@ void RecordedEquilibrium<E>::record(const State<double>& previous, const Regular
   state_.displacement = displacement_;
   state_.multiplier = multiplier_;
   state_.contact = evaluate_contact<Reverse>(input, to_compact(model, displacement_), multiplier_, &at_.contact.state);
+  problem_.counters.contact_evaluations += static_cast<long>(model.points.size());
   take_rays(input, multiplier_, at_.contact.ray, state_.contact);
   state_.dissipation = dissipated(input, state_.contact, multiplier_, dissipation_);
   const Vector<Reverse> balance = nodal_balance(model, slots, state_, internal_, time);

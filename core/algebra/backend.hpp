@@ -6,6 +6,7 @@
 ///   void solve(const Matrix<T>& b, Matrix<T>& x, bool transposed)  sets x; pre: the last factorise() was done
 ///   std::string name() const                                    library, version, kind, ordering
 ///   long factor_nonzeros() const                                entries of the last factor
+///   long factor_bytes() const                                   what the library keeps of it
 /// `Factor<T>` is the closed set of those built in. Data is what the library keeps; it is held by a shared_ptr because
 /// that destroys a type which is incomplete here, and it is never shared.
 #pragma once
@@ -50,6 +51,7 @@ class CholmodFactor {
   void solve(const Matrix<double>& b, Matrix<double>& x, bool transposed);
   std::string name() const;
   long factor_nonzeros() const;
+  long factor_bytes() const;
   static std::string library();
 
  private:
@@ -68,6 +70,7 @@ class UmfpackFactor {
   void solve(const Matrix<double>& b, Matrix<double>& x, bool transposed);
   std::string name() const;
   long factor_nonzeros() const;
+  long factor_bytes() const;
   static std::string library();
 
  private:
@@ -87,6 +90,7 @@ class MumpsFactor {
   void solve(const Matrix<double>& b, Matrix<double>& x, bool transposed);
   std::string name() const;
   long factor_nonzeros() const;
+  long factor_bytes() const;
   static std::string library();
 
  private:
@@ -105,6 +109,7 @@ class EigenFactor {
   void solve(const Matrix<T>& b, Matrix<T>& x, bool transposed);
   std::string name() const;
   long factor_nonzeros() const;
+  long factor_bytes() const;
 
  private:
   struct Data;

@@ -199,6 +199,11 @@ std::string CholmodFactor::name() const {
 
 long CholmodFactor::factor_nonzeros() const { return static_cast<long>(data_->common.lnz); }
 
+long CholmodFactor::factor_bytes() const {
+  const cholmod_factor& factor = *data_->factor;
+  return static_cast<long>(factor.xsize * sizeof(double) + factor.ssize * sizeof(int));
+}
+
 std::string CholmodFactor::library() {
   int version[3] = {0, 0, 0};
   cholmod_version(version);

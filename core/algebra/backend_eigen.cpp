@@ -109,6 +109,11 @@ long EigenFactor<T>::factor_nonzeros() const {
   return static_cast<long>(data_->lu.nnzL() + data_->lu.nnzU());
 }
 
+template <class T>
+long EigenFactor<T>::factor_bytes() const {
+  return factor_nonzeros() * static_cast<long>(sizeof(T) + sizeof(int));
+}
+
 std::string eigen_library() {
   return "Eigen " + std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION) + "." +
          std::to_string(EIGEN_MINOR_VERSION);

@@ -51,6 +51,11 @@ struct MumpsFactor::Data {
 
   MUMPS_INT& icntl(int i) { return mumps.icntl[i - 1]; }
   int infog(int i) const { return mumps.infog[i - 1]; }
+  /// A count: beyond 2^31 MUMPS tells millions, with a minus sign.
+  long entries(int i) const {
+    const long told = infog(i);
+    return told < 0 ? -told * 1000000 : told;
+  }
   /// Runs one job and returns INFOG(1): negative is an error.
   int run(int job) {
     mumps.job = job;
@@ -128,9 +133,11 @@ std::string MumpsFactor::name() const {
   return library() + kind[data_->mumps.sym] + (data_->icntl(7) == ordering_pord ? ", PORD" : ", AMD");
 }
 
-long MumpsFactor::factor_nonzeros() const {
-  const long entries = data_->infog(29);
-  return entries < 0 ? -entries * 1000000 : entries;  // beyond 2^31 MUMPS tells millions, with a minus sign
+long MumpsFactor::factor_nonzeros() const { return data_->entries(29); }
+
+long MumpsFactor::factor_bytes() const {
+  return data_->entries(9) * static_cast<long>(sizeof(double)) +
+         data_->entries(10) * static_cast<long>(sizeof(MUMPS_INT));
 }
 
 std::string MumpsFactor::library() { return "MUMPS " MUMPS_VERSION; }

@@ -114,6 +114,10 @@ long UmfpackFactor::factor_nonzeros() const {
   return static_cast<long>(data_->info[UMFPACK_LNZ] + data_->info[UMFPACK_UNZ]);
 }
 
+long UmfpackFactor::factor_bytes() const {
+  return static_cast<long>(data_->info[UMFPACK_NUMERIC_SIZE] * data_->info[UMFPACK_SIZE_OF_UNIT]);
+}
+
 std::string UmfpackFactor::library() {
   return "UMFPACK " + std::to_string(UMFPACK_MAIN_VERSION) + "." + std::to_string(UMFPACK_SUB_VERSION) + "." +
          std::to_string(UMFPACK_SUBSUB_VERSION);

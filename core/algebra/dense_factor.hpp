@@ -25,6 +25,8 @@ class DenseFactor {
   /// Estimate of the condition number in the 1-norm, of the matrix as it was given; 0 where there is no factor.
   double condition_estimate() const;
   const std::string& message() const { return message_; }
+  /// Of the triangular factors; those of LL^T stay where LU took over.
+  long bytes() const { return static_cast<long>((lu_.rows() * lu_.cols() + llt_.rows() * llt_.cols()) * sizeof(T)); }
 
  private:
   void equilibrate(const Matrix<T>& A);

@@ -481,6 +481,13 @@ long LinearSolver<T>::factor_nonzeros() const {
   return std::visit([](const auto& factor) { return factor.factor_nonzeros(); }, *s.last);
 }
 
+template <class T>
+long LinearSolver<T>::factor_bytes() const {
+  const Implementation& s = *implementation_;
+  if (!s.last || !s.usable) return 0;
+  return std::visit([](const auto& factor) { return factor.factor_bytes(); }, *s.last);
+}
+
 template class LinearSolver<double>;
 template class LinearSolver<std::complex<double>>;
 

@@ -78,6 +78,7 @@ class LinearSolver {
   std::string name() const;            ///< e.g. "MUMPS 5.5.1 LU, PORD"; empty before analyse()
   const std::string& message() const;  ///< why the last factorise() failed
   long factor_nonzeros() const;        ///< entries of the last factor; 0 where the backend does not tell
+  long factor_bytes() const;           ///< that the backend keeps of it, indices included
 
  private:
   struct Implementation;

@@ -12,6 +12,8 @@ namespace stickslip {
 class Tape {
  public:
   int size() const { return static_cast<int>(entries_.size()); }
+  /// Memory that it has taken: for its longest so far, and room to grow.
+  long bytes() const { return static_cast<long>(entries_.capacity() * sizeof(Entry)); }
 
   /// A variable that nothing on the tape was computed into.
   int leaf() { return record(-1, 0, -1, 0); }

@@ -35,6 +35,9 @@ class Condensation {
   Matrix<T> expand(const Matrix<T>& compact, const Matrix<T>& rows, const Matrix<T>& reduced);
   const std::string& message() const { return solver_.message(); }
   std::string name() const { return solver_.name(); }
+  long factor_bytes() const { return solver_.factor_bytes(); }
+  /// Right-hand sides solved with the factor so far.
+  long backsolves() const { return solver_.counters().backsolves; }
   Counters counters;  ///< what S has cost
 
  private:

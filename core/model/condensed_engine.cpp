@@ -11,7 +11,7 @@ CondensedEngine<T>::CondensedEngine(const Model& model, const Slots<T>& slots, b
       slots_(slots),
       unknown_multipliers_(unknown_multipliers),
       condensation_(std::move(condensation)),
-      symmetric_(detail::symmetry_of(model, unknown_multipliers, cone) == Symmetry::positive_definite) {
+      symmetry_(detail::symmetry_of(model, unknown_multipliers, cone)) {
   const int D = model.dimension;
   for (int node : model.contact_nodes)
     for (int i = 0; i < D; ++i) {
@@ -112,7 +112,7 @@ bool CondensedEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents,
   ++counters.assemblies;
   factorised_ = tangents;
   held_ = hold;
-  return valid_ = factor_.factorise(K, symmetric_, counters.factorizations);
+  return valid_ = factor_.factorise(K, symmetry_ == Symmetry::positive_definite, counters.factorizations);
 }
 
 template <class T>
@@ -155,9 +155,22 @@ BlockVector<T> CondensedEngine<T>::solve(const BlockVector<T>& rows, bool transp
 }
 
 template <class T>
+EngineHoldings CondensedEngine<T>::holdings() const {
+  EngineHoldings held;
+  held.condensed = static_cast<long>(condensation_->schur().size() * sizeof(T));
+  held.bodies_factor = condensation_->factor_bytes();
+  held.matrix_entries = held.factor_entries = static_cast<long>(matrix_.size());
+  held.matrix = static_cast<long>(matrix_.size() * sizeof(T));
+  held.factor = factor_.bytes();
+  held.body_solves = condensation_->backsolves();
+  held.unsymmetric = symmetry_ == Symmetry::general;
+  return held;
+}
+
+template <class T>
 std::string CondensedEngine<T>::name() const {
   const std::string of_bodies = condensation_->name();  // empty where no body has an inside
-  return std::string("condensed, dense ") + (symmetric_ ? "LL^T" : "LU") +
+  return std::string("condensed, dense ") + (symmetry_ == Symmetry::positive_definite ? "LL^T" : "LU") +
          (of_bodies.empty() ? "" : " on " + of_bodies);
 }
 

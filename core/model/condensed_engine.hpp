@@ -41,6 +41,7 @@ class CondensedEngine {
     return static_cast<int>(free_list_.size()) + (unknown_multipliers_ ? model_.multiplier_count : 0);
   }
   long nonzeros() const { return static_cast<long>(unknowns()) * unknowns(); }
+  EngineHoldings holdings() const;
 
  private:
   std::vector<int> point_rows(const ContactPoint& point) const;
@@ -55,7 +56,7 @@ class CondensedEngine {
   Matrix<T> rest_rows_;          ///< f_ext - K rest, all dofs
   Vector<T> load_;               ///< reduced load on the contact dofs
   double largest_external_ = 0;  ///< nodal force of the loads
-  bool symmetric_;
+  Symmetry symmetry_;
   std::vector<int> active_;  ///< multiplier rows in the factor: those of points that are not open
   std::vector<int> place_;   ///< and where they stand in it; -1: not there
   Vector<T> open_diagonal_;  ///< of the other multiplier rows

@@ -16,6 +16,18 @@ struct BlockVector {
   Matrix<T> u, l;
 };
 
+/// What an engine holds now, in bytes, and what it has done beside what Counters count.
+struct EngineHoldings {
+  long bodies = 0;                              ///< matrix of the bodies, which the tangents begin from
+  long condensed = 0;                           ///< Schur complement of the bodies on the contact dofs
+  long bodies_factor = 0;                       ///< factor that it came from
+  long matrix = 0;                              ///< last tangent, with its pattern
+  long factor = 0;                              ///< of that
+  long matrix_entries = 0, factor_entries = 0;  ///< of these, stored
+  long body_solves = 0;                         ///< right-hand sides solved with the bodies' factor since it was made
+  bool unsymmetric = false;                     ///< the tangents are
+};
+
 /// Scales that a residual is measured against.
 struct ForceScale {
   double force = 0;     ///< largest nodal force of any kind

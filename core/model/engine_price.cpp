@@ -17,6 +17,8 @@ constexpr double of_solve = 3, of_block_solve = 1.2, of_dense = 1.0 / 3;
 constexpr double free_ordering = 0.65, lu = 2;
 constexpr int few_unknowns = 200;
 
+}  // namespace
+
 FactorSize bodies_factor(const Model& model) {
   const int D = model.dimension;
   std::vector<int> row(model.dof_count(), -1);
@@ -30,8 +32,6 @@ FactorSize bodies_factor(const Model& model) {
     for (int i = 0; i < D; ++i) row[node * D + i] = last++;
   return predict_factor(make_pattern(last, element_rows(model, row)), last - interior);
 }
-
-}  // namespace
 
 EnginePrice predict_price(const Model& model, bool unknown_multipliers, Symmetry symmetry) {
   const FactorSize factor = bodies_factor(model);

@@ -13,6 +13,9 @@ struct EnginePrice {
   double sparse = 0, condensed = 0;
 };
 
+/// Factor of the bodies that condenses them, the contact dofs eliminated last; analysed, not made.
+FactorSize bodies_factor(const Model& model);
+
 /// Price of all increments of a scene and their derivatives. `unknown_multipliers`: those are unknowns of the tangents;
 /// `symmetry`: of the tangents. The bodies' factor is analysed for it (predict_factor).
 EnginePrice predict_price(const Model& model, bool unknown_multipliers, Symmetry symmetry);

@@ -42,6 +42,7 @@ Counters& Counters::operator+=(const Counters& o) {
   newton += o.newton;
   augmentations += o.augmentations;
   cutbacks += o.cutbacks;
+  contact_evaluations += o.contact_evaluations;
   return *this;
 }
 

@@ -34,6 +34,7 @@ struct Counters {
   long newton = 0;
   long augmentations = 0;
   long cutbacks = 0;
+  long contact_evaluations = 0;  ///< contact points evaluated, in any scalar
   Counters& operator+=(const Counters&);
 };
 

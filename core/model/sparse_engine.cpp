@@ -1,9 +1,28 @@
 #include "core/model/sparse_engine.hpp"
 
-#include "core/model/body_matrix.hpp"
 #include "core/model/loading.hpp"
 
 namespace stickslip {
+namespace {
+
+std::vector<int> point_rows(const Model& model, const ContactPoint& point, bool unknown_multipliers) {
+  std::vector<int> rows;
+  const int D = model.dimension;
+  for (int node : point.nodes)
+    for (int i = 0; i < D; ++i) rows.push_back(model.free_index[node * D + i]);
+  if (unknown_multipliers)
+    for (int c = 0; c < point.components(); ++c)
+      rows.push_back(static_cast<int>(model.free_dofs.size()) + point.multiplier + c);
+  return rows;
+}
+
+}  // namespace
+
+RowLists tangent_rows(const Model& model, bool unknown_multipliers) {
+  auto lists = element_rows(model, model.free_index);
+  for (const auto& point : model.points) lists.add(point_rows(model, point, unknown_multipliers));
+  return lists;
+}
 
 template <class T>
 SparseEngine<T>::SparseEngine(const Model& model, const Slots<T>& slots, bool unknown_multipliers, ConeRadius cone,
@@ -14,11 +33,10 @@ SparseEngine<T>::SparseEngine(const Model& model, const Slots<T>& slots, bool un
       symmetry_(detail::symmetry_of(model, unknown_multipliers, cone)),
       size_(static_cast<int>(model.free_dofs.size()) + (unknown_multipliers ? model.multiplier_count : 0)),
       solver_(backend) {
-  auto lists = element_rows(model, model.free_index);
-  for (const auto& point : model.points) lists.add(point_rows(point));
+  const auto lists = tangent_rows(model, unknown_multipliers);
   pattern_ = make_pattern(size_, lists);
   for (const auto& point : model.points) {
-    const auto rows = point_rows(point);
+    const auto rows = point_rows(model, point, unknown_multipliers);
     std::vector<int> map;
     for (int row : rows)
       for (int column : rows) map.push_back(row < 0 || column < 0 ? -1 : locate(*pattern_, row, column));
@@ -27,18 +45,6 @@ SparseEngine<T>::SparseEngine(const Model& model, const Slots<T>& slots, bool un
   bulk_ = assemble_bodies(model, slots, lists, *pattern_);
   for (int i = 0; i < static_cast<int>(model.free_dofs.size()); ++i)
     stiffness_ = std::max(stiffness_, value(bulk_[locate(*pattern_, i, i)]));
-}
-
-template <class T>
-std::vector<int> SparseEngine<T>::point_rows(const ContactPoint& point) const {
-  std::vector<int> rows;
-  const int D = model_.dimension;
-  for (int node : point.nodes)
-    for (int i = 0; i < D; ++i) rows.push_back(model_.free_index[node * D + i]);
-  if (unknown_multipliers_)
-    for (int c = 0; c < point.components(); ++c)
-      rows.push_back(static_cast<int>(model_.free_dofs.size()) + point.multiplier + c);
-  return rows;
 }
 
 template <class T>
@@ -98,7 +104,7 @@ template <class T>
 bool SparseEngine<T>::update(const std::vector<PointTangent<T>>& tangents, Counters& counters,
                              const Vector<double>& hold) {
   if (!valid_ || !model_.effects.linear_bulk || !detail::same_values(hold, held_)) return false;
-  const auto rows = [&](std::size_t p) { return point_rows(model_.points[p]); };
+  const auto rows = [&](std::size_t p) { return point_rows(model_, model_.points[p], unknown_multipliers_); };
   return detail::update_factor<T>(
       model_, slots_, factorised_, tangents, unknown_multipliers_, rows, size_, counters,
       [&](const Matrix<T>& b) { return solver_.solve(b); }, update_);
@@ -148,6 +154,20 @@ Matrix<T> SparseEngine<T>::scatter(const Matrix<T>& compact) const {
   for (std::size_t n = 0; n < model_.contact_nodes.size(); ++n)
     for (int i = 0; i < D; ++i) rows.row(model_.contact_nodes[n] * D + i) += compact.row(n * D + i);
   return rows;
+}
+
+template <class T>
+EngineHoldings SparseEngine<T>::holdings() const {
+  EngineHoldings held;
+  held.bodies = static_cast<long>(bulk_.size() * sizeof(T));
+  held.matrix = static_cast<long>(values_.size() * sizeof(T) +
+                                  (pattern_->row.size() + pattern_->column_start.size()) * sizeof(int));
+  for (const auto& map : point_map_) held.matrix += static_cast<long>(map.size() * sizeof(int));
+  held.factor = solver_.factor_bytes();
+  held.matrix_entries = static_cast<long>(pattern_->nonzeros());
+  held.factor_entries = solver_.factor_nonzeros();
+  held.unsymmetric = symmetry_ == Symmetry::general;
+  return held;
 }
 
 template class SparseEngine<double>;

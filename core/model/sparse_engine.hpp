@@ -1,9 +1,14 @@
 /// The engine that has the bodies in full.
 #pragma once
 
+#include "core/model/body_matrix.hpp"
 #include "core/model/engine_parts.hpp"
 
 namespace stickslip {
+
+/// Rows of the tangent that each element, and after them each contact point, has entries in. A point's: its nodes'
+/// dofs, and its multipliers where these are unknown; -1: prescribed.
+RowLists tangent_rows(const Model& model, bool unknown_multipliers);
 
 /// The bodies in full: one sparse matrix over the free dofs and the multipliers, its pattern fixed for every contact
 /// state, the bodies' part assembled once.
@@ -45,10 +50,9 @@ class SparseEngine {
   const std::string& message() const { return solver_.message(); }
   int unknowns() const { return size_; }
   long nonzeros() const { return pattern_->nonzeros(); }
+  EngineHoldings holdings() const;
 
  private:
-  std::vector<int> point_rows(const ContactPoint& point) const;
-
   const Model& model_;
   const Slots<T>& slots_;
   bool unknown_multipliers_;

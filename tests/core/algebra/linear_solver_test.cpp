@@ -128,6 +128,8 @@ class EveryBackend : public testing::TestWithParam<Backend> {
     EXPECT_LT(relative_error(solver.solve(b, true), a.transpose().partialPivLu().solve(b)), tolerance_for(a));
     EXPECT_LT(solver.backward_error(), 1e-11);
     EXPECT_GT(solver.factor_nonzeros(), a.rows());
+    const auto stored_entries = solver.factor_nonzeros() - a.rows();  // a diagonal of ones need not be stored
+    EXPECT_GE(solver.factor_bytes(), static_cast<long>(sizeof(double)) * stored_entries);
   }
 
   /// Expects factorise() to refuse the matrix, say why, and to take a good one afterwards.
