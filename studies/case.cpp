@@ -82,8 +82,11 @@ void differentiate_case(Workspace<double>& workspace, Derivatives& derivatives, 
   }
   result.gradients = derivatives.finish(result.trajectory);
   result.gradients.of_objectives = objective_gradients(model, slots, result.trajectory, result.gradients);
-  const Stopwatch time(result.gradients.seconds);
-  result.one_sided = one_sided_derivatives(model, slots, result.method, result.trajectory, workspace);
+  {
+    const Stopwatch time(result.one_sided_seconds);
+    result.one_sided = one_sided_derivatives(model, slots, result.method, result.trajectory, workspace);
+  }
+  result.gradients.seconds += result.one_sided_seconds;
   if (result.one_sided) result.gradients.counters += result.one_sided->counters;
 }
 
@@ -162,6 +165,10 @@ void check_responses(const Model& model, const Slots<double>& slots) {
   }
 }
 
+EngineHoldings holdings(const Workspace<double>& workspace) {
+  return std::visit([](const auto& engine) { return engine.holdings(); }, *workspace.engine);
+}
+
 }  // namespace
 
 bool StepResult::has_kink(const Scene& scene, const Method& method, std::size_t response, std::size_t parameter) const {
@@ -204,6 +211,8 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
   CaseResult result;
   result.problem = problem;
   result.method = method;
+  const long solved_before = condensation ? condensation->backsolves() : 0;
+  const bool shared = condensation != nullptr;
   Workspace<double> workspace{condensation, {}};
   Derivatives derivatives(problem->model, problem->slots, result.method, workspace);
   RunOptions followed = options;
@@ -214,6 +223,10 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
   solve(problem->model, problem->slots, method, followed, workspace, result.trajectory);
   condensation = workspace.condensation;
   std::visit([&](auto& engine) { result.nonzeros = engine.nonzeros(); }, *workspace.engine);
+  result.engine = holdings(workspace);
+  if (condensation && !shared) result.condensing = condensation->counters;
+  if (result.engine.body_solves > 0)
+    result.body_solves = result.engine.body_solves - (shared ? solved_before : result.condensing.backsolves);
   const auto errors = check_accuracy(problem->model, problem->slots, method, result.trajectory);
   name_loose_body(problem->model, result.trajectory);
   if (has_tangent(result.trajectory)) {
@@ -221,6 +234,7 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
       result.condition_estimate =
           std::visit([](auto& engine) { return engine.condition_estimate(); }, *workspace.engine);
     differentiate_case(workspace, derivatives, result);
+    result.sensitivity_body_solves = holdings(workspace).body_solves - result.engine.body_solves;
   }
   result.steps = gather_steps(result, errors);
   result.objectives = objective_values(problem->model, problem->slots, result.trajectory);

@@ -8,6 +8,7 @@
 #include "studies/case.hpp"
 #include "studies/contact_points.hpp"
 #include "studies/json_document.hpp"
+#include "studies/ledger.hpp"
 #include "studies/method_options.hpp"
 #include "studies/provenance.hpp"
 #include "studies/version.hpp"
@@ -261,6 +262,7 @@ json result_json(const CaseResult& result, const std::string& scene_text) {
                     {"plasticity", false},
                     {"smoothing", false},
                     {"sensitivity", effects.sensitivity}};
+  out["ledger"] = ledger_json(ledger(result));
   out["warnings"] = warnings_json(result);
   out["size"] = size_json(result);
   out["steps"] = steps_json(result);

@@ -18,6 +18,7 @@
 #include "studies/film.hpp"
 #include "studies/gradient_report.hpp"
 #include "studies/input_fault.hpp"
+#include "studies/ledger_forecast.hpp"
 #include "studies/method_options.hpp"
 #include "studies/printing.hpp"
 #include "studies/progress.hpp"
@@ -84,17 +85,18 @@ void print_summary(const CaseResult& result) {
     fmt::print("  a contact point is about to change state: these hold on one side only (result.json: one_sided)\n");
 }
 
-/// picture.json, with what a study's rows hold of it, and the report; without `report` those of an earlier run go.
-void write_pictures(const std::filesystem::path& directory, const CaseResult& result, bool report) {
+/// picture.json, with what a study's rows hold of it; none where no report is asked for.
+void write_picture(const std::filesystem::path& directory, const CaseResult& result, bool report, Written& written) {
   for (const char* file : {"picture.json", "report.html"}) std::filesystem::remove(directory / file);
   if (!report) return report::remove_figures(directory);
+  const Stopwatch time(written.seconds);
   json picture = picture_json(result);
-  if (!picture.is_null()) {
-    picture["interface"] = interface_json(result);
-    picture["film"] = film_json(result);
-    write_file_atomically(directory / "picture.json", json_text(picture));
-  }
-  write_run_report(directory);
+  if (picture.is_null()) return;
+  picture["interface"] = interface_json(result);
+  picture["film"] = film_json(result);
+  write_file_atomically(directory / "picture.json", json_text(picture));
+  written.picture = file_bytes(directory, {"picture.json"});
+  ++written.files;
 }
 
 /// trace.csv, and of scenes with few contact points cones.svg; returns their names.
@@ -113,6 +115,35 @@ std::vector<std::string> write_trace(const std::filesystem::path& directory, con
 void add_files(const std::filesystem::path& folder, const std::vector<std::string>& names,
                std::vector<std::string>& written) {
   for (const auto& name : names) written.push_back(printable((folder / name).string()));
+}
+
+/// The trace's files; returns their names. Those of an earlier run go where none is asked for.
+std::vector<std::string> write_trace(const std::filesystem::path& directory, const Problem& problem, const Trace* trace,
+                                     Written& written) {
+  if (!trace) {
+    for (const char* file : {"trace.csv", "cones.svg"}) std::filesystem::remove(directory / file);
+    return {};
+  }
+  const Stopwatch time(written.seconds);
+  const auto files = write_trace(directory, problem, *trace);
+  written.trace = file_bytes(directory, files);
+  written.files += static_cast<long>(files.size());
+  return files;
+}
+
+/// All files of a run; adds their names to `written`. Returns result.json, which holds the bytes of the others, so it
+/// comes last but for the report that is made from it.
+json write_run(const std::filesystem::path& directory, const RunArguments& arguments, const Simulation& simulation,
+               const CaseResult& result, const Trace* trace, std::vector<std::string>& names) {
+  Written written;
+  const auto traced = write_trace(directory, *simulation.problem, trace, written);
+  write_picture(directory, result, arguments.report, written);
+  json document = write_result(directory, simulation, result, written);
+  if (arguments.report) write_run_report(directory);
+  add_files(directory, result_files(simulation, result), names);
+  add_files(directory, traced, names);
+  if (arguments.report) add_files(directory, {"report.html"}, names);
+  return document;
 }
 
 /// A line for each option: name, default, meaning. `before`: what the names begin with.
@@ -157,18 +188,11 @@ int run_command(const RunArguments& arguments) {
   if (!writes) {
     document = result_json(result, canonical_text(loaded->input));
   } else {
-    document = write_result(directory, *loaded, result);
-    add_files(directory, result_files(*loaded, result), written);
-    if (arguments.trace) {
-      add_files(directory, write_trace(directory, *loaded->problem, trace), written);
-    } else {  // of an earlier run
-      for (const char* file : {"trace.csv", "cones.svg"}) std::filesystem::remove(directory / file);
-    }
-    write_pictures(directory, result, arguments.report);
-    if (arguments.report) add_files(directory, {"report.html"}, written);
+    document = write_run(directory, arguments, *loaded, result, arguments.trace ? &trace : nullptr, written);
     if (!arguments.json) {
       if (arguments.trace) std::cout << trace_table(trace) << '\n';
       print_summary(result);
+      fmt::print("\neffects: {}", ledger_line(document["ledger"]));
     }
   }
   if (!arguments.export_to.empty() && !result.trajectory.increments.empty())
@@ -187,7 +211,11 @@ int explain_command(const RunArguments& arguments) {
   const auto loaded = load(arguments);
   if (!loaded) return bad_input;
   const std::string text = explain(loaded->input, *loaded->problem);
-  std::cout << (arguments.json ? json_text({{"explain", text}}, 2) + "\n" : text);
+  if (arguments.json)
+    std::cout << json_text({{"explain", text}, {"ledger", ledger_json(forecast(loaded->input, *loaded->problem))}}, 2)
+              << '\n';
+  else
+    std::cout << text;
   return done;
 }
 

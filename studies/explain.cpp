@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "studies/ledger_forecast.hpp"
 #include "studies/method_options.hpp"
 #include "studies/printing.hpp"
 
@@ -93,6 +94,8 @@ std::string explain(const Input& input, const Problem& problem) {
   const EnginePrice price = predict_price(model, input.method);
   text += fmt::format("  predicted: {:.2g} Gflop condensed, {:.2g} Gflop sparse\n", 1e-9 * price.condensed,
                       1e-9 * price.sparse);
+  text +=
+      "\nwhat each effect takes (~ about, > and more, ? hangs on the path):\n" + ledger_table(forecast(input, problem));
   text += "\nsimulated:\n";
   if (effects.contact) text += "  unilateral contact\n";
   if (effects.friction) text += "  Coulomb friction, path dependent (slip is remembered)\n";

@@ -103,17 +103,28 @@ void remove_fields(const std::filesystem::path& directory) {
 }
 
 nlohmann::json write_result(const std::filesystem::path& directory, const Simulation& simulation,
-                            const CaseResult& result) {
-  double seconds = 0;
+                            const CaseResult& result, const Written& before) {
+  Written written = before;
+  const int every = fields_every(simulation.input.output);
   {
-    const Stopwatch time(seconds);
+    const Stopwatch time(written.seconds);
     remove_fields(directory);
-    write_fields(directory, result, fields_every(simulation.input.output));
+    write_fields(directory, result, every);
   }
+  const auto fields = field_files(result, every);
+  written.files += static_cast<long>(fields.size());
+  written.fields = file_bytes(directory, fields);
   auto document = result_json(result, canonical_text(simulation.input));
-  document["cost"]["seconds"]["output"] = seconds;
+  document["cost"]["seconds"]["output"] = written.seconds;
+  document["ledger"] = ledger_json(ledger(result, written));
   write_file_atomically(directory / "result.json", json_text(document, 2) + "\n");
   return document;
+}
+
+double file_bytes(const std::filesystem::path& directory, const std::vector<std::string>& files) {
+  double bytes = 0;
+  for (const auto& file : files) bytes += static_cast<double>(std::filesystem::file_size(directory / file));
+  return bytes;
 }
 
 std::vector<std::string> result_files(const Simulation& simulation, const CaseResult& result) {

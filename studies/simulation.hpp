@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/case.hpp"
+#include "studies/ledger.hpp"
 #include "studies/scene_reader.hpp"
 
 namespace stickslip {
@@ -46,9 +46,13 @@ void prepare_run_directory(const std::filesystem::path& directory, bool report =
 void remove_fields(const std::filesystem::path& directory);
 
 /// Writes DIR/result.json and DIR/fields.pvd with its .vtu files, in place of an earlier run's; returns the former
-/// (docs/results.md). Throws std::system_error where the disk refuses.
+/// (docs/results.md), whose ledger has the files `before` that were written already. Throws std::system_error where the
+/// disk refuses.
 nlohmann::json write_result(const std::filesystem::path& directory, const Simulation& simulation,
-                            const CaseResult& result);
+                            const CaseResult& result, const Written& before = {});
+
+/// Bytes of files in a directory.
+double file_bytes(const std::filesystem::path& directory, const std::vector<std::string>& files);
 
 /// Names of the files that write_result writes.
 std::vector<std::string> result_files(const Simulation& simulation, const CaseResult& result);

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "studies/film.hpp"
+#include "studies/ledger.hpp"
 #include "studies/method_options.hpp"
 #include "studies/printing.hpp"
 #include "studies/provenance.hpp"
@@ -235,6 +236,7 @@ json CellRunner::measured_row(const CellInput& cell) {
   row["film"] = film_json(result);
   row["interface"] = interface_json(result);
   row["size"] = size_json(result);
+  row["ledger"] = repeatable_ledger_json(ledger(result));
   row["cost"] = cost_json(result);
   row["cost"]["seconds"] = seconds_of(result);
   row["provenance"] = provenance(1);

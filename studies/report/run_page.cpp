@@ -98,6 +98,42 @@ std::string last_values(const Cell& cell) {
   return table.rows.empty() ? "" : to_html(table, "Responses at the last step, and their derivatives");
 }
 
+std::string words(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+/// "3 displacements, 12 points": what is not zero of a row's amounts.
+std::string amounts_in_words(const json& amounts) {
+  std::string out;
+  for (const auto& [name, amount] : amounts.items())
+    if (amount.is_number() && amount != 0)
+      out += (out.empty() ? "" : ", ") + whole(amount.get<double>()) + " " + words(name);
+  return out;
+}
+
+/// What each effect added, those that are off last.
+std::string ledger_table(const Cell& cell) {
+  Table table;
+  table.header = {"effect", "unknowns", "kB", "of which", "counts", "seconds"};
+  for (const bool on : {true, false})
+    for (const auto& row : array_at(cell.record, "ledger")) {
+      if ((at(row, "on") == true) != on) continue;
+      const json &memory = object_at(row, "memory"), &seconds = at(row, "seconds");
+      double bytes = 0;
+      std::string parts;
+      for (const auto& [name, amount] : memory.items()) {
+        if (!amount.is_number() || amount == 0) continue;
+        bytes += amount.get<double>();
+        parts += (parts.empty() ? "" : ", ") + words(name) + " " + number(amount.get<double>() / 1000);
+      }
+      table.rows.push_back({words(text_at(row, "effect")), on ? amounts_in_words(object_at(row, "unknowns")) : "off",
+                            bytes > 0 ? number(bytes / 1000) : "", parts, amounts_in_words(object_at(row, "counts")),
+                            seconds.is_number() && seconds != 0 ? number(seconds.get<double>(), 2) : ""});
+    }
+  return table.rows.empty() ? "" : to_html(table, "What each effect of the scene added");
+}
+
 }  // namespace
 
 std::string first_of_run(const Study& run, Figures& figures) {
@@ -119,7 +155,8 @@ std::vector<Section> sections_of_run(const Study& run, Figures& figures) {
   auto convergence = convergence_histories(run);
   if (convergence) convergence->folded.clear();
   return {{"solution", "The solution", solution},
-          {"solver", "The solver at work", figures.show(std::move(convergence)) + steps_table(run)},
+          {"solver", "The solver at work",
+           figures.show(std::move(convergence)) + steps_table(run) + ledger_table(run.cells.front())},
           {"provenance", "Provenance", provenance(run)}};
 }
 

@@ -47,6 +47,8 @@ TEST_F(ReportOfARun, HasPictureHistoriesStatesAndValues) {
                           HasSubstr("id=\"response-histories\""), HasSubstr("id=\"tractions\""),
                           HasSubstr("id=\"film\""), HasSubstr("Monolithic AL, 4 steps: converged with"),
                           HasSubstr("<th scope=\"col\">d / d mu</th>"), HasSubstr("<caption>Steps")));
+  EXPECT_THAT(html, AllOf(HasSubstr("<caption>What each effect of the scene added"), HasSubstr("direct sensitivity"),
+                          HasSubstr(">off<")));
   EXPECT_THAT(html, AllOf(Not(HasSubstr("most accurate run of each method")), Not(HasSubstr("class=\"verdict\""))));
   EXPECT_TRUE(fs::exists(directory_ / "figures" / "response-histories.csv"));
 }
