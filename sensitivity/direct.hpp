@@ -189,12 +189,13 @@ typename LinearisedEquilibrium<E>::Rows LinearisedEquilibrium<E>::evaluate(
   rows.u += internal;
   for (Eigen::Index i = 0; i < rows.u.rows(); ++i)
     if (!problem_.engine.is_free(i)) rows.u.row(i).setZero();
-  double stiffest = 0;  // contact, force per length
+  constexpr double rounding = 100 * unit_roundoff;  // several hundred terms meet in a row; each rounds once
+  double stiffest = 0;                              // contact, force per length
   for (std::size_t p = 0; p < rho_.size() && !unknown_; ++p)
     stiffest = std::max(stiffest, problem_.slots.geometry[p].area * std::max(rho_[p].normal, rho_[p].tangential));
   for (Eigen::Index j = 0; j < rows.u.cols() && rows.u.rows() > 0; ++j) {
     const double size = contact.rows() ? contact.col(j).cwiseAbs().maxCoeff() : 0;
-    const double magnified = contact.rows() ? 8 * unit_roundoff * stiffest * compact_.col(j).cwiseAbs().maxCoeff() : 0;
+    const double magnified = contact.rows() ? rounding * stiffest * compact_.col(j).cwiseAbs().maxCoeff() : 0;
     rows.accurate &= rows.u.col(j).cwiseAbs().maxCoeff() <=
                      std::max(magnified, 1e-12 * std::max(size, internal.col(j).cwiseAbs().maxCoeff()));
   }

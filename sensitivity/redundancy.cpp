@@ -40,6 +40,7 @@ bool are_independent(const std::vector<std::map<int, double>>& rows, Counts&& co
     for (const auto& [dof, weight] : row)
       if (counts(dof)) column.try_emplace(dof, static_cast<int>(column.size()));
   const auto height = static_cast<Eigen::Index>(rows.size()), width = static_cast<Eigen::Index>(column.size());
+  if (height == 0) return true;
   if (height > width) return false;
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(height, width);
   for (Eigen::Index k = 0; k < height; ++k) {

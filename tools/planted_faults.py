@@ -61,8 +61,6 @@ FAULTS = [
     ("nodal stiffness halved between bodies", "core/model/slots_impl.hpp", "return T(<<<2>>>) * slave * master", "1"),
     ("rho of the side that a support holds", "core/model/slots_impl.hpp",
      "if (slave_yields) return <<<slave>>>;", "master"),
-    ("a factor that does not solve is reused", "sensitivity/direct.hpp",
-     "if (std::exchange(unproven_, false) && <<<!rows.accurate>>>)", "false"),
     ("a strain energy without the inside", "sensitivity/differentiate.cpp",
      "<<<response.kind == Response::Kind::strain_energy>>>) return true;", "false"),
     ("a load that is no scale of forces", "studies/metrics.cpp", "if (<<<!(largest_nodal_norm(loads, D) > rounding)>>>)", "true"),

@@ -169,11 +169,11 @@ TEST(UzawaUpdates, ConvergeWhereASupportHoldsTheSofterSideOfAContact) {
 TEST(StiffBodies, AreCarriedByAMasterAsSoftAsRoundingAllows) {
   for (const char* held : {R"([{"on": "up.left", "move": {"x": 0}}])", "[]"})
     for (const auto& method : {R"({"penalty": {}})", R"({"uzawa_al": {}})", R"({"monolithic_al": {}})"}) {
-      for (const double ratio : {1e-6, 1e-9, 1e-11}) {
+      for (const double ratio : {1e-6, 1e-9, 1e-10}) {
         const auto result = run(two_blocks(1, ratio, json::parse(held)), json::parse(method));
         ASSERT_TRUE(is_converged(result.status())) << method << held << ratio << result.message();
         const double force = 0.02 * ratio;  // that of the load, 0.01 over a length of 2
-        EXPECT_NEAR(result.steps.back().responses[1], force, 1e-4 * force) << method << held << ratio;
+        EXPECT_NEAR(result.steps.back().responses[0], force, 1e-4 * force) << method << held << ratio;
       }
       const auto drowned = run(two_blocks(1, 1e-13, json::parse(held)), json::parse(method));
       EXPECT_FALSE(is_converged(drowned.status())) << method << held;
@@ -190,16 +190,16 @@ TEST(Penalties, AreSmoothInTheStiffnessOfEqualBodies) {
   scene["parameters"]["E"] = "/bodies/up/material/linear_elastic/E";
   const auto at = [&](double E) {
     scene["bodies"]["up"]["material"]["linear_elastic"]["E"] = E;
-    auto result = run(scene, json::parse(R"({"penalty": {"scale": 1}})"));
+    auto result = run(scene, json::parse(R"({"penalty": {}})"));
     EXPECT_TRUE(is_converged(result.status())) << result.message();
     return result;
   };
-  constexpr double h = 1e-4;
+  constexpr double h = 1e-5;  // the penalty leaves 1e-3 of the answer, whose kink would be 5e-4 of the derivative
   const auto result = at(1);
   const double derivative = result.steps.back().sensitivities(0, 0), d = result.steps.back().responses[0];
   EXPECT_TRUE(result.steps.back().differentiable);
   for (const double side : {h, -h})  // differences: h of the derivative, by a second derivative of its size
-    EXPECT_NEAR((at(1 + side).steps.back().responses[0] - d) / side, derivative, 4 * h * std::abs(derivative)) << side;
+    EXPECT_NEAR((at(1 + side).steps.back().responses[0] - d) / side, derivative, 8 * h * std::abs(derivative)) << side;
 }
 
 // A scale of a billionth leaves nearly all of an error to the next pass: that it will not settle shows early.
