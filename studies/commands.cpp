@@ -100,7 +100,7 @@ void write_picture(const std::filesystem::path& directory, const CaseResult& res
 }
 
 /// trace.csv, and of scenes with few contact points cones.svg; returns their names.
-std::vector<std::string> write_trace(const std::filesystem::path& directory, const Problem& problem,
+std::vector<std::string> trace_files(const std::filesystem::path& directory, const Problem& problem,
                                      const Trace& trace) {
   write_file_atomically(directory / "trace.csv", trace_csv(problem, trace));
   const auto paths = cone_paths(problem, trace);
@@ -125,7 +125,7 @@ std::vector<std::string> write_trace(const std::filesystem::path& directory, con
     return {};
   }
   const Stopwatch time(written.seconds);
-  const auto files = write_trace(directory, problem, *trace);
+  const auto files = trace_files(directory, problem, *trace);
   written.trace = file_bytes(directory, files);
   written.files += static_cast<long>(files.size());
   return files;

@@ -52,8 +52,8 @@ std::string counts_text(const std::vector<Amount>& amounts) {
   std::string text;
   for (const auto& amount : amounts)
     if (amount.within > 0 && amount.value > 0)
-      text += fmt::format("{}{}{:.0f} {}", text.empty() ? "" : ", ", amount.within == 1 ? "" : "~", amount.value,
-                          words(amount.name));
+      text += fmt::format("{}{} {}{:.0f}", text.empty() ? "" : ", ", words(amount.name), amount.within == 1 ? "" : "~",
+                          amount.value);
   return text;
 }
 
@@ -83,11 +83,13 @@ std::string ledger_table(const Ledger& ledger) {
   std::string text = fmt::format("  {:<20} {:>9} {:>9}  counts\n", "effect", "unknowns", "memory");
   std::vector<std::string> off;
   for (const auto& row : ledger) {
-    if (row.on)
-      text += fmt::format("  {:<20} {:>9} {:>9}  {}\n", words(row.effect), unknowns_text(row.unknowns),
-                          sum_text(row.memory), counts_text(row.counts));
-    else
+    if (!row.on) {
       off.push_back(words(row.effect));
+      continue;
+    }
+    const std::string counts = counts_text(row.counts);
+    text += fmt::format("  {:<20} {:>9} {:>9}{}{}\n", words(row.effect), unknowns_text(row.unknowns),
+                        sum_text(row.memory), counts.empty() ? "" : "  ", counts);
   }
   if (!off.empty()) text += "  off, and nothing of it there: " + joined(off) + "\n";
   return text;
