@@ -64,6 +64,11 @@ double spared_triangle(const EngineHoldings& engine, bool dense, double rows) {
   return static_cast<double>(engine.factor) * (entries - rows) / 2 / entries;
 }
 
+/// Of residuals: the bodies' are small beside those of the contact points, where there are any.
+double evaluation_seconds(const CaseResult& result) {
+  return result.problem->seconds.contact_search + result.trajectory.seconds.assembly;
+}
+
 LedgerRow bodies_row(const CaseResult& result, const StateBytes& states) {
   const auto& [model, slots, seconds] = *result.problem;
   return {"bodies",
@@ -74,13 +79,13 @@ LedgerRow bodies_row(const CaseResult& result, const StateBytes& states) {
            {"matrix", static_cast<double>(result.engine.bodies)},
            {"states", static_cast<double>(states.displacements)}},
           {{"elements", element_count(model)}},
-          seconds.setup};
+          seconds.setup + (model.effects.contact ? 0 : evaluation_seconds(result))};
 }
 
 /// Contact without friction, friction, and masters that deform. Multipliers are unknowns where the systems that were
 /// solved had rows for them.
 void add_contact_rows(const CaseResult& result, const StateBytes& states, Ledger& ledger) {
-  const auto& [model, slots, seconds] = *result.problem;
+  const auto& [model, slots, unused] = *result.problem;
   const auto& trajectory = result.trajectory;
   const bool dense = is_condensed(result);
   const double rows = trajectory.reduced_unknowns;
@@ -96,7 +101,7 @@ void add_contact_rows(const CaseResult& result, const StateBytes& states, Ledger
                      {"states", static_cast<double>(states.contact)},
                      {"multipliers", static_cast<double>(states.multipliers)}},
                     {{"points", normal}, {"evaluations", static_cast<double>(trajectory.counters.contact_evaluations)}},
-                    seconds.contact_search + trajectory.seconds.assembly});
+                    model.effects.contact ? evaluation_seconds(result) : 0});
   ledger.push_back({"friction",
                     model.effects.friction,
                     {{"tangential", std::max(multipliers - normal, 0.0)}},
@@ -131,7 +136,9 @@ void add_sensitivity_rows(const CaseResult& result, Ledger& ledger) {
   Counters searched = gradients.search;
   if (result.one_sided) searched += result.one_sided->counters;
   const auto counts = derivative_counts(gradients.counters, searched, result.sensitivity_body_solves);
-  const double seconds = gradients.seconds - gradients.search_seconds - result.one_sided_seconds;
+  const bool searches = result.one_sided.has_value() || searched.contact_evaluations > 0;
+  const double search = searches ? gradients.search_seconds + result.one_sided_seconds : 0;
+  const double seconds = model.effects.sensitivity ? gradients.seconds - search : 0;
   const double slots = static_cast<double>(storage.slots), kept = derivative_bytes(gradients);
   const auto none = derivative_counts({});
   ledger.push_back({"direct_sensitivity",
@@ -155,11 +162,11 @@ void add_sensitivity_rows(const CaseResult& result, Ledger& ledger) {
                     adjoint ? counts : none,
                     adjoint ? seconds : 0});
   ledger.push_back({"one_sided_search",
-                    result.one_sided.has_value() || searched.contact_evaluations > 0,
+                    searches,
                     {},
                     {{"derivatives", sides_bytes(result.one_sided)}},
                     derivative_counts(searched),
-                    gradients.search_seconds + result.one_sided_seconds});
+                    search});
 }
 
 /// Linear systems, by the engine that solved them.

@@ -64,7 +64,6 @@ void expect_nothing_of_what_is_off(const Ledger& ledger, const std::string& wher
     EXPECT_EQ(sum(each.unknowns), 0) << what;
     EXPECT_EQ(sum(each.memory), 0) << what;
     EXPECT_EQ(sum(each.counts), 0) << what;
-    EXPECT_EQ(each.seconds, 0) << what;
   }
 }
 
@@ -156,6 +155,7 @@ TEST(Ledger, OfASceneWithoutAnEffectHasNothingOfIt) {
 TEST(Ledger, FrictionTakesTheOtherTriangleOfASparseFactor) {
   json plain = scene("greco_plate");
   for (auto& contact : plain["contacts"]) contact.erase("friction");
+  plain["parameters"].erase("mu");
   const Book with = book_of(scene("greco_plate"), penalty, "sparse", "greco_plate");
   const Book without = book_of(plain, penalty, "sparse", "greco_plate");
   const double triangle = amount(row(with.kept, "friction").memory, "factor");
