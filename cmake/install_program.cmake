@@ -1,5 +1,5 @@
-# The program with what belongs to it (scenes, manual, licences, completion) as the install component `program`, and as a
-# Debian package of that component: `cpack` in the build folder.
+# The program with what belongs to it (scenes, manual, licences, completions) as the install component `program`, and as
+# a Debian package of that component: `cpack` in the build folder.
 
 install(TARGETS stickslip RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT program)
 install(FILES LICENSE README.md CITATION.cff DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
@@ -12,6 +12,12 @@ install(DIRECTORY studies/scenes studies/meshes DESTINATION "${CMAKE_INSTALL_DAT
 install(FILES docs/stickslip.1 DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT program)
 install(FILES tools/completion/stickslip.bash RENAME stickslip
   DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" COMPONENT program)
+install(FILES tools/completion/stickslip.fish
+  DESTINATION "${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d" COMPONENT program)
+# zsh looks in site-functions of /usr/local, Debian's for packages in vendor-completions of /usr.
+install(FILES tools/completion/_stickslip DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/site-functions" COMPONENT local)
+install(FILES tools/completion/_stickslip
+  DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions" COMPONENT debian EXCLUDE_FROM_ALL)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME stickslip)
@@ -29,5 +35,6 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # The reference BLAS would do, 3 to 6 times slower.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "libopenblas0-serial | libblas.so.3")
 set(CPACK_STRIP_FILES ON)
-set(CPACK_INSTALL_CMAKE_PROJECTS "${PROJECT_BINARY_DIR};${PROJECT_NAME};program;/")
+set(CPACK_INSTALL_CMAKE_PROJECTS
+  "${PROJECT_BINARY_DIR};${PROJECT_NAME};program;/;${PROJECT_BINARY_DIR};${PROJECT_NAME};debian;/")
 include(CPack)
