@@ -53,14 +53,25 @@ void fill_in(json& errors, const json& more) {
     if (!errors.contains(name)) errors[name] = error;
 }
 
-/// The steps without their bulk.
+std::size_t derivatives_in(const json& steps) {
+  std::size_t n = 0;
+  for (const auto& step : steps)
+    if (const auto found = step.find("sensitivities"); found != step.end())
+      for (const auto& by_parameter : *found) n += by_parameter.size();
+  return n;
+}
+
+/// The steps without their bulk: states, margins, and derivatives where these are many. The last step's are in the row.
 json brief(const json& steps) {
+  constexpr std::size_t most_derivatives = 20'000;  // half a megabyte a row
+  const bool few = derivatives_in(steps) <= most_derivatives;
   json out = json::array();
   for (const auto& step : steps) {
     json kept = json::object();
     for (const char* name : {"time", "status", "newton", "augmentations", "cutbacks", "history", "responses",
                              "contraction", "sensitivity_scheme"})
       if (step.contains(name)) kept[name] = step[name];
+    if (few && step.contains("sensitivities")) kept["sensitivities"] = step["sensitivities"];
     out.push_back(std::move(kept));
   }
   return out;

@@ -128,6 +128,13 @@ void offer(Figure& figure, const std::string& label, const std::string& field, c
   figure.choices.push_back(choice);
 }
 
+std::string first_choice(const std::optional<Figure>& figure, const std::string& field) {
+  if (figure)
+    for (const auto& choice : figure->choices)
+      if (choice.field == field && !choice.chosen.empty()) return choice.chosen.front();
+  return "";
+}
+
 std::vector<std::pair<std::string, double>> quantities(const std::map<std::string, double>& errors,
                                                        const std::vector<std::string>& prefixes,
                                                        const std::string& worst_name) {

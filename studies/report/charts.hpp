@@ -49,6 +49,9 @@ struct Figure {
   std::string folded;  ///< why a reader may pass it by: it is then folded behind its title and this; "" shows it
 };
 
+/// What a figure offers by `field` and shows first; "" where it offers no such choice.
+std::string first_choice(const std::optional<Figure>& figure, const std::string& field);
+
 /// A drawing that needs no script.
 struct Plate {
   std::string id, title, text;
@@ -81,6 +84,10 @@ std::optional<Figure> convergence_histories(const Study& study);
 /// Every response over time and every force along every displacement, main variant, a curve a run; what the study gives
 /// as exact stands at the end of time. Nothing where no run recorded responses of two steps.
 std::optional<Figure> response_histories(const Study& study);
+
+/// Every derivative of a response over time, main variant, a curve a run, those of `response` first; what the study
+/// gives as exact stands at the end of time. Nothing where no run recorded derivatives of two steps.
+std::optional<Figure> derivative_histories(const Study& study, const std::string& response);
 
 /// Pressure and tangential traction along the interface at the last step with the closed form, and the difference from
 /// the most accurate cell, main variant.

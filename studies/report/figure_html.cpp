@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <map>
 #include <set>
 
 #include "studies/report/figure_files.hpp"
@@ -49,6 +50,35 @@ json rounded(const json& value) {
                                  : value;
 }
 
+/// Rows in a sixth of the bytes: as arrays under one list of `fields`; of a field that holds texts alone, each is a
+/// place in its list of `texts`.
+json compact(const json& rows) {
+  std::set<std::string> fields, mixed;
+  for (const auto& row : rows)
+    for (const auto& [field, value] : row.items()) {
+      fields.insert(field);
+      if (!value.is_string()) mixed.insert(field);
+    }
+  json out = {{"fields", fields}, {"texts", json::object()}, {"rows", json::array()}};
+  std::map<std::string, std::map<std::string, std::size_t>> places;
+  for (const auto& row : rows) {
+    json values = json::array();
+    for (const auto& field : fields) {
+      const json& value = at(row, field);
+      if (value.is_null() || mixed.count(field)) {
+        values.push_back(rounded(value));
+        continue;
+      }
+      auto& known = places[field];
+      const auto [place, added] = known.emplace(value.get<std::string>(), known.size());
+      if (added) out["texts"][field].push_back(value);
+      values.push_back(place->second);
+    }
+    out["rows"].push_back(std::move(values));
+  }
+  return out;
+}
+
 /// The title, but of a folded figure, whose fold has it, and what is said below it.
 std::string caption(const std::string& id, const std::string& title, const std::string& text, const std::string& fold) {
   const std::string head = fold.empty() ? fmt::format("<h3 id=\"{}-title\">{}</h3>", id, escape(title)) : "";
@@ -79,16 +109,7 @@ std::string to_html(const Figure& figure) {
   json series = json::array();
   for (const auto& s : figure.series)
     series.push_back({{"name", s.name}, {"color", s.color}, {"shape", s.shape}, {"dash", s.dash}, {"size", s.size}});
-  // Rows as arrays under one list of fields: half the bytes of objects.
-  std::set<std::string> fields;
-  for (const auto& row : figure.rows)
-    for (const auto& [field, value] : row.items()) fields.insert(field);
-  json rows = json::array();
-  for (const auto& row : figure.rows) {
-    json values = json::array();
-    for (const auto& field : fields) values.push_back(rounded(at(row, field)));
-    rows.push_back(values);
-  }
+  const json table = compact(figure.rows);
   std::string controls;
   for (const auto& choice : figure.choices) controls += control(choice);
   std::string out = fmt::format("<figure data-chart id=\"{0}\" aria-labelledby=\"{0}-title\">\n", figure.id) +
@@ -100,9 +121,10 @@ std::string to_html(const Figure& figure) {
            "</div></details>\n";
   out += "<details class=\"data\"><summary>Data of this chart</summary></details>\n";
   out += fmt::format("<script type=\"application/json\" id=\"{}-data\">{}</script>\n</figure>\n", figure.id,
-                     embed({{"fields", fields},
+                     embed({{"fields", table["fields"]},
+                            {"texts", table["texts"]},
                             {"columns", columns_of(figure.rows)},
-                            {"rows", rows},
+                            {"rows", table["rows"]},
                             {"series", series},
                             {"panels", specs}}));
   return behind_a_fold(figure.id, figure.title, figure.folded, out);

@@ -149,6 +149,13 @@ bool keep_one_of_equals(std::vector<Strip>& strips) {
   return true;
 }
 
+/// Whether every strip is the same from the first step to the last.
+bool nothing_changes(const std::vector<Strip>& strips) {
+  return std::all_of(strips.begin(), strips.end(), [](const Strip& strip) {
+    return std::all_of(strip.steps.begin(), strip.steps.end(), [&](auto& step) { return step == strip.steps.front(); });
+  });
+}
+
 }  // namespace
 
 std::optional<Plate> film_of_states(const Study& study) {
@@ -186,6 +193,7 @@ std::optional<Plate> film_of_states(const Study& study) {
     draw_strip(strips[i], indent + cell_width * static_cast<double>(i % columns),
                head + cell_height * static_cast<double>(i / columns), plate.drawing);
   draw_legend(strips, bottom, plate.drawing);
+  if (nothing_changes(strips) && (agree || study.cells.size() == 1)) plate.folded = "no point changes its state";
   return plate;
 }
 

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <regex>
 
 #include "studies/printing.hpp"
 
@@ -51,6 +52,11 @@ std::string escape(std::string_view text) {
         out += c;
     }
   return out;
+}
+
+std::string escape_sentence(std::string_view text) {
+  static const std::regex small(R"(\d[\d.]*e-\d+)");
+  return std::regex_replace(escape(text), small, "<span class=\"number\">$&</span>");
 }
 
 std::string embed(const nlohmann::json& value) {

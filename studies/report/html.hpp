@@ -11,6 +11,9 @@ namespace stickslip::report {
 /// `text` with & < > " ' replaced by entities: safe as element content and as an attribute value.
 std::string escape(std::string_view text);
 
+/// escape(), with numbers such as 2e-4 kept on one line.
+std::string escape_sentence(std::string_view text);
+
 /// `value` as JSON that may stand inside <script type="application/json">: every '<' is written \u003c, so no text of a
 /// record can close the element. Bytes that are not UTF-8 become U+FFFD.
 std::string embed(const nlohmann::json& value);

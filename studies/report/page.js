@@ -144,9 +144,12 @@
 
   const dataOf = (figure) => JSON.parse(document.getElementById(figure.id + '-data').textContent);
 
+  /** What an entry of a row says: of a field that holds texts, it is a place in their list. */
+  const meant = (data, field, entry) => data.texts[field]?.[entry] ?? entry;
+
   /** The rows of a figure that are chosen, as objects. */
-  const chosenRows = (figure, data) => rowsShown(figure, data.rows.map((values) =>
-      Object.fromEntries(data.fields.map((field, i) => [field, values[i]]).filter(([, value]) => value !== null))));
+  const chosenRows = (figure, data) => rowsShown(figure, data.rows.map((values) => Object.fromEntries(
+      data.fields.map((field, i) => [field, meant(data, field, values[i])]).filter(([, value]) => value !== null))));
 
   async function draw(figure) {
     const data = dataOf(figure), all = chosenRows(figure, data), off = switchedOff.get(figure);

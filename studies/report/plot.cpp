@@ -172,7 +172,9 @@ Axis::Axis(double low, double high, bool logarithmic, double from, double to, bo
     low_ = bounded ? low_ : middle - 0.5;
     high_ = low_ + 1;
   }
-  const double room = high_ > low_ ? 0.05 * (high_ - low_) : std::max(std::abs(high_), 1.0) / 2;
+  constexpr double rounding = 1e-9;  // of a number: what an axis must not magnify
+  if (!log_ && high_ - low_ < rounding * std::max(std::abs(low_), std::abs(high_))) low_ = high_ = (low_ + high_) / 2;
+  const double room = high_ > low_ ? 0.05 * (high_ - low_) : high_ == 0 ? 1 : std::abs(high_) / 2;
   if (!bounded) low_ -= room;
   high_ += room;
 }

@@ -41,7 +41,7 @@ std::string statuses(const Study& study) {
 
 std::string findings(const Study& study, const Study& shown) {
   std::string out = "<ul class=\"headline\">";
-  for (const auto& sentence : headline(study)) out += "<li>" + escape(sentence) + "</li>\n";
+  for (const auto& sentence : headline(study)) out += "<li>" + escape_sentence(sentence) + "</li>\n";
   out += "</ul>\n";
   if (!study.faults.empty()) out += fmt::format("<p class=\"warning\">results.jsonl: {}.</p>\n", escape(study.faults));
   if (study.unrecorded > 0)
@@ -80,14 +80,15 @@ std::optional<Figure> first_chart(const Study& study) {
   return figure;
 }
 
-/// What a reader sees first: the scene, a chart of what `study` shows of `all`, and who is the cheapest.
+/// What a reader sees first: who is the cheapest and why, the scene, a chart of what `study` shows of `all`.
 std::string first_screen(const Study& all, const Study& study, Figures& figures) {
   auto overview = draw_overview(study.picture);
   if (const std::string title = text_at(study.description, "scene_title"); overview && !title.empty())
     overview->title = title;
   const std::string scene = figures.show(std::move(overview)), chart = figures.show(first_chart(study));
   const std::string sights = scene.empty() && chart.empty() ? "" : "<div class=\"first\">" + scene + chart + "</div>\n";
-  return sights + verdict(all);
+  const Verdict best = verdict(all);
+  return best.reason + sights + best.table;
 }
 
 std::string of_errors(const Study& all, const Study& study, Of of, Figures& figures) {
@@ -108,7 +109,9 @@ std::string of_knobs(const Study& study, Figures& figures) {
 }
 
 std::string of_solution(const Study& study, Figures& figures) {
-  std::string out = figures.show(response_histories(study));
+  auto responses = response_histories(study);
+  auto derivatives = derivative_histories(study, first_choice(responses, "response"));
+  std::string out = figures.show(std::move(responses)) + figures.show(std::move(derivatives));
   if (has_close_up(study.picture)) out += figures.show(draw_picture(study.picture));
   out += figures.show(tractions(study));
   return out + figures.show(film_of_states(study));

@@ -148,7 +148,9 @@ std::string first_of_run(const Study& run, Figures& figures) {
 }
 
 std::vector<Section> sections_of_run(const Study& run, Figures& figures) {
-  std::string solution;
+  auto derivatives = derivative_histories(run, first_choice(response_histories(run), "response"));
+  if (derivatives) derivatives->folded.clear();
+  std::string solution = figures.show(std::move(derivatives));
   if (has_close_up(run.picture)) solution += figures.show(draw_picture(run.picture));
   solution += figures.show(tractions(run));
   solution += figures.show(film_of_states(run));

@@ -96,7 +96,7 @@ void tag_lines(json& rows, const std::string& text_field) {
   };
   for (auto& [key, ends] : lines) {
     const std::string name = ends.last->value("series", ""), value = ends.last->value(text_field, "");
-    words.write(*ends.last, {moves(ends) && !value.empty() ? name + " " + value : name, moves(ends) ? value : ""});
+    words.write(*ends.last, {moves(ends) && !value.empty() ? name + ", " + value : name, moves(ends) ? value : ""});
   }
   for (auto& [key, ends] : lines)
     if (moves(ends)) words.write(*ends.first, {ends.first->value(text_field, "")});

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
+#include <sstream>
 
 #include "studies/report/headline.hpp"
 #include "studies/report/html.hpp"
@@ -40,11 +42,33 @@ struct Measure {
   double seconds(const Cell& cell) const { return of == Of::responses ? cell.seconds : cell.sensitivity_seconds; }
 };
 
-std::vector<const Cell*> runs_of(const Study& study, const std::string& family) {
+std::vector<const Cell*> runs_of(const Study& study) {
   std::vector<const Cell*> out;
   for (const auto& cell : study.cells)
-    if (cell.variant == study.main_variant && (family.empty() || cell.family == family)) out.push_back(&cell);
+    if (cell.variant == study.main_variant) out.push_back(&cell);
   return out;
+}
+
+/// A row of the table: the runs of a method or, in a study of one method, of one choice of the options beside the one
+/// that its curves run along.
+struct Row {
+  std::string name;
+  std::vector<const Cell*> runs;
+};
+
+std::vector<Row> rows_of(const Study& study) {
+  constexpr std::size_t most = 8;  // that a first screen has room for
+  std::vector<Row> by_method, by_series;
+  for (const auto& family : study.families) by_method.push_back({family_name(family), {}});
+  const std::string knob = study.families.size() == 1 ? running_knob(study, study.families.front()) : "";
+  for (const Cell* cell : runs_of(study)) {
+    const auto method = std::find(study.families.begin(), study.families.end(), cell->family) - study.families.begin();
+    by_method[static_cast<std::size_t>(method)].runs.push_back(cell);
+    const std::string series = series_of(*cell, knob);
+    const auto known = std::find_if(by_series.begin(), by_series.end(), [&](auto& row) { return row.name == series; });
+    (known == by_series.end() ? by_series.emplace_back(Row{series, {}}) : *known).runs.push_back(cell);
+  }
+  return !knob.empty() && by_series.size() > 1 && by_series.size() <= most ? by_series : by_method;
 }
 
 /// What the mesh itself is off by: the error, against the study's discretisation reference, of the run that enforces
@@ -52,7 +76,7 @@ std::vector<const Cell*> runs_of(const Study& study, const std::string& family) 
 std::optional<double> own_error(const Study& study, const std::string& prefix) {
   const Cell* best = nullptr;
   double least = 0;
-  for (const Cell* cell : runs_of(study, ""))
+  for (const Cell* cell : runs_of(study))
     if (const auto error = worst(cell->enforcement, prefix); cell->converged && error && (!best || *error < least)) {
       best = cell;
       least = *error;
@@ -66,7 +90,7 @@ std::string percent(double error) {
 
 std::optional<Measure> measure_of(const Study& study, Of of) {
   Measure measure{of, true, {}};
-  const auto runs = runs_of(study, "");
+  const auto runs = runs_of(study);
   const auto has_errors = [&] {
     return std::any_of(runs.begin(), runs.end(), [&](auto* c) { return measure.error(*c); });
   };
@@ -83,38 +107,52 @@ std::optional<Measure> measure_of(const Study& study, Of of) {
   return measure;
 }
 
-/// The options that tell a run from others of its method; "default" where there are none.
-std::string setting_of(const Cell& cell) {
-  const std::string options = series_of(cell, "").substr(family_name(cell.family).size());
-  return options.empty() ? "default" : options.substr(1);
+/// The options that tell a run from others of its row; "default" where there are none.
+std::string setting_of(const Cell& cell, const std::string& row) {
+  std::string out;
+  std::istringstream words(series_of(cell, "")), common(row);
+  const std::set<std::string> known{std::istream_iterator<std::string>(common), {}};
+  for (std::string word; words >> word;)
+    if (known.count(word) == 0) out += (out.empty() ? "" : " ") + word;
+  return out.empty() ? "default" : out;
+}
+
+/// Escaped words, of which none is broken over two lines.
+std::string unbroken(const std::string& text) {
+  std::string out;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) out += (out.empty() ? "<span>" : " <span>") + escape(word) + "</span>";
+  return out;
 }
 
 /// A run, and how many others of its method do the same for the same work.
 struct Choice {
   const Cell* run = nullptr;  ///< nullptr: none
   int equals = 0;
+  std::string row = {};  ///< its name
 
   std::string setting() const {
-    const std::string own = setting_of(*run);
+    const std::string own = setting_of(*run, row);
     return equals == 0 ? own : own + " or " + counted(equals, "other");
   }
-  std::string name() const { return family_name(run->family) + (setting() == "default" ? "" : " (" + setting() + ")"); }
+  std::string name() const { return row + (setting() == "default" ? "" : " (" + setting() + ")"); }
 };
 
 std::string seconds_in_words(double seconds) {
   return seconds < 0.1 ? number(1e3 * seconds, 2) + " ms" : number(seconds, 2) + " s";
 }
 
-/// The run of a method that reaches an accuracy with least work; of equals the default setting, else the first.
-Choice cheapest(const std::vector<const Cell*>& runs, const Measure& measure, double level) {
+/// The run of a row that reaches an accuracy with least work; of equals the default setting, else the first.
+Choice cheapest(const Row& row, const Measure& measure, double level) {
   constexpr double same = 1 + 1e-9;  // counts are whole: what differs, differs by more
   Choice best;
-  for (const Cell* cell : runs) {
+  best.row = row.name;
+  for (const Cell* cell : row.runs) {
     const auto error = measure.error(*cell);
     if (!error || *error > level) continue;
     const double work = measure.work(*cell), least = best.run ? measure.work(*best.run) : INFINITY;
     if (work * same < least) {
-      best = {cell, 0};
+      best = {cell, 0, row.name};
     } else if (work <= least * same) {
       ++best.equals;
       if (at(cell->record, "default") == true) best.run = cell;
@@ -123,17 +161,17 @@ Choice cheapest(const std::vector<const Cell*>& runs, const Measure& measure, do
   return best;
 }
 
-/// Of an accuracy: the cheapest run of each method, the least work among them, and the least seconds.
+/// Of an accuracy: the cheapest run of each row, the least work among them, and the least seconds.
 struct Column {
-  std::vector<Choice> runs;       ///< per method
+  std::vector<Choice> runs;       ///< per row
   const Cell* least = nullptr;    ///< by work
   const Cell* fastest = nullptr;  ///< by seconds, where they were measured
 };
 
-Column column_of(const Study& study, const Measure& measure, double level) {
+Column column_of(const std::vector<Row>& rows, const Measure& measure, double level) {
   Column column;
-  for (const auto& family : study.families) {
-    const Choice choice = cheapest(runs_of(study, family), measure, level);
+  for (const auto& row : rows) {
+    const Choice choice = cheapest(row, measure, level);
     column.runs.push_back(choice);
     const Cell* run = choice.run;
     if (!run) continue;
@@ -154,44 +192,68 @@ bool is_fastest(const Column& column, const Measure& measure, const Cell& cell) 
          measure.seconds(*column.least) > much_faster * measure.seconds(cell);
 }
 
-std::string entry(const Study& study, const std::string& family, const Measure& measure, const Column& column,
-                  const Choice& choice) {
+std::string entry(const Row& row, const Measure& measure, const Column& column, const Choice& choice) {
   const Cell* run = choice.run;
   if (!run) {
     std::optional<double> nearest;
-    for (const Cell* cell : runs_of(study, family))
+    for (const Cell* cell : row.runs)
       if (const auto error = measure.error(*cell)) nearest = std::min(nearest.value_or(*error), *error);
     return "<td class=\"missed\">" + (nearest ? "best " + percent(*nearest) : std::string("no run")) + "</td>";
   }
   const bool least = is_least(column, measure, *run), fastest = is_fastest(column, measure, *run);
   std::string cost = "work " + number(measure.work(*run), 2);
   if (measure.seconds(*run) > 0) cost += " &middot; " + escape(seconds_in_words(measure.seconds(*run)));
-  return fmt::format("<td{}>{}<br><small>{}{}</small></td>", least ? " class=\"least\"" : "", escape(choice.setting()),
-                     cost,
+  return fmt::format("<td{}>{}<br><small>{}{}</small></td>", least ? " class=\"least\"" : "",
+                     unbroken(choice.setting()), cost,
                      least     ? " &#9733;"
                      : fastest ? " fastest"
                                : "");
 }
 
+/// "a and b"; of more than three "a, b and 4 others".
+std::string enumerated(const std::vector<std::string>& names) {
+  const std::size_t shown = names.size() > 3 ? 2 : names.size();
+  std::string out = names.front();
+  for (std::size_t i = 1; i < shown; ++i) out += (i + 1 == names.size() ? " and " : ", ") + names[i];
+  return shown < names.size() ? out + fmt::format(" and {} others", names.size() - shown) : out;
+}
+
+/// What those take that are not the cheapest; of more than three the dearest alone.
+std::string what_others_take(std::vector<const Choice*> others, const Measure& measure) {
+  if (others.empty()) return "";
+  const bool many = others.size() > 3;
+  if (many)
+    others = {*std::max_element(others.begin(), others.end(), [&](const Choice* a, const Choice* b) {
+      return measure.work(*a->run) < measure.work(*b->run);
+    })};
+  std::string out;
+  for (const Choice* choice : others)
+    out += std::string(!out.empty() ? ", "
+                       : many       ? " where the dearest, "
+                                    : " where ") +
+           escape_sentence(choice->name()) + (many ? ", takes " : " takes ") + work_in_words(*choice->run, measure.of);
+  return out;
+}
+
 /// Who is the cheapest at the first accuracy that any method reaches, and what the others need.
-std::string reason(const Study& study, const Measure& measure) {
+std::string reason(const std::vector<Row>& rows, const Measure& measure) {
   for (const auto& level : measure.levels) {
-    const Column column = column_of(study, measure, level.error);
+    const Column column = column_of(rows, measure, level.error);
     if (!column.least) continue;
-    std::string winners, others;
+    std::vector<std::string> winners;
+    std::vector<const Choice*> others;
     for (const Choice& choice : column.runs) {
       if (!choice.run) continue;
-      const std::string name = escape(choice.name());
       if (is_least(column, measure, *choice.run))
-        winners += (winners.empty() ? "<b>" : " and <b>") + name + "</b>";
+        winners.push_back("<b>" + escape_sentence(choice.name()) + "</b>");
       else
-        others += (others.empty() ? " where " : ", ") + name + " takes " + work_in_words(*choice.run, measure.of);
+        others.push_back(&choice);
     }
-    std::string out = "To " + level.title + " the " + measure.noun() + " is cheapest by " + winners + ": " +
-                      work_in_words(*column.least, measure.of) + others;
+    std::string out = "To " + level.title + " the " + measure.noun() + " is cheapest by " + enumerated(winners) + ": " +
+                      work_in_words(*column.least, measure.of) + what_others_take(others, measure);
     for (const Choice& choice : column.runs)
       if (choice.run && is_fastest(column, measure, *choice.run))
-        out += fmt::format("; by the clock {} was faster ({} for {})", escape(choice.name()),
+        out += fmt::format("; by the clock {} was faster ({} for {})", escape_sentence(choice.name()),
                            escape(seconds_in_words(measure.seconds(*choice.run))),
                            escape(seconds_in_words(measure.seconds(*column.least))));
     return out + ".";
@@ -201,36 +263,36 @@ std::string reason(const Study& study, const Measure& measure) {
 
 }  // namespace
 
-std::string verdict(const Study& study) {
+Verdict verdict(const Study& study) {
   std::vector<Measure> measures;
   for (const Of of : {Of::responses, Of::sensitivities})
     if (auto measure = measure_of(study, of)) measures.push_back(*std::move(measure));
-  if (measures.empty()) return "";
+  if (measures.empty()) return {};
   std::string groups, heads, sentence;
-  std::vector<std::string> rows(study.families.size());
+  const std::vector<Row> rows = rows_of(study);
+  std::vector<std::string> entries(rows.size());
   for (const auto& measure : measures) {
     groups +=
         fmt::format("<th scope=\"colgroup\" colspan=\"{}\">{} within</th>", measure.levels.size(), measure.noun());
     for (const auto& level : measure.levels) {
       heads += "<th scope=\"col\">" + escape(level.title) + "</th>";
-      const Column column = column_of(study, measure, level.error);
-      for (std::size_t i = 0; i < study.families.size(); ++i)
-        rows[i] += entry(study, study.families[i], measure, column, column.runs[i]);
+      const Column column = column_of(rows, measure, level.error);
+      for (std::size_t i = 0; i < rows.size(); ++i) entries[i] += entry(rows[i], measure, column, column.runs[i]);
     }
-    sentence += (sentence.empty() ? "" : " ") + reason(study, measure);
+    sentence += (sentence.empty() ? "" : " ") + reason(rows, measure);
   }
   std::string body;
-  for (std::size_t i = 0; i < study.families.size(); ++i)
-    body += "<tr><th scope=\"row\">" + escape(family_name(study.families[i])) + "</th>" + rows[i] + "</tr>\n";
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    body += "<tr><th scope=\"row\">" + unbroken(rows[i].name) + "</th>" + entries[i] + "</tr>\n";
   const std::string against =
       measures.front().on_same_mesh ? "exact contact on the same mesh" : discretization_reference(study);
-  return fmt::format(
+  const std::string table = fmt::format(
       "<div class=\"wide\" role=\"region\" tabindex=\"0\" aria-label=\"Verdict\"><table class=\"verdict\">"
       "<caption>The cheapest setting of each method that gets within an accuracy of {}{}; &#9733; least work "
       "(factorisations and their worth in back-solves)</caption>\n<thead><tr><th rowspan=\"2\">method</th>{}</tr>"
-      "<tr>{}</tr></thead><tbody>\n{}</tbody></table></div>\n<p class=\"reason\">{}</p>\n",
-      escape(against), study.main_variant.empty() ? "" : escape(" (" + study.main_variant + ")"), groups, heads, body,
-      sentence);
+      "<tr>{}</tr></thead><tbody>\n{}</tbody></table></div>\n",
+      escape(against), study.main_variant.empty() ? "" : escape(" (" + study.main_variant + ")"), groups, heads, body);
+  return {"<p class=\"reason\">" + sentence + "</p>\n", table};
 }
 
 }  // namespace stickslip::report

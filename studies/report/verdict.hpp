@@ -8,8 +8,11 @@
 namespace stickslip::report {
 
 /// A table with the methods in rows and, for responses and for derivatives, the accuracies in columns (those that the
-/// study names, else 1 %, 1e-4 and 1e-6, and what this mesh itself is off by), below it a sentence that says what makes
-/// the cheapest cheap. HTML, of the main variant; "" where no error was measured.
-std::string verdict(const Study& study);
+/// study names, else 1 %, 1e-4 and 1e-6, and what this mesh itself is off by), and in words what makes the cheapest
+/// cheap. HTML, of the main variant; empty where no error was measured.
+struct Verdict {
+  std::string reason, table;
+};
+Verdict verdict(const Study& study);
 
 }  // namespace stickslip::report

@@ -167,6 +167,16 @@ TEST_F(ReportCharts, AFrictionlessFilmTouchesAndDoesNotSlip) {
   EXPECT_THAT(plate->drawing.inline_svg(), testing::AllOf(HasSubstr(">touches<"), Not(HasSubstr("slips"))));
 }
 
+TEST_F(ReportCharts, FilmIsFoldedWhereNoPointEverChanges) {
+  auto cells = three_methods();
+  for (auto& c : cells) c["film"] = {{"times", {0.5, 1}}, {"contacts", {{"sole", {"sss", "sss"}}}}};
+  record(description(), cells);
+  EXPECT_FALSE(report::film_of_states(study())->folded.empty());
+  for (auto& c : cells) c["film"]["contacts"]["sole"][1] = "sso";
+  record(description(), cells);
+  EXPECT_TRUE(report::film_of_states(study())->folded.empty());
+}
+
 TEST_F(ReportCharts, ThereIsNoFilmOfOnePointOrOneStepOrOfABrokenRecord) {
   auto cells = three_methods();
   for (const json& film : {json{{"times", {1}}, {"contacts", {{"sole", {"okk"}}}}},
@@ -255,9 +265,18 @@ TEST_F(ReportCharts, FiguresHoldWhatThePagesChartsShow) {
   page();
   const std::string work = file("enforcement-responses-against-work-factorisations.svg");
   EXPECT_THAT(work, HasSubstr(">exactly 0<"));
-  for (const char* option : {">1000<", ">Penalty 1e9<", ">Uzawa AL 1e-4<", ">1e-8<", ">Monolithic AL<"})
+  for (const char* option : {">1000<", ">Penalty, 1e9<", ">Uzawa AL, 1e-4<", ">1e-8<", ">Monolithic AL<"})
     EXPECT_THAT(work, HasSubstr(option));
   EXPECT_THAT(file("error-stiffness-responses.svg"), HasSubstr(">slope -1<"));
+}
+
+TEST(ReportAxis, DoesNotMagnifyRounding) {
+  const report::Axis rounding(5.23428663391, 5.23428663392, false, 0, 100), change(5.23, 5.24, false, 0, 100);
+  EXPECT_LE(rounding.ticks().front(), 3);
+  EXPECT_GE(rounding.ticks().back(), 7);
+  EXPECT_GT(change.ticks().front(), 5.2);
+  const report::Axis nothing(0, 0, false, 0, 100);
+  EXPECT_EQ(nothing.ticks().front(), -1);
 }
 
 TEST(ReportAxis, HasNoRoomBelowABound) {

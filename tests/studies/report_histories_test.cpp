@@ -1,4 +1,4 @@
-/// Responses over time and forces along displacements.
+/// Responses and derivatives over time, and forces along displacements.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -25,6 +25,10 @@ json to_and_fro(int steps) {
     const double t = 2 * std::acos(-1.0) * n / steps;
     out.push_back({{"time", n + 1},
                    {"responses", {{"u", std::sin(t)}, {"grip", std::cos(t) > 0 ? -3 : 3}, {"press", 10}}},
+                   {"sensitivities",
+                    {{"u", {{"mu", -1}, {"N", nullptr}}},
+                     {"grip", {{"mu", std::cos(t) > 0 ? -10 : 10}, {"N", 0}}},
+                     {"press", {{"mu", 0}, {"N", 1}}}}},
                    {"history", json::array()}});
   }
   return out;
@@ -67,6 +71,26 @@ TEST_F(ReportHistories, DrawEachForceAlongEachDisplacementAndTheLoopFirst) {
     }
   EXPECT_EQ(points.size(), 7u);
   for (const auto& [label, n] : points) EXPECT_EQ(n, 40) << label;
+}
+
+TEST_F(ReportHistories, WithoutALoopBeginWithTheForceThatChangesAndSpeakOfNoMemory) {
+  json steps = json::array();
+  for (int n = 1; n <= 10; ++n)  // the grip grows with the way, the press shakes by rounding in one run alone
+    steps.push_back(
+        {{"time", n}, {"responses", {{"u", n}, {"grip", 3 * n}, {"a_press", 10}}}, {"history", json::array()}});
+  json kinds = picture_with_kinds();
+  kinds["responses"] = {{"u", "displacement"}, {"grip", "contact_force"}, {"a_press", "contact_force"}};
+  auto cells = three_methods();
+  for (auto& c : cells) c["steps"] = steps;
+  cells[3]["steps"][4]["responses"]["a_press"] = 10.0000001;  // the most accurate of its method, shown at first
+  record(description(), cells, kinds);
+  const auto figure = report::response_histories(study());
+  ASSERT_TRUE(figure);
+  EXPECT_THAT(choice(*figure, "response")->chosen, testing::ElementsAre("grip"));
+  EXPECT_THAT(choice(*figure, "path")->chosen, testing::ElementsAre("grip against u"));
+  EXPECT_THAT(figure->text, Not(HasSubstr("memory")));
+  record_steps(to_and_fro(40));
+  EXPECT_THAT(report::response_histories(study())->text, HasSubstr("friction's memory"));
 }
 
 TEST_F(ReportHistories, NameTheChosenResponsesOnTheAxes) {
@@ -121,12 +145,74 @@ TEST_F(ReportHistories, WithoutKindsDrawNoPath) {
   EXPECT_EQ(figure->panels.size(), 1u);
 }
 
+TEST_F(ReportHistories, DrawEachDerivativeOverTimeAndThatWithMostToSeeFirst) {
+  record_steps(to_and_fro(40));
+  const auto figure = report::derivative_histories(study(), "grip");
+  ASSERT_TRUE(figure);
+  ASSERT_TRUE(choice(*figure, "response"));
+  EXPECT_THAT(choice(*figure, "response")->chosen, testing::ElementsAre("d grip / d mu"));  // d grip / d N stays 0
+  EXPECT_THAT(choice(*figure, "response")->options,
+              testing::UnorderedElementsAre("d grip / d mu", "d grip / d N", "d press / d mu", "d press / d N",
+                                            "d u / d mu"));  // d u / d N is nowhere a number
+  std::map<std::string, int> points;
+  for (const auto& row : figure->rows)
+    if (row["response"] == "d grip / d mu") {
+      EXPECT_EQ(std::abs(row["value"].get<double>()), 10);
+      ++points[row["label"]];
+    }
+  EXPECT_EQ(points.size(), 7u);
+  for (const auto& [label, n] : points) EXPECT_EQ(n, 40) << label;
+  EXPECT_THAT(report::draw_plot(*figure, figure->panels[0])->inline_svg(), HasSubstr(">d grip / d mu<"));
+}
+
+TEST_F(ReportHistories, OfDerivativesBeginWithTheResponseThatIsShown) {
+  record_steps(to_and_fro(40));
+  EXPECT_THAT(choice(*report::derivative_histories(study(), "press"), "response")->chosen.front(),
+              testing::StartsWith("d press"));
+  EXPECT_EQ(choice(*report::derivative_histories(study(), ""), "response")->chosen.front(), "d grip / d mu");
+}
+
+TEST_F(ReportHistories, ShowGivenDerivativesAtTheEnd) {
+  json about = description();
+  about["reference"] = {{{"values", {{"grip", -2.5}, {"grip/mu", 7}, {"other/mu", 1}}}}};
+  record_steps(to_and_fro(40), about);
+  const auto figure = report::derivative_histories(study(), "grip");
+  std::vector<json> given;
+  for (const auto& row : figure->rows)
+    if (row["series"] == "given value") given.push_back(row);
+  ASSERT_EQ(given.size(), 1u);
+  EXPECT_EQ(given[0]["response"], "d grip / d mu");
+  EXPECT_EQ(given[0]["time"], 40);
+  EXPECT_EQ(given[0]["value"], 7);
+}
+
+TEST_F(ReportHistories, OfManyDerivativesShowSomeAndSaySo) {
+  json steps = to_and_fro(400);
+  for (auto& step : steps)
+    for (int p = 0; p < 100; ++p) step["sensitivities"]["u"]["p" + std::to_string(p)] = p;
+  record_steps(steps);
+  const auto figure = report::derivative_histories(study(), "grip");
+  ASSERT_TRUE(figure);
+  EXPECT_LT(figure->rows.size(), 40'000u);
+  EXPECT_THAT(figure->text, HasSubstr("of 106 derivatives"));
+}
+
+TEST_F(ReportHistories, OfDerivativesNeedTwoStepsWithDerivatives) {
+  record_steps(to_and_fro(1));
+  EXPECT_FALSE(report::derivative_histories(study(), ""));
+  json steps = to_and_fro(10);
+  for (auto& step : steps) step.erase("sensitivities");  // adjoint mode, and rows of older programs
+  record_steps(steps);
+  EXPECT_FALSE(report::derivative_histories(study(), ""));
+}
+
 TEST_F(ReportHistories, ComeFirstUnderTheSolution) {
   record_steps(to_and_fro(40));
   const std::string text = page();
   const auto place = [&](const char* words) { return text.find(words); };
   EXPECT_LT(place("<h2 id=\"solution\">"), place("id=\"response-histories\""));
-  EXPECT_LT(place("id=\"response-histories\""), place("id=\"tractions\""));
+  EXPECT_LT(place("id=\"response-histories\""), place("id=\"derivative-histories\""));
+  EXPECT_LT(place("id=\"derivative-histories\""), place("id=\"tractions\""));
   EXPECT_LT(place("id=\"tractions\""), place("<h2 id=\"responses\">"));
 }
 

@@ -79,6 +79,21 @@ TEST_F(Report, CarriesEachChartsRowsUnderOneListOfFields) {
   }
 }
 
+TEST_F(Report, CarriesEachTextOfAChartOnce) {
+  record(description(), three_methods(), picture());
+  for (const auto& chart : data_of(page())) {
+    EXPECT_TRUE(chart["texts"].contains("series"));
+    for (const auto& [field, texts] : chart["texts"].items()) {
+      EXPECT_EQ(std::set<json>(texts.begin(), texts.end()).size(), texts.size()) << field;
+      const auto& fields = chart["fields"];
+      const auto place = std::find(fields.begin(), fields.end(), field) - fields.begin();
+      for (const auto& row : chart["rows"])
+        if (const auto& entry = row[static_cast<std::size_t>(place)]; !entry.is_null())
+          EXPECT_LT(entry.get<std::size_t>(), texts.size());
+    }
+  }
+}
+
 TEST_F(Report, EscapesHostileNames) {
   record(description(), three_methods(), picture());
   const auto count_scripts = [](const std::string& html) {

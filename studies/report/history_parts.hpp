@@ -1,0 +1,42 @@
+/// What the charts over time share: the values of a run's steps, and the rows made of them.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "studies/report/charts.hpp"
+
+namespace stickslip::report {
+
+/// Responses, or derivatives named "d RESPONSE / d PARAMETER", of one run over its steps.
+struct History {
+  std::vector<double> times;
+  std::map<std::string, std::vector<double>> values;  ///< by name, one a step; not a number where a step has none
+};
+
+/// Of at most 400 steps, evenly spaced, the last among them.
+History history_of(const Cell& cell, Of of);
+
+/// "d RESPONSE / d PARAMETER".
+std::string derivative_name(const std::string& response, const std::string& parameter);
+
+/// Of the names that pass, the one whose curve goes furthest up and down over its largest size; by the run in which it
+/// does so least, since what only some runs show may be rounding. Of equals the first; "" where none passes.
+std::string most_to_see(const std::vector<History>& runs, const std::function<bool(const std::string&)>& passes);
+
+/// What every row of a run's curves has. A failed run is a curve like any other; its name tells the status.
+nlohmann::json base_of_history(const Cell& cell);
+
+/// Rows along a curve: `base` with x under `x_name` and y under `value`. Curves of unlike `turn` mark unlike points, so
+/// that those which coincide stay readable.
+void add_history(nlohmann::json& rows, const nlohmann::json& base, const char* x_name, const std::vector<double>& x,
+                 const std::vector<double>& y, std::size_t turn);
+
+/// Marks at the end of time what the study gives as exact, of the names that the rows of the panel "time" have under
+/// `response`.
+void add_given(Figure& figure, const Study& study, Of of, double end);
+
+}  // namespace stickslip::report
