@@ -40,7 +40,7 @@ std::string row_fault(const json& row) {
   for (const char* name : {"id", "status"})
     if (!row.contains(name)) return "it has no " + in_quotes(name);
   if (has_checksum(row) && row["provenance"]["checksum"] != checksum_of(row)) return "its checksum is of another row";
-  static const std::array<std::pair<const char*, json::value_t>, 17> kinds{{
+  static const std::array<std::pair<const char*, json::value_t>, 20> kinds{{
       {"/id", json::value_t::string},
       {"/status", json::value_t::string},
       {"/label", json::value_t::string},
@@ -55,6 +55,9 @@ std::string row_fault(const json& row) {
       {"/errors/kkt", json::value_t::object},
       {"/responses", json::value_t::object},
       {"/sensitivities", json::value_t::object},
+      {"/error_budget", json::value_t::object},
+      {"/error_budget/quantities", json::value_t::object},
+      {"/error_budget/failed", json::value_t::array},
       {"/cost", json::value_t::object},
       {"/cost/counts", json::value_t::object},
       {"/cost/seconds", json::value_t::object},
@@ -62,7 +65,9 @@ std::string row_fault(const json& row) {
   for (const auto& [pointer, kind] : kinds)
     if (const json* value = value_at(row, pointer); value && value->type() != kind)
       return std::string(pointer) + " is " + shown(*value) + "; must be " +
-             (kind == json::value_t::string ? "a text" : "an object");
+             (kind == json::value_t::string  ? "a text"
+              : kind == json::value_t::array ? "an array"
+                                             : "an object");
   for (const char* pointer :
        {"/errors/enforcement", "/errors/discretization", "/errors/kkt", "/cost/counts", "/cost/seconds"})
     if (const json* group = value_at(row, pointer))

@@ -30,6 +30,7 @@ namespace stickslip {
 namespace {
 
 using nlohmann::json;
+using namespace nlohmann::literals;
 namespace fs = std::filesystem;
 
 /// A study that was found valid, and where its results go.
@@ -119,6 +120,19 @@ void write_description(const fs::path& directory, const json& description) {
 std::ptrdiff_t rows_of_other_shards(const Plan& plan, const RowsById& rows) {
   return static_cast<std::ptrdiff_t>(rows.size()) -
          std::count_if(plan.cells.begin(), plan.cells.end(), [&](const auto& cell) { return rows.count(cell.id) > 0; });
+}
+
+/// Makes the rows those of this study where it differs in its error budget alone, which the id of a cell does not know:
+/// what was asked for and is not there is to be measured, and what is not asked for is not shown.
+void match_budgets(const Plan& plan, RowsById& rows) {
+  for (const auto& cell : plan.cells) {
+    const auto row = rows.find(cell.id);
+    if (row == rows.end()) continue;
+    if (plan.study.budget_copies == 0)
+      row->second.erase("error_budget");
+    else if (row->second.value("/error_budget/copies"_json_pointer, 0) != plan.study.budget_copies)
+      rows.erase(row);
+  }
 }
 
 struct Tally {
@@ -320,6 +334,7 @@ StudyOutcome carry_out(const Plan& plan, const StudyArguments& arguments, const 
   std::vector<std::string> notes;
   const InterruptNote note_of_interrupt(described["command"]);
   RowsById rows = resume_rows(plan.directory, plan.ids, notes);
+  match_budgets(plan, rows);
   if (const auto others = rows_of_other_shards(plan, rows); others > 0)
     notes.push_back(
         fmt::format("{} row(s) of this study that are not of shard {} stay as they are", others, plan.shard.text()));

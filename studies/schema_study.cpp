@@ -49,7 +49,13 @@ const char* const study = R"json({
   "timing": {"description": "a pass of its own that measures seconds", "type": "object",
     "examples": [{"repeat": 3}], "additionalProperties": false, "properties": {
     "repeat": {"description": "how often every converged cell is run again; left out: no timing pass",
-      "$ref": "#/$defs/count", "maximum": 1000, "examples": [3]}}}
+      "$ref": "#/$defs/count", "maximum": 1000, "examples": [3]}}},
+  "error_budget": {"description": "measure what each error is made of, by some ten more runs a cell; left out: no",
+    "title": "true, false or object", "default": false, "examples": [true], "anyOf": [{"type": "boolean"},
+    {"type": "object", "additionalProperties": false, "properties": {
+    "copies": {"description": "runs of the scene with numbers moved by a rounding, for each that is compared",
+      "title": "whole number from 2 to 64", "type": "integer", "minimum": 2, "maximum": 64, "default": 4,
+      "examples": [8]}}}]}
 })json";
 
 }  // namespace stickslip::schema_texts

@@ -156,6 +156,33 @@ Errors discretisation_errors(const CaseResult& result, const ReferenceValues& re
   return errors;
 }
 
+std::map<std::string, ErrorScale> error_scales(const CaseResult& result, const ReferenceValues& reference) {
+  std::map<std::string, ErrorScale> scales;
+  const ReferenceValues own = values_of(result);
+  for (const auto& [name, computed] : own.responses) {
+    const auto exact = reference.responses.find(name);
+    const bool referred = exact != reference.responses.end();
+    const double size = std::abs(referred && exact->second != 0 ? exact->second : computed);
+    scales["response:" + name] = {size, referred};
+    const auto derivatives = own.sensitivities.find(name);
+    if (derivatives == own.sensitivities.end()) continue;
+    const auto references = reference.sensitivities.find(name);
+    for (const Parameter& parameter : result.problem->model.scene.parameters) {
+      const auto value = derivatives->second.find(parameter.name);
+      if (value == derivatives->second.end()) continue;
+      double derivative = value->second;
+      bool known = references != reference.sensitivities.end();
+      if (known) {
+        const auto given = references->second.find(parameter.name);
+        known = given != references->second.end();
+        if (known) derivative = given->second;
+      }
+      scales["sensitivity:" + name + "/" + parameter.name] = {derivative_scale(derivative, size, parameter), known};
+    }
+  }
+  return scales;
+}
+
 bool asked_for(const std::string& name, const std::vector<std::string>& patterns) {
   return patterns.empty() || std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) {
            if (pattern.empty() || pattern.back() != '*') return name == pattern;

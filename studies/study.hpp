@@ -23,6 +23,16 @@ Errors enforcement_errors(const CaseResult& result, const CaseResult& reference)
 /// Against closed forms or given values, at the last step: what the mesh and the steps cost.
 Errors discretisation_errors(const CaseResult& result, const ReferenceValues& reference);
 
+/// What an error is relative to.
+struct ErrorScale {
+  double size = 0;
+  bool referred = false;  ///< whether the reference has a value, of which it then is
+};
+
+/// By the names of discretisation_errors(), of all that the last step has: the size of the reference value, or, where
+/// there is none or it is zero, of the result's own.
+std::map<std::string, ErrorScale> error_scales(const CaseResult& result, const ReferenceValues& reference);
+
 /// Whether an error is asked for by patterns such as "response:*", "sensitivity:press/*", "kkt".
 bool asked_for(const std::string& name, const std::vector<std::string>& patterns);
 

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <new>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "studies/attempt.hpp"
 #include "studies/film.hpp"
 #include "studies/ledger.hpp"
 #include "studies/method_options.hpp"
@@ -77,27 +76,6 @@ json brief(const json& steps) {
   return out;
 }
 
-/// Why a piece of work ended without a result.
-struct Breakdown {
-  std::string status, message;
-};
-
-/// Does it; what it throws is returned, whatever it is.
-std::optional<Breakdown> attempt(const std::function<void()>& work) {
-  try {
-    work();
-    return std::nullopt;
-  } catch (const std::bad_alloc&) {
-    return Breakdown{"cap", "there is not enough memory; a coarser mesh or fewer steps need less"};
-  } catch (const std::length_error&) {  // a container beyond all memory
-    return Breakdown{"cap", "there is not enough memory; a coarser mesh or fewer steps need less"};
-  } catch (const std::exception& error) {
-    return Breakdown{"failed", std::string("the program broke down, please report it with the scene: ") + error.what()};
-  } catch (...) {
-    return Breakdown{"failed", "the program broke down, please report it with the scene"};
-  }
-}
-
 /// What a row says of its cell, however it went.
 json head_of(const CellInput& cell) {
   return {{"id", cell.id},
@@ -156,6 +134,7 @@ void CellRunner::run_references(const CellInput& cell) {
     const auto breakdown = attempt([&] {
       const auto fine = input_of(reference_cell(cell, reference, program_version(), meshes_), meshes_);
       std::shared_ptr<Condensation<double>> own;
+      ++runs_;
       const auto result = run_case(problem_of(fine), fine.method, options_of(fine), own);
       if (is_converged(result.status())) values = values_of(result);
     });
@@ -165,6 +144,7 @@ void CellRunner::run_references(const CellInput& cell) {
 
 CaseResult CellRunner::run(const CellInput& cell) {
   const auto input = input_of(cell, meshes_);
+  ++runs_;
   return run_case(problem_of(input), input.method, options_of(input), variant_.condensation);
 }
 
@@ -209,6 +189,20 @@ json CellRunner::errors(const CaseResult& result) const {
   return all;
 }
 
+/// All that references other than runs on the same mesh say of a result; of one name, what the first of them says.
+ReferenceValues CellRunner::reference_of(const CaseResult& result) const {
+  ReferenceValues all;
+  auto overkill = variant_.overkill.begin();
+  for (const auto& reference : study_.references) {
+    if (reference.kind == Reference::Kind::method) continue;
+    ReferenceValues values =
+        reference.kind == Reference::Kind::overkill ? *overkill++ : reference_values(reference.entry, result);
+    all.responses.merge(values.responses);
+    for (auto& [response, derivatives] : values.sensitivities) all.sensitivities[response].merge(derivatives);
+  }
+  return all;
+}
+
 json CellRunner::row(std::size_t index) {
   json row;
   const auto breakdown = attempt([&] { row = measured_row(cells_[index]); });
@@ -223,6 +217,7 @@ json CellRunner::failed_row(std::size_t index, const std::string& status, const 
   row["message"] = message;
   row["errors"] = {{"enforcement", json::object()}, {"discretization", json::object()}};
   row["steps"] = json::array();
+  if (study_.budget_copies > 0) row["error_budget"] = no_budget(study_.budget_copies);
   row["provenance"] = provenance(1);
   return row;
 }
@@ -237,6 +232,7 @@ json CellRunner::measured_row(const CellInput& cell) {
   row["warnings"] = warnings_json(result);
   const json steps = steps_json(result);
   row["errors"] = errors(result);
+  if (study_.budget_copies > 0) row["error_budget"] = budgets_.of(cell, result);
   if (!steps.empty()) {
     if (asked_for("kkt", study_.errors)) row["errors"]["kkt"] = steps.back()["kkt"];
     row["responses"] = steps.back()["responses"];

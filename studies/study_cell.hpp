@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "studies/budget_runs.hpp"
 #include "studies/case.hpp"
 #include "studies/references.hpp"
 #include "studies/study_reader.hpp"
@@ -29,7 +30,12 @@ std::shared_ptr<const Problem> problem_of(const Input& input);
 class CellRunner {
  public:
   CellRunner(const Study& study, const std::vector<CellInput>& cells, MeshFiles& meshes)
-      : study_(study), cells_(cells), meshes_(meshes) {}
+      : study_(study),
+        cells_(cells),
+        meshes_(meshes),
+        budgets_(study, meshes, [this](const CaseResult& result) { return reference_of(result); }) {}
+  CellRunner(const CellRunner&) = delete;
+  CellRunner& operator=(const CellRunner&) = delete;
 
   /// The line of results.jsonl (docs/results.md). Whatever the cell throws is a row too: of status `cap`
   /// where there was not enough memory, `failed` where the program broke down, with the reason as its message.
@@ -40,6 +46,8 @@ class CellRunner {
   nlohmann::json seconds(std::size_t cell);
   /// The run that the report draws: the first reference on the cell's mesh, or else the cell itself.
   CaseResult showcase(std::size_t cell);
+  /// How often a method was run so far, for cells, references and error budgets.
+  long runs() const { return runs_ + budgets_.runs(); }
 
  private:
   struct Variant {
@@ -57,12 +65,15 @@ class CellRunner {
   nlohmann::json measured_row(const CellInput& cell);
   CaseResult run(const CellInput& cell);
   nlohmann::json errors(const CaseResult& result) const;
+  ReferenceValues reference_of(const CaseResult& result) const;
   nlohmann::json seconds_of(const CaseResult& result) const;
 
   const Study& study_;
   const std::vector<CellInput>& cells_;
   MeshFiles& meshes_;
   Variant variant_;
+  BudgetRunner budgets_;
+  long runs_ = 0;
 };
 
 }  // namespace stickslip

@@ -79,6 +79,18 @@ void check_accuracies(const JsonNode& node) {
   for (const JsonNode& error : node.elements()) error.number(relative_error);
 }
 
+/// How many copies the error budget takes; 0: none is asked for.
+int read_budget(const JsonNode& node) {
+  constexpr int standard = 4, fewest = 2, most = 64;
+  if (node.value().is_boolean()) return node.value().get<bool>() ? standard : 0;
+  if (!node.value().is_object()) {
+    node.must_be(R"(true, false, or {"copies": n})");
+    return 0;
+  }
+  const auto copies = node.is_object({{}, {"copies"}}) ? node.find("copies") : std::nullopt;
+  return copies ? copies->count(fewest, most).value_or(standard) : standard;
+}
+
 /// Keys of an object in the scene; none where there is no such object.
 std::vector<std::string> names_in(const json& scene, const char* part) {
   std::vector<std::string> names;
@@ -393,8 +405,9 @@ std::optional<Study> read_study(const std::string& file, Diagnostics& diagnostic
   Study study;
   study.document = *std::move(document);
   const JsonNode root(study.document, diagnostics);
-  if (!root.is_object(
-          {{"scene"}, {"$schema", "title", "methods", "vary", "refine", "reference", "errors", "accuracy", "timing"}}))
+  if (!root.is_object({{"scene"},
+                       {"$schema", "title", "methods", "vary", "refine", "reference", "errors", "accuracy", "timing",
+                        "error_budget"}}))
     return std::nullopt;
   if (const auto schema = root.find("$schema")) schema->text();
   if (const auto title = root.find("title")) study.title = title->text().value_or("");
@@ -451,6 +464,7 @@ std::optional<Study> read_study(const std::string& file, Diagnostics& diagnostic
   if (const auto accuracy = root.find("accuracy")) check_accuracies(*accuracy);
   if (const auto timing = root.find("timing"); timing && timing->is_object({{}, {"repeat"}}))
     if (const auto repeat = timing->find("repeat")) study.repeat = repeat->count(1, most_rounds).value_or(0);
+  if (const auto budget = root.find("error_budget")) study.budget_copies = read_budget(*budget);
   if (const double count = cell_count(study); count > most_cells)
     root.error(fmt::format("makes {:.0f} cells of all its lists; allowed: {:.0f} at most", count, most_cells));
   if (diagnostics.error_count() > faults) return std::nullopt;

@@ -50,6 +50,7 @@ struct Study {
   std::vector<Reference> references;
   std::vector<std::string> errors;  ///< patterns: "response:*", "sensitivity:NAME/PARAMETER", "kkt"
   int repeat = 0;                   ///< rounds of the timing pass; 0: there is none
+  int budget_copies = 0;            ///< perturbed copies of each run of the error budget; 0: there is none
 };
 
 /// One run of a study.

@@ -78,6 +78,13 @@ std::optional<Figure> error_against_knob(const Study& study, const std::vector<s
 /// are crosses.
 std::optional<Figure> iterations_against_knob(const Study& study, const std::vector<std::string>& knobs);
 
+/// The parts of each error budget along the option that a method's curve runs along, a panel a method. Nothing where
+/// the study measured none.
+std::optional<Figure> error_budget(const Study& study);
+
+/// HTML below it: of each method the setting with the least error and what makes it, and what could not be measured.
+std::string budget_in_words(const Study& study);
+
 /// Residual per iteration of the step that took most iterations (of a failed run, the last), main variant.
 std::optional<Figure> convergence_histories(const Study& study);
 

@@ -129,6 +129,7 @@ std::vector<Section> sections_of(const Study& all, const Study& study, Figures& 
       {"solution", "The solution", of_solution(study, figures)},
       {"responses", "Accuracy against cost: responses", of_errors(all, study, Of::responses, figures)},
       {"sensitivities", "Accuracy against cost: sensitivities", of_errors(all, study, Of::sensitivities, figures)},
+      {"budget", "Where the error comes from", figures.show(error_budget(study)) + budget_in_words(study)},
       {"knobs", "Turning the knobs", of_knobs(study, figures)},
       {"solver", "The solver at work", of_solver(study, figures)},
       {"results", "All results",

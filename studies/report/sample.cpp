@@ -5,6 +5,7 @@
 #include <set>
 
 #include "studies/report/chart_parts.hpp"
+#include "studies/report/look_up.hpp"
 #include "studies/report/settings.hpp"
 #include "studies/result_rows.hpp"
 
@@ -18,9 +19,11 @@ constexpr const char* curves_of_a_row[] = {"steps", "film", "interface"};
 /// How many runs the page has room for: 250, fewer where each has many errors, since a chart has a mark for each.
 std::size_t room(const Study& study) {
   constexpr std::size_t most_cells = 250, fewest_cells = 40, most_errors = 10'000;
+  constexpr std::size_t marks_of_a_budget = 7;  // the error, five parts, and what is left
   std::size_t errors = 1;
   for (const auto& cell : study.cells)
-    errors = std::max(errors, cell.enforcement.size() + cell.discretization.size() + cell.kkt.size());
+    errors = std::max(errors, cell.enforcement.size() + cell.discretization.size() + cell.kkt.size() +
+                                  marks_of_a_budget * object_at(at(cell.record, "error_budget"), "quantities").size());
   return std::clamp(most_errors / errors, fewest_cells, most_cells);
 }
 
