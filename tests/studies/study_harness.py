@@ -282,6 +282,47 @@ def timed(study, whole, work):
     same(directory, whole, f"timed, killed after {len(before)} of {len(runs)} runs")
 
 
+def budgeted(work):
+    """Error budgets are killed, resumed, and run by several processes, to the same rows. A study that asks for one
+    later runs anew what has none, one that no longer asks shows none."""
+    shutil.copy(SOURCE / "studies" / "scenes" / "pull_out.json", work)
+    path, plain = work / "budget.study.json", work / "plain.study.json"
+    study = {
+        "scene": "pull_out.json",
+        "methods": [{"penalty": {"stiffness": [1, 100, 1e4]}}, {"uzawa_al": {"tolerance": [1e-2, 1e-6]}},
+                    {"monolithic_al": {}}],
+        "reference": [{"values": {"u": 1 / 150, "heat": 2 / 45}}],
+    }
+    plain.write_text(json.dumps(study))
+    path.write_text(json.dumps(dict(study, error_budget=True)))
+    whole, directory, other = work / "budget", work / "budget killed", work / "budget later"
+    run("study", path, "-o", whole)
+    for each in rows(whole):
+        budget = each["error_budget"]["quantities"]["response:u"]
+        if not 0.8 < budget["sum"] / budget["error"] < 1.25:
+            sys.exit(f"{each['label']}: the parts make {budget['sum']} of {budget['error']}")
+    process = subprocess.Popen([PROGRAM, "study", path, "-o", directory], stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL)
+    while not (directory / "results.jsonl").exists():
+        time.sleep(0.005)
+    process.kill()
+    process.wait()
+    run("study", path, "-o", directory, "--resume", "--jobs", "2")
+    same(directory, whole, "budgets, killed and resumed")
+    run("study", plain, "-o", other)
+    figures = list((other / "figures").glob("error-budget*"))
+    if figures or any("error_budget" in row for row in rows(other)) or "Where the error comes" in (other / "report.html").read_text():
+        sys.exit(f"a budget that nobody asked for: {figures}")
+    without = rows(other)
+    run("study", path, "-o", other, "--resume")
+    same(other, whole, "budgets asked for later")
+    if not (other / "figures" / "error-budget.csv").exists():
+        sys.exit("the budget has no figure")
+    run("study", plain, "-o", other, "--resume")
+    if rows(other) != without or list((other / "figures").glob("error-budget*")):
+        sys.exit("a budget that is no longer asked for stays")
+
+
 def main():
     print(f"seed {SEED}")
     with tempfile.TemporaryDirectory() as folder:
@@ -300,6 +341,7 @@ def main():
         in_shards(study, whole, work)
         compared(whole, work)
         timed(study, whole, work)
+        budgeted(work)
 
 
 if __name__ == "__main__":
