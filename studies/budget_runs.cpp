@@ -238,6 +238,9 @@ double BudgetRunner::stretch_of(const CaseResult& given, const std::map<std::str
     if (const auto exact = shared_.exact.values.find(quantity);
         exact != shared_.exact.values.end() && scales.at(quantity).size > 0)
       off = std::max(off, std::abs(value - exact->second) / scales.at(quantity).size);
+  // Of a stiff penalty, which is off by the inverse of its multiple, most of that may be rounding.
+  const auto multiple = regularisation_json(given)["multiple"]["max"];
+  if (multiple.is_number()) off = std::min(off, 1 / multiple.get<double>());
   return off > 0 ? std::min(roundings * unit_roundoff / off, most) : most;
 }
 

@@ -229,7 +229,7 @@ std::string dominant_part(const Study& study, const std::string& family, const s
   const json& budget = at(budgets_of(*best), quantity);
   const bool known = at(budget, "error").is_number();
   const double off = (known ? at(budget, "error") : at(budget, "sum")).get<double>();
-  std::string out = fmt::format("Of {}, {} is nearest: off by {} in {}{}", family_name(family), series_of(*best, ""),
+  std::string out = fmt::format("{} comes nearest of its method: off by {} in {}{}", series_of(*best, ""),
                                 signed_number(off), quantity_in_words(quantity), known ? "" : ", the sum of its parts");
   const auto parts = parts_by_size(budget);
   if (parts.empty()) return out + "; no part is above what rounding leaves uncertain.";
