@@ -102,7 +102,8 @@ std::string ledger_line(const json& ledger) {
     std::string part = words(row["effect"]);
     double bytes = 0;
     for (const auto& [name, amount] : row["memory"].items()) bytes += amount.get<double>();
-    for (const auto& [name, amount] : row["unknowns"].items()) part += " " + unknowns_text({{name, amount}});
+    for (const auto& [name, amount] : row["unknowns"].items())
+      if (amount != 0) part += " " + unknowns_text({{name, amount}});
     if (bytes > 0) part += " " + bytes_text(bytes);
     if (row["seconds"].is_number() && row["seconds"] >= 0.1)
       part += fmt::format(" {:.1f} s", row["seconds"].get<double>());
