@@ -14,7 +14,7 @@ using nlohmann::json;
 
 json amounts_json(const std::vector<Amount>& amounts) {
   json out = json::object();
-  for (const auto& amount : amounts) out[amount.name] = amount.within > 0 ? json(std::round(amount.value)) : json();
+  for (const auto& amount : amounts) out[amount.name] = amount.within > 0 ? json(std::llround(amount.value)) : json();
   return out;
 }
 
