@@ -196,10 +196,10 @@ TEST(Penalties, AreSmoothInTheStiffnessOfEqualBodies) {
   };
   constexpr double h = 1e-5;  // the penalty leaves 1e-3 of the answer, whose kink would be 5e-4 of the derivative
   const auto result = at(1);
-  const double derivative = result.steps.back().sensitivities(0, 0), d = result.steps.back().responses[0];
+  const double derivative = result.steps.back().sensitivities(1, 0), d = result.steps.back().responses[1];
   EXPECT_TRUE(result.steps.back().differentiable);
   for (const double side : {h, -h})  // differences: h of the derivative, by a second derivative of its size
-    EXPECT_NEAR((at(1 + side).steps.back().responses[0] - d) / side, derivative, 8 * h * std::abs(derivative)) << side;
+    EXPECT_NEAR((at(1 + side).steps.back().responses[1] - d) / side, derivative, 8 * h * std::abs(derivative)) << side;
 }
 
 // A scale of a billionth leaves nearly all of an error to the next pass: that it will not settle shows early.
