@@ -242,9 +242,10 @@ def directory_that_vanishes(work):
 def worker_that_is_killed(work):
     directory = work / "killed worker"
     process = started("study", long_study(work), "-o", str(directory), "--jobs", "2", directory=directory)
-    children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
-    for child in children[:1]:
-        os.kill(int(child), signal.SIGKILL)
+    children = []  # (on a busy machine the file is there before the workers are)
+    while not children and process.poll() is None:
+        children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+    os.kill(int(children[0]), signal.SIGKILL)
     told = process.communicate(timeout=120)[1]
     if process.returncode != 3 or "signal 9" not in told or "bug of ours" in told:
         sys.exit(f"a killed worker: {process.returncode} {told[-500:]}")
