@@ -1,5 +1,7 @@
 #include "methods/method.hpp"
 
+#include "methods/solve.hpp"
+
 namespace stickslip {
 
 Trajectory<double> solve(const Model& model, const Slots<double>& slots, const Method& method,

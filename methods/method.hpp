@@ -1,7 +1,7 @@
 /// The closed set of methods and its one dispatch: from a model to a trajectory in double.
 #pragma once
 
-#include "methods/solve.hpp"
+#include "methods/run.hpp"
 
 namespace stickslip {
 

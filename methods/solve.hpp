@@ -4,31 +4,12 @@
 #pragma once
 
 #include <cassert>
-#include <functional>
 
-#include "core/model/engine_price.hpp"
 #include "methods/diagnosis.hpp"
+#include "methods/engine_choice.hpp"
 #include "methods/motion.hpp"
 
 namespace stickslip {
-
-/// How a run is carried out, apart from its method.
-struct RunOptions {
-  LinearAlgebra linear_algebra;
-  Backend backend = Backend::automatic;
-  std::vector<double> replay;     ///< ends of the increments to repeat, without cutting; empty: the model's own steps
-  std::function<void()> on_step;  ///< called after each requested step; may be empty
-  Trace* trace = nullptr;         ///< not owned; gathers every iterate where it is there
-};
-
-/// What a run allocates and leaves for its sensitivities: owned by the caller, the only mutable thing beside them.
-/// `condensation` may be handed on to another run on the same slots (a sweep over methods): it is reused if it is
-/// there.
-template <class T>
-struct Workspace {
-  std::shared_ptr<Condensation<T>> condensation;
-  std::optional<Engine<T>> engine;
-};
 
 namespace detail {
 
@@ -202,38 +183,6 @@ void march(const M& method, const Model& model, const Slots<T>& slots, E& engine
 }
 
 }  // namespace detail
-
-/// Price of a run by each engine.
-inline EnginePrice predict_price(const Model& model, const Method& method) {
-  const bool unknown = std::holds_alternative<MonolithicAL>(method);
-  const ConeRadius cone = std::visit([](const auto& m) { return cone_radius(m); }, method);
-  return predict_price(model, unknown, detail::symmetry_of(model, unknown, cone));
-}
-
-/// Whether a run condenses the bodies: where it is asked to, else where that is cheaper.
-inline bool condenses(const Model& model, const Method& method, LinearAlgebra::Engine engine) {
-  if (engine != LinearAlgebra::Engine::automatic) return engine == LinearAlgebra::Engine::condensed;
-  return prefers_condensed(model, predict_price(model, method));
-}
-
-/// Builds the engine a run asks for.
-template <class T>
-void make_engine(const Model& model, const Slots<T>& slots, const Method& method, const RunOptions& options,
-                 Workspace<T>& workspace) {
-  const bool unknown_multipliers = std::holds_alternative<MonolithicAL>(method);
-  const ConeRadius cone = std::visit([](const auto& m) { return cone_radius(m); }, method);
-  auto& condensation = workspace.condensation;
-  if (condenses(model, method, options.linear_algebra.engine)) {
-    if (!condensation) condensation = std::make_shared<Condensation<T>>(model, slots, options.backend);
-    if (condensation->valid()) {
-      workspace.engine.emplace(std::in_place_type<CondensedEngine<T>>, model, slots, unknown_multipliers, cone,
-                               condensation);
-      return;
-    }
-  }
-  workspace.engine.emplace(std::in_place_type<SparseEngine<T>>, model, slots, unknown_multipliers, cone,
-                           options.backend);
-}
 
 /// Runs a method through a model into an empty trajectory, which grows step by step. pre: the method's options go
 /// together (`conflict`). `model` and `slots` must outlive the workspace's engine.

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "sensitivity/one_sided.hpp"
+
 namespace stickslip {
 namespace {
 

@@ -20,10 +20,6 @@
 
 namespace stickslip {
 
-/// A distance from a change of state up to this is none: a point is weak. In units of traction, over the largest
-/// pressure, or over the friction bound.
-inline constexpr double weak_margin = 1e-8;
-
 struct WeakPoint {
   enum class Tie { opens, slips, apex, line };
   int point;

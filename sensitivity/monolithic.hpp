@@ -4,6 +4,7 @@
 /// vanishes at the solution. Adjoint: one transposed solve. [SLK10]
 #pragma once
 
+#include "methods/monolithic.hpp"
 #include "sensitivity/direct.hpp"
 #include "sensitivity/pull_back.hpp"
 

@@ -15,7 +15,7 @@
 #include <optional>
 #include <vector>
 
-#include "sensitivity/branches.hpp"
+#include "sensitivity/differentiate.hpp"
 
 namespace stickslip {
 
@@ -26,6 +26,9 @@ namespace stickslip {
 struct Margins {
   double open, slip;
 };
+
+/// A distance from a change of state up to this is none: a point is weak.
+inline constexpr double weak_margin = 1e-8;
 
 /// Of one contact point.
 Margins margins(const Model& model, const Slots<double>& slots, const State<double>& state, int point);

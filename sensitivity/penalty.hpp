@@ -4,6 +4,7 @@
 /// [MTV94], [SLK10 sec. 3]
 #pragma once
 
+#include "methods/penalty.hpp"
 #include "sensitivity/direct.hpp"
 #include "sensitivity/pull_back.hpp"
 

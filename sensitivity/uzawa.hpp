@@ -23,6 +23,7 @@
 /// sweep by sweep (truncated), or once. [SLK10 sec. 1], [CD20]
 #pragma once
 
+#include "methods/uzawa.hpp"
 #include "sensitivity/direct.hpp"
 #include "sensitivity/pull_back.hpp"
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/model/response.hpp"
+#include "methods/engine_choice.hpp"
 #include "studies/accuracy.hpp"
 #include "studies/json_document.hpp"
 #include "studies/warnings.hpp"

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/model/response.hpp"
+#include "methods/regularisation.hpp"
 #include "studies/case.hpp"
 #include "studies/contact_points.hpp"
 #include "studies/json_document.hpp"

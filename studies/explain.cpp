@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "methods/engine_choice.hpp"
 #include "studies/ledger_forecast.hpp"
 #include "studies/method_options.hpp"
 #include "studies/printing.hpp"

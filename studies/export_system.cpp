@@ -5,6 +5,7 @@
 #include <unsupported/Eigen/SparseExtra>
 
 #include "core/model/body_matrix.hpp"
+#include "core/model/loading.hpp"
 #include "studies/atomic_file.hpp"
 #include "studies/printing.hpp"
 

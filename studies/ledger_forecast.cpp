@@ -7,7 +7,7 @@
 #include "core/algebra/reverse.hpp"
 #include "core/model/response.hpp"
 #include "core/model/storage.hpp"
-#include "methods/method.hpp"
+#include "methods/engine_choice.hpp"
 #include "sensitivity/differentiation.hpp"
 #include "studies/ledger_parts.hpp"
 
@@ -31,9 +31,8 @@ struct Size {
 Size size_of(const Input& input, const Model& model) {
   Size n{};
   n.condensed = condenses(model, input.method, input.linear_algebra.engine);
-  n.unknown = std::holds_alternative<MonolithicAL>(input.method);
-  const ConeRadius cone = std::visit([](const auto& m) { return cone_radius(m); }, input.method);
-  n.unsymmetric = detail::symmetry_of(model, n.unknown, cone) == Symmetry::general;
+  n.unknown = has_unknown_multipliers(input.method);
+  n.unsymmetric = detail::symmetry_of(model, n.unknown, cone_radius(input.method)) == Symmetry::general;
   n.dofs = model.dof_count();
   n.contact_dofs = static_cast<double>(model.contact_nodes.size()) * model.dimension;
   n.free = static_cast<double>(model.free_dofs.size());

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "methods/engine_choice.hpp"
 #include "studies/atomic_file.hpp"
 #include "studies/fields.hpp"
 #include "studies/input_fault.hpp"

@@ -93,7 +93,7 @@ def build(scratch, programs, compilers):
     subprocess.run(["cmake", "--preset", "release", "-DSTICKSLIP_BUILD_BENCH=OFF"], cwd=source, check=True,
                    stdout=subprocess.DEVNULL)
     folder = os.path.join(source, "build", "release")
-    subprocess.run(["ninja", "-C", folder, f"-j{compilers}", *programs], check=True)
+    subprocess.run(["ninja", "-k0", "-C", folder, f"-j{compilers}", *programs], check=True)
     return folder
 
 

@@ -30,4 +30,7 @@ Mesh make_mesh(const MeshDescription& description, const std::string& element, i
   return is_quadratic(element) && !imported ? with_middles(mesh) : mesh;
 }
 
+template Points<double> make_points(const MeshDescription&, const Numbers<double>&, int);
+template Points<double> make_points(const MeshDescription&, const Mesh&, const Numbers<double>&);
+
 }  // namespace stickslip

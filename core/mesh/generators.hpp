@@ -56,4 +56,7 @@ Points<T> make_points(const MeshDescription& description, const Mesh& mesh, cons
   return points;
 }
 
+extern template Points<double> make_points(const MeshDescription&, const Numbers<double>&, int);
+extern template Points<double> make_points(const MeshDescription&, const Mesh&, const Numbers<double>&);
+
 }  // namespace stickslip

@@ -119,6 +119,13 @@ struct Model {
   std::vector<double> times;                   ///< ends of the increments, breakpoints of every table included
   Effects effects;
 
+  Model();  // (these are defined once, in model.cpp, as those of Scene are)
+  Model(const Model&);
+  Model(Model&&) noexcept;
+  Model& operator=(const Model&);
+  Model& operator=(Model&&) noexcept;
+  ~Model();
+
   int dof_count() const { return dimension * node_count; }
   /// The nodes and facets of "body.side", "body.a & body.b", "body.a - body.b". Throws ModelError.
   SideSet side(const std::string& expression) const;

@@ -236,4 +236,9 @@ Vector<T> evaluate_responses(const Model& model, const Slots<T>& slots, const St
   return out;
 }
 
+extern template double evaluate_response(const Model&, const Slots<double>&, int, const State<double>&,
+                                         const NodalForces<double>&, Ties);
+extern template Vector<double> evaluate_responses(const Model&, const Slots<double>&, const State<double>&, double,
+                                                  Ties);
+
 }  // namespace stickslip

@@ -317,6 +317,13 @@ struct Scene {
   std::vector<double> numbers;        ///< value of each slot
   std::vector<std::string> pointers;  ///< JSON pointer of each slot
 
+  Scene();  // (these are defined once, in scene.cpp: a scene has many parts, and many sources hold scenes)
+  Scene(const Scene&);
+  Scene(Scene&&) noexcept;
+  Scene& operator=(const Scene&);
+  Scene& operator=(Scene&&) noexcept;
+  ~Scene();
+
   int dimension() const;  ///< 2, or 3 for Space::solid
 
   /// All numbers as T, unseeded.

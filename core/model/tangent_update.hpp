@@ -8,8 +8,7 @@
 #pragma once
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
-#include <algorithm>
+#include <functional>
 #include <vector>
 
 #include "core/algebra/scalar.hpp"
@@ -19,7 +18,8 @@ namespace stickslip {
 
 class TangentUpdate {
  public:
-  static constexpr std::size_t most = 32;  ///< columns: Z is to stay small
+  using Product = std::function<Matrix<double>(const Matrix<double>&)>;  ///< of a matrix, or of its inverse
+  static constexpr std::size_t most = 32;                                ///< columns: Z is to stay small
 
   /// What one point changes: `block` over its rows of the factor, -1: not there.
   struct Change {
@@ -38,67 +38,13 @@ class TangentUpdate {
 
   /// Takes the changes in place of those before; solve(U) = K^-1 U, K of `size` rows. False, and nothing is taken,
   /// where a factorisation is cheaper, or the change loses more than six digits: |C^-1| max(1, |V^T Z|) > 1e6.
-  template <class Solve>
-  bool take(std::vector<Change> changes, Eigen::Index size, Counters& counters, Solve&& solve) {
-    std::vector<Column> columns;
-    std::vector<std::size_t> fresh;
-    for (auto& change : changes) {
-      if (!change.block.allFinite()) return false;
-      drop_absent_rows(change);
-      if (append_kept(change, columns)) continue;
-      append_new(std::move(change), columns, fresh);
-    }
-    const auto count = static_cast<Eigen::Index>(columns.size());
-    if (fresh.size() > most_new || columns.size() > most || 8 * count > size) return false;
-    Matrix<double> U = Matrix<double>::Zero(size, static_cast<Eigen::Index>(fresh.size()));
-    for (std::size_t k = 0; k < fresh.size(); ++k)
-      for (std::size_t i = 0; i < columns[fresh[k]].rows.size(); ++i)
-        if (const int row = columns[fresh[k]].rows[i]; row >= 0) U(row, k) += columns[fresh[k]].u[i];
-    if (!fresh.empty()) {
-      const Matrix<double> Z = solve(U);
-      counters.backsolves += U.cols();
-      for (std::size_t k = 0; k < fresh.size(); ++k) columns[fresh[k]].z = Z.col(k);
-    }
-    Matrix<double> C(count, count);
-    for (Eigen::Index i = 0; i < count; ++i)
-      for (Eigen::Index j = 0; j < count; ++j) C(i, j) = along(columns[i], columns[j].z);
-    Eigen::PartialPivLU<Matrix<double>> inverse;
-    if (count > 0) {
-      const double before = std::max(1.0, norm_1(C));  // what cancels where the change makes the tangent singular
-      C.diagonal().array() += 1;
-      inverse.compute(C);
-      const double inverse_norm = 1 / (inverse.rcond() * norm_1(C));
-      if (!(inverse_norm * before < most_loss)) return false;
-    }
-    if (count > 0) ++counters.backsolves;  // that refines the solution
-    columns_ = std::move(columns);
-    inverse_ = std::move(inverse);
-    return true;
-  }
+  bool take(std::vector<Change> changes, Eigen::Index size, Counters& counters, const Product& solve);
 
   /// (K + U V^T)^-1 b, refined once: what K^-1 loses is multiplied by what C^-1 does. solve(b) = K^-1 b, multiply(x) =
   /// K x.
-  template <class Solve, class Multiply>
-  Matrix<double> solve(const Matrix<double>& b, Solve&& solve, Multiply&& multiply) const {
-    Matrix<double> x = solve(b);
-    correct(x);
-    Matrix<double> rest = b - multiply(x);
-    for (const auto& column : columns_)
-      for (Eigen::Index c = 0; c < x.cols(); ++c) {
-        const double share = along(column, x.col(c));
-        for (std::size_t i = 0; i < column.rows.size(); ++i)
-          if (column.rows[i] >= 0) rest(column.rows[i], c) -= column.u[i] * share;
-      }
-    rest = solve(rest);
-    correct(rest);
-    return x + rest;
-  }
+  Matrix<double> solve(const Matrix<double>& b, const Product& solve, const Product& multiply) const;
 
  private:
-  static constexpr std::size_t most_new = 8;  // in the plane a factorisation is worth 10 to 15 back-solves
-  static constexpr double most_loss = 1e6;
-  static constexpr double negligible = 1e-13;
-
   struct Column {
     int point = 0;
     std::vector<int> rows;
@@ -108,51 +54,10 @@ class TangentUpdate {
   };
 
   /// K^-1 b -> (K + U V^T)^-1 b, column by column.
-  void correct(Matrix<double>& x) const {
-    Matrix<double> w(static_cast<Eigen::Index>(columns_.size()), x.cols());
-    for (std::size_t k = 0; k < columns_.size(); ++k)
-      for (Eigen::Index c = 0; c < x.cols(); ++c) w(k, c) = along(columns_[k], x.col(c));
-    w = inverse_.solve(w).eval();
-    for (std::size_t k = 0; k < columns_.size(); ++k) x -= columns_[k].z * w.row(k);
-  }
+  void correct(Matrix<double>& x) const;
 
-  static double norm_1(const Matrix<double>& a) { return a.cwiseAbs().colwise().sum().maxCoeff(); }
-
-  template <class X>
-  static double along(const Column& column, const X& x) {
-    double sum = 0;
-    for (std::size_t i = 0; i < column.rows.size(); ++i)
-      if (column.rows[i] >= 0) sum += column.v[i] * x[column.rows[i]];
-    return sum;
-  }
-
-  static void drop_absent_rows(Change& change) {
-    for (std::size_t i = 0; i < change.rows.size(); ++i)
-      if (change.rows[i] < 0) {
-        change.block.row(i).setZero();
-        change.block.col(i).setZero();
-      }
-  }
-
-  bool append_kept(const Change& change, std::vector<Column>& columns) const {
-    bool found = false;
-    for (const auto& column : columns_)
-      if (column.point == change.point && column.block == change.block) {
-        columns.push_back(column);
-        found = true;
-      }
-    return found;
-  }
-
-  static void append_new(Change change, std::vector<Column>& columns, std::vector<std::size_t>& fresh) {
-    const Eigen::JacobiSVD<Matrix<double>> svd(change.block, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const auto& s = svd.singularValues();
-    for (Eigen::Index k = 0; k < s.size() && s[k] > negligible * s[0]; ++k) {
-      fresh.push_back(columns.size());
-      columns.push_back({change.point, change.rows, change.block, s[k] * svd.matrixU().col(k), svd.matrixV().col(k),
-                         Vector<double>()});
-    }
-  }
+  bool append_kept(const Change& change, std::vector<Column>& columns) const;
+  static void append_new(Change change, std::vector<Column>& columns, std::vector<std::size_t>& fresh);
 
   std::vector<Column> columns_;
   Eigen::PartialPivLU<Matrix<double>> inverse_;

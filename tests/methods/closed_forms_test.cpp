@@ -2,7 +2,7 @@
 /// printed parameters and for others.
 #include <gtest/gtest.h>
 
-#include "tests/support/scenes.hpp"
+#include "tests/support/solved.hpp"
 
 namespace stickslip {
 namespace {

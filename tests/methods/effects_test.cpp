@@ -3,7 +3,7 @@
 
 #include "sensitivity/one_sided.hpp"
 #include "tests/support/allocations.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/support/solved.hpp"
 
 namespace stickslip {
 namespace {

@@ -2,7 +2,7 @@
 /// the press fit of two rings.
 #include <gtest/gtest.h>
 
-#include "tests/support/scenes.hpp"
+#include "tests/support/solved.hpp"
 
 namespace stickslip {
 namespace {

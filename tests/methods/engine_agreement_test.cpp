@@ -10,7 +10,7 @@
 #include "sensitivity/uzawa.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/largest.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/support/solved.hpp"
 
 namespace stickslip {
 namespace {

@@ -1,7 +1,7 @@
 /// B2: the GRECO plate (code_aster SSNV128), the best sourced friction test.
 #include <gtest/gtest.h>
 
-#include "tests/support/scenes.hpp"
+#include "tests/support/solved.hpp"
 
 namespace stickslip {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "tests/support/largest.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/support/solved.hpp"
 
 namespace stickslip {
 namespace {

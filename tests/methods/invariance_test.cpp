@@ -6,7 +6,7 @@
 
 #include "tests/support/largest.hpp"
 #include "tests/support/same_bits.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/support/solved.hpp"
 
 namespace stickslip {
 namespace {

@@ -2,6 +2,8 @@
 /// alone holds, several solutions; each against all solutions or the equations themselves, found apart from the solver.
 #include <gtest/gtest.h>
 
+#include "methods/regularisation.hpp"
+#include "methods/solutions.hpp"
 #include "tests/support/blocks.hpp"
 #include "tests/support/every_branch.hpp"
 #include "tests/support/random_contacts.hpp"

@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-#include "tests/support/scenes.hpp"
+#include "tests/support/solved.hpp"
 
 namespace stickslip {
 namespace {

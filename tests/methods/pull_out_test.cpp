@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "tests/support/scenes.hpp"
+#include "tests/support/solved.hpp"
 
 namespace stickslip {
 namespace {

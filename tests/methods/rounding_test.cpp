@@ -2,9 +2,10 @@
 /// roundings off and with everything numbered otherwise. (Those of files: tests/studies/rounding_test.cpp.)
 #include <gtest/gtest.h>
 
+#include "core/model/response.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/perturbed.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/support/solved.hpp"
 
 namespace stickslip {
 namespace {

@@ -1,8 +1,9 @@
 /// Step cutting: what fails is cut, what was cut is remembered, and what is given up leaves no trace.
 #include <gtest/gtest.h>
 
+#include "core/model/response.hpp"
 #include "tests/support/same_bits.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/support/solved.hpp"
 
 namespace stickslip {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "methods/method.hpp"
 #include "tests/support/same_bits.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/support/solved.hpp"
 
 namespace stickslip {
 namespace {

@@ -2,7 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/support/scenes.hpp"
+#include "methods/acceleration.hpp"
+#include "tests/support/solved.hpp"
 
 namespace stickslip {
 namespace {

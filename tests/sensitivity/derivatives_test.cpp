@@ -5,7 +5,7 @@
 #include "core/model/response.hpp"
 #include "sensitivity/branch_search.hpp"
 #include "tests/support/largest.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/support/solved.hpp"
 
 namespace stickslip {
 namespace {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "sensitivity/adjoint.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/support/solved.hpp"
 
 namespace stickslip {
 namespace {

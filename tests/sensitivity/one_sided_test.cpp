@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "sensitivity/sided_geometry.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/support/solved.hpp"
 
 namespace stickslip {
 namespace {

@@ -4,10 +4,11 @@
 
 #include <random>
 
+#include "core/model/response.hpp"
 #include "sensitivity/one_sided.hpp"
 #include "tests/support/kinks.hpp"
 #include "tests/support/largest.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/support/solved.hpp"
 
 namespace stickslip {
 namespace {

@@ -9,7 +9,7 @@
 #include "sensitivity/differentiate.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/random_contacts.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/support/solved.hpp"
 
 namespace stickslip {
 namespace {

@@ -7,9 +7,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "tests/studies/cases.hpp"
 #include "tests/studies/made_states.hpp"
-#include "tests/support/cases.hpp"
 #include "tests/support/largest.hpp"
+#include "tests/support/solved.hpp"
 
 namespace stickslip {
 namespace {

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "sensitivity/gradcheck.hpp"
-#include "tests/support/cases.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/studies/cases.hpp"
+#include "tests/support/solved.hpp"
 
 namespace stickslip {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <unsupported/Eigen/SparseExtra>
 
-#include "tests/support/cases.hpp"
+#include "tests/studies/cases.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/scenes.hpp"
 

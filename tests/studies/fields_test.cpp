@@ -10,8 +10,8 @@
 #include "studies/atomic_file.hpp"
 #include "studies/film.hpp"
 #include "studies/report/picture.hpp"
+#include "tests/studies/cases.hpp"
 #include "tests/studies/vtu_reader.hpp"
-#include "tests/support/cases.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace stickslip {

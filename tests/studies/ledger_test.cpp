@@ -7,7 +7,7 @@
 
 #include "studies/ledger_forecast.hpp"
 #include "studies/simulation.hpp"
-#include "tests/support/cases.hpp"
+#include "tests/studies/cases.hpp"
 
 namespace stickslip {
 namespace {

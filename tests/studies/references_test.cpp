@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "studies/fields.hpp"
-#include "tests/support/cases.hpp"
+#include "tests/studies/cases.hpp"
 
 namespace stickslip {
 namespace {

@@ -1,7 +1,9 @@
 /// Drawings that need no script, and the files beside the report.
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <set>
+#include <sstream>
 
 #include "studies/report/charts.hpp"
 #include "studies/report/cone_picture.hpp"

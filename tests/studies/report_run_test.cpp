@@ -1,12 +1,14 @@
 /// The page of a single run.
 #include <gmock/gmock.h>
 
+#include <fstream>
+
 #include "studies/fields.hpp"
 #include "studies/film.hpp"
 #include "studies/report/report.hpp"
+#include "tests/studies/cases.hpp"
 #include "tests/studies/recorded_study.hpp"
 #include "tests/studies/report_page.hpp"
-#include "tests/support/cases.hpp"
 
 namespace stickslip {
 namespace {

@@ -1,4 +1,5 @@
 /// Who is the cheapest at which accuracy, on the first screen of a report.
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/support/cases.hpp"
+#include "tests/studies/cases.hpp"
 #include "tests/support/largest.hpp"
 
 namespace stickslip {

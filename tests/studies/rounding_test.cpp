@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "tests/support/cases.hpp"
+#include "tests/studies/cases.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/perturbed.hpp"
 

@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/model/response.hpp"
 #include "sensitivity/gradcheck.hpp"
 #include "studies/study.hpp"
 #include "studies/study_reader.hpp"
-#include "tests/support/cases.hpp"
+#include "tests/studies/cases.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/oracle.hpp"
 

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "studies/warnings.hpp"
-#include "tests/support/cases.hpp"
+#include "tests/studies/cases.hpp"
 
 namespace stickslip {
 namespace {

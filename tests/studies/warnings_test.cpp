@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "tests/support/cases.hpp"
+#include "tests/studies/cases.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace stickslip {

@@ -1,7 +1,7 @@
 /// Blocks, and the methods they are held against closed forms by.
 #pragma once
 
-#include "tests/support/scenes.hpp"
+#include "tests/support/solved.hpp"
 
 namespace stickslip::scenes {
 

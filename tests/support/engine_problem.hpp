@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/model/engine.hpp"
+#include "core/model/loading.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/scenes.hpp"
 

@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 
+#include "core/model/loading.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/scenes.hpp"
 

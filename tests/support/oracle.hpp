@@ -2,37 +2,14 @@
 /// subtraction: the imaginary part of a response over the step is its derivative to rounding.
 #pragma once
 
-#include <complex>
 #include <vector>
 
-#include "core/model/response.hpp"
-#include "methods/solve.hpp"
+#include "methods/method.hpp"
 
 namespace stickslip::oracle {
 
-using Complex = std::complex<double>;
-
 /// Derivatives of all responses with respect to parameter j at every increment of a replayed run: responses x
 /// increments.
-inline Matrix<double> complex_step(const Model& model, const Method& method, const std::vector<double>& step_table,
-                                   int j) {
-  constexpr double h = 1e-30;
-  auto numbers = model.scene.as<Complex>();
-  for (const auto& [slot, weight] : model.scene.parameters[j].slots) numbers.at_slot[slot] += Complex(0, h * weight);
-  const auto slots = make_slots<Complex>(model, numbers);
-  RunOptions options;
-  options.linear_algebra.engine = LinearAlgebra::Engine::sparse;
-  options.backend = Backend::eigen;
-  options.replay = step_table;
-  Workspace<Complex> workspace;
-  const auto trajectory = solve_in<Complex>(model, slots, method, options, workspace);
-  Matrix<double> out(model.scene.responses.size(), trajectory.increments.size());
-  for (std::size_t n = 0; n < trajectory.increments.size(); ++n) {
-    const auto& increment = trajectory.increments[n];
-    const auto responses = evaluate_responses(model, slots, increment.state, increment.time);
-    for (Eigen::Index i = 0; i < responses.size(); ++i) out(i, n) = responses[i].imag() / h;
-  }
-  return out;
-}
+Matrix<double> complex_step(const Model& model, const Method& method, const std::vector<double>& step_table, int j);
 
 }  // namespace stickslip::oracle

@@ -1,0 +1,25 @@
+#include "methods/engine_choice.hpp"
+
+#include "methods/monolithic.hpp"
+#include "methods/penalty.hpp"
+#include "methods/uzawa.hpp"
+
+namespace stickslip {
+
+bool has_unknown_multipliers(const Method& method) { return std::holds_alternative<MonolithicAL>(method); }
+
+ConeRadius cone_radius(const Method& method) {
+  return std::visit([](const auto& m) { return cone_radius(m); }, method);
+}
+
+EnginePrice predict_price(const Model& model, const Method& method) {
+  const bool unknown = has_unknown_multipliers(method);
+  return predict_price(model, unknown, detail::symmetry_of(model, unknown, cone_radius(method)));
+}
+
+bool condenses(const Model& model, const Method& method, LinearAlgebra::Engine engine) {
+  if (engine != LinearAlgebra::Engine::automatic) return engine == LinearAlgebra::Engine::condensed;
+  return prefers_condensed(model, predict_price(model, method));
+}
+
+}  // namespace stickslip

@@ -1,0 +1,21 @@
+/// Scene documents run as the program runs them: read, checked, solved, differentiated.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "studies/case.hpp"
+#include "studies/scene_reader.hpp"
+
+namespace stickslip::cases {
+
+/// What a scene file says, comments dropped.
+nlohmann::json load(const std::filesystem::path& file);
+
+/// Reads a document as the file `name` (other files are looked for beside it). Throws with all faults.
+Input read(const nlohmann::json& document, const std::filesystem::path& name);
+
+/// Runs a document with `method` ({"penalty": {...}}) in place of its own.
+CaseResult run(nlohmann::json document, const nlohmann::json& method, const std::filesystem::path& name);
+
+}  // namespace stickslip::cases
