@@ -423,7 +423,7 @@ Equilibrium<T> newton(E& engine, const ContactInput<T>& input, Vector<T> u, Vect
         account.counters.contact_evaluations += points;
       }
       step = engine.solve({-at.rows_u, unknown ? Matrix<T>(-at.rows_l) : Matrix<T>()});
-      ++account.counters.backsolves;
+      account.counters.backsolves += engine.solves();
     }
     if (!step.u.allFinite() || !step.l.allFinite())
       return finish(Status::singular, "the tangent is singular: its solution is not finite");

@@ -5,6 +5,7 @@
 #include "sensitivity/monolithic.hpp"
 #include "sensitivity/one_sided.hpp"
 #include "sensitivity/penalty.hpp"
+#include "sensitivity/pull_back_bodies.hpp"
 #include "sensitivity/uzawa.hpp"
 
 namespace stickslip {
@@ -55,46 +56,6 @@ struct Recording {
     return out;
   }
 };
-
-/// Rows of the dofs of an element out of a matrix over all dofs.
-Matrix<double> rows_of(const std::vector<int>& nodes, int D, const Matrix<double>& all) {
-  Matrix<double> rows(nodes.size() * D, all.cols());
-  for (std::size_t n = 0; n < nodes.size(); ++n) rows.middleRows(n * D, D) = all.middleRows(nodes[n] * D, D);
-  return rows;
-}
-
-/// Vectors as the columns of a matrix.
-Matrix<double> columns(const std::vector<Vector<double>>& vectors, Eigen::Index rows) {
-  Matrix<double> out(rows, vectors.size());
-  for (std::size_t i = 0; i < vectors.size(); ++i) out.col(i) = vectors[i];
-  return out;
-}
-
-/// The bodies' share: sum over the increments of a . dK/dslots . u, element by element.
-void pull_back_bodies(const Model& model, const Slots<Reverse>& slots, Tape& tape, std::vector<Backward>& objectives) {
-  const int start = tape.size();
-  std::vector<Matrix<double>> weights, motions;
-  for (const auto& objective : objectives) {
-    weights.push_back(columns(objective.weights, model.dof_count()));
-    motions.push_back(columns(objective.motions, model.dof_count()));
-  }
-  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
-    for_each_element_tangent(model, slots, b, nullptr, [&](const auto& nodes, const auto& K) {
-      const std::vector<int> of_element(nodes.begin(), nodes.end());
-      for (std::size_t j = 0; j < objectives.size(); ++j) {
-        auto& by = objectives[j].by;
-        by.resize(tape.size(), 0);
-        const Matrix<double> share = rows_of(of_element, model.dimension, weights[j]) *
-                                     rows_of(of_element, model.dimension, motions[j]).transpose();
-        for (Eigen::Index c = 0; c < K.cols(); ++c)
-          for (Eigen::Index r = 0; r < K.rows(); ++r)
-            if (K(r, c).at >= 0) by[K(r, c).at] += share(r, c);
-        tape.pull_back(by, start);
-        by.resize(start);
-      }
-      tape.rewind(start);
-    });
-}
 
 DerivativeStorage storage_of(const Recording& recording, const std::vector<Backward>& objectives) {
   DerivativeStorage storage;

@@ -85,8 +85,9 @@ class LinearisedEquilibrium {
   ConeRadius cone_;
   double time_;
   bool unknown_, valid_ = false;
-  bool redundant_ = false;  ///< constraints repeat one another: the tangent yields, and is used twice
-  bool unproven_ = false;   ///< the factor is Newton's last, and has not been seen to solve these rows
+  bool redundant_ = false;                ///< constraints repeat one another: the tangent yields, and is used twice
+  bool unproven_ = false;                 ///< the factor is Newton's last, and has not been seen to solve these rows
+  Solving solving_ = Solving::unrefined;  ///< as long as that solves the first rows
   PseudoLoad load_;
   Matrix<double> increment_, compact_;
 };
@@ -128,10 +129,15 @@ bool LinearisedEquilibrium<E>::solve(std::vector<Vector<Direction>>& lambda,
   for (int pass = 0;; ++pass) {
     improve(rows, compact, lambda);
     rows = evaluate(compact, lambda);
-    if (std::exchange(unproven_, false) && !rows.accurate) {
+    if (unproven_ && !rows.accurate) {
+      if (std::exchange(solving_, Solving::refined) == Solving::unrefined) continue;
       valid_ = factorise_converged(problem_, primal_, at_, unknown_, redundant_);
       if (!valid_) return false;
-    } else if (!unknown_ || pass == refinements || (rows.accurate && !redundant_)) {
+      unproven_ = false;
+      continue;
+    }
+    unproven_ = false;
+    if (!unknown_ || pass >= refinements || (rows.accurate && !redundant_)) {
       fields = std::move(rows.fields);
       return true;
     }
@@ -142,8 +148,9 @@ template <class E>
 void LinearisedEquilibrium<E>::improve(const Rows& rows, std::vector<Vector<Direction>>& compact,
                                        std::vector<Vector<Direction>>& lambda) {
   const Model& model = problem_.model;
-  const auto step = problem_.engine.solve({-rows.u, -rows.l});
-  problem_.counters.sensitivity_backsolves += problem_.parameters;
+  const auto step = problem_.engine.solve({-rows.u, -rows.l}, solving_);
+  problem_.counters.sensitivity_backsolves +=
+      problem_.parameters * (solving_ == Solving::refined ? problem_.engine.solves() : 1);
   increment_ = increment_.size() == 0 ? step.u : Matrix<double>(increment_ + step.u);
   Matrix<double> moved(compact_.rows(), compact_.cols()), multiplier = step.l;
   for (int j = 0; j < problem_.parameters; ++j) moved.col(j) = problem_.engine.compact(step.u.col(j));

@@ -239,7 +239,7 @@ void RecordedEquilibrium<E>::balance(int objective) {
     if (pass == 0) first = size;
     if (size == 0 || (pass > 0 && !redundant_ && size <= 1e-13 * first)) return;
     const Matrix<double> reduced = problem_.engine.reduce(c);
-    const auto a = problem_.engine.solve({-reduced, -l}, true);
+    const auto a = problem_.engine.solve({-reduced, -l}, Solving::transposed);
     ++problem_.counters.sensitivity_backsolves;
     if (!unknown_) return put_aside(objective, {a.u, c, reduced});
     seed_rows(objective, {a.u, c, reduced}, [](int) { return true; });

@@ -136,14 +136,15 @@ bool CondensedEngine<T>::reversed() const {
 }
 
 template <class T>
-BlockVector<T> CondensedEngine<T>::solve(const BlockVector<T>& rows, bool transposed) {
+BlockVector<T> CondensedEngine<T>::solve(const BlockVector<T>& rows, Solving how) {
+  const bool transposed = how == Solving::transposed;
   const int free = static_cast<int>(free_list_.size());
   const Eigen::Index columns = rows.u.cols();
   Matrix<T> b(free + active_.size(), columns);
   for (int i = 0; i < free; ++i) b.row(i) = rows.u.row(free_list_[i]);
   for (std::size_t a = 0; a < active_.size(); ++a) b.row(free + a) = rows.l.row(active_[a]);
   const Matrix<T> x = detail::solve_updated<T>(
-      update_, b, [&](const Matrix<T>& r) { return factor_.solve(r, transposed); },
+      update_, b, how, [&](const Matrix<T>& r) { return factor_.solve(r, transposed); },
       [&](const Matrix<T>& y) { return Matrix<T>(matrix_ * y); });
   BlockVector<T> out{Matrix<T>::Zero(free_.size(), columns), Matrix<T>::Zero(model_.multiplier_count, columns)};
   for (int i = 0; i < free; ++i) out.u.row(free_list_[i]) = x.row(i);

@@ -26,8 +26,9 @@ class CondensedEngine {
   /// Whether the tangent has the other sign of its determinant than where all points stick: such a tangent belongs to a
   /// problem that has several solutions, or none, under some load.
   bool reversed() const;
-  /// K^T in place of K where `transposed`; pre: that is not after update().
-  BlockVector<T> solve(const BlockVector<T>& rows, bool transposed = false);
+  BlockVector<T> solve(const BlockVector<T>& rows, Solving how = Solving::refined);
+  /// Right-hand sides that the factor solves for one that is refined.
+  int solves() const { return update_.empty() ? 1 : 2; }
   Matrix<T> apply_stiffness(const Matrix<T>& u) const { return condensation_->schur() * u; }
   Matrix<T> reduce(const Matrix<T>& rows) { return condensation_->reduce(rows); }
   Matrix<T> expand(const Matrix<T>& u, const Matrix<T>& rows, const Matrix<T>& reduced) {

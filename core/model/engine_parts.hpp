@@ -16,6 +16,10 @@ struct BlockVector {
   Matrix<T> u, l;
 };
 
+/// How rows are solved for. After an update a solution is refined, for another solve, but where it is checked by who
+/// asks for it. pre of `transposed`, with K^T in place of K: that is not after an update.
+enum class Solving { refined, unrefined, transposed };
+
 /// What an engine holds now, in bytes, and what it has done beside what Counters count.
 struct EngineHoldings {
   long bodies = 0;                              ///< matrix of the bodies, which the tangents begin from
@@ -146,9 +150,10 @@ bool update_factor(const Model& model, const Slots<T>& slots, const std::vector<
 
 /// The solution with a factor and its update; only in double there are any.
 template <class T, class Solve, class Multiply>
-Matrix<T> solve_updated(const TangentUpdate& update, const Matrix<T>& b, Solve&& solve, Multiply&& multiply) {
+Matrix<T> solve_updated(const TangentUpdate& update, const Matrix<T>& b, Solving how, Solve&& solve,
+                        Multiply&& multiply) {
   if constexpr (std::is_same_v<T, double>)
-    if (!update.empty()) return update.solve(b, solve, multiply);
+    if (!update.empty()) return how == Solving::unrefined ? update.solve(b, solve) : update.solve(b, solve, multiply);
   return solve(b);
 }
 

@@ -117,7 +117,8 @@ bool SparseEngine<T>::reversed() const {
 }
 
 template <class T>
-BlockVector<T> SparseEngine<T>::solve(const BlockVector<T>& rows, bool transposed) {
+BlockVector<T> SparseEngine<T>::solve(const BlockVector<T>& rows, Solving how) {
+  const bool transposed = how == Solving::transposed;
   const int free = static_cast<int>(model_.free_dofs.size());
   Matrix<T> b(size_, rows.u.cols());
   for (int i = 0; i < free; ++i) b.row(i) = rows.u.row(model_.free_dofs[i]);
@@ -130,7 +131,7 @@ BlockVector<T> SparseEngine<T>::solve(const BlockVector<T>& rows, bool transpose
     return product;
   };
   const Matrix<T> x = detail::solve_updated<T>(
-      update_, b, [&](const Matrix<T>& r) { return solver_.solve(r, transposed); }, multiply);
+      update_, b, how, [&](const Matrix<T>& r) { return solver_.solve(r, transposed); }, multiply);
   BlockVector<T> out{Matrix<T>::Zero(model_.dof_count(), b.cols()), Matrix<T>::Zero(model_.multiplier_count, b.cols())};
   for (int i = 0; i < free; ++i) out.u.row(model_.free_dofs[i]) = x.row(i);
   if (unknown_multipliers_) out.l = x.bottomRows(model_.multiplier_count);

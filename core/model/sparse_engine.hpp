@@ -34,8 +34,9 @@ class SparseEngine {
   /// Whether the tangent has the other sign of its determinant than where all points stick: such a tangent belongs to a
   /// problem that has several solutions, or none, under some load.
   bool reversed() const;
-  /// K^T in place of K where `transposed`; pre: that is not after update().
-  BlockVector<T> solve(const BlockVector<T>& rows, bool transposed = false);
+  BlockVector<T> solve(const BlockVector<T>& rows, Solving how = Solving::refined);
+  /// Right-hand sides that the factor solves for one that is refined.
+  int solves() const { return update_.empty() ? 1 : 2; }
   /// The bodies' stiffness times engine increments (engine rows).
   Matrix<T> apply_stiffness(const Matrix<T>& u) const;
   /// Rows over all dofs, in the frames -> engine rows.

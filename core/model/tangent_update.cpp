@@ -62,15 +62,19 @@ bool TangentUpdate::take(std::vector<Change> changes, Eigen::Index size, Counter
     const double inverse_norm = 1 / (inverse.rcond() * norm_1(C));
     if (!(inverse_norm * before < most_loss)) return false;
   }
-  if (count > 0) ++counters.backsolves;  // that refines the solution
   columns_ = std::move(columns);
   inverse_ = std::move(inverse);
   return true;
 }
 
-Matrix<double> TangentUpdate::solve(const Matrix<double>& b, const Product& solve, const Product& multiply) const {
+Matrix<double> TangentUpdate::solve(const Matrix<double>& b, const Product& solve) const {
   Matrix<double> x = solve(b);
   correct(x);
+  return x;
+}
+
+Matrix<double> TangentUpdate::solve(const Matrix<double>& b, const Product& solve, const Product& multiply) const {
+  const Matrix<double> x = this->solve(b, solve);
   Matrix<double> rest = b - multiply(x);
   for (const auto& column : columns_)
     for (Eigen::Index c = 0; c < x.cols(); ++c) {
@@ -78,9 +82,7 @@ Matrix<double> TangentUpdate::solve(const Matrix<double>& b, const Product& solv
       for (std::size_t i = 0; i < column.rows.size(); ++i)
         if (column.rows[i] >= 0) rest(column.rows[i], c) -= column.u[i] * share;
     }
-  rest = solve(rest);
-  correct(rest);
-  return x + rest;
+  return x + this->solve(rest, solve);
 }
 
 void TangentUpdate::correct(Matrix<double>& x) const {

@@ -40,8 +40,9 @@ class TangentUpdate {
   /// where a factorisation is cheaper, or the change loses more than six digits: |C^-1| max(1, |V^T Z|) > 1e6.
   bool take(std::vector<Change> changes, Eigen::Index size, Counters& counters, const Product& solve);
 
-  /// (K + U V^T)^-1 b, refined once: what K^-1 loses is multiplied by what C^-1 does. solve(b) = K^-1 b, multiply(x) =
-  /// K x.
+  /// (K + U V^T)^-1 b. What K^-1 loses is multiplied by what C^-1 does. solve(b) = K^-1 b.
+  Matrix<double> solve(const Matrix<double>& b, const Product& solve) const;
+  /// The same refined once, for another solve. multiply(x) = K x.
   Matrix<double> solve(const Matrix<double>& b, const Product& solve, const Product& multiply) const;
 
  private:

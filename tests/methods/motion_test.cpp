@@ -319,6 +319,21 @@ TEST(PullOut, IsSolvedWithoutACutFromEveryScale) {
 
 // --- what no stiffness can close -------------------------------------------------------------------------------------
 
+TEST(Penalty, AcceptsAnOverlapThatTheBodyCanLeaveOnlyAlongAnotherWall) {
+  // pushed out of the floor the point meets a slanted wall, which is open where it rests, and slides off to the left
+  Scene wedged = scenes::point_on_floor({{1000.0, 0.0}, {0.0, 1000.0}}, {0.0, -10.0}, 0.0);
+  wedged.contacts[0].friction.reset();
+  wedged.obstacles.push_back({"roof", Plane{{0.0, -0.0025}, {-0.6, -0.8}}});  // 0.002 within the point's start
+  wedged.contacts.push_back(scenes::contact("above", "point.node", "roof"));
+  Penalty method;
+  method.stiffness = scenes::absolute(1000);
+  const auto r = solve_scene(wedged, method);
+  ASSERT_TRUE(is_converged(r.trajectory.status)) << r.trajectory.message;
+  const auto& contact = r.trajectory.increments.back().state.contact;
+  EXPECT_NEAR(contact.gap[0], -0.005, 1e-12);  // floor and spring in series: 10 / (1000 + 1000)
+  EXPECT_EQ(contact.state[1], ContactState::open);
+}
+
 TEST(Penalty, NamesAnOverlapThatGrowsAForceWithTheStiffness) {
   Scene squeeze = scenes::stop();  // a point between two walls that are nearer than it is thick
   squeeze.obstacles.push_back({"back", Plane{{0.0, 0.005}, {0.0, 1.0}}});
