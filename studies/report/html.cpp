@@ -27,6 +27,17 @@ bool reads_as_number(const std::string& text) {
   return *end == '\0';
 }
 
+/// Whether a column has entries, and numbers alone.
+bool holds_numbers(const Table& table, std::size_t column) {
+  bool any = false;
+  for (const auto& row : table.rows) {
+    if (row[column].empty()) continue;
+    if (!reads_as_number(row[column])) return false;
+    any = true;
+  }
+  return any;
+}
+
 }  // namespace
 
 std::string escape(std::string_view text) {
@@ -136,7 +147,9 @@ std::string to_html(const Table& table, std::string_view caption) {
   for (const auto& row : table.rows)
     for (std::size_t i = 0; i < row.size(); ++i) used[i] = used[i] || !row[i].empty();
   for (std::size_t i = 0; i < used.size(); ++i)
-    if (used[i]) out += "<th scope=\"col\">" + escape(table.header[i]) + "</th>";
+    if (used[i])
+      out += (holds_numbers(table, i) ? "<th scope=\"col\" class=\"n\">" : "<th scope=\"col\">") +
+             escape(table.header[i]) + "</th>";
   out += "</tr></thead><tbody>\n";
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const bool marked = i < table.row_classes.size() && !table.row_classes[i].empty();

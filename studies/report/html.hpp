@@ -42,8 +42,8 @@ std::string whole(double count);
 /// dumped.
 std::string plain(const nlohmann::json& value);
 
-/// A table. Cells are plain text and are escaped here; a cell that reads as a number is set flush right; a column
-/// without any entry is left out.
+/// A table. Cells are plain text and are escaped here; a cell that reads as a number, and the head of a column
+/// of numbers, are set flush right; a column without any entry is left out.
 struct Table {
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;

@@ -184,17 +184,18 @@
     const data = dataOf(figure), rows = chosenRows(figure, data), table = document.createElement('table');
     const fields = data.columns.filter((field) => rows.some((row) => row[field] ?? false));
     table.createCaption().textContent = `${rows.length} rows, six digits; all rows and digits: figures/${figure.id}.csv`;
-    const line = (parent, kind, texts) => {
+    const numeric = new Set(fields.filter((field) => rows.every((row) => typeof (row[field] ?? 0) === 'number')));
+    const line = (parent, kind, entry) => {
       const row = parent.appendChild(document.createElement('tr'));
-      for (const text of texts) {
+      for (const field of fields) {
         const cell = row.appendChild(document.createElement(kind));
-        cell.textContent = shown(text);
-        if (typeof text === 'number') cell.className = 'n';
+        cell.textContent = shown(entry(field));
+        if (numeric.has(field)) cell.className = 'n';
       }
     };
-    line(table.createTHead(), 'th', fields);
+    line(table.createTHead(), 'th', (field) => field);
     const body = table.createTBody();
-    for (const row of rows.slice(0, 2000)) line(body, 'td', fields.map((field) => row[field]));
+    for (const row of rows.slice(0, 2000)) line(body, 'td', (field) => row[field]);
     const wide = place.appendChild(document.createElement('div'));
     wide.className = 'wide';
     wide.append(table);
@@ -239,6 +240,6 @@
       const text = [...table.rows].map((row) => [...row.cells].map(quoted).join(',')).join('\n');
       link.href = URL.createObjectURL(new Blob([text], {type: 'text/csv'}));
     });
-    table.caption.append(' ', link);
+    table.caption.prepend(link);
   }
 })();

@@ -73,7 +73,7 @@ std::optional<Figure> first_chart(const Study& study) {
   figure->choices.clear();
   figure->panels.erase(figure->panels.begin() + 1, figure->panels.end());
   figure->panels.front().title.clear();
-  figure->panels.front().spec["height"] = 250;
+  figure->panels.front().spec["height"] = 200;
   figure->id = "first";
   figure->title = "What accuracy costs";
   figure->text = "Error of the worst response. Lower left is better.";

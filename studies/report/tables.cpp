@@ -15,6 +15,17 @@ namespace stickslip::report {
 
 using nlohmann::json;
 
+namespace {
+
+/// A status with blanks, where a narrow column can break it.
+std::string status_in_words(const Cell& cell) {
+  std::string words = cell.status;
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
+}  // namespace
+
 std::string settings_table(const Study& study) {
   const auto target = target_error(study, Of::responses);
   if (!target) return {};
@@ -44,7 +55,7 @@ std::string settings_table(const Study& study) {
                             shown(worst(cell->enforcement, "response:")),
                             shown(worst(cell->enforcement, "sensitivity:")), whole(cell->count("newton")),
                             whole(cell->count("augmentations")), number(cell->work), number(cell->sensitivity_work),
-                            number(cell->seconds), cell->status});
+                            number(cell->seconds), status_in_words(*cell)});
       const bool solved = each.work(i, problems, Of::responses).has_value();
       table.rows.back().push_back(solved ? "yes" : "no");
       table.row_classes.emplace_back(solved ? "" : "failed");
@@ -81,7 +92,7 @@ std::string status_table(const Study& study) {
       }
       const Cell& cell = *found->second;
       failed = failed || !cell.converged;
-      row.push_back(cell.converged ? fmt::format("ok, {} Newton", whole(cell.count("newton"))) : cell.status);
+      row.push_back(cell.converged ? fmt::format("ok, {} Newton", whole(cell.count("newton"))) : status_in_words(cell));
     }
     table.rows.push_back(row);
     table.row_classes.emplace_back(failed ? "failed" : "");
@@ -90,13 +101,6 @@ std::string status_table(const Study& study) {
 }
 
 namespace {
-
-/// A status with blanks, where a narrow column can break it.
-std::string status_in_words(const Cell& cell) {
-  std::string words = cell.status;
-  std::replace(words.begin(), words.end(), '_', ' ');
-  return words;
-}
 
 /// What runs said of themselves: too long for a column.
 std::string messages(const Study& study) {
@@ -158,8 +162,9 @@ std::string results_table(const Study& study) {
 
 namespace {
 
-/// A number of a run by its place in the record.
+/// A number of a run by its place in the record, and the response or objective that it belongs to.
 struct Column {
+  std::string of;
   std::vector<std::string> place;
   std::string title;
   auto operator<=>(const Column&) const = default;
@@ -168,21 +173,53 @@ struct Column {
 /// Objectives and their gradients, responses and sensitivities of the last step.
 std::set<Column> value_columns(const json& record) {
   std::set<Column> columns;
-  const auto add = [&](std::vector<std::string> place, const std::string& name, const json& by) {
+  const auto add = [&](std::vector<std::string> place, const std::string& of, const std::string& name, const json& by) {
     for (const auto& [parameter, unused] : by.items()) {
-      auto of = place;
-      of.push_back(parameter);
-      columns.insert({of, "d " + name + " / d " + parameter});
+      auto one = place;
+      one.push_back(parameter);
+      columns.insert({of, one, "d " + name + " / d " + parameter});
     }
   };
-  for (const auto& [name, value] : object_at(record, "responses").items()) columns.insert({{"responses", name}, name});
+  for (const auto& [name, value] : object_at(record, "responses").items())
+    columns.insert({name, {"responses", name}, name});
   for (const auto& [name, by] : object_at(record, "sensitivities").items())
-    if (by.is_object()) add({"sensitivities", name}, name, by);
+    if (by.is_object()) add({"sensitivities", name}, name, name, by);
   for (const auto& [name, objective] : object_at(record, "objectives").items()) {
-    columns.insert({{"objectives", name, "value"}, name});
-    add({"objectives", name, "gradient"}, name, object_at(objective, "gradient"));
+    const std::string of = name + " (objective)";
+    columns.insert({of, {"objectives", name, "value"}, name});
+    add({"objectives", name, "gradient"}, of, name, object_at(objective, "gradient"));
   }
   return columns;
+}
+
+std::string value_of(const Cell& cell, const Column& column) {
+  const json* v = &cell.record;
+  for (const auto& key : column.place) v = &at(*v, key);
+  return v->is_number() ? number(v->get<double>(), 10) : plain(*v);
+}
+
+/// Columns in groups, each of one response or objective, and no wider than a sheet of paper.
+std::vector<std::vector<Column>> blocks_of(const std::set<Column>& columns) {
+  constexpr std::size_t widest = 6;
+  std::vector<std::vector<Column>> blocks;
+  for (const auto& column : columns)
+    if (blocks.empty() || blocks.back().front().of != column.of || blocks.back().size() == widest)
+      blocks.push_back({column});
+    else
+      blocks.back().push_back(column);
+  return blocks;
+}
+
+/// A block beside the names of the runs. Of one whose numbers are the same in all runs, the sentence that says so.
+std::string block_html(const Study& study, Table table, const std::vector<Column>& block) {
+  const std::size_t names = table.header.size();
+  for (const auto& column : block) {
+    table.header.push_back(column.title);
+    for (std::size_t i = 0; i < table.rows.size(); ++i) table.rows[i].push_back(value_of(study.cells[i], column));
+  }
+  const std::string constant = take_out_constant_columns(table);
+  const std::string note = constant.empty() ? "" : "<p class=\"note\">" + escape(constant) + "</p>\n";
+  return table.header.size() == names ? note : note + to_html(table, "Last step: " + block.front().of);
 }
 
 }  // namespace
@@ -193,21 +230,15 @@ std::string values_table(const Study& study) {
   if (columns.empty()) return {};
   constexpr std::size_t most = 200;  // a table of more is read by programs alone, from results.jsonl
   if (columns.size() > most) columns.erase(std::next(columns.begin(), most), columns.end());
-  Table table;
-  table.header = {"method", "scene", "status"};
-  for (const auto& column : columns) table.header.push_back(column.title);
+  Table runs{{"method", "scene", "status"}, {}, {}};
   for (const auto& cell : study.cells) {
-    std::vector<std::string> row = {cell.label, cell.variant, cell.status};
-    for (const auto& column : columns) {
-      const json* v = &cell.record;
-      for (const auto& key : column.place) v = &at(*v, key);
-      row.push_back(v->is_number() ? number(v->get<double>(), 10) : plain(*v));
-    }
-    table.rows.push_back(row);
-    table.row_classes.emplace_back(cell.converged ? "" : "failed");
+    runs.rows.push_back({cell.label, cell.variant, status_in_words(cell)});
+    runs.row_classes.emplace_back(cell.converged ? "" : "failed");
   }
-  return folded("Values of responses and sensitivities at the last step, and of objectives",
-                compact_html(table, "Responses and sensitivities at the last step, objectives"));
+  const std::string constant = take_out_constant_columns(runs);
+  std::string out = constant.empty() ? "" : "<p class=\"note\">" + escape(constant) + "</p>\n";
+  for (const auto& block : blocks_of(columns)) out += block_html(study, runs, block);
+  return folded("Values of responses and sensitivities at the last step, and of objectives", out);
 }
 
 }  // namespace stickslip::report

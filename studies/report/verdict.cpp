@@ -201,13 +201,11 @@ std::string entry(const Row& row, const Measure& measure, const Column& column, 
     return "<td class=\"missed\">" + (nearest ? "best " + percent(*nearest) : std::string("no run")) + "</td>";
   }
   const bool least = is_least(column, measure, *run), fastest = is_fastest(column, measure, *run);
-  std::string cost = "work " + number(measure.work(*run), 2);
-  if (measure.seconds(*run) > 0) cost += " &middot; " + escape(seconds_in_words(measure.seconds(*run)));
+  std::string cost = "<span>work " + number(measure.work(*run), 2) + (least ? " &#9733;" : "") + "</span>";
+  if (measure.seconds(*run) > 0)
+    cost += " <span>&middot; " + escape(seconds_in_words(measure.seconds(*run))) + "</span>";
   return fmt::format("<td{}>{}<br><small>{}{}</small></td>", least ? " class=\"least\"" : "",
-                     unbroken(choice.setting()), cost,
-                     least     ? " &#9733;"
-                     : fastest ? " fastest"
-                               : "");
+                     unbroken(choice.setting()), cost, fastest ? "<br>fastest" : "");
 }
 
 /// "a and b"; of more than three "a, b and 4 others".
@@ -288,8 +286,8 @@ Verdict verdict(const Study& study) {
       measures.front().on_same_mesh ? "exact contact on the same mesh" : discretization_reference(study);
   const std::string table = fmt::format(
       "<div class=\"wide\" role=\"region\" tabindex=\"0\" aria-label=\"Verdict\"><table class=\"verdict\">"
-      "<caption>The cheapest setting of each method that gets within an accuracy of {}{}; &#9733; least work "
-      "(factorisations and their worth in back-solves)</caption>\n<thead><tr><th rowspan=\"2\">method</th>{}</tr>"
+      "<caption>The cheapest setting of each method within an accuracy of {}{}; &#9733; least "
+      "work</caption>\n<thead><tr><th rowspan=\"2\">method</th>{}</tr>"
       "<tr>{}</tr></thead><tbody>\n{}</tbody></table></div>\n",
       escape(against), study.main_variant.empty() ? "" : escape(" (" + study.main_variant + ")"), groups, heads, body);
   return {"<p class=\"reason\">" + sentence + "</p>\n", table};

@@ -211,6 +211,34 @@ TEST_F(ReportNumbers, TablesSayOnceWhatHoldsInEveryRow) {
   EXPECT_THAT(table.rows[1], testing::ElementsAre("b", "2"));
 }
 
+TEST_F(ReportNumbers, HeadsOfNumbersStandOverThem) {
+  const std::string html =
+      report::to_html({{"method", "error", "status"}, {{"a", "1", "2"}, {"b", "", "cap"}}, {}}, "");
+  EXPECT_THAT(html, AllOf(HasSubstr("<th scope=\"col\">method</th>"), HasSubstr("class=\"n\">error</th>"),
+                          HasSubstr("<th scope=\"col\">status</th>")));
+}
+
+/// No table is wider than a sheet of paper: six numbers a run.
+TEST_F(ReportNumbers, ValuesAreATableForEachResponse) {
+  auto cells = three_methods();
+  double value = 0;
+  for (auto& c : cells) {
+    c["responses"]["pull"] = c["responses"]["press"] = ++value;
+    for (int p = 0; p < 8; ++p) c["sensitivities"]["press"]["p" + std::to_string(p)] = ++value;
+  }
+  record(description(), cells);
+  const std::string html = page();
+  const auto tables = [&](const std::string& caption) {
+    int n = 0;
+    for (auto at = html.find("<caption>" + caption); at != std::string::npos;
+         at = html.find("<caption>" + caption, at + 1))
+      ++n;
+    return n;
+  };
+  EXPECT_EQ(tables("Last step: press<"), 2);
+  EXPECT_EQ(tables("Last step: pull<"), 1);
+}
+
 TEST_F(ReportNumbers, HeadlineSaysWhichMethodDoesNotReachTheAccuracy) {
   auto cells = three_methods();
   cells.erase(cells.begin() + 2, cells.begin() + 4);

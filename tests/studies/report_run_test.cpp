@@ -48,7 +48,7 @@ TEST_F(ReportOfARun, HasPictureHistoriesStatesAndValues) {
   EXPECT_THAT(html, AllOf(HasSubstr("<h1>Belt over a drum: tension from friction</h1>"), HasSubstr("id=\"overview\""),
                           HasSubstr("id=\"response-histories\""), HasSubstr("id=\"tractions\""),
                           HasSubstr("id=\"film\""), HasSubstr("Monolithic AL, 4 steps: converged with"),
-                          HasSubstr("<th scope=\"col\">d / d mu</th>"), HasSubstr("<caption>Steps")));
+                          HasSubstr("<th scope=\"col\" class=\"n\">d / d mu</th>"), HasSubstr("<caption>Steps")));
   EXPECT_THAT(html, AllOf(HasSubstr("<caption>What each effect of the scene added"), HasSubstr("direct sensitivity"),
                           HasSubstr(">off<")));
   EXPECT_THAT(html, AllOf(Not(HasSubstr("most accurate run of each method")), Not(HasSubstr("class=\"verdict\""))));
