@@ -62,9 +62,7 @@ std::string the_study(const Study& study) {
   std::vector<std::pair<std::string, json>> entries;
   for (const char* group : {"mesh", "size"})
     for (const auto& [key, value] : object_at(d, group).items()) {
-      std::string words = key;
-      std::replace(words.begin(), words.end(), '_', ' ');
-      entries.emplace_back(std::string(group) + ": " + words, value);
+      entries.emplace_back(std::string(group) + ": " + in_plain_words(key), value);
     }
   out += definitions(entries);
   json given = d;
@@ -144,7 +142,7 @@ std::string provenance(const Study& study) {
   const json& p = object_at(study.cells.front().record, "provenance");
   std::vector<std::pair<std::string, json>> entries;
   for (const auto& [key, value] : p.items())
-    if (key != "libraries" && key != "checksum") entries.emplace_back(key, value);
+    if (key != "libraries" && key != "checksum") entries.emplace_back(in_plain_words(key), value);
   for (const auto& [name, version] : object_at(p, "libraries").items())
     entries.emplace_back("library " + name, version);
   entries.emplace_back("scene hash", at(study.description, "scene_hash"));

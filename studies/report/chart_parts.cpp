@@ -9,6 +9,7 @@
 #include <set>
 #include <tuple>
 
+#include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
 
 namespace stickslip::report {
@@ -144,7 +145,7 @@ std::vector<std::pair<std::string, double>> quantities(const std::map<std::strin
     for (const auto& [name, value] : errors)
       if (name.rfind(prefix, 0) == 0) {
         const std::string bare = name.substr(prefix.size());
-        out.emplace_back(prefix == "field:" ? "field " + bare : bare, value);
+        out.emplace_back(prefix == "field:" ? "field: " + in_plain_words(bare) : bare, value);
         of_first += prefix == prefixes.front();
       }
   constexpr std::size_t most = 200;  // beyond, the worst stands for the rest
@@ -154,7 +155,7 @@ std::vector<std::pair<std::string, double>> quantities(const std::map<std::strin
 }
 
 std::string in_words(const Cell& cell) {
-  return series_of(cell, "") + (cell.converged ? "" : " [" + cell.status + "]");
+  return series_of(cell, "") + (cell.converged ? "" : " [" + in_plain_words(cell.status) + "]");
 }
 
 void add_first(SeriesList& series, const Study& study, const std::vector<std::string>& labels) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -246,18 +247,18 @@ std::string dominant_part(const Study& study, const std::string& family, const s
 
 /// Parts without a value, each reason once, and runs of the budgets that failed.
 std::string what_is_missing(const Study& study) {
-  std::map<std::pair<std::string, std::string>, int> reasons;
+  std::map<std::array<std::string, 3>, int> reasons;  // quantity, part, reason
   Table failed{{"method", "scene", "run", "status", "message"}, {}, {}};
   for (const auto& cell : study.cells) {
     for (const auto& [quantity, budget] : budgets_of(cell).items())
       for (const auto& [part, entry] : object_at(budget, "parts").items())
-        if (at(entry, "value").is_null()) ++reasons[{part, text_at(entry, "reason")}];
+        if (at(entry, "value").is_null()) ++reasons[{quantity_in_words(quantity), part, text_at(entry, "reason")}];
     for (const auto& run : array_at(at(cell.record, "error_budget"), "failed"))
       failed.rows.push_back(
           {cell.label, cell.variant, text_at(run, "run"), text_at(run, "status"), text_at(run, "message")});
   }
-  Table missing{{"part", "why", "budgets"}, {}, {}};
-  for (const auto& [key, count] : reasons) missing.rows.push_back({key.first, key.second, std::to_string(count)});
+  Table missing{{"quantity", "part", "why", "runs"}, {}, {}};
+  for (const auto& [key, count] : reasons) missing.rows.push_back({key[0], key[1], key[2], std::to_string(count)});
   std::string out;
   if (!missing.rows.empty())
     out += folded("Parts that could not be measured", to_html(missing, "Parts without a value"));
@@ -300,7 +301,7 @@ std::string budget_in_words(const Study& study) {
   std::string out = "<ul class=\"headline\">";
   for (const auto& family : study.families)
     if (const std::string sentence = dominant_part(study, family, quantity); !sentence.empty())
-      out += "<li>" + escape(sentence) + "</li>\n";
+      out += "<li>" + escape_sentence(sentence) + "</li>\n";
   return out + "</ul>\n" + what_is_missing(study);
 }
 

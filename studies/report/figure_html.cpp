@@ -82,7 +82,7 @@ json compact(const json& rows) {
 /// The title, but of a folded figure, whose fold has it, and what is said below it.
 std::string caption(const std::string& id, const std::string& title, const std::string& text, const std::string& fold) {
   const std::string head = fold.empty() ? fmt::format("<h3 id=\"{}-title\">{}</h3>", id, escape(title)) : "";
-  return "<figcaption>" + head + "<p>" + escape(text) + "</p></figcaption>\n";
+  return "<figcaption>" + head + "<p>" + escape_sentence(text) + "</p></figcaption>\n";
 }
 
 std::string behind_a_fold(const std::string& id, const std::string& title, const std::string& fold,

@@ -53,6 +53,13 @@ std::string label_in_words(const Cell& cell) {
   return family_name(cell.family) + (options.empty() ? "" : " (" + options.substr(1) + ")");
 }
 
+/// Whether a run takes less work than another or, of equals, is the default.
+bool is_cheaper(const Cell& cell, const Cell& other, const Measure& measure) {
+  constexpr double same = 1 + 1e-9;  // counts are whole: what differs, differs by more
+  const double work = cell.*measure.work, least = other.*measure.work;
+  return work * same < least || (work <= least * same && at(cell.record, "default") == true);
+}
+
 /// The cheapest converged cell of each method that reaches the target, and for the others how far they came.
 std::string cost_sentence(const Study& study, const Measure& measure) {
   const auto cells = main_cells(study);
@@ -67,7 +74,7 @@ std::string cost_sentence(const Study& study, const Measure& measure) {
     const auto error = worst(cell->enforcement, measure.prefix);
     if (!error || !cell->converged) continue;
     auto& [cheapest, nearest] = by_family[cell->family];
-    if (*error <= *target && (!cheapest || cell->*measure.work < cheapest->*measure.work)) cheapest = cell;
+    if (*error <= *target && (!cheapest || is_cheaper(*cell, *cheapest, measure))) cheapest = cell;
     if (!nearest || *error < *worst(nearest->enforcement, measure.prefix)) nearest = cell;
   }
   std::vector<const Cell*> reached, missed;
@@ -78,18 +85,20 @@ std::string cost_sentence(const Study& study, const Measure& measure) {
 
   std::string out = fmt::format("To bring every {} within {} of the exact contact conditions on the same mesh, ",
                                 measure.words, number(*target, 2));
+  const auto factor_of = [&](const Cell& cell) { return cell.*measure.work / (reached.front()->*measure.work); };
+  const bool one_wins = by_family.size() > 1 && (reached.size() < 2 || !(factor_of(*reached[1]) <= much_the_same));
   for (std::size_t i = 0; i < reached.size(); ++i) {
     const Cell& cell = *reached[i];
     if (i == 0) {
-      out += fmt::format("{} needs{} {}", label_in_words(cell), by_family.size() > 1 ? " least:" : "",
-                         spent(cell, measure));
+      out += fmt::format("{} needs{} {}", label_in_words(cell), one_wins ? " least:" : "", spent(cell, measure));
     } else {
-      const double factor = cell.*measure.work / (reached.front()->*measure.work);
+      const double factor = factor_of(cell);
       out += fmt::format("; {} needs {}", label_in_words(cell), spent(cell, measure));
-      if (const std::string times = number(factor, 2); std::isfinite(factor))
-        out += times == "1" ? ", about the same work" : fmt::format(", {} times the work", times);
+      if (std::isfinite(factor))
+        out +=
+            factor <= much_the_same ? ", about the same work" : fmt::format(", {} times the work", number(factor, 2));
     }
-    if (*worst(cell.enforcement, measure.prefix) == 0) out += " (its error is exactly 0: it is the reference itself)";
+    if (*worst(cell.enforcement, measure.prefix) == 0) out += " (it agrees exactly with the reference)";
   }
   out += ".";
   for (const Cell* cell : missed)
@@ -162,14 +171,14 @@ std::string mesh_sentence(const Study& study) {
     if (!cell->converged) continue;
     if (const auto error = worst(cell->discretization, "response:"))
       best_mesh = std::min(best_mesh.value_or(*error), *error);
-    if (const auto error = worst(cell->enforcement, "response:"))
-      best_method = std::min(best_method.value_or(*error), *error);
+    if (const auto error = accuracy(*cell, Of::responses)) best_method = std::min(best_method.value_or(*error), *error);
   }
-  if (!best_mesh) return {};
-  std::string out = fmt::format("Against {} the best run is off by {} in its worst response",
-                                discretization_reference(study), number(*best_mesh, 2));
-  if (*best_mesh <= rounding) return out + ", which is rounding.";
-  if (best_method && *best_method < *best_mesh)
+  const auto own = own_error(study, Of::responses), error = own ? own : best_mesh;
+  if (!error) return {};
+  std::string out = fmt::format("Against {} the {} is off by {} in its worst response", discretization_reference(study),
+                                own ? "run that enforces contact best" : "best run", number(*error, 2));
+  if (*error <= rounding) return out + ", which is rounding.";
+  if (own && *best_method < *own)
     out += fmt::format(": that is {}, and enforcing contact more strictly does not bring the answer nearer to it",
                        what_else_errs(study));
   return out + ".";
@@ -196,21 +205,22 @@ std::string failure_sentence(const Study& study) {
   if (failed == 0) return study.cells.size() == 1 ? "The run converged." : "All runs converged.";
   std::string kinds;
   for (const auto& [status, n] : by_status) kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", n, status);
-  return fmt::format(
-      "{} of {} runs did not converge ({}); they stay in the tables and, where they left numbers, in "
-      "the charts as crosses.",
-      failed, study.cells.size(), kinds);
+  return fmt::format("{} of {} runs did not converge ({}); {}.", failed, study.cells.size(), kinds,
+                     failed == 1 ? "it stays in the tables and, where it left numbers, in the charts as a cross"
+                                 : "they stay in the tables and, where they left numbers, in the charts as crosses");
 }
 
 }  // namespace
 
-std::string work_in_words(const Cell& cell, Of of) {
+Counts counts_of(const Cell& cell, Of of) {
   const bool derivative = of == Of::sensitivities;
-  const double factorizations =
-      cell.count("factorizations") - (derivative ? 0 : cell.count("sensitivity_factorizations"));
-  const double backsolves = cell.count("backsolves") + (derivative ? cell.count("sensitivity_backsolves") : 0);
-  return counted(std::lround(factorizations), "factorisation") + " and " +
-         counted(std::lround(backsolves), "back-solve");
+  return {std::lround(cell.count("factorizations") - (derivative ? 0 : cell.count("sensitivity_factorizations"))),
+          std::lround(cell.count("backsolves") + (derivative ? cell.count("sensitivity_backsolves") : 0))};
+}
+
+std::string work_in_words(const Cell& cell, Of of) {
+  const Counts counts = counts_of(cell, of);
+  return counted(counts.factorizations, "factorisation") + " and " + counted(counts.backsolves, "back-solve");
 }
 
 std::vector<std::string> warning_sentences(const Study& study) {

@@ -17,6 +17,12 @@ std::vector<std::string> headline(const Study& study);
 /// A sentence for each kind of warning and place, in the words of the run where it is worst.
 std::vector<std::string> warning_sentences(const Study& study);
 
+/// What a run solved, what its derivatives took included where they are what is asked for.
+struct Counts {
+  long factorizations = 0, backsolves = 0;
+};
+Counts counts_of(const Cell& cell, Of of);
+
 /// "4 factorisations and 19 back-solves" of a run, those of the derivatives included where they are what is asked for.
 std::string work_in_words(const Cell& cell, Of of);
 

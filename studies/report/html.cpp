@@ -66,8 +66,8 @@ std::string escape(std::string_view text) {
 }
 
 std::string escape_sentence(std::string_view text) {
-  static const std::regex small(R"(\d[\d.]*e-\d+)");
-  return std::regex_replace(escape(text), small, "<span class=\"number\">$&</span>");
+  static const std::regex small(R"((\d[\d.]*e-)0*(\d+))");
+  return std::regex_replace(escape(text), small, "<span class=\"number\">$1$2</span>");
 }
 
 std::string embed(const nlohmann::json& value) {
@@ -128,6 +128,11 @@ std::string with_exact_numbers(const std::string& text) {
   return out;
 }
 
+std::string in_plain_words(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
 std::string whole(double count) { return fmt::format("{:.0f}", count); }
 
 std::string plain(const nlohmann::json& value) {
@@ -156,7 +161,9 @@ std::string to_html(const Table& table, std::string_view caption) {
     out += marked ? fmt::format("<tr class=\"{}\">", escape(table.row_classes[i])) : "<tr>";
     for (std::size_t j = 0; j < used.size(); ++j) {
       const std::string& cell = table.rows[i][j];
-      if (used[j]) out += (reads_as_number(cell) ? "<td class=\"n\">" : "<td>") + escape(cell) + "</td>";
+      if (used[j])
+        out += reads_as_number(cell) ? "<td class=\"n\">" + escape(cell) + "</td>"
+                                     : "<td>" + escape_sentence(cell) + "</td>";
     }
     out += "</tr>\n";
   }
@@ -180,7 +187,8 @@ std::string take_out_constant_columns(Table& table) {
 
 std::string compact_html(Table table, std::string_view caption) {
   const std::string constant = take_out_constant_columns(table);
-  return (constant.empty() ? "" : "<p class=\"note\">" + escape(constant) + "</p>\n") + to_html(table, caption);
+  return (constant.empty() ? "" : "<p class=\"note\">" + escape_sentence(constant) + "</p>\n") +
+         to_html(table, caption);
 }
 
 std::string folded(std::string_view summary, std::string_view content) {

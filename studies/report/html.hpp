@@ -11,7 +11,7 @@ namespace stickslip::report {
 /// `text` with & < > " ' replaced by entities: safe as element content and as an attribute value.
 std::string escape(std::string_view text);
 
-/// escape(), with numbers such as 2e-4 kept on one line.
+/// escape(), with numbers such as 2e-4 kept on one line, and without the noughts of 2e-04.
 std::string escape_sentence(std::string_view text);
 
 /// `value` as JSON that may stand inside <script type="application/json">: every '<' is written \u003c, so no text of a
@@ -34,6 +34,9 @@ std::string exact_number(double value);
 
 /// A text with the numbers that follow a '=' in the style of exact_number().
 std::string with_exact_numbers(const std::string& text);
+
+/// A name of the records with blanks: "converged at roundoff".
+std::string in_plain_words(std::string name);
 
 /// A count, whole.
 std::string whole(double count);

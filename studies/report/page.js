@@ -115,7 +115,7 @@
       button.setAttribute('aria-pressed', !off.has(s.name));
       button.innerHTML = `<svg width="44" height="16" aria-hidden="true" fill="none" stroke="${color}" stroke-width="2">` +
           `<path d="M0,8H44" stroke-dasharray="${s.dash.at(-1) ? s.dash : 'none'}"/><path d="${markers[s.shape]}"/></svg>`;
-      button.append(s.name);
+      button.append(s.name.replaceAll(/e-(?=\d)/g, 'e-\u2060'));  // not broken after its hyphen
       button.addEventListener('click', () => {
         off.has(s.name) ? off.delete(s.name) : off.add(s.name);
         switchedOff.set(figure, off);

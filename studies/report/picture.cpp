@@ -12,6 +12,7 @@
 #include "studies/report/look_up.hpp"
 #include "studies/report/picture_contact.hpp"
 #include "studies/report/picture_obstacles.hpp"
+#include "studies/wording.hpp"
 
 namespace stickslip::report {
 
@@ -194,11 +195,11 @@ std::optional<Scene> lay_out(const json& picture) {
 
 std::string in_words(const Scene& scene, bool with_close_up) {
   const std::string scale =
-      scene.scale == 1
-          ? std::string("displacements at true scale")
-          : fmt::format("displacements {} times enlarged (bodies that touch may seem to overlap)", number(scene.scale));
-  return fmt::format("At the last step: {} elements, {} contact points; {}.{}", scene.mesh.elements.size(),
-                     scene.contact.size(), scale,
+      scene.scale == 1 ? std::string("displacements at true scale")
+                       : fmt::format("displacements {} times enlarged (bodies that touch may seem to overlap or part)",
+                                     number(scene.scale));
+  return fmt::format("At the last step: {}, {}; {}.{}", counted(std::ssize(scene.mesh.elements), "element"),
+                     counted(std::ssize(scene.contact), "contact point"), scale,
                      scene.zooms && with_close_up ? " Right: the contact at true scale." : "");
 }
 

@@ -79,7 +79,7 @@ void describe(Figure& figure, const Study& study, Of of, std::size_t problems) {
   figure.title =
       derivative ? "Profiles: sensitivities solved for a given work" : "Profiles: problems solved for a given work";
   figure.text = fmt::format(
-      "{} problems: each of the {} scenes with each accuracy asked for, from 1e-2 down to 1e-10, that some run reaches "
+      "{} problems: each of the {} scenes with each accuracy asked for, from 0.01 down to 1e-10, that some run reaches "
       "there. The first chart shows the share of them that a method solves within a factor of the least work any of "
       "the methods needs (Dolan and More's performance profile): left is fast, high is dependable. The second shows "
       "the "

@@ -98,9 +98,14 @@ std::string last_values(const Cell& cell) {
   return table.rows.empty() ? "" : to_html(table, "Responses at the last step, and their derivatives");
 }
 
-std::string words(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
+/// A name of the ledger as the rest of the page has it.
+std::string ledger_words(const std::string& name) {
+  std::string words = in_plain_words(name);
+  for (const auto& [recorded, shown] : {std::pair<std::string, std::string>{"factorizations", "factorisations"},
+                                        {"backsolves", "back-solves"},
+                                        {"slots", "model data"}})
+    if (const auto at = words.find(recorded); at != std::string::npos) words.replace(at, recorded.size(), shown);
+  return words;
 }
 
 /// "3 displacements, 12 points": what is not zero of a row's amounts.
@@ -108,7 +113,7 @@ std::string amounts_in_words(const json& amounts) {
   std::string out;
   for (const auto& [name, amount] : amounts.items())
     if (amount.is_number() && amount != 0)
-      out += (out.empty() ? "" : ", ") + whole(amount.get<double>()) + " " + words(name);
+      out += (out.empty() ? "" : ", ") + whole(amount.get<double>()) + " " + ledger_words(name);
   return out;
 }
 
@@ -125,9 +130,10 @@ std::string ledger_table(const Cell& cell) {
       for (const auto& [name, amount] : memory.items()) {
         if (!amount.is_number() || amount == 0) continue;
         bytes += amount.get<double>();
-        parts += (parts.empty() ? "" : ", ") + words(name) + " " + number(amount.get<double>() / 1000);
+        parts += (parts.empty() ? "" : ", ") + ledger_words(name) + " " + number(amount.get<double>() / 1000);
       }
-      table.rows.push_back({words(text_at(row, "effect")), on ? amounts_in_words(object_at(row, "unknowns")) : "off",
+      table.rows.push_back({in_plain_words(text_at(row, "effect")),
+                            on ? amounts_in_words(object_at(row, "unknowns")) : "off",
                             bytes > 0 ? number(bytes / 1000) : "", parts, amounts_in_words(object_at(row, "counts")),
                             seconds.is_number() && seconds != 0 ? number(seconds.get<double>(), 2) : ""});
     }

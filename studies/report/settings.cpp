@@ -43,6 +43,14 @@ std::optional<double> accuracy(const Cell& cell, Of of) {
 
 double work_of(const Cell& cell, Of of) { return of == Of::responses ? cell.work : cell.sensitivity_work; }
 
+std::optional<double> own_error(const Study& study, Of of) {
+  const Cell* best = nullptr;
+  for (const auto& cell : study.cells)
+    if (cell.variant == study.main_variant && cell.converged && accuracy(cell, of))
+      if (!best || *accuracy(cell, of) < *accuracy(*best, of)) best = &cell;
+  return best ? worst(best->discretization, of == Of::sensitivities ? "sensitivity:" : "response:") : std::nullopt;
+}
+
 std::optional<double> target_error(const Study& study, Of of) {
   std::optional<double> least;
   for (const auto& cell : study.cells)

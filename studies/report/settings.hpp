@@ -11,11 +11,17 @@ namespace stickslip::report {
 
 enum class Of { responses, sensitivities };
 
+constexpr double much_the_same = 1.05;  ///< work within 5 % of the least names no winner
+
 /// Worst enforcement error of the kind; nothing where the study has no reference on the same mesh.
 std::optional<double> accuracy(const Cell& cell, Of of);
 
 /// Work of the solution, or of it and its derivatives.
 double work_of(const Cell& cell, Of of);
+
+/// What the mesh itself is off by: the worst error, against the study's discretisation reference, of the run of the
+/// main variant that enforces contact best.
+std::optional<double> own_error(const Study& study, Of of);
 
 /// The error to compare at: 1e-6, or the strictest power of ten that some converged run reached; nothing without one.
 std::optional<double> target_error(const Study& study, Of of);

@@ -15,17 +15,6 @@ namespace stickslip::report {
 
 using nlohmann::json;
 
-namespace {
-
-/// A status with blanks, where a narrow column can break it.
-std::string status_in_words(const Cell& cell) {
-  std::string words = cell.status;
-  std::replace(words.begin(), words.end(), '_', ' ');
-  return words;
-}
-
-}  // namespace
-
 std::string settings_table(const Study& study) {
   const auto target = target_error(study, Of::responses);
   if (!target) return {};
@@ -55,7 +44,7 @@ std::string settings_table(const Study& study) {
                             shown(worst(cell->enforcement, "response:")),
                             shown(worst(cell->enforcement, "sensitivity:")), whole(cell->count("newton")),
                             whole(cell->count("augmentations")), number(cell->work), number(cell->sensitivity_work),
-                            number(cell->seconds), status_in_words(*cell)});
+                            number(cell->seconds), in_plain_words(cell->status)});
       const bool solved = each.work(i, problems, Of::responses).has_value();
       table.rows.back().push_back(solved ? "yes" : "no");
       table.row_classes.emplace_back(solved ? "" : "failed");
@@ -92,7 +81,8 @@ std::string status_table(const Study& study) {
       }
       const Cell& cell = *found->second;
       failed = failed || !cell.converged;
-      row.push_back(cell.converged ? fmt::format("ok, {} Newton", whole(cell.count("newton"))) : status_in_words(cell));
+      row.push_back(cell.converged ? fmt::format("ok, {} Newton", whole(cell.count("newton")))
+                                   : in_plain_words(cell.status));
     }
     table.rows.push_back(row);
     table.row_classes.emplace_back(failed ? "failed" : "");
@@ -107,7 +97,7 @@ std::string messages(const Study& study) {
   Table table{{"method", "scene", "status", "message"}, {}, {}};
   for (const auto& cell : study.cells)
     if (const std::string message = plain(at(cell.record, "message")); !message.empty()) {
-      table.rows.push_back({cell.label, cell.variant, status_in_words(cell), message});
+      table.rows.push_back({cell.label, cell.variant, in_plain_words(cell.status), message});
       table.row_classes.emplace_back(cell.converged ? "" : "failed");
     }
   return table.rows.empty() ? "" : folded("Messages of the runs", to_html(table, "Messages"));
@@ -144,7 +134,7 @@ std::string results_table(const Study& study) {
     const json &cost = at(cell.record, "cost"), &seconds = at(cost, "seconds");
     const auto count = [&](const char* name) { return whole(cell.count(name)); };
     const auto recorded = [](const json& v) { return v.is_number() ? number(v.get<double>()) : std::string(); };
-    const std::string status = status_in_words(cell);
+    const std::string status = in_plain_words(cell.status);
     errors.rows.push_back({cell.label, cell.variant, status, shown(worst(cell.enforcement, "response:")),
                            shown(worst(cell.enforcement, "sensitivity:")),
                            shown(worst(cell.discretization, "response:")),
@@ -218,7 +208,7 @@ std::string block_html(const Study& study, Table table, const std::vector<Column
     for (std::size_t i = 0; i < table.rows.size(); ++i) table.rows[i].push_back(value_of(study.cells[i], column));
   }
   const std::string constant = take_out_constant_columns(table);
-  const std::string note = constant.empty() ? "" : "<p class=\"note\">" + escape(constant) + "</p>\n";
+  const std::string note = constant.empty() ? "" : "<p class=\"note\">" + escape_sentence(constant) + "</p>\n";
   return table.header.size() == names ? note : note + to_html(table, "Last step: " + block.front().of);
 }
 
@@ -232,7 +222,7 @@ std::string values_table(const Study& study) {
   if (columns.size() > most) columns.erase(std::next(columns.begin(), most), columns.end());
   Table runs{{"method", "scene", "status"}, {}, {}};
   for (const auto& cell : study.cells) {
-    runs.rows.push_back({cell.label, cell.variant, status_in_words(cell)});
+    runs.rows.push_back({cell.label, cell.variant, in_plain_words(cell.status)});
     runs.row_classes.emplace_back(cell.converged ? "" : "failed");
   }
   const std::string constant = take_out_constant_columns(runs);

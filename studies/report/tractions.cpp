@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "studies/report/chart_parts.hpp"
+#include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
 
 namespace stickslip::report {
@@ -82,7 +83,7 @@ std::optional<Figure> tractions(const Study& study) {
   add_first(series, study, shown);
   const json& analytic = at(study.description, "analytic");
   const json& curves_of = object_at(analytic, "curves");
-  const std::string closed_name = text_at(analytic, "name");
+  const std::string closed_name = in_plain_words(text_at(analytic, "name"));
 
   // Past this many points only the cells shown at first are kept: the page has to stay light.
   constexpr std::size_t most_points = 20000;

@@ -17,9 +17,8 @@
 namespace stickslip::report {
 namespace {
 
-constexpr double much_the_same = 1.05;  ///< work or seconds within 5 % of the least name no winner
-constexpr double rounding = 1e-12;      ///< what sixteen digits leave: no mesh errs by so little
-constexpr double much_faster = 1.25;    ///< seconds of runs this short vary by some 20 %
+constexpr double rounding = 1e-12;    ///< what sixteen digits leave: no mesh errs by so little
+constexpr double much_faster = 1.25;  ///< seconds of runs this short vary by some 20 %
 
 /// An accuracy that is asked for.
 struct Level {
@@ -71,19 +70,6 @@ std::vector<Row> rows_of(const Study& study) {
   return !knob.empty() && by_series.size() > 1 && by_series.size() <= most ? by_series : by_method;
 }
 
-/// What the mesh itself is off by: the error, against the study's discretisation reference, of the run that enforces
-/// contact best.
-std::optional<double> own_error(const Study& study, const std::string& prefix) {
-  const Cell* best = nullptr;
-  double least = 0;
-  for (const Cell* cell : runs_of(study))
-    if (const auto error = worst(cell->enforcement, prefix); cell->converged && error && (!best || *error < least)) {
-      best = cell;
-      least = *error;
-    }
-  return best ? worst(best->discretization, prefix) : std::nullopt;
-}
-
 std::string percent(double error) {
   return error >= 1e-3 && error < 1 ? number(100 * error, 2) + " %" : number(error, 2);
 }
@@ -102,7 +88,7 @@ std::optional<Measure> measure_of(const Study& study, Of of) {
   if (asked.empty()) asked = {1e-2, 1e-4, 1e-6};
   std::sort(asked.rbegin(), asked.rend());
   for (const double error : asked) measure.levels.push_back({percent(error), error});
-  if (const auto own = own_error(study, measure.prefix()); measure.on_same_mesh && own && *own > rounding)
+  if (const auto own = own_error(study, of); measure.on_same_mesh && own && *own > rounding)
     measure.levels.push_back({"mesh: " + percent(*own), *own});
   return measure;
 }
@@ -186,10 +172,13 @@ bool is_least(const Column& column, const Measure& measure, const Cell& cell) {
   return measure.work(cell) <= much_the_same * measure.work(*column.least);
 }
 
-/// Whether seconds name a winner that work does not.
+/// Whether seconds name a winner, clearly ahead of every other method, that work does not.
 bool is_fastest(const Column& column, const Measure& measure, const Cell& cell) {
   return column.fastest == &cell && !is_least(column, measure, cell) &&
-         measure.seconds(*column.least) > much_faster * measure.seconds(cell);
+         std::all_of(column.runs.begin(), column.runs.end(), [&](const Choice& other) {
+           return !other.run || other.run == &cell || measure.seconds(*other.run) == 0 ||
+                  measure.seconds(*other.run) > much_faster * measure.seconds(cell);
+         });
 }
 
 std::string entry(const Row& row, const Measure& measure, const Column& column, const Choice& choice) {
@@ -216,20 +205,58 @@ std::string enumerated(const std::vector<std::string>& names) {
   return shown < names.size() ? out + fmt::format(" and {} others", names.size() - shown) : out;
 }
 
-/// What those take that are not the cheapest; of more than three the dearest alone.
-std::string what_others_take(std::vector<const Choice*> others, const Measure& measure) {
-  if (others.empty()) return "";
-  const bool many = others.size() > 3;
-  if (many)
-    others = {*std::max_element(others.begin(), others.end(), [&](const Choice* a, const Choice* b) {
-      return measure.work(*a->run) < measure.work(*b->run);
-    })};
+/// Whether counts alone leave open which of two runs is the cheaper.
+bool counts_leave_open(const Counts& a, const Counts& b) {
+  return (a.factorizations < b.factorizations && a.backsolves > b.backsolves) ||
+         (a.factorizations > b.factorizations && a.backsolves < b.backsolves);
+}
+
+/// Whether counts alone leave open that the winners are the cheapest of all.
+bool counts_leave_open(const std::vector<const Choice*>& winners, const std::vector<const Choice*>& others, Of of) {
+  auto all = winners;
+  all.insert(all.end(), others.begin(), others.end());
+  return std::any_of(winners.begin(), winners.end(), [&](const Choice* winner) {
+    return std::any_of(all.begin(), all.end(), [&](const Choice* other) {
+      return counts_leave_open(counts_of(*winner->run, of), counts_of(*other->run, of));
+    });
+  });
+}
+
+/// The counts of a run, and where they have to be weighed the work that they make.
+std::string taken(const Choice& choice, const Measure& measure, bool weighed) {
+  const std::string counts = work_in_words(*choice.run, measure.of);
+  return weighed ? counts + " (work " + number(measure.work(*choice.run), 3) + ")" : counts;
+}
+
+/// Those who are the cheapest with what they take: once where that is the same for all.
+std::string winners_in_words(const std::vector<const Choice*>& winners, const Measure& measure, bool weighed) {
+  const std::string first = taken(*winners.front(), measure, weighed);
+  const bool alike = std::all_of(winners.begin(), winners.end(),
+                                 [&](const Choice* choice) { return taken(*choice, measure, weighed) == first; });
+  std::vector<std::string> names;
+  for (const Choice* choice : winners)
+    names.push_back("<b>" + escape_sentence(choice->name()) + "</b>" +
+                    (alike ? "" : " with " + taken(*choice, measure, weighed)));
+  return enumerated(names) + (alike ? ": " + first : "");
+}
+
+/// Of more than three the dearest alone.
+std::vector<const Choice*> few_of(const std::vector<const Choice*>& others, const Measure& measure) {
+  if (others.size() <= 3) return others;
+  return {*std::max_element(others.begin(), others.end(), [&](const Choice* a, const Choice* b) {
+    return measure.work(*a->run) < measure.work(*b->run);
+  })};
+}
+
+/// What those take that are not the cheapest; `many`: of more, these are the dearest.
+std::string what_others_take(const std::vector<const Choice*>& others, const Measure& measure, bool many,
+                             bool weighed) {
   std::string out;
   for (const Choice* choice : others)
     out += std::string(!out.empty() ? ", "
                        : many       ? " where the dearest, "
                                     : " where ") +
-           escape_sentence(choice->name()) + (many ? ", takes " : " takes ") + work_in_words(*choice->run, measure.of);
+           escape_sentence(choice->name()) + (many ? ", takes " : " takes ") + taken(*choice, measure, weighed);
   return out;
 }
 
@@ -238,17 +265,14 @@ std::string reason(const std::vector<Row>& rows, const Measure& measure) {
   for (const auto& level : measure.levels) {
     const Column column = column_of(rows, measure, level.error);
     if (!column.least) continue;
-    std::vector<std::string> winners;
-    std::vector<const Choice*> others;
-    for (const Choice& choice : column.runs) {
-      if (!choice.run) continue;
-      if (is_least(column, measure, *choice.run))
-        winners.push_back("<b>" + escape_sentence(choice.name()) + "</b>");
-      else
-        others.push_back(&choice);
-    }
-    std::string out = "To " + level.title + " the " + measure.noun() + " is cheapest by " + enumerated(winners) + ": " +
-                      work_in_words(*column.least, measure.of) + what_others_take(others, measure);
+    std::vector<const Choice*> winners, others;
+    for (const Choice& choice : column.runs)
+      if (choice.run) (is_least(column, measure, *choice.run) ? winners : others).push_back(&choice);
+    const auto told = few_of(others, measure);
+    const bool weighed = counts_leave_open(winners, told, measure.of);
+    std::string out = "To " + level.title + " the " + measure.noun() + " is cheapest by " +
+                      winners_in_words(winners, measure, weighed) +
+                      what_others_take(told, measure, told.size() < others.size(), weighed);
     for (const Choice& choice : column.runs)
       if (choice.run && is_fastest(column, measure, *choice.run))
         out += fmt::format("; by the clock {} was faster ({} for {})", escape_sentence(choice.name()),

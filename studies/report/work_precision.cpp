@@ -17,23 +17,26 @@ const std::map<std::string, double>& errors_of(const Cell& cell, Against against
   return against == Against::discretization ? cell.discretization : cell.kkt;
 }
 
-/// Where most runs are off by the same, or by what they enforce contact with alone, that says it all.
+/// Where most runs are exact, are off by the same, or by what they enforce contact with alone, that says it all.
 std::string why_it_may_be_folded(const Study& study, Against against, Of of) {
   if (against != Against::discretization) return "";
   const std::string prefix = of == Of::sensitivities ? "sensitivity:" : "response:";
   std::vector<double> errors;
-  std::ptrdiff_t of_method = 0;
+  std::ptrdiff_t exact = 0, of_method = 0;
   for (const auto& cell : study.cells) {
     const auto error = worst(cell.discretization, prefix), own = worst(cell.enforcement, prefix);
     if (!error || !cell.converged || cell.variant != study.main_variant) continue;
     constexpr double alike = 5, rounding = 1e-12;
     errors.push_back(*error);
-    of_method += *error <= rounding || (own && *error <= alike * *own && *own <= alike * *error);
+    exact += *error <= rounding;
+    of_method += *error > rounding && own && *error <= alike * *own && *own <= alike * *error;
   }
   if (errors.size() < 3) return "";
   const auto most = [&](std::ptrdiff_t n) { return 3 * n >= 2 * std::ssize(errors); };
-  if (most(of_method))
-    return fmt::format("{} of {} runs are off by what they enforce contact with, as above", of_method, errors.size());
+  if (most(exact)) return fmt::format("{} of {} runs are exact to rounding", exact, errors.size());
+  if (most(exact + of_method))
+    return fmt::format("{} of {} runs are off by what they enforce contact with, as above{}", of_method, errors.size(),
+                       exact > 0 ? fmt::format(", {} exact to rounding", exact) : "");
   std::sort(errors.begin(), errors.end());
   const double middle = errors[errors.size() / 2];
   const auto near =

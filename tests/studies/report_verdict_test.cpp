@@ -14,6 +14,7 @@ using nlohmann::json;
 using recorded::cell;
 using recorded::description;
 using recorded::three_methods;
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -133,6 +134,41 @@ TEST_F(ReportVerdict, NamesTheFasterWhereTheClockDisagrees) {
   EXPECT_THAT(row(verdict, "Penalty")[0], HasSubstr("fastest"));
   EXPECT_THAT(row(verdict, "Monolithic AL")[0], HasSubstr("&#9733;"));
   EXPECT_THAT(row(verdict, "Monolithic AL")[0], Not(HasSubstr("fastest")));
+}
+
+TEST_F(ReportVerdict, CallsNoneTheFastestThatIsHardlyFaster) {
+  std::vector<json> cells = {cell("penalty", {{"stiffness", 1e5}}, 1e-5, 14), cell("uzawa_al", json::object(), 0, 16),
+                             cell("monolithic_al", json::object(), 0, 10)};
+  cells[0]["cost"]["seconds"]["total"] = 5;
+  cells[1]["cost"]["seconds"]["total"] = 6;
+  EXPECT_THAT(verdict_of(description(), cells), AllOf(Not(HasSubstr("fastest")), Not(HasSubstr("by the clock"))));
+  cells[1]["cost"]["seconds"]["total"] = 7;
+  EXPECT_THAT(verdict_of(description(), cells), HasSubstr("fastest"));
+}
+
+TEST_F(ReportVerdict, SaysOfEachOfTwoWinnersWhatItTakes) {
+  std::vector<json> cells = {cell("penalty", {{"stiffness", 1e5}}, 1e-5, 10),
+                             cell("monolithic_al", json::object(), 0, 10)};
+  cells[0]["cost"]["counts"]["backsolves"] = 21;
+  EXPECT_THAT(verdict_of(description(), cells),
+              HasSubstr("<b>Penalty (stiffness=1e5)</b> with 10 factorisations and 21 back-solves and <b>Monolithic "
+                        "AL</b> with 10 factorisations and 20 back-solves."));
+}
+
+/// A back-solve is weighed as a tenth of a factorisation, by seconds and counts of all runs.
+TEST_F(ReportVerdict, SaysTheWorkWhereCountsDoNotShowTheWinner) {
+  std::vector<json> cells = {cell("penalty", {{"stiffness", 1e5}}, 1e-5, 11),
+                             cell("monolithic_al", json::object(), 0, 10)};
+  for (const std::size_t i : {0u, 1u}) {
+    const int backsolves = i == 0 ? 20 : 90;
+    cells[i]["cost"]["counts"]["backsolves"] = backsolves;
+    cells[i]["cost"]["seconds"]["backsolve"] = 0.1 * backsolves;
+  }
+  EXPECT_THAT(verdict_of(description(), cells),
+              HasSubstr("<b>Penalty (stiffness=1e5)</b>: 11 factorisations and 20 back-solves (work 13) where "
+                        "Monolithic AL takes 10 factorisations and 90 back-solves (work 19)"));
+  cells[0]["cost"]["counts"]["factorizations"] = 10;
+  EXPECT_THAT(verdict_of(description(), cells), Not(HasSubstr("(work")));
 }
 
 TEST_F(ReportVerdict, IsSilentWithoutErrors) {
