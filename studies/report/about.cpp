@@ -94,8 +94,9 @@ std::string what_was_run(const Study& study) {
 bool is_merged(const Study& study) { return text_at(study.description, "command").starts_with("stickslip merge "); }
 
 std::string how_to_read(const Study& study) {
-  return "<p>Every dot is one complete run of one method with one setting. Three methods make bodies keep apart and "
-         "obey Coulomb's friction:</p><ul>"
+  return "<p>Every dot is one complete run of one method with one setting. Three methods make bodies keep apart" +
+         std::string(is_frictionless(study) ? "" : " and obey Coulomb's friction") +
+         ":</p><ul>"
          "<li><b>Penalty</b> puts stiff springs between the bodies. One solve, but they sink in a little; stiffer "
          "springs err less and make the equations harder to solve accurately.</li>"
          "<li><b>Uzawa AL</b> (augmented Lagrangian) solves with soft springs, adds the force that was missing, and "

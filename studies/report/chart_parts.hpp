@@ -80,7 +80,8 @@ nlohmann::json curves(const std::string& description, const nlohmann::json& x, c
 
 /// Writes beside the lines of a work-precision chart: the option's value at both ends, so that a reader sees which way
 /// a line runs, and the name of its series, so that grey print needs no legend. A line that stays in one place, where
-/// the option does nothing, has its name alone. Of words that would cover others the shorter is tried, then none.
+/// the option does nothing, has its name alone. A name that would cover other words is tried at the line's other
+/// places.
 void tag_lines(nlohmann::json& rows, const std::string& text_field);
 
 }  // namespace stickslip::report

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <set>
 
 #include "studies/report/chart_parts.hpp"
 #include "studies/report/history_parts.hpp"
@@ -12,11 +14,42 @@ using nlohmann::json;
 
 namespace {
 
-/// The derivative of `response` with most to see, of all where it has none.
-std::string first_to_show(const std::vector<History>& runs, const std::string& response) {
-  const std::string own =
-      most_to_see(runs, [&](const std::string& name) { return name.starts_with("d " + response + " / d "); });
-  return own.empty() ? most_to_see(runs, [](const std::string&) { return true; }) : own;
+double size_of(const std::vector<double>& values) {
+  double size = 0;
+  for (const double value : values)
+    if (std::isfinite(value)) size = std::max(size, std::abs(value));
+  return size;
+}
+
+/// Derivatives that are rounding: over its response, each is next to nothing beside that of another response by the
+/// same parameter.
+std::set<std::string> rounding_of(const History& derivatives, const History& responses) {
+  constexpr double rounding = 1e-9;
+  std::map<std::string, std::map<std::string, double>> shares;  // by parameter and name
+  std::map<std::string, double> largest;                        // by parameter
+  for (const auto& [response, values] : responses.values)
+    for (const auto& [name, derivative] : derivatives.values)
+      if (const std::string head = derivative_name(response, ""); name.starts_with(head) && size_of(values) > 0) {
+        const std::string parameter = name.substr(head.size());
+        const double share = shares[parameter][name] = size_of(derivative) / size_of(values);
+        largest[parameter] = std::max(largest[parameter], share);
+      }
+  std::set<std::string> out;
+  for (const auto& [parameter, by_name] : shares)
+    for (const auto& [name, share] : by_name)
+      if (share <= rounding * largest[parameter]) out.insert(name);
+  return out;
+}
+
+/// The derivative of `response` with most to see, of all where it has none; rounding only where there is nothing else.
+std::string first_to_show(const std::vector<History>& runs, const std::set<std::string>& rounding,
+                          const std::string& response) {
+  const auto is_own = [&](const std::string& name) { return name.starts_with(derivative_name(response, "")); };
+  const auto is_clear = [&](const std::string& name) { return rounding.count(name) == 0; };
+  const std::string own = most_to_see(runs, [&](const std::string& name) { return is_own(name) && is_clear(name); });
+  if (!own.empty()) return own;
+  const std::string clear = most_to_see(runs, is_clear);
+  return clear.empty() ? most_to_see(runs, [](const std::string&) { return true; }) : clear;
 }
 
 /// Keeps as many derivatives as a page has room for.
@@ -37,6 +70,7 @@ std::optional<Figure> derivative_histories(const Study& study, const std::string
   const auto shown = telling_cells(study, Furthest::added);
   add_first(series, study, shown);
   std::vector<History> told;  // of the runs that are shown at first
+  std::set<std::string> rounding;
   std::size_t derivatives = 0;
   double end = 0;
   for (const bool telling : {true, false})
@@ -48,6 +82,7 @@ std::optional<Figure> derivative_histories(const Study& study, const std::string
       limit(history);
       const std::size_t rows = history.times.size() * history.values.size();
       if (history.times.size() < 2 || (!telling && figure.rows.size() + rows > most_rows)) continue;
+      if (told.empty()) rounding = rounding_of(history, history_of(cell, Of::responses));
       if (telling || told.empty()) told.push_back(history);
       end = std::max(end, history.times.back());
       series.add(in_words(cell), cell.family);
@@ -66,10 +101,11 @@ std::optional<Figure> derivative_histories(const Study& study, const std::string
   figure.panels.push_back({"", spec, "time", "value", false, false, "time", false});
   figure.title = "Histories: derivatives over time";
   figure.folded = "of any response by any parameter";
-  figure.text =
-      "Of every step. Where a point begins to slip, to stick or to open, a derivative has a kink or a jump, and what "
-      "friction remembers goes on in it.";
-  offer(figure, "Derivative", "response", first_to_show(told, response), "time");
+  figure.text = is_frictionless(study)
+                    ? "Of every step. Where a point begins to touch or to open, a derivative has a kink or a jump."
+                    : "Of every step. Where a point begins to slip, to stick or to open, a derivative has a kink or a "
+                      "jump, and what friction remembers goes on in it.";
+  offer(figure, "Derivative", "response", first_to_show(told, rounding, response), "time");
   const auto kept = distinct(figure.rows, "response", "time").size();
   if (kept < derivatives) figure.text += fmt::format(" The first {} of {} derivatives.", kept, derivatives);
   offer_cells(figure, shown);

@@ -191,7 +191,8 @@ std::string reference_sentence(const Study& study) {
   });
   return measured ? ""
                   : "No error was measured: the study names no reference, or none that its runs could be held against. "
-                    "What is here is what they gave, what they cost, and how far each is from Coulomb's law (KKT).";
+                    "What is here is what they gave, what they cost, and how far each is from " +
+                        std::string(is_frictionless(study) ? "the contact conditions" : "Coulomb's law") + " (KKT).";
 }
 
 std::string failure_sentence(const Study& study) {

@@ -134,11 +134,13 @@ std::optional<Figure> error_against_knob(const Study& study, const std::vector<s
   figure.series = series.list;
   const bool penalty = std::find(knobs.begin(), knobs.end(), "stiffness") != knobs.end();
   figure.text = "Enforcement error (same mesh) as the option is turned. ";
-  figure.text += penalty ? "Penalty lets bodies penetrate and creep by an amount proportional to 1/stiffness, so its "
+  figure.text += penalty
+                     ? "Penalty lets bodies penetrate" + std::string(is_frictionless(study) ? "" : " and creep") +
+                           " by an amount proportional to 1/stiffness, so its "
                            "error falls with slope -1, until rounding, which grows with the stiffness, lifts it again. "
                            "What an augmented Lagrangian converges to does not depend on its scale: its line shows "
                            "what its tolerance leaves, which may, and rounding. "
-                         : "";
+                     : "";
   figure.text += "Crosses are runs that did not converge.";
   const json tips =
       tooltip({{"label", "method"}, {"option_value", "value of the option"}, {"error", "error"}, {"status", "status"}});

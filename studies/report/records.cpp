@@ -315,6 +315,25 @@ std::string discretization_reference(const Study& study) {
   return kinds.size() == 1 ? *kinds.begin() : "the references";
 }
 
+bool is_frictionless(const Study& study) {
+  std::map<std::string, bool> touches;  // by contact
+  for (const auto& point : array_at(study.picture, "contact")) {
+    const std::string state = text_at(point, "state");
+    if (state == "stick" || state == "slip") return false;
+    touches[text_at(point, "name")] |= state == "closed";
+  }
+  const auto speaks_of_slip = [](const Cell& cell) {
+    return std::any_of(cell.kkt.begin(), cell.kkt.end(),
+                       [](const auto& measure) { return is_of_friction(measure.first) && measure.second != 0; });
+  };
+  return !touches.empty() && std::all_of(touches.begin(), touches.end(), [](const auto& one) { return one.second; }) &&
+         std::none_of(study.cells.begin(), study.cells.end(), speaks_of_slip);
+}
+
+bool is_of_friction(const std::string& measure) {
+  return measure == "cone" || measure == "slip_direction" || measure == "stick";
+}
+
 std::optional<double> worst(const std::map<std::string, double>& errors, const std::string& prefix) {
   std::optional<double> out;
   for (const auto& [name, value] : errors)

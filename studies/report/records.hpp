@@ -78,6 +78,12 @@ std::string series_of(const Cell& cell, const std::string& knob);
 /// study has several of them or names none, "the references".
 std::string discretization_reference(const Study& study);
 
+/// Whether no contact has friction: all that touches is "closed", and no measure speaks of slip.
+bool is_frictionless(const Study& study);
+
+/// Whether a method-blind measure is of Coulomb's law.
+bool is_of_friction(const std::string& measure);
+
 /// Largest value of those whose key starts with `prefix`; nothing where there is none.
 std::optional<double> worst(const std::map<std::string, double>& errors, const std::string& prefix);
 

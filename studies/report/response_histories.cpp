@@ -33,23 +33,41 @@ std::vector<Pair> pairs_of(const json& kinds) {
   return out;
 }
 
-/// The area that the path encloses with the chord from its end to its beginning, as a share of the box around it: what
-/// tells a loop from a line. 0 where it has no extent.
-double openness(const std::vector<double>& x, const std::vector<double>& y) {
+/// From the least to the largest value; 0 where that is rounding.
+double extent_of(const std::vector<double>& values) {
+  constexpr double rounding = 1e-9;
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return *high - *low > rounding * std::max(std::abs(*low), std::abs(*high)) ? *high - *low : 0;
+}
+
+/// The area that the path encloses, from a step on, with the chord from its end to that step, as a share of the box
+/// around the whole path: what tells a loop from a line. 0 where the path has no extent.
+double openness(const std::vector<double>& x, const std::vector<double>& y, std::size_t from = 0) {
   double twice = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const std::size_t next = (i + 1) % x.size();
-    twice += x[i] * y[next] - x[next] * y[i];
+  for (std::size_t i = from; i < x.size(); ++i) {
+    const std::size_t next = i + 1 < x.size() ? i + 1 : from;
+    twice += (x[i] - x[from]) * (y[next] - y[from]) - (x[next] - x[from]) * (y[i] - y[from]);
   }
-  const auto [left, right] = std::minmax_element(x.begin(), x.end());
-  const auto [low, high] = std::minmax_element(y.begin(), y.end());
-  const double box = (*right - *left) * (*high - *low);
+  const double box = extent_of(x) * extent_of(y);
   return box > 0 && std::isfinite(twice) ? std::abs(twice) / 2 / box : 0;
 }
 
 double openness(const History& history, const Pair& pair) {
   const auto force = history.values.find(pair.force), way = history.values.find(pair.against);
   return force == history.values.end() || way == history.values.end() ? -1 : openness(way->second, force->second);
+}
+
+/// The first step that the path comes back to at its end, up to a step's length; its last where there is none.
+std::size_t where_it_closes(const std::vector<double>& x, const std::vector<double>& y) {
+  constexpr double near = 0.01;  // of the extent
+  const std::size_t last = x.size() - 1;
+  const auto comes_back = [&](const std::vector<double>& values, std::size_t to) {
+    const double step = std::abs(values[last] - values[last - 1]);
+    return std::abs(values[last] - values[to]) <= step + near * extent_of(values);
+  };
+  std::size_t first = 0;
+  while (first < last && !(comes_back(x, first) && comes_back(y, first))) ++first;
+  return first;
 }
 
 /// The pair whose path is least like a line; of none, the first.
@@ -59,6 +77,13 @@ Pair widest(const std::vector<Pair>& pairs, const History& history) {
 }
 
 constexpr double no_loop = 1e-3;  ///< a share of the box: what rounding and the first increment leave of a line
+
+/// Whether the path ends in a closed loop that is no line.
+bool ends_in_a_loop(const History& history, const Pair& pair) {
+  const auto force = history.values.find(pair.force), way = history.values.find(pair.against);
+  return force != history.values.end() && way != history.values.end() && way->second.size() > 2 &&
+         openness(way->second, force->second, where_it_closes(way->second, force->second)) > no_loop;
+}
 
 /// The pair to begin with: the widest loop; where there is none, the force with most to see. Without a force of a pair,
 /// that response.
@@ -136,10 +161,10 @@ std::optional<Figure> response_histories(const Study& study) {
       has_path ? "Histories: responses over time, and forces along displacements" : "Histories: responses over time";
   const Pair first = first_pair(pairs, told);
   figure.text = "Of every step.";
-  if (has_path && openness(told.front(), first) > no_loop)
+  if (has_path && ends_in_a_loop(told.front(), first))
     figure.text +=
-        " A path that does not come back along itself is friction's memory: the area it encloses is the work that "
-        "friction took.";
+        " A loop that does not come back along itself is friction's memory: where force and displacement are of the "
+        "same place and direction, the area it encloses is the work that friction took.";
   if (has_path) {
     json path = curves("Force along displacement", channel("displacement", "{against}", false),
                        channel("value", "{force}", false), tips("displacement", "displacement"));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "studies/report/chart_parts.hpp"
+#include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
 
 namespace stickslip::report {
@@ -56,6 +57,7 @@ std::optional<Figure> work_precision(const Study& study, Against against, Of of)
   const std::string worst_name = against == Against::coulomb ? "worst of all"
                                  : derivative                ? "worst sensitivity"
                                                              : "worst response";
+  const bool frictionless = is_frictionless(study);
   Figure figure;
   SeriesList series(study);
   for (const auto& cell : study.cells) {
@@ -65,10 +67,11 @@ std::optional<Figure> work_precision(const Study& study, Against against, Of of)
     const double work = derivative ? cell.sensitivity_work : cell.work;
     const double seconds = derivative ? cell.sensitivity_seconds : cell.seconds;
     for (const auto& [quantity, error] : quantities(errors_of(cell, against), prefixes, worst_name)) {
+      if (against == Against::coulomb && frictionless && is_of_friction(quantity)) continue;
       json r = row_of(cell);
       r["series"] = r["line"] = name;
       r["scene"] = cell.variant;
-      r["quantity"] = quantity;
+      r["quantity"] = against == Against::coulomb ? in_plain_words(quantity) : quantity;
       r["error"] = error;
       r["work"] = work;
       r["backsolves"] = backsolves;
@@ -114,7 +117,8 @@ std::optional<Figure> work_precision(const Study& study, Against against, Of of)
         joined + " ";
   } else {
     figure.id = "kkt";
-    figure.title = "How well equilibrium and Coulomb's law are met";
+    figure.title = frictionless ? "How well equilibrium and the contact conditions are met"
+                                : "How well equilibrium and Coulomb's law are met";
     figure.text =
         "Computed from the final state alone by code that does not know which method ran; every measure is "
         "dimensionless. " +
