@@ -210,7 +210,7 @@ json channel(const std::string& field, const std::string& title, bool logarithmi
           {"type", "quantitative"},
           {"title", title},
           {"scale", scale},
-          {"axis", {{"labelExpr", number_label}, {"labelOverlap", true}, {"labelSeparation", 6}}}};
+          {"axis", {{"labelExpr", number_label}, {"labelOverlap", true}}}};
 }
 
 json only_if(const std::string& test) { return json::array({{{"filter", test}}}); }

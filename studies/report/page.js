@@ -46,7 +46,8 @@
         if (channel?.scale) fitAxis(channel, rows.filter((row) => !(row.zero && name === 'y')).map((row) => row[channel.field]));
         const ground = name === 'y' && rows.find((row) => row.zero)?.[channel?.field];
         if (channel?.scale && ground) addGround(channel, ground);
-        if (channel?.axis && !channel.axis.values) channel.axis.tickCount = Math.max(2, Math.floor(room / (name === 'x' ? 70 : 40)));
+        if (channel?.axis && name === 'x') channel.axis.labelSeparation = 6;
+        if (channel?.axis && !channel.axis.values) channel.axis.tickCount = Math.max(2, Math.floor(room / 60));
         if (channel?.title?.startsWith('{')) channel.title = rows[0]?.[channel.title.slice(1, -1)] ?? '';
         if (channel?.title) channel.title = wrapped(channel.title, room / 7);
       }

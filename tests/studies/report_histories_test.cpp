@@ -93,6 +93,32 @@ TEST_F(ReportHistories, WithoutALoopBeginWithTheForceThatChangesAndSpeakOfNoMemo
   EXPECT_THAT(report::response_histories(study())->text, HasSubstr("friction's memory"));
 }
 
+TEST_F(ReportHistories, SpeakOfMemoryOnlyWhereAPathClosesAboveRounding) {
+  json open_path = json::array();
+  for (int n = 1; n <= 10; ++n)  // bent, and never back where it was
+    open_path.push_back(
+        {{"time", n}, {"responses", {{"u", n}, {"grip", n * n}, {"press", 10}}}, {"history", json::array()}});
+  record_steps(open_path);
+  EXPECT_THAT(report::response_histories(study())->text, Not(HasSubstr("memory")));
+  json steps = to_and_fro(40);
+  for (auto& step : steps) {
+    json& grip = step["responses"]["grip"];
+    grip = 10 + 1e-12 * grip.get<double>();
+  }
+  record_steps(steps);
+  EXPECT_THAT(report::response_histories(study())->text, Not(HasSubstr("memory")));
+}
+
+TEST_F(ReportHistories, OfDerivativesDoNotBeginWithRounding) {
+  json steps = to_and_fro(40);
+  for (std::size_t n = 0; n < steps.size(); ++n)
+    steps[n]["sensitivities"] = {{"grip", {{"E", n % 2 == 0 ? 1e-18 : -1e-18}, {"mu", 5}}},
+                                 {"u", {{"E", 1e-6}, {"mu", 1}}}};
+  record_steps(steps);
+  EXPECT_THAT(choice(*report::derivative_histories(study(), "grip"), "response")->chosen,
+              testing::ElementsAre("d grip / d mu"));
+}
+
 TEST_F(ReportHistories, NameTheChosenResponsesOnTheAxes) {
   record_steps(to_and_fro(40));
   const auto figure = report::response_histories(study());

@@ -319,6 +319,39 @@ TEST_F(ReportNumbers, DrawsErrorsOfExactlyZeroBelowAllOthersAndNamesThem) {
   EXPECT_THAT(page(), HasSubstr("exactly 0"));
 }
 
+/// Two lines end at one point: the second has its name at its beginning, left of a point that stands far right.
+TEST_F(ReportNumbers, NamesALineAtItsOtherEndWhereAnotherNameStands) {
+  std::vector<json> cells;
+  for (const int scale : {1, 10})
+    for (const double tolerance : {1e-4, 1e-8}) {
+      const int factorizations = tolerance == 1e-4 ? 10 : scale == 1 ? 12 : 40;
+      cells.push_back(cell("uzawa_al", {{"scale", scale}, {"tolerance", tolerance}}, tolerance, factorizations));
+    }
+  record(description(), cells);
+  std::map<std::string, bool> left;
+  for (const auto& row : report::work_precision(study(), Against::same_mesh, Of::responses)->rows)
+    if (row.contains("tag")) left[row["tag"]] = row["tag_left"];
+  EXPECT_TRUE(left.count("Uzawa AL scale=1, 1e-4"));
+  EXPECT_FALSE(left.count("Uzawa AL scale=10, 1e-4"));
+  ASSERT_TRUE(left.count("Uzawa AL scale=10, 1e-8"));
+  EXPECT_TRUE(left.at("Uzawa AL scale=10, 1e-8"));
+}
+
+TEST_F(ReportNumbers, WithoutFrictionHasNoMeasuresOfIt) {
+  auto cells = three_methods();
+  for (auto& c : cells) c["errors"]["kkt"]["slip_direction"] = 0;
+  json smooth = picture();
+  for (auto& point : smooth["contact"]) point["state"] = "closed";
+  record(description(), cells, smooth);
+  EXPECT_TRUE(report::is_frictionless(study()));
+  for (const auto& row : report::work_precision(study(), Against::coulomb, Of::responses)->rows)
+    EXPECT_NE(row["quantity"], "slip direction");
+  EXPECT_THAT(without_scripts(page()), AllOf(Not(HasSubstr("creep")), Not(HasSubstr("Coulomb"))));
+  record(description(), cells, picture());
+  EXPECT_FALSE(report::is_frictionless(study()));
+  EXPECT_THAT(without_scripts(page()), AllOf(HasSubstr("penetrate and creep"), HasSubstr("Coulomb's law")));
+}
+
 TEST_F(ReportNumbers, JoinsOneCurveAMethodAlongItsSweptKnob) {
   record(description(), three_methods());
   const auto s = study();
