@@ -30,16 +30,40 @@ struct Mesh {
   std::vector<std::vector<int>> elements;  ///< node lists with valid indices
   std::vector<double> stress;              ///< one an element, or empty
   std::vector<int> body;                   ///< one an element, or empty
+  bool in_space = false;                   ///< three coordinates, of which two are kept: seen along z
 };
 
-/// The plane mesh of picture.json; no points where it is not one.
+/// The extent of the nodes at the start; 0 where all bodies are points.
+double extent_of(const Mesh& mesh) {
+  Box box;
+  for (const auto& p : mesh.points) box.add(p);
+  return std::max(box.width(), box.height());
+}
+
+/// Whether an element is the spring of a point to its anchor, which begin at the same place.
+bool is_spring(const Mesh& mesh, const std::vector<int>& nodes) {
+  if (nodes.size() != 2) return false;
+  const Point a = mesh.points[nodes[0]], b = mesh.points[nodes[1]];
+  return a.x == b.x && a.y == b.y;
+}
+
+/// A point of the plane, or one in space as it is seen along z; nothing of anything else.
+std::optional<Point> seen(const json& value) {
+  if (is_point(value)) return to_point(value);
+  const bool in_space = value.is_array() && value.size() == 3 && is_point({value[0], value[1]});
+  return in_space ? std::optional(to_point(value)) : std::nullopt;
+}
+
+/// The mesh of picture.json; no points where it is not one.
 Mesh read_mesh(const json& picture) {
   Mesh mesh;
   const json &points = array_at(picture, "points"), &moved = array_at(picture, "displacement");
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!is_point(points[i])) return {};
-    mesh.points.push_back(to_point(points[i]));
-    mesh.displacement.push_back(i < moved.size() && is_point(moved[i]) ? to_point(moved[i]) : Point{});
+    const auto point = seen(points[i]);
+    if (!point) return {};
+    mesh.in_space |= points[i].size() == 3;
+    mesh.points.push_back(*point);
+    mesh.displacement.push_back(i < moved.size() ? seen(moved[i]).value_or(Point{}) : Point{});
   }
   const json &stress = array_at(picture, "von_mises"), &body = array_at(picture, "bodies");
   const json& elements = array_at(picture, "elements");
@@ -108,6 +132,25 @@ void draw_outlines(const Mesh& mesh, const std::vector<Point>& at, const Frame& 
   drawing.path(std::move(path), {"ink"});
 }
 
+/// A spring from its point to its anchor, which is a small cross.
+void draw_spring(const Frame& frame, Point from, Point to, Drawing& drawing) {
+  constexpr int turns = 12;
+  constexpr double aside = 6, cross = 5;  // pixels
+  const double x = frame.x(from.x), y = frame.y(from.y), dx = frame.x(to.x) - x, dy = frame.y(to.y) - y;
+  const double length = std::hypot(dx, dy);
+  Path spring, anchor;
+  spring.move(x, y);
+  for (int i = 1; i < turns && length > 0; ++i) {
+    const double along = static_cast<double>(i) / turns, across = (i % 2 == 1 ? aside : -aside) / length;
+    spring.line(x + along * dx - across * dy, y + along * dy + across * dx);
+  }
+  spring.line(x + dx, y + dy);
+  for (const double turn : {-cross, cross})
+    anchor.move(x + dx - cross, y + dy - turn).line(x + dx + cross, y + dy + turn);
+  drawing.path(std::move(spring), {"ink", "", 1.2, {}});
+  drawing.path(std::move(anchor), {"ink", "", 2, {}});
+}
+
 /// Elements inside the frame's window, one path a colour: 20 000 elements stay a light page.
 void draw_elements(const Mesh& mesh, const std::vector<Point>& at, const Frame& frame, double peak, bool mesh_lines,
                    Drawing& drawing) {
@@ -118,6 +161,10 @@ void draw_elements(const Mesh& mesh, const std::vector<Point>& at, const Frame& 
     Box box;
     for (const int i : nodes) box.add(at[i]);
     if (!box.overlaps(frame.window())) continue;
+    if (is_spring(mesh, nodes)) {
+      draw_spring(frame, at[nodes[0]], at[nodes[1]], drawing);
+      continue;
+    }
     const double share = peak > 0 ? mesh.stress[e] / peak : 0;
     const auto bin = static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * (colors.size() - 1) + 0.5);
     Path& path = nodes.size() == 2 ? lines : paths[bin];
@@ -179,13 +226,13 @@ std::optional<Scene> lay_out(const json& picture) {
   Scene scene{read_mesh(picture), {}, 1, 0, {}, {}, false};
   if (scene.mesh.elements.empty()) return std::nullopt;
   scene.contact = read_contact(array_at(picture, "contact"), scene.mesh.displacement);
-  Box reference;
-  for (const auto& p : scene.mesh.points) reference.add(p);
-  const double extent = std::max(reference.width(), reference.height());
-  if (!(extent > 0)) return std::nullopt;
-  scene.scale = scale_of(scene.mesh, extent);
+  const double extent = extent_of(scene.mesh);
+  const bool points_alone = extent == 0;
+  scene.scale = points_alone ? 1 : scale_of(scene.mesh, extent);
   for (const auto& p : deformed(scene.mesh, scene.scale)) scene.whole.add(p);
-  scene.whole = padded(scene.whole, 0.03);
+  if (points_alone) scene.whole.add(scene.mesh.points.front());  // where they come from
+  if (!(std::max(scene.whole.width(), scene.whole.height()) > 0)) return std::nullopt;
+  scene.whole = padded(scene.whole, points_alone ? 0.3 : 0.03);
   for (const double s : scene.mesh.stress) scene.peak = std::max(scene.peak, s);
   scene.zoom = close_up(scene.contact, 1);
   // A close-up of most of the picture would show the same thing twice.
@@ -198,9 +245,14 @@ std::string in_words(const Scene& scene, bool with_close_up) {
       scene.scale == 1 ? std::string("displacements at true scale")
                        : fmt::format("displacements {} times enlarged (bodies that touch may seem to overlap or part)",
                                      number(scene.scale));
-  return fmt::format("At the last step: {}, {}; {}.{}", counted(std::ssize(scene.mesh.elements), "element"),
-                     counted(std::ssize(scene.contact), "contact point"), scale,
-                     scene.zooms && with_close_up ? " Right: the contact at true scale." : "");
+  const auto& elements = scene.mesh.elements;
+  const bool springs =
+      std::all_of(elements.begin(), elements.end(), [&](const auto& nodes) { return is_spring(scene.mesh, nodes); });
+  return fmt::format(
+      "At the last step: {}, {}; {}{}.{}", counted(std::ssize(elements), springs ? "spring" : "element"),
+      counted(std::ssize(scene.contact), "contact point"), scale,
+      std::string(springs ? "; a cross is a spring's anchor" : "") + (scene.mesh.in_space ? "; seen along z" : ""),
+      scene.zooms && with_close_up ? " Right: the contact at true scale." : "");
 }
 
 /// Nodes and contact points where they are drawn, and elements by their nodes.

@@ -9,8 +9,8 @@
 namespace stickslip::report {
 
 /// Bodies deformed and coloured by equivalent stress, obstacles, contact points by state (in a close-up of the contact
-/// at true scale, where that shows more), and a legend. `picture` is picture.json. Nothing where there is no plane mesh
-/// to draw (one node, three dimensions, no picture).
+/// at true scale, where that shows more), and a legend; points with the springs to their anchors; what is in space as
+/// it is seen along z. `picture` is picture.json. Nothing where there is nothing to draw (one place, no picture).
 std::optional<Plate> draw_picture(const nlohmann::json& picture);
 
 /// Whether draw_picture() shows the contact apart, and so more than draw_overview().

@@ -67,6 +67,27 @@ TEST(ReportPicture, EnlargesTheMotionOfObstaclesAsThatOfBodies) {
   EXPECT_EQ(report::draw_overview(small)->drawing.inline_svg(), report::draw_overview(larger)->drawing.inline_svg());
 }
 
+TEST(ReportPicture, ShowsAPointWithItsSpringInThePlaneAndInSpace) {
+  json point = {{"points", {{0, 0}, {0, 0}}},  // a slider: the point has lagged behind its anchor
+                {"displacement", {{0.07, 0}, {0.1, 0}}},
+                {"elements", {{0, 1}}},
+                {"contact", {{{"name", "sole"}, {"x", 0.07}, {"y", 0}, {"node", 0}, {"state", "slip"}}}},
+                {"obstacles", {{{"plane", {{"point", {0, 0}}, {"normal", {0, 1}}}}}}}};
+  const auto plane = report::draw_overview(point);
+  ASSERT_TRUE(plane);
+  EXPECT_EQ(plane->text,
+            "At the last step: 1 spring, 1 contact point; displacements at true scale; a cross is a spring's anchor.");
+  EXPECT_THAT(plane->drawing.inline_svg(), HasSubstr(">slips<"));
+  for (auto* places : {&point["points"], &point["displacement"]})
+    for (auto& place : *places) place.push_back(5);  // along z, where nothing is seen of it
+  point["obstacles"] = json::array();
+  const auto space = report::draw_overview(point);
+  ASSERT_TRUE(space);
+  EXPECT_THAT(space->text, HasSubstr("seen along z"));
+  point["displacement"] = {{0, 0, 1}, {0, 0, 2}};
+  EXPECT_FALSE(report::draw_overview(point));  // all in one place
+}
+
 TEST(ReportPicture, AFrictionlessContactTouchesAndDoesNotSlip) {
   json smooth = picture();
   for (auto& c : smooth["contact"]) c["state"] = "closed";
@@ -80,10 +101,10 @@ TEST(ReportPicture, HasNoWordsForStatesWhereNothingCanTouch) {
   EXPECT_THAT(report::draw_picture(alone)->drawing.inline_svg(), Not(HasSubstr(">sticks<")));
 }
 
-TEST(ReportPicture, DrawsNothingWhereThereIsNoPlaneMesh) {
+TEST(ReportPicture, DrawsNothingWhereThereIsNothingToSee) {
   EXPECT_FALSE(report::draw_picture(nullptr));
   EXPECT_FALSE(report::draw_picture({{"points", {{0, 0}}}, {"elements", json::array()}}));
-  EXPECT_FALSE(report::draw_picture({{"points", {{0, 0, 0}, {1, 0, 0}}}, {"elements", {{0, 1}}}}));
+  EXPECT_FALSE(report::draw_picture({{"points", {{0, 0, 0}, {0, 0, 1}}}, {"elements", {{0, 1}}}}));
 }
 
 TEST(ReportPicture, LeavesOutElementsThatNameNoNode) {
