@@ -32,12 +32,18 @@ void for_each_engine(const EngineProblem& problem, Check&& check) {
   }
 }
 
+/// Two right-hand sides of an engine's rows.
+template <class E>
+BlockVector<double> right_hand_sides(E& engine, const EngineProblem& problem) {
+  return {engine.reduce(problem.rows(2)),
+          derivatives::arbitrary(problem.model.multiplier_count, 7) * Matrix<double>::Ones(1, 2)};
+}
+
 TEST(TangentUpdate, SolvesWithTheChangedTangent) {
   const EngineProblem problem = stuck(20);
   for_each_engine(problem, [&](auto make, bool unknown) {
     auto engine = make();
-    const Matrix<double> r = engine.reduce(problem.rows(2)),
-                         l = derivatives::arbitrary(problem.model.multiplier_count, 7) * Matrix<double>::Ones(1, 2);
+    const auto [r, l] = right_hand_sides(engine, problem);
     Counters counters;
     ASSERT_TRUE(engine.factorise(problem.tangents(), counters));
     for (int count : {1, 3, 2}) {
@@ -60,8 +66,7 @@ TEST(TangentUpdate, SolvesWithoutARefinementWhereThatIsCheckedElsewhere) {
   const EngineProblem problem = stuck(20);
   for_each_engine(problem, [&](auto make, bool unknown) {
     auto engine = make();
-    const Matrix<double> r = engine.reduce(problem.rows(2)),
-                         l = derivatives::arbitrary(problem.model.multiplier_count, 7) * Matrix<double>::Ones(1, 2);
+    const auto [r, l] = right_hand_sides(engine, problem);
     Counters counters;
     ASSERT_TRUE(engine.factorise(problem.tangents(), counters));
     ASSERT_TRUE(engine.update(turned(problem, 2).tangents(), counters));
