@@ -28,8 +28,9 @@ struct Start {
   bool rough_step = true;  ///< whether a step of the motion is solved to the root of the tolerance alone
   bool is_step() const { return anchor.stiffness.size() > 0; }
   /// States that points resume which start on their cone: those of the last increment, where it starts there.
-  std::vector<ContactState> resumed(const State<T>& previous) const {
-    return &from == &previous ? previous.contact.state : std::vector<ContactState>{};
+  std::span<const ContactState> resumed(const State<T>& previous) const {
+    if (&from != &previous) return {};
+    return previous.contact.state;
   }
   double tolerance(double asked) const { return is_step() && rough_step ? std::sqrt(asked) : asked; }
 };
@@ -39,10 +40,10 @@ template <class T, class E>
 State<T> settle(Run<T, E>& run, const ContactInput<T>& input, const Equilibrium<T>& equilibrium,
                 const Vector<T>& previous_dissipation) {
   State<T> state;
-  state.displacement = run.engine.all(equilibrium.u);
-  state.multiplier = equilibrium.multiplier;
+  state.displacement = run.engine.all(equilibrium.at.u);
+  state.multiplier = equilibrium.at.multiplier;
   state.contact = equilibrium.field;
-  state.dissipation = dissipated(input, equilibrium.field, equilibrium.multiplier, previous_dissipation);
+  state.dissipation = dissipated(input, equilibrium.field, equilibrium.at.multiplier, previous_dissipation);
   return state;
 }
 

@@ -30,9 +30,10 @@ Increment<T> solve_increment(const MonolithicAL& method, Run<T, E>& run, const S
   const ContactInput<T> input{run.model, run.slots, rho, previous.contact.placement, cone_radius(method), time};
   NewtonOptions options = method.newton;
   options.tolerance = start.tolerance(options.tolerance);
+  const EquilibriumTask<T> task{input, Multipliers::unknown, start.anchor, start.resumed(previous)};
   const auto equilibrium =
-      newton(run.engine, input, run.engine.begin(time, start.from.displacement), start.from.contact.traction, true,
-             start.resumed(previous), options, run.account, 0, start.anchor);
+      newton(run.engine, task, {run.engine.begin(time, start.from.displacement), start.from.contact.traction}, options,
+             run.account);
   account_for(increment, equilibrium, 0);
   increment.state = settle(run, input, equilibrium, previous.dissipation);
   return increment;

@@ -11,7 +11,7 @@ namespace stickslip {
 
 /// Newton's method, the same for all.
 struct NewtonOptions {
-  double tolerance = 1e-12;  ///< relative, each residual to its own scale (methods/newton.hpp); 0 < tolerance < 1
+  double tolerance = 1e-12;  ///< relative, each residual to its own scale (methods/residuals.hpp); 0 < tolerance < 1
   int max_iterations = 100;  ///< per solve; >= 1. A front of slip may pass one node an iteration
   bool line_search = true;   ///< backtracking where a full step stays in its active set and the residual does not fall
 };

@@ -74,19 +74,19 @@ std::string unyielding_point(Run<T, E>& run, const ContactInput<T>& found, const
   std::vector<ContactState> states = equilibrium.field.state;
   for (std::size_t p = 0; p < states.size(); ++p)
     if (states[p] != ContactState::open) states[p] = closed(static_cast<int>(p));
-  const Vector<T> compact = run.engine.compact(equilibrium.u);
+  const Vector<T> compact = run.engine.compact(equilibrium.at.u);
   double rest = 0;
   for (int round = 0; round < most_rounds; ++round) {
     const auto pushed = evaluate_contact<T>(input, compact, traction, &states);
     ForceScale unused;
-    Vector<T> rows = run.engine.residual(equilibrium.u, contact_forces(model, run.slots, pushed.traction), unused);
+    Vector<T> rows = run.engine.residual(equilibrium.at.u, contact_forces(model, run.slots, pushed.traction), unused);
     for (Eigen::Index row = 0; row < rows.size(); ++row)
       if (!run.engine.is_free(row)) rows[row] = T(0);
     std::vector<PointTangent<T>> tangents;
     for (int p = 0; p < static_cast<int>(model.points.size()); ++p)
       tangents.push_back(point_tangent<T>(input, p, compact, traction, states[p]));
     if (!run.engine.factorise(tangents, run.account.counters)) return "";
-    const Vector<T> u = equilibrium.u + run.engine.solve({-rows, {}}).u.col(0);
+    const Vector<T> u = equilibrium.at.u + run.engine.solve({-rows, {}}).u.col(0);
     ++run.account.counters.backsolves;
     const auto after = evaluate_contact<T>(input, run.engine.compact(u), traction, &states);
     run.account.counters.contact_evaluations += 2 * static_cast<long>(model.points.size());
@@ -122,9 +122,10 @@ Increment<T> solve_increment(const Penalty& method, Run<T, E>& run, const State<
   const ContactInput<T> input{run.model, run.slots, rho, previous.contact.placement, cone_radius(method), time};
   NewtonOptions options = method.newton;
   options.tolerance = start.tolerance(options.tolerance);
+  const EquilibriumTask<T> task{input, Multipliers::given, start.anchor, start.resumed(previous)};
   const auto equilibrium =
-      newton(run.engine, input, run.engine.begin(time, start.from.displacement), stored_traction(run.model, previous),
-             false, start.resumed(previous), options, run.account, 0, start.anchor);
+      newton(run.engine, task, {run.engine.begin(time, start.from.displacement), stored_traction(run.model, previous)},
+             options, run.account);
   account_for(increment, equilibrium, 0);
   increment.state = settle(run, input, equilibrium, previous.dissipation);
   if (!is_converged(equilibrium.status) || start.is_step()) return increment;

@@ -144,77 +144,125 @@ void conclude(const Standing& now, bool at_limit, Increment<T>& increment) {
       now.done ? now.message : "max_augmentations reached; try a larger scale, adapt, or an acceleration";
 }
 
+/// The augmentations of one increment.
+template <class T, class E>
+class AugmentationLoop {
+ public:
+  AugmentationLoop(const UzawaAL& method, Run<T, E>& run, const State<T>& previous, std::vector<double> rho_factor,
+                   double time, const Start<T>& start)
+      : method_(method),
+        run_(run),
+        previous_(previous),
+        start_(start),
+        time_(time),
+        initial_(initial_regularisation(run.slots, method)),
+        before_(run.account.scales),
+        resumed_(start.resumed(previous)),
+        progress_(run.model, run.slots, method.acceleration),
+        accelerator_(method.acceleration) {
+    increment_.rho_factor = std::move(rho_factor);
+    // (a loop that is differentiated as it was cut off begins with the last increment's lambda, as its derivative does)
+    const State<T>& with_lambda = truncated_ && !start.is_step() ? previous : start.from;
+    unknowns_ = {run.engine.begin(time, start.from.displacement), with_lambda.contact.traction};
+  }
+
+  Increment<T> solve() {
+    while (true) {
+      const auto rho = adapted(initial_, increment_.rho_factor);
+      const ContactInput<T> input{run_.model,           run_.slots, rho, previous_.contact.placement,
+                                  cone_radius(method_), time_};
+      const auto equilibrium = balance(input);
+      if (!is_converged(equilibrium.status) || ends_with(input, equilibrium)) {
+        increment_.state = settle(run_, input, equilibrium, previous_.dissipation);
+        return std::move(increment_);
+      }
+      update(equilibrium);
+    }
+  }
+
+ private:
+  /// The inner solve: lambda stays as it is.
+  Equilibrium<T> balance(const ContactInput<T>& input) {
+    rough_ &= increment_.augmentations + 1 < limit_;
+    run_.account.scales = before_;
+    const EquilibriumTask<T> task{input, Multipliers::given, start_.anchor, resumed_, rough_ ? forcing : 0};
+    auto equilibrium =
+        newton(run_.engine, task, unknowns_, inner_options(method_, progress_.contraction()), run_.account);
+    account_for(increment_, equilibrium, ++increment_.augmentations);
+    ++run_.account.counters.augmentations;
+    if (equilibrium.status == Status::cycle && !is_globalised(method_)) increment_.message += frozen_advice;
+    return equilibrium;
+  }
+
+  /// Whether the increment ends with this inner solve, as solved or given up; its status and message then stand.
+  bool ends_with(const ContactInput<T>& input, const Equilibrium<T>& equilibrium) {
+    if (truncated_ && run_.model.effects.sensitivity)
+      increment_.sweeps.push_back({settle(run_, input, equilibrium, previous_.dissipation), increment_.rho_factor});
+    const double reach = largest_nodal_norm(run_.engine.compact(equilibrium.at.u), run_.model.dimension);
+    const double first = equilibrium.history.front().residual, rest = equilibrium.history.back().residual;
+    const double noise = equilibrium.status == Status::converged_at_roundoff
+                             ? equilibrium.history.back().equilibrium * run_.account.scales.force
+                             : 0;
+    progress_.record(unknowns_.multiplier, equilibrium.field, reach, first > 0 ? rest / first : 0);
+    increment_.contraction = progress_.contraction();
+    now_ = judge(method_, run_.slots, input.rho, reach, noise, run_.account.scales, progress_);
+    within_ = now_.within && !equilibrium.rough ? within_ + 1 : 0;
+    rough_ &= !now_.within;
+    now_.done |= within_ >= patience_at_ties;  // the states that still change are those of a tie
+    const bool at_limit = increment_.augmentations >= limit_;
+    conclude(now_, at_limit, increment_);
+    const bool over = now_.done && !equilibrium.rough;
+    return at_limit || (over && (!is_converged(now_.status) || truncated_ || !progress_.derivative_moves()));
+  }
+
+  /// lambda <- t, or an extrapolation; rho is adapted.
+  void update(const Equilibrium<T>& equilibrium) {
+    rough_ &= !now_.done;
+    const bool raised = method_.adapt && progress_.settled() && !now_.done &&
+                        adapt(run_.slots, initial_, progress_.last_violations(), progress_.violations(),
+                              now_.negligible, increment_.rho_factor);
+    if (raised) {  // it is another map now
+      accelerator_ = Accelerator<T>(method_.acceleration);
+      progress_.change_map();
+    }
+    resumed_ = {};
+    const auto cones = [&](Vector<T> x) { return into_cones(run_.model, run_.slots, std::move(x)); };
+    const Vector<T>& traction = equilibrium.field.traction;
+    unknowns_.u = equilibrium.at.u;
+    unknowns_.multiplier = raised || now_.done ? traction
+                                               : accelerator_.next(unknowns_.multiplier, traction, progress_.settled(),
+                                                                   progress_.contraction(), cones);
+  }
+
+  const UzawaAL& method_;
+  Run<T, E>& run_;
+  const State<T>& previous_;
+  const Start<T>& start_;
+  double time_;
+  const bool truncated_ = method_.sensitivity == UzawaAL::Sensitivity::truncated;
+  /// (the oracle's derivative settles long after its value)
+  const int limit_ = method_.max_augmentations * (std::is_same_v<T, double> || truncated_ ? 1 : 20);
+  const RegularisationField<T> initial_;
+  const RunScales before_;                 ///< without what an extrapolated lambda may overshoot by
+  std::span<const ContactState> resumed_;  ///< at the first augmentation
+  Unknowns<T> unknowns_;
+  Augmentations<T> progress_;
+  Accelerator<T> accelerator_;
+  Standing now_;
+  bool rough_ = !truncated_;  ///< whether the next inner solve may end short of its tolerance
+  int within_ = 0;            ///< augmentations in a row that were
+  Increment<T> increment_;
+};
+
 }  // namespace detail
 
 template <class T, class E>
 Increment<T> solve_increment(const UzawaAL& options, Run<T, E>& run, const State<T>& previous,
                              const std::vector<double>& previous_factor, double time, const Start<T>& start) {
-  const Model& model = run.model;
   UzawaAL method = options;
   method.tolerance = start.tolerance(options.tolerance);
-  const bool truncated = method.sensitivity == UzawaAL::Sensitivity::truncated;
-  const int limit = method.max_augmentations * (std::is_same_v<T, double> || truncated ? 1 : 20);
-  Increment<T> increment;
-  increment.rho_factor = previous_factor.empty() ? std::vector<double>(model.points.size(), 1.0) : previous_factor;
-  const auto initial = initial_regularisation(run.slots, method);
-  const RunScales before = run.account.scales;  // without what an extrapolated lambda may overshoot by
-  // (a loop that is differentiated as it was cut off begins with the last increment's lambda, as its derivative does)
-  const State<T>& with_lambda = truncated && !start.is_step() ? previous : start.from;
-  Vector<T> u = run.engine.begin(time, start.from.displacement), lambda = with_lambda.contact.traction;
-  std::vector<ContactState> last = start.resumed(previous);  // at the first augmentation
-  Augmentations<T> progress(model, run.slots, method.acceleration);
-  Accelerator<T> accelerator(method.acceleration);
-  const auto cones = [&](Vector<T> x) { return detail::into_cones(model, run.slots, std::move(x)); };
-  bool rough = !truncated;  // whether the next inner solve may end short of its tolerance
-  int within = 0;           // augmentations in a row that were
-  while (true) {
-    rough &= increment.augmentations + 1 < limit;
-    const auto rho = adapted(initial, increment.rho_factor);
-    const ContactInput<T> input{model, run.slots, rho, previous.contact.placement, cone_radius(method), time};
-    run.account.scales = before;
-    const auto equilibrium =
-        newton(run.engine, input, u, lambda, false, last, detail::inner_options(method, progress.contraction()),
-               run.account, rough ? detail::forcing : 0, start.anchor);
-    account_for(increment, equilibrium, ++increment.augmentations);
-    ++run.account.counters.augmentations;
-    auto keep = [&] {
-      increment.state = settle(run, input, equilibrium, previous.dissipation);
-      return increment;
-    };
-    if (equilibrium.status == Status::cycle && !is_globalised(method)) increment.message += detail::frozen_advice;
-    if (!is_converged(equilibrium.status)) return keep();
-    if (truncated && model.effects.sensitivity)
-      increment.sweeps.push_back({settle(run, input, equilibrium, previous.dissipation), increment.rho_factor});
-
-    const double reach = largest_nodal_norm(run.engine.compact(equilibrium.u), model.dimension);
-    const double first = equilibrium.history.front().residual, rest = equilibrium.history.back().residual;
-    const double noise = equilibrium.status == Status::converged_at_roundoff
-                             ? equilibrium.history.back().equilibrium * run.account.scales.force
-                             : 0;
-    progress.record(lambda, equilibrium.field, reach, first > 0 ? rest / first : 0);
-    increment.contraction = progress.contraction();
-    auto now = detail::judge(method, run.slots, rho, reach, noise, run.account.scales, progress);
-    within = now.within && !equilibrium.rough ? within + 1 : 0;
-    rough &= !now.within;
-    now.done |= within >= detail::patience_at_ties;  // the states that still change are those of a tie
-    const bool at_limit = increment.augmentations >= limit;
-    detail::conclude(now, at_limit, increment);
-    const bool over = now.done && !equilibrium.rough;
-    if (at_limit || (over && (!is_converged(now.status) || truncated || !progress.derivative_moves()))) return keep();
-    rough &= !now.done;
-    const bool raised = method.adapt && progress.settled() && !now.done &&
-                        detail::adapt(run.slots, initial, progress.last_violations(), progress.violations(),
-                                      now.negligible, increment.rho_factor);
-    if (raised) {  // it is another map now
-      accelerator = Accelerator<T>(method.acceleration);
-      progress.change_map();
-    }
-    last.clear();
-    u = equilibrium.u;
-    lambda = raised || now.done ? equilibrium.field.traction
-                                : accelerator.next(lambda, equilibrium.field.traction, progress.settled(),
-                                                   progress.contraction(), cones);
-  }
+  auto factor = previous_factor.empty() ? std::vector<double>(run.model.points.size(), 1.0) : previous_factor;
+  return detail::AugmentationLoop<T, E>(method, run, previous, std::move(factor), time, start).solve();
 }
 
 }  // namespace stickslip

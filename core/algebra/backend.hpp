@@ -142,4 +142,9 @@ struct FactorOf<double> {
 template <class T>
 using Factor = typename FactorOf<T>::Type;
 
+/// A factor of a kind that suits the symmetry, where the backend is left open or does not. T: double, complex.
+template <class T>
+std::unique_ptr<Factor<T>> make_factor(Backend backend, std::shared_ptr<const Pattern> pattern, Symmetry symmetry,
+                                       int kept);
+
 }  // namespace stickslip

@@ -1,0 +1,78 @@
+/// The branches that Newton's method assumes of contact points: they shape its path, not the solution.
+#pragma once
+
+#include "methods/equilibrium.hpp"
+
+namespace stickslip {
+
+namespace detail {
+
+/// Gives points that start on their cone, up to 1e-8, the branch of the last increment: one that slipped then starts
+/// there, off it by what that increment's tolerance left, and rounding must not decide where the path begins. If it
+/// slips on, the front of slip need not be found anew; if it turns back, the first step takes it inside its cone.
+template <class T>
+void resume_on_cone(const ContactInput<T>& input, const Vector<T>& multiplier, std::span<const ContactState> last,
+                    ContactField<T>& field) {
+  for (int p = 0; p < static_cast<int>(input.model.points.size()); ++p) {
+    const auto& point = input.model.points[p];
+    if (field.state[p] == ContactState::open || point.tangents == 0) continue;
+    double trial = 0;
+    for (int a = 0; a < point.tangents; ++a) {
+      const double slip = value(field.slip[tangential_offset(input.model, p) + a]);
+      const double z = value(multiplier[point.multiplier + 1 + a]) + value(input.rho[p].tangential) * slip;
+      trial += z * z;
+    }
+    const double bound = -value(input.slots.friction[point.contact]) * value(field.traction[point.multiplier]);
+    if (bound > 0 && std::abs(std::sqrt(trial) - bound) <= 1e-8 * bound)
+      field.state[p] = last[p] == ContactState::slip ? ContactState::slip : ContactState::stick;
+  }
+}
+
+/// The branches that a Newton step is taken in: those of the evaluation, with two exceptions.
+///   - A point at the apex of its cone (closed, no bound, no tangential trial) sticks, which is an element of the
+///     generalised derivative there: a body that only friction holds then has a regular first tangent.
+///   - A point that slipped in the last step and would now slip the other way sticks first. Far from the solution a
+///     large rho turns any small overshoot of the slip into slip of the opposite sign, and points flip for ever; stick
+///     lies between the two.
+/// `last`: field and branches of the last step; empty at the first.
+template <class T>
+std::vector<ContactState> step_branches(const ContactInput<T>& input, const Vector<T>& compact,
+                                        const ContactField<T>& field, const Vector<T>& multiplier,
+                                        const ContactField<T>& last) {
+  const Model& model = input.model;
+  std::vector<ContactState> branches = field.state;
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    const auto& point = model.points[p];
+    if (branches[p] != ContactState::slip || point.tangents == 0 || value(input.slots.friction[point.contact]) == 0)
+      continue;
+    const double rounding = tie_at(input, p, compact);
+    bool apex = std::abs(value(field.traction[point.multiplier])) <= value(input.rho[p].normal) * rounding;
+    const double tie = value(input.rho[p].tangential) * rounding;
+    double along_last = 0;
+    for (int a = 0; a < point.tangents; ++a) {
+      const int k = point.multiplier + 1 + a;
+      const double slip = value(field.slip[tangential_offset(model, p) + a]);
+      apex &= std::abs(value(multiplier[k]) + value(input.rho[p].tangential) * slip) <= tie;
+      if (!last.state.empty()) along_last += value(field.traction[k]) * value(last.traction[k]);
+    }
+    const bool reversed = !last.state.empty() && last.state[p] == ContactState::slip && along_last < 0;
+    if (apex || reversed) branches[p] = ContactState::stick;
+  }
+  return branches;
+}
+
+/// Branches with all open points closed, and sticking where there is friction.
+template <class T>
+std::vector<ContactState> presume_contact(const ContactInput<T>& input, std::vector<ContactState> branches) {
+  for (std::size_t p = 0; p < branches.size(); ++p) {
+    const auto& point = input.model.points[p];
+    if (branches[p] != ContactState::open) continue;
+    const bool rough = point.tangents > 0 && value(input.slots.friction[point.contact]) > 0;
+    branches[p] = rough ? ContactState::stick : ContactState::slip;
+  }
+  return branches;
+}
+
+}  // namespace detail
+
+}  // namespace stickslip

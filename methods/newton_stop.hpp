@@ -1,0 +1,89 @@
+/// What ends Newton's method.
+#pragma once
+
+#include <optional>
+#include <unordered_map>
+
+#include "methods/residuals.hpp"
+
+namespace stickslip {
+
+/// Why Newton's method ends at an iterate.
+struct NewtonEnd {
+  Status status = Status::converged;
+  std::string message = "";
+  bool rough = false;  ///< short of the tolerance, as `forcing` allows
+};
+
+/// Converged: all residuals within the tolerance, and no state changed since the last tangent. Where they stop falling
+/// at the level of their own rounding the status is converged_at_roundoff; where they do so above it, but close to the
+/// solution, stagnated. A set of states that is met again without half of its residual gone is a cycle: in 2D a step
+/// depends on the set alone, so that all would repeat. [AC91], [HSW08]
+class NewtonStop {
+ public:
+  /// `extra`: iterations that follow the one that has converged, for a derivative that rides on the scalar.
+  NewtonStop(const NewtonOptions& options, double forcing, int extra)
+      : options_(options), forcing_(forcing), extra_(extra) {}
+
+  /// Takes in an iterate, whose record is the last of the history; nothing where the method goes on.
+  std::optional<NewtonEnd> judge(const detail::Residuals& residuals, const std::vector<ContactState>& states,
+                                 const std::vector<IterationRecord>& history) {
+    if (!residuals.finite()) return NewtonEnd{Status::not_finite, "the residual is not finite"};
+    take_states(residuals, states, history);
+    const int iteration = static_cast<int>(history.size()) - 1;
+    if (auto end = solved(residuals, history)) {
+      if (extra_-- == 0) return end;
+    } else if (iteration > 0 && residuals.within(forcing_ * history[0].residual)) {
+      return NewtonEnd{Status::converged, "", true};
+    } else if (repeats_) {
+      return NewtonEnd{Status::cycle, "the active set repeats; try a smaller stiffness or scale, or more steps"};
+    }
+    const bool close = residuals.within(std::sqrt(options_.tolerance));  // where a step should square the residual
+    if (steady_ >= patience && 2 * residuals.largest() > history[iteration - patience].residual)
+      return NewtonEnd{close ? Status::stagnated : Status::cycle,
+                       "no step lowers the residual any more; try a smaller stiffness or scale"};
+    if (iteration >= options_.max_iterations)
+      return NewtonEnd{Status::cap, "Newton's method reached max_iterations; try more steps"};
+    return std::nullopt;
+  }
+
+ private:
+  static constexpr int patience = 10;  // iterations in one active set that leave more than half of the residual
+
+  void take_states(const detail::Residuals& residuals, const std::vector<ContactState>& states,
+                   const std::vector<IterationRecord>& history) {
+    const bool first = history.size() == 1;
+    unchanged_ = first || history.back().changed == 0;
+    steady_ = unchanged_ && !first ? steady_ + 1 : 0;
+    repeats_ = false;
+    if (unchanged_) return;
+    const auto [entry, fresh] = least_residual_.try_emplace(signature(states), residuals.largest());
+    repeats_ = !fresh && residuals.largest() > 0.5 * entry->second;
+    entry->second = std::min(entry->second, residuals.largest());
+  }
+
+  /// (Sets that repeat although nothing is left of the residuals are those of a tie.)
+  std::optional<NewtonEnd> solved(const detail::Residuals& residuals,
+                                  const std::vector<IterationRecord>& history) const {
+    if ((unchanged_ || repeats_) && residuals.within(options_.tolerance)) return NewtonEnd{};
+    if (!residuals.within_rounding(options_.tolerance)) return std::nullopt;
+    const auto fell = [&] { return 2 * residuals.largest() <= history[history.size() - 2].residual; };
+    if (!repeats_ && (steady_ < 2 || fell())) return std::nullopt;
+    return NewtonEnd{Status::converged_at_roundoff, "the residual stopped falling at the level of rounding"};
+  }
+
+  static std::size_t signature(const std::vector<ContactState>& states) {
+    std::size_t hash = 1469598103934665603ull;
+    for (ContactState s : states) hash = (hash ^ static_cast<std::size_t>(s)) * 1099511628211ull;
+    return hash;
+  }
+
+  const NewtonOptions& options_;
+  double forcing_;
+  int extra_;
+  bool unchanged_ = true, repeats_ = false;  ///< since the last tangent; a set of states that was met before
+  int steady_ = 0;                           ///< iterations in a row without a change
+  std::unordered_map<std::size_t, double> least_residual_;  ///< per set of states
+};
+
+}  // namespace stickslip

@@ -1,0 +1,205 @@
+/// Residuals of one equilibrium, each relative to a scale of its own: the largest among the run's equilibria and the
+/// iterate at hand.
+///
+///   equilibrium   largest nodal |R_u|                / largest nodal force of any kind
+///   normal        closed: |t_N - lambda_N|/rho = |g_N| / largest of A|t|/k and of the relative displacement;
+///   tangential    stick: |dg_T| likewise; open and slip: |t - lambda| / largest traction
+#pragma once
+
+#include "methods/equilibrium.hpp"
+
+namespace stickslip {
+
+namespace detail {
+
+inline constexpr double rounding_factor = 100;  // several hundred terms meet in a row; each rounds once
+
+/// Relative size; nothing is small against a scale that is not finite.
+inline double ratio(double x, double scale) {
+  return x == 0 ? 0 : std::isfinite(scale) ? x / scale : std::numeric_limits<double>::quiet_NaN();
+}
+
+struct Residuals {
+  double equilibrium = 0, normal = 0, tangential = 0;
+  double floor_equilibrium = 0, floor_length = 0, floor_traction = 0;  ///< what rounding alone may leave of them
+  double largest() const { return larger(larger(equilibrium, normal), tangential); }
+  bool finite() const { return std::isfinite(equilibrium) && std::isfinite(normal) && std::isfinite(tangential); }
+  bool within(double tolerance) const { return finite() && largest() <= tolerance; }
+  bool within_rounding(double tolerance) const {
+    return finite() && equilibrium <= std::max(tolerance, floor_equilibrium) &&
+           normal <= std::max(tolerance, floor_length) &&
+           tangential <= std::max({tolerance, floor_length, floor_traction});
+  }
+};
+
+/// One point of the Newton path, evaluated.
+template <class T>
+struct Evaluation {
+  ContactField<T> field;
+  Vector<T> rows_u, rows_l;
+  Residuals residuals;
+  RunScales scales;  ///< of the run, and of this iterate
+};
+
+/// What the contact points say of stiffness, and of rounding.
+struct PointSizes {
+  double area_times_rho = 0;                                 ///< largest A rho
+  double distance = 0;                                       ///< largest initial gap of a closed point, which rounds
+  double elastic = 0;                                        ///< largest k / A
+  double rho = 0;                                            ///< largest
+  double softest = std::numeric_limits<double>::infinity();  ///< least k
+};
+
+/// Takes the sizes of length and traction at a field into the scales.
+template <class T>
+PointSizes measure_points(const ContactInput<T>& input, const ContactField<T>& field, RunScales& scales) {
+  PointSizes sizes;
+  for (std::size_t p = 0; p < input.model.points.size(); ++p) {
+    const auto& point = input.model.points[p];
+    const double area = value(input.slots.geometry[p].area), stiffness = value(input.slots.stiffness[p]);
+    double moved = value(field.gap[p]) - value(input.slots.geometry[p].gap);
+    moved *= moved;
+    double traction = value(field.traction[point.multiplier]);
+    traction *= traction;
+    for (int a = 0; a < point.tangents; ++a) {
+      const double s = value(field.placement[tangential_offset(input.model, static_cast<int>(p)) + a]);
+      const double t = value(field.traction[point.multiplier + 1 + a]);
+      moved += s * s;
+      traction += t * t;
+    }
+    traction = std::sqrt(traction);
+    scales.traction = std::max(scales.traction, traction);
+    scales.length = std::max({scales.length, std::sqrt(moved), area * traction / stiffness});
+    sizes.area_times_rho = std::max(sizes.area_times_rho, area * value(input.rho[p].normal));
+    if (field.state[p] != ContactState::open)
+      sizes.distance = std::max(sizes.distance, std::abs(value(input.slots.geometry[p].gap)));
+    sizes.elastic = std::max(sizes.elastic, stiffness / area);
+    sizes.softest = std::min(sizes.softest, stiffness);
+    sizes.rho = std::max(sizes.rho, value(input.rho[p].normal));
+  }
+  return sizes;
+}
+
+/// Largest displacement that supports prescribe at a time.
+template <class T>
+double prescribed_motion(const Model& model, const Slots<T>& slots, double time) {
+  Vector<T> displacement = Vector<T>::Constant(model.dof_count(), T(0));
+  prescribe(model, slots, time, displacement);
+  return largest_nodal_norm(displacement, model.dimension);
+}
+
+/// What rounding alone may leave of the residuals. `rounding`: of the bodies' forces; `reach`: largest displacement of
+/// a contact node; `prescribed`: largest that supports prescribe.
+inline void set_floors(const PointSizes& sizes, const RunScales& scales, double rounding, double reach,
+                       double prescribed, Residuals& residuals) {
+  // Rounding of this share of the forces means displacements 1e9 times those that they cause in the stiffest body: one
+  // that drifts off on a nearly singular tangent, and no equilibrium that rounding hides; unless supports move it as
+  // far, or a softer one yields as far.
+  constexpr double adrift = 1e-5, carried = 10, yielded = 1e3;
+  const double bulk_floor = rounding_factor * ratio(rounding, scales.force);
+  if (bulk_floor <= adrift || reach <= carried * prescribed || sizes.softest * reach <= yielded * scales.force)
+    residuals.floor_equilibrium =
+        bulk_floor +
+        rounding_factor * ratio(unit_roundoff * sizes.area_times_rho * std::max(reach, sizes.distance), scales.force);
+  residuals.floor_length = rounding_factor * ratio(unit_roundoff * reach, scales.length);
+  // in slip the bound passes on what rounding makes of the pressure lambda_N + rho g_N
+  residuals.floor_traction = rounding_factor * ratio(unit_roundoff * sizes.rho * reach, scales.traction);
+}
+
+/// Takes in how far lambda is from the traction, point by point.
+template <class T>
+void measure_multipliers(const ContactInput<T>& input, const Vector<T>& multiplier, const PointSizes& sizes,
+                         double reach, Evaluation<T>& at) {
+  const Model& model = input.model;
+  // a body that slides where nothing presses: all its tractions are what rounding makes of its displacements
+  const bool presses = at.scales.traction > rounding_factor * unit_roundoff * sizes.elastic * reach;
+  for (std::size_t p = 0; p < model.points.size(); ++p)
+    for (int c = 0; c < model.points[p].components(); ++c) {
+      const int k = model.points[p].multiplier + c;
+      const double defect = std::abs(value(at.field.traction[k]) - value(multiplier[k]));
+      const ContactState state = at.field.state[p];
+      const bool is_length = c == 0 ? state != ContactState::open : state == ContactState::stick;
+      const double rho = value(c == 0 ? input.rho[p].normal : input.rho[p].tangential);
+      const double traction_scale = at.scales.traction > 0 ? at.scales.traction : defect;  // all open, lambda not yet 0
+      const double relative = is_length ? ratio(defect / rho, at.scales.length)
+                              : presses ? ratio(defect, traction_scale)
+                                        : 0;
+      double& worst = c == 0 ? at.residuals.normal : at.residuals.tangential;
+      worst = larger(worst, relative);
+    }
+}
+
+}  // namespace detail
+
+/// Evaluates the iterates of one equilibrium.
+template <class T, class E>
+class Evaluator {
+ public:
+  Evaluator(E& engine, const EquilibriumTask<T>& task, Account& account)
+      : engine_(engine),
+        task_(task),
+        account_(account),
+        prescribed_(detail::prescribed_motion(task.contact.model, task.contact.slots, task.contact.time)) {}
+
+  /// Field, rows and residuals, each point in the branch that it is in.
+  detail::Evaluation<T> operator()(const Unknowns<T>& unknowns);
+  /// The rows of an evaluation anew, in given branches.
+  void take_rows_in(const std::vector<ContactState>& branches, const Unknowns<T>& unknowns, detail::Evaluation<T>& at);
+
+ private:
+  Vector<T> contact_field_forces(const Vector<T>& compact, const ContactField<T>& field) const;
+  void count() { account_.counters.contact_evaluations += static_cast<long>(task_.contact.model.points.size()); }
+
+  E& engine_;
+  const EquilibriumTask<T>& task_;
+  Account& account_;
+  double prescribed_;  ///< largest displacement that supports prescribe
+};
+
+/// Forces of contact, and of the anchor where there is one, on the contact nodes.
+template <class T, class E>
+Vector<T> Evaluator<T, E>::contact_field_forces(const Vector<T>& compact, const ContactField<T>& field) const {
+  const Model& model = task_.contact.model;
+  Vector<T> forces = contact_forces(model, task_.contact.slots, field.traction);
+  if (task_.anchor.stiffness.size() > 0) forces += task_.anchor.force(compact, model.dimension);
+  return forces;
+}
+
+template <class T, class E>
+detail::Evaluation<T> Evaluator<T, E>::operator()(const Unknowns<T>& unknowns) {
+  const auto& input = task_.contact;
+  const Model& model = input.model;
+  detail::Evaluation<T> at;
+  at.scales = account_.scales;
+  const Vector<T> compact = engine_.compact(unknowns.u);
+  at.field = evaluate_contact<T>(input, compact, unknowns.multiplier, nullptr);
+  count();
+  ForceScale force{at.scales.force, 0};
+  at.rows_u = engine_.residual(unknowns.u, contact_field_forces(compact, at.field), force);
+  at.scales.force = force.force;
+  const auto sizes = detail::measure_points(input, at.field, at.scales);
+  const double reach = largest_nodal_norm(compact, model.dimension);
+  for (Eigen::Index row = 0; row < at.rows_u.size(); ++row)
+    if (!engine_.is_free(row)) at.rows_u[row] = T(0);
+  at.residuals.equilibrium = detail::ratio(largest_nodal_norm(at.rows_u, model.dimension), at.scales.force);
+  detail::set_floors(sizes, at.scales, force.rounding, reach, prescribed_, at.residuals);
+  if (!task_.solves_for_multipliers()) return at;
+  at.rows_l = multiplier_residual(model, input.slots, at.field.traction, unknowns.multiplier);
+  detail::measure_multipliers(input, unknowns.multiplier, sizes, reach, at);
+  return at;
+}
+
+template <class T, class E>
+void Evaluator<T, E>::take_rows_in(const std::vector<ContactState>& branches, const Unknowns<T>& unknowns,
+                                   detail::Evaluation<T>& at) {
+  const auto& input = task_.contact;
+  const Vector<T> compact = engine_.compact(unknowns.u);
+  const auto field = evaluate_contact<T>(input, compact, unknowns.multiplier, &branches);
+  count();
+  ForceScale unused;
+  at.rows_u = engine_.residual(unknowns.u, contact_field_forces(compact, field), unused);
+  if (task_.solves_for_multipliers())
+    at.rows_l = multiplier_residual(input.model, input.slots, field.traction, unknowns.multiplier);
+}
+
+}  // namespace stickslip
