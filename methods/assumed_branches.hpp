@@ -22,9 +22,10 @@ void resume_on_cone(const ContactInput<T>& input, const Vector<T>& multiplier, s
       const double z = value(multiplier[point.multiplier + 1 + a]) + value(input.rho[p].tangential) * slip;
       trial += z * z;
     }
-    const double bound = -value(input.slots.friction[point.contact]) * value(field.traction[point.multiplier]);
+    const auto& law = input.slots.friction[point.contact];
+    const double pressure = -value(field.traction[point.multiplier]), bound = law.bound(pressure);
     if (bound > 0 && std::abs(std::sqrt(trial) - bound) <= 1e-8 * bound)
-      field.state[p] = last[p] == ContactState::slip ? ContactState::slip : ContactState::stick;
+      field.state[p] = is_slipping(last[p]) ? law.piece(pressure) : ContactState::stick;
   }
 }
 
@@ -43,10 +44,10 @@ std::vector<ContactState> step_branches(const ContactInput<T>& input, const Vect
   std::vector<ContactState> branches = field.state;
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     const auto& point = model.points[p];
-    if (branches[p] != ContactState::slip || point.tangents == 0 || value(input.slots.friction[point.contact]) == 0)
-      continue;
+    if (!is_slipping(branches[p]) || point.tangents == 0 || input.slots.friction[point.contact].is_smooth()) continue;
     const double rounding = tie_at(input, p, compact);
-    bool apex = std::abs(value(field.traction[point.multiplier])) <= value(input.rho[p].normal) * rounding;
+    bool apex = input.slots.friction[point.contact].has_apex() &&
+                std::abs(value(field.traction[point.multiplier])) <= value(input.rho[p].normal) * rounding;
     const double tie = value(input.rho[p].tangential) * rounding;
     double along_last = 0;
     for (int a = 0; a < point.tangents; ++a) {
@@ -55,7 +56,7 @@ std::vector<ContactState> step_branches(const ContactInput<T>& input, const Vect
       apex &= std::abs(value(multiplier[k]) + value(input.rho[p].tangential) * slip) <= tie;
       if (!last.state.empty()) along_last += value(field.traction[k]) * value(last.traction[k]);
     }
-    const bool reversed = !last.state.empty() && last.state[p] == ContactState::slip && along_last < 0;
+    const bool reversed = !last.state.empty() && is_slipping(last.state[p]) && along_last < 0;
     if (apex || reversed) branches[p] = ContactState::stick;
   }
   return branches;
@@ -67,7 +68,7 @@ std::vector<ContactState> presume_contact(const ContactInput<T>& input, std::vec
   for (std::size_t p = 0; p < branches.size(); ++p) {
     const auto& point = input.model.points[p];
     if (branches[p] != ContactState::open) continue;
-    const bool rough = point.tangents > 0 && value(input.slots.friction[point.contact]) > 0;
+    const bool rough = point.tangents > 0 && !input.slots.friction[point.contact].is_smooth();
     branches[p] = rough ? ContactState::stick : ContactState::slip;
   }
   return branches;

@@ -169,7 +169,7 @@ bool Augmentations<T>::keeps_state(const Vector<double>& by, const ContactField<
   const auto& point = model_.points[p];
   if (by[0] > 0) return false;
   if (field.state[p] != ContactState::stick) return true;
-  return by.tail(point.tangents).norm() <= -value(slots_.friction[point.contact]) * by[0];
+  return by.tail(point.tangents).norm() <= -slots_.friction[point.contact].slope_at_infinity() * by[0];
 }
 
 template <class T>

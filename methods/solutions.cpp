@@ -18,7 +18,12 @@ struct Branch {
 
 std::vector<Branch> branches_of(const ContactProblem::Point& point) {
   if (point.tangential < 0) return {{ContactState::open, 0}, {ContactState::slip, 0}};
-  return {{ContactState::open, 0}, {ContactState::stick, 0}, {ContactState::slip, -1}, {ContactState::slip, 1}};
+  std::vector<Branch> branches{{ContactState::open, 0}, {ContactState::stick, 0}};
+  for (const auto& [state, is_there] : {std::pair(ContactState::slip, point.friction.coefficient.has_value()),
+                                        std::pair(ContactState::limited, point.friction.limit.has_value())})
+    if (is_there)
+      for (double sign : {-1.0, 1.0}) branches.push_back({state, sign});
+  return branches;
 }
 
 /// (I - P) g + P tau = g_f, and v = moved + lift (g - tau).
@@ -69,7 +74,9 @@ System system_of(const ContactProblem& problem, const Relation& r, const std::ve
     system.matrix.col(n) = r.of_tau.col(n) + point.yield_normal * r.of_g.col(n);
     if (t < 0) continue;
     if (state == ContactState::slip) {
-      system.matrix.col(n) -= sign * point.friction * r.of_tau.col(t);
+      system.matrix.col(n) -= sign * *point.friction.coefficient * r.of_tau.col(t);
+    } else if (state == ContactState::limited) {
+      system.right -= sign * *point.friction.limit * r.of_tau.col(t);
     } else {
       system.matrix.col(t) = r.of_tau.col(t) + point.yield_tangential * r.of_g.col(t);
       system.right += point.yield_tangential * point.stored * r.of_g.col(t);
@@ -94,7 +101,9 @@ Outcome outcome_of(const ContactProblem& problem, const std::vector<Branch>& com
     out.g[n] = point.yield_normal * x[n];
     if (t < 0) continue;
     if (state == ContactState::slip) {
-      out.tau[t] = -sign * point.friction * x[n];
+      out.tau[t] = -sign * *point.friction.coefficient * x[n];
+    } else if (state == ContactState::limited) {
+      out.tau[t] = sign * *point.friction.limit;
     } else {
       out.tau[t] = x[t];
       out.g[t] = point.yield_tangential * (x[t] - point.stored);
@@ -135,9 +144,11 @@ bool is_valid(const ContactProblem& problem, const std::vector<Branch>& combinat
     if (state == ContactState::open ? at.g[point.normal] < -length : normal > traction) return false;
     if (state == ContactState::open || point.tangential < 0) continue;
     const double tangential = at.tau[point.tangential];
-    if (state == ContactState::stick && std::abs(tangential) > -point.friction * normal + traction) return false;
+    // (a slipping point is on the bound of its piece: whether that is the least one is asked where there are two)
+    const bool asked = state == ContactState::stick || point.friction.size() > 1;
+    if (asked && std::abs(tangential) > point.friction.bound(-normal) + traction) return false;
     const double plastic = at.g[point.tangential] - point.yield_tangential * (tangential - point.stored);
-    if (state == ContactState::slip && sign * plastic < -length) return false;
+    if (is_slipping(state) && sign * plastic < -length) return false;
   }
   return true;
 }
@@ -154,7 +165,8 @@ bool is_reversed(const Matrix<double>& A) {
 bool can_try_all_branches(const Model& model) {
   long combinations = 1;
   for (const auto& point : model.points) {
-    combinations *= point.tangents > 0 ? 4 : 2;
+    const auto& law = model.scene.contacts[point.contact].friction;
+    combinations *= point.tangents > 0 ? 2 + 2 * law->size() : 2;
     if (combinations > most_combinations) return false;
   }
   return model.dimension == 2 && model.effects.friction && !model.points.empty();
@@ -253,7 +265,7 @@ bool exceeds_critical_friction(const Model& model, const Slots<double>& slots, c
     const auto& geometry = slots.geometry[&point - model.points.data()];
     const Eigen::Matrix2d own = schur.block<2, 2>(2 * point.places[0], 2 * point.places[0]);
     const Eigen::Vector2d n = geometry.normal, e = geometry.tangents.col(0);
-    return slots.friction[point.contact] * std::abs(n.dot(own * e)) >= e.dot(own * e);
+    return slots.friction[point.contact].slope_at_apex() * std::abs(n.dot(own * e)) >= e.dot(own * e);
   });
 }
 

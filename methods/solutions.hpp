@@ -18,6 +18,8 @@
 ///   closed g_N = y tau_N                        valid where tau_N <= 0
 ///   stick  dg_T = y (tau_T - sigma)             valid where |tau_T| <= -mu tau_N
 ///   slip   tau_T = -s mu tau_N, s = -1 or 1     valid where s (dg_T - y (tau_T - sigma)) >= 0
+///   limited  tau_T = s limit, s = -1 or 1       likewise, and where -mu tau_N >= limit, as in slip <= and in stick
+///                                               |tau_T| <= limit (of a law of friction that has one)
 ///
 /// If no combination has a negative determinant, the piecewise linear map is coherently oriented and the solution
 /// unique under every load: S. M. Robinson, Math. Oper. Res. 17 (1992) 691-714.
@@ -34,7 +36,7 @@ namespace stickslip {
 struct ContactProblem {
   struct Point {
     int normal = 0, tangential = -1;                ///< components; tangential -1: without friction
-    double friction = 0;                            ///< mu
+    FrictionLaw<double> friction;                   ///< of tractions as lengths
     double yield_normal = 0, yield_tangential = 0;  ///< y
     double stored = 0;                              ///< sigma, length; read where y > 0
   };
@@ -126,9 +128,11 @@ ContactProblem contact_problem(const ContactInput<T>& input, const CondensedEngi
       problem.start[k] = value(c == 0 ? field.gap[p] : field.slip[tangential_offset(model, p)]);
     }
     ContactProblem::Point at{point.multiplier, point.tangents > 0 ? point.multiplier + 1 : -1};
-    if (point.tangents > 0) at.friction = value(input.slots.friction[point.contact]);
+    const double local = value(input.slots.stiffness[p]) / value(geometry.area);
+    if (point.tangents > 0)
+      at.friction = input.slots.friction[point.contact].template as<double>([](const T& x) { return value(x); });
+    if (at.friction.limit) *at.friction.limit /= local;
     if (stored) {
-      const double local = value(input.slots.stiffness[p]) / value(geometry.area);
       at.yield_normal = local / value(input.rho[p].normal);
       at.yield_tangential = local / value(input.rho[p].tangential);
       if (point.tangents > 0) at.stored = value((*stored)[point.multiplier + 1]) / local;

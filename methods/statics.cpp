@@ -9,9 +9,18 @@ double unbalanced_share(const RigidStatics& statics) {
   const double size = statics.load.norm();
   if (!(size > 0)) return 0;
   // x >= 0 for all columns: supports give either sign by two columns
-  Matrix<double> A(statics.load.size(), statics.pushes.cols() + 2 * statics.holds.cols());
-  A << statics.pushes, statics.holds, -statics.holds;
-  const Vector<double> b = -statics.load / size;
+  const Eigen::Index rows = statics.load.size(), limits = statics.limit.size();
+  const Eigen::Index pushes = statics.pushes.cols(), holds = statics.holds.cols();
+  Matrix<double> A = Matrix<double>::Zero(rows + 2 * limits, pushes + 2 * holds + 2 * limits);
+  A.topLeftCorner(rows, pushes + 2 * holds) << statics.pushes, statics.holds, -statics.holds;
+  Vector<double> b = Vector<double>::Zero(A.rows());
+  b.head(rows) = -statics.load / size;
+  for (Eigen::Index k = 0; k < 2 * limits; ++k) {  // +- tangential x + slack = limit, each row of size one
+    const double limit = statics.limit[k / 2] / size, scale = std::max(1.0, limit);
+    A.row(rows + k).head(pushes) = (k % 2 == 0 ? 1 : -1) / scale * statics.tangential.row(k / 2);
+    A(rows + k, pushes + 2 * holds + k) = 1;
+    b[rows + k] = limit / scale;
+  }
   const double negligible = 1e-13 * std::sqrt(static_cast<double>(A.rows()));  // rounding of a column of length one
   Vector<double> x = Vector<double>::Zero(A.cols());
   std::vector<int> passive;

@@ -12,13 +12,18 @@ namespace stickslip {
 /// Columns of forces that a body, or all bodies together, may be given: three rows a body, force along x and y and
 /// moment about the origin over the size of the model.
 struct RigidStatics {
-  Matrix<double> pushes;  ///< of contact points, by factors >= 0: the edges n - mu e and n + mu e of their cones
-  Matrix<double> holds;   ///< of supports, by factors of either sign
+  /// Of contact points, by factors >= 0, three a point: the edges n - mu e and n + mu e of its cone, and none; or n, -e
+  /// and e, where the law of friction has no cone.
+  Matrix<double> pushes;
+  Matrix<double> holds;  ///< of supports, by factors of either sign
   Vector<double> load;
+  Matrix<double> tangential;  ///< a row for each point whose law has a limit: its tangential force by those factors
+  Vector<double> limit;       ///< of their sizes (force)
 };
 
-/// Share of the load that no such forces balance, |load + pushes x + holds y| / |load| at its least over x >= 0 and y;
-/// 0 without load. Non-negative least squares [LH74].
+/// Share of the load that no such forces balance, |load + pushes x + holds y| / |load| at its least over x >= 0 and y
+/// with |tangential x| <= limit, which counts in with what it is missed by; 0 without load. Non-negative least squares
+/// [LH74].
 double unbalanced_share(const RigidStatics& statics);
 
 /// A body's column block in RigidStatics, at a time. pre: 2D, not of revolution.
@@ -32,8 +37,11 @@ RigidStatics rigid_statics(const Model& model, const Slots<T>& slots, double tim
     return static_cast<Eigen::Index>(b);
   };
   const auto rows = static_cast<Eigen::Index>(3 * model.bodies.size());
-  RigidStatics statics{Matrix<double>::Zero(rows, 2 * model.points.size()),
-                       Matrix<double>::Zero(rows, model.constraints.size()), Vector<double>::Zero(rows)};
+  RigidStatics statics{Matrix<double>::Zero(rows, 3 * model.points.size()),
+                       Matrix<double>::Zero(rows, model.constraints.size()),
+                       Vector<double>::Zero(rows),
+                       {},
+                       {}};
   const auto add = [&](auto column, int node, const Vec<double, 2>& force) {
     const auto at = X.col(node);
     column.template segment<3>(3 * body_of(node)) +=
@@ -42,14 +50,29 @@ RigidStatics rigid_statics(const Model& model, const Slots<T>& slots, double tim
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
     const auto& geometry = slots.geometry[p];
-    const double mu = point.tangents > 0 ? value(slots.friction[point.contact]) : 0;
-    for (int side : {0, 1}) {
-      Vec<double, 2> edge = values(geometry.normal);
-      if (mu > 0) edge += (side == 0 ? -mu : mu) * values(geometry.tangents.col(0));
-      edge /= edge.norm();
+    const auto& law = slots.friction[point.contact];
+    const bool rough = point.tangents > 0 && !law.is_smooth(), has_cone = !rough || law.couples();
+    const double mu = rough ? value(law.slope_at_apex()) : 0;
+    const Vec<double, 2> normal = values(geometry.normal);
+    const Vec<double, 2> along = rough ? Vec<double, 2>(values(geometry.tangents.col(0))) : Vec<double, 2>(0, 0);
+    const auto push = [&](int k, double across, double tangential) {
+      const double size = std::hypot(across, tangential);
       for (std::size_t n = 0; n < point.nodes.size(); ++n)
-        add(statics.pushes.col(2 * p + side), point.nodes[n], value(geometry.weights[n]) * edge);
-    }
+        add(statics.pushes.col(3 * p + k), point.nodes[n],
+            value(geometry.weights[n]) * Vec<double, 2>((across * normal + tangential * along) / size));
+      return tangential / size;
+    };
+    Vec<double, 3> tangential = Vec<double, 3>::Zero();
+    if (has_cone)
+      tangential.head<2>() = Vec<double, 2>(push(0, 1, -mu), push(1, 1, mu));
+    else
+      tangential = Vec<double, 3>(push(0, 1, 0), push(1, 0, -1), push(2, 0, 1));
+    if (!rough || !law.limit) continue;
+    statics.tangential.conservativeResize(statics.tangential.rows() + 1, statics.pushes.cols());
+    statics.tangential.bottomRows(1).setZero();
+    statics.tangential.bottomRows(1).middleCols(3 * p, 3) = tangential.transpose();
+    statics.limit.conservativeResize(statics.tangential.rows());
+    statics.limit[statics.limit.size() - 1] = value(*law.limit) * value(geometry.area);
   }
   for (std::size_t k = 0; k < model.constraints.size(); ++k) {
     const int dof = model.constraints[k].dof, node = dof / 2;
@@ -77,7 +100,8 @@ int unbalanced_body(const Model& model, const Slots<T>& slots, double time) {
   if (!(unbalanced_share(all) > rounding)) return balanced;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const auto rows = static_cast<Eigen::Index>(3 * b);
-    const RigidStatics one{all.pushes.middleRows(rows, 3), all.holds.middleRows(rows, 3), all.load.segment(rows, 3)};
+    const RigidStatics one{all.pushes.middleRows(rows, 3), all.holds.middleRows(rows, 3), all.load.segment(rows, 3),
+                           all.tangential, all.limit};
     if (unbalanced_share(one) > rounding) return static_cast<int>(b);
   }
   return a_group;

@@ -60,8 +60,9 @@ Vector<T> into_cones(const Model& model, const Slots<T>& slots, Vector<T> multip
     if (value(normal) > 0) normal = T(0);
     if (point.tangents == 0) continue;
     auto tangential = multiplier.segment(point.multiplier + 1, point.tangents);
-    const double bound = -value(slots.friction[point.contact]) * value(normal), length = values(tangential).norm();
-    if (length > bound) tangential *= -slots.friction[point.contact] * normal / norm(tangential);
+    const auto& law = slots.friction[point.contact];
+    const double bound = law.bound(-value(normal)), length = values(tangential).norm();
+    if (length > bound) tangential *= law.bound(T(-normal), law.piece(-value(normal))) / norm(tangential);
   }
   return multiplier;
 }
@@ -105,7 +106,7 @@ Standing judge(const UzawaAL& method, const Slots<T>& slots, const Regularisatio
   const double gap = 10 * unit_roundoff * reach, violation = method.tolerance * scales.length;
   double stiffest = 0, friction = 0;
   for (const auto& r : rho) stiffest = std::max(stiffest, value(r.normal));
-  for (const auto& mu : slots.friction) friction = std::max(friction, value(mu));
+  for (const auto& law : slots.friction) friction = std::max(friction, value(law.slope_at_apex()));
   // in slip the bound passes the rounding of the pressure on
   const double traction = (1 + friction) * (stiffest * gap + 10 * unit_roundoff * scales.traction);
   const bool small = progress.error_left() <= method.tolerance * scales.traction;

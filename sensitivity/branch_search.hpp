@@ -110,7 +110,7 @@ class BranchSearch {
     for (const auto& w : weak_) {
       const Branch branch = branch_of(problem_.model, at_, w.point);
       const int direction = branch.ray.size() == 2 ? (branch.ray[1] > 0 ? 1 : 2) : 0;
-      key.push_back(3 * static_cast<int>(branch.state) + direction);
+      key.push_back(4 * static_cast<int>(branch.state) + direction);
     }
     return key;
   }

@@ -53,8 +53,8 @@ struct Judged {
   double negligible, kinematic_normal, kinematic;
 };
 
-Branch slip_along(const Judged& d, double normal) {
-  Branch branch{ContactState::slip, Vector<double>(1 + d.tangential.size())};
+Branch slip_along(const Judged& d, double normal, ContactState piece) {
+  Branch branch{piece, Vector<double>(1 + d.tangential.size())};
   branch.ray << normal, d.tangential;
   branch.ray /= branch.ray.cwiseAbs().maxCoeff();
   return branch;
@@ -62,11 +62,34 @@ Branch slip_along(const Judged& d, double normal) {
 
 Verdict contradicted(Branch by_branch, double by) { return {true, std::move(by_branch), by}; }
 
-/// A closed point without a trial of its own: the derivative of its bound is `bound`.
-Verdict judge_from_apex(const Judged& d, double bound, const Branch& now) {
+/// Derivative of the bound of friction along a direction, and the piece that it is of: at a corner the lesser one.
+struct BoundRate {
+  double rate;
+  ContactState piece;
+};
+
+bool is_at_corner(const FrictionLaw<double>& law, double pressure) {
+  if (!law.coefficient || !law.limit) return false;
+  return std::abs(*law.coefficient * pressure - *law.limit) <= weak_margin * *law.limit;
+}
+
+/// `moved`: derivative of the pressure.
+BoundRate bound_rate(const FrictionLaw<Direction>& law, double pressure, double moved, double side) {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  const BoundRate sloping{
+      law.coefficient ? side * (law.coefficient->d[0] * pressure + law.coefficient->v * moved) : none,
+      ContactState::slip};
+  const BoundRate level{law.limit ? side * law.limit->d[0] : none, ContactState::limited};
+  if (is_at_corner(law.as<double>([](const Direction& x) { return x.v; }), pressure))
+    return sloping.rate <= level.rate ? sloping : level;
+  return law.piece(pressure) == ContactState::slip ? sloping : level;
+}
+
+/// A closed point without a trial of its own: the derivative of its bound is `bound`, on `piece`.
+Verdict judge_from_apex(const Judged& d, double bound, ContactState piece, const Branch& now) {
   const Branch stick{ContactState::stick, {}};
   const double length = d.tangential.norm(), excess = length - bound;
-  const Branch slip = length > 0 ? slip_along(d, std::min(d.normal, 0.0)) : stick;
+  const Branch slip = length > 0 ? slip_along(d, std::min(d.normal, 0.0), piece) : stick;
   if (now.state == ContactState::open) return contradicted(excess <= 0 ? stick : slip, 0);
   if (now.state == ContactState::stick)
     return excess <= d.negligible ? Verdict{} : contradicted(slip, excess / d.negligible);
@@ -103,13 +126,14 @@ std::vector<WeakPoint> weak_points(const Model& model, const Slots<double>& slot
     const double tangential = z.tail(point.tangents).norm();
     const bool open = state.contact.state[p] == ContactState::open;
     const bool at_apex = point.tangents > 0 && elastic / rho[p].tangential * tangential <= negligible;
-    const double mu = slots.friction[point.contact];
+    const auto& law = slots.friction[point.contact];
     if (open ? elastic / rho[p].normal * z[0] <= negligible : -z[0] <= negligible) {
-      weak.push_back({p, at_apex && mu > 0 ? Tie::apex : Tie::opens});
+      weak.push_back({p, at_apex && law.slope_at_apex() > 0 && !law.is_smooth() ? Tie::apex : Tie::opens});
       continue;
     }
     if (open || point.tangents == 0) continue;
-    const double bound = -mu * (cone == ConeRadius::augmented ? z[0] : state.multiplier[point.multiplier]);
+    const double pressure = -(cone == ConeRadius::augmented ? z[0] : state.multiplier[point.multiplier]);
+    const double bound = law.bound(pressure);
     if (!(bound > 0)) {
       if (at_apex) weak.push_back({p, Tie::line});
       continue;
@@ -118,7 +142,10 @@ std::vector<WeakPoint> weak_points(const Model& model, const Slots<double>& slot
     // of a small rho, (|z_T| - bound) / rho is rounding long before the slip itself is
     const double slip = state.contact.slip.segment(tangential_offset(model, p), point.tangents).norm();
     const double beyond = elastic * std::min(excess / rho[p].tangential, slip), inside = -excess;
-    if ((excess > 0 ? beyond : inside) <= weak_margin * bound) weak.push_back({p, Tie::slips});
+    if ((excess > 0 ? beyond : inside) <= weak_margin * bound)
+      weak.push_back({p, Tie::slips});
+    else if (excess > 0 && is_at_corner(law, pressure))
+      weak.push_back({p, Tie::corner});
   }
   return weak;
 }
@@ -143,14 +170,24 @@ void take_branch(const Model& model, int point, const Branch& branch, State<doub
 }
 
 std::vector<Branch> branches_of(const Model& model, const WeakPoint& weak) {
-  const Branch open{ContactState::open, {}}, stick{ContactState::stick, {}}, slip{ContactState::slip, {}};
-  if (weak.tie == Tie::opens) return {slip, open};
-  if (weak.tie == Tie::slips) return {stick, slip};
+  const Branch open{ContactState::open, {}}, stick{ContactState::stick, {}}, slip{ContactState::slip, {}},
+      limited{ContactState::limited, {}};
+  const auto& law = model.scene.contacts[model.points[weak.point].contact].friction;
+  if (weak.tie == Tie::opens && (!law || law->coefficient)) return {slip, open};
+  if (weak.tie == Tie::opens) return {stick, limited, open};
+  std::vector<Branch> slips;
+  if (law->coefficient) slips.push_back(slip);
+  if (law->limit) slips.push_back(limited);
+  if (weak.tie == Tie::corner) return slips;
   std::vector<Branch> all{stick};
+  if (weak.tie == Tie::slips) {
+    all.insert(all.end(), slips.begin(), slips.end());
+    return all;
+  }
   if (weak.tie == Tie::apex) all.push_back(open);
   if (model.points[weak.point].tangents == 1)
     for (double direction : {-1.0, 1.0}) {
-      all.push_back(slip);
+      all.push_back(slips.front());
       all.back().ray = Vector<double>(2);
       all.back().ray << (weak.tie == Tie::apex ? -1.0 : 0.0), direction;
     }
@@ -171,35 +208,51 @@ Verdict judge(const Model& model, const Slots<double>& slots, const ParameterBlo
   d.negligible = negligible(model, slots, block, rho[p].normal.v / elastic, direction);
   const Branch now = branch_of(model, at, p);
   const bool open = now.state == ContactState::open;
-  const Direction& mu = block.slots.friction[point.contact];
+  const auto& law = block.slots.friction[point.contact];
+  const Vector<double> found = trial(model, at, own[p], p);
   if (weak.tie == Tie::opens || weak.tie == Tie::apex) {
-    if (!open && d.normal > d.negligible) return contradicted({ContactState::open, {}}, d.normal / d.negligible);
+    const bool jumps = weak.tie == Tie::opens && point.tangents > 0 && !law.has_apex();
+    const bool bears =
+        elastic / own[p].tangential * found.tail(point.tangents).norm() > weak_margin * direction.largest_so_far;
+    if (!open && d.normal > d.negligible) {
+      Verdict verdict = contradicted({ContactState::open, {}}, d.normal / d.negligible);
+      verdict.possible = !(jumps && bears);
+      return verdict;
+    }
     const double closing = -d.normal * d.kinematic_normal / d.negligible;
     if (open && !(closing > 1)) return {};
     Verdict verdict;
     if (weak.tie == Tie::apex)
-      verdict = judge_from_apex(d, -mu.v * std::min(d.normal, 0.0), now);
-    else if (now.state != ContactState::slip)
+      verdict = judge_from_apex(d, -law.slope_at_apex().v * std::min(d.normal, 0.0), ContactState::slip, now);
+    else if (jumps && open)
+      verdict = contradicted({ContactState::stick, {}}, 0);
+    else if (!jumps && now.state != ContactState::slip)
       verdict = contradicted({ContactState::slip, {}}, 0);
+    verdict.possible = !(jumps && bears && open);
     if (open) verdict.by = closing;
     return verdict;
   }
-  const Vector<double> found = trial(model, at, own[p], p);
   const bool augmented = cone == ConeRadius::augmented;
-  const double pressure = augmented ? found[0] : at.multiplier[point.multiplier];
-  const double moved = augmented ? z[0].d[0] : block.current.multiplier[point.multiplier].d[0];
-  const double bound = -side * (mu.d[0] * pressure + mu.v * moved);
+  const double pressure = augmented ? -found[0] : -at.multiplier[point.multiplier];
+  const double moved = augmented ? -z[0].d[0] : -block.current.multiplier[point.multiplier].d[0];
+  const auto [bound, piece] = bound_rate(law, pressure, moved, side);
   if (weak.tie == Tie::line) {
-    Verdict verdict = judge_from_apex(d, std::max(bound, 0.0), now);
-    verdict.possible = side * mu.d[0] >= 0;
+    Verdict verdict = judge_from_apex(d, std::max(bound, 0.0), piece, now);
+    verdict.possible = bound >= 0;
     return verdict;
   }
+  if (is_slipping(now.state) && now.state != piece) {
+    const double other = bound_rate(law, pressure, moved, -side).rate;
+    const double apart = std::abs(bound + other) / d.negligible;
+    if (apart > 1) return contradicted({piece, {}}, apart);
+  }
+  if (weak.tie == Tie::corner) return {};
   const auto along = found.tail(point.tangents);
   const double excess = along.dot(d.tangential) / along.norm() - bound;
   const bool sticks = now.state == ContactState::stick;
   const double by = (sticks ? excess : -excess * d.kinematic) / d.negligible;
   if (!(by > 1)) return {};
-  return contradicted({sticks ? ContactState::slip : ContactState::stick, {}}, by);
+  return contradicted({sticks ? piece : ContactState::stick, {}}, by);
 }
 
 }  // namespace stickslip

@@ -7,8 +7,11 @@
 ///   opens  z_N = 0                 open iff s Dz_N > 0
 ///   slips  |z_T| = bound > 0       slip iff s (m.Dz_T - D bound) > 0,  m = z_T / |z_T|
 ///   apex   z_N = 0 and z_T = 0     open iff s Dz_N > 0; else stick iff |Dz_T| <= -mu s Dz_N; else slip along Dz_T
-///   line   mu = 0 and z_T = 0      stick iff |Dz_T| <= s Dmu p; else slip along Dz_T
+///   line   bound = 0 and z_T = 0   stick iff |Dz_T| <= s Dbound; else slip along Dz_T
+///   corner mu p = limit, slipping  limited iff s (D(mu p) - D limit) > 0
 ///
+/// At the corner of a limited law (core/contact/friction_law.hpp) Dbound is the lesser of both. Tresca's bound has no
+/// apex: a point that opens or closes while it bears a tangential traction jumps, and has no derivative to that side.
 /// A point that slides while it touches (z_N = 0, z_T not) closes into slip: that is `opens` too. Where Dz itself ties,
 /// both branches have the same derivative, and either is confirmed.
 #pragma once
@@ -21,7 +24,7 @@
 namespace stickslip {
 
 struct WeakPoint {
-  enum class Tie { opens, slips, apex, line };
+  enum class Tie { opens, slips, apex, line, corner };
   int point;
   Tie tie;
 };

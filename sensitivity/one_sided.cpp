@@ -24,12 +24,16 @@ Margins margins_of(const Model& model, const Slots<double>& slots, const State<d
                  : distance <= elastic * tie_length(point, slots.geometry[p]) ? 0
                                                                               : none,
                  none};
-  const double bound = slots.friction[point.contact] * pressure;
-  if (open || point.tangents == 0 || !(bound > 0)) return margin;
+  const auto& law = slots.friction[point.contact];
+  if (open || point.tangents == 0) return margin;
+  const double bound = law.bound(pressure);
+  if (!(bound > 0)) return margin;
   const double reach = contact.state[p] == ContactState::stick
                            ? bound - tangential(contact.traction, point.multiplier + 1)
                            : elastic * tangential(contact.slip, tangential_offset(model, p));
   margin.slip = reach / bound;
+  if (is_slipping(contact.state[p]) && law.coefficient && law.limit)
+    margin.slip = std::min(margin.slip, std::abs(*law.coefficient * pressure - *law.limit) / bound);
   return margin;
 }
 

@@ -104,7 +104,7 @@ Finding worst(const Model& model, const Slots<double>& slots, const Regularisati
   for (int p = 0; p < static_cast<int>(points.size()); ++p) {
     const auto& d = points[p];
     const double elastic = slots.stiffness[p] / slots.geometry[p].area;
-    const double friction = slots.friction[model.points[p].contact];
+    const double friction = slots.friction[model.points[p].contact].slope_at_apex();
     const double most = std::max(allowed.traction, most_rounding * scales.traction);
     // a gap within what is allowed of gaps is as much of a traction as it would take to close it
     const double complementarity = std::min(allowed.traction + elastic * allowed.length, most);

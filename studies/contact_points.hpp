@@ -12,5 +12,7 @@ std::vector<double> arc_of(const Problem& problem, int contact);
 
 /// "open", "stick" or "slip"; "closed" of a frictionless point that touches, which neither holds nor rubs.
 const char* state_name(const ContactPoint& point, ContactState state);
+/// 0 open, 1 stick, 2 slip.
+inline int state_code(ContactState state) { return is_slipping(state) ? 2 : static_cast<int>(state); }
 
 }  // namespace stickslip

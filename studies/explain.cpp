@@ -49,6 +49,12 @@ std::string count(const List& list, const std::string& noun) {
   return counted(static_cast<long>(list.size()), noun);
 }
 
+std::string law_in_words(const FrictionLaw<Number>& law) {
+  if (!law.coefficient) return fmt::format("Tresca friction {}", law.limit->value);
+  const std::string coulomb = fmt::format("Coulomb friction {}", law.coefficient->value);
+  return law.limit ? coulomb + fmt::format(", limited to {}", law.limit->value) : coulomb;
+}
+
 std::string contact_lines(const Model& model) {
   std::string text;
   for (std::size_t c = 0; c < model.scene.contacts.size(); ++c) {
@@ -60,7 +66,7 @@ std::string contact_lines(const Model& model) {
                         counted(points, "contact point"));
     if (contact.segment) text += " (segment-integrated)";
     if (points < static_cast<int>(slaves)) text += fmt::format(" ({} slave nodes face no master)", slaves - points);
-    text += contact.friction ? fmt::format(", Coulomb friction {}\n", contact.friction->value) : ", frictionless\n";
+    text += contact.friction ? ", " + law_in_words(*contact.friction) + "\n" : ", frictionless\n";
   }
   return text.empty() ? "  none\n" : text;
 }
@@ -99,7 +105,7 @@ std::string explain(const Input& input, const Problem& problem) {
       "\nwhat each effect takes (~ about, > and more, ? hangs on the path):\n" + ledger_table(forecast(input, problem));
   text += "\nsimulated:\n";
   if (effects.contact) text += "  unilateral contact\n";
-  if (effects.friction) text += "  Coulomb friction, path dependent (slip is remembered)\n";
+  if (effects.friction) text += "  friction, path dependent (slip is remembered)\n";
   if (effects.deformable_master) text += "  contact between deformable bodies\n";
   const bool adjoint = scene.sensitivity_mode == SensitivityMode::adjoint;
   if (effects.sensitivity)
@@ -108,7 +114,7 @@ std::string explain(const Input& input, const Problem& problem) {
                         count(scene.parameters, "parameter"), adjoint ? "adjoint" : "direct");
   text += "left out (no unknowns, no storage, no code path):\n";
   if (!effects.contact) text += "  contact: no slave node faces a master\n";
-  if (!effects.friction) text += "  friction: no contact has a coefficient\n";
+  if (!effects.friction) text += "  friction: no contact has any\n";
   if (!effects.sensitivity) text += "  derivatives: the scene names no parameters\n";
   text += "  large displacements and sliding, plasticity, smoothing, inertia\n";
   return text;

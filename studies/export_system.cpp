@@ -75,7 +75,7 @@ std::string rows_csv(const Model& model, const Slots<double>& slots) {
 }
 
 std::string points_csv(const Model& model, const State<double>& state) {
-  static const char* const names[] = {"open", "stick", "slip"};
+  static const char* const names[] = {"open", "stick", "slip", "slip"};
   std::string text = "row,contact,slave_node,component,state\n";
   for (std::size_t p = 0; p < model.points.size(); ++p)
     for (int c = 0; c < model.points[p].components(); ++c)

@@ -72,7 +72,7 @@ struct ContactFields {
     const auto& point = problem.model.points[p];
     const int node = point.nodes[0];
     const auto hold = [](double code) { return code == 1 ? 2 : code == 2 ? 1 : code; };  // open < slip < stick
-    const double code = static_cast<int>(of.contact.state[p]);
+    const double code = state_code(of.contact.state[p]);
     gap(0, node) = state(0, node) < 0 ? of.contact.gap[p] : -larger(-gap(0, node), -of.contact.gap[p]);
     if (hold(code) > hold(state(0, node))) state(0, node) = code;
     pressure(0, node) -= of.contact.traction[point.multiplier];

@@ -99,7 +99,7 @@ PointDefects defects_of(const Model& model, const Slots<double>& slots, const St
   if (point.tangents == 0) return d;
   auto [traction, slip] = tangential(model, state, p);
   if (!layer.tangential.empty()) slip -= layer.tangential[p] * (traction - tangential(model, previous, p).traction);
-  const double bound = slots.friction[point.contact] * larger(0.0, pressure), size = traction.norm();
+  const double bound = slots.friction[point.contact].bound(larger(0.0, pressure)), size = traction.norm();
   d.cone = larger(0.0, size - bound);
   const double nothing = 1e-4 * scales.least_traction;  // what rounding makes of displacements
   const bool inside = pressure > nothing && size < bound - std::max(on_cone * bound, layer.band * scales.traction);

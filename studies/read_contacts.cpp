@@ -105,6 +105,23 @@ void check_master(const JsonNode& node, const std::optional<NamedSide>& slave, S
                "not available in this version");
 }
 
+/// A law of friction: a number, or an object that says which law it is.
+FrictionLaw<Number> friction_law(const JsonNode& node, SceneReading& reading) {
+  if (!node.value().is_object()) {
+    if (node.value().is_number()) return reading.number(node, not_negative);
+    node.must_be("a number >= 0, {\"coulomb\": mu, \"limit\": force per area} or {\"tresca\": force per area}");
+    return {};
+  }
+  if (const auto limit = node.find("tresca")) {
+    node.is_object({{"tresca"}});
+    return {std::nullopt, reading.number(*limit, not_negative)};
+  }
+  node.is_object({{"coulomb"}, {"limit"}});
+  FrictionLaw<Number> law = reading.required(node, "coulomb", not_negative);
+  if (const auto limit = node.find("limit")) law.limit = reading.number(*limit, not_negative);
+  return law;
+}
+
 void read_contact(const std::string& name, const JsonNode& node, SceneReading& reading) {
   if (!node.is_object({{"slave", "master"}, {"friction", "offset", "surface", "discretization"}, {"between", "self"}}))
     return;
@@ -129,7 +146,7 @@ void read_contact(const std::string& name, const JsonNode& node, SceneReading& r
     }
     contact.master = text.value_or("");
   }
-  if (const auto friction = node.find("friction")) contact.friction = reading.number(*friction, not_negative);
+  if (const auto friction = node.find("friction")) contact.friction = friction_law(*friction, reading);
   contact.offset = reading.optional(node, "offset", 0, any_number);
   if (const auto surface = node.find("surface")) surface->choice({"faceted"}, {"smooth"});
   if (const auto discretization = node.find("discretization")) {

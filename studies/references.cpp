@@ -64,8 +64,8 @@ Quantities<D> inputs_of(const ClosedForm& form, const json& entry, const CaseRes
   if (scene.contacts.empty()) return in;
   const auto& contact = scene.contacts.front();
   if (form.has_input("modulus") && !in.count("modulus")) in["modulus"] = contact_modulus(scene, numbers, contact);
-  if (form.has_input("friction") && !in.count("friction") && contact.friction)
-    in["friction"] = numbers(*contact.friction);
+  if (form.has_input("friction") && !in.count("friction") && contact.friction && !contact.friction->limit)
+    in["friction"] = numbers(*contact.friction->coefficient);
   return in;
 }
 

@@ -4,6 +4,7 @@ namespace stickslip::schema_texts {
 
 const char* const common = R"json({
   "positive": {"title": "number > 0", "type": "number", "exclusiveMinimum": 0},
+  "not_negative": {"title": "number >= 0", "type": "number", "minimum": 0},
   "count": {"title": "whole number >= 1", "type": "integer", "minimum": 1},
   "vector": {"title": "[x, y], in space [x, y, z]", "type": "array", "items": {"type": "number"}, "minItems": 2,
     "maxItems": 3},
@@ -100,8 +101,18 @@ const char* const scene = R"json({
           "examples": ["block.bottom"]},
         "master": {"description": "what the slave may not enter: SIDE or an obstacle", "type": "string",
           "examples": ["floor"]},
-        "friction": {"description": "Coulomb's coefficient mu; left out: frictionless, without tangential unknowns",
-          "title": "number >= 0", "type": "number", "minimum": 0, "examples": [0.3]},
+        "friction": {
+          "description": "Coulomb's coefficient mu, or another law; left out: frictionless, without tangential unknowns",
+          "title": "number >= 0, or a law", "examples": [0.3],
+          "anyOf": [{"type": "number", "minimum": 0},
+            {"type": "object", "required": ["coulomb"], "additionalProperties": false, "properties": {
+              "coulomb": {"description": "coefficient mu: at most mu p tangentially, p the pressure",
+                "$ref": "#/$defs/not_negative", "examples": [0.3]},
+              "limit": {"description": "but no more than this (force per area)", "$ref": "#/$defs/not_negative",
+                "examples": [5]}}},
+            {"type": "object", "required": ["tresca"], "additionalProperties": false, "properties": {
+              "tresca": {"description": "alone: the tangential traction that a closed point bears (force per area)",
+                "$ref": "#/$defs/not_negative", "examples": [5]}}}]},
         "offset": {"description": "added to the gap (length); negative: an interference", "type": "number",
           "default": 0, "examples": [-0.01]},
         "surface": {"description": "of the master: its straight facets", "enum": ["faceted"], "default": "faceted"},

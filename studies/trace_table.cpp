@@ -17,7 +17,7 @@ std::string trace_table(const Trace& trace) {
 }
 
 std::string trace_csv(const Problem& problem, const Trace& trace) {
-  static const char* const names[] = {"open", "stick", "slip"};
+  static const char* const names[] = {"open", "stick", "slip", "slip"};
   const auto& points = problem.model.points;
   const bool few = points.size() <= Trace::most_points;
   std::string text = "time,solve,iterate,residual,equilibrium,normal,tangential,open,stick,slip,changed,step_length";

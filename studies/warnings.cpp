@@ -71,7 +71,7 @@ void add_slips(const CaseResult& result, std::vector<Warning>& warnings) {
       if (field.state[p] == ContactState::open) continue;
       closed[point.contact] = 1;
       if (point.tangents == 0) continue;
-      if (field.state[p] == ContactState::slip) slipped[point.contact] = 1;
+      if (is_slipping(field.state[p])) slipped[point.contact] = 1;
       const auto placement =
           field.placement.segment(tangential_offset(model, static_cast<int>(p)), point.tangents).norm();
       if (point.mesh_size > 0 && !is_flat(model, point))
@@ -86,12 +86,13 @@ void add_slips(const CaseResult& result, std::vector<Warning>& warnings) {
                           fmt::format("{}: a point slides by {:.2g} elements of the slave; the contact geometry is "
                                       "that of the start, which holds below some half of one",
                                       name, farthest[c])});
-    const double friction = result.problem->slots.friction[c];
-    if (contacts[c].friction && friction > 0 && closed[c] && !slipped[c])
-      warnings.push_back({WarningCode::idle_friction, name, friction, "lower the friction, or pull harder",
-                          fmt::format("{}: no point slipped in any step, so that the friction coefficient of {:.6g} "
-                                      "has no influence",
-                                      name, friction)});
+    const auto& law = result.problem->slots.friction[c];
+    if (contacts[c].friction && !law.is_smooth() && closed[c] && !slipped[c])
+      warnings.push_back({WarningCode::idle_friction, name, law.coefficient ? *law.coefficient : *law.limit,
+                          "lower the friction, or pull harder",
+                          fmt::format("{}: no point slipped in any step, so that the {} has no influence", name,
+                                      law.coefficient ? fmt::format("friction coefficient of {:.6g}", *law.coefficient)
+                                                      : fmt::format("limit of friction, {:.6g},", *law.limit))});
   }
 }
 

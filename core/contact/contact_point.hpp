@@ -1,4 +1,5 @@
-/// One contact point: kinematics, trial traction, Coulomb projection and nodal forces, for every method and scalar.
+/// One contact point: kinematics, trial traction, projection onto the law of friction and nodal forces, for every
+/// method and scalar.
 ///
 /// Small strain: projection, normal, frame and area are those of the initial configuration, so the relative
 /// displacement w = u_s - sum N_i u_i - u_obstacle gives
@@ -52,7 +53,7 @@ template <class T, int D, int Tangents>
 PointOutcome<T, Tangents> evaluate_point(const PointGeometry<T>& geometry, const Vec<T, D>& w,
                                          const Traction<T, Tangents>& multiplier,
                                          const Vec<T, Tangents>& previous_placement, const PointRegularisation<T>& rho,
-                                         const T& friction, ConeRadius cone, double tie_length,
+                                         const FrictionLaw<T>& friction, ConeRadius cone, double tie_length,
                                          const ContactState* state) {
   static_assert(Tangents == 0 || Tangents == D - 1);
   PointOutcome<T, Tangents> point;
@@ -65,11 +66,15 @@ PointOutcome<T, Tangents> evaluate_point(const PointGeometry<T>& geometry, const
     trial.tangential[a] = multiplier.tangential[a] + rho.tangential * point.slip[a];
   }
   T bound{};
+  ContactState slip = state && is_slipping(*state) ? *state : ContactState::slip;
   if constexpr (Tangents > 0) {
-    const T& pressure = cone == ConeRadius::augmented ? trial.normal : multiplier.normal;
-    if (value(pressure) < 0 || cone == ConeRadius::augmented) bound = -friction * pressure;
+    const bool augmented = cone == ConeRadius::augmented;
+    const T pressure = augmented ? T(-trial.normal) : T(-multiplier.normal);
+    if (!state) slip = friction.piece(value(pressure));
+    if (value(pressure) > 0 || augmented || slip == ContactState::limited) bound = friction.bound(pressure, slip);
   }
   point.state = state ? *state : classify(trial, value(bound), value(rho.normal) * tie_length);
+  if (point.state == ContactState::slip) point.state = slip;
   point.traction = project_coulomb(trial, bound, point.state);
   return point;
 }

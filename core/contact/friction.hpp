@@ -1,22 +1,19 @@
-/// Unilateral contact with Coulomb friction as one projection: the kernel that every method shares.
+/// Unilateral contact with friction as one projection: the kernel that every method shares.
 ///
 ///     trial  z = lambda + rho g        traction  t = P_mu(z)
 ///
 ///   z = (z_N, z_T)   trial traction, force per area; compression is negative
 ///   open:  z_N > 0                    t = 0
 ///   stick: z_N <= 0, |z_T| <= bound   t = z
-///   slip:  z_N <= 0, |z_T| >  bound   t_N = z_N,  t_T = bound z_T/|z_T|,     bound = -mu t_N
+///   slip:  z_N <= 0, |z_T| >  bound   t_N = z_N,  t_T = bound z_T/|z_T|,     bound: core/contact/friction_law.hpp
 ///
 /// Not differentiable at z_N = 0 and at |z_T| = bound; there the branch that classify() names is differentiated.
 /// Source: [AC91], [SL92]; theory of the projection: core/README.md.
 #pragma once
 
-#include "core/algebra/scalar.hpp"
+#include "core/contact/friction_law.hpp"
 
 namespace stickslip {
-
-/// A frictionless point that is closed counts as slip: it slides without resistance.
-enum class ContactState : unsigned char { open, stick, slip };
 
 /// Normal part and tangential components in the frame of the point. Tangents = 0: frictionless.
 template <class T, int Tangents>

@@ -194,6 +194,8 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
     constexpr int C = 1 + Tangents;
     using Probe = Dual<D + C, T>;
     const auto geometry = detail::promote<Probe>(input.slots.geometry[p]);
+    const auto friction =
+        input.slots.friction[point.contact].template as<Probe>([](const T& number) { return Probe(number); });
     const Vec<T, D> w_value = detail::relative_displacement<T, D>(input, p, compact);
     const auto lambda_value = detail::gather_traction<T, Tangents>(multiplier, point.multiplier);
     const PointRegularisation<Probe> rho{Probe(input.rho[p].normal), Probe(input.rho[p].tangential)};
@@ -208,8 +210,8 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
       lambda.tangential[a].d[D + 1 + a] = input.rho[p].tangential;
       previous[a] = Probe(input.previous_placement[tangential_offset(input.model, p) + a]);
     }
-    const auto outcome = evaluate_point<Probe, D, Tangents>(
-        geometry, w, lambda, previous, rho, Probe(input.slots.friction[point.contact]), input.cone, 0, &state);
+    const auto outcome =
+        evaluate_point<Probe, D, Tangents>(geometry, w, lambda, previous, rho, friction, input.cone, 0, &state);
     const Vec<Probe, D> force = point_force<Probe, D, Tangents>(geometry, outcome.traction);
     PointTangent<T> tangent{Matrix<T>(D, D), Matrix<T>(D, C), Matrix<T>(C, D), Matrix<T>(C, C)};
     for (int i = 0; i < D; ++i) {
@@ -305,7 +307,7 @@ Vector<T> dissipated(const ContactInput<T>& input, const ContactField<T>& field,
   Vector<T> work = previous;
   for (std::size_t p = 0; p < input.model.points.size(); ++p) {
     const auto& point = input.model.points[p];
-    if (field.state[p] != ContactState::slip) continue;
+    if (!is_slipping(field.state[p])) continue;
     for (int a = 0; a < point.tangents; ++a) {
       const int k = point.multiplier + 1 + a;
       const T plastic = field.slip[tangential_offset(input.model, static_cast<int>(p)) + a] -

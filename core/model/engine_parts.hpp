@@ -158,10 +158,10 @@ Matrix<T> solve_updated(const TangentUpdate& update, const Matrix<T>& b, Solving
 }
 
 /// Slip couples the normal into the tangential rows, not the other way round; with the radius of the cone fixed while
-/// the system is solved (that of known multipliers) nothing couples them.
+/// the system is solved (that of known multipliers), or a law of friction without pressure, nothing couples them.
 inline Symmetry symmetry_of(const Model& model, bool unknown_multipliers, ConeRadius cone) {
   const bool fixed_radius = cone == ConeRadius::multiplier && !unknown_multipliers;
-  if (model.effects.friction && !fixed_radius) return Symmetry::general;
+  if (model.effects.coupled_friction && !fixed_radius) return Symmetry::general;
   return unknown_multipliers ? Symmetry::indefinite : Symmetry::positive_definite;
 }
 

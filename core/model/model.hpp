@@ -77,6 +77,7 @@ struct FramedNode {
 struct Effects {
   bool contact = false;
   bool friction = false;
+  bool coupled_friction = false;  ///< its bound depends on the pressure somewhere
   bool deformable_master = false;
   bool sensitivity = false;
   bool linear_bulk =

@@ -91,6 +91,7 @@ struct Pairing {
 void add_point(Model& model, ContactPoint point) {
   model.effects.contact = true;
   model.effects.friction |= point.tangents > 0;
+  model.effects.coupled_friction |= point.tangents > 0 && model.scene.contacts[point.contact].friction->couples();
   model.effects.deformable_master |= point.obstacle < 0;
   point.multiplier = model.multiplier_count;
   model.multiplier_count += point.components();

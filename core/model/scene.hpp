@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "core/algebra/scalar.hpp"
+#include "core/contact/friction_law.hpp"
 #include "core/mesh/mesh.hpp"
 
 namespace stickslip {
@@ -197,11 +198,11 @@ struct Obstacle {
 
 struct Contact {
   std::string name;
-  std::string slave;               ///< side expression of a deformable body
-  std::string master;              ///< obstacle name, or side expression of a deformable body
-  std::optional<Number> friction;  ///< none: frictionless, no tangential unknowns or code path
-  Number offset = 0.0;             ///< added to the geometric gap
-  bool segment = false;            ///< segment-integrated gap and slip in place of node-to-segment
+  std::string slave;                            ///< side expression of a deformable body
+  std::string master;                           ///< obstacle name, or side expression of a deformable body
+  std::optional<FrictionLaw<Number>> friction;  ///< none: frictionless, no tangential unknowns or code path
+  Number offset = 0.0;                          ///< added to the geometric gap
+  bool segment = false;                         ///< segment-integrated gap and slip in place of node-to-segment
 };
 
 /// Prescribed displacement n.u along a direction, free across it.

@@ -275,7 +275,7 @@ Slots<T> make_slots(const Model& model, const Numbers<T>& numbers, Points<T> poi
         {model.scene.space == Space::axisymmetric, plane ? numbers(model.scene.bodies[b].thickness) : T(1)});
   }
   for (const auto& contact : model.scene.contacts)
-    slots.friction.push_back(contact.friction ? numbers(*contact.friction) : T(0));
+    slots.friction.push_back(contact.friction ? contact.friction->template as<T>(numbers) : FrictionLaw<T>());
   for (const auto& point : model.points) slots.geometry.push_back(detail::initial_geometry(model, point, slots));
   for (const auto& framed : model.framed) slots.frames.push_back(nodal_frame(model.scene, framed, numbers));
   slots.stiffness = contact_stiffness(model, slots);

@@ -28,7 +28,8 @@ SlotBytes slot_bytes(const Slots<T>& slots) {
   for (const auto& frame : slots.frames) held.bodies += one * frame.size();
   for (const auto& geometry : slots.geometry)
     held.contact += static_cast<long>(sizeof(PointGeometry<U>)) + one * geometry.weights.size();
-  held.contact += one * static_cast<long>(slots.stiffness.size() + slots.friction.size());
+  held.contact += one * static_cast<long>(slots.stiffness.size());
+  for (const auto& law : slots.friction) held.contact += one * std::max(law.size(), 1);
   for (const auto& spin : slots.spins) held.contact += one * spin.size();
   return held;
 }

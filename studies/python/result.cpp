@@ -41,7 +41,7 @@ ContactTable contact_table(const Problem& problem, const State<double>& state, i
     const int p = points[i];
     const auto& point = model.points[p];
     table.nodes.push_back(point.nodes[0]);
-    table.state.push_back(static_cast<unsigned char>(state.contact.state[p]));
+    table.state.push_back(static_cast<unsigned char>(state_code(state.contact.state[p])));
     table.pressure[i] = -state.contact.traction[point.multiplier];
     table.gap[i] = state.contact.gap[p];
     table.area[i] = problem.slots.geometry[p].area;

@@ -36,19 +36,34 @@ Panel panel_of(const ConePath& path, double left) {
   return {left, zero, side / reach};
 }
 
+/// Corners of the bound over the pressure: where it begins, where it bends, where the panel ends.
+std::vector<std::pair<double, double>> edge_of(const FrictionLaw<double>& law, double far) {
+  std::vector<std::pair<double, double>> edge{{0, law.bound(0)}};
+  if (law.coefficient && law.limit && *law.limit < *law.coefficient * far)
+    edge.emplace_back(*law.limit / *law.coefficient, *law.limit);
+  edge.emplace_back(far, law.bound(far));
+  return edge;
+}
+
 void draw_cone(const ConePath& path, const Panel& at, Drawing& drawing) {
-  const double far = side / at.scale, edge = path.friction * far;
+  const auto edge = edge_of(path.law, side / at.scale);
   Path cone;
-  cone.move(at.x(0), at.y(0)).line(at.x(far), at.y(edge)).line(at.x(far), at.y(path.in_space ? 0 : -edge)).close();
-  drawing.path(cone, {"", "line", 0, {}}, "inside the cone: stick");
-  drawing.line(at.x(0), at.y(0), at.x(far), at.y(edge), {"soft", "", 1.5, {}});
-  if (!path.in_space) drawing.line(at.x(0), at.y(0), at.x(far), at.y(-edge), {"soft", "", 1.5, {}});
+  cone.move(at.x(0), at.y(0));
+  for (const auto& [p, t] : edge) cone.line(at.x(p), at.y(t));
+  if (path.in_space) cone.line(at.x(edge.back().first), at.y(0));
+  for (auto corner = edge.rbegin(); !path.in_space && corner != edge.rend(); ++corner)
+    cone.line(at.x(corner->first), at.y(-corner->second));
+  drawing.path(cone.close(), {"", "line", 0, {}}, "inside the cone: stick");
+  for (double sign : {1.0, -1.0})
+    for (std::size_t k = 1; k < edge.size() && (sign > 0 || !path.in_space); ++k)
+      drawing.line(at.x(edge[k - 1].first), at.y(sign * edge[k - 1].second), at.x(edge[k].first),
+                   at.y(sign * edge[k].second), {"soft", "", 1.5, {}});
 }
 
 /// 0 open, 1 sticks, 2 and -2 slips this way and that. A slipping traction lies on the cone but for rounding.
-int state_of(const ConeIterate& i, double friction) {
+int state_of(const ConeIterate& i, const FrictionLaw<double>& law) {
   if (!(i.pressure > 0)) return 0;
-  if (std::abs(i.tangential) < friction * i.pressure * (1 - 1e-9)) return 1;
+  if (std::abs(i.tangential) < law.bound(i.pressure) * (1 - 1e-9)) return 1;
   return i.tangential < 0 ? -2 : 2;
 }
 
@@ -58,7 +73,7 @@ std::vector<const ConeIterate*> telling_solutions(const ConePath& path) {
   for (const auto& i : path.iterates)
     if (i.last) all.push_back(&i);
   for (std::size_t n = 0; n < all.size(); ++n)
-    if (n == 0 || n + 1 == all.size() || state_of(*all[n], path.friction) != state_of(*all[n - 1], path.friction))
+    if (n == 0 || n + 1 == all.size() || state_of(*all[n], path.law) != state_of(*all[n - 1], path.law))
       out.push_back(all[n]);
   return out;
 }

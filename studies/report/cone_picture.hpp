@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/contact/friction_law.hpp"
 #include "studies/report/drawing.hpp"
 
 namespace stickslip::report {
@@ -18,14 +19,14 @@ struct ConeIterate {
 
 struct ConePath {
   std::string title;
-  double friction;
+  FrictionLaw<double> law;
   bool in_space;
   std::vector<ConeIterate> iterates;
 };
 
-/// A panel each: the cone |t_T| <= mu p, hollow circles for trial tractions, joined to the tractions they are projected
-/// to (dots), and diamonds where an equilibrium ended, with the time of the first, the last, and those whose state is
-/// new. What lies far outside is cut off.
+/// A panel each: the cone |t_T| <= bound(p), hollow circles for trial tractions, joined to the tractions they are
+/// projected to (dots), and diamonds where an equilibrium ended, with the time of the first, the last, and those whose
+/// state is new. What lies far outside is cut off.
 Drawing draw_cones(const std::vector<ConePath>& paths, const std::string& title);
 
 }  // namespace stickslip::report

@@ -96,7 +96,7 @@ TEST(SceneReader, ReadsABlockOnAFloor) {
   EXPECT_EQ(plane.normal[1].value, 2);
   EXPECT_EQ(scene.contacts.at(0).slave, "block.bottom");
   EXPECT_EQ(scene.contacts[0].master, "floor");
-  EXPECT_EQ(scene.contacts[0].friction->value, 0.3);
+  EXPECT_EQ(scene.contacts[0].friction->coefficient->value, 0.3);
   EXPECT_EQ(scene.contacts[0].offset.value, 0);
   EXPECT_EQ(scene.supports.at(0).on, "block.left");
   const Table& move = scene.supports[0].move.at('x');
@@ -292,13 +292,35 @@ TEST(SceneReader, RefusesAMethodThatDoesNotExist) {
             "monolithic_al\n");
 }
 
+TEST(SceneReader, ReadsEveryLawOfFriction) {
+  const auto law = [](const std::string& text) {
+    std::string scene = block_scene;
+    const std::string number = "\"friction\": 0.3";
+    scene.replace(scene.find(number), number.size(), "\"friction\": " + text);
+    const auto mu = scene.find("\"/contacts/sole/friction\"");
+    if (mu != std::string::npos) scene.replace(mu, 24, "\"/bodies/block/material/linear_elastic/E\"");
+    const auto path = std::filesystem::path(testing::TempDir()) / "law_of_friction.json";
+    std::ofstream(path) << scene;
+    Diagnostics diagnostics;
+    const auto input = read_scene(path.string(), {}, {}, diagnostics);
+    EXPECT_TRUE(input.has_value()) << diagnostics.text();
+    return input ? *input->scene.contacts[0].friction : FrictionLaw<Number>();
+  };
+  const auto limited = law(R"({"coulomb": 0.4, "limit": 5})"), tresca = law(R"({"tresca": 6})");
+  EXPECT_EQ(limited.coefficient->value, 0.4);
+  EXPECT_EQ(limited.limit->value, 5);
+  EXPECT_GE(limited.limit->slot, 0) << "it can be a parameter";
+  EXPECT_FALSE(tresca.coefficient.has_value());
+  EXPECT_EQ(tresca.limit->value, 6);
+}
+
 TEST(SceneReader, CarriesOutOverridesAndNamesThemInFaults) {
   const auto path = std::filesystem::path(testing::TempDir()) / "overridden_scene.json";
   std::ofstream(path) << block_scene;
   Diagnostics diagnostics;
   const auto input = read_scene(path.string(), {"/contacts/sole/friction=0.4", "/time/steps=3"}, {}, diagnostics);
   ASSERT_TRUE(input.has_value()) << diagnostics.text();
-  EXPECT_EQ(input->scene.contacts[0].friction->value, 0.4);
+  EXPECT_EQ(input->scene.contacts[0].friction->coefficient->value, 0.4);
   EXPECT_EQ(input->scene.legs[0].steps, 3);
   EXPECT_FALSE(read_scene(path.string(), {"/contacts/sole/friction=-0.4", "/time/stops=3"}, {}, diagnostics));
   EXPECT_EQ(

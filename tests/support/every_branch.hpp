@@ -51,6 +51,12 @@ inline double free_motion(const Model& model, const Slots<double>& slots, double
   return lu.isInvertible() ? lu.solve(f).norm() : 0;
 }
 
+/// Tangential traction that a law of friction bears under a pressure.
+inline double most_friction(const FrictionLaw<double>& law, double pressure) {
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  return std::min(law.coefficient ? *law.coefficient * pressure : unlimited, law.limit ? *law.limit : unlimited);
+}
+
 /// All solutions of the first increment, every point with friction, supports held, obstacles at rest.
 inline std::vector<FoundSolution> every_solution(const Model& model, const Slots<double>& slots, double time) {
   const int n = static_cast<int>(model.points.size()), dofs = model.dof_count(), size = dofs + 2 * n;
@@ -74,18 +80,22 @@ inline std::vector<FoundSolution> every_solution(const Model& model, const Slots
       right[dof] = 0;
     }
   long combinations = 1;
-  for (int p = 0; p < n; ++p) combinations *= 4;
+  for (int p = 0; p < n; ++p) combinations *= 6;
   std::vector<FoundSolution> found;
   const double scale = free_motion(model, slots, time);
   for (long c = 0; c < combinations; ++c) {
     Matrix<double> A = base;
     Vector<double> b = right;
     long rest = c;
-    std::vector<int> branch;  // 0 open, 1 stick, 2 and 3 slip with t_T of sign -1 and 1
-    for (int p = 0; p < n; ++p, rest /= 4) {
-      branch.push_back(static_cast<int>(rest % 4));
+    std::vector<int> branch;  // 0 open, 1 stick, 2 and 3 slip with t_T of sign -1 and 1, 4 and 5 likewise at the limit
+    bool exists = true;
+    for (int p = 0; p < n; ++p, rest /= 6) {
+      branch.push_back(static_cast<int>(rest % 6));
       const int N = dofs + 2 * p, T = N + 1;
-      const double mu = slots.friction[model.points[p].contact];
+      const auto& law = slots.friction[model.points[p].contact];
+      const bool at_limit = branch[p] > 3;
+      exists &= branch[p] < 2 || (at_limit ? law.limit.has_value() : law.coefficient.has_value());
+      if (!exists) break;
       if (branch[p] == 0)
         A(N, N) = 1;
       else {
@@ -96,8 +106,12 @@ inline std::vector<FoundSolution> every_solution(const Model& model, const Slots
         A.row(T).head(dofs) = tangent[p];
       else
         A(T, T) = 1;
-      if (branch[p] > 1) A(T, N) = branch[p] == 2 ? -mu : mu;
+      if (at_limit)
+        b[T] = branch[p] == 4 ? -*law.limit : *law.limit;
+      else if (branch[p] > 1)
+        A(T, N) = branch[p] == 2 ? -*law.coefficient : *law.coefficient;
     }
+    if (!exists) continue;
     const Eigen::FullPivLU<Matrix<double>> lu(A);
     if (!lu.isInvertible()) continue;
     const Vector<double> x = lu.solve(b);
@@ -105,11 +119,11 @@ inline std::vector<FoundSolution> every_solution(const Model& model, const Slots
     const double force = 1e-10 * largest_entry(x.tail(2 * n)), length = 1e-10 * largest_entry(x.head(dofs));
     bool valid = true;
     for (int p = 0; p < n; ++p) {
-      const double t_N = x[dofs + 2 * p], t_T = x[dofs + 2 * p + 1], mu = slots.friction[model.points[p].contact];
+      const double t_N = x[dofs + 2 * p], t_T = x[dofs + 2 * p + 1];
       const double gap = slots.geometry[p].gap + normal[p].dot(solution.u), slip = tangent[p].dot(solution.u);
       valid &= branch[p] == 0 ? gap >= -length : t_N <= force;
-      if (branch[p] == 1) valid &= std::abs(t_T) <= -mu * t_N + force;
-      if (branch[p] > 1) valid &= (branch[p] == 2 ? -slip : slip) >= -length;
+      if (branch[p] > 0) valid &= std::abs(t_T) <= most_friction(slots.friction[model.points[p].contact], -t_N) + force;
+      if (branch[p] > 1) valid &= (branch[p] % 2 == 0 ? -slip : slip) >= -length;
       solution.traction.push_back({t_N, t_T});
     }
     const auto same = [&](const FoundSolution& other) {
@@ -137,7 +151,7 @@ inline double coulomb_error(const Model& model, const Slots<double>& slots, cons
     const Vector<double> slip = after.contact.placement.segment(offset, point.tangents) -
                                 before.contact.placement.segment(offset, point.tangents);
     Vector<double> z = t + k * slip;
-    const double bound = -slots.friction[point.contact] * pressed, size = z.norm();
+    const double bound = z_N > 0 ? 0 : most_friction(slots.friction[point.contact], -pressed), size = z.norm();
     if (size > bound) z *= size > 0 ? bound / size : 0;
     worst = larger(worst, (t - z).norm());
     scale = larger(scale, larger(t.norm(), k * slip.norm()));

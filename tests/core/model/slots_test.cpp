@@ -77,7 +77,7 @@ std::vector<Vector<T>> groups(const Model& model, const Slots<T>& slots) {
     lists[4].push_back(g.area);
   }
   lists[5].assign(slots.stiffness.begin(), slots.stiffness.end());
-  lists[6].assign(slots.friction.begin(), slots.friction.end());
+  for (const auto& law : slots.friction) lists[6].push_back(law.slope_at_apex());
   std::vector<Vector<T>> out;
   for (const auto& list : lists) out.push_back(Eigen::Map<const Vector<T>>(list.data(), list.size()));
   for (const auto& load : slots.loads) out.push_back(load);

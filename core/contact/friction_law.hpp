@@ -1,0 +1,72 @@
+/// The law of friction: how much tangential traction a closed point bears under a pressure p.
+///
+///   bound(p) = mu p               coefficient alone: Coulomb
+///   bound(p) = min(mu p, limit)   both: Coulomb with a shear limit, as of a yielding surface (Orowan)
+///   bound(p) = limit              limit alone: Tresca; at p = 0 it jumps, since an open point bears nothing
+///
+/// All that the program knows of the law stands here: the bound, which linear piece of it holds, its derivative, what
+/// is left of it at the apex of the cone (p = 0), and whether it couples pressure and tangential traction. The bound is
+/// continuous and concave where the point is closed, with a corner where mu p = limit. E. Orowan, Proc. Inst. Mech.
+/// Eng. 150 (1943) 140-167 (limit); [AC91] (Coulomb).
+#pragma once
+
+#include <concepts>
+#include <optional>
+
+#include "core/algebra/scalar.hpp"
+
+namespace stickslip {
+
+/// Which smooth piece of the projection a contact point is on. A frictionless point that is closed counts as slip: it
+/// slides without resistance. `limited`: it slips at the law's limit.
+enum class ContactState : unsigned char { open, stick, slip, limited };
+
+/// Whether a point with this state slips.
+inline bool is_slipping(ContactState state) { return state == ContactState::slip || state == ContactState::limited; }
+
+template <class T>
+struct FrictionLaw {
+  std::optional<T> coefficient;  ///< mu >= 0
+  std::optional<T> limit;        ///< >= 0, force per area
+
+  FrictionLaw() = default;
+  template <std::convertible_to<T> U>
+  FrictionLaw(const U& mu) : coefficient(mu) {}  // NOLINT: a number alone is Coulomb's
+  FrictionLaw(std::optional<T> mu, std::optional<T> most) : coefficient(std::move(mu)), limit(std::move(most)) {}
+
+  /// Bound on the piece that `slip` names: slip or limited.
+  T bound(const T& pressure, ContactState slip) const {
+    return slip == ContactState::limited ? *limit : T(*coefficient * pressure);
+  }
+  /// The piece that holds at a pressure; at the corner the sloping one.
+  ContactState piece(double pressure) const {
+    if (!coefficient) return ContactState::limited;
+    return limit && value(*coefficient) * pressure > value(*limit) ? ContactState::limited : ContactState::slip;
+  }
+  /// Bound at a pressure, without derivative.
+  double bound(double pressure) const {
+    return piece(pressure) == ContactState::limited ? value(*limit) : value(*coefficient) * pressure;
+  }
+  /// Slope of the bound where the pressure begins: mu, or 0.
+  T slope_at_apex() const { return coefficient ? *coefficient : T(0); }
+  /// Slope that the bound keeps however large the pressure: mu, or 0.
+  double slope_at_infinity() const { return limit ? 0 : value(*coefficient); }
+  /// Whether a point that is closed without pressure bears nothing: its cone has an apex.
+  bool has_apex() const { return coefficient.has_value() || value(*limit) == 0; }
+  /// Whether no pressure makes it bear anything.
+  bool is_smooth() const { return (coefficient && value(*coefficient) == 0) || (limit && value(*limit) == 0); }
+  /// Whether the bound depends on the pressure: the tangent of a slipping point is unsymmetric then.
+  bool couples() const { return coefficient.has_value(); }
+  /// Numbers that it consists of.
+  int size() const { return (coefficient ? 1 : 0) + (limit ? 1 : 0); }
+
+  template <class U, class Cast>
+  FrictionLaw<U> as(Cast&& cast) const {
+    FrictionLaw<U> law;
+    if (coefficient) law.coefficient = cast(*coefficient);
+    if (limit) law.limit = cast(*limit);
+    return law;
+  }
+};
+
+}  // namespace stickslip
