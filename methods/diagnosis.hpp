@@ -80,6 +80,21 @@ std::string free_motion(const Model& model, const Slots<T>& slots, std::size_t b
   return "";
 }
 
+/// The first element that a state inverts, in words; empty where none is.
+template <class T>
+std::string words_of_inversion(const Model& model, const Slots<T>& slots, const State<T>& state) {
+  if constexpr (std::is_same_v<T, double>) {
+    if (model.effects.linear_bulk) return "";
+    const auto inverted = inverted_elements(model, slots, state.displacement);
+    for (std::size_t b = 0; b < inverted.size(); ++b)
+      if (!inverted[b].empty())
+        return "element " + std::to_string(inverted[b].front()) + " of " + model.scene.bodies[b].name +
+               " is inverted (" + std::to_string(inverted[b].size()) +
+               " of them are); take more steps, a finer mesh there, or a smaller motion";
+  }
+  return "";
+}
+
 /// Which body no forces balance, and how it can move.
 template <class T>
 std::string words_of_imbalance(const Model& model, const Slots<T>& slots, double time,
@@ -104,6 +119,11 @@ std::string words_of_imbalance(const Model& model, const Slots<T>& slots, double
 /// the tangent is singular, and so may one whose supports leave a motion free.
 template <class T>
 void diagnose(const Model& model, const Slots<T>& slots, double time, bool prevents_penetration, Increment<T>& failed) {
+  if (const std::string inverted = detail::words_of_inversion(model, slots, failed.state); !inverted.empty()) {
+    failed.status = Status::inverted_element;
+    failed.message = inverted;
+    return;
+  }
   const std::string driven_in = prescribed_penetration(model, slots, failed.state);
   if (prevents_penetration && !driven_in.empty()) {
     failed.status = Status::infeasible;

@@ -18,6 +18,7 @@ EnginePrice predict_price(const Model& model, const Method& method) {
 }
 
 bool condenses(const Model& model, const Method& method, LinearAlgebra::Engine engine) {
+  if (!model.effects.linear_bulk) return false;
   if (engine != LinearAlgebra::Engine::automatic) return engine == LinearAlgebra::Engine::condensed;
   return prefers_condensed(model, predict_price(model, method));
 }

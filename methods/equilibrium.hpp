@@ -66,8 +66,10 @@ struct Equilibrium {
   Unknowns<T> at;
   ContactField<T> field;
   int iterations = 0;
-  bool rough = false;     ///< ended by `forcing`, short of the tolerance
-  bool reversed = false;  ///< a tangent on the way was (Engine::reversed): there may be other solutions
+  bool rough = false;  ///< ended by `forcing`, short of the tolerance
+  /// A tangent on the way was (Engine::reversed): there may be other solutions. (Of bodies whose tangent is not
+  /// constant it tells nothing.)
+  bool reversed = false;
   std::vector<IterationRecord> history;
 };
 

@@ -37,6 +37,18 @@ class NewtonTangent {
     if (task.solves_for_multipliers()) decided_ = decided_elsewhere(task.contact.model, task.contact.slots);
   }
 
+  /// Takes the tangent of what depends on the place: of the bodies where it is not constant, and which multipliers are
+  /// decided elsewhere where normals turn.
+  void move_to(const Unknowns<T>& unknowns, const ContactField<T>& field) {
+    const auto& [model, slots] = std::tie(task_.contact.model, task_.contact.slots);
+    if (!model.effects.linear_bulk) {
+      const Stopwatch time(account_.seconds.assembly);
+      engine_.linearise(engine_.all(unknowns.u));
+    }
+    if (model.effects.current_geometry && task_.solves_for_multipliers())
+      decided_ = decided_elsewhere(model, slots, &field);
+  }
+
   /// Prepares the engine to solve with the tangent in `branches`. Where that is singular while points are open, as of a
   /// body that nothing holds but the contact it is about to make, they are presumed closed, in `branches` too: those
   /// that should not be are in tension then, and open. False where the tangent stays singular.

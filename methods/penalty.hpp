@@ -79,7 +79,7 @@ std::string unyielding_point(Run<T, E>& run, const ContactInput<T>& found, const
   for (int round = 0; round < most_rounds; ++round) {
     const auto pushed = evaluate_contact<T>(input, compact, traction, &states);
     ForceScale unused;
-    Vector<T> rows = run.engine.residual(equilibrium.at.u, contact_forces(model, run.slots, pushed.traction), unused);
+    Vector<T> rows = run.engine.residual(equilibrium.at.u, contact_forces(model, run.slots, pushed), unused);
     for (Eigen::Index row = 0; row < rows.size(); ++row)
       if (!run.engine.is_free(row)) rows[row] = T(0);
     std::vector<PointTangent<T>> tangents;

@@ -88,22 +88,29 @@ double prescribed_motion(const Model& model, const Slots<T>& slots, double time)
   return largest_nodal_norm(displacement, model.dimension);
 }
 
-/// What rounding alone may leave of the residuals. `rounding`: of the bodies' forces; `reach`: largest displacement of
-/// a contact node; `prescribed`: largest that supports prescribe.
-inline void set_floors(const PointSizes& sizes, const RunScales& scales, double rounding, double reach,
-                       double prescribed, Residuals& residuals) {
+/// Sizes of motions and places, lengths.
+struct Reach {
+  double moved = 0;       ///< largest displacement of a contact node
+  double placed = 0;      ///< what rounds in its gap: that, and its coordinates where geometry is the present one
+  double prescribed = 0;  ///< largest displacement that supports prescribe
+};
+
+/// What rounding alone may leave of the residuals. `rounding`: of the bodies' forces.
+inline void set_floors(const PointSizes& sizes, const RunScales& scales, double rounding, const Reach& reach,
+                       Residuals& residuals) {
   // Rounding of this share of the forces means displacements 1e9 times those that they cause in the stiffest body: one
   // that drifts off on a nearly singular tangent, and no equilibrium that rounding hides; unless supports move it as
   // far, or a softer one yields as far.
   constexpr double adrift = 1e-5, carried = 10, yielded = 1e3;
   const double bulk_floor = rounding_factor * ratio(rounding, scales.force);
-  if (bulk_floor <= adrift || reach <= carried * prescribed || sizes.softest * reach <= yielded * scales.force)
-    residuals.floor_equilibrium =
-        bulk_floor +
-        rounding_factor * ratio(unit_roundoff * sizes.area_times_rho * std::max(reach, sizes.distance), scales.force);
-  residuals.floor_length = rounding_factor * ratio(unit_roundoff * reach, scales.length);
+  if (bulk_floor <= adrift || reach.moved <= carried * reach.prescribed ||
+      sizes.softest * reach.moved <= yielded * scales.force)
+    residuals.floor_equilibrium = bulk_floor + rounding_factor * ratio(unit_roundoff * sizes.area_times_rho *
+                                                                           std::max(reach.placed, sizes.distance),
+                                                                       scales.force);
+  residuals.floor_length = rounding_factor * ratio(unit_roundoff * reach.placed, scales.length);
   // in slip the bound passes on what rounding makes of the pressure lambda_N + rho g_N
-  residuals.floor_traction = rounding_factor * ratio(unit_roundoff * sizes.rho * reach, scales.traction);
+  residuals.floor_traction = rounding_factor * ratio(unit_roundoff * sizes.rho * reach.placed, scales.traction);
 }
 
 /// Takes in how far lambda is from the traction, point by point.
@@ -147,6 +154,14 @@ class Evaluator {
   void take_rows_in(const std::vector<ContactState>& branches, const Unknowns<T>& unknowns, detail::Evaluation<T>& at);
 
  private:
+  detail::Reach reach_of(const Vector<T>& compact) const {
+    const auto& [model, slots] = std::tie(task_.contact.model, task_.contact.slots);
+    const double moved = largest_nodal_norm(compact, model.dimension);
+    if (!model.effects.current_geometry) return {moved, moved, prescribed_};
+    double placed = 0;
+    for (int node : model.contact_nodes) placed = std::max(placed, values(slots.points.col(node)).norm());
+    return {moved, moved + placed, prescribed_};
+  }
   Vector<T> contact_field_forces(const Vector<T>& compact, const ContactField<T>& field) const;
   void count() { account_.counters.contact_evaluations += static_cast<long>(task_.contact.model.points.size()); }
 
@@ -160,7 +175,7 @@ class Evaluator {
 template <class T, class E>
 Vector<T> Evaluator<T, E>::contact_field_forces(const Vector<T>& compact, const ContactField<T>& field) const {
   const Model& model = task_.contact.model;
-  Vector<T> forces = contact_forces(model, task_.contact.slots, field.traction);
+  Vector<T> forces = contact_forces(model, task_.contact.slots, field);
   if (task_.anchor.stiffness.size() > 0) forces += task_.anchor.force(compact, model.dimension);
   return forces;
 }
@@ -178,14 +193,14 @@ detail::Evaluation<T> Evaluator<T, E>::operator()(const Unknowns<T>& unknowns) {
   at.rows_u = engine_.residual(unknowns.u, contact_field_forces(compact, at.field), force);
   at.scales.force = force.force;
   const auto sizes = detail::measure_points(input, at.field, at.scales);
-  const double reach = largest_nodal_norm(compact, model.dimension);
+  const detail::Reach reach = reach_of(compact);
   for (Eigen::Index row = 0; row < at.rows_u.size(); ++row)
     if (!engine_.is_free(row)) at.rows_u[row] = T(0);
   at.residuals.equilibrium = detail::ratio(largest_nodal_norm(at.rows_u, model.dimension), at.scales.force);
-  detail::set_floors(sizes, at.scales, force.rounding, reach, prescribed_, at.residuals);
+  detail::set_floors(sizes, at.scales, force.rounding, reach, at.residuals);
   if (!task_.solves_for_multipliers()) return at;
   at.rows_l = multiplier_residual(model, input.slots, at.field.traction, unknowns.multiplier);
-  detail::measure_multipliers(input, unknowns.multiplier, sizes, reach, at);
+  detail::measure_multipliers(input, unknowns.multiplier, sizes, reach.moved, at);
   return at;
 }
 

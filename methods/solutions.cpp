@@ -169,7 +169,7 @@ bool can_try_all_branches(const Model& model) {
     combinations *= point.tangents > 0 ? 2 + 2 * law->size() : 2;
     if (combinations > most_combinations) return false;
   }
-  return model.dimension == 2 && model.effects.friction && !model.points.empty();
+  return model.dimension == 2 && model.effects.linear_bulk && model.effects.friction && !model.points.empty();
 }
 
 bool may_have_several(const ContactProblem& problem) {

@@ -126,7 +126,7 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
 template <class T, class E>
 bool may_have_several(Run<T, E>& run) {
   const Model& model = run.model;
-  if (!model.effects.friction) return false;
+  if (!model.effects.friction || !model.effects.linear_bulk) return false;
   if (is_wedged(model, run.slots)) return true;
   if constexpr (std::is_same_v<T, double>) {
     if (!can_try_all_branches(model))
@@ -135,7 +135,7 @@ bool may_have_several(Run<T, E>& run) {
       run.condensation = std::make_shared<Condensation<double>>(model, run.slots, Backend::automatic);
     if (!run.condensation->valid()) return false;
     const RegularisationField<double> rho(model.points.size(), {1, 1});
-    const auto start = initial_state<double>(model);
+    const auto start = initial_state<double>(model, run.slots);
     CondensedEngine<double> engine(model, run.slots, false, ConeRadius::augmented, run.condensation);
     const ContactInput<double> input{model, run.slots, rho, start.contact.placement};
     const auto u = engine.begin(0, start.displacement);
@@ -150,7 +150,7 @@ void march(const M& method, const Model& model, const Slots<T>& slots, E& engine
   Run<T, E> run{model, slots, engine, {}, false, workspace.condensation};
   run.several = may_have_several(run);
   run.account.trace = options.trace;
-  trajectory.initial = initial_state<T>(model);
+  trajectory.initial = initial_state<T>(model, slots);
   const auto& times = options.replay.empty() ? model.times : options.replay;
   for (double time : times) {
     const std::size_t before = trajectory.increments.size();

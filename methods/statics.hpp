@@ -91,11 +91,11 @@ RigidStatics rigid_statics(const Model& model, const Slots<T>& slots, double tim
 inline constexpr int balanced = -1, a_group = -2;
 
 /// Index of a body whose load nothing balances; `balanced` where all can be, or where this cannot tell (space, bodies
-/// of revolution).
+/// of revolution, places that are not those of the start).
 template <class T>
 int unbalanced_body(const Model& model, const Slots<T>& slots, double time) {
   constexpr double rounding = 1e-9;  // of the least squares: what is less may be balanced
-  if (model.dimension != 2 || model.scene.space == Space::axisymmetric) return balanced;
+  if (model.dimension != 2 || model.scene.space == Space::axisymmetric || model.scene.finite_strain) return balanced;
   const RigidStatics all = rigid_statics(model, slots, time);
   if (!(unbalanced_share(all) > rounding)) return balanced;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {

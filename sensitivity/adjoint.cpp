@@ -69,18 +69,34 @@ DerivativeStorage storage_of(const Recording& recording, const std::vector<Backw
   return storage;
 }
 
+/// Moves the derivatives by the history that the run began with to the slots that it is a function of.
+template <class E>
+void pull_back_initial_history(AdjointProblem<E>& problem) {
+  if (!problem.model.effects.current_geometry) return;
+  problem.tape.rewind(problem.slots_end);
+  const auto initial = initial_state<Reverse>(problem.model, problem.recorded);
+  for (auto& objective : problem.objectives) {
+    objective.by.resize(problem.slots_end);
+    objective.by.resize(problem.tape.size(), 0);
+    const auto& placement = initial.contact.placement;
+    for (Eigen::Index i = 0; i < placement.size(); ++i)
+      if (placement[i].at >= 0) objective.by[placement[i].at] += objective.history.placement[i];
+    problem.tape.pull_back(objective.by, problem.slots_end);
+  }
+}
+
 template <class E, class M>
 bool run(const M& method, AdjointProblem<E>& problem, const Trajectory<double>& trajectory) {
   const Model& model = problem.model;
-  const auto tangential = static_cast<Eigen::Index>(model.multiplier_count - model.points.size());
   for (auto& objective : problem.objectives)
-    objective.history = {Vector<double>::Zero(tangential), Vector<double>::Zero(model.multiplier_count),
+    objective.history = {Vector<double>::Zero(model.placement_count), Vector<double>::Zero(model.multiplier_count),
                          Vector<double>::Zero(trajectory.initial.dissipation.size())};
   const auto& increments = trajectory.increments;
   for (std::size_t n = increments.size(); n-- > 0;) {
     const auto& previous = n == 0 ? trajectory.initial : increments[n - 1].state;
     if (!pull_back_increment(method, problem, previous, increments[n])) return false;
   }
+  pull_back_initial_history(problem);
   return true;
 }
 

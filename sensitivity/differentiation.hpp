@@ -39,8 +39,9 @@ inline std::vector<ParameterBlock> parameter_blocks(const Model& model) {
   for (int first = 0; first < parameters; first += directions) {
     std::vector<int> of_block;
     for (int j = first; j < std::min(parameters, first + directions); ++j) of_block.push_back(j);
-    const auto initial = initial_state<Direction>(model);
-    blocks.push_back({make_slots<Direction>(model, seeded(model.scene, of_block)), initial, initial});
+    auto slots = make_slots<Direction>(model, seeded(model.scene, of_block));
+    const auto initial = initial_state<Direction>(model, slots);
+    blocks.push_back({std::move(slots), initial, initial});
   }
   return blocks;
 }

@@ -180,7 +180,7 @@ typename LinearisedEquilibrium<E>::Rows LinearisedEquilibrium<E>::evaluate(
     rows.fields.push_back(evaluate_contact<Direction>(input(b), compact[b], lambda[b], &at_.contact.state));
     take_rays(input(b), lambda[b], at_.contact.ray, rows.fields[b]);
     forces.push_back(into_frames(problem_.model, slots.frames, Layout::compact,
-                                 contact_forces(problem_.model, slots, rows.fields[b].traction)));
+                                 contact_forces(problem_.model, slots, rows.fields[b])));
     if (unknown_)
       multiplier_rows.push_back(multiplier_residual(problem_.model, slots, rows.fields[b].traction, lambda[b]));
   }

@@ -100,7 +100,8 @@ struct SideRun {
   SideRun(const M& m, const Model& of, const Slots<double>& s, E& e, const Trajectory<double>& t,
           Slots<Direction> seeded_slots, double size)
       : method(m), model(of), slots(s), engine(e), trajectory(t), parameter(size), scales(traction_scales(of, s, t)) {
-    blocks.push_back({std::move(seeded_slots), initial_state<Direction>(model), {}});
+    const auto initial = initial_state<Direction>(model, seeded_slots);
+    blocks.push_back({std::move(seeded_slots), initial, {}});
     blocks[0].current = blocks[0].previous;
   }
 

@@ -207,12 +207,11 @@ Vector<double> RecordedEquilibrium<E>::pull_back(int objective) {
   return weight;
 }
 
-/// Moves weights of the bodies' forces to the displacement: their tangent is symmetric and constant
-/// (Effects::linear_bulk).
+/// Moves weights of the bodies' forces to the displacement: their tangent is symmetric.
 template <class E>
 void RecordedEquilibrium<E>::pull_back_bodies(int objective, const Vector<double>& weight) {
   if (weight.size() > 0 && weight.cwiseAbs().maxCoeff() > 0)
-    seed(by(objective), displacement_, bulk_forces(problem_.model, problem_.slots, weight));
+    seed(by(objective), displacement_, bulk_tangent_times(problem_.model, problem_.slots, at_.displacement, weight));
 }
 
 /// A solve took the derivative by the free displacements up.

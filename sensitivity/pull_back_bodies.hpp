@@ -1,5 +1,5 @@
-/// The bodies' share of a gradient: sum over the increments of a . dK/dslots . u, for all increments in one visit of
-/// each element.
+/// The bodies' share of a gradient: sum over the increments of a . df(u)/dslots, f the bodies' forces; where these are
+/// K u, for all increments in one visit of each element.
 #pragma once
 
 #include "core/algebra/reverse.hpp"

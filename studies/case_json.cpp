@@ -259,7 +259,7 @@ json result_json(const CaseResult& result, const std::string& scene_text) {
   out["status"] = name_of(result.status());
   out["message"] = result.message();
   out["effects"] = {{"friction", effects.friction},
-                    {"finite_strain", false},
+                    {"finite_strain", model.scene.finite_strain},
                     {"plasticity", false},
                     {"smoothing", false},
                     {"sensitivity", effects.sensitivity}};

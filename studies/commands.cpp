@@ -164,6 +164,9 @@ int run_command(const RunArguments& arguments) {
   const bool writes = !arguments.json || !arguments.output.empty();
   const auto directory = output_directory(arguments.output, arguments.scene);
   if (!arguments.export_to.empty()) check_folder(arguments.export_to);
+  if (!arguments.export_to.empty() && loaded->input.scene.finite_strain)
+    throw InputFault(
+        "--export: the system of a scene of finite strain is not linear; only small strain has a K to write");
   if (!writes && arguments.report) throw InputFault("--report: with --json nothing is written; give -o DIR too");
   if (writes) prepare_run_directory(directory, arguments.report);
   std::optional<DirectoryLock> lock;

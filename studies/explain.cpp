@@ -78,8 +78,9 @@ std::string explain(const Input& input, const Problem& problem) {
   const auto& scene = model.scene;
   const auto& effects = model.effects;
   std::string text = printable(scene.title.empty() ? input.file : scene.title) + "\n";
-  text += fmt::format("\nspace: {}, small strain: linear strains, contact geometry of the start\nbodies:\n",
-                      space_name(scene.space));
+  text += fmt::format("\nspace: {}, {}\nbodies:\n", space_name(scene.space),
+                      scene.finite_strain ? "finite strain: everything is where it is now"
+                                          : "small strain: linear strains, contact geometry of the start");
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const auto& mesh = model.bodies[b].mesh;
     text += fmt::format("  {}: {} nodes, {} {}{}\n", scene.bodies[b].name, mesh.node_count, mesh.element_count(),
@@ -97,7 +98,9 @@ std::string explain(const Input& input, const Problem& problem) {
   text += condenses(model, input.method, input.linear_algebra.engine)
               ? fmt::format("linear algebra: bodies condensed once to {} contact dofs, Newton on a dense system\n",
                             model.contact_nodes.size() * model.dimension)
-              : "linear algebra: one sparse factorisation an iteration, the bodies' part assembled once\n";
+          : effects.linear_bulk
+              ? "linear algebra: one sparse factorisation an iteration, the bodies' part assembled once\n"
+              : "linear algebra: one sparse factorisation an iteration, the bodies' part assembled anew\n";
   const EnginePrice price = predict_price(model, input.method);
   text += fmt::format("  predicted: {:.2g} Gflop condensed, {:.2g} Gflop sparse\n", 1e-9 * price.condensed,
                       1e-9 * price.sparse);
@@ -106,6 +109,8 @@ std::string explain(const Input& input, const Problem& problem) {
   text += "\nsimulated:\n";
   if (effects.contact) text += "  unilateral contact\n";
   if (effects.friction) text += "  friction, path dependent (slip is remembered)\n";
+  if (!effects.linear_bulk) text += "  finite strain\n";
+  if (effects.current_geometry) text += "  large sliding on rigid obstacles, normals that turn\n";
   if (effects.deformable_master) text += "  contact between deformable bodies\n";
   const bool adjoint = scene.sensitivity_mode == SensitivityMode::adjoint;
   if (effects.sensitivity)
@@ -116,7 +121,8 @@ std::string explain(const Input& input, const Problem& problem) {
   if (!effects.contact) text += "  contact: no slave node faces a master\n";
   if (!effects.friction) text += "  friction: no contact has any\n";
   if (!effects.sensitivity) text += "  derivatives: the scene names no parameters\n";
-  text += "  large displacements and sliding, plasticity, smoothing, inertia\n";
+  text += scene.finite_strain ? "  plasticity, smoothing, inertia\n"
+                              : "  large displacements and sliding, plasticity, smoothing, inertia\n";
   return text;
 }
 

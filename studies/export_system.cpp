@@ -19,7 +19,7 @@ Sparse stiffness_of(const Model& model, const Slots<double>& slots) {
   const int D = model.dimension;
   std::vector<Eigen::Triplet<double>> entries;
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
-    for_each_framed_tangent(model, slots, b, [&](const auto& nodes, const auto& K) {
+    for_each_framed_tangent<double>(model, slots, b, nullptr, [&](const auto& nodes, const auto& K) {
       for (Eigen::Index i = 0; i < K.rows(); ++i)
         for (Eigen::Index j = 0; j < K.cols(); ++j)
           entries.emplace_back(nodes[i / D] * D + i % D, nodes[j / D] * D + j % D, K(i, j));

@@ -16,6 +16,23 @@ namespace {
 
 using nlohmann::json;
 
+/// Stress of a strain, xx yy zz xy; Cauchy's at finite strain.
+template <int rows>
+std::array<double, 4> stress_of(const Model& model, const Law<double>& law, const Mat<double, rows>& H) {
+  if constexpr (rows == 2)
+    if (const auto* finite = std::get_if<NeoHookeanLaw<double>>(&law)) {
+      const Mat<double, 2> F = Mat<double, 2>::Identity() + H;
+      const Mat<double, 2> s =
+          finite->template stress<double, 2>(H) * F.transpose() / (F(0, 0) * F(1, 1) - F(0, 1) * F(1, 0));
+      return {s(0, 0), s(1, 1), finite->stress_across(H), s(0, 1)};
+    }
+  const auto& linear = std::get<LinearElasticLaw<double>>(law);
+  const Mat<double, rows> s = linear.template stress<double, rows>(H);
+  double zz = model.scene.space == Space::plane_strain ? linear.lame * H.trace() : 0;
+  if constexpr (rows == 3) zz = s(2, 2);
+  return {s(0, 0), s(1, 1), zz, s(0, 1)};
+}
+
 /// Mean stress of each element, xx yy zz xy yz xz; zero for lumped elements. Plane strain: zz = nu (xx + yy);
 /// axisymmetric: zz is the hoop stress.
 Matrix<double> element_stress(const Problem& problem, const State<double>& state) {
@@ -25,15 +42,13 @@ Matrix<double> element_stress(const Problem& problem, const State<double>& state
   Matrix<double> stress = Matrix<double>::Zero(6, count);
   int first = 0;  // column of the body's first element
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    const auto* law = std::get_if<LinearElasticLaw<double>>(&problem.slots.laws[b]);
+    const auto& law = problem.slots.laws[b];
     Vector<double> volumes = Vector<double>::Zero(model.bodies[b].mesh.element_count());
     for_each_strain(problem, state.displacement, b, [&](int e, const auto& H, double volume) {
       constexpr int rows = std::decay_t<decltype(H)>::RowsAtCompileTime;
-      const Mat<double, rows> s = law->template stress<double, rows>(H);
-      double zz = model.scene.space == Space::plane_strain ? law->lame * H.trace() : 0;
-      if constexpr (rows == 3) zz = s(2, 2);
+      const auto [xx, yy, zz, xy] = stress_of<rows>(model, law, H);
       Eigen::Matrix<double, 6, 1> components;
-      components << s(0, 0), s(1, 1), zz, s(0, 1), 0, 0;
+      components << xx, yy, zz, xy, 0, 0;
       stress.col(first + e) += volume * components;
       volumes[e] += volume;
     });
@@ -236,7 +251,7 @@ json contact_json(const Problem& problem, const State<double>& state) {
 
 Vector<double> traction_vector(const Problem& problem, const State<double>& state, int p) {
   const auto& point = problem.model.points[p];
-  const auto& geometry = problem.slots.geometry[p];
+  const auto& geometry = geometry_in(state.contact, problem.slots, p);
   Vector<double> t = -state.contact.traction[point.multiplier] * geometry.normal;
   for (int a = 0; a < point.tangents; ++a)
     t -= state.contact.traction[point.multiplier + 1 + a] * geometry.tangents.col(a);

@@ -22,6 +22,7 @@ constexpr double number = sizeof(double);
 struct Size {
   double dofs, contact_dofs, free, solved;  ///< displacements; `solved`: in the systems of the engine
   double points, tangential, contacts;      ///< `contacts`: with a work of friction
+  double feet, present;                     ///< of the slip history; points that keep a geometry in each state
   double states;                            ///< that the run keeps
   double steps, parameters, blocks, responses, objectives;
   double together;  ///< increments that are differentiated at once
@@ -39,6 +40,8 @@ Size size_of(const Input& input, const Model& model) {
   n.solved = solved_displacements(model, n.condensed);
   n.points = static_cast<double>(model.points.size());
   n.tangential = model.multiplier_count - n.points;
+  n.feet = model.placement_count - n.tangential;
+  n.present = model.effects.current_geometry ? n.points : 0;
   n.contacts = model.effects.friction ? static_cast<double>(model.scene.contacts.size()) : 0;
   n.steps = static_cast<double>(model.times.size());
   n.states = n.steps + 1;
@@ -52,6 +55,12 @@ Size size_of(const Input& input, const Model& model) {
   n.follows = !n.condensed && (!uzawa || uzawa->sensitivity == UzawaAL::Sensitivity::iterated);
   n.together = std::min(n.steps, std::max(1.0, std::floor(columns_together / std::max(n.parameters, 1.0))));
   return n;
+}
+
+/// Of present geometries that a state keeps, one weight each: a rigid master.
+template <class T>
+double geometry_bytes(const Size& n) {
+  return n.present * (sizeof(PointGeometry<T>) + sizeof(T));
 }
 
 double multipliers(const Size& n) { return n.unknown ? n.points + n.tangential : 0; }
@@ -74,19 +83,20 @@ void add_contact_rows(const Problem& problem, const Size& n, const Amount& facto
   const auto& model = problem.model;
   const auto& effects = model.effects;
   const auto [nodes, bytes] = masters_of(model);
-  ledger.push_back({"contact",
-                    effects.contact,
-                    {{"normal", n.unknown ? n.points : 0}},
-                    {{"points", point_bytes(model, problem.slots) - bytes},
-                     {"states", (sizeof(ContactState) + 2 * number) * n.points * n.states},
-                     {"multipliers", number * n.points * n.states}},
-                    {{"points", n.points}, {"evaluations", 0, effects.contact ? not_known : exactly}},
-                    not_apart});
+  ledger.push_back(
+      {"contact",
+       effects.contact,
+       {{"normal", n.unknown ? n.points : 0}},
+       {{"points", point_bytes(model, problem.slots) - bytes},
+        {"states", ((sizeof(ContactState) + 2 * number) * n.points + geometry_bytes<double>(n)) * n.states},
+        {"multipliers", number * n.points * n.states}},
+       {{"points", n.points}, {"evaluations", 0, effects.contact ? not_known : exactly}},
+       not_apart});
   const bool spares = n.unsymmetric && !n.condensed;
   ledger.push_back({"friction",
                     effects.friction,
                     {{"tangential", n.unknown ? n.tangential : 0}},
-                    {{"history", number * (2 * n.tangential + n.contacts) * n.states},
+                    {{"history", number * (2 * n.tangential + n.feet + n.contacts) * n.states},
                      {"multipliers", 2 * number * n.tangential * n.states},
                      {"factor", spares ? factor.value : 0, spares ? factor.within : exactly}},
                     {{"unsymmetric_factorizations", 0, n.unsymmetric ? not_known : exactly}},
@@ -96,7 +106,7 @@ void add_contact_rows(const Problem& problem, const Size& n, const Amount& facto
 }
 
 /// Numbers of a dual state of one block, but for the branches.
-double state_numbers(const Size& n) { return n.dofs + 3 * n.points + 4 * n.tangential + n.contacts; }
+double state_numbers(const Size& n) { return n.dofs + 3 * n.points + 4 * n.tangential + n.feet + n.contacts; }
 
 /// Back-solves and evaluations of derivatives with `columns` right-hand sides an increment, that are `evaluated` times
 /// as many points. A penalty takes one solve; multipliers that are unknown up to two more, where rounding asks for
@@ -123,7 +133,7 @@ LedgerRow direct_row(const Input& input, const Problem& problem, const Size& n) 
   const double engine_rows = n.condensed ? n.contact_dofs : n.dofs;
   const bool ties = std::any_of(scene.responses.begin(), scene.responses.end(), can_tie);
   const double slots = static_cast<double>(slot_bytes<Direction>(problem.slots).all());
-  const double state = dual * state_numbers(n) + sizeof(ContactState) * n.points;
+  const double state = dual * state_numbers(n) + sizeof(ContactState) * n.points + geometry_bytes<Direction>(n);
   const double solve = blocks * dual * n.dofs + number * p * (n.dofs + 2 * engine_rows);
   return {"direct_sensitivity",
           on,

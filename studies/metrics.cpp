@@ -69,7 +69,7 @@ void enlarge(const Model& model, const Slots<double>& slots, const State<double>
   if (!(largest_nodal_norm(loads, D) > rounding))
     scales.force = larger(scales.force, telling * scales.stiffness * scales.reach);
   for (const auto& forces :
-       {bulk_forces(model, slots, state.displacement), loads, contact_forces(model, slots, state.contact.traction)})
+       {bulk_forces(model, slots, state.displacement), loads, contact_forces(model, slots, state.contact)})
     scales.force = larger(scales.force, largest_nodal_norm(forces, D));
 }
 
@@ -203,7 +203,7 @@ std::vector<ContactSummary> summarise(const Model& model, const Slots<double>& s
     for (int i = 0; i < model.dimension; ++i)
       for (int a = 0; a < point.tangents; ++a)
         summary.tangential_force[i] -= slots.geometry[p].area * state.contact.traction[point.multiplier + 1 + a] *
-                                       slots.geometry[p].tangents(i, a);
+                                       geometry_in(state.contact, slots, p).tangents(i, a);
   }
   return all;
 }

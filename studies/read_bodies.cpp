@@ -204,6 +204,14 @@ std::optional<Material> read_elastic(const JsonNode& node, SceneReading& reading
   return LinearElastic{reading.required(node, "E", positive), reading.required(node, "nu", poisson_ratio)};
 }
 
+std::optional<Material> read_neo_hookean(const JsonNode& node, SceneReading& reading) {
+  if (!node.is_object({{"E", "nu"}, {"volumetric"}})) return std::nullopt;
+  NeoHookean material{reading.required(node, "E", positive), reading.required(node, "nu", poisson_ratio)};
+  if (const auto kind = node.find("volumetric"))
+    if (kind->choice({"quadratic", "log"}) == "log") material.volumetric = NeoHookean::Volumetric::log;
+  return material;
+}
+
 std::optional<Material> read_spring(const JsonNode& node, SceneReading& reading) {
   if (!node.is_object({{"stiffness"}})) return std::nullopt;
   const auto matrix = node.find("stiffness");
@@ -237,13 +245,19 @@ std::optional<Material> read_spring(const JsonNode& node, SceneReading& reading)
 }
 
 std::optional<Material> read_material(const JsonNode& node, const MeshDescription* mesh, SceneReading& reading) {
-  const auto kind = node.kind({"linear_elastic", "grounded_spring"}, {"neo_hookean", "j2_plastic"});
+  const auto kind = node.kind({"linear_elastic", "neo_hookean", "grounded_spring"}, {"j2_plastic"});
   if (!kind) return std::nullopt;
   const auto& [name, material] = *kind;
-  const std::string wanted = mesh && std::holds_alternative<PointMesh>(*mesh) ? "grounded_spring" : "linear_elastic";
+  const bool point = mesh && std::holds_alternative<PointMesh>(*mesh);
+  const bool bars = mesh && (std::holds_alternative<LineMesh>(*mesh) || std::holds_alternative<ArcMesh>(*mesh));
+  const bool finite = reading.scene.finite_strain;
+  const std::string wanted = point ? "grounded_spring" : finite && !bars ? "neo_hookean" : "linear_elastic";
   if (mesh && name != wanted)
-    material.error_at_key(in_quotes(name) + " does not go with this mesh; allowed: " + wanted +
-                          " (grounded_spring holds a point, linear_elastic fills the rest)");
+    material.error_at_key(in_quotes(name) + " does not go with this mesh at " + (finite ? "finite" : "small") +
+                          " strain; allowed: " + wanted +
+                          " (grounded_spring holds a point, linear_elastic fills bars, " +
+                          "and the rest where strains are small; neo_hookean fills it where they are finite)");
+  if (name == "neo_hookean") return read_neo_hookean(material, reading);
   return name == "grounded_spring" ? read_spring(material, reading) : read_elastic(material, reading);
 }
 
@@ -355,6 +369,8 @@ void read_body(const std::string& name, const JsonNode& node, SceneReading& read
   if (!node.is_object({{"mesh", "material"}, {"element", "area", "thickness"}})) return;
   Body body;
   body.name = name;
+  if (const auto element = node.find("element"); element && element->value() == "Q4_mean_dilatation")
+    reading.only_at_small_strain(*element);
   if (const auto element = node.find("element"))
     body.element = element->choice({"Q4", "Q4_mean_dilatation", "Q8", "T3", "T6", "bar", "point"}).value_or("");
   const auto mesh_node = node.find("mesh");

@@ -71,6 +71,7 @@ void read_obstacle(const std::string& name, const JsonNode& node, SceneReading& 
   } else if (reading.dimension() == 3) {
     kind->second.error_at_key("a " + kind->first + " needs a plane space; allowed in the space solid: plane");
   } else if (kind->first == "polyline") {
+    reading.only_at_small_strain(kind->second);
     if (auto polyline = read_polyline(kind->second, reading)) obstacle.shape = *std::move(polyline);
   } else if (auto circle = read_circle(kind->second, reading)) {
     obstacle.shape = *circle;
@@ -92,6 +93,11 @@ void check_master(const JsonNode& node, const std::optional<NamedSide>& slave, S
   if (reading.dimension() == 3) {
     node.error("is " + shown(node.value()) +
                "; in the space solid the master must be an obstacle: " + listed(reading.obstacle_names));
+    return;
+  }
+  if (reading.scene.finite_strain) {
+    node.error("is " + shown(node.value()) +
+               "; at finite strain the master must be an obstacle in this version: " + listed(reading.obstacle_names));
     return;
   }
   const auto master = touching_side(node, reading);
@@ -151,6 +157,7 @@ void read_contact(const std::string& name, const JsonNode& node, SceneReading& r
   if (const auto surface = node.find("surface")) surface->choice({"faceted"}, {"smooth"});
   if (const auto discretization = node.find("discretization")) {
     contact.segment = discretization->choice({"node", "segment"}) == "segment";
+    if (contact.segment) reading.only_at_small_strain(*discretization);
     const bool solid = !slave_side || (is_continuum(slave_side->mesh->shape) && !slave_side->side.facets.empty());
     if (contact.segment && !solid)
       discretization->error("is \"segment\", which integrates along the facets of a solid body; the slave " +

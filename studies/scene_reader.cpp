@@ -17,13 +17,22 @@ void read_space(const JsonNode& root, SceneReading& reading) {
   if (name == "solid") reading.scene.space = Space::solid;
 }
 
-void read_linear_solver(const JsonNode& node, Input& input) {
+void read_strain(const JsonNode& node, SceneReading& reading) {
+  reading.scene.finite_strain = node.choice({"small", "finite"}) == "finite";
+  if (reading.scene.finite_strain && reading.scene.space != Space::plane_strain)
+    node.error(R"(is "finite", which needs the space "plane_strain" in this version)");
+}
+
+void read_linear_solver(const JsonNode& node, const Scene& scene, Input& input) {
   using Engine = LinearAlgebra::Engine;
   if (!node.is_object({{}, {"engine", "backend"}})) return;
   if (const auto engine = node.find("engine")) {
     const auto name = engine->choice({"auto", "sparse", "condensed"});
     if (name == "sparse") input.linear_algebra.engine = Engine::sparse;
     if (name == "condensed") input.linear_algebra.engine = Engine::condensed;
+    if (name == "condensed" && scene.finite_strain)
+      engine->error(
+          R"(is "condensed", which needs bodies of a constant stiffness; allowed at finite strain: auto, sparse)");
   }
   if (const auto backend = node.find("backend")) {
     const std::map<std::string, Backend> all{{"auto", Backend::automatic},
@@ -121,7 +130,7 @@ std::optional<Input> read_scene(const JsonDocument& given, const std::optional<s
   if (const auto schema = root.find("$schema")) schema->text();
   if (const auto title = root.find("title")) reading.scene.title = title->text().value_or("");
   read_space(root, reading);
-  if (const auto strain = root.find("strain")) strain->choice({"small"}, {"finite"});
+  part("strain", read_strain);
   part("bodies", read_bodies);
   part("obstacles", read_obstacles);
   part("contacts", read_contacts);
@@ -131,7 +140,7 @@ std::optional<Input> read_scene(const JsonDocument& given, const std::optional<s
   part("time", read_time);
   part("responses", read_responses);
   part("objectives", read_objectives);
-  if (const auto node = root.find("linear_solver")) read_linear_solver(*node, input);
+  if (const auto node = root.find("linear_solver")) read_linear_solver(*node, reading.scene, input);
   if (const auto node = root.find("output")) read_output(*node, input.output);
   part("sensitivity", read_sensitivity);
 

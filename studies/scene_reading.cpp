@@ -95,7 +95,12 @@ std::vector<Number> SceneReading::direction(const JsonNode& node, const char* wh
   return numbers;
 }
 
+void SceneReading::only_at_small_strain(const JsonNode& node) const {
+  if (scene.finite_strain) node.error_at_key(R"(needs "strain": "small" in this version)");
+}
+
 Rotation SceneReading::rotation(const JsonNode& node) {
+  only_at_small_strain(node);
   Rotation rotation;
   rotation.angle.points = {{0, Number()}};
   const bool space = dimension() == 3;

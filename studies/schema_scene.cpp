@@ -50,8 +50,9 @@ const char* const scene = R"json({
   "title": {"description": "shown in reports", "type": "string", "examples": ["Block on a rough floor"]},
   "space": {"description": "solid: 3D, of points, lines and arcs against planes",
     "enum": ["plane_strain", "plane_stress", "axisymmetric", "solid"], "default": "plane_strain"},
-  "strain": {"description": "linear strain, and the contact geometry of the start", "enum": ["small"],
-    "default": "small"},
+  "strain": {
+    "description": "small: linear strain, and the contact geometry of the start; finite: everything is where it is now",
+    "enum": ["small", "finite"], "default": "small"},
   "bodies": {"description": "what deforms, by names of your choice; one at least", "title": "object by name",
     "type": "object", "minProperties": 1,
     "examples": [{"mass": {"mesh": {"point": {"at": [0, 0]}},

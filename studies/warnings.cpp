@@ -32,6 +32,7 @@ Deformation deformation_of(const Problem& problem, const Vector<double>& displac
 }
 
 void add_deformations(const CaseResult& result, std::vector<Warning>& warnings) {
+  if (result.problem->model.scene.finite_strain) return;
   constexpr double most_strain = 0.05, most_rotation = 5 * degree;
   const auto& model = result.problem->model;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
@@ -41,7 +42,7 @@ void add_deformations(const CaseResult& result, std::vector<Warning>& warnings) 
       largest = {std::max(largest.strain, now.strain), std::max(largest.rotation, now.rotation)};
     }
     const std::string& name = model.scene.bodies[b].name;
-    constexpr const char* smaller = "apply less load or motion: this version has small strain alone";
+    constexpr const char* smaller = R"(apply less load or motion, or try "strain": "finite")";
     if (largest.strain > most_strain)
       warnings.push_back({WarningCode::large_strain, name, largest.strain, smaller,
                           fmt::format("{} is strained by up to {:.2g} %; small strain holds below some 5 %", name,
@@ -74,7 +75,7 @@ void add_slips(const CaseResult& result, std::vector<Warning>& warnings) {
       if (is_slipping(field.state[p])) slipped[point.contact] = 1;
       const auto placement =
           field.placement.segment(tangential_offset(model, static_cast<int>(p)), point.tangents).norm();
-      if (point.mesh_size > 0 && !is_flat(model, point))
+      if (point.mesh_size > 0 && !is_flat(model, point) && !model.effects.current_geometry)
         farthest[point.contact] = std::max(farthest[point.contact], placement / point.mesh_size);
     }
   }

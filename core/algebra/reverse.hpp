@@ -80,6 +80,7 @@ struct Reverse {
   }
   friend Reverse exp(const Reverse& a) { return of(a, std::exp(a.v), std::exp(a.v)); }
   friend Reverse log(const Reverse& a) { return of(a, std::log(a.v), 1 / a.v); }
+  friend Reverse log1p(const Reverse& a) { return of(a, std::log1p(a.v), 1 / (1 + a.v)); }
   friend Reverse sin(const Reverse& a) { return of(a, std::sin(a.v), std::cos(a.v)); }
   friend Reverse cos(const Reverse& a) { return of(a, std::cos(a.v), -std::sin(a.v)); }
   friend Reverse pow(const Reverse& a, double exponent) {

@@ -16,6 +16,9 @@ namespace stickslip {
 /// Largest relative error of one rounding of a double, 2^-53.
 inline constexpr double unit_roundoff = 0x1p-53;
 
+/// ln(1 + x) of the oracle's scalar.
+inline std::complex<double> log1p(const std::complex<double>& x) { return std::log(1.0 + x); }
+
 /// Forward derivative: a value and N directional derivatives. S is the scalar it is built on (double, or
 /// std::complex<double> where the oracle needs a tangent of its own).
 template <int N, class S = double>
@@ -78,6 +81,10 @@ struct Dual {
   friend Dual log(const Dual& a) {
     using std::log;
     return {log(a.v), a.d / a.v};
+  }
+  friend Dual log1p(const Dual& a) {
+    using std::log1p, stickslip::log1p;
+    return {log1p(a.v), a.d / (S(1) + a.v)};
   }
   friend Dual sin(const Dual& a) {
     using std::cos, std::sin;

@@ -1,7 +1,7 @@
 /// One contact point: kinematics, trial traction, projection onto the law of friction and nodal forces, for every
 /// method and scalar.
 ///
-/// Small strain: projection, normal, frame and area are those of the initial configuration, so the relative
+/// At small strain projection, normal, frame and area are those of the initial configuration, so the relative
 /// displacement w = u_s - sum N_i u_i - u_obstacle gives
 ///
 ///   g_N  = g_0 + n . w           normal gap (length; negative is penetration)
@@ -36,9 +36,10 @@ template <class T, int Tangents>
 struct PointOutcome {
   ContactState state = ContactState::open;
   T gap{};
-  Vec<T, Tangents> placement = Vec<T, Tangents>::Zero();  ///< s
-  Vec<T, Tangents> slip = Vec<T, Tangents>::Zero();       ///< dg_T of this increment
-  Traction<T, Tangents> traction;                         ///< t
+  Vec<T, Tangents> placement = Vec<T, Tangents>::Zero();     ///< s
+  Vec<T, Tangents> slip = Vec<T, Tangents>::Zero();          ///< dg_T of this increment
+  Traction<T, Tangents> traction;                            ///< t
+  Vec<T, Tangents + 1> foot = Vec<T, Tangents + 1>::Zero();  ///< place on the obstacle, in present geometry
 };
 
 /// Penalty / scale of a point, force per length cubed.
@@ -47,24 +48,15 @@ struct PointRegularisation {
   T normal{}, tangential{};
 };
 
-/// Evaluates the point. `w`: relative displacement; `tie_length`: a gap up to this is none; `state`: the
-/// branch to take, or nullptr to classify.
-template <class T, int D, int Tangents>
-PointOutcome<T, Tangents> evaluate_point(const PointGeometry<T>& geometry, const Vec<T, D>& w,
-                                         const Traction<T, Tangents>& multiplier,
-                                         const Vec<T, Tangents>& previous_placement, const PointRegularisation<T>& rho,
-                                         const FrictionLaw<T>& friction, ConeRadius cone, double tie_length,
-                                         const ContactState* state) {
-  static_assert(Tangents == 0 || Tangents == D - 1);
-  PointOutcome<T, Tangents> point;
-  point.gap = geometry.gap + dot(geometry.normal.template head<D>(), w);
+/// Takes a point whose gap, placement and slip are known to its traction. `tie_length`: a gap up to this is none;
+/// `state`: the branch to take, or nullptr to classify.
+template <class T, int Tangents>
+void project_point(const Traction<T, Tangents>& multiplier, const PointRegularisation<T>& rho,
+                   const FrictionLaw<T>& friction, ConeRadius cone, double tie_length, const ContactState* state,
+                   PointOutcome<T, Tangents>& point) {
   Traction<T, Tangents> trial;
   trial.normal = multiplier.normal + rho.normal * point.gap;
-  for (int a = 0; a < Tangents; ++a) {
-    point.placement[a] = dot(geometry.tangents.col(a).template head<D>(), w);
-    point.slip[a] = point.placement[a] - previous_placement[a];
-    trial.tangential[a] = multiplier.tangential[a] + rho.tangential * point.slip[a];
-  }
+  for (int a = 0; a < Tangents; ++a) trial.tangential[a] = multiplier.tangential[a] + rho.tangential * point.slip[a];
   T bound{};
   ContactState slip = state && is_slipping(*state) ? *state : ContactState::slip;
   if constexpr (Tangents > 0) {
@@ -76,6 +68,44 @@ PointOutcome<T, Tangents> evaluate_point(const PointGeometry<T>& geometry, const
   point.state = state ? *state : classify(trial, value(bound), value(rho.normal) * tie_length);
   if (point.state == ContactState::slip) point.state = slip;
   point.traction = project_coulomb(trial, bound, point.state);
+}
+
+/// Evaluates the point in its initial geometry. `w`: relative displacement.
+template <class T, int D, int Tangents>
+PointOutcome<T, Tangents> evaluate_point(const PointGeometry<T>& geometry, const Vec<T, D>& w,
+                                         const Traction<T, Tangents>& multiplier,
+                                         const Vec<T, Tangents>& previous_placement, const PointRegularisation<T>& rho,
+                                         const FrictionLaw<T>& friction, ConeRadius cone, double tie_length,
+                                         const ContactState* state) {
+  static_assert(Tangents == 0 || Tangents == D - 1);
+  PointOutcome<T, Tangents> point;
+  point.gap = geometry.gap + dot(geometry.normal.template head<D>(), w);
+  for (int a = 0; a < Tangents; ++a) {
+    point.placement[a] = dot(geometry.tangents.col(a).template head<D>(), w);
+    point.slip[a] = point.placement[a] - previous_placement[a];
+  }
+  project_point(multiplier, rho, friction, cone, tie_length, state, point);
+  return point;
+}
+
+/// Evaluates the point in its present geometry. `foot`: the place on the obstacle that it faces, `previous_foot` that
+/// of the last increment, both in the frame of the obstacle, which carries the friction along: their distance is the
+/// slip, in the present frame. On a curved obstacle it is the chord, O(slip^3) from the arc.
+template <class T, int D, int Tangents>
+PointOutcome<T, Tangents> evaluate_moved_point(const PointGeometry<T>& geometry, const Vec<T, D>& foot,
+                                               const Traction<T, Tangents>& multiplier,
+                                               const Vec<T, Tangents>& previous_placement,
+                                               const Vec<T, D>& previous_foot, const PointRegularisation<T>& rho,
+                                               const FrictionLaw<T>& friction, ConeRadius cone, double tie_length,
+                                               const ContactState* state) {
+  PointOutcome<T, Tangents> point;
+  point.gap = geometry.gap;
+  for (int a = 0; a < Tangents; ++a) {
+    point.slip[a] = dot(geometry.tangents.col(a).template head<D>(), Vec<T, D>(foot - previous_foot));
+    point.placement[a] = previous_placement[a] + point.slip[a];
+  }
+  if constexpr (Tangents > 0) point.foot = foot;
+  project_point(multiplier, rho, friction, cone, tie_length, state, point);
   return point;
 }
 

@@ -49,9 +49,9 @@ PointGeometry<T> rigid(const T& gap, const Eigen::Matrix<T, Eigen::Dynamic, 1, 0
 
 }  // namespace detail
 
-/// Against the half-space behind `plane`.
-template <class T, class Point>
-PointGeometry<T> against_plane(const Point& x, const Plane& plane, const Numbers<T>& numbers) {
+/// Against the half-space behind `plane`. `numbers`: value of a number of the scene, as Numbers<T> gives it.
+template <class T, class Point, class Read>
+PointGeometry<T> against_plane(const Point& x, const Plane& plane, const Read& numbers) {
   const int D = static_cast<int>(x.size());
   Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> n(D);
   for (int i = 0; i < D; ++i) n[i] = numbers(plane.normal[i]);
@@ -65,8 +65,8 @@ PointGeometry<T> against_plane(const Point& x, const Plane& plane, const Numbers
 }
 
 /// Against a rigid disk, or the rim of a cup. Singular where the point is the centre.
-template <class T>
-PointGeometry<T> against_circle(const Vec<T, 2>& x, const Circle& circle, const Numbers<T>& numbers) {
+template <class T, class Read>
+PointGeometry<T> against_circle(const Vec<T, 2>& x, const Circle& circle, const Read& numbers) {
   Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> n(2);
   for (int i = 0; i < 2; ++i) n[i] = x[i] - numbers(circle.center[i]);
   const T distance = norm(n);

@@ -57,12 +57,12 @@ int locate(const Pattern& pattern, int row, int column) {
 }
 
 template <class T>
-std::vector<T> assemble_bodies(const Model& model, const Slots<T>& slots, const RowLists& lists,
-                               const Pattern& pattern) {
+std::vector<T> assemble_bodies(const Model& model, const Slots<T>& slots, const RowLists& lists, const Pattern& pattern,
+                               const Vector<T>* u) {
   std::vector<T> values(pattern.nonzeros(), T(0));
   int list = 0;
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    for_each_framed_tangent(model, slots, static_cast<int>(b), [&](const auto&, const auto& K) {
+    for_each_framed_tangent<T>(model, slots, static_cast<int>(b), u, [&](const auto&, const auto& K) {
       const int* rows = lists.row.data() + lists.start[list];
       const int count = lists.start[list + 1] - lists.start[list];
       for (int c = 0; c < count; ++c)
@@ -73,8 +73,10 @@ std::vector<T> assemble_bodies(const Model& model, const Slots<T>& slots, const 
   return values;
 }
 
-template std::vector<double> assemble_bodies(const Model&, const Slots<double>&, const RowLists&, const Pattern&);
+template std::vector<double> assemble_bodies(const Model&, const Slots<double>&, const RowLists&, const Pattern&,
+                                             const Vector<double>*);
 template std::vector<std::complex<double>> assemble_bodies(const Model&, const Slots<std::complex<double>>&,
-                                                           const RowLists&, const Pattern&);
+                                                           const RowLists&, const Pattern&,
+                                                           const Vector<std::complex<double>>*);
 
 }  // namespace stickslip

@@ -35,7 +35,7 @@ Condensation<T>::Condensation(const Model& model, const Slots<T>& slots, Backend
 
   const auto lists = element_rows(model, row);
   const auto pattern = make_pattern(interior + contacts_, lists);
-  auto values = assemble_bodies(model, slots, lists, *pattern);
+  auto values = assemble_bodies<T>(model, slots, lists, *pattern);
   if (interior == 0) {
     schur_ = Matrix<T>::Zero(contacts_, contacts_);
     for (int j = 0; j < contacts_; ++j)

@@ -19,6 +19,7 @@ class CondensedEngine {
   Vector<T> residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const;
   bool is_free(Eigen::Index row) const { return free_[row]; }
   /// `hold`: stiffness against motion of each contact node, the same in all directions, force per length; empty: none.
+  void linearise(const Vector<T>&) {}  ///< (the bodies' tangent is constant)
   bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
   /// In place of factorise() where few points changed since (model/tangent_update.hpp); until the next factorise() all
   /// solves are with these tangents. False, and nothing changed, where it does not pay or can't be.

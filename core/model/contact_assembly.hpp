@@ -24,9 +24,23 @@ struct ContactInput {
   double time = 0;
 };
 
-/// State before the first increment: nothing has moved, no traction.
+namespace detail {
+
+/// The place on an obstacle that a place in its frame faces.
+template <class T, class Place, class Read>
+Vector<T> foot_on(const Obstacle& obstacle, const Place& x, const Read& numbers) {
+  const auto geometry = against_obstacle<T>(obstacle, x, numbers);
+  Vector<T> foot(x.size());
+  for (Eigen::Index i = 0; i < foot.size(); ++i) foot[i] = x[i] - geometry.gap * geometry.normal[i];
+  return foot;
+}
+
+}  // namespace detail
+
+/// State before the first increment: nothing has moved, no traction. What history begins with is a function of the
+/// slots: where geometry is the present one, the feet of the points are.
 template <class T>
-State<T> initial_state(const Model& model) {
+State<T> initial_state(const Model& model, const Slots<T>& slots) {
   State<T> state;
   auto zeros = [](std::size_t n) { return Vector<T>::Constant(static_cast<Eigen::Index>(n), T(0)).eval(); };
   const std::size_t points = model.points.size(), tangential = model.multiplier_count - points;
@@ -34,7 +48,15 @@ State<T> initial_state(const Model& model) {
   state.multiplier = state.contact.traction = zeros(model.multiplier_count);
   state.contact.state.assign(points, ContactState::open);
   state.contact.gap = zeros(points);
-  state.contact.placement = state.contact.slip = zeros(tangential);
+  state.contact.placement = zeros(model.placement_count);
+  state.contact.slip = zeros(tangential);
+  if (model.effects.current_geometry) state.contact.moved = slots.geometry;
+  for (const auto& point : model.points) {
+    if (point.foot < 0) continue;
+    const Vector<T> at = slots.points.col(point.nodes[0]);
+    state.contact.placement.segment(point.foot, model.dimension) =
+        detail::foot_on<T>(model.scene.obstacles[point.obstacle], at, slots.numbers);
+  }
   state.dissipation = zeros(model.effects.friction ? model.scene.contacts.size() : 0);
   return state;
 }
@@ -82,6 +104,34 @@ Vec<T, D> relative_displacement(const ContactInput<T>& input, int p, const Vecto
   return w;
 }
 
+/// A point where it is now: its geometry and its foot in the frame of the obstacle, which moves without turning, and
+/// the foot of the last increment.
+template <class T, int D>
+struct MovedPoint {
+  PointGeometry<T> geometry;
+  Vec<T, D> foot, previous_foot;
+};
+
+/// `u`: displacement of the slave node, in the scalar U built on T.
+template <class U, class T, int D>
+MovedPoint<U, D> moved_point(const ContactInput<T>& input, int p, const Vec<U, D>& u) {
+  const auto& point = input.model.points[p];
+  const auto number = [&](const Number& n) { return U(input.slots.numbers(n)); };
+  const Vec<T, D> shift = obstacle_displacement<T, D>(input, p);
+  Vec<U, D> x;
+  for (int i = 0; i < D; ++i) x[i] = U(input.slots.points(i, point.nodes[0]) - shift[i]) + u[i];
+  const auto& obstacle = input.model.scene.obstacles[point.obstacle];
+  MovedPoint<U, D> at;
+  at.geometry = against_obstacle<U>(obstacle, x, number);
+  for (int i = 0; i < D; ++i) {
+    at.foot[i] = x[i] - at.geometry.gap * at.geometry.normal[i];
+    at.previous_foot[i] = point.foot < 0 ? at.foot[i] : U(input.previous_placement[point.foot + i]);
+  }
+  at.geometry.gap += number(input.model.scene.contacts[point.contact].offset);
+  at.geometry.area = U(input.slots.geometry[p].area);
+  return at;
+}
+
 template <class T, int Tangents>
 Vec<T, Tangents> previous_placement(const ContactInput<T>& input, int p) {
   Vec<T, Tangents> s;
@@ -109,7 +159,24 @@ double tie_at(const ContactInput<T>& input, int p, const Vector<T>& compact) {
   double reach = 0;
   for (int place : point.places)
     for (int i = 0; i < D; ++i) reach = std::max(reach, std::abs(value(compact[place * D + i])));
+  // (present places round as coordinates do, wherever they began)
+  if (input.model.effects.current_geometry) return point.tie_length + 8 * unit_roundoff * reach;
   return tie_length(point, input.slots.geometry[p], reach);
+}
+
+/// Evaluates a point where it is now, which sets `geometry`.
+template <class T, int D, int Tangents>
+PointOutcome<T, Tangents> evaluate_present(const ContactInput<T>& input, int p, const Vector<T>& compact,
+                                           const Traction<T, Tangents>& multiplier, const ContactState* state,
+                                           PointGeometry<T>& geometry) {
+  const auto& point = input.model.points[p];
+  const Vec<T, D> u = compact.template segment<D>(point.places[0] * D);
+  auto at = moved_point<T, T, D>(input, p, u);
+  const auto outcome = evaluate_moved_point<T, D, Tangents>(
+      at.geometry, at.foot, multiplier, previous_placement<T, Tangents>(input, p), at.previous_foot, input.rho[p],
+      input.slots.friction[point.contact], input.cone, tie_at<T>(input, p, compact), state);
+  geometry = std::move(at.geometry);
+  return outcome;
 }
 
 }  // namespace detail
@@ -125,16 +192,21 @@ ContactField<T> evaluate_contact(const ContactInput<T>& input, const Vector<T>& 
   field.state.resize(count);
   field.gap.resize(count);
   field.traction.resize(model.multiplier_count);
-  field.placement.resize(model.multiplier_count - count);
+  field.placement.resize(model.placement_count);
   field.slip.resize(model.multiplier_count - count);
+  const bool present = model.effects.current_geometry;
+  if (present) field.moved.resize(count);
   for (int p = 0; p < count; ++p) {
     const auto& point = model.points[p];
+    const ContactState* const state = states ? &(*states)[p] : nullptr;
     detail::with_point(model, point, [&]<int D, int Tangents>() {
-      const auto outcome = evaluate_point<T, D, Tangents>(
-          input.slots.geometry[p], detail::relative_displacement<T, D>(input, p, compact),
-          detail::gather_traction<T, Tangents>(multiplier, point.multiplier),
-          detail::previous_placement<T, Tangents>(input, p), input.rho[p], input.slots.friction[point.contact],
-          input.cone, detail::tie_at<T>(input, p, compact), states ? &(*states)[p] : nullptr);
+      const auto lambda = detail::gather_traction<T, Tangents>(multiplier, point.multiplier);
+      const auto outcome =
+          present ? detail::evaluate_present<T, D, Tangents>(input, p, compact, lambda, state, field.moved[p])
+                  : evaluate_point<T, D, Tangents>(
+                        input.slots.geometry[p], detail::relative_displacement<T, D>(input, p, compact), lambda,
+                        detail::previous_placement<T, Tangents>(input, p), input.rho[p],
+                        input.slots.friction[point.contact], input.cone, detail::tie_at<T>(input, p, compact), state);
       field.state[p] = outcome.state;
       field.gap[p] = outcome.gap;
       field.traction[point.multiplier] = outcome.traction.normal;
@@ -144,23 +216,26 @@ ContactField<T> evaluate_contact(const ContactInput<T>& input, const Vector<T>& 
         field.slip[offset + a] = outcome.slip[a];
         field.traction[point.multiplier + 1 + a] = outcome.traction.tangential[a];
       }
+      if constexpr (Tangents > 0)
+        if (point.foot >= 0) field.placement.template segment<D>(point.foot) = outcome.foot;
     });
   }
   return field;
 }
 
-/// Nodal contact forces of the residual, compact.
+/// Nodal contact forces of the residual, compact, of the tractions of a field.
 template <class T>
-Vector<T> contact_forces(const Model& model, const Slots<T>& slots, const Vector<T>& traction) {
+Vector<T> contact_forces(const Model& model, const Slots<T>& slots, const ContactField<T>& field) {
   const int D = model.dimension;
   Vector<T> forces = Vector<T>::Constant(static_cast<Eigen::Index>(model.contact_nodes.size()) * D, T(0));
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
     detail::with_point(model, point, [&]<int d, int Tangents>() {
-      const Vec<T, d> force = point_force<T, d, Tangents>(
-          slots.geometry[p], detail::gather_traction<T, Tangents>(traction, point.multiplier));
+      const auto& geometry = geometry_in(field, slots, p);
+      const Vec<T, d> force =
+          point_force<T, d, Tangents>(geometry, detail::gather_traction<T, Tangents>(field.traction, point.multiplier));
       for (std::size_t n = 0; n < point.places.size(); ++n)
-        for (int i = 0; i < d; ++i) forces[point.places[n] * d + i] += slots.geometry[p].weights[n] * force[i];
+        for (int i = 0; i < d; ++i) forces[point.places[n] * d + i] += geometry.weights[n] * force[i];
     });
   }
   return forces;
@@ -179,7 +254,8 @@ Vector<T> multiplier_residual(const Model& model, const Slots<T>& slots, const V
   return rows;
 }
 
-/// Tangent of one point with respect to its relative displacement w and its scaled multiplier l = lambda / rho.
+/// Tangent of one point with respect to its relative displacement w (where geometry is the present one: the
+/// displacement of its slave node, which turns normal and frame) and its scaled multiplier l = lambda / rho.
 template <class T>
 struct PointTangent {
   Matrix<T> force_w, force_l;  ///< D x D, D x components
@@ -193,10 +269,14 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
   return detail::with_point(input.model, point, [&]<int D, int Tangents>() {
     constexpr int C = 1 + Tangents;
     using Probe = Dual<D + C, T>;
-    const auto geometry = detail::promote<Probe>(input.slots.geometry[p]);
     const auto friction =
         input.slots.friction[point.contact].template as<Probe>([](const T& number) { return Probe(number); });
-    const Vec<T, D> w_value = detail::relative_displacement<T, D>(input, p, compact);
+    const bool present = input.model.effects.current_geometry;
+    Vec<T, D> w_value;
+    if (present)
+      w_value = compact.template segment<D>(point.places[0] * D);
+    else
+      w_value = detail::relative_displacement<T, D>(input, p, compact);
     const auto lambda_value = detail::gather_traction<T, Tangents>(multiplier, point.multiplier);
     const PointRegularisation<Probe> rho{Probe(input.rho[p].normal), Probe(input.rho[p].tangential)};
     Vec<Probe, D> w;
@@ -210,8 +290,17 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
       lambda.tangential[a].d[D + 1 + a] = input.rho[p].tangential;
       previous[a] = Probe(input.previous_placement[tangential_offset(input.model, p) + a]);
     }
-    const auto outcome =
-        evaluate_point<Probe, D, Tangents>(geometry, w, lambda, previous, rho, friction, input.cone, 0, &state);
+    PointOutcome<Probe, Tangents> outcome;
+    PointGeometry<Probe> geometry;
+    if (present) {
+      auto at = detail::moved_point<Probe, T, D>(input, p, w);
+      outcome = evaluate_moved_point<Probe, D, Tangents>(at.geometry, at.foot, lambda, previous, at.previous_foot, rho,
+                                                         friction, input.cone, 0, &state);
+      geometry = std::move(at.geometry);
+    } else {
+      geometry = detail::promote<Probe>(input.slots.geometry[p]);
+      outcome = evaluate_point<Probe, D, Tangents>(geometry, w, lambda, previous, rho, friction, input.cone, 0, &state);
+    }
     const Vec<Probe, D> force = point_force<Probe, D, Tangents>(geometry, outcome.traction);
     PointTangent<T> tangent{Matrix<T>(D, D), Matrix<T>(D, C), Matrix<T>(C, D), Matrix<T>(C, C)};
     for (int i = 0; i < D; ++i) {
@@ -229,15 +318,16 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
 }
 
 /// Which multiplier components have nothing left to decide: their constraint moves along with what supports prescribe,
-/// or with the components before it. Empty where there is none.
+/// or with the components before it. Empty where there is none. `field`: that the geometry is of; nullptr: of the
+/// start.
 template <class T>
-std::vector<char> decided_elsewhere(const Model& model, const Slots<T>& slots) {
+std::vector<char> decided_elsewhere(const Model& model, const Slots<T>& slots, const ContactField<T>* field = nullptr) {
   constexpr double independent = 1e-9;  // sine of the least angle to what is decided
   const int D = model.dimension;
   std::vector<char> decided;
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
-    const auto& geometry = slots.geometry[p];
+    const auto& geometry = field ? geometry_in(*field, slots, p) : slots.geometry[p];
     const auto is_free = [&](int node) {
       const auto first = model.free_index.begin() + node * D;
       return std::all_of(first, first + D, [](int index) { return index >= 0; });

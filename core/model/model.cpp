@@ -169,6 +169,30 @@ ElementLists elements_at_reactions(const Model& model) {
   return lists;
 }
 
+/// Gives the nodes of the contact points their places in Model::contact_nodes.
+void place_contact_nodes(Model& model) {
+  std::set<int> nodes;
+  for (const auto& point : model.points) nodes.insert(point.nodes.begin(), point.nodes.end());
+  model.contact_nodes.assign(nodes.begin(), nodes.end());
+  auto place_of = [&](int node) {
+    const auto found = std::lower_bound(model.contact_nodes.begin(), model.contact_nodes.end(), node);
+    return static_cast<int>(found - model.contact_nodes.begin());
+  };
+  for (auto& point : model.points)
+    for (int node : point.nodes) point.places.push_back(place_of(node));
+  for (auto& framed : model.framed)
+    if (nodes.count(framed.node)) framed.place = place_of(framed.node);
+}
+
+/// Gives the feet of points with friction their places behind the slips, in the slip history.
+void place_feet(Model& model) {
+  for (auto& point : model.points) {
+    if (point.tangents == 0) continue;
+    point.foot = model.placement_count;
+    model.placement_count += model.dimension;
+  }
+}
+
 }  // namespace
 
 SideSet resolve_side(const Scene& scene, const std::vector<BodyMesh>& bodies, const std::string& text) {
@@ -258,22 +282,15 @@ Model make_model(const Scene& scene, Seconds& spent) {
     const Stopwatch time(spent.contact_search);
     pair_contacts(model, points);
   }
-  std::set<int> nodes;
-  for (const auto& point : model.points) nodes.insert(point.nodes.begin(), point.nodes.end());
-  model.contact_nodes.assign(nodes.begin(), nodes.end());
-  auto place_of = [&](int node) {
-    const auto found = std::lower_bound(model.contact_nodes.begin(), model.contact_nodes.end(), node);
-    return static_cast<int>(found - model.contact_nodes.begin());
-  };
-  for (auto& point : model.points)
-    for (int node : point.nodes) point.places.push_back(place_of(node));
-  for (auto& framed : model.framed)
-    if (nodes.count(framed.node)) framed.place = place_of(framed.node);
+  place_contact_nodes(model);
   for (const auto& response : scene.responses)
     model.response_places.push_back(locate_response(model, points, response));
   model.at_reactions = elements_at_reactions(model);
   model.times = step_ends(scene);
   model.effects.sensitivity = !scene.parameters.empty();
+  model.effects.linear_bulk = !scene.finite_strain;
+  model.effects.current_geometry = scene.finite_strain && !model.points.empty();
+  if (model.effects.current_geometry) place_feet(model);
   return model;
 }
 

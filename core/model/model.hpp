@@ -38,6 +38,7 @@ struct ContactPoint {
   Master master = Master::obstacle;
   int contact = 0;               ///< index in Scene::contacts
   int obstacle = -1;             ///< index in Scene::obstacles, -1 for a deformable master
+  int foot = -1;                 ///< offset of its foot's place in ContactField::placement; -1: it has none
   std::vector<int> nodes;        ///< slave, then master nodes (facet: its two; vertex: itself, then the far ends of the
                                  ///< facets at whose very end the projection lies)
   int slave_nodes = 1;           ///< how many of `nodes` are the slave's; more than one if segment-integrated
@@ -80,8 +81,9 @@ struct Effects {
   bool coupled_friction = false;  ///< its bound depends on the pressure somewhere
   bool deformable_master = false;
   bool sensitivity = false;
-  bool linear_bulk =
-      true;  ///< the internal forces are linear in the displacements: the tangent of the bodies is constant
+  /// The internal forces are linear in the displacements: the tangent of the bodies is constant.
+  bool linear_bulk = true;
+  bool current_geometry = false;  ///< gap, normal and slip are those of the points where they are now
 };
 
 /// Nodes and facets of a side expression, in the numbering of the model.
@@ -109,6 +111,7 @@ struct Model {
   std::vector<BodyMesh> bodies;
   std::vector<ContactPoint> points;
   int multiplier_count = 0;
+  int placement_count = 0;              ///< entries of the slip history
   std::vector<Constraint> constraints;  ///< ascending dof; those of framed nodes included
   std::vector<FramedNode> framed;       ///< ascending; empty where no support is inclined
   std::vector<int> free_index;          ///< per dof: index among the free ones, or -1

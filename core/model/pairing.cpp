@@ -95,6 +95,7 @@ void add_point(Model& model, ContactPoint point) {
   model.effects.deformable_master |= point.obstacle < 0;
   point.multiplier = model.multiplier_count;
   model.multiplier_count += point.components();
+  model.placement_count += point.tangents;
   model.points.push_back(std::move(point));
 }
 

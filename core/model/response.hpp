@@ -14,7 +14,7 @@ template <class T>
 Vector<T> nodal_balance(const Model& model, const Slots<T>& slots, const State<T>& state, const Vector<T>& internal,
                         double time) {
   Vector<T> rows = internal - external_forces(model, slots, time);
-  add_compact(model, contact_forces(model, slots, state.contact.traction), rows);
+  add_compact(model, contact_forces(model, slots, state.contact), rows);
   return rows;
 }
 template <class T>
@@ -71,7 +71,15 @@ T take_of(Response::Take take, const std::vector<T>& samples, const std::vector<
   return mean + T(best - value(mean));
 }
 
-/// Component x y z of a force, or its moment about a point of the plane, counter-clockwise, with the arm of the start.
+/// Where a node is, for arms of forces: where it was at the start, as long as strains are small.
+template <class T>
+Vector<T> place_of(const Model& model, const Slots<T>& slots, const State<T>& state, int node) {
+  Vector<T> x = slots.points.col(node);
+  if (model.scene.finite_strain) x += state.displacement.segment(node * model.dimension, model.dimension);
+  return x;
+}
+
+/// Component x y z of a force, or its moment about a point of the plane, counter-clockwise, with the arm to a place.
 template <class T, class Force, class Place>
 T component_of(const Response& response, const Force& force, const Place& x, const Numbers<T>& numbers) {
   if (response.component != "moment") return force[response.component[0] - 'x'];
@@ -86,7 +94,7 @@ T slip_component(const Model& model, const Slots<T>& slots, const State<T>& stat
   if (component.empty()) return state.contact.placement[offset];
   T s{};
   for (int a = 0; a < model.points[p].tangents; ++a)
-    s += slots.geometry[p].tangents(component[0] - 'x', a) * state.contact.placement[offset + a];
+    s += geometry_in(state.contact, slots, p).tangents(component[0] - 'x', a) * state.contact.placement[offset + a];
   return s;
 }
 
@@ -97,7 +105,7 @@ T contact_force(const Model& model, const Slots<T>& slots, const Response& respo
   T force{};
   for (int p : of_contact) {
     const auto& point = model.points[p];
-    const auto& geometry = slots.geometry[p];
+    const auto& geometry = geometry_in(state.contact, slots, p);
     if (response.component == "normal") {
       force -= geometry.area * state.contact.traction[point.multiplier];
       continue;
@@ -107,7 +115,7 @@ T contact_force(const Model& model, const Slots<T>& slots, const Response& respo
           point_force<T, D, Tangents>(geometry, gather_traction<T, Tangents>(state.contact.traction, point.multiplier));
       Vec<T, D> at = Vec<T, D>::Constant(T(0));  // the force is shared by the slave's nodes
       for (int n = 0; n < point.slave_nodes; ++n)
-        for (int i = 0; i < D; ++i) at[i] += geometry.weights[n] * slots.points(i, point.nodes[n]);
+        for (int i = 0; i < D; ++i) at[i] += geometry.weights[n] * place_of(model, slots, state, point.nodes[n])[i];
       return component_of(response, on_slave, at, slots.numbers);
     });
   }
@@ -128,14 +136,14 @@ T contact_half_width(const Model& model, const Slots<T>& slots, const State<T>& 
   const auto nodal_force = [&](int p) {
     return -slots.geometry[p].area * state.contact.traction[model.points[p].multiplier];
   };
-  const auto place = [&](int p) { return slots.points.col(model.points[p].nodes[0]); };
+  const auto place = [&](int p) { return place_of(model, slots, state, model.points[p].nodes[0]); };
   for (int p : of_contact) {
     const T f = nodal_force(p);
     closed += value(f) > 0;
     force += f;
     for (int i = 0; i < 2; ++i) {
       moment[i] += f * place(p)[i];
-      normal[i] += f * slots.geometry[p].normal[i];
+      normal[i] += f * geometry_in(state.contact, slots, p).normal[i];
     }
   }
   if (closed < (rings ? 1 : 2) || !(value(force) > 0)) return T(0);
@@ -191,7 +199,8 @@ T evaluate_response(const Model& model, const Slots<T>& slots, int index, const 
   if (response.kind == Response::Kind::reaction) {
     T sum{};
     for (int node : model.side(response.on).nodes)
-      sum += detail::component_of(response, forces.held.segment(node * D, D), slots.points.col(node), slots.numbers);
+      sum += detail::component_of(response, forces.held.segment(node * D, D),
+                                  detail::place_of(model, slots, state, node), slots.numbers);
     return sum;
   }
   if (response.kind == Response::Kind::displacement) {
@@ -204,7 +213,9 @@ T evaluate_response(const Model& model, const Slots<T>& slots, int index, const 
     for (int node : model.side(response.on).nodes) samples.push_back(state.displacement[node * D + axis]);
     return detail::take_of(response.take, samples, std::vector<T>(samples.size(), T(1)), ties);
   }
-  if (response.kind == Response::Kind::strain_energy) return T(0.5) * dot(forces.internal, state.displacement);
+  if (response.kind == Response::Kind::strain_energy)
+    return model.effects.linear_bulk ? T(T(0.5) * dot(forces.internal, state.displacement))
+                                     : bulk_energy(model, slots, state.displacement);
   return detail::contact_response(model, slots, response, place, state, ties);
 }
 

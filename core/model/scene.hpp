@@ -156,7 +156,13 @@ struct LinearElastic {
 struct GroundedSpring {
   std::vector<std::vector<Number>> stiffness;
 };
-using Material = std::variant<LinearElastic, GroundedSpring>;
+/// Compressible, at finite strain; `volumetric`: its energy of a change of volume (core/solids/neo_hookean.hpp).
+struct NeoHookean {
+  enum class Volumetric { quadratic, log };
+  Number E, nu;
+  Volumetric volumetric = Volumetric::quadratic;
+};
+using Material = std::variant<LinearElastic, NeoHookean, GroundedSpring>;
 
 struct Body {
   std::string name;
@@ -303,6 +309,7 @@ enum class Space { plane_strain, plane_stress, axisymmetric, solid };
 struct Scene {
   std::string title;
   Space space = Space::plane_strain;  ///< axisymmetric: x is the radius, y the axis; all is of the full revolution
+  bool finite_strain = false;         ///< everything is on the current configuration; else linear, on that of the start
   std::vector<Body> bodies;
   std::vector<Obstacle> obstacles;
   std::vector<Contact> contacts;

@@ -14,13 +14,15 @@
 #include "core/solids/continuum.hpp"
 #include "core/solids/edges.hpp"
 #include "core/solids/linear_elastic.hpp"
+#include "core/solids/neo_hookean.hpp"
 
 namespace stickslip {
 
-/// Bars of a body: E times the cross-section (force).
+/// Bars of a body: E times the cross-section (force); of Green strain, or linear.
 template <class T>
 struct BarLaw {
   T axial, area;
+  bool green = false;
 };
 /// Spring of a point to its anchor, D x D.
 template <class T>
@@ -28,7 +30,7 @@ struct SpringLaw {
   Matrix<T> stiffness;
 };
 template <class T>
-using Law = std::variant<LinearElasticLaw<T>, BarLaw<T>, SpringLaw<T>>;
+using Law = std::variant<LinearElasticLaw<T>, NeoHookeanLaw<T>, BarLaw<T>, SpringLaw<T>>;
 
 template <class T>
 struct Slots {
@@ -70,9 +72,14 @@ Law<T> make_law(const Scene& scene, const Body& body, const Mesh& mesh, const Nu
       for (int j = 0; j < d; ++j) law.stiffness(i, j) = numbers(spring->stiffness[i][j]);
     return law;
   }
+  if (const auto* material = std::get_if<NeoHookean>(&body.material)) {
+    const LinearElasticLaw<T> small(numbers(material->E), numbers(material->nu), Space::plane_strain);
+    return NeoHookeanLaw<T>(small.lame, small.shear, material->volumetric);
+  }
   const auto& elastic = std::get<LinearElastic>(body.material);
   const T E = numbers(elastic.E);
-  if (mesh.shape == ElementShape::bar2) return BarLaw<T>{E * numbers(body.area), numbers(body.area)};
+  if (mesh.shape == ElementShape::bar2)
+    return BarLaw<T>{E * numbers(body.area), numbers(body.area), scene.finite_strain};
   return LinearElasticLaw<T>(E, numbers(elastic.nu), scene.space);
 }
 
@@ -89,9 +96,9 @@ T tributary_area(const ContactPoint& point, const Slots<T>& slots) {
   return area;
 }
 
-/// Geometry of a place against an obstacle.
-template <class T, class Place>
-PointGeometry<T> against_obstacle(const Obstacle& obstacle, const Place& x, const Numbers<T>& numbers) {
+/// Geometry of a place against an obstacle. `numbers`: value of a number of the scene.
+template <class T, class Place, class Read>
+PointGeometry<T> against_obstacle(const Obstacle& obstacle, const Place& x, const Read& numbers) {
   if (const auto* plane = std::get_if<Plane>(&obstacle.shape)) return against_plane<T>(x, *plane, numbers);
   return against_circle<T>(Vec<T, 2>(x[0], x[1]), std::get<Circle>(obstacle.shape), numbers);
 }
@@ -193,10 +200,22 @@ Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>
 template <class T>
 Vector<T> load_vector(const Model& model, const Load& load, const Slots<T>& slots);
 
-/// Calls sink(nodes, K) for each element of body b (or those listed in `only`): node list and tangent, node-major.
+/// Calls sink(nodes, K) for each element of body b (or those listed in `only`): node list and tangent, node-major. `u`:
+/// displacements of all dofs; nullptr: none, as for bodies whose tangent is constant.
 template <class T, class Sink>
 void for_each_element_tangent(const Model& model, const Slots<T>& slots, int b, const std::vector<int>* only,
-                              Sink&& sink);
+                              Sink&& sink, const Vector<T>* u = nullptr);
+
+/// The bodies' tangent at displacements u times a vector, all dofs.
+template <class T>
+Vector<T> bulk_tangent_times(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& vector);
+
+/// Strain energy of all bodies at displacements of all dofs.
+template <class T>
+T bulk_energy(const Model& model, const Slots<T>& slots, const Vector<T>& u);
+
+/// Elements that displacements invert, body by body; none where the bodies' strains are small.
+ElementLists inverted_elements(const Model& model, const Slots<double>& slots, const Vector<double>& u);
 
 /// Nodal coordinates, D x nodes: of the generators, moved by the shape parameters.
 template <class T>

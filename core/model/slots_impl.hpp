@@ -31,9 +31,25 @@ inline std::vector<int> element_nodes(const BodyMesh& body, int e) {
   return nodes;
 }
 
-/// Tangent of a two-node lumped element: [k, -k; -k, k] of a spring, or a bar.
+/// Initial places of a bar's nodes, and its relative displacement.
+template <class T, int D>
+Mat<T, D, 2> bar_coordinates(const Slots<T>& slots, const std::vector<int>& nodes) {
+  Mat<T, D, 2> X;
+  for (int a = 0; a < 2; ++a)
+    for (int i = 0; i < D; ++i) X(i, a) = slots.points(i, nodes[a]);
+  return X;
+}
+template <class T, int D>
+Vec<T, D> bar_stretch(const std::vector<int>& nodes, const Vector<T>* u) {
+  Vec<T, D> d = Vec<T, D>::Constant(T(0));
+  for (int i = 0; u && i < D; ++i) d[i] = (*u)[nodes[1] * D + i] - (*u)[nodes[0] * D + i];
+  return d;
+}
+
+/// Tangent of a two-node lumped element: [k, -k; -k, k] of a spring, or a bar. `u`: nullptr: no displacements.
 template <class T>
-Matrix<T> lumped_tangent(const Model& model, const Slots<T>& slots, int b, const std::vector<int>& nodes) {
+Matrix<T> lumped_tangent(const Model& model, const Slots<T>& slots, int b, const std::vector<int>& nodes,
+                         const Vector<T>* u) {
   const int D = model.dimension;
   if (const auto* spring = std::get_if<SpringLaw<T>>(&slots.laws[b])) {
     Matrix<T> K(2 * D, 2 * D);
@@ -41,11 +57,42 @@ Matrix<T> lumped_tangent(const Model& model, const Slots<T>& slots, int b, const
     return K;
   }
   return with_dimension(D, [&]<int d>() -> Matrix<T> {
-    Mat<T, d, 2> X;
-    for (int a = 0; a < 2; ++a)
-      for (int i = 0; i < d; ++i) X(i, a) = slots.points(i, nodes[a]);
-    return bar_tangent<T, d>(X, std::get<BarLaw<T>>(slots.laws[b]).axial);
+    const auto X = bar_coordinates<T, d>(slots, nodes);
+    const auto& law = std::get<BarLaw<T>>(slots.laws[b]);
+    if (law.green) return green_bar_tangent<T, d>(X, law.axial, bar_stretch<T, d>(nodes, u));
+    return bar_tangent<T, d>(X, law.axial);
   });
+}
+
+template <class T>
+bool is_green(const Law<T>& law) {
+  const auto* bar = std::get_if<BarLaw<T>>(&law);
+  return bar && bar->green;
+}
+
+/// Adds the forces of a bar of Green strain.
+template <class T>
+void add_green_bar_force(const Model& model, const Slots<T>& slots, int b, const std::vector<int>& nodes,
+                         const Vector<T>& u, Vector<T>& forces) {
+  with_dimension(model.dimension, [&]<int d>() {
+    const auto force = green_bar_force<T, d>(bar_coordinates<T, d>(slots, nodes),
+                                             std::get<BarLaw<T>>(slots.laws[b]).axial, bar_stretch<T, d>(nodes, &u));
+    for (int i = 0; i < d; ++i) {
+      forces[nodes[0] * d + i] -= force[i];
+      forces[nodes[1] * d + i] += force[i];
+    }
+  });
+}
+
+/// Energy of a spring: half the work of its force.
+template <class T>
+T spring_energy(const SpringLaw<T>& spring, int D, const std::vector<int>& nodes, const Vector<T>& u) {
+  T energy{};
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j)
+      energy += T(0.5) * spring.stiffness(i, j) * (u[nodes[1] * D + i] - u[nodes[0] * D + i]) *
+                (u[nodes[1] * D + j] - u[nodes[0] * D + j]);
+  return energy;
 }
 
 /// Calls f.template operator()<Shape, kinematics>() with what the elements of a continuum are.
@@ -54,6 +101,20 @@ void with_element(const BodyMesh& body, F&& f) {
   with_shape(body.mesh.shape, [&]<class Shape>(Shape) {
     with_kinematics<Shape>(body.kinematics,
                            [&]<Kinematics kinematics>() { f.template operator()<Shape, kinematics>(); });
+  });
+}
+
+/// Calls f.template operator()<Shape, kinematics>(law) with the elements of a continuum and its law. What a law is not
+/// made for is left out: the neo-Hookean one knows the plane alone, where the model has it alone.
+template <class T, class F>
+void with_continuum(const BodyMesh& body, const Law<T>& law, F&& f) {
+  if (const auto* linear = std::get_if<LinearElasticLaw<T>>(&law)) {
+    with_element(body,
+                 [&]<class Shape, Kinematics kinematics>() { f.template operator()<Shape, kinematics>(*linear); });
+    return;
+  }
+  with_shape(body.mesh.shape, [&]<class Shape>(Shape) {
+    f.template operator()<Shape, Kinematics::plane>(std::get<NeoHookeanLaw<T>>(law));
   });
 }
 
@@ -66,15 +127,15 @@ bool is_constant(const A& entries) {
 
 /// Forces of one element of a continuum. Derivatives are computed of what depends on them alone: most parameters touch
 /// few elements, and those of a material no gradient.
-template <class T, class Shape, Kinematics kinematics>
-Mat<T, 2, Shape::nodes> forces_of_element(const LinearElasticLaw<T>& law, const Mat<T, 2, Shape::nodes>& coordinates,
+template <class T, class Shape, Kinematics kinematics, template <class> class MaterialLaw>
+Mat<T, 2, Shape::nodes> forces_of_element(const MaterialLaw<T>& law, const Mat<T, 2, Shape::nodes>& coordinates,
                                           const Mat<T, 2, Shape::nodes>& u, const T& thickness) {
   if constexpr (tells_constants<T>) {
     if (stickslip::is_constant(thickness) && is_constant(coordinates)) {
       const Mat<double, 2, Shape::nodes> fixed = values(coordinates);
       if (!stickslip::is_constant(law.lame) || !stickslip::is_constant(law.shear) || !is_constant(u))
         return element_forces<T, Shape, kinematics, double>(law, fixed, u, value(thickness));
-      const LinearElasticLaw<double> plain(value(law.lame), value(law.shear));
+      const auto plain = law.with(value(law.lame), value(law.shear));
       const Mat<double, 2, Shape::nodes> forces =
           element_forces<double, Shape, kinematics>(plain, fixed, values(u), value(thickness));
       return forces.unaryExpr([](double x) { return T(x); });
@@ -94,9 +155,8 @@ Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>
     const int count = only ? static_cast<int>((*only)[b].size()) : body.mesh.element_count();
     const auto element = [&](int k) { return only ? (*only)[b][k] : k; };
     if (is_continuum(body.mesh.shape)) {
-      const auto& law = std::get<LinearElasticLaw<T>>(slots.laws[b]);
       const T& thickness = slots.depths[b].thickness;
-      detail::with_element(body, [&]<class Shape, Kinematics kinematics>() {
+      detail::with_continuum<T>(body, slots.laws[b], [&]<class Shape, Kinematics kinematics>(const auto& law) {
         std::array<int, Shape::nodes> nodes;
         for (int k = 0; k < count; ++k) {
           for (int a = 0; a < Shape::nodes; ++a)
@@ -112,7 +172,11 @@ Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>
     }
     for (int k = 0; k < count; ++k) {
       const auto nodes = detail::element_nodes(body, element(k));
-      const Matrix<T> K = detail::lumped_tangent(model, slots, static_cast<int>(b), nodes);
+      if (detail::is_green(slots.laws[b])) {
+        detail::add_green_bar_force(model, slots, static_cast<int>(b), nodes, u, forces);
+        continue;
+      }
+      const Matrix<T> K = detail::lumped_tangent<T>(model, slots, static_cast<int>(b), nodes, nullptr);
       for (int a = 0; a < 2; ++a)
         for (int i = 0; i < D; ++i)
           for (int j = 0; j < D; ++j)  // K is [k, -k; -k, k]: forces of the relative displacement, free of cancellation
@@ -124,23 +188,67 @@ Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>
 
 template <class T, class Sink>
 void for_each_element_tangent(const Model& model, const Slots<T>& slots, int b, const std::vector<int>* only,
-                              Sink&& sink) {
+                              Sink&& sink, const Vector<T>* u) {
   const auto& body = model.bodies[b];
   const int count = only ? static_cast<int>(only->size()) : body.mesh.element_count();
   for (int k = 0; k < count; ++k) {
     const int e = only ? (*only)[k] : k;
     const auto nodes = detail::element_nodes(body, e);
     if (!is_continuum(body.mesh.shape)) {
-      sink(nodes, detail::lumped_tangent(model, slots, b, nodes));
+      sink(nodes, detail::lumped_tangent(model, slots, b, nodes, u));
       continue;
     }
-    const auto& law = std::get<LinearElasticLaw<T>>(slots.laws[b]);
-    detail::with_element(body, [&]<class Shape, Kinematics kinematics>() {
-      const Mat<T, 2, Shape::nodes> rest = Mat<T, 2, Shape::nodes>::Constant(T(0));
+    detail::with_continuum<T>(body, slots.laws[b], [&]<class Shape, Kinematics kinematics>(const auto& law) {
+      Mat<T, 2, Shape::nodes> local = Mat<T, 2, Shape::nodes>::Constant(T(0));
+      if (u) local = detail::gather_displacements<T, Shape>(*u, nodes.data());
       const auto X = detail::gather_coordinates<T, Shape>(slots.points, nodes.data());
-      sink(nodes, element_tangent<T, Shape, kinematics>(law, X, rest, slots.depths[b].thickness));
+      sink(nodes, element_tangent<T, Shape, kinematics>(law, X, local, slots.depths[b].thickness));
     });
   }
+}
+
+template <class T>
+Vector<T> bulk_tangent_times(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& vector) {
+  if (model.effects.linear_bulk) return bulk_forces(model, slots, vector);
+  const int D = model.dimension;
+  Vector<T> product = Vector<T>::Constant(model.dof_count(), T(0));
+  const auto add = [&](const auto& nodes, const auto& K) {
+    for (Eigen::Index r = 0; r < K.rows(); ++r)
+      for (Eigen::Index c = 0; c < K.cols(); ++c)
+        product[nodes[r / D] * D + r % D] += K(r, c) * vector[nodes[c / D] * D + c % D];
+  };
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
+    for_each_element_tangent(model, slots, b, nullptr, add, &u);
+  return product;
+}
+
+template <class T>
+T bulk_energy(const Model& model, const Slots<T>& slots, const Vector<T>& u) {
+  if (model.effects.linear_bulk) return T(0.5) * dot(bulk_forces(model, slots, u), u);
+  T energy{};
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    const auto& body = model.bodies[b];
+    for (int e = 0; e < body.mesh.element_count(); ++e) {
+      const auto nodes = detail::element_nodes(body, e);
+      if (const auto* law = std::get_if<NeoHookeanLaw<T>>(&slots.laws[b])) {
+        with_shape(body.mesh.shape, [&]<class Shape>(Shape) {
+          energy += stored_energy<T, Shape>(*law, detail::gather_coordinates<T, Shape>(slots.points, nodes.data()),
+                                            detail::gather_displacements<T, Shape>(u, nodes.data()),
+                                            slots.depths[b].thickness);
+        });
+        continue;
+      }
+      if (const auto* bar = std::get_if<BarLaw<T>>(&slots.laws[b])) {
+        with_dimension(model.dimension, [&]<int d>() {
+          energy += green_bar_energy<T, d>(detail::bar_coordinates<T, d>(slots, nodes), bar->axial,
+                                           detail::bar_stretch<T, d>(nodes, &u));
+        });
+        continue;
+      }
+      energy += detail::spring_energy(std::get<SpringLaw<T>>(slots.laws[b]), model.dimension, nodes, u);
+    }
+  }
+  return energy;
 }
 
 /// Diagonal D x D blocks of the bodies' stiffness at the contact nodes, in the order of Model::contact_nodes.

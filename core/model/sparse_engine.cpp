@@ -33,7 +33,7 @@ SparseEngine<T>::SparseEngine(const Model& model, const Slots<T>& slots, bool un
       symmetry_(detail::symmetry_of(model, unknown_multipliers, cone)),
       size_(static_cast<int>(model.free_dofs.size()) + (unknown_multipliers ? model.multiplier_count : 0)),
       solver_(backend) {
-  const auto lists = tangent_rows(model, unknown_multipliers);
+  auto lists = tangent_rows(model, unknown_multipliers);
   pattern_ = make_pattern(size_, lists);
   for (const auto& point : model.points) {
     const auto rows = point_rows(model, point, unknown_multipliers);
@@ -42,9 +42,16 @@ SparseEngine<T>::SparseEngine(const Model& model, const Slots<T>& slots, bool un
       for (int column : rows) map.push_back(row < 0 || column < 0 ? -1 : locate(*pattern_, row, column));
     point_map_.push_back(std::move(map));
   }
-  bulk_ = assemble_bodies(model, slots, lists, *pattern_);
+  bulk_ = assemble_bodies<T>(model, slots, lists, *pattern_);
   for (int i = 0; i < static_cast<int>(model.free_dofs.size()); ++i)
     stiffness_ = std::max(stiffness_, value(bulk_[locate(*pattern_, i, i)]));
+  if (!model.effects.linear_bulk) lists_ = std::move(lists);
+}
+
+template <class T>
+void SparseEngine<T>::linearise(const Vector<T>& displacement) {
+  bulk_ = assemble_bodies<T>(model_, slots_, lists_, *pattern_, &displacement);
+  valid_ = false;
 }
 
 template <class T>

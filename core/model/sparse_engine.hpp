@@ -26,6 +26,8 @@ class SparseEngine {
   /// f_int - f_ext + contact.
   Vector<T> residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const;
   bool is_free(Eigen::Index row) const { return model_.free_index[row] >= 0; }
+  /// Takes the bodies' tangent at displacements (all dofs, in the axes), for all that follows. pre: it depends on them.
+  void linearise(const Vector<T>& displacement);
   /// `hold`: stiffness against motion of each contact node, the same in all directions, force per length; empty: none.
   bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
   /// In place of factorise() where few points changed since (model/tangent_update.hpp); until the next factorise() all
@@ -61,6 +63,7 @@ class SparseEngine {
   int size_;
   Vector<T> external_;  ///< in the frames
   std::shared_ptr<Pattern> pattern_;
+  RowLists lists_;                           ///< of the tangent; empty where the bodies' is constant
   std::vector<std::vector<int>> point_map_;  ///< per point: entry of each (row, column) pair of its rows, -1 if fixed
   std::vector<T> bulk_, values_;
   double stiffness_ = 0;  ///< largest diagonal entry, for the rounding of a residual

@@ -19,13 +19,23 @@ template <class T>
 struct ContactField {
   std::vector<ContactState> state;
   Vector<T> gap;
-  Vector<T> placement;  ///< s, the slip history
-  Vector<T> slip;       ///< dg_T of this increment
-  Vector<T> traction;   ///< t; compression negative
+  /// s, the slip since the start; behind those of all points, where geometry is the present one, the feet of the points
+  /// on their obstacles (ContactPoint::foot): the slip history.
+  Vector<T> placement;
+  Vector<T> slip;      ///< dg_T of this increment
+  Vector<T> traction;  ///< t; compression negative
+  /// Geometry of each point where it is now; empty where it stays that of the start (Slots::geometry).
+  std::vector<PointGeometry<T>> moved;
   /// Of derivatives alone (sensitivity/branches.hpp): the direction that the trial of a slipping point takes from the
   /// apex of its cone, laid out as traction, zero elsewhere; empty where no point is there.
   Vector<double> ray;
 };
+
+/// Geometry that a point has in a field.
+template <class S, class T>
+const PointGeometry<T>& geometry_in(const ContactField<T>& field, const S& slots, std::size_t p) {
+  return field.moved.empty() ? slots.geometry[p] : field.moved[p];
+}
 
 /// Where the tangential quantities of point p stand (each earlier point has exactly one normal component).
 inline int tangential_offset(const Model& model, int p) { return model.points[p].multiplier - p; }

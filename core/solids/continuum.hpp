@@ -3,7 +3,8 @@
 ///
 ///   R_ia = int sigma_pq B_pq,ia dV        K = int B_pq,ia (dsigma_pq/dH_rs) B_rs,kb dV        H_pq = B_pq,ia u_ia
 ///
-/// H is the displacement gradient. In the plane it has four components, B_pq,ia = delta_ip dN_a/dX_q, and dV is area
+/// H is the displacement gradient, sigma the stress that does work on it: at finite strain the first Piola-Kirchhoff
+/// stress. In the plane it has four components, B_pq,ia = delta_ip dN_a/dX_q, and dV is area
 /// times thickness. Of revolution (X_0 = r, X_1 axial) the hoop strain H_22 = u_r / r joins them, and dV is area times
 /// the circumference 2 pi r. With mean dilatation the trace of H is replaced by its mean over the element,
 ///
@@ -229,6 +230,17 @@ template <class T, class Shape, Kinematics kinematics = Kinematics::plane, class
 T element_energy(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates, const Mat<T, 2, Shape::nodes>& u,
                  const T& depth = T(1)) {
   return T(0.5) * element_forces<T, Shape, kinematics>(law, coordinates, u, depth).cwiseProduct(u).sum();
+}
+
+/// Strain energy int W dV of a law that has one.
+template <class T, class Shape, class Law>
+T stored_energy(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates, const Mat<T, 2, Shape::nodes>& u,
+                const T& depth = T(1)) {
+  T energy{};
+  for_each_gradient<T, Shape, Kinematics::plane>(coordinates, depth, [&](const auto& gradient) {
+    energy += law.template energy<T, 2>(gradient.of(u)) * gradient.volume;
+  });
+  return energy;
 }
 
 }  // namespace stickslip

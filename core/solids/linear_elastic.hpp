@@ -21,6 +21,12 @@ struct LinearElasticLaw {
     if (space == Space::plane_stress) lame = T(2) * lame * shear / (lame + T(2) * shear);
   }
 
+  /// The law with other numbers.
+  template <class U>
+  LinearElasticLaw<U> with(const U& lambda, const U& G) const {
+    return {lambda, G};
+  }
+
   /// Stress of a displacement gradient H (D x D), in the scalar of H: U is T, or a Dual built on T.
   template <class U, int D>
   Mat<U, D> stress(const Mat<U, D>& H) const {

@@ -38,7 +38,7 @@ struct Made {
     auto& increment = trajectory.increments.emplace_back();
     increment.time = time;
     increment.requested = requested;
-    increment.state = initial_state<double>(model);
+    increment.state = initial_state<double>(model, slots);
     increment.state.displacement << x, y, 0, 0;
     Matrix<double> derivative(2, 2);
     derivative << x, 2 * x, y, 3 * y;

@@ -30,7 +30,7 @@ CaseResult nothing(const std::shared_ptr<const Problem>& problem) {
   result.trajectory.increments.resize(2);
   result.steps.resize(2);
   for (int n = 0; n < 2; ++n) {
-    result.trajectory.increments[n].state = initial_state<double>(problem->model);
+    result.trajectory.increments[n].state = initial_state<double>(problem->model, problem->slots);
     result.steps[n].increment = &result.trajectory.increments[n];
     result.steps[n].responses = Vector<double>::Zero(1);
     result.steps[n].sensitivities = Matrix<double>::Zero(1, 1);

@@ -32,7 +32,7 @@ struct Made {
   explicit Made(const Scene& scene) {
     result.problem = std::make_shared<const Problem>(scene);
     result.trajectory.increments.resize(1);
-    state() = initial_state<double>(model());
+    state() = initial_state<double>(model(), result.problem->slots);
     result.trajectory.increments[0].time = 0.5;
     result.steps.resize(1);
     result.steps[0].increment = &result.trajectory.increments[0];

@@ -15,13 +15,13 @@ struct Made {
   Trajectory<double> trajectory;
 
   explicit Made(const Scene& scene) : model(make_model(scene)), slots(make_slots<double>(model, scene.as<double>())) {
-    trajectory.initial = initial_state<double>(model);
+    trajectory.initial = initial_state<double>(model, slots);
   }
   /// A further increment; it starts as nothing moved and nothing pressed.
   State<double>& next() {
     trajectory.increments.emplace_back();
     trajectory.increments.back().time = static_cast<double>(trajectory.increments.size());
-    trajectory.increments.back().state = initial_state<double>(model);
+    trajectory.increments.back().state = initial_state<double>(model, slots);
     return trajectory.increments.back().state;
   }
   std::vector<KktError> errors() const { return kkt_errors(model, slots, trajectory); }

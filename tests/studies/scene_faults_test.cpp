@@ -56,6 +56,45 @@ const char* const mu = R"("mu": "/contacts/sole/friction")";
 const char* const method = R"({"monolithic_al": {"scale": 2}})";
 const char* const spring = "[[3, 1], [1, 2]]";
 
+const char* const finite_scene = R"({
+  "strain": "finite",
+  "bodies": {"block": {"mesh": {"box": {"min": [0, 0], "max": [4, 2], "cells": [4, 2]}},
+                       "material": {"neo_hookean": {"E": 1000, "nu": 0.25}}}},
+  "obstacles": {"floor": {"plane": {"point": [0, 0], "normal": [0, 1]}}},
+  "contacts": {"sole": {"slave": "block.bottom", "master": "floor"}},
+  "supports": [{"on": "block.top", "move": {"x": 0, "y": -0.1}}],
+  "loads": [{"on": "block.left", "traction": [1, 0]}],
+  "time": {"end": 1, "steps": 2},
+  "method": {"monolithic_al": {}}
+})";
+
+/// What finite strain does not know yet, and what does not go with it.
+std::vector<Broken> broken_finite() {
+  const char* f = finite_scene;
+  const char* const small = R"(needs "strain": "small")";
+  return {
+      {"finite_of_revolution", f, R"("strain": "finite")", R"("space": "axisymmetric", "strain": @"finite")", "/strain",
+       "plane_strain"},
+      {"finite_linear_elastic", f, R"("neo_hookean")", R"(@"linear_elastic")", "/bodies/block/material/linear_elastic",
+       "allowed: neo_hookean"},
+      {"finite_volumetric", f, R"("nu": 0.25})", R"("nu": 0.25, "volumetric": @"cubic"})",
+       "/bodies/block/material/neo_hookean/volumetric", "allowed: quadratic, log"},
+      {"finite_mean_dilatation", f, R"("material": {)", R"(@"element": "Q4_mean_dilatation", "material": {)",
+       "/bodies/block/element", small},
+      {"finite_polyline", f, R"("plane": {"point": [0, 0], "normal": [0, 1]})",
+       R"(@"polyline": {"points": [[4, 0], [0, 0]]})", "/obstacles/floor/polyline", small},
+      {"finite_turning_obstacle", f, R"("normal": [0, 1]}})",
+       R"("normal": [0, 1]}, @"rotate": {"center": [0, 0], "angle": 3}})", "/obstacles/floor/rotate", small},
+      {"finite_turning_support", f, R"("move": {"x": 0, "y": -0.1}})", R"(@"rotate": {"center": [0, 0], "angle": 3}})",
+       "/supports/0/rotate", small},
+      {"finite_pressure", f, R"("traction": [1, 0])", R"(@"pressure": 1)", "/loads/0/pressure", small},
+      {"finite_segments", f, R"("master": "floor"})", R"("master": "floor", @"discretization": "segment"})",
+       "/contacts/sole/discretization", small},
+      {"finite_condensed", f, R"("time")", R"("linear_solver": {"engine": @"condensed"}, "time")",
+       "/linear_solver/engine", "allowed at finite strain: auto, sparse"},
+  };
+}
+
 std::vector<Broken> broken_bodies() {
   const char* b = block_scene;
   return {
@@ -75,8 +114,9 @@ std::vector<Broken> broken_bodies() {
       {"ring_inside_out", b, R"({"box": {"min": [0, 0], "max": [4, 2], "cells": [4, 2]}})",
        R"({"ring": {"center": [0, 0], "inner": 2, "outer": @1, "cells": [2, 8]}})", "/bodies/block/mesh/ring/outer",
        "is 1; must be greater than inner, which is 2"},
-      {"finite_strain", b, R"("space": "plane_strain")", R"("strain": @"finite")", "/strain",
-       "is not available in this version; allowed: small"},
+      {"unknown_strain", b, R"("space": "plane_strain")", R"("strain": @"large")", "/strain", "allowed: small, finite"},
+      {"neo_hookean_at_small_strain", b, R"("linear_elastic": {"E": 1000, "nu": 0.25})",
+       R"(@"neo_hookean": {"E": 1000, "nu": 0.25})", "/bodies/block/material/neo_hookean", "at small strain"},
       {"bodies_list", b, R"("element": "Q4")", R"("element": @4)", "/bodies/block/element",
        "must be one of Q4, Q4_mean_dilatation, Q8, T3, T6, bar, point"},
       {"bar_in_a_box", b, R"("element": "Q4")", R"("element": @"bar")", "/bodies/block/element",
@@ -496,6 +536,7 @@ std::vector<Broken> broken_lumped() {
 std::string name_of_case(const testing::TestParamInfo<Broken>& info) { return info.param.name; }
 
 INSTANTIATE_TEST_SUITE_P(Bodies, BrokenScene, testing::ValuesIn(broken_bodies()), name_of_case);
+INSTANTIATE_TEST_SUITE_P(Finite, BrokenScene, testing::ValuesIn(broken_finite()), name_of_case);
 INSTANTIATE_TEST_SUITE_P(Contacts, BrokenScene, testing::ValuesIn(broken_contacts()), name_of_case);
 INSTANTIATE_TEST_SUITE_P(Loading, BrokenScene, testing::ValuesIn(broken_loading()), name_of_case);
 INSTANTIATE_TEST_SUITE_P(Responses, BrokenScene, testing::ValuesIn(broken_responses()), name_of_case);

@@ -297,8 +297,9 @@ TEST(SceneReader, ReadsEveryLawOfFriction) {
     std::string scene = block_scene;
     const std::string number = "\"friction\": 0.3";
     scene.replace(scene.find(number), number.size(), "\"friction\": " + text);
-    const auto mu = scene.find("\"/contacts/sole/friction\"");
-    if (mu != std::string::npos) scene.replace(mu, 24, "\"/bodies/block/material/linear_elastic/E\"");
+    const std::string mu = "\"/contacts/sole/friction\"";
+    if (const auto at = scene.find(mu); at != std::string::npos)
+      scene.replace(at, mu.size(), "\"/bodies/block/material/linear_elastic/E\"");
     const auto path = std::filesystem::path(testing::TempDir()) / "law_of_friction.json";
     std::ofstream(path) << scene;
     Diagnostics diagnostics;

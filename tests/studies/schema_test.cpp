@@ -93,7 +93,10 @@ std::vector<json> rich_scenes() {
   const char* monolithic = R"({"bodies": {"rod": {"mesh": {"line": {"from": [0, 9], "to": [1, 9], "cells": 2}},
     "material": {"linear_elastic": {"E": 1, "nu": 0}}}}, "time": {"end": 1, "steps": 1},
     "method": {"monolithic_al": {"newton": {"line_search": true}}}})";
-  return {json::parse(plane), json::parse(space), json::parse(monolithic)};
+  const char* finite = R"({"strain": "finite", "bodies": {"block": {
+    "mesh": {"box": {"min": [0, 0], "max": [4, 2], "cells": [4, 2]}}, "material": {"neo_hookean": {"E": 1, "nu": 0}}}},
+    "time": {"end": 1, "steps": 1}, "method": {"monolithic_al": {}}})";
+  return {json::parse(plane), json::parse(space), json::parse(monolithic), json::parse(finite)};
 }
 
 /// Faults of a scene as the reader finds them.

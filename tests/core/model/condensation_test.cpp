@@ -25,11 +25,12 @@ struct Whole {
       : K(MatrixXd::Zero(problem.model.dof_count(), problem.model.dof_count())) {
     const int D = problem.model.dimension;
     for (std::size_t b = 0; b < problem.model.bodies.size(); ++b)
-      for_each_framed_tangent(problem.model, problem.slots, static_cast<int>(b), [&](const auto& nodes, const auto& k) {
-        for (std::size_t i = 0; i < nodes.size() * D; ++i)
-          for (std::size_t j = 0; j < nodes.size() * D; ++j)
-            K(nodes[i / D] * D + i % D, nodes[j / D] * D + j % D) += k(i, j);
-      });
+      for_each_framed_tangent<double>(problem.model, problem.slots, static_cast<int>(b), nullptr,
+                                      [&](const auto& nodes, const auto& k) {
+                                        for (std::size_t i = 0; i < nodes.size() * D; ++i)
+                                          for (std::size_t j = 0; j < nodes.size() * D; ++j)
+                                            K(nodes[i / D] * D + i % D, nodes[j / D] * D + j % D) += k(i, j);
+                                      });
     for (int node : problem.model.contact_nodes)
       for (int i = 0; i < D; ++i) contact.push_back(node * D + i);
     for (int dof : problem.model.free_dofs)

@@ -32,7 +32,7 @@ BlockVector<double> along(const EngineProblem& problem, const Vector<double>& du
   const ContactInput<D1> input{problem.model, slots, rho, placement, ConeRadius::augmented, 1.0};
   const auto field = evaluate_contact<D1>(input, to_compact(problem.model, u), multiplier, &problem.states);
   Vector<D1> rows = bulk_forces(problem.model, slots, u);
-  add_compact(problem.model, contact_forces(problem.model, slots, field.traction), rows);
+  add_compact(problem.model, contact_forces(problem.model, slots, field), rows);
   const Vector<D1> rows_l = multiplier_residual(problem.model, slots, field.traction, multiplier);
   auto derivative = [](const D1& x) { return x.d[0]; };
   return {rows.unaryExpr(derivative), rows_l.unaryExpr(derivative)};

@@ -40,7 +40,7 @@ Block block(std::vector<Response> responses, std::array<double, 2> floor_normal 
   b.scene.responses = std::move(responses);
   b.model = make_model(b.scene);
   b.slots = make_slots<double>(b.model, b.scene.as<double>());
-  b.state = initial_state<double>(b.model);
+  b.state = initial_state<double>(b.model, b.slots);
   return b;
 }
 
@@ -149,7 +149,7 @@ TEST(NodalBalance, IsInternalForceMinusLoadPlusContact) {
   const Scene scene = scenes::stop(15, 1000, 0.01);
   const Model model = make_model(scene);
   const auto slots = make_slots<double>(model, scene.as<double>());
-  auto state = initial_state<double>(model);
+  auto state = initial_state<double>(model, slots);
   state.displacement[1] = 0.01;
   state.contact.traction[0] = -5;  // F - k g0
   const auto balance = nodal_balance(model, slots, state, 1.0);
@@ -162,7 +162,7 @@ TEST(NodalBalance, OfTwoBodiesAddsUpToTheReverseOfTheLoad) {
   scene.loads = {scenes::traction("upper.left", {3.0, -2.0})};
   const Model model = make_model(scene);
   const auto slots = make_slots<double>(model, scene.as<double>());
-  auto state = initial_state<double>(model);
+  auto state = initial_state<double>(model, slots);
   state.displacement = 0.01 * derivatives::arbitrary(model.dof_count());
   state.contact.traction = derivatives::arbitrary(model.multiplier_count, 2);
   const Vector<double> sum = nodal_balance(model, slots, state, 1.0).reshaped(2, model.node_count).rowwise().sum();
@@ -185,7 +185,7 @@ double half_width_of_hertz(int cells, double a, double middle, double p0) {
   scene.responses = {response("a", Kind::contact_half_width, "sole")};
   const Model model = make_model(scene);
   const auto slots = make_slots<double>(model, scene.as<double>());
-  auto state = initial_state<double>(model);
+  auto state = initial_state<double>(model, slots);
   for (const auto& point : model.points) {
     const double x = (slots.points(0, point.nodes[0]) - middle) / a;
     state.contact.traction[point.multiplier] = -p0 * std::sqrt(std::max(0.0, 1 - x * x));
@@ -228,7 +228,7 @@ TEST(HalfWidth, IsZeroWithAFiniteDerivativeWhereOneNodeOrNoneTouches) {
   auto b = block({response("a", Kind::contact_half_width, "sole")});
   const auto slots = make_slots<Dual<1>>(b.model, b.scene.as<Dual<1>>());
   for (double pressure : {0.0, 2.0}) {
-    auto state = initial_state<Dual<1>>(b.model);
+    auto state = initial_state<Dual<1>>(b.model, slots);
     state.contact.traction[b.model.points[2].multiplier] = Dual<1>(-pressure, Dual<1>::Gradient(0.5));
     const auto a = evaluate_responses(b.model, slots, state, 1.0)[0];
     EXPECT_EQ(a.v, 0);

@@ -1,0 +1,77 @@
+/// Compressible neo-Hookean material at finite strain, in plane strain.
+///
+///   W = G ((tr C - 3)/2 - ln J) + U(J),   U = lame/2 (J - 1)^2 (quadratic) or lame/2 (ln J)^2 (log)
+///   P = dW/dF = G (F - F^-T) + J U'(J) F^-T,   F = I + H,   C = F^T F,   J = det F
+///
+///   lame = E nu / ((1+nu)(1-2nu)),  G = E / (2(1+nu)): Hooke's law at small H, for both U
+///
+/// Both are written in H and j = J - 1 = tr H + det H, so that a small strain does not vanish beside one: F^-T is the
+/// cofactor matrix over J, and J F - cof F = j F + (F - cof F). An element with J <= 0 is inverted: its stress is not a
+/// number, so that no residual passes it. Differentiable for J > 0. Source: [W06].
+#pragma once
+
+#include <limits>
+
+#include "core/model/scene.hpp"
+
+namespace stickslip {
+
+template <class T>
+struct NeoHookeanLaw {
+  T lame, shear;
+  NeoHookean::Volumetric volumetric = NeoHookean::Volumetric::quadratic;
+
+  NeoHookeanLaw(const T& lambda, const T& G, NeoHookean::Volumetric kind) : lame(lambda), shear(G), volumetric(kind) {}
+
+  /// The law with other numbers.
+  template <class U>
+  NeoHookeanLaw<U> with(const U& lambda, const U& G) const {
+    return {lambda, G, volumetric};
+  }
+
+  /// First Piola-Kirchhoff stress of a displacement gradient H (2 x 2), in the scalar of H: U is T, or a Dual built
+  /// on T.
+  template <class U, int D>
+  Mat<U, D> stress(const Mat<U, D>& H) const {
+    static_assert(D == 2, "made for the plane");
+    using std::log1p, stickslip::log1p;
+    const U j = growth(H), J = U(1) + j;
+    if (!(value(J) > 0)) return Mat<U, D>::Constant(U(std::numeric_limits<double>::quiet_NaN()));
+    const bool quadratic = volumetric == NeoHookean::Volumetric::quadratic;
+    const U shear_over_J = U(shear) / J, across = quadratic ? U(U(lame) * j) : U(U(lame) * log1p(j) / J);
+    const U F00 = U(1) + H(0, 0), F11 = U(1) + H(1, 1), apart = H(0, 0) - H(1, 1), sheared = H(0, 1) + H(1, 0);
+    Mat<U, D> P;
+    P(0, 0) = shear_over_J * (j * F00 + apart) + across * F11;
+    P(1, 1) = shear_over_J * (j * F11 - apart) + across * F00;
+    P(0, 1) = shear_over_J * (j * H(0, 1) + sheared) - across * H(1, 0);
+    P(1, 0) = shear_over_J * (j * H(1, 0) + sheared) - across * H(0, 1);
+    return P;
+  }
+
+  /// Cauchy's stress across the plane, U'(J).
+  double stress_across(const Mat<double, 2>& H) const {
+    const double j = growth(H);
+    return volumetric == NeoHookean::Volumetric::quadratic ? value(lame) * j : value(lame) * std::log1p(j) / (1 + j);
+  }
+
+  /// Energy per initial volume.
+  template <class U, int D>
+  U energy(const Mat<U, D>& H) const {
+    using std::log1p, stickslip::log1p;
+    const U j = growth(H), logarithm = log1p(j);
+    U squares{};
+    for (int k = 0; k < D * D; ++k) squares += H.data()[k] * H.data()[k];
+    const U half = H(0, 0) + H(1, 1) + squares / U(2);  // (tr C - 3)/2, with C_33 = 1
+    const U change = volumetric == NeoHookean::Volumetric::quadratic ? j : logarithm;
+    return U(shear) * (half - logarithm) + U(lame) / U(2) * change * change;
+  }
+
+ private:
+  /// J - 1.
+  template <class U, int D>
+  static U growth(const Mat<U, D>& H) {
+    return H(0, 0) + H(1, 1) + (H(0, 0) * H(1, 1) - H(0, 1) * H(1, 0));
+  }
+};
+
+}  // namespace stickslip

@@ -1,0 +1,108 @@
+/// The neo-Hookean law and the bar of Green strain against their energies, Hooke's law, and rotations.
+#include "core/solids/neo_hookean.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/solids/bar.hpp"
+#include "core/solids/linear_elastic.hpp"
+#include "tests/support/derivatives.hpp"
+
+namespace stickslip {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double E = 1000, nu = 0.3;
+using Volumetric = NeoHookean::Volumetric;
+
+template <class T>
+NeoHookeanLaw<T> law(Volumetric kind, const T& modulus = T(E), const T& ratio = T(nu)) {
+  const LinearElasticLaw<T> small(modulus, ratio, Space::plane_strain);
+  return {small.lame, small.shear, kind};
+}
+
+Mat<double, 2> some_gradient(double size) {
+  Mat<double, 2> H;
+  H << 0.3, -0.5, 0.2, -0.4;
+  return size * H;
+}
+
+class NeoHookeanLaws : public testing::TestWithParam<Volumetric> {};
+
+TEST_P(NeoHookeanLaws, HasTheStressOfItsEnergy) {
+  const auto energy = [](const auto& v) {
+    using T = typename std::decay_t<decltype(v)>::Scalar;
+    const Mat<T, 2> H = v.reshaped(2, 2);
+    return Vector<T>::Constant(1, law<T>(GetParam()).template energy<T, 2>(H)).eval();
+  };
+  const auto stress = [](const auto& v) {
+    using T = typename std::decay_t<decltype(v)>::Scalar;
+    const Mat<T, 2> H = v.head(4).reshaped(2, 2);
+    return Vector<T>(law<T>(GetParam(), v[4], v[5]).template stress<T, 2>(H).reshaped());
+  };
+  Vector<double> v(6);
+  v << some_gradient(1).reshaped(), 1.0, nu;
+  const Vector<double> H = v.head(4);
+  Vector<double> of_stiff = v;
+  of_stiff[4] = E;
+  EXPECT_LE(derivatives::relative_difference(derivatives::by_dual(energy, H).transpose(), stress(of_stiff)),
+            100 * epsilon);  // some twenty operations, and a logarithm
+  EXPECT_LE(derivatives::relative_difference(derivatives::by_dual(stress, v), derivatives::by_complex_step(stress, v)),
+            100 * epsilon);
+}
+
+TEST_P(NeoHookeanLaws, IsHookesAtSmallStrainToTheLastDigits) {
+  for (double size : {1e-3, 1e-8, 1e-14}) {
+    const Mat<double, 2> H = some_gradient(size);
+    const Mat<double, 2> small = LinearElasticLaw<double>(E, nu, Space::plane_strain).stress<double, 2>(H);
+    const Mat<double, 2> P = law<double>(GetParam()).stress<double, 2>(H);
+    EXPECT_LE(derivatives::relative_difference(P, small), 3 * size + 20 * epsilon) << size;
+  }
+}
+
+TEST_P(NeoHookeanLaws, TurnsWithARotation) {
+  Mat<double, 2> Q;
+  Q << std::cos(1.2), -std::sin(1.2), std::sin(1.2), std::cos(1.2);
+  const Mat<double, 2> H = some_gradient(1), I = Mat<double, 2>::Identity();
+  const Mat<double, 2> P = law<double>(GetParam()).stress<double, 2>(H);
+  const Mat<double, 2> turned = law<double>(GetParam()).stress<double, 2>(Mat<double, 2>(Q * (I + H) - I));
+  EXPECT_LE(derivatives::relative_difference(turned, Q * P), 100 * epsilon);
+}
+
+TEST_P(NeoHookeanLaws, HasNoStressWhereTheElementIsInverted) {
+  Mat<double, 2> H = Mat<double, 2>::Zero();
+  for (double h : {-1.0, -1.5}) {
+    H(0, 0) = h;
+    EXPECT_TRUE(std::isnan(law<double>(GetParam()).stress<double, 2>(H)(0, 0)));
+    EXPECT_TRUE(std::isnan(std::real(
+        law<derivatives::Complex>(GetParam()).stress<derivatives::Complex, 2>(H.cast<derivatives::Complex>())(0, 0))));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Volumetric, NeoHookeanLaws, testing::Values(Volumetric::quadratic, Volumetric::log));
+
+TEST(GreenBar, HasForceAndTangentOfItsEnergy) {
+  const Mat<double, 2, 2> X{{0.0, 3.0}, {1.0, 5.0}};
+  const auto of = [&](auto&& f) {
+    return [&X, f](const auto& d) {
+      using T = typename std::decay_t<decltype(d)>::Scalar;
+      const Mat<T, 2, 2> places = X.unaryExpr([](double x) { return T(x); });
+      return f(places, T(7.0), Vec<T, 2>(d[0], d[1]));
+    };
+  };
+  const auto energy = of([](const auto& places, const auto& axial, const auto& d) {
+    using T = std::decay_t<decltype(axial)>;
+    return Vector<T>::Constant(1, green_bar_energy<T, 2>(places, axial, d)).eval();
+  });
+  const auto force = of([](const auto& places, const auto& axial, const auto& d) {
+    using T = std::decay_t<decltype(axial)>;
+    return Vector<T>(green_bar_force<T, 2>(places, axial, d));
+  });
+  const Vector<double> d = Vec<double, 2>(-0.7, 1.9);
+  EXPECT_LE(derivatives::relative_difference(derivatives::by_dual(energy, d).transpose(), force(d)), 50 * epsilon);
+  const Mat<double, 4> K = green_bar_tangent<double, 2>(X, 7.0, Vec<double, 2>(d));
+  const Matrix<double> by_dual = derivatives::by_dual(force, d), block = K.bottomRightCorner<2, 2>();
+  EXPECT_LE(derivatives::relative_difference(block, by_dual), 50 * epsilon);
+}
+
+}  // namespace
+}  // namespace stickslip

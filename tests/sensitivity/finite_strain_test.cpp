@@ -1,0 +1,320 @@
+/// Finite strain on rigid obstacles, the thin path: closed forms by every method, derivatives by every scheme against
+/// the complex step of the whole program, and the adjoint against those.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "core/model/response.hpp"
+#include "sensitivity/adjoint.hpp"
+#include "tests/support/blocks.hpp"
+#include "tests/support/largest.hpp"
+#include "tests/support/oracle.hpp"
+
+namespace stickslip {
+namespace {
+
+using scenes::parameter;
+using scenes::relative;
+using scenes::response;
+using scenes::run;
+using scenes::table;
+using Kind = Response::Kind;
+
+/// Penalties that leave 1e-5 of an overlap; closed forms are held against the stretch that is there.
+std::vector<Method> all_methods() {
+  Penalty penalty;
+  penalty.stiffness = relative(1e5);
+  UzawaAL uzawa;
+  uzawa.tolerance = 1e-12;
+  return {penalty, uzawa, MonolithicAL{}};
+}
+
+std::vector<Method> all_schemes() {
+  UzawaAL iterated, truncated, preconditioned;
+  iterated.tolerance = truncated.tolerance = preconditioned.tolerance = 1e-12;
+  truncated.sensitivity = UzawaAL::Sensitivity::truncated;
+  preconditioned.sensitivity = UzawaAL::Sensitivity::preconditioned;
+  return {Penalty{}, iterated, truncated, preconditioned, MonolithicAL{}};
+}
+
+Obstacle plane(const std::string& name, std::array<Number, 2> point, std::array<double, 2> normal) {
+  return {name, Plane{{point[0], point[1]}, {normal[0], normal[1]}}};
+}
+
+// --- A13: a block between a moved support and a plane, stretched by l1 across
+// -----------------------------------------
+
+Scene patch(double stretch, NeoHookean::Volumetric kind) {
+  Scene s;
+  s.finite_strain = true;
+  s.legs = {{1, 4}};
+  auto block = scenes::box_body("block", {0, 0}, {2, 1}, {4, 3});
+  block.material = NeoHookean{parameter(s, "E", 1000), parameter(s, "nu", 0.3), kind};
+  s.bodies = {block};
+  s.obstacles = {plane("floor", {0.0, 0.0}, {0, 1})};
+  s.contacts = {scenes::contact("sole", "block.bottom", "floor")};
+  const Number down = parameter(s, "down", stretch - 1);
+  s.supports = {scenes::support("block.top", {{'y', table({{0, 0.0}, {1, down}})}}),
+                scenes::support("block.left", {{'x', table({{0, 0.0}})}})};
+  s.responses = {
+      response("press", Kind::reaction, "block.top", "y"), response("wide", Kind::displacement, "block.right", "x"),
+      response("sunk", Kind::displacement, "block.bottom", "y"), response("energy", Kind::strain_energy, "")};
+  return s;
+}
+
+TEST(FinitePatch, HasTheStretchAndTheForceOfTheClosedForm) {
+  struct Case {
+    double l1, l2, P1;
+  };
+  for (const auto& c : {Case{0.9, 1.0449972898, -120.5210836}, Case{0.7, 1.1507960463, -458.4239232},
+                        Case{0.5, 1.2883049724, -1084.4074629}})
+    for (const auto& method : all_methods()) {
+      const auto s = run(patch(c.l1, NeoHookean::Volumetric::log), method);
+      ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
+      EXPECT_EQ(s.trajectory.counters.cutbacks, 0) << name_of(method);
+      // of the stretch that there is: the penalty sinks in, by dP/dl1 some E times that
+      const double overlap = std::abs(s.value("sunk"));
+      EXPECT_NEAR(s.value("wide") / 2 + 1, c.l2, 1e-9 + overlap) << name_of(method);
+      EXPECT_NEAR(s.value("press") / 2, c.P1, 1e-6 + 2e4 * overlap) << name_of(method);
+      EXPECT_LE(overlap, std::holds_alternative<Penalty>(method) ? 1e-4 : 1e-11) << name_of(method);
+    }
+}
+
+TEST(FinitePatch, IsThatOfItsOwnStretchToRounding) {
+  constexpr double lame = 1000 * 0.3 / (1.3 * 0.4), G = 1000 / 2.6;
+  for (const auto& method : all_methods()) {
+    const auto s = run(patch(0.6, NeoHookean::Volumetric::log), method);
+    const double l1 = 0.6 - s.value("sunk"), l2 = 1 + s.value("wide") / 2;
+    EXPECT_NEAR(G * (l2 - 1 / l2) + lame * std::log(l1 * l2) / l2, 0, 1e-9 * lame) << name_of(method);
+    EXPECT_NEAR(s.value("press") / 2, G * (l1 - 1 / l1) + lame * std::log(l1 * l2) / l1, 1e-9 * lame)
+        << name_of(method);
+    const double squares = l1 * l1 + l2 * l2 - 2, J = std::log(l1 * l2);
+    EXPECT_NEAR(s.value("energy") / 2, G * (squares / 2 - J) + lame / 2 * J * J, 1e-9 * lame) << name_of(method);
+  }
+}
+
+// --- A15: half of a von Mises truss, pushed through by an obstacle
+// ----------------------------------------------------
+
+Scene truss(double push) {
+  Scene s;
+  s.finite_strain = true;
+  s.legs = {{1, 8}};
+  s.bodies = {{"bar", LineMesh{{0.0, 0.0}, {10.0, parameter(s, "rise", 1)}, 1},
+               LinearElastic{parameter(s, "E", 1e4), 0.0}, "", 1.0}};
+  const Number down = parameter(s, "down", -push);
+  s.obstacles = {plane("ram", {0.0, 1.0}, {0, -1})};
+  s.obstacles[0].move = {{'y', table({{0, 0.0}, {1, down}})}};
+  s.contacts = {scenes::contact("top", "bar.end", "ram")};
+  s.supports = {scenes::support("bar.start", {{'x', table({{0, 0.0}})}, {'y', table({{0, 0.0}})}}),
+                scenes::support("bar.end", {{'x', table({{0, 0.0}})}})};
+  s.responses = {response("press", Kind::contact_force, "top", "normal"),
+                 response("w", Kind::displacement, "bar.end", "y")};
+  return s;
+}
+
+double truss_force(double w) {
+  const double s = 1 - w;
+  return 1e4 / std::pow(101, 1.5) * (s - s * s * s) / 2;
+}
+
+TEST(Truss, HasTheForceOfTheClosedFormUpToItsLimitPointAndBeyond) {
+  constexpr double at_limit = 0.4226497308;
+  for (const auto& method : all_methods())
+    for (double push : {0.2, at_limit, 0.9}) {
+      const auto s = run(truss(push), method);
+      ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
+      EXPECT_NEAR(s.value("press"), truss_force(-s.value("w")), 1e-9 * 1.9) << name_of(method) << push;
+      const double most = std::holds_alternative<Penalty>(method) ? 1e-6 : 1e-9;  // (its overlap moves w)
+      if (push == at_limit) {
+        EXPECT_NEAR(2 * s.value("press"), 3.7919801295, most) << name_of(method);
+      }
+    }
+}
+
+// --- a point that a spring leads around a disk: large sliding on a normal that turns
+// ----------------------------------
+
+/// The anchor goes around the centre by an angle, at `radius`; the disk has the radius 1.
+Scene led_around(double mu, double radius, double angle, int steps) {
+  Scene s;
+  s.finite_strain = true;
+  s.legs = {{1, steps}};
+  const Number k = parameter(s, "k", 100);
+  s.bodies = {{"point", PointMesh{{0.0, 1.0}}, GroundedSpring{{{k, 0.0}, {0.0, k}}}, "", 1.0}};
+  s.obstacles = {{"disk", Circle{{0.0, 0.0}, parameter(s, "R", 1.0)}}};
+  s.contacts = {scenes::contact("rim", "point.node", "disk")};
+  s.contacts[0].friction = parameter(s, "mu", mu);
+  Table x, y;
+  for (int n = 0; n <= steps; ++n) {
+    const double t = static_cast<double>(n) / steps, turned = angle * t;
+    x.points.emplace_back(t, radius * std::sin(turned));
+    y.points.emplace_back(t, radius * std::cos(turned) - 1);
+  }
+  s.supports = {scenes::support("point.anchor", {{'x', x}, {'y', y}})};
+  s.responses = {response("x", Kind::displacement, "point.node", "x"),
+                 response("y", Kind::displacement, "point.node", "y"), response("slid", Kind::slip, "rim"),
+                 response("press", Kind::contact_force, "rim", "normal")};
+  return s;
+}
+
+TEST(LedAround, StaysBehindItsAnchorByTheAngleOfFriction) {
+  constexpr double radius = 0.5, angle = 2.5;
+  for (double mu : {0.0, 0.2})
+    for (const auto& method : all_methods()) {
+      if (std::holds_alternative<Penalty>(method)) continue;  // (its overlap is another radius)
+      const auto s = run(led_around(mu, radius, angle, 20), method);
+      ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
+      // triangle of centre, anchor and point: the spring leans against the normal by atan mu at the point
+      const double friction = std::atan(mu), at_anchor = std::numbers::pi - std::asin(std::sin(friction) / radius);
+      const double lag = std::numbers::pi - friction - at_anchor, place = angle - lag;
+      EXPECT_NEAR(s.value("x"), std::sin(place), 1e-9) << name_of(method) << mu;
+      EXPECT_NEAR(s.value("y") + 1, std::cos(place), 1e-9) << name_of(method) << mu;
+      // sums of chords: each is shorter than its arc by some phi^3 / 6
+      EXPECT_NEAR(std::abs(s.value("slid")), place, 20 * std::pow(angle / 20, 3) / 6) << name_of(method) << mu;
+    }
+}
+
+// --- derivatives
+// ------------------------------------------------------------------------------------------------------
+
+/// A block pressed onto a rigid disk from above and dragged along it: it sticks, slips, opens at its ends, and the
+/// normals turn.
+Scene draped(double mu) {
+  Scene s;
+  s.finite_strain = true;
+  s.legs = {{1, 3}, {2, 6}};
+  BoxMesh box;
+  box.min = {-1.0, 0.0};
+  box.max = {1.0, parameter(s, "height", 0.8)};
+  box.cells = {8, 3};
+  s.bodies = {{"block", box, NeoHookean{parameter(s, "E", 100), parameter(s, "nu", 0.3)}, "", 1.0}};
+  s.obstacles = {{"disk", Circle{{parameter(s, "centre", 0.1), -1.5}, parameter(s, "R", 1.5)}}};
+  s.contacts = {scenes::contact("sole", "block.bottom", "disk")};
+  if (mu > 0) s.contacts[0].friction = parameter(s, "mu", mu);
+  const Number down = parameter(s, "down", -0.25), along = parameter(s, "along", 0.5);
+  s.supports = {scenes::support("block.top",
+                                {{'y', table({{0, 0.0}, {1, down}})}, {'x', table({{0, 0.0}, {1, 0.0}, {2, along}})}})};
+  s.responses = {
+      response("press", Kind::reaction, "block.top", "y"),       response("drag", Kind::reaction, "block.top", "x"),
+      response("moment", Kind::contact_force, "sole", "moment"), response("gap", Kind::gap, "sole"),
+      response("side", Kind::displacement, "block.right", "x"),  response("energy", Kind::strain_energy, "")};
+  s.responses[2].about = {0.0, 0.0};
+  if (mu > 0) {
+    s.responses.push_back(response("slid", Kind::slip, "sole"));
+    s.responses.push_back(response("heat", Kind::dissipation, "sole"));
+  }
+  return s;
+}
+
+TEST(FiniteStrain, DerivativesEqualTheComplexStepOfTheWholeRun) {
+  for (double mu : {0.0, 0.3})
+    for (const Method& method : all_schemes()) {
+      if (mu == 0 && std::holds_alternative<Penalty>(method)) continue;
+      const auto s = run(draped(mu), method);
+      ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
+      ASSERT_EQ(s.gradients.of.size(), s.trajectory.increments.size()) << s.gradients.message;
+      const auto last = evaluate_responses(s.model, s.slots, s.trajectory.increments.back().state, 2);
+      for (int j = 0; j < static_cast<int>(s.model.scene.parameters.size()); ++j) {
+        const auto exact = oracle::complex_step(s.model, method, s.trajectory.step_table(), j);
+        for (Eigen::Index r = 0; r < exact.rows(); ++r) {
+          const double scale =
+              std::max(largest_entry(exact.row(r)), std::abs(last[r] / s.model.scene.parameters[j].value));
+          for (Eigen::Index n = 0; n < exact.cols(); ++n)
+            // rounding: 50 u times a condition number of some 1e5; iterated schemes end at 1e-10 of the largest
+            EXPECT_NEAR(s.gradients.of[n](r, j), exact(r, n), 1e-9 * scale)
+                << name_of(method) << " " << s.model.scene.responses[r].name << " by "
+                << s.model.scene.parameters[j].name << ", increment " << n;
+        }
+      }
+    }
+}
+
+TEST(FiniteStrain, AdjointEqualsDirect) {
+  Scene scene = draped(0.3);
+  for (int i = 0; i < static_cast<int>(scene.responses.size()); ++i) {
+    scene.objectives.push_back({"end of " + scene.responses[i].name, i, 2.0});
+    scene.objectives.push_back({"sum of " + scene.responses[i].name, i, {}});
+  }
+  for (const Method& method : all_schemes()) {
+    const Model model = make_model(scene);
+    const auto slots = make_slots<double>(model, scene.as<double>());
+    Workspace<double> workspace;
+    const auto trajectory = solve(model, slots, method, {}, workspace);
+    const auto forward = differentiate(model, slots, method, trajectory, workspace);
+    const Matrix<double> direct = objective_gradients(model, slots, trajectory, forward);
+    const Matrix<double> backward = adjoint(model, slots, method, trajectory, workspace).of_objectives;
+    ASSERT_EQ(backward.rows(), direct.rows()) << name_of(method);
+    for (Eigen::Index i = 0; i < direct.rows(); ++i)
+      EXPECT_LE(largest_entry(backward.row(i) - direct.row(i)), 1e-9 * largest_entry(direct.row(i)))
+          << name_of(method) << " " << scene.objectives[i].name;
+  }
+}
+
+TEST(FiniteStrain, FeetBeginAsFunctionsOfTheScene) {
+  // the first touch is in the first step: what history begins with carries a derivative by radius, place and height
+  Scene s = draped(0.3);
+  s.legs = {{1, 1}};
+  for (const Method& method : {Method(Penalty{}), Method(MonolithicAL{})}) {
+    const auto r = run(s, method);
+    for (int j = 0; j < static_cast<int>(s.parameters.size()); ++j) {
+      const auto exact = oracle::complex_step(r.model, method, r.trajectory.step_table(), j);
+      for (Eigen::Index i = 0; i < exact.rows(); ++i)
+        EXPECT_NEAR(
+            r.gradients.of[0](i, j), exact(i, 0),
+            1e-9 * std::max(std::abs(exact(i, 0)), std::abs(r.value(s.responses[i].name, 0) / s.parameters[j].value)))
+            << name_of(method) << " " << s.responses[i].name << " by " << s.parameters[j].name;
+    }
+  }
+}
+
+TEST(FiniteStrain, NewtonConvergesQuadratically) {
+  // three residuals between 1e-2 and a hundred roundings in settled states; 2e-12 is what rounding leaves of the
+  // penalty's, 1e-14 of the monolithic method's. The least order is 1.77, at 5e-3 -> 1e-5 -> 2e-10.
+  int looked_at = 0;
+  for (const auto& [method, rounding] : {std::pair(Method(Penalty{}), 2e-12), std::pair(Method(MonolithicAL{}), 1e-14)})
+    for (int steps : {1, 2, 5}) {
+      Scene scene = draped(0.3);
+      scene.legs = {{1, steps}, {2, 2 * steps}};
+      const auto s = run(scene, method);
+      ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
+      for (const auto& increment : s.trajectory.increments) {
+        const auto& h = increment.history;
+        for (std::size_t i = 2; i < h.size(); ++i) {
+          const double a = h[i - 2].residual, b = h[i - 1].residual, c = h[i].residual;
+          const bool settled = h[i].changed + h[i - 1].changed + h[i - 2].changed == 0 && c < b && b < a;
+          const bool full = h[i].step_length == 1 && h[i - 1].step_length == 1;
+          if (!settled || !full || a > 1e-2 || c < 100 * rounding) continue;
+          ++looked_at;
+          EXPECT_GE(std::log(c / b) / std::log(b / a), 1.7) << name_of(method) << " " << a << " " << b << " " << c;
+        }
+      }
+    }
+  EXPECT_GE(looked_at, 3);
+}
+
+TEST(FiniteStrain, NamesTheElementThatIsInverted) {
+  Scene s = patch(0.5, NeoHookean::Volumetric::quadratic);
+  s.supports[0] = scenes::support("block.top", {{'y', table({{0, 0.0}, {1, -1.2}})}});
+  s.legs = {{1, 1}};
+  const auto r = run(s, MonolithicAL{});
+  EXPECT_EQ(r.trajectory.status, Status::inverted_element) << r.trajectory.message;
+  EXPECT_NE(r.trajectory.message.find("of block is inverted"), std::string::npos) << r.trajectory.message;
+}
+
+TEST(FiniteStrain, IsSmallStrainWhereMotionsAreSmall) {
+  const auto scaled = [](bool finite) {
+    Scene s = patch(1 - 1e-7, NeoHookean::Volumetric::quadratic);
+    s.finite_strain = finite;
+    if (!finite) s.bodies[0].material = LinearElastic{1000.0, 0.3};
+    return s;
+  };
+  for (const auto& method : all_methods()) {
+    const auto finite = run(scaled(true), method), small = run(scaled(false), method);
+    EXPECT_NEAR(finite.value("press"), small.value("press"), 1e-6 * std::abs(small.value("press"))) << name_of(method);
+    EXPECT_NEAR(finite.value("wide"), small.value("wide"), 1e-6 * small.value("wide")) << name_of(method);
+  }
+}
+
+}  // namespace
+}  // namespace stickslip
