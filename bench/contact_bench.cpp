@@ -79,7 +79,7 @@ void all_values(benchmark::State& state, bool friction) {
   const Plate plate(static_cast<int>(state.range(0)), ContactState::slip, friction);
   for (auto _ : state) {
     const auto field = evaluate_contact(plate.input(), plate.compact, plate.multiplier, nullptr);
-    benchmark::DoNotOptimize(contact_forces(plate.model, plate.slots, field.traction));
+    benchmark::DoNotOptimize(contact_forces(plate.model, plate.slots, field));
   }
   per_point(state, plate.model);
 }

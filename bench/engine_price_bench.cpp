@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "methods/engine_choice.hpp"
 #include "sensitivity/differentiate.hpp"
 #include "tests/support/scenes.hpp"
 

@@ -18,7 +18,8 @@ struct NewtonEnd {
 /// Converged: all residuals within the tolerance, and no state changed since the last tangent. Where they stop falling
 /// at the level of their own rounding the status is converged_at_roundoff; where they do so above it, but close to the
 /// solution, stagnated. A set of states that is met again without half of its residual gone is a cycle: in 2D a step
-/// depends on the set alone, so that all would repeat. [AC91], [HSW08]
+/// depends on the set alone, so that all would repeat. (Where it hangs on the place too, to let sets repeat made the
+/// path chaotic, and the penalty no faster.) [AC91], [HSW08]
 class NewtonStop {
  public:
   /// `extra`: iterations that follow the one that has converged, for a derivative that rides on the scalar.

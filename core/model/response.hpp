@@ -73,8 +73,9 @@ T take_of(Response::Take take, const std::vector<T>& samples, const std::vector<
 
 /// Where a node is, for arms of forces: where it was at the start, as long as strains are small.
 template <class T>
-Vector<T> place_of(const Model& model, const Slots<T>& slots, const State<T>& state, int node) {
-  Vector<T> x = slots.points.col(node);
+Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> place_of(const Model& model, const Slots<T>& slots, const State<T>& state,
+                                                      int node) {
+  Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> x = slots.points.col(node);
   if (model.scene.finite_strain) x += state.displacement.segment(node * model.dimension, model.dimension);
   return x;
 }

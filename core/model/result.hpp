@@ -14,7 +14,7 @@ enum class Status {
   stagnated,
   infeasible,
   no_equilibrium,
-  inaccurate,  ///< the method-blind error exceeds what method and rounding explain (studies/accuracy.hpp)
+  inaccurate,  ///< the method-blind error exceeds what method and rounding explain (studies/run/accuracy.hpp)
   singular,
   inverted_element,
   not_finite

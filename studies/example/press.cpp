@@ -1,7 +1,7 @@
 // press SCENE.json: the first response at the end of the scene, and its derivative by the first parameter.
 #include <cstdio>
 
-#include "studies/simulation.hpp"
+#include "studies/run/simulation.hpp"
 
 int main(int argc, char** argv) {
   stickslip::Diagnostics faults;

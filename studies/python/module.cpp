@@ -9,15 +9,15 @@
 #include <system_error>
 
 #include "core/algebra/linear_solver.hpp"
-#include "studies/directory_lock.hpp"
-#include "studies/explain.hpp"
-#include "studies/gradient_report.hpp"
-#include "studies/input_fault.hpp"
-#include "studies/printing.hpp"
+#include "studies/io/directory_lock.hpp"
+#include "studies/io/input_fault.hpp"
+#include "studies/io/printing.hpp"
 #include "studies/python/arrays.hpp"
 #include "studies/python/result.hpp"
 #include "studies/report/records.hpp"
-#include "studies/run_study.hpp"
+#include "studies/run/explain.hpp"
+#include "studies/run/gradient_report.hpp"
+#include "studies/sweep/run_study.hpp"
 #include "studies/version.hpp"
 
 namespace py = pybind11;

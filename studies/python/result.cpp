@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "studies/fields.hpp"
+#include "studies/run/fields.hpp"
 
 namespace stickslip {
 namespace {

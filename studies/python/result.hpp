@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/simulation.hpp"
+#include "studies/run/simulation.hpp"
 
 namespace stickslip {
 

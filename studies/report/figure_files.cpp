@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <set>
 
-#include "studies/atomic_file.hpp"
-#include "studies/printing.hpp"
+#include "studies/io/atomic_file.hpp"
+#include "studies/io/printing.hpp"
 #include "studies/report/chart_parts.hpp"
 #include "studies/report/look_up.hpp"
 #include "studies/report/plot.hpp"

@@ -7,9 +7,9 @@
 #include <map>
 #include <optional>
 
+#include "studies/io/wording.hpp"
 #include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
-#include "studies/wording.hpp"
 
 namespace stickslip::report {
 

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <regex>
 
-#include "studies/printing.hpp"
+#include "studies/io/printing.hpp"
 
 namespace stickslip::report {
 

@@ -8,11 +8,11 @@
 #include <map>
 #include <vector>
 
+#include "studies/io/wording.hpp"
 #include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
 #include "studies/report/picture_contact.hpp"
 #include "studies/report/picture_obstacles.hpp"
-#include "studies/wording.hpp"
 
 namespace stickslip::report {
 

@@ -9,13 +9,13 @@
 #include <utility>
 #include <variant>
 
-#include "studies/atomic_file.hpp"
-#include "studies/input_fault.hpp"
-#include "studies/method_options.hpp"
+#include "studies/input/method_options.hpp"
+#include "studies/io/atomic_file.hpp"
+#include "studies/io/input_fault.hpp"
+#include "studies/io/result_rows.hpp"
 #include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
 #include "studies/report/sample.hpp"
-#include "studies/result_rows.hpp"
 
 namespace stickslip::report {
 

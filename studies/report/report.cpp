@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <map>
 
-#include "studies/atomic_file.hpp"
-#include "studies/input_fault.hpp"
+#include "studies/io/atomic_file.hpp"
+#include "studies/io/input_fault.hpp"
 #include "studies/report/about.hpp"
 #include "studies/report/charts.hpp"
 #include "studies/report/embedded.hpp"

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 
+#include "studies/io/wording.hpp"
 #include "studies/report/about.hpp"
 #include "studies/report/headline.hpp"
 #include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
 #include "studies/report/picture.hpp"
 #include "studies/report/tables.hpp"
-#include "studies/wording.hpp"
 
 namespace stickslip::report {
 

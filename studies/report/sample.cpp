@@ -4,10 +4,10 @@
 #include <map>
 #include <set>
 
+#include "studies/io/result_rows.hpp"
 #include "studies/report/chart_parts.hpp"
 #include "studies/report/look_up.hpp"
 #include "studies/report/settings.hpp"
-#include "studies/result_rows.hpp"
 
 namespace stickslip::report {
 namespace {

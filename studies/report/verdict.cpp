@@ -8,11 +8,11 @@
 #include <set>
 #include <sstream>
 
+#include "studies/io/wording.hpp"
 #include "studies/report/headline.hpp"
 #include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
 #include "studies/report/settings.hpp"
-#include "studies/wording.hpp"
 
 namespace stickslip::report {
 namespace {

@@ -34,7 +34,9 @@ std::vector<Method> all_schemes() {
   iterated.tolerance = truncated.tolerance = preconditioned.tolerance = 1e-12;
   truncated.sensitivity = UzawaAL::Sensitivity::truncated;
   preconditioned.sensitivity = UzawaAL::Sensitivity::preconditioned;
-  return {Penalty{}, iterated, truncated, preconditioned, MonolithicAL{}};
+  Penalty penalty;  // (ten times as stiff, its overlap is less than what a step leaves the disk by along its tangent)
+  penalty.stiffness = relative(100);
+  return {penalty, iterated, truncated, preconditioned, MonolithicAL{}};
 }
 
 Obstacle plane(const std::string& name, std::array<Number, 2> point, std::array<double, 2> normal) {
@@ -183,7 +185,7 @@ TEST(LedAround, StaysBehindItsAnchorByTheAngleOfFriction) {
 Scene draped(double mu) {
   Scene s;
   s.finite_strain = true;
-  s.legs = {{1, 3}, {2, 6}};
+  s.legs = {{1, 3}, {2, 5}};
   BoxMesh box;
   box.min = {-1.0, 0.0};
   box.max = {1.0, parameter(s, "height", 0.8)};
@@ -192,7 +194,7 @@ Scene draped(double mu) {
   s.obstacles = {{"disk", Circle{{parameter(s, "centre", 0.1), -1.5}, parameter(s, "R", 1.5)}}};
   s.contacts = {scenes::contact("sole", "block.bottom", "disk")};
   if (mu > 0) s.contacts[0].friction = parameter(s, "mu", mu);
-  const Number down = parameter(s, "down", -0.25), along = parameter(s, "along", 0.5);
+  const Number down = parameter(s, "down", -0.25), along = parameter(s, "along", 0.2);
   s.supports = {scenes::support("block.top",
                                 {{'y', table({{0, 0.0}, {1, down}})}, {'x', table({{0, 0.0}, {1, 0.0}, {2, along}})}})};
   s.responses = {
@@ -210,7 +212,6 @@ Scene draped(double mu) {
 TEST(FiniteStrain, DerivativesEqualTheComplexStepOfTheWholeRun) {
   for (double mu : {0.0, 0.3})
     for (const Method& method : all_schemes()) {
-      if (mu == 0 && std::holds_alternative<Penalty>(method)) continue;
       const auto s = run(draped(mu), method);
       ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
       ASSERT_EQ(s.gradients.of.size(), s.trajectory.increments.size()) << s.gradients.message;
@@ -269,10 +270,12 @@ TEST(FiniteStrain, FeetBeginAsFunctionsOfTheScene) {
 }
 
 TEST(FiniteStrain, NewtonConvergesQuadratically) {
-  // three residuals between 1e-2 and a hundred roundings in settled states; 2e-12 is what rounding leaves of the
-  // penalty's, 1e-14 of the monolithic method's. The least order is 1.77, at 5e-3 -> 1e-5 -> 2e-10.
+  // c <= 30 b^2 of residuals b, c in settled states, b <= 1e-3, c above a hundred roundings. (A penalty of 1e3 nodal
+  // stiffnesses on a curve begins to at 1e-5 only: along the tangent its overlap changes by a thousand times itself.)
+  Penalty penalty;
+  penalty.stiffness = relative(1);
   int looked_at = 0;
-  for (const auto& [method, rounding] : {std::pair(Method(Penalty{}), 2e-12), std::pair(Method(MonolithicAL{}), 1e-14)})
+  for (const auto& [method, rounding] : {std::pair(Method(penalty), 1e-14), std::pair(Method(MonolithicAL{}), 1e-14)})
     for (int steps : {1, 2, 5}) {
       Scene scene = draped(0.3);
       scene.legs = {{1, steps}, {2, 2 * steps}};
@@ -280,17 +283,16 @@ TEST(FiniteStrain, NewtonConvergesQuadratically) {
       ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
       for (const auto& increment : s.trajectory.increments) {
         const auto& h = increment.history;
-        for (std::size_t i = 2; i < h.size(); ++i) {
-          const double a = h[i - 2].residual, b = h[i - 1].residual, c = h[i].residual;
-          const bool settled = h[i].changed + h[i - 1].changed + h[i - 2].changed == 0 && c < b && b < a;
-          const bool full = h[i].step_length == 1 && h[i - 1].step_length == 1;
-          if (!settled || !full || a > 1e-2 || c < 100 * rounding) continue;
+        for (std::size_t i = 1; i < h.size(); ++i) {
+          const double b = h[i - 1].residual, c = h[i].residual;
+          const bool settled = h[i].changed + h[i - 1].changed == 0 && h[i].step_length == 1 && c < b;
+          if (!settled || b > 1e-3 || c < 100 * rounding) continue;
           ++looked_at;
-          EXPECT_GE(std::log(c / b) / std::log(b / a), 1.7) << name_of(method) << " " << a << " " << b << " " << c;
+          EXPECT_LE(c, 30 * b * b) << name_of(method) << " " << b << " " << c;
         }
       }
     }
-  EXPECT_GE(looked_at, 3);
+  EXPECT_GE(looked_at, 10);
 }
 
 TEST(FiniteStrain, NamesTheElementThatIsInverted) {

@@ -1,5 +1,5 @@
 /// Runs that say they converged, and states made by hand that could: which of them pass.
-#include "studies/accuracy.hpp"
+#include "studies/run/accuracy.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

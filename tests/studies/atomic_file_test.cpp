@@ -1,4 +1,4 @@
-#include "studies/atomic_file.hpp"
+#include "studies/io/atomic_file.hpp"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "studies/input_fault.hpp"
+#include "studies/io/input_fault.hpp"
 
 namespace stickslip {
 namespace {

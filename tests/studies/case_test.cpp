@@ -1,5 +1,5 @@
 /// What a run leaves in result.json of Uzawa's iterations.
-#include "studies/case.hpp"
+#include "studies/run/case.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

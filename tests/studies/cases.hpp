@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "studies/case.hpp"
-#include "studies/scene_reader.hpp"
+#include "studies/input/scene_reader.hpp"
+#include "studies/run/case.hpp"
 
 namespace stickslip::cases {
 

@@ -1,5 +1,5 @@
 /// Values: the catalogue's numbers, computed there by another program. Derivatives: central differences.
-#include "studies/closed_forms.hpp"
+#include "studies/sweep/closed_forms.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "studies/compare_studies.hpp"
+#include "studies/app/compare_studies.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

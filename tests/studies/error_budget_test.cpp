@@ -1,6 +1,6 @@
 /// Error budgets: their arithmetic, their parts against what the test computes itself, their sum against the error of
 /// closed forms, and that they cost nothing where they are not asked for.
-#include "studies/error_budget.hpp"
+#include "studies/sweep/error_budget.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "studies/budget_runs.hpp"
-#include "studies/study_cell.hpp"
+#include "studies/sweep/budget_runs.hpp"
+#include "studies/sweep/study_cell.hpp"
 
 namespace stickslip {
 namespace {

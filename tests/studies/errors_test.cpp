@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "studies/references.hpp"
-#include "studies/study.hpp"
+#include "studies/sweep/references.hpp"
+#include "studies/sweep/study.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace stickslip {

@@ -1,5 +1,5 @@
 /// The exported system against the state that it is of.
-#include "studies/export_system.hpp"
+#include "studies/run/export_system.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 /// Fields and pictures against values of their own: states made by hand, stresses and tractions by hand from them.
-#include "studies/fields.hpp"
+#include "studies/run/fields.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <set>
 
-#include "studies/atomic_file.hpp"
-#include "studies/film.hpp"
+#include "studies/io/atomic_file.hpp"
 #include "studies/report/picture.hpp"
+#include "studies/run/film.hpp"
 #include "tests/studies/cases.hpp"
 #include "tests/studies/vtu_reader.hpp"
 #include "tests/support/scenes.hpp"

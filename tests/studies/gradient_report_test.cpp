@@ -1,11 +1,11 @@
-#include "studies/gradient_report.hpp"
+#include "studies/run/gradient_report.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "studies/input_fault.hpp"
+#include "studies/io/input_fault.hpp"
 
 namespace stickslip {
 namespace {

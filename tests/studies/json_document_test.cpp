@@ -1,4 +1,4 @@
-#include "studies/json_document.hpp"
+#include "studies/io/json_document.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,12 +1,12 @@
 /// The ledger: what is off comes to nothing, what is on adds up, and the forecast holds to what it says of itself.
-#include "studies/ledger.hpp"
+#include "studies/run/ledger.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "studies/ledger_forecast.hpp"
-#include "studies/simulation.hpp"
+#include "studies/run/ledger_forecast.hpp"
+#include "studies/run/simulation.hpp"
 #include "tests/studies/cases.hpp"
 
 namespace stickslip {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "studies/metrics.hpp"
+#include "studies/run/metrics.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace stickslip::made_states {

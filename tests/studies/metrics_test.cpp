@@ -1,5 +1,5 @@
 /// The method-blind error of states that are made by hand: what each component of it counts, to the last digit.
-#include "studies/metrics.hpp"
+#include "studies/run/metrics.hpp"
 
 #include <gtest/gtest.h>
 

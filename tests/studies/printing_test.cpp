@@ -1,4 +1,4 @@
-#include "studies/printing.hpp"
+#include "studies/io/printing.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "studies/diagnostics.hpp"
-#include "studies/wording.hpp"
+#include "studies/io/diagnostics.hpp"
+#include "studies/io/wording.hpp"
 
 namespace stickslip {
 namespace {

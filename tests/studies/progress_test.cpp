@@ -1,4 +1,4 @@
-#include "studies/progress.hpp"
+#include "studies/io/progress.hpp"
 
 #include <gtest/gtest.h>
 

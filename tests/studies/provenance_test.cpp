@@ -1,4 +1,4 @@
-#include "studies/provenance.hpp"
+#include "studies/io/provenance.hpp"
 
 #include <gtest/gtest.h>
 

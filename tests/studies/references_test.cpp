@@ -8,7 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "studies/fields.hpp"
+#include "studies/run/fields.hpp"
 #include "tests/studies/cases.hpp"
 
 namespace stickslip {

@@ -3,9 +3,9 @@
 
 #include <fstream>
 
-#include "studies/fields.hpp"
-#include "studies/film.hpp"
 #include "studies/report/report.hpp"
+#include "studies/run/fields.hpp"
+#include "studies/run/film.hpp"
 #include "tests/studies/cases.hpp"
 #include "tests/studies/recorded_study.hpp"
 #include "tests/studies/report_page.hpp"

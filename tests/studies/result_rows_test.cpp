@@ -1,4 +1,4 @@
-#include "studies/result_rows.hpp"
+#include "studies/io/result_rows.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,10 +7,10 @@
 #include <fstream>
 #include <utility>
 
-#include "studies/atomic_file.hpp"
-#include "studies/directory_lock.hpp"
-#include "studies/input_fault.hpp"
-#include "studies/workers.hpp"
+#include "studies/io/atomic_file.hpp"
+#include "studies/io/directory_lock.hpp"
+#include "studies/io/input_fault.hpp"
+#include "studies/sweep/workers.hpp"
 
 namespace stickslip {
 namespace {

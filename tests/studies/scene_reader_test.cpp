@@ -1,4 +1,4 @@
-#include "studies/scene_reader.hpp"
+#include "studies/input/scene_reader.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/mesh/generators.hpp"
-#include "studies/method_options.hpp"
+#include "studies/input/method_options.hpp"
 #include "tests/studies/scene_texts.hpp"
 
 namespace stickslip {

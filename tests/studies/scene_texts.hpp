@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "studies/scene_reader.hpp"
+#include "studies/input/scene_reader.hpp"
 
 namespace stickslip::scene_texts {
 

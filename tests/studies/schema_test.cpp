@@ -1,7 +1,7 @@
 /// The schemas against the readers: every object has the keys that the reader allows there, what a key stands for where
 /// it is left out is what the reader takes, and a validator that is not ours takes what the reader takes and refuses
 /// what it refuses. Every key is described, with an example that is valid.
-#include "studies/schema.hpp"
+#include "studies/app/schema.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -14,9 +14,9 @@
 #include <set>
 #include <sstream>
 
-#include "studies/scene_reader.hpp"
-#include "studies/simulation.hpp"
-#include "studies/study_reader.hpp"
+#include "studies/input/scene_reader.hpp"
+#include "studies/run/simulation.hpp"
+#include "studies/sweep/study_reader.hpp"
 
 namespace stickslip {
 namespace {

@@ -1,4 +1,4 @@
-#include "studies/shard.hpp"
+#include "studies/sweep/shard.hpp"
 
 #include <gtest/gtest.h>
 

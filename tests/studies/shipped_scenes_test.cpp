@@ -7,8 +7,8 @@
 
 #include "core/model/response.hpp"
 #include "sensitivity/gradcheck.hpp"
-#include "studies/study.hpp"
-#include "studies/study_reader.hpp"
+#include "studies/sweep/study.hpp"
+#include "studies/sweep/study_reader.hpp"
 #include "tests/studies/cases.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/oracle.hpp"

@@ -1,4 +1,4 @@
-#include "studies/size_estimate.hpp"
+#include "studies/input/size_estimate.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 /// Scenes that have several solutions, one or none: which is told, and which is taken.
 #include <gtest/gtest.h>
 
-#include "studies/warnings.hpp"
+#include "studies/run/warnings.hpp"
 #include "tests/studies/cases.hpp"
 
 namespace stickslip {

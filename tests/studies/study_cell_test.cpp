@@ -1,4 +1,4 @@
-#include "studies/study_cell.hpp"
+#include "studies/sweep/study_cell.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "studies/study_reader.hpp"
+#include "studies/sweep/study_reader.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "studies/timing.hpp"
+#include "studies/sweep/timing.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "studies/vtu.hpp"
+#include "studies/io/vtu.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -11,7 +11,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "studies/atomic_file.hpp"
+#include "studies/io/atomic_file.hpp"
 #include "tests/studies/vtu_reader.hpp"
 
 namespace stickslip {

@@ -1,4 +1,4 @@
-#include "studies/warnings.hpp"
+#include "studies/run/warnings.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "studies/workers.hpp"
+#include "studies/sweep/workers.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

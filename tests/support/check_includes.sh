@@ -2,7 +2,8 @@
 # check_includes.sh SOURCE_DIR: fails and names each #include that points the wrong way.
 # check_includes.sh --self-test: fails where a wrong include would go unseen.
 #
-#   core <- methods <- sensitivity <- studies; within core: algebra, mesh <- solids, contact <- model.
+#   core <- methods <- sensitivity <- studies; within core: algebra, mesh <- solids, contact <- model;
+#   within studies: io <- input <- run <- report <- sweep <- app, and what python needs of them.
 #   core/model/scene.hpp, the plain description of a scene, is open to all of core but algebra.
 #   Below studies/ there is no JSON and no printing; solver libraries are seen by core/algebra alone.
 set -euo pipefail
@@ -17,10 +18,17 @@ allowed() {
     core/model) echo 'core/' ;;
     methods) echo '(core|methods)/' ;;
     sensitivity) echo '(core|methods|sensitivity)/' ;;
-    studies) echo '(core|methods|sensitivity|studies)/' ;;
+    studies/io) echo '(core|methods|sensitivity|studies/(io|version\.hpp))' ;;
+    studies/input) echo '(core|methods|sensitivity|studies/(io|input))/' ;;
+    studies/run) echo '(core|methods|sensitivity|studies/(io|input|run|version\.hpp))' ;;
+    studies/report) echo 'studies/(io|input|report)/|core/contact/friction_law\.hpp' ;;
+    studies/sweep) echo '(core|methods|sensitivity|studies/(io|input|run|report|sweep|version\.hpp))' ;;
+    studies/app) echo '(core|methods|sensitivity|studies/(io|input|run|report|sweep|app))/' ;;
+    studies/python) echo '(core|methods|sensitivity|studies)/' ;;
   esac
 }
-folders="core/algebra core/mesh core/solids core/contact core/model methods sensitivity studies"
+folders="core/algebra core/mesh core/solids core/contact core/model methods sensitivity
+  studies/io studies/input studies/run studies/report studies/sweep studies/app studies/python"
 solver_headers='<(cholmod|umfpack|dmumps_c|SuiteSparse_config)[^>]*>'
 printing='<(nlohmann|fmt|CLI)/|<(iostream|print)>|\b(printf|fprintf|puts|cout|cerr)\b'
 
@@ -36,7 +44,7 @@ check() {
       found=$(grep -rnE "#[[:space:]]*include[[:space:]]*$solver_headers" --include='*.[hc]pp' "$folder" || true)
       wrong+=${found:+$found$'\n'} ;;
     esac
-    case "$folder" in studies) ;; *)
+    case "$folder" in studies/*) ;; *)
       found=$(grep -rnE "$printing" --include='*.[hc]pp' "$folder" | grep -vE ':[0-9]+:[[:space:]]*//' || true)
       wrong+=${found:+$found$'\n'} ;;
     esac
@@ -51,8 +59,10 @@ self_test() {
   local line folder
   tree=$(mktemp -d)
   trap 'rm -rf "$tree"' EXIT
-  mkdir -p "$tree"/core/{algebra,mesh,solids,contact,model} "$tree"/{methods,sensitivity,studies}
-  echo '#include "core/algebra/scalar.hpp"' >"$tree/studies/good.cpp"
+  mkdir -p "$tree"/core/{algebra,mesh,solids,contact,model} "$tree"/{methods,sensitivity} \
+    "$tree"/studies/{io,input,run,report,sweep,app}
+  echo '#include "core/algebra/scalar.hpp"' >"$tree/studies/io/good.cpp"
+  echo '#include "studies/report/report.hpp"' >"$tree/studies/sweep/good.cpp"
   echo '#include "core/model/scene.hpp"' >"$tree/core/mesh/good.hpp"
   (check "$tree") || { echo "a good tree is refused" >&2; return 1; }
   while read -r folder line; do
@@ -71,9 +81,14 @@ core/model #include "methods/options.hpp"
 core/model #include <nlohmann/json.hpp>
 methods #include "sensitivity/direct.hpp"
 methods #include <umfpack.h>
-sensitivity #include "studies/vtu.hpp"
+sensitivity #include "studies/io/vtu.hpp"
 sensitivity std::cout << "iteration";
-studies #include "bench/kernels.hpp"
+studies/app #include "bench/kernels.hpp"
+studies/io #include "studies/input/scene_reader.hpp"
+studies/input #include "studies/run/case.hpp"
+studies/run #include "studies/sweep/study.hpp"
+studies/report #include "studies/run/case.hpp"
+studies/sweep #include "studies/app/commands.hpp"
 CASES
 }
 

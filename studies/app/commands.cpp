@@ -1,0 +1,311 @@
+#include "studies/app/commands.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "studies/app/schema.hpp"
+#include "studies/app/trace_table.hpp"
+#include "studies/input/method_options.hpp"
+#include "studies/io/atomic_file.hpp"
+#include "studies/io/directory_lock.hpp"
+#include "studies/io/input_fault.hpp"
+#include "studies/io/printing.hpp"
+#include "studies/io/progress.hpp"
+#include "studies/io/result_rows.hpp"
+#include "studies/report/figure_files.hpp"
+#include "studies/report/report.hpp"
+#include "studies/run/explain.hpp"
+#include "studies/run/export_system.hpp"
+#include "studies/run/fields.hpp"
+#include "studies/run/film.hpp"
+#include "studies/run/gradient_report.hpp"
+#include "studies/run/ledger_forecast.hpp"
+#include "studies/run/simulation.hpp"
+#include "studies/sweep/closed_forms.hpp"
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+
+constexpr int done = 0, bad_input = 2, not_solved = 3;
+
+/// None where the scene has a fault; everything known of it is then on standard error.
+std::optional<Simulation> load(const RunArguments& arguments) {
+  Diagnostics diagnostics;
+  auto simulation = prepare(arguments.scene, arguments.overrides, arguments.method, diagnostics);
+  if (simulation) std::cerr << diagnostics.notes_text();
+  std::cerr << diagnostics.text();
+  return simulation;
+}
+
+std::filesystem::path output_directory(const std::string& given, const std::string& input) {
+  return given.empty() ? std::filesystem::path("results") / std::filesystem::path(input).stem()
+                       : std::filesystem::path(given);
+}
+
+void print_summary(const CaseResult& result) {
+  const auto& scene = result.problem->model.scene;
+  fmt::print("{:>10} {:>24} {:>7} {:>7} {:>6} {:>6} {:>6} {:>10}\n", "time", "status", "newton", "augm.", "open",
+             "stick", "slip", "kkt");
+  for (const auto& step : result.steps) {
+    int open = 0, stick = 0, slip = 0;
+    for (const auto& s : summarise(result.problem->model, result.problem->slots, step.increment->state)) {
+      open += s.open;
+      stick += s.stick;
+      slip += s.slip;
+    }
+    fmt::print("{:>10.6g} {:>24} {:>7} {:>7} {:>6} {:>6} {:>6} {:>10.1e}\n", step.increment->time,
+               name_of(step.increment->status), step.newton, step.augmentations, open, stick, slip, step.kkt.largest());
+  }
+  if (result.steps.empty()) return;
+  const auto& last = result.steps.back();
+  fmt::print("\nresponses at t = {:g}, and their derivatives\n", last.increment->time);
+  for (std::size_t i = 0; i < scene.responses.size(); ++i) {
+    fmt::print("  {:<20} {: .10e}", scene.responses[i].name, last.responses[i]);
+    for (std::size_t j = 0; last.sensitivities.size() && j < scene.parameters.size(); ++j)
+      fmt::print("   d/d{} {: .6e}", scene.parameters[j].name, last.sensitivities(i, j));
+    fmt::print("\n");
+  }
+  for (std::size_t i = 0; i < scene.objectives.size(); ++i) {
+    fmt::print("  {:<20} {: .10e}", scene.objectives[i].name, result.objectives[i]);
+    const auto& gradient = result.gradients.of_objectives;
+    constexpr Eigen::Index shown = 8;
+    for (Eigen::Index j = 0; j < std::min(gradient.cols(), shown); ++j)
+      fmt::print("   d/d{} {: .6e}", scene.parameters[j].name, gradient(i, j));
+    fmt::print("{}\n", gradient.cols() > shown ? "   ..." : "");
+  }
+  if (!scene.parameters.empty() && !last.differentiable)
+    fmt::print("  a contact point is about to change state: these hold on one side only (result.json: one_sided)\n");
+}
+
+/// picture.json, with what a study's rows hold of it; none where no report is asked for.
+void write_picture(const std::filesystem::path& directory, const CaseResult& result, bool report, Written& written) {
+  for (const char* file : {"picture.json", "report.html"}) std::filesystem::remove(directory / file);
+  if (!report) return report::remove_figures(directory);
+  const Stopwatch time(written.seconds);
+  json picture = picture_json(result);
+  if (picture.is_null()) return;
+  picture["interface"] = interface_json(result);
+  picture["film"] = film_json(result);
+  write_file_atomically(directory / "picture.json", json_text(picture));
+  written.picture = file_bytes(directory, {"picture.json"});
+  ++written.files;
+}
+
+/// trace.csv, and of scenes with few contact points cones.svg; returns their names.
+std::vector<std::string> trace_files(const std::filesystem::path& directory, const Problem& problem,
+                                     const Trace& trace) {
+  write_file_atomically(directory / "trace.csv", trace_csv(problem, trace));
+  const auto paths = cone_paths(problem, trace);
+  if (paths.empty()) return {"trace.csv"};
+  const std::string& title = problem.model.scene.title;
+  write_file_atomically(directory / "cones.svg",
+                        report::draw_cones(paths, title.empty() ? "Friction cones" : title).svg_file());
+  return {"trace.csv", "cones.svg"};
+}
+
+/// Adds the files of a folder to those that a run has written.
+void add_files(const std::filesystem::path& folder, const std::vector<std::string>& names,
+               std::vector<std::string>& written) {
+  for (const auto& name : names) written.push_back(printable((folder / name).string()));
+}
+
+/// The trace's files; returns their names. Those of an earlier run go where none is asked for.
+std::vector<std::string> write_trace(const std::filesystem::path& directory, const Problem& problem, const Trace* trace,
+                                     Written& written) {
+  if (!trace) {
+    for (const char* file : {"trace.csv", "cones.svg"}) std::filesystem::remove(directory / file);
+    return {};
+  }
+  const Stopwatch time(written.seconds);
+  const auto files = trace_files(directory, problem, *trace);
+  written.trace = file_bytes(directory, files);
+  written.files += static_cast<long>(files.size());
+  return files;
+}
+
+/// All files of a run; adds their names to `written`. Returns result.json, which holds the bytes of the others, so it
+/// comes last but for the report that is made from it.
+json write_run(const std::filesystem::path& directory, const RunArguments& arguments, const Simulation& simulation,
+               const CaseResult& result, const Trace* trace, std::vector<std::string>& names) {
+  Written written;
+  const auto traced = write_trace(directory, *simulation.problem, trace, written);
+  write_picture(directory, result, arguments.report, written);
+  json document = write_result(directory, simulation, result, written);
+  if (arguments.report) write_run_report(directory);
+  add_files(directory, result_files(simulation, result), names);
+  add_files(directory, traced, names);
+  if (arguments.report) add_files(directory, {"report.html"}, names);
+  return document;
+}
+
+/// A line for each option: name, default, meaning. `before`: what the names begin with.
+void print_options(const nlohmann::ordered_json& options, const std::string& before) {
+  for (const auto& [name, option] : options.items())
+    if (option.contains("properties"))
+      print_options(option.at("properties"), before + name + "/");
+    else
+      fmt::print("  {:<22} {:<12} {}\n", before + name, option.at("default").dump(),
+                 option.at("description").get<std::string>());
+}
+
+}  // namespace
+
+int run_command(const RunArguments& arguments) {
+  const auto loaded = load(arguments);
+  if (!loaded) return bad_input;
+  const bool writes = !arguments.json || !arguments.output.empty();
+  const auto directory = output_directory(arguments.output, arguments.scene);
+  if (!arguments.export_to.empty()) check_folder(arguments.export_to);
+  if (!arguments.export_to.empty() && loaded->input.scene.finite_strain)
+    throw InputFault(
+        "--export: the system of a scene of finite strain is not linear; only small strain has a K to write");
+  if (!writes && arguments.report) throw InputFault("--report: with --json nothing is written; give -o DIR too");
+  if (writes) prepare_run_directory(directory, arguments.report);
+  std::optional<DirectoryLock> lock;
+  if (writes) lock.emplace(directory);
+  if (!arguments.export_to.empty()) prepare_directory(arguments.export_to, {"README"});
+  std::optional<Progress> progress;  // of long work only: a run of a second or two speaks for itself
+  const auto start = std::chrono::steady_clock::now();
+  long pending = 0;
+  const auto on_step = [&] {
+    ++pending;
+    if (arguments.json || std::chrono::steady_clock::now() - start < std::chrono::seconds(2)) return;
+    if (!progress)
+      progress.emplace(std::cerr, progress_style_of_stderr(), "steps",
+                       static_cast<long>(loaded->problem->model.times.size()));
+    progress->advance(std::exchange(pending, 0));
+  };
+  Trace trace;
+  const auto result = simulate(*loaded, on_step, arguments.trace ? &trace : nullptr);
+  progress.reset();
+  json document;
+  std::vector<std::string> written;
+  if (!writes) {
+    document = result_json(result, canonical_text(loaded->input));
+  } else {
+    document = write_run(directory, arguments, *loaded, result, arguments.trace ? &trace : nullptr, written);
+    if (!arguments.json) {
+      if (arguments.trace) std::cout << trace_table(trace) << '\n';
+      print_summary(result);
+      fmt::print("\neffects: {}", ledger_line(document["ledger"]));
+    }
+  }
+  if (!arguments.export_to.empty() && !result.trajectory.increments.empty())
+    add_files(arguments.export_to, export_system(arguments.export_to, result), written);
+  if (!arguments.json) fmt::print("\nwritten: {}\n", fmt::join(written, ", "));
+  if (arguments.json) std::cout << json_text(document, 2) << '\n';
+  for (const auto& warning : document["warnings"])
+    fmt::print(stderr, "warning ({}): {}; {}\n", warning["code"].get<std::string>(),
+               printable(warning["text"].get<std::string>()), printable(warning["remedy"].get<std::string>()));
+  if (is_converged(result.status())) return done;
+  fmt::print(stderr, "{}: {}\n", name_of(result.status()), printable(result.message()));
+  return not_solved;
+}
+
+int explain_command(const RunArguments& arguments) {
+  const auto loaded = load(arguments);
+  if (!loaded) return bad_input;
+  const std::string text = explain(loaded->input, *loaded->problem);
+  if (arguments.json)
+    std::cout << json_text({{"explain", text}, {"ledger", ledger_json(forecast(loaded->input, *loaded->problem))}}, 2)
+              << '\n';
+  else
+    std::cout << text;
+  return done;
+}
+
+int gradcheck_command(const RunArguments& arguments) {
+  const auto loaded = load(arguments);
+  if (!loaded) return bad_input;
+  GradientCheck check;
+  {
+    std::optional<Progress> bar;
+    check = check_gradients(*loaded, arguments.scene, [&](int, int total) {
+      if (!bar) bar.emplace(std::cerr, progress_style_of_stderr(), "difference runs", total);
+      bar->advance();
+    });
+  }
+  if (arguments.json)
+    std::cout << json_text(check_json(check), 2) << '\n';
+  else
+    fmt::print("{} by {}: {}", printable(arguments.scene), name_of(loaded->input.method), check_table(check));
+  if (check.passed()) return done;
+  std::cerr << check_faults(check);
+  return not_solved;
+}
+
+int study_command(const StudyArguments& arguments) {
+  Diagnostics diagnostics;
+  const auto study = run_study(arguments, std::cerr, diagnostics);
+  if (!study) {
+    std::cerr << diagnostics.text();
+    return bad_input;
+  }
+  fmt::print("{} cells, {} run now, {} of these without a converged result (kept as rows)\nreport: {}\n", study->cells,
+             study->run, study->failed, printable((study->directory / "report.html").string()));
+  if (study->lost == 0) return done;
+  fmt::print(stderr,
+             "{} cells have no row: their processes were ended from outside, by the system where memory runs out; "
+             "--resume runs them again, fewer --jobs need less memory at once\n",
+             study->lost);
+  return not_solved;
+}
+
+int methods_command(bool as_json) {
+  if (as_json) {
+    json all = json::object();
+    for (const auto& name : method_names()) all.update(to_json(*default_method(name)));
+    std::cout << all.dump(2) << '\n';
+    return done;
+  }
+  const auto schema = method_schema(OptionLists::refused);
+  for (const auto& [name, method] : schema.at("properties").items()) {
+    fmt::print("{}\n", name);
+    print_options(method.at("properties"), "");
+  }
+  fmt::print("\nclosed forms, as a study's reference (inputs -> what they give)\n");
+  for (const auto& form : closed_forms()) {
+    fmt::print("{}: {}\n", form.name, form.about);
+    for (const auto& [quantities, sign] : {std::pair{&form.inputs, ""}, {&form.outputs, "-> "}})
+      for (const auto& quantity : *quantities)
+        fmt::print("  {:<24} {}{}\n", sign + quantity.name, quantity.meaning, quantity.required ? "" : " (optional)");
+  }
+  return done;
+}
+
+int schema_command(const std::string& kind) {
+  std::cout << (kind == "study" ? study_schema() : scene_schema()).dump(2) << '\n';
+  return done;
+}
+
+int report_command(const std::string& directory) {
+  const bool of_run = holds(directory, "result.json");
+  if (!of_run && !holds(directory, "results.jsonl"))
+    throw InputFault(directory + ": there is no results.jsonl; run `stickslip study` first");
+  const DirectoryLock lock(directory);
+  if (of_run) {
+    prepare_directory(directory, {"report.html"}, {"figures"});
+    write_run_report(directory);
+    fmt::print("{}\n", printable((std::filesystem::path(directory) / "report.html").string()));
+    return done;
+  }
+  check_records(directory);
+  const auto stored = read_rows(directory, [](json& row) { row = json::object(); });  // what counts is which there are
+  if (!stored.sound()) std::cerr << printable("note: " + directory + "/results.jsonl: " + stored.faults()) << '\n';
+  if (stored.rows.empty())
+    throw InputFault(directory + ": there are no rows in results.jsonl; run `stickslip study` with --resume first");
+  prepare_directory(directory, {"report.html"}, {"figures"});
+  write_report(directory);
+  fmt::print("{}\n", printable((std::filesystem::path(directory) / "report.html").string()));
+  return done;
+}
+
+}  // namespace stickslip

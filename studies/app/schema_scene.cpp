@@ -1,0 +1,215 @@
+#include "studies/app/schema_texts.hpp"
+
+namespace stickslip::schema_texts {
+
+const char* const common = R"json({
+  "positive": {"title": "number > 0", "type": "number", "exclusiveMinimum": 0},
+  "not_negative": {"title": "number >= 0", "type": "number", "minimum": 0},
+  "count": {"title": "whole number >= 1", "type": "integer", "minimum": 1},
+  "vector": {"title": "[x, y], in space [x, y, z]", "type": "array", "items": {"type": "number"}, "minItems": 2,
+    "maxItems": 3},
+  "pair": {"title": "[x, y]", "type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2},
+  "cells": {"title": "two whole numbers >= 1", "type": "array", "items": {"$ref": "#/$defs/count"}, "minItems": 2,
+    "maxItems": 2},
+  "table": {"title": "[[t, value], ...]", "type": "array", "minItems": 1, "items": {"$ref": "#/$defs/pair"}},
+  "value": {"title": "VALUE",
+    "anyOf": [{"type": "number"}, {"$ref": "#/$defs/table"},
+      {"type": "object", "required": ["table"], "additionalProperties": false, "properties": {
+          "table": {"description": "times increase; linear in between, held before the first and after the last",
+            "$ref": "#/$defs/table", "examples": [[[0, 0], [1, 0.1]]]},
+          "repeat": {"description": "how often the table is run through, one time right after the other",
+            "$ref": "#/$defs/count", "default": 1, "examples": [1000]}}}]},
+  "side": {"title": "SIDE", "type": "string"},
+  "box_grade": {"type": "object", "title": "one of the following", "minProperties": 1, "maxProperties": 1,
+    "additionalProperties": false, "examples": [{"bottom": 8}], "properties": {
+      "left": {"description": "ratio", "$ref": "#/$defs/positive", "examples": [8]},
+      "right": {"description": "ratio", "$ref": "#/$defs/positive", "examples": [8]},
+      "bottom": {"description": "ratio", "$ref": "#/$defs/positive", "examples": [8]},
+      "top": {"description": "ratio", "$ref": "#/$defs/positive", "examples": [8]}}}
+})json";
+
+const char* const motion = R"json({
+  "move": {"title": "MOVE", "type": "object", "minProperties": 1, "additionalProperties": false,
+    "examples": [{"x": [[0, 0], [1, 0.1]], "y": 0}], "properties": {
+      "x": {"description": "displacement (length)", "$ref": "#/$defs/value", "examples": [[[0, 0], [1, 0.1]]]},
+      "y": {"description": "displacement (length)", "$ref": "#/$defs/value", "examples": [0]},
+      "z": {"description": "displacement (length), in space", "$ref": "#/$defs/value", "examples": [0]}}},
+  "rotate": {"title": "ROTATE", "type": "object", "required": ["center", "angle"], "additionalProperties": false,
+    "examples": [{"center": [0, 0], "angle": [[0, 0], [1, 5]]}], "properties": {
+      "center": {"description": "what it turns about (length)", "$ref": "#/$defs/vector", "examples": [[0, 0]]},
+      "axis": {"description": "in space: the direction that it turns about", "title": "[x, y, z]",
+        "$ref": "#/$defs/vector",
+        "examples": [[0, 0, 1]]},
+      "angle": {"description": "in degrees, counter-clockwise; displacements are linear in it",
+        "$ref": "#/$defs/value", "examples": [[[0, 0], [1, 5]]]}}}
+})json";
+
+const char* const scene = R"json({
+  "$schema": {"description": "for editors: where the schema of this file is; not read", "type": "string",
+    "examples": ["scene.schema.json"]},
+  "title": {"description": "shown in reports", "type": "string", "examples": ["Block on a rough floor"]},
+  "space": {"description": "solid: 3D, of points, lines and arcs against planes",
+    "enum": ["plane_strain", "plane_stress", "axisymmetric", "solid"], "default": "plane_strain"},
+  "strain": {
+    "description": "small: linear strain, and the contact geometry of the start; finite: everything is where it is now",
+    "enum": ["small", "finite"], "default": "small"},
+  "bodies": {"description": "what deforms, by names of your choice; one at least", "title": "object by name",
+    "type": "object", "minProperties": 1,
+    "examples": [{"mass": {"mesh": {"point": {"at": [0, 0]}},
+      "material": {"grounded_spring": {"stiffness": [[100, 0], [0, 100]]}}}}],
+    "additionalProperties": {
+      "type": "object", "required": ["mesh", "material"], "additionalProperties": false, "properties": {
+        "mesh": {"description": "shape, elements and names of sides", "$ref": "#/$defs/mesh",
+          "examples": [{"box": {"min": [0, 0], "max": [4, 2], "cells": [16, 8]}}]},
+        "material": {"description": "what it is made of", "$ref": "#/$defs/material",
+          "examples": [{"linear_elastic": {"E": 1000, "nu": 0.3}}]},
+        "element": {"description": "left out: Q4, or what the MSH file holds; Q4_mean_dilatation: for nu near 1/2",
+          "enum": ["Q4", "Q4_mean_dilatation", "Q8", "T3", "T6", "bar", "point"], "examples": ["Q8"]},
+        "thickness": {"description": "of a body of plane_strain or plane_stress (length)",
+          "$ref": "#/$defs/positive", "default": 1, "examples": [0.5]},
+        "area": {"description": "cross-section of bars (length squared)", "$ref": "#/$defs/positive", "default": 1,
+          "examples": [0.01]}}}},
+  "obstacles": {"description": "what is rigid, by names of your choice", "title": "object by name", "type": "object",
+    "examples": [{"floor": {"plane": {"point": [0, 0], "normal": [0, 1]}}}],
+    "additionalProperties": {
+      "type": "object", "title": "one of the following", "additionalProperties": false, "properties": {
+        "plane": {"description": "a half space", "type": "object", "required": ["point", "normal"],
+          "examples": [{"point": [0, 0], "normal": [0, 1]}], "additionalProperties": false, "properties": {
+            "point": {"description": "any of its surface (length)", "$ref": "#/$defs/vector", "examples": [[0, 0]]},
+            "normal": {"description": "out of the obstacle; of any length but 0", "$ref": "#/$defs/vector",
+              "examples": [[0, 1]]}}},
+        "circle": {"description": "a drum, or a cup; not in space", "type": "object",
+          "required": ["center", "radius"], "examples": [{"center": [0, 0], "radius": 1}],
+          "additionalProperties": false, "properties": {
+            "center": {"description": "of the circle (length)", "$ref": "#/$defs/pair", "examples": [[0, 0]]},
+            "radius": {"description": "of the circle (length)", "$ref": "#/$defs/positive", "examples": [1]},
+            "inside": {"description": "true: a cup, solid outside of the circle", "type": "boolean",
+              "default": false}}},
+        "polyline": {"description": "straight facets; not in space", "type": "object", "required": ["points"],
+          "examples": [{"points": [[5, 0], [0, 0], [0, 2]]}], "additionalProperties": false, "properties": {
+            "points": {
+              "description": "the solid is on the right of the way along them; the first once more closes it (length)",
+              "title": "two or more [x, y]", "type": "array",
+              "minItems": 2, "items": {"$ref": "#/$defs/pair"}, "examples": [[[5, 0], [0, 0], [0, 2]]]}}},
+        "move": {"description": "displacement by axis", "$ref": "#/$defs/move"},
+        "rotate": {"description": "as a rigid body, added to move", "$ref": "#/$defs/rotate"}},
+      "oneOf": [{"required": ["plane"]}, {"required": ["circle"]}, {"required": ["polyline"]}]}},
+  "contacts": {"description": "which surfaces may touch, by names of your choice", "title": "object by name",
+    "type": "object", "examples": [{"sole": {"slave": "block.bottom", "master": "floor", "friction": 0.3}}],
+    "additionalProperties": {
+      "type": "object", "required": ["slave", "master"], "additionalProperties": false, "properties": {
+        "slave": {"description": "the side whose nodes are kept out of the master", "$ref": "#/$defs/side",
+          "examples": ["block.bottom"]},
+        "master": {"description": "what the slave may not enter: SIDE or an obstacle", "type": "string",
+          "examples": ["floor"]},
+        "friction": {
+          "description": "Coulomb's coefficient mu, or another law; left out: frictionless, without tangential unknowns",
+          "title": "number >= 0, or a law", "examples": [0.3],
+          "anyOf": [{"type": "number", "minimum": 0},
+            {"type": "object", "required": ["coulomb"], "additionalProperties": false, "properties": {
+              "coulomb": {"description": "coefficient mu: at most mu p tangentially, p the pressure",
+                "$ref": "#/$defs/not_negative", "examples": [0.3]},
+              "limit": {"description": "but no more than this (force per area)", "$ref": "#/$defs/not_negative",
+                "examples": [5]}}},
+            {"type": "object", "required": ["tresca"], "additionalProperties": false, "properties": {
+              "tresca": {"description": "alone: the tangential traction that a closed point bears (force per area)",
+                "$ref": "#/$defs/not_negative", "examples": [5]}}}]},
+        "offset": {"description": "added to the gap (length); negative: an interference", "type": "number",
+          "default": 0, "examples": [-0.01]},
+        "surface": {"description": "of the master: its straight facets", "enum": ["faceted"], "default": "faceted"},
+        "discretization": {
+          "description": "node: node-to-segment; segment: mortar, gap and slip integrated along both sides",
+          "enum": ["node", "segment"], "default": "node"}}}},
+  "supports": {"description": "what is held or moved; supports that share a node must agree on it",
+    "title": "list of objects", "type": "array", "examples": [[{"on": "block.left", "move": {"x": 0, "y": 0}}]],
+    "items": {"type": "object", "required": ["on"], "additionalProperties": false, "properties": {
+        "on": {"description": "what is held", "$ref": "#/$defs/side", "examples": ["block.left"]},
+        "move": {"description": "displacement by axis; an axis that is left out is free", "$ref": "#/$defs/move"},
+        "rotate": {"description": "of all axes, added to move", "$ref": "#/$defs/rotate"},
+        "along": {"description": "alone, in place of move and rotate: the direction that is held, free across it",
+          "$ref": "#/$defs/vector", "examples": [[1, 1]]},
+        "value": {"description": "of along: displacement in that direction (length)", "$ref": "#/$defs/value",
+          "examples": [0]}},
+      "if": {"required": ["along"]},
+      "then": {"required": ["value"], "properties": {"move": false, "rotate": false}},
+      "else": {"anyOf": [{"required": ["move"]}, {"required": ["rotate"]}], "properties": {"value": false}}}},
+  "loads": {"description": "what pulls and pushes", "title": "list of objects", "type": "array",
+    "examples": [[{"on": "block.top", "traction": [0, -5]}]],
+    "items": {"type": "object", "required": ["on"], "additionalProperties": false, "properties": {
+        "on": {"description": "SIDE; of body_force a body", "type": "string", "examples": ["block.top"]},
+        "traction": {"description": "one of the four kinds: force per area", "$ref": "#/$defs/vector",
+          "examples": [[0.5, -5]]},
+        "pressure": {"description": "one of the four kinds: force per area, into the body", "type": "number",
+          "examples": [2]},
+        "force": {"description": "one of the four kinds: force in all, shared by tributary area",
+          "$ref": "#/$defs/vector", "examples": [[0, -10]]},
+        "body_force": {"description": "one of the four kinds: force per volume", "$ref": "#/$defs/vector",
+          "examples": [[0, -9.81]]},
+        "history": {"description": "scales it in time", "$ref": "#/$defs/value", "default": 1,
+          "examples": [[[0, 0], [1, 1]]]}},
+      "oneOf": [{"required": ["traction"]}, {"required": ["pressure"]}, {"required": ["force"]},
+        {"required": ["body_force"]}]}},
+  "time": {"description": "the increments; breakpoints of all tables are hit as well", "type": "object",
+    "examples": [{"end": 1, "steps": 10}], "additionalProperties": false, "properties": {
+      "end": {"description": "of the run, which begins at 0 (time)", "$ref": "#/$defs/positive", "examples": [1]},
+      "steps": {"description": "how many equal increments", "$ref": "#/$defs/count", "examples": [10]},
+      "legs": {"description": "in place of end and steps: where each leg ends, and its increments",
+        "title": "[[t_end, steps], ...]", "type": "array", "minItems": 1, "examples": [[[1, 12], [2, 24]]],
+        "items": {"type": "array", "minItems": 2, "maxItems": 2,
+          "prefixItems": [{"$ref": "#/$defs/positive"}, {"$ref": "#/$defs/count"}]}}},
+    "oneOf": [{"required": ["end", "steps"], "properties": {"legs": false}},
+      {"required": ["legs"], "properties": {"end": false, "steps": false}}]},
+  "responses": {"description": "what is measured after each increment, by names of your choice",
+    "title": "object by name", "type": "object", "additionalProperties": {"$ref": "#/$defs/response"},
+    "examples": [{"pull": {"reaction": {"on": "block.left", "component": "x"}}}]},
+  "objectives": {"description": "scalars over time, by names of your choice", "title": "object by name",
+    "type": "object", "examples": [{"J": {"of": "pull", "sum": true}}],
+    "additionalProperties": {"type": "object", "required": ["of"], "additionalProperties": false, "properties": {
+        "of": {"description": "the response that is taken", "type": "string", "examples": ["pull"]},
+        "sum": {"description": "its sum over the increments; or at", "title": "true", "const": true,
+          "examples": [true]},
+        "at": {"description": "its value at a time, which becomes the end of an increment; or sum",
+          "$ref": "#/$defs/positive", "examples": [0.5]},
+        "target": {"description": "the squared distance to it is taken", "$ref": "#/$defs/value",
+          "examples": [[[0, 0], [1, 2]]]}}, "oneOf": [{"required": ["sum"]}, {"required": ["at"]}]}},
+  "parameters": {"description": "what derivatives are with respect to, by names of your choice",
+    "title": "object by name", "type": "object", "examples": [{"mu": "/contacts/sole/friction"}],
+    "additionalProperties": {"anyOf": [
+        {"description": "pointer of any physical or geometric number, a method's stiffness or scale included",
+          "title": "JSON pointer", "type": "string", "examples": ["/contacts/sole/friction"]},
+        {"description": "several numbers that change together, each at its weight",
+          "title": "{pointer: weight, ...}",
+          "examples": [{"/bodies/a/material/linear_elastic/E": 1, "/bodies/b/material/linear_elastic/E": 1}],
+          "type": "object", "minProperties": 1, "additionalProperties": {"type": "number"}, "properties": {
+            "shape": {
+              "description": "a side moves by the parameter times direction, the body follows smoothly; of any mesh",
+              "type": "object", "examples": [{"side": "block.top", "direction": [0, 1]}],
+              "required": ["side", "direction"], "additionalProperties": false, "properties": {
+                "side": {"description": "what moves", "$ref": "#/$defs/side", "examples": ["block.top"]},
+                "direction": {"description": "where to", "$ref": "#/$defs/vector", "examples": [[0, 1]]},
+                "fixed": {"description": "what stays; left out: all other sides", "$ref": "#/$defs/side",
+                  "examples": ["block.bottom"]},
+                "each": {"description": "a parameter NAME/0, NAME/1, ... of every node along the side",
+                  "enum": ["node"], "examples": ["node"]}}}},
+          "dependentSchemas": {"shape": {"maxProperties": 1}}}]}},
+  "method": {"description": "which method runs, with its options", "$ref": "#/$defs/method",
+    "examples": [{"monolithic_al": {}}]},
+  "linear_solver": {"description": "what carries the run; the solution is the same", "type": "object",
+    "examples": [{"engine": "sparse"}], "additionalProperties": false, "properties": {
+      "engine": {
+        "description": "sparse: one large matrix; condensed: bodies reduced to contact unknowns; auto: the cheaper",
+        "enum": ["auto", "sparse", "condensed"], "default": "auto"},
+      "backend": {"description": "library of the sparse factorisations, where the build has it",
+        "enum": ["auto", "cholmod", "mumps", "umfpack", "eigen"], "default": "auto"}}},
+  "output": {"description": "what is written", "type": "object", "examples": [{"fields": "all"}],
+    "additionalProperties": false, "properties": {
+      "fields": {"description": "increments with fields: the last, all, or every n-th and the last",
+        "title": "last, all or whole number >= 1", "default": "last", "examples": [10],
+        "anyOf": [{"enum": ["last", "all"]}, {"$ref": "#/$defs/count"}]}}},
+  "sensitivity": {"description": "how derivatives are taken", "type": "object", "examples": [{"mode": "adjoint"}],
+    "additionalProperties": false, "properties": {
+      "mode": {"description": "direct: of all responses and objectives; adjoint: of the objectives alone",
+        "enum": ["direct", "adjoint"], "default": "direct"}}}
+})json";
+
+}  // namespace stickslip::schema_texts

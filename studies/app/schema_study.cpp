@@ -1,0 +1,61 @@
+#include "studies/app/schema_texts.hpp"
+
+namespace stickslip::schema_texts {
+
+const char* const study = R"json({
+  "$schema": {"description": "for editors: where the schema of this file is; not read", "type": "string",
+    "examples": ["study.schema.json"]},
+  "title": {"description": "head of the report", "type": "string", "examples": ["What accuracy costs"]},
+  "scene": {"description": "file of the scene, beside the study", "type": "string", "examples": ["slider.json"]},
+  "methods": {"description": "methods that are compared; a list as an option's value is swept; left out: the scene's",
+    "title": "list of methods", "type": "array", "minItems": 1, "items": {"$ref": "#/$defs/swept_method"},
+    "examples": [[{"penalty": {"stiffness": [1, 1e3]}}, {"monolithic_al": {}}]]},
+  "vary": {"description": "values of numbers, texts or arrays of the scene, by JSON pointer; pointers may not overlap",
+    "title": "{pointer: list, ...}", "type": "object", "examples": [{"/contacts/touch/friction": [0.1, 0.2]}],
+    "additionalProperties": {"type": "array", "minItems": 1}},
+  "refine": {"description": "mesh levels: all cells are doubled so many times", "title": "list of whole numbers >= 0",
+    "type": "array", "minItems": 1, "items": {"type": "integer", "minimum": 0, "maximum": 10}, "default": [0],
+    "examples": [[0, 1, 2]]},
+  "reference": {"description": "what errors are against, any number of entries; left out: no error is measured",
+    "title": "list of objects", "type": "array", "examples": [[{"method": {"monolithic_al": {}}}]], "items": {
+    "type": "object", "title": "one of the following", "additionalProperties": false, "properties": {
+      "method": {"description": "that method on the same mesh: the enforcement error", "$ref": "#/$defs/method",
+        "examples": [{"monolithic_al": {}}]},
+      "overkill": {"description": "monolithic_al on a finer mesh: like the next two the discretisation error",
+        "type": "object", "examples": [{"refine": 2}], "required": ["refine"], "additionalProperties": false,
+        "properties": {
+        "refine": {"description": "levels finer than the cell, up to 10", "title": "whole number >= 1",
+          "type": "integer", "minimum": 1, "maximum": 10, "examples": [2]}}},
+      "analytic": {"description": "a closed form, derivatives included; with map", "examples": ["belt"]},
+      "map": {"description": "of analytic: an input that a response measures, an output that is held against it",
+        "title": "{RESPONSE: QUANTITY, ...}", "type": "object", "additionalProperties": {"type": "string"},
+        "examples": [{"tight": "tight"}]},
+      "inputs": {"description": "of analytic: what no response gives; numbers, or names of parameters",
+        "title": "{QUANTITY: number or PARAMETER, ...}", "type": "object",
+        "additionalProperties": {"type": ["number", "string"]}, "examples": [{"friction": "mu"}]},
+      "values": {"description": "given numbers, of responses and of RESPONSE/PARAMETER", "type": "object",
+        "title": "{RESULT: number, ...}", "additionalProperties": {"type": "number"},
+        "examples": [{"u": 0.07, "u/mu": -0.1}]}},
+    "oneOf": [{"required": ["method"]}, {"required": ["analytic", "map"]}, {"required": ["values"]},
+              {"required": ["overkill"]}]}},
+  "errors": {"description": "which are recorded: kkt, response:NAME, sensitivity:NAME/PARAMETER, field:NAME; * for all",
+    "title": "list of patterns", "type": "array", "default": ["response:*", "sensitivity:*", "kkt"],
+    "examples": [["response:*", "kkt"]],
+    "items": {"type": "string", "pattern": "^kkt$|^response:|^sensitivity:|^field:"}},
+  "accuracy": {"description": "relative errors at which the report names the cheapest setting of each method",
+    "title": "list of up to six numbers > 0 and < 1", "type": "array", "default": [1e-2, 1e-4, 1e-6],
+    "examples": [[1e-2, 1e-5]],
+    "minItems": 1, "maxItems": 6, "items": {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}},
+  "timing": {"description": "a pass of its own that measures seconds", "type": "object",
+    "examples": [{"repeat": 3}], "additionalProperties": false, "properties": {
+    "repeat": {"description": "how often every converged cell is run again; left out: no timing pass",
+      "$ref": "#/$defs/count", "maximum": 1000, "examples": [3]}}},
+  "error_budget": {"description": "measure what each error is made of, by some ten more runs a cell; left out: no",
+    "title": "true, false or object", "default": false, "examples": [true], "anyOf": [{"type": "boolean"},
+    {"type": "object", "additionalProperties": false, "properties": {
+    "copies": {"description": "runs of the scene with numbers moved by a rounding, for each that is compared",
+      "title": "whole number from 2 to 64", "type": "integer", "minimum": 2, "maximum": 64, "default": 4,
+      "examples": [8]}}}]}
+})json";
+
+}  // namespace stickslip::schema_texts

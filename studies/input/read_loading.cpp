@@ -1,0 +1,182 @@
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "studies/input/scene_reading.hpp"
+
+namespace stickslip {
+namespace {
+
+bool same_motion(const Table& a, const Table& b) {
+  return a.repeat == b.repeat && std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(),
+                                            [](const auto& p, const auto& q) {
+                                              return p.first == q.first && p.second.value == q.second.value;
+                                            });
+}
+
+/// Which support holds what: body, node, axis.
+using Held = std::map<std::tuple<std::string, int, char>, std::size_t>;
+
+void read_inclined(const JsonNode& node, Support& support, SceneReading& reading) {
+  for (const char* other : {"move", "rotate"})
+    if (const auto beside = node.find(other))
+      beside->error_at_key(in_quotes(other) + " stands beside \"along\"; a support is either inclined or not");
+  Inclined inclined;
+  inclined.along =
+      reading.direction(*node.find("along"), "a vector that is not zero; it is the direction that is held");
+  inclined.value.points = {{0, Number()}};
+  if (const auto value = node.find("value"))
+    inclined.value = reading.table(*value);
+  else
+    node.error(R"(the key "value" is missing: the displacement along the direction)");
+  support.inclined = std::move(inclined);
+}
+
+/// Reports where two supports move a node along an axis by different tables; what else two supports may disagree in
+/// depends on the mesh, and is found when the model is made.
+void check_agreement(const JsonNode& move, const NamedSide& side, std::size_t index, const SceneReading& reading,
+                     Held& held) {
+  const Support& support = reading.scene.supports[index];
+  for (const auto& [axis, table] : support.move)
+    for (int body_node : side.side.nodes) {
+      const auto [holder, is_new] = held.emplace(std::make_tuple(side.body, body_node, axis), index);
+      const Support& other = reading.scene.supports[holder->second];
+      if (is_new || same_motion(other.move.at(axis), table)) continue;
+      move.find(std::string(1, axis))
+          ->error("differs from /supports/" + std::to_string(holder->second) + "/move/" + axis + ", which is on " +
+                  in_quotes(other.on) + " and holds a node of " + in_quotes(support.on) +
+                  " too; leave it out of one, as in " + in_quotes("block.left - block.bottom"));
+      break;
+    }
+}
+
+void read_support(const JsonNode& node, SceneReading& reading, Held& held) {
+  if (!node.is_object({{"on"}, {"move", "rotate", "along", "value"}})) return;
+  Support support;
+  const auto on = node.find("on"), move = node.find("move"), rotate = node.find("rotate"), value = node.find("value");
+  const auto side = on ? reading.side(*on) : std::nullopt;
+  if (on && on->value().is_string()) support.on = on->value();
+  if (node.find("along")) {
+    read_inclined(node, support, reading);
+  } else {
+    if (value) value->error_at_key(R"("value" belongs to "along", which is missing)");
+    if (!move && !rotate && !value) node.error("one of the keys is missing: move, rotate, along");
+    if (move) support.move = reading.move(*move);
+    if (rotate) support.rotate = reading.rotation(*rotate);
+  }
+  reading.scene.supports.push_back(support);
+  if (side && move && !support.rotate && !support.inclined)
+    check_agreement(*move, *side, reading.scene.supports.size() - 1, reading, held);
+}
+
+/// The side of a load that acts on one.
+void read_loaded_side(const JsonNode& on, const std::string& kind, SceneReading& reading) {
+  const auto side = reading.side(on);
+  if (!side) return;
+  const bool point = side->mesh->shape == ElementShape::point;
+  if (kind == "pressure" && (point || side->mesh->shape == ElementShape::bar2))
+    on.error("is " + shown(on.value()) + ", which has no inside that a pressure could push to; use traction or force");
+  else if (point && side->side.nodes != std::vector<int>{0})
+    on.must_be(in_quotes(side->body + ".node") + "; a load on the anchor of a spring does nothing");
+  else if (!point && kind != "force" && side->side.facets.empty())
+    on.error("is " + shown(on.value()) + ", single nodes without an area; use force instead of " + kind);
+}
+
+void read_loaded_body(const JsonNode& on, SceneReading& reading) {
+  const auto name = on.text();
+  if (!name) return;
+  const auto& names = reading.body_names;
+  if (std::find(names.begin(), names.end(), *name) == names.end())
+    return on.error("is " + in_quotes(*name) + ": there is no such body;" + suggestion(*name, names) +
+                    " a body force acts on a body: " + listed(names));
+  const auto mesh = reading.meshes.find(*name);
+  if (mesh != reading.meshes.end() && mesh->second.shape == ElementShape::point)
+    on.error("is " + in_quotes(*name) + ", a point without a volume; use force on " + in_quotes(*name + ".node"));
+}
+
+/// Whether the amount of a load is written as a table in time, which its "history" is for; reported where it is.
+bool varies_in_time(const JsonNode& amount, Load::Kind kind, const SceneReading& reading) {
+  const auto& value = amount.value();
+  const bool one_number = kind == Load::Kind::pressure;
+  const bool table =
+      value.is_object() ||
+      (value.is_array() &&
+       (one_number || std::any_of(value.begin(), value.end(), [](const auto& each) { return each.is_structured(); })));
+  if (table)
+    amount.must_be((one_number ? "a number" : "an array of " + std::to_string(reading.dimension()) + " numbers") +
+                   R"(, which "history" scales in time: "history": [[0, 0], [1, 1]])");
+  return table;
+}
+
+void read_load(const JsonNode& node, SceneReading& reading) {
+  const std::map<std::string, Load::Kind> kinds{{"traction", Load::Kind::traction},
+                                                {"pressure", Load::Kind::pressure},
+                                                {"force", Load::Kind::force},
+                                                {"body_force", Load::Kind::body_force}};
+  const auto kind = node.kind({"traction", "pressure", "force", "body_force"}, {}, {"on", "history"});
+  if (!kind) return;
+  Load load;
+  load.kind = kinds.at(kind->first);
+  if (load.kind == Load::Kind::pressure) reading.only_at_small_strain(kind->second);
+  if (varies_in_time(kind->second, load.kind, reading))
+    load.vector.clear();
+  else if (load.kind == Load::Kind::pressure)
+    load.vector = {reading.number(kind->second, any_number)};
+  else
+    load.vector = reading.vector(kind->second, reading.dimension());
+  const auto on = node.find("on");
+  const bool of_body = load.kind == Load::Kind::body_force;
+  if (!on)
+    node.error(std::string(R"(the key "on" is missing: the )") + (of_body ? "body" : "side BODY.SIDE") +
+               " that the load acts on");
+  else if (of_body)
+    read_loaded_body(*on, reading);
+  else
+    read_loaded_side(*on, kind->first, reading);
+  if (on && on->value().is_string()) load.on = on->value();
+  if (const auto history = node.find("history")) load.history = reading.table(*history);
+  reading.scene.loads.push_back(std::move(load));
+}
+
+void read_legs(const JsonNode& node, SceneReading& reading) {
+  if (!node.value().is_array() || node.value().empty()) return node.must_be("an array of legs [t_end, steps]");
+  double start = 0;
+  for (const JsonNode& leg : node.elements()) {
+    const auto pair = leg.array(2, "a leg [t_end, steps]");
+    if (!pair) continue;
+    const auto end = reading.time((*pair)[0], positive);
+    const auto steps = reading.count((*pair)[1], 1);
+    if (end && !(*end > start)) (*pair)[0].must_be("a time later than the end of the leg before, " + shown(start));
+    if (end && steps) reading.scene.legs.push_back({*end, *steps});
+    if (end) start = *end;
+  }
+}
+
+}  // namespace
+
+void read_supports(const JsonNode& node, SceneReading& reading) {
+  if (!node.value().is_array()) return node.must_be("an array of supports");
+  Held held;
+  for (const JsonNode& support : node.elements()) read_support(support, reading, held);
+}
+
+void read_loads(const JsonNode& node, SceneReading& reading) {
+  if (!node.value().is_array()) return node.must_be("an array of loads");
+  for (const JsonNode& load : node.elements()) read_load(load, reading);
+}
+
+void read_time(const JsonNode& node, SceneReading& reading) {
+  if (!node.value().is_object()) return node.must_be(R"({"end": t, "steps": n} or {"legs": [[t_end, steps], ...]})");
+  if (const auto legs = node.find("legs")) {
+    node.is_object({{"legs"}, {}, {"control"}});
+    return read_legs(*legs, reading);
+  }
+  node.is_object({{"end", "steps"}, {"legs"}, {"control"}});
+  const auto end = node.find("end"), steps = node.find("steps");
+  Leg leg;
+  if (end) leg.end = reading.time(*end, positive).value_or(1);
+  if (steps) leg.steps = reading.count(*steps, 1).value_or(1);
+  reading.scene.legs.push_back(leg);
+}
+
+}  // namespace stickslip

@@ -1,0 +1,182 @@
+#include <algorithm>
+#include <array>
+
+#include "studies/input/response_kinds.hpp"
+#include "studies/input/scene_reading.hpp"
+
+namespace stickslip {
+namespace {
+
+/// What a kind of response is taken of, and which keys it has besides.
+struct Kind {
+  const char* name;
+  Response::Kind kind;
+  bool of_contact;  ///< key "contact"; otherwise "on", where the kind has any
+  enum class Component { none, axis, axis_or_normal, axis_in_space } component;
+  bool sampled;  ///< keys "take" and "at"
+};
+
+constexpr std::array kinds{
+    Kind{"reaction", Response::Kind::reaction, false, Kind::Component::axis, false},
+    Kind{"contact_force", Response::Kind::contact_force, true, Kind::Component::axis_or_normal, false},
+    Kind{"displacement", Response::Kind::displacement, false, Kind::Component::axis, true},
+    Kind{"contact_pressure", Response::Kind::contact_pressure, true, Kind::Component::none, true},
+    Kind{"gap", Response::Kind::gap, true, Kind::Component::none, true},
+    Kind{"slip", Response::Kind::slip, true, Kind::Component::axis_in_space, true},
+    Kind{"dissipation", Response::Kind::dissipation, true, Kind::Component::none, false},
+    Kind{"strain_energy", Response::Kind::strain_energy, false, Kind::Component::none, false},
+    Kind{"contact_half_width", Response::Kind::contact_half_width, true, Kind::Component::none, false},
+};
+
+bool has_moment(const Kind& kind, const SceneReading& reading) {
+  return reading.dimension() == 2 &&
+         (kind.kind == Response::Kind::reaction || kind.kind == Response::Kind::contact_force);
+}
+
+Keys keys_of(const Kind& kind, const SceneReading& reading) {
+  Keys keys;
+  if (kind.of_contact) keys.required.push_back("contact");
+  if (kind.kind == Response::Kind::reaction) keys.required.push_back("on");
+  if (kind.kind == Response::Kind::displacement) keys.optional.push_back("on");
+  if (kind.component == Kind::Component::axis_in_space)
+    (reading.dimension() == 3 ? keys.required : keys.optional).push_back("component");
+  else if (kind.component != Kind::Component::none)
+    keys.required.push_back("component");
+  if (kind.sampled) keys.optional.insert(keys.optional.end(), {"take", "at"});
+  if (has_moment(kind, reading)) keys.optional.push_back("about");
+  return keys;
+}
+
+void read_contact_name(const JsonNode& node, const Kind& kind, Response& response, SceneReading& reading) {
+  const auto name = node.text();
+  if (!name) return;
+  response.on = *name;
+  const auto& names = reading.contact_names;
+  if (std::find(names.begin(), names.end(), *name) == names.end())
+    return node.error("is " + in_quotes(*name) + ": there is no such contact;" + suggestion(*name, names) +
+                      " allowed: " + listed(names));
+  if (kind.kind != Response::Kind::slip) return;
+  for (const Contact& contact : reading.scene.contacts)
+    if (contact.name == *name && !contact.friction)
+      node.error("is " + in_quotes(*name) + ", a contact without friction, whose slip is not followed; give it a " +
+                 "friction, which may be 0");
+}
+
+/// "on" of a displacement or a reaction: a side; beside "at", the body that the point is in.
+void read_on(const JsonNode& node, bool beside_at, Response& response, SceneReading& reading) {
+  if (node.value().is_string()) response.on = node.value();
+  const auto& names = reading.body_names;
+  if (!beside_at)
+    reading.side(node);
+  else if (std::find(names.begin(), names.end(), response.on) == names.end())
+    node.error(R"(must be a body beside "at": a point is taken, and not a side; allowed: )" + listed(names));
+}
+
+/// Coordinates that say where a response is taken: they are no parameters.
+std::vector<Number> read_place(const JsonNode& node, SceneReading& reading) {
+  std::vector<Number> place;
+  const auto point = node.array(reading.dimension(), "an array of " + std::to_string(reading.dimension()) + " numbers");
+  if (!point) return place;
+  for (const JsonNode& coordinate : *point) {
+    reading.constants[coordinate.pointer()] = "where a response is taken, not a part of the scene";
+    place.emplace_back(coordinate.number(any_number).value_or(0));
+  }
+  return place;
+}
+
+void read_component(const JsonNode& node, const JsonNode& component, const Kind& kind, Response& response,
+                    SceneReading& reading) {
+  auto allowed = reading.axes();
+  if (kind.component == Kind::Component::axis_or_normal) allowed.insert(allowed.begin(), "normal");
+  const bool moment = has_moment(kind, reading);
+  if (moment) allowed.emplace_back("moment");
+  response.component = component.choice(allowed).value_or(allowed.front());
+  const auto about = moment ? node.find("about") : std::nullopt;
+  if (about) response.about = read_place(*about, reading);
+  if (about && response.component != "moment") about->error_at_key(R"("about" belongs to the component "moment")");
+  if (!about && response.component == "moment")
+    node.error(R"(the key "about" is missing: the point [x, y] that the moment is about)");
+}
+
+void read_response(const std::string& name, const JsonNode& outer, SceneReading& reading) {
+  check_characters(outer, name);
+  std::vector<std::string> names;
+  for (const Kind& each : kinds) names.emplace_back(each.name);
+  const auto found = outer.kind(names);
+  if (!found) return;
+  const JsonNode& node = found->second;
+  const Kind& kind = *std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) { return k.name == found->first; });
+  if (!node.is_object(keys_of(kind, reading))) return;
+  if (kind.kind == Response::Kind::contact_half_width && reading.dimension() == 3)
+    node.error_at_key("a half width needs a plane space");
+
+  Response response;
+  response.name = name;
+  response.kind = kind.kind;
+  const auto on = node.find("on"), at = node.find("at"), take = node.find("take"), component = node.find("component");
+  if (const auto contact = node.find("contact"); contact && kind.of_contact)
+    read_contact_name(*contact, kind, response, reading);
+  if (on && !kind.of_contact) read_on(*on, at.has_value(), response, reading);
+  if (kind.kind == Response::Kind::displacement && !on && !at)
+    node.error(R"(one of the keys is missing: "on", a side BODY.SIDE, or "at", a point)");
+  if (component && kind.component != Kind::Component::none) read_component(node, *component, kind, response, reading);
+  if (take && kind.sampled) {
+    const auto way = take->choice({"mean", "max", "min"}).value_or("mean");
+    response.take = way == "max" ? Response::Take::max : way == "min" ? Response::Take::min : Response::Take::mean;
+    if (at) take->error_at_key(R"("take" has no meaning beside "at", which is a single point)");
+  }
+  if (at && kind.sampled) response.at = read_place(*at, reading);
+  reading.scene.responses.push_back(std::move(response));
+}
+
+/// The time of "at": within the run, whose end is known where "time" is right.
+void read_instant(const JsonNode& node, Objective& objective, SceneReading& reading) {
+  objective.at = reading.time(node, positive);
+  const auto& legs = reading.scene.legs;
+  if (objective.at && !legs.empty() && *objective.at > legs.back().end)
+    node.error("is " + shown(node.value()) + ", after the end of the run at " + shown(legs.back().end));
+}
+
+void read_objective(const std::string& name, const JsonNode& node, SceneReading& reading) {
+  check_characters(node, name);
+  if (!node.is_object({{"of"}, {"sum", "at", "target"}})) return;
+  Objective objective;
+  objective.name = name;
+  const auto& responses = reading.scene.responses;
+  if (std::any_of(responses.begin(), responses.end(), [&](const Response& each) { return each.name == name; }))
+    node.error_at_key("a response has the name " + in_quotes(name) + " already");
+  const auto of = node.find("of"), sum = node.find("sum"), at = node.find("at"), target = node.find("target");
+  std::vector<std::string> names;
+  for (const auto& response : reading.scene.responses) names.push_back(response.name);
+  if (const auto response = of ? of->text() : std::nullopt) {
+    const auto found = std::find(names.begin(), names.end(), *response);
+    objective.response = static_cast<int>(found - names.begin());
+    if (found == names.end() && !reading.diagnostics.has_error_in("/responses"))
+      of->error("is " + in_quotes(*response) + ": there is no such response;" + suggestion(*response, names) +
+                " allowed: " + listed(names));
+  }
+  if (sum && at) at->error_at_key(R"("at" is a single time, and "sum" adds up all steps: one of the two)");
+  if (!sum && !at) node.error(R"(one of the keys is missing: "sum": true, or "at": a time)");
+  if (sum && sum->value() != true) sum->must_be("true");
+  if (at) read_instant(*at, objective, reading);
+  if (target) objective.target = reading.table(*target);
+  reading.scene.objectives.push_back(std::move(objective));
+}
+
+}  // namespace
+
+std::string_view name_of(Response::Kind kind) {
+  return std::find_if(kinds.begin(), kinds.end(), [&](const Kind& each) { return each.kind == kind; })->name;
+}
+
+void read_responses(const JsonNode& node, SceneReading& reading) {
+  if (!node.is_map("responses by name")) return;
+  for (const auto& [name, response] : node.members()) read_response(name, response, reading);
+}
+
+void read_objectives(const JsonNode& node, SceneReading& reading) {
+  if (!node.is_map("objectives by name")) return;
+  for (const auto& [name, objective] : node.members()) read_objective(name, objective, reading);
+}
+
+}  // namespace stickslip

@@ -1,0 +1,191 @@
+#include "studies/input/scene_reader.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "studies/input/method_options.hpp"
+#include "studies/input/scene_reading.hpp"
+
+namespace stickslip {
+namespace {
+
+void read_space(const JsonNode& root, SceneReading& reading) {
+  const auto space = root.find("space");
+  const auto name = space ? space->choice({"plane_strain", "plane_stress", "axisymmetric", "solid"}) : std::nullopt;
+  if (name == "plane_stress") reading.scene.space = Space::plane_stress;
+  if (name == "axisymmetric") reading.scene.space = Space::axisymmetric;
+  if (name == "solid") reading.scene.space = Space::solid;
+}
+
+void read_strain(const JsonNode& node, SceneReading& reading) {
+  reading.scene.finite_strain = node.choice({"small", "finite"}) == "finite";
+  if (reading.scene.finite_strain && reading.scene.space != Space::plane_strain)
+    node.error(R"(is "finite", which needs the space "plane_strain" in this version)");
+}
+
+void read_linear_solver(const JsonNode& node, const Scene& scene, Input& input) {
+  using Engine = LinearAlgebra::Engine;
+  if (!node.is_object({{}, {"engine", "backend"}})) return;
+  if (const auto engine = node.find("engine")) {
+    const auto name = engine->choice({"auto", "sparse", "condensed"});
+    if (name == "sparse") input.linear_algebra.engine = Engine::sparse;
+    if (name == "condensed") input.linear_algebra.engine = Engine::condensed;
+    if (name == "condensed" && scene.finite_strain)
+      engine->error(
+          R"(is "condensed", which needs bodies of a constant stiffness; allowed at finite strain: auto, sparse)");
+  }
+  if (const auto backend = node.find("backend")) {
+    const std::map<std::string, Backend> all{{"auto", Backend::automatic},
+                                             {"cholmod", Backend::cholmod},
+                                             {"umfpack", Backend::umfpack},
+                                             {"mumps", Backend::mumps},
+                                             {"eigen", Backend::eigen}};
+    std::vector<std::string> names;
+    for (const auto& [name, unused] : all) names.push_back(name);
+    const auto name = backend->choice(names);
+    if (!name) return;
+    input.backend = all.at(*name);
+    if (input.backend != Backend::automatic && !has_backend(input.backend))
+      backend->error("is " + in_quotes(*name) + ", which is not part of this build");
+  }
+}
+
+void read_output(const JsonNode& node, OutputOptions& output) {
+  if (!node.is_object({{}, {"fields"}})) return;
+  const auto fields = node.find("fields");
+  if (!fields || fields->value() == "last") return;
+  if (fields->value() == "all") {
+    output.fields = OutputOptions::Fields::all;
+  } else if (fields->value().is_number()) {
+    output.fields = OutputOptions::Fields::every;
+    output.every = fields->count(1).value_or(1);
+  } else {
+    fields->must_be(R"("last", "all" or a whole number >= 1)");
+  }
+}
+
+/// Notes on obstacles that no contact names.
+void note_idle_obstacles(const JsonNode& node, SceneReading& reading) {
+  const auto& contacts = reading.scene.contacts;
+  for (const auto& [name, obstacle] : node.value().is_object() ? node.members() : decltype(node.members()){}) {
+    const bool used = std::any_of(contacts.begin(), contacts.end(),
+                                  [&, &name = name](const Contact& contact) { return contact.master == name; });
+    if (!used)
+      reading.diagnostics.note(
+          {obstacle.place(), obstacle.pointer(), "is an obstacle that no contact names as master"});
+  }
+}
+
+void read_sensitivity(const JsonNode& node, SceneReading& reading) {
+  const auto mode = node.is_object({{}, {"mode"}}) ? node.find("mode") : std::nullopt;
+  if (!mode || mode->choice({"direct", "adjoint"}) != "adjoint") return;
+  reading.scene.sensitivity_mode = SensitivityMode::adjoint;
+  if (reading.scene.objectives.empty() && !reading.diagnostics.has_error_in("/objectives"))
+    mode->error(R"(is "adjoint", which differentiates the objectives, and the scene has none; add "objectives", )"
+                R"(or use "direct")");
+}
+
+/// Another method than the scene's: what the scene says of its own is checked, then replaced by the other's defaults.
+void select_method(JsonDocument& document, const std::optional<std::string>& name, Diagnostics& diagnostics,
+                   MeshFiles& mesh_files) {
+  if (!name || !document.root().is_object()) return;
+  if (!default_method(*name)) {
+    diagnostics.error({{"-m " + *name},
+                       "",
+                       "there is no method " + in_quotes(*name) + ";" + suggestion(*name, method_names()) +
+                           " allowed: " + listed(method_names())});
+    return;
+  }
+  const auto own = JsonNode(document, diagnostics).find("method");
+  if (own && own->value().is_object() && own->find(*name)) return;
+  SceneReading apart(diagnostics, std::filesystem::path(document.file()).parent_path(), mesh_files);
+  if (own) read_method(*own, apart);
+  document.set("/method", {{*name, nlohmann::json::object()}}, {"-m " + *name});
+}
+
+}  // namespace
+
+std::optional<Input> read_scene(const JsonDocument& given, const std::optional<std::string>& method_name,
+                                Diagnostics& diagnostics, MeshFiles& mesh_files) {
+  const std::size_t faults = diagnostics.error_count();
+  const std::filesystem::path folder = std::filesystem::path(given.file()).parent_path();
+  JsonDocument document = given;
+  const JsonNode file_root(given, diagnostics);
+  if (!file_root.is_object(
+          {{"bodies", "time"},
+           {"$schema", "title", "space", "strain", "obstacles", "contacts", "supports", "loads", "responses",
+            "objectives", "parameters", "method", "linear_solver", "output", "sensitivity"}}))
+    return std::nullopt;
+
+  const bool known = !method_name || default_method(*method_name);
+  select_method(document, method_name, diagnostics, mesh_files);
+
+  Input input;
+  input.file = document.file();
+  const JsonNode root(document, diagnostics);
+  SceneReading reading(diagnostics, folder, mesh_files);
+  auto part = [&](const char* key, auto&& read) {
+    if (const auto node = root.find(key)) read(*node, reading);
+  };
+  if (const auto schema = root.find("$schema")) schema->text();
+  if (const auto title = root.find("title")) reading.scene.title = title->text().value_or("");
+  read_space(root, reading);
+  part("strain", read_strain);
+  part("bodies", read_bodies);
+  part("obstacles", read_obstacles);
+  part("contacts", read_contacts);
+  part("obstacles", note_idle_obstacles);
+  part("supports", read_supports);
+  part("loads", read_loads);
+  part("time", read_time);
+  part("responses", read_responses);
+  part("objectives", read_objectives);
+  if (const auto node = root.find("linear_solver")) read_linear_solver(*node, reading.scene, input);
+  if (const auto node = root.find("output")) read_output(*node, input.output);
+  part("sensitivity", read_sensitivity);
+
+  const auto method_node = root.find("method");
+  if (!method_node && known) root.error(R"(the key "method" is missing; allowed: )" + listed(method_names()));
+  const auto method = method_node ? read_method(*method_node, reading) : std::nullopt;
+  std::vector<std::string> dropped;
+  if (const auto node = root.find("parameters"))
+    dropped = read_parameters(*node, document.root(), method ? std::string(name_of(*method)) : "",
+                              method_name.has_value(), reading);
+  if (const auto given = root.find("parameters");
+      reading.scene.sensitivity_mode == SensitivityMode::adjoint && (!given || given->value().empty()))
+    root.find("sensitivity")
+        ->error(R"(asks for derivatives by the parameters, and the scene has none; add "parameters")");
+  if (diagnostics.error_count() > faults) return std::nullopt;
+
+  for (const std::string& pointer : dropped) document.remove(pointer);
+  input.scene = std::move(reading.scene);
+  input.method = *method;
+  input.document = document.root();
+  input.mesh_fingerprints = std::move(reading.mesh_fingerprints);
+  return input;
+}
+
+std::optional<Input> read_scene(JsonDocument document, const Overrides& overrides,
+                                const std::optional<std::string>& method_name, Diagnostics& diagnostics) {
+  MeshFiles mesh_files;
+  if (method_name && default_method(*method_name)) select_method(document, method_name, diagnostics, mesh_files);
+  for (const std::string& assignment : overrides) document.override_value(assignment, diagnostics);
+  auto input = read_scene(document, method_name, diagnostics, mesh_files);
+  return diagnostics.has_errors() ? std::nullopt : std::move(input);
+}
+
+std::optional<Input> read_scene(const std::string& file, const Overrides& overrides,
+                                const std::optional<std::string>& method_name, Diagnostics& diagnostics) {
+  const auto document = JsonDocument::read(file, diagnostics);
+  return document ? read_scene(*document, overrides, method_name, diagnostics) : std::nullopt;
+}
+
+std::string canonical_text(const Input& input) {
+  nlohmann::json canonical = input.document;
+  canonical.erase("title");
+  canonical.erase("$schema");
+  canonical["method"] = to_json(input.method);
+  return nlohmann::json{{"scene", canonical}, {"meshes", input.mesh_fingerprints}}.dump();
+}
+
+}  // namespace stickslip

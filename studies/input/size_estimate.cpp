@@ -1,0 +1,83 @@
+#include "studies/input/size_estimate.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+namespace stickslip {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+double product(const std::array<int, 2>& cells) { return static_cast<double>(cells[0]) * cells[1]; }
+
+/// Quadrilateral cells of a generator, or bars.
+struct CountCells {
+  double operator()(const BoxMesh& m) const { return product(m.cells); }
+  double operator()(const QuadMesh& m) const { return product(m.cells); }
+  double operator()(const RingMesh& m) const { return product(m.cells); }
+  double operator()(const DiskMesh& m) const { return std::pow(m.cells[0], 2) + 4 * product(m.cells); }
+  double operator()(const HalfDiskMesh& m) const { return std::pow(m.cells[0], 2) / 2 + 2 * product(m.cells); }
+  double operator()(const PointMesh&) const { return 1; }
+  double operator()(const LineMesh& m) const { return m.cells; }
+  double operator()(const ArcMesh& m) const { return m.cells; }
+  double operator()(const ImportedMesh& m) const { return m.mesh.node_count; }
+};
+
+double from_file(const char* path) {
+  std::ifstream file(path);
+  double bytes = 0;
+  return file >> bytes && bytes > 0 ? bytes : infinite;
+}
+
+double from_limit(decltype(RLIMIT_AS) resource) {
+  rlimit limit{};
+  return ::getrlimit(resource, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY ? static_cast<double>(limit.rlim_cur)
+                                                                               : infinite;
+}
+
+std::string in_words(double bytes) {
+  for (const auto& [unit, size] : {std::pair{"TB", 1e12}, {"GB", 1e9}, {"MB", 1e6}})
+    if (bytes >= size) return fmt::format("{:.{}f} {}", bytes / size, bytes < 10 * size ? 1 : 0, unit);
+  return fmt::format("{:.0f} bytes", bytes);
+}
+
+}  // namespace
+
+double estimated_nodes(const MeshDescription& mesh, const std::string& element) {
+  // nodes a cell: its corner and, where the sides are curved, their middles; T6 has the diagonal's too
+  const double each = element == "Q8" ? 3 : element == "T6" ? 4 : 1;
+  return std::holds_alternative<ImportedMesh>(mesh) ? CountCells()(std::get<ImportedMesh>(mesh))
+                                                    : each * std::visit(CountCells(), mesh);
+}
+
+double estimated_bytes(const ProblemSize& size) {
+  // Measured with boxes of Q4: 2.7 kB a displacement at 80 000 of them, of which the factor's entries are 12 bytes
+  // each; these grow by 8 a displacement with each doubling (core/README.md, "Linear algebra").
+  constexpr double measured_at = 20'600, least_entries = 63, entries_a_doubling = 8, bytes_an_entry = 12;
+  const double n = size.displacements;
+  const double doublings = std::log2(std::max(n / measured_at, 1.0));
+  double bytes = n * (1800 + bytes_an_entry * (least_entries + entries_a_doubling * doublings));
+  // columns of the bodies' answer to each contact dof, and the dense system with its factor
+  if (size.condensed) bytes += 8 * size.contact_dofs * (n + 3 * size.contact_dofs);
+  // what a step leaves: displacements, contact points, iterations, its part of the result (11 kB of a single point)
+  return bytes + size.steps * (8 * n + 150 * size.contact_points + 11'000);
+}
+
+double memory_limit() {
+  const double pages = static_cast<double>(::sysconf(_SC_PHYS_PAGES));
+  const double machine = pages > 0 ? pages * static_cast<double>(::sysconf(_SC_PAGESIZE)) : infinite;
+  return std::min({machine, from_limit(RLIMIT_AS), from_limit(RLIMIT_DATA), from_file("/sys/fs/cgroup/memory.max"),
+                   from_file("/sys/fs/cgroup/memory/memory.limit_in_bytes")});
+}
+
+std::string too_much(double bytes, double limit) {
+  return "some " + in_words(bytes) + " of memory, and there are " + in_words(limit) + " for this process";
+}
+
+}  // namespace stickslip

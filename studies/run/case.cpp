@@ -1,0 +1,246 @@
+#include "studies/run/case.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/model/response.hpp"
+#include "methods/engine_choice.hpp"
+#include "studies/io/json_document.hpp"
+#include "studies/run/accuracy.hpp"
+#include "studies/run/warnings.hpp"
+
+namespace stickslip {
+namespace {
+
+/// Fills in the one-sided derivatives of increment n, and whether they are one.
+void take_sides(const CaseResult& result, std::size_t n, StepResult& step) {
+  const auto& scene = result.problem->model.scene;
+  if (scene.sensitivity_mode == SensitivityMode::adjoint)  // (which has no sides)
+    step.differentiable = std::min(step.margins.open, step.margins.slip) > weak_margin;
+  const auto take = [&](const auto& backward, const auto& forward) {
+    if (n >= backward.size()) return;
+    step.backward = backward[n];
+    step.forward = forward[n];
+  };
+  if (result.one_sided)
+    take(result.one_sided->backward, result.one_sided->forward);
+  else
+    take(result.gradients.below, result.gradients.above);
+  if (step.backward.size() == 0) return;
+  for (std::size_t i = 0; i < scene.responses.size(); ++i)
+    for (std::size_t j = 0; j < scene.parameters.size(); ++j)
+      if (step.has_kink(scene, result.method, i, j)) step.differentiable = false;
+}
+
+/// `errors`: per increment.
+std::vector<StepResult> gather_steps(const CaseResult& result, const std::vector<KktError>& errors) {
+  const auto& [model, slots, unused] = *result.problem;
+  std::vector<StepResult> steps;
+  StepResult step;
+  for (std::size_t n = 0; n < result.trajectory.increments.size(); ++n) {
+    const auto& increment = result.trajectory.increments[n];
+    step.newton += increment.newton;
+    step.augmentations += increment.augmentations;
+    step.history.insert(step.history.end(), increment.history.begin(), increment.history.end());
+    if (!increment.requested) continue;
+    step.increment = &increment;
+    step.kkt = errors[n];
+    step.margins = margins(model, slots, increment.state);
+    step.responses = evaluate_responses(model, slots, increment.state, increment.time);
+    if (n < result.gradients.of.size()) step.sensitivities = result.gradients.of[n];
+    if (n < result.gradients.records.size()) step.scheme = result.gradients.records[n];
+    take_sides(result, n, step);
+    steps.push_back(std::move(step));
+    step = {};
+  }
+  return steps;
+}
+
+/// Says of a run that failed with a loose body why it has no answer.
+void name_loose_body(const Model& model, Trajectory<double>& trajectory) {
+  const Body* const loose = loose_body(model);
+  if (!loose || is_converged(trajectory.status)) return;
+  if (trajectory.status == Status::singular) trajectory.status = Status::no_equilibrium;  // nothing balances its load
+  trajectory.message =
+      loose->name + " is free to move: no support holds it and no contact touches it; add a support or a contact";
+}
+
+/// Whether the run ended with a tangent that derivatives can be taken of.
+bool has_tangent(const Trajectory<double>& trajectory) {
+  const Status status = trajectory.status;
+  return !trajectory.increments.empty() && status != Status::singular && status != Status::not_finite &&
+         status != Status::no_equilibrium;
+}
+
+bool is_adjoint(const Model& model) { return model.scene.sensitivity_mode == SensitivityMode::adjoint; }
+
+/// `derivatives`: what followed the run, unless it is adjoint.
+void differentiate_case(Workspace<double>& workspace, Derivatives& derivatives, CaseResult& result) {
+  const auto& [model, slots, unused] = *result.problem;
+  if (is_adjoint(model)) {
+    result.gradients = adjoint(model, slots, result.method, result.trajectory, workspace);
+    return;
+  }
+  result.gradients = derivatives.finish(result.trajectory);
+  result.gradients.of_objectives = objective_gradients(model, slots, result.trajectory, result.gradients);
+  {
+    const Stopwatch time(result.one_sided_seconds);
+    result.one_sided = one_sided_derivatives(model, slots, result.method, result.trajectory, workspace);
+  }
+  result.gradients.seconds += result.one_sided_seconds;
+  if (result.one_sided) result.gradients.counters += result.one_sided->counters;
+}
+
+/// What of a step that converged is not finite, in words; empty where all is.
+std::string overflow_of(const CaseResult& result, const StepResult& step) {
+  const auto& [model, slots, unused] = *result.problem;
+  const State<double>& state = step.increment->state;
+  const auto& contact = state.contact;
+  if (!state.displacement.allFinite()) return "the displacements are";
+  for (const auto* field : {&contact.gap, &contact.placement, &contact.slip, &contact.traction, &state.dissipation})
+    if (!field->allFinite()) return "gaps, slips or tractions are";
+  const auto summaries = summarise(model, slots, state);
+  for (std::size_t c = 0; c < summaries.size(); ++c)
+    if (!summaries[c].is_finite()) return "the forces of " + model.scene.contacts[c].name + " are";
+  for (std::size_t i = 0; i < model.scene.responses.size(); ++i)
+    if (!std::isfinite(step.responses[i])) return "the response " + model.scene.responses[i].name + " is";
+  return std::isfinite(step.kkt.largest()) ? "" : "the method-blind error is";
+}
+
+/// Which derivative is not finite, in words; empty where all are.
+std::string overflow_of(const Gradients& gradients, const Scene& scene) {
+  for (const auto& of : gradients.of)
+    for (Eigen::Index i = 0; i < of.rows(); ++i)
+      for (Eigen::Index j = 0; j < of.cols(); ++j)
+        if (!std::isfinite(of(i, j)))
+          return "the derivative of " + scene.responses[i].name + " by " + scene.parameters[j].name;
+  if (!gradients.of_objectives.allFinite()) return "the derivative of an objective";
+  return gradients.last_displacement.allFinite() ? "" : "the derivative of the displacements";
+}
+
+/// Gives what says it converged, and holds a number that is none, the status not_finite.
+void refuse_overflow(CaseResult& result) {
+  const auto refuse = [](auto& part, const std::string& words) {
+    if (words.empty() || !is_converged(part.status)) return;
+    part.status = Status::not_finite;
+    part.message = words + " not finite; choose units in which the numbers are of moderate size";
+  };
+  std::size_t n = 0;
+  for (auto& increment : result.trajectory.increments) {
+    if (!increment.requested) continue;
+    const std::string words = overflow_of(result, result.steps[n++]);
+    refuse(increment, words);
+    refuse(result.trajectory, words);
+  }
+  if (!result.objectives.allFinite()) refuse(result.trajectory, "an objective is");
+  const std::string words = overflow_of(result.gradients, result.problem->model.scene);
+  if (!words.empty()) refuse(result.gradients, words + " is");
+}
+
+/// Whether a support, or an anchor, holds a node of a side.
+bool is_held(const Model& model, const std::string& side) {
+  const auto nodes = model.side(side).nodes;
+  return std::any_of(model.constraints.begin(), model.constraints.end(), [&](const Constraint& constraint) {
+    return std::find(nodes.begin(), nodes.end(), constraint.dof / model.dimension) != nodes.end();
+  });
+}
+
+/// Throws ModelError where a response is taken of what is not there: a reaction without a support, a contact at a point
+/// that is farther from it than one of its facets is long.
+void check_responses(const Model& model, const Slots<double>& slots) {
+  for (std::size_t i = 0; i < model.scene.responses.size(); ++i) {
+    const auto& response = model.scene.responses[i];
+    const std::string pointer = child_pointer("/responses", response.name);
+    if (response.kind == Response::Kind::reaction && !is_held(model, response.on))
+      throw ModelError("no support acts on " + response.on + ", so there is no reaction", pointer + "/reaction/on");
+    const int p = model.response_places[i].contact_point;
+    if (p < 0) continue;
+    const auto& point = model.points[static_cast<std::size_t>(p)];
+    double squared = 0;
+    for (std::size_t k = 0; k < response.at.size(); ++k)
+      squared += std::pow(response.at[k].value - slots.points(static_cast<Eigen::Index>(k), point.nodes[0]), 2);
+    if (point.mesh_size > 0 && std::sqrt(squared) > point.mesh_size)
+      throw ModelError("the point of \"at\" is off the contact: " + shown(std::sqrt(squared)) +
+                           " from its nearest node, where its facets are " + shown(point.mesh_size) + " long",
+                       pointer);
+  }
+}
+
+EngineHoldings holdings(const Workspace<double>& workspace) {
+  return std::visit([](const auto& engine) { return engine.holdings(); }, *workspace.engine);
+}
+
+}  // namespace
+
+bool StepResult::has_kink(const Scene& scene, const Method& method, std::size_t response, std::size_t parameter) const {
+  const auto* uzawa = std::get_if<UzawaAL>(&method);
+  const bool oversized = uzawa && uzawa->sensitivity == UzawaAL::Sensitivity::oversized;
+  const double rounding = oversized ? 10 / uzawa->oversize.value_or(UzawaAL::automatic_oversize) : 1e-9;
+  const double below = backward(response, parameter), above = forward(response, parameter);
+  const double value = scene.parameters[parameter].value, size = value == 0 ? 0 : std::abs(responses[response] / value);
+  return !(std::abs(above - below) <= rounding * std::max({std::abs(below), std::abs(above), size}));
+}
+
+Problem::Problem(const Scene& scene) {
+  {
+    const Stopwatch time(seconds.setup);
+    model = make_model(scene, seconds);
+    slots = make_slots<double>(model, scene.as<double>());
+    check_responses(model, slots);
+  }
+  seconds.setup -= seconds.contact_search;
+}
+
+Status CaseResult::status() const {
+  const bool derivatives_failed = is_converged(trajectory.status) && !is_converged(gradients.status);
+  return derivatives_failed || trajectory.status == Status::converged ? gradients.status : trajectory.status;
+}
+
+std::string CaseResult::message() const {
+  const bool own = trajectory.status != Status::converged && status() == trajectory.status;
+  return own || gradients.message.empty() ? trajectory.message : gradients.message;
+}
+
+std::shared_ptr<Condensation<double>> condense(const Problem& problem, const RunOptions& options) {
+  Workspace<double> workspace;
+  make_engine<double>(problem.model, problem.slots, Penalty{}, options, workspace);
+  return workspace.condensation;
+}
+
+CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method, const RunOptions& options,
+                    std::shared_ptr<Condensation<double>>& condensation) {
+  CaseResult result;
+  result.problem = problem;
+  result.method = method;
+  const long solved_before = condensation ? condensation->backsolves() : 0;
+  const bool shared = condensation != nullptr;
+  Workspace<double> workspace{condensation, {}};
+  Derivatives derivatives(problem->model, problem->slots, result.method, workspace);
+  RunOptions followed = options;
+  followed.on_step = [&] {
+    if (!is_adjoint(problem->model)) derivatives.follow(result.trajectory);
+    if (options.on_step) options.on_step();
+  };
+  solve(problem->model, problem->slots, method, followed, workspace, result.trajectory);
+  condensation = workspace.condensation;
+  std::visit([&](auto& engine) { result.nonzeros = engine.nonzeros(); }, *workspace.engine);
+  result.engine = holdings(workspace);
+  if (condensation && !shared) result.condensing = condensation->counters;
+  if (result.engine.body_solves > 0)
+    result.body_solves = result.engine.body_solves - (shared ? solved_before : result.condensing.backsolves);
+  const auto errors = check_accuracy(problem->model, problem->slots, method, result.trajectory);
+  name_loose_body(problem->model, result.trajectory);
+  if (has_tangent(result.trajectory)) {
+    if (result.trajectory.counters.newton > 0)  // otherwise nothing was factorised
+      result.condition_estimate =
+          std::visit([](auto& engine) { return engine.condition_estimate(); }, *workspace.engine);
+    differentiate_case(workspace, derivatives, result);
+    result.sensitivity_body_solves = holdings(workspace).body_solves - result.engine.body_solves;
+  }
+  result.steps = gather_steps(result, errors);
+  result.objectives = objective_values(problem->model, problem->slots, result.trajectory);
+  refuse_overflow(result);
+  return result;
+}
+
+}  // namespace stickslip

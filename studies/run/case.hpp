@@ -1,0 +1,83 @@
+/// One case: a scene run through one method, with its derivatives and the method-blind measures of what came out.
+#pragma once
+
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sensitivity/adjoint.hpp"
+#include "sensitivity/one_sided.hpp"
+#include "studies/run/metrics.hpp"
+
+namespace stickslip {
+
+/// Model and slots of one scene: shared, immutable, by all methods that run on it.
+struct Problem {
+  Model model;
+  Slots<double> slots;
+  Seconds seconds;  ///< `setup`: to make them, but for the contact search
+  explicit Problem(const Scene& scene);
+};
+
+/// A step that the scene asked for, gathered from its sub-steps.
+struct StepResult {
+  const Increment<double>* increment;  ///< the last of its sub-steps
+  int newton = 0, augmentations = 0;
+  std::vector<IterationRecord> history;
+  KktError kkt;
+  Margins margins;
+  Vector<double> responses;
+  std::optional<SchemeRecord> scheme;  ///< of the increment; only where the scheme iterates
+  Matrix<double> sensitivities;        ///< responses x parameters; empty where there are none
+  bool differentiable = true;          ///< both one-sided derivatives agree
+  Matrix<double> backward, forward;    ///< one-sided sensitivities, where they are known; else empty
+  /// Whether the one-sided derivatives of a response by a parameter differ by more than their rounding, or than their
+  /// scheme is off by (or are no numbers). pre: there are some.
+  bool has_kink(const Scene& scene, const Method& method, std::size_t response, std::size_t parameter) const;
+};
+
+struct CaseResult {
+  std::shared_ptr<const Problem> problem;
+  Method method;
+  Trajectory<double> trajectory;
+  Gradients gradients;
+  std::optional<OneSided> one_sided;  ///< where a point was about to change state
+  std::vector<StepResult> steps;
+  Vector<double> objectives;  ///< their values
+  double condition_estimate = 0;
+  long nonzeros = 0;
+  EngineHoldings engine;             ///< at the end of the solution, before its derivatives
+  Counters condensing;               ///< of trajectory.counters, what made the condensation
+  long body_solves = 0;              ///< right-hand sides solved with the bodies' factor, of the solution
+  long sensitivity_body_solves = 0;  ///< and of its derivatives
+  double one_sided_seconds = 0;      ///< of gradients.seconds, for one_sided
+  Status status() const;  ///< of the trajectory, or of the derivatives where only they failed; both by what came out
+  std::string message() const;
+};
+
+/// The condensation that a run with these options shares with others on the same numbers; null where it takes none. It
+/// refers to the problem, which must outlive it.
+std::shared_ptr<Condensation<double>> condense(const Problem& problem, const RunOptions& options);
+
+/// Runs a method. `condensation` may hold one of the same problem and is filled otherwise (see Workspace).
+CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method, const RunOptions& options,
+                    std::shared_ptr<Condensation<double>>& condensation);
+
+/// result.json (docs/results.md). `scene_text`: what the hash is of.
+nlohmann::json result_json(const CaseResult& result, const std::string& scene_text);
+/// Parts of it that a study's row has too.
+nlohmann::json cost_json(const CaseResult& result);
+nlohmann::json steps_json(const CaseResult& result);
+/// {objective: {"value", "gradient": {parameter: derivative}}}.
+nlohmann::json objectives_json(const CaseResult& result);
+/// Penalty or scale of the contact points as used at the end (`auto` resolved, adaption included): smallest and
+/// largest, absolute (force per length cubed) and as multiples of the local nodal stiffness.
+nlohmann::json regularisation_json(const CaseResult& result);
+nlohmann::json size_json(const CaseResult& result);
+nlohmann::json kkt_json(const KktError& error);
+/// Contact points of the last step by contact: position, arc length, tractions, gap, slip, state.
+nlohmann::json interface_json(const CaseResult& result);
+
+}  // namespace stickslip

@@ -1,0 +1,277 @@
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/model/response.hpp"
+#include "methods/regularisation.hpp"
+#include "studies/input/method_options.hpp"
+#include "studies/io/json_document.hpp"
+#include "studies/io/provenance.hpp"
+#include "studies/run/case.hpp"
+#include "studies/run/contact_points.hpp"
+#include "studies/run/ledger.hpp"
+#include "studies/run/warnings.hpp"
+#include "studies/version.hpp"
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+
+/// JSON has no infinity.
+json finite(double x) { return std::isfinite(x) ? json(x) : json(nullptr); }
+
+json history_json(const std::vector<IterationRecord>& history) {
+  json out = json::array();
+  for (const auto& r : history)
+    out.push_back({{"residual", finite(r.residual)},
+                   {"equilibrium", finite(r.equilibrium)},
+                   {"normal", finite(r.normal)},
+                   {"tangential", finite(r.tangential)},
+                   {"open", r.open},
+                   {"stick", r.stick},
+                   {"slip", r.slip},
+                   {"changed", r.changed},
+                   {"step_length", r.step_length},
+                   {"augmentation", r.augmentation}});
+  return out;
+}
+
+/// {response: {parameter: [backward, forward]}} of all; null where a side has no derivative.
+json one_sided_json(const StepResult& step, const Scene& scene) {
+  json out = json::object();
+  for (std::size_t i = 0; step.backward.size() && i < scene.responses.size(); ++i)
+    for (std::size_t j = 0; j < scene.parameters.size(); ++j)
+      out[scene.responses[i].name][scene.parameters[j].name] = {finite(step.backward(i, j)),
+                                                                finite(step.forward(i, j))};
+  return out;
+}
+
+json scheme_json(const SchemeRecord& record) {
+  json out = {{"passes", record.passes}, {"oversize", record.oversize}};
+  if (record.contraction > 0) out["contraction"] = finite(record.contraction);
+  return out;
+}
+
+}  // namespace
+
+json kkt_json(const KktError& e) {
+  return {{"equilibrium", finite(e.equilibrium)},
+          {"gap", finite(e.gap)},
+          {"complementarity", finite(e.complementarity)},
+          {"cone", finite(e.cone)},
+          {"stick", finite(e.stick)},
+          {"slip_direction", finite(e.slip_direction)}};
+}
+
+json size_json(const CaseResult& result) {
+  const auto& model = result.problem->model;
+  const bool unknown = std::holds_alternative<MonolithicAL>(result.method);
+  return {{"displacements", model.free_dofs.size()},
+          {"multipliers", unknown ? model.multiplier_count : 0},
+          {"nonzeros", result.nonzeros},
+          {"contact_points", model.points.size()},
+          {"reduced_unknowns", result.trajectory.reduced_unknowns},
+          {"engine", result.trajectory.engine}};
+}
+
+json cost_json(const CaseResult& result) {
+  Counters counts = result.trajectory.counters;
+  counts += result.gradients.counters;
+  const auto& seconds = result.trajectory.seconds;
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return {{"counts",
+           {{"assemblies", counts.assemblies},
+            {"factorizations", counts.factorizations},
+            {"analyses", counts.analyses},
+            {"backsolves", counts.backsolves},
+            {"sensitivity_backsolves", counts.sensitivity_backsolves},
+            {"sensitivity_factorizations", counts.sensitivity_factorizations},
+            {"newton", counts.newton},
+            {"augmentations", counts.augmentations},
+            {"cutbacks", counts.cutbacks}}},
+          {"seconds",
+           {{"total", seconds.total + result.gradients.seconds},
+            {"setup", seconds.setup + result.problem->seconds.setup},
+            {"assembly", seconds.assembly},
+            {"factorization", seconds.factorization},
+            {"backsolve", seconds.backsolve},
+            {"contact_search", result.problem->seconds.contact_search},
+            {"sensitivity", result.gradients.seconds},
+            {"output", 0.0}}},
+          {"peak_memory_mb", usage.ru_maxrss / 1024.0},
+          {"condition_estimate", finite(result.condition_estimate)}};
+}
+
+json objectives_json(const CaseResult& result) {
+  const auto& scene = result.problem->model.scene;
+  json out = json::object();
+  for (std::size_t i = 0; i < scene.objectives.size(); ++i) {
+    json& entry = out[scene.objectives[i].name];
+    entry["value"] = finite(result.objectives[i]);
+    for (std::size_t j = 0; result.gradients.of_objectives.size() && j < scene.parameters.size(); ++j)
+      entry["gradient"][scene.parameters[j].name] = finite(result.gradients.of_objectives(i, j));
+  }
+  return out;
+}
+
+/// {contact: states and forces} of a state.
+json contacts_json(const Problem& problem, const State<double>& state) {
+  json contacts = json::object();
+  const auto summaries = summarise(problem.model, problem.slots, state);
+  for (std::size_t c = 0; c < summaries.size(); ++c)
+    contacts[problem.model.scene.contacts[c].name] = {{"open", summaries[c].open},
+                                                      {"stick", summaries[c].stick},
+                                                      {"slip", summaries[c].slip},
+                                                      {"penetration", finite(summaries[c].penetration)},
+                                                      {"normal_force", finite(summaries[c].normal_force)},
+                                                      {"tangential_force", summaries[c].tangential_force}};
+  return contacts;
+}
+
+/// Solutions that were found and not taken: of each its time, contacts and responses.
+json solutions_json(const CaseResult& result) {
+  const auto& [model, slots, unused] = *result.problem;
+  json solutions = json::array();
+  for (const auto& increment : result.trajectory.increments)
+    for (const auto& other : increment.others) {
+      json responses = json::object();
+      const auto values = evaluate_responses(model, slots, other, increment.time);
+      for (std::size_t i = 0; i < model.scene.responses.size(); ++i)
+        responses[model.scene.responses[i].name] = finite(values[i]);
+      solutions.push_back(
+          {{"time", increment.time}, {"contacts", contacts_json(*result.problem, other)}, {"responses", responses}});
+    }
+  return solutions;
+}
+
+json steps_json(const CaseResult& result) {
+  const auto& scene = result.problem->model.scene;
+  json steps = json::array();
+  for (const auto& step : result.steps) {
+    json responses = json::object(), sensitivities = json::object();
+    for (std::size_t i = 0; i < scene.responses.size(); ++i) {
+      responses[scene.responses[i].name] = finite(step.responses[i]);
+      for (std::size_t j = 0; step.sensitivities.size() && j < scene.parameters.size(); ++j)
+        sensitivities[scene.responses[i].name][scene.parameters[j].name] = finite(step.sensitivities(i, j));
+    }
+    json entry = {{"time", step.increment->time},
+                  {"status", name_of(step.increment->status)},
+                  {"newton", step.newton},
+                  {"augmentations", step.augmentations},
+                  {"cutbacks", step.increment->cutbacks},
+                  {"history", history_json(step.history)},
+                  {"contacts", contacts_json(*result.problem, step.increment->state)},
+                  {"kkt", kkt_json(step.kkt)},
+                  {"margins", {{"open", finite(step.margins.open)}, {"slip", finite(step.margins.slip)}}},
+                  {"responses", responses}};
+    if (!scene.parameters.empty()) {
+      if (scene.sensitivity_mode == SensitivityMode::direct) entry["sensitivities"] = sensitivities;
+      entry["differentiable"] = step.differentiable;
+      if (!step.differentiable) entry["one_sided"] = one_sided_json(step, scene);
+    }
+    if (step.increment->contraction > 0) entry["contraction"] = step.increment->contraction;
+    if (step.scheme) entry["sensitivity_scheme"] = scheme_json(*step.scheme);
+    if (!step.increment->message.empty()) entry["message"] = step.increment->message;
+    steps.push_back(std::move(entry));
+  }
+  return steps;
+}
+
+json regularisation_json(const CaseResult& result) {
+  const auto& slots = result.problem->slots;
+  const auto initial = std::visit([&](const auto& m) { return initial_regularisation(slots, m); }, result.method);
+  const auto last =
+      result.trajectory.increments.empty() ? std::vector<double>{} : result.trajectory.increments.back().rho_factor;
+  const auto used = adapted(initial, last);
+  double low = 0, high = 0, low_multiple = 0, high_multiple = 0;
+  for (std::size_t p = 0; p < used.size(); ++p) {
+    const double rho = used[p].normal, multiple = rho * slots.geometry[p].area / slots.stiffness[p];
+    low = p == 0 ? rho : std::min(low, rho);
+    high = std::max(high, rho);
+    low_multiple = p == 0 ? multiple : std::min(low_multiple, multiple);
+    high_multiple = std::max(high_multiple, multiple);
+  }
+  return {{"absolute", {{"min", low}, {"max", high}}}, {"multiple", {{"min", low_multiple}, {"max", high_multiple}}}};
+}
+
+std::vector<double> arc_of(const Problem& problem, int contact) {
+  std::vector<double> arc;
+  const ContactPoint* last = nullptr;
+  for (const auto& point : problem.model.points) {
+    if (point.contact != contact) continue;
+    const auto& x = problem.slots.points;
+    arc.push_back(last ? arc.back() + (x.col(point.nodes[0]) - x.col(last->nodes[0])).norm() : 0);
+    last = &point;
+  }
+  return arc;
+}
+
+const char* state_name(const ContactPoint& point, ContactState state) {
+  if (state == ContactState::open) return "open";
+  if (point.tangents == 0) return "closed";
+  return state == ContactState::stick ? "stick" : "slip";
+}
+
+json interface_json(const CaseResult& result) {
+  json contacts = json::object();
+  if (result.steps.empty()) return contacts;
+  const auto& [model, slots, unused] = *result.problem;
+  const auto& state = result.steps.back().increment->state;
+  for (std::size_t c = 0; c < model.scene.contacts.size(); ++c) {
+    const json arc = arc_of(*result.problem, static_cast<int>(c));
+    json x = json::array(), y = json::array(), area = json::array(), gap = json::array(), slip = json::array(),
+         normal = json::array(), tangential = json::array(), states = json::array();
+    for (std::size_t p = 0; p < model.points.size(); ++p) {
+      const auto& point = model.points[p];
+      if (point.contact != static_cast<int>(c)) continue;
+      x.push_back(slots.points(0, point.nodes[0]));
+      y.push_back(slots.points(1, point.nodes[0]));
+      area.push_back(slots.geometry[p].area);
+      gap.push_back(finite(state.contact.gap[p]));
+      normal.push_back(finite(state.contact.traction[point.multiplier]));
+      const bool plane = point.tangents == 1;  // one component keeps its sign; two are shown by their size
+      const auto t = state.contact.traction.segment(point.multiplier + 1, point.tangents);
+      const auto s = state.contact.placement.segment(tangential_offset(model, static_cast<int>(p)), point.tangents);
+      tangential.push_back(finite(plane ? t[0] : t.norm()));
+      slip.push_back(finite(plane ? s[0] : s.norm()));
+      states.push_back(state_name(point, state.contact.state[p]));
+    }
+    contacts[model.scene.contacts[c].name] = {
+        {"x", x},         {"y", y},       {"arc", arc},       {"area", area},
+        {"gap", gap},     {"slip", slip}, {"normal", normal}, {"tangential", tangential},
+        {"state", states}};
+  }
+  return contacts;
+}
+
+json result_json(const CaseResult& result, const std::string& scene_text) {
+  const auto& model = result.problem->model;
+  const auto& effects = model.effects;
+  json out;
+  out["stickslip"] = version::number;
+  out["scene"] = {{"title", model.scene.title}, {"hash", fingerprint(scene_text)}};
+  out["method"] = to_json(result.method);
+  out["regularisation"] = regularisation_json(result);
+  out["status"] = name_of(result.status());
+  out["message"] = result.message();
+  out["effects"] = {{"friction", effects.friction},
+                    {"finite_strain", model.scene.finite_strain},
+                    {"plasticity", false},
+                    {"smoothing", false},
+                    {"sensitivity", effects.sensitivity}};
+  out["ledger"] = ledger_json(ledger(result));
+  out["warnings"] = warnings_json(result);
+  out["size"] = size_json(result);
+  out["steps"] = steps_json(result);
+  if (json solutions = solutions_json(result); !solutions.empty()) out["solutions"] = std::move(solutions);
+  if (!model.scene.objectives.empty()) out["objectives"] = objectives_json(result);
+  out["cost"] = cost_json(result);
+  out["provenance"] = provenance(1);
+  return out;
+}
+
+}  // namespace stickslip

@@ -1,0 +1,18 @@
+/// What files say of a contact's points.
+#pragma once
+
+#include <vector>
+
+#include "studies/run/case.hpp"
+
+namespace stickslip {
+
+/// Length along the points of a contact, in their order, from the first.
+std::vector<double> arc_of(const Problem& problem, int contact);
+
+/// "open", "stick" or "slip"; "closed" of a frictionless point that touches, which neither holds nor rubs.
+const char* state_name(const ContactPoint& point, ContactState state);
+/// 0 open, 1 stick, 2 slip.
+inline int state_code(ContactState state) { return is_slipping(state) ? 2 : static_cast<int>(state); }
+
+}  // namespace stickslip

@@ -1,0 +1,129 @@
+#include "studies/run/explain.hpp"
+
+#include <fmt/core.h>
+
+#include <nlohmann/json.hpp>
+
+#include "methods/engine_choice.hpp"
+#include "studies/input/method_options.hpp"
+#include "studies/io/printing.hpp"
+#include "studies/run/ledger_forecast.hpp"
+
+namespace stickslip {
+namespace {
+
+const char* shape_name(ElementShape shape) {
+  switch (shape) {
+    case ElementShape::point:
+      return "springs";
+    case ElementShape::bar2:
+      return "bars";
+    case ElementShape::tri3:
+      return "T3 triangles";
+    case ElementShape::quad4:
+      return "Q4 quadrilaterals";
+    case ElementShape::tri6:
+      return "T6 triangles";
+    case ElementShape::quad8:
+      return "Q8 quadrilaterals";
+  }
+  return "";
+}
+
+const char* space_name(Space space) {
+  switch (space) {
+    case Space::plane_strain:
+      return "plane strain";
+    case Space::plane_stress:
+      return "plane stress";
+    case Space::axisymmetric:
+      return "axisymmetric (x is the radius, y the axis, all forces are of the full revolution)";
+    case Space::solid:
+      return "space (3D)";
+  }
+  return "";
+}
+
+template <class List>
+std::string count(const List& list, const std::string& noun) {
+  return counted(static_cast<long>(list.size()), noun);
+}
+
+std::string law_in_words(const FrictionLaw<Number>& law) {
+  if (!law.coefficient) return fmt::format("Tresca friction {}", law.limit->value);
+  const std::string coulomb = fmt::format("Coulomb friction {}", law.coefficient->value);
+  return law.limit ? coulomb + fmt::format(", limited to {}", law.limit->value) : coulomb;
+}
+
+std::string contact_lines(const Model& model) {
+  std::string text;
+  for (std::size_t c = 0; c < model.scene.contacts.size(); ++c) {
+    const auto& contact = model.scene.contacts[c];
+    int points = 0;
+    for (const auto& point : model.points) points += point.contact == static_cast<int>(c);
+    const std::size_t slaves = model.side(contact.slave).nodes.size();
+    text += fmt::format("  {}: {} against {}, {}", contact.name, contact.slave, contact.master,
+                        counted(points, "contact point"));
+    if (contact.segment) text += " (segment-integrated)";
+    if (points < static_cast<int>(slaves)) text += fmt::format(" ({} slave nodes face no master)", slaves - points);
+    text += contact.friction ? ", " + law_in_words(*contact.friction) + "\n" : ", frictionless\n";
+  }
+  return text.empty() ? "  none\n" : text;
+}
+
+}  // namespace
+
+std::string explain(const Input& input, const Problem& problem) {
+  const auto& model = problem.model;
+  const auto& scene = model.scene;
+  const auto& effects = model.effects;
+  std::string text = printable(scene.title.empty() ? input.file : scene.title) + "\n";
+  text += fmt::format("\nspace: {}, {}\nbodies:\n", space_name(scene.space),
+                      scene.finite_strain ? "finite strain: everything is where it is now"
+                                          : "small strain: linear strains, contact geometry of the start");
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const auto& mesh = model.bodies[b].mesh;
+    text += fmt::format("  {}: {} nodes, {} {}{}\n", scene.bodies[b].name, mesh.node_count, mesh.element_count(),
+                        shape_name(mesh.shape),
+                        has_mean_dilatation(model.bodies[b].kinematics) ? " with mean dilatation" : "");
+  }
+  text += "contacts (node to segment):\n" + contact_lines(model);
+  text += fmt::format("driving: {}, {}, {} to t = {}\n", count(scene.supports, "support"), count(scene.loads, "load"),
+                      count(model.times, "step"), model.times.empty() ? 0 : model.times.back());
+  const bool monolithic = std::holds_alternative<MonolithicAL>(input.method);
+  text += fmt::format("unknowns: {} displacements", model.free_dofs.size());
+  text +=
+      monolithic ? fmt::format(", {} multipliers\n", model.multiplier_count) : ", no multipliers among the unknowns\n";
+  text += fmt::format("method: {}\n", to_json(input.method).dump());
+  text += condenses(model, input.method, input.linear_algebra.engine)
+              ? fmt::format("linear algebra: bodies condensed once to {} contact dofs, Newton on a dense system\n",
+                            model.contact_nodes.size() * model.dimension)
+          : effects.linear_bulk
+              ? "linear algebra: one sparse factorisation an iteration, the bodies' part assembled once\n"
+              : "linear algebra: one sparse factorisation an iteration, the bodies' part assembled anew\n";
+  const EnginePrice price = predict_price(model, input.method);
+  text += fmt::format("  predicted: {:.2g} Gflop condensed, {:.2g} Gflop sparse\n", 1e-9 * price.condensed,
+                      1e-9 * price.sparse);
+  text +=
+      "\nwhat each effect takes (~ about, > and more, ? hangs on the path):\n" + ledger_table(forecast(input, problem));
+  text += "\nsimulated:\n";
+  if (effects.contact) text += "  unilateral contact\n";
+  if (effects.friction) text += "  friction, path dependent (slip is remembered)\n";
+  if (!effects.linear_bulk) text += "  finite strain\n";
+  if (effects.current_geometry) text += "  large sliding on rigid obstacles, normals that turn\n";
+  if (effects.deformable_master) text += "  contact between deformable bodies\n";
+  const bool adjoint = scene.sensitivity_mode == SensitivityMode::adjoint;
+  if (effects.sensitivity)
+    text += fmt::format("  derivatives of {} with respect to {}, {}\n",
+                        adjoint ? count(scene.objectives, "objective") : count(scene.responses, "response"),
+                        count(scene.parameters, "parameter"), adjoint ? "adjoint" : "direct");
+  text += "left out (no unknowns, no storage, no code path):\n";
+  if (!effects.contact) text += "  contact: no slave node faces a master\n";
+  if (!effects.friction) text += "  friction: no contact has any\n";
+  if (!effects.sensitivity) text += "  derivatives: the scene names no parameters\n";
+  text += scene.finite_strain ? "  plasticity, smoothing, inertia\n"
+                              : "  large displacements and sliding, plasticity, smoothing, inertia\n";
+  return text;
+}
+
+}  // namespace stickslip

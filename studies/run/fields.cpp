@@ -1,0 +1,292 @@
+#include "studies/run/fields.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "studies/input/response_kinds.hpp"
+#include "studies/io/vtu.hpp"
+#include "studies/run/contact_points.hpp"
+#include "studies/run/strains.hpp"
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+
+/// Stress of a strain, xx yy zz xy; Cauchy's at finite strain.
+template <int rows>
+std::array<double, 4> stress_of(const Model& model, const Law<double>& law, const Mat<double, rows>& H) {
+  if constexpr (rows == 2)
+    if (const auto* finite = std::get_if<NeoHookeanLaw<double>>(&law)) {
+      const Mat<double, 2> F = Mat<double, 2>::Identity() + H;
+      const Mat<double, 2> s =
+          finite->template stress<double, 2>(H) * F.transpose() / (F(0, 0) * F(1, 1) - F(0, 1) * F(1, 0));
+      return {s(0, 0), s(1, 1), finite->stress_across(H), s(0, 1)};
+    }
+  const auto& linear = std::get<LinearElasticLaw<double>>(law);
+  const Mat<double, rows> s = linear.template stress<double, rows>(H);
+  double zz = model.scene.space == Space::plane_strain ? linear.lame * H.trace() : 0;
+  if constexpr (rows == 3) zz = s(2, 2);
+  return {s(0, 0), s(1, 1), zz, s(0, 1)};
+}
+
+/// Mean stress of each element, xx yy zz xy yz xz; zero for lumped elements. Plane strain: zz = nu (xx + yy);
+/// axisymmetric: zz is the hoop stress.
+Matrix<double> element_stress(const Problem& problem, const State<double>& state) {
+  const auto& model = problem.model;
+  int count = 0;
+  for (const auto& body : model.bodies) count += body.mesh.element_count();
+  Matrix<double> stress = Matrix<double>::Zero(6, count);
+  int first = 0;  // column of the body's first element
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const auto& law = problem.slots.laws[b];
+    Vector<double> volumes = Vector<double>::Zero(model.bodies[b].mesh.element_count());
+    for_each_strain(problem, state.displacement, b, [&](int e, const auto& H, double volume) {
+      constexpr int rows = std::decay_t<decltype(H)>::RowsAtCompileTime;
+      const auto [xx, yy, zz, xy] = stress_of<rows>(model, law, H);
+      Eigen::Matrix<double, 6, 1> components;
+      components << xx, yy, zz, xy, 0, 0;
+      stress.col(first + e) += volume * components;
+      volumes[e] += volume;
+    });
+    for (Eigen::Index e = 0; e < volumes.size(); ++e)
+      if (volumes[e] > 0) stress.col(first + e) /= volumes[e];
+    first += static_cast<int>(volumes.size());
+  }
+  return stress;
+}
+
+double von_mises(const Eigen::Ref<const Eigen::Matrix<double, 6, 1>>& stress) {
+  const double size = stress.cwiseAbs().maxCoeff();
+  if (size == 0) return 0;
+  const Eigen::Matrix<double, 6, 1> s = stress / size;  // whose squares do not overflow
+  const double normal = std::pow(s[0] - s[1], 2) + std::pow(s[1] - s[2], 2) + std::pow(s[2] - s[0], 2);
+  return size * std::sqrt(0.5 * normal + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+}
+
+Matrix<double> nodal(const Model& model, const Eigen::Ref<const Vector<double>>& dofs) {
+  return Eigen::Map<const Matrix<double>>(dofs.data(), model.dimension, model.node_count);
+}
+
+/// Fields of contact over the nodes, of one contact or of several together.
+struct ContactFields {
+  Matrix<double> state, pressure, traction, gap;
+
+  explicit ContactFields(const Model& model)
+      : state(Matrix<double>::Constant(1, model.node_count, -1)),
+        pressure(Matrix<double>::Zero(1, model.node_count)),
+        traction(Matrix<double>::Zero(model.dimension, model.node_count)),
+        gap(pressure) {}
+
+  /// Adds what contact point p does to its slave node. Of several: the state that holds most, the sum of the pressures
+  /// and of the tractions, the smallest gap.
+  void add(const Problem& problem, const State<double>& of, int p) {
+    const auto& point = problem.model.points[p];
+    const int node = point.nodes[0];
+    const auto hold = [](double code) { return code == 1 ? 2 : code == 2 ? 1 : code; };  // open < slip < stick
+    const double code = state_code(of.contact.state[p]);
+    gap(0, node) = state(0, node) < 0 ? of.contact.gap[p] : -larger(-gap(0, node), -of.contact.gap[p]);
+    if (hold(code) > hold(state(0, node))) state(0, node) = code;
+    pressure(0, node) -= of.contact.traction[point.multiplier];
+    traction.col(node) += traction_vector(problem, of, p);
+  }
+
+  void append_to(VtuData& data, const std::string& ending) const {
+    data.point_fields.push_back({"contact_state" + ending, state});
+    data.point_fields.push_back({"contact_pressure" + ending, pressure});
+    data.point_fields.push_back({"contact_traction" + ending, traction});
+    data.point_fields.push_back({"gap" + ending, gap});
+  }
+};
+
+/// Whether some node is a slave in more than one contact.
+bool contacts_share_nodes(const Model& model) {
+  std::vector<int> contact(model.node_count, -1);
+  return std::any_of(model.points.begin(), model.points.end(), [&](const ContactPoint& point) {
+    int& first = contact[point.nodes[0]];
+    if (first < 0) first = point.contact;
+    return first != point.contact;
+  });
+}
+
+void append_contact_fields(VtuData& data, const Problem& problem, const State<double>& state) {
+  const auto& model = problem.model;
+  const int count = static_cast<int>(model.points.size());
+  ContactFields together(model);
+  for (int p = 0; p < count; ++p) together.add(problem, state, p);
+  together.append_to(data, "");
+  if (!contacts_share_nodes(model)) return;
+  for (std::size_t c = 0; c < model.scene.contacts.size(); ++c) {
+    ContactFields alone(model);
+    for (int p = 0; p < count; ++p)
+      if (model.points[p].contact == static_cast<int>(c)) alone.add(problem, state, p);
+    alone.append_to(data, "_" + model.scene.contacts[c].name);
+  }
+}
+
+VtuData fields_of(const CaseResult& result, const StepResult& step, bool last) {
+  const auto& problem = *result.problem;
+  const auto& model = problem.model;
+  VtuData data;
+  data.time = step.increment->time;
+  data.points.resize(model.dimension, 0);
+  Matrix<double> body_index(1, 0);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const auto& body = model.bodies[b];
+    append_mesh(data, body.mesh, problem.slots.points.middleCols(body.first_node, body.mesh.node_count));
+    body_index.conservativeResize(1, static_cast<Eigen::Index>(data.cells.size()));
+    body_index.rightCols(body.mesh.element_count()).setConstant(static_cast<double>(b));
+  }
+  const auto& state = step.increment->state;
+  data.point_fields.push_back({"displacement", nodal(model, state.displacement)});
+  if (model.effects.contact) append_contact_fields(data, problem, state);
+  const auto& derivative = result.gradients.last_displacement;
+  if (last && derivative.size() > 0)
+    for (std::size_t j = 0; j < model.scene.parameters.size(); ++j)
+      data.point_fields.push_back(
+          {"d_displacement_d_" + model.scene.parameters[j].name, nodal(model, derivative.col(j))});
+  data.cell_fields.push_back({"body", body_index});
+  const Matrix<double> stress = element_stress(problem, state);
+  Matrix<double> mises(1, stress.cols());
+  for (Eigen::Index e = 0; e < stress.cols(); ++e) mises(0, e) = von_mises(stress.col(e));
+  data.cell_fields.push_back({"stress", stress});
+  data.cell_fields.push_back({"von_mises", mises});
+  return data;
+}
+
+json point_json(const Eigen::Ref<const Vector<double>>& x) {
+  return json(std::vector<double>(x.data(), x.data() + x.size()));
+}
+
+json numbers_json(const std::vector<Number>& numbers) {
+  json out = json::array();
+  for (const auto& n : numbers) out.push_back(n.value);
+  return out;
+}
+
+/// Every `every`-th step and the last one; 0: the last alone.
+std::vector<std::size_t> steps_with_fields(const CaseResult& result, int every) {
+  std::vector<std::size_t> steps;
+  for (std::size_t n = 0; n < result.steps.size(); ++n)
+    if (n + 1 == result.steps.size() || (every > 0 && (n + 1) % every == 0)) steps.push_back(n);
+  return steps;
+}
+
+std::string field_file(std::size_t step) { return fmt::format("fields_{:04}.vtu", step + 1); }
+
+/// The shape at the start, and what it moved by until `time`: a displacement, and where it rotates an angle in degrees
+/// about a center.
+json obstacle_json(const Obstacle& obstacle, double time, const Numbers<double>& numbers) {
+  json shape;
+  if (const auto* plane = std::get_if<Plane>(&obstacle.shape)) {
+    shape["plane"] = {{"point", numbers_json(plane->point)}, {"normal", numbers_json(plane->normal)}};
+  } else if (const auto* circle = std::get_if<Circle>(&obstacle.shape)) {
+    shape["circle"] = {{"center", {circle->center[0].value, circle->center[1].value}},
+                       {"radius", circle->radius.value},
+                       {"inside", circle->inside}};
+  } else if (const auto* polyline = std::get_if<Polyline>(&obstacle.shape)) {
+    json vertices = json::array();
+    for (const auto& x : polyline->points) vertices.push_back({x[0].value, x[1].value});
+    if (polyline->closed) vertices.push_back(vertices.front());
+    shape["polyline"] = {{"points", vertices}};
+  }
+  json moved = {{"by", {0.0, 0.0}}};
+  for (const auto& [axis, table] : obstacle.move)
+    if (axis < 'z') moved["by"][axis == 'x' ? 0 : 1] = evaluate(table, time, numbers);
+  if (obstacle.rotate) {
+    moved["degrees"] = evaluate(obstacle.rotate->angle, time, numbers);
+    moved["center"] = numbers_json(obstacle.rotate->center);
+  }
+  if (!obstacle.move.empty() || obstacle.rotate) shape.begin().value()["moved"] = moved;
+  return shape;
+}
+
+/// Nodes of all bodies, what moved and stresses them, and their elements by nodes.
+json bodies_json(const Problem& problem, const State<double>& state) {
+  const auto& model = problem.model;
+  json points = json::array(), displacement = json::array(), elements = json::array(), bodies = json::array(),
+       mises = json::array(), names = json::array();
+  const Matrix<double> u = nodal(model, state.displacement), stress = element_stress(problem, state);
+  for (int node = 0; node < model.node_count; ++node) {
+    points.push_back(point_json(problem.slots.points.col(node)));
+    displacement.push_back(point_json(u.col(node)));
+  }
+  int column = 0;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    names.push_back(model.scene.bodies[b].name);
+    for (int e = 0; e < model.bodies[b].mesh.element_count(); ++e, ++column) {
+      elements.push_back(detail::element_nodes(model.bodies[b], e));
+      bodies.push_back(b);
+      mises.push_back(von_mises(stress.col(column)));
+    }
+  }
+  return {{"points", points}, {"displacement", displacement}, {"elements", elements},
+          {"bodies", bodies}, {"body_names", names},          {"von_mises", mises}};
+}
+
+/// Contact points where they have moved to, with their states and tractions.
+json contact_json(const Problem& problem, const State<double>& state) {
+  const auto& model = problem.model;
+  const Matrix<double> u = nodal(model, state.displacement);
+  json contact = json::array();
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    const auto& point = model.points[p];
+    const int node = point.nodes[0];
+    const auto t = state.contact.traction.segment(point.multiplier + 1, point.tangents);
+    contact.push_back({{"name", model.scene.contacts[point.contact].name},
+                       {"x", problem.slots.points(0, node) + u(0, node)},
+                       {"y", problem.slots.points(1, node) + u(1, node)},
+                       {"node", node},
+                       {"state", state_name(point, state.contact.state[p])},
+                       {"normal", state.contact.traction[point.multiplier]},
+                       {"tangential", point.tangents == 1 ? t[0] : t.norm()}});
+  }
+  return contact;
+}
+
+}  // namespace
+
+Vector<double> traction_vector(const Problem& problem, const State<double>& state, int p) {
+  const auto& point = problem.model.points[p];
+  const auto& geometry = geometry_in(state.contact, problem.slots, p);
+  Vector<double> t = -state.contact.traction[point.multiplier] * geometry.normal;
+  for (int a = 0; a < point.tangents; ++a)
+    t -= state.contact.traction[point.multiplier + 1 + a] * geometry.tangents.col(a);
+  return t;
+}
+
+void write_fields(const std::filesystem::path& directory, const CaseResult& result, int every) {
+  std::vector<PvdEntry> entries;
+  for (const std::size_t n : steps_with_fields(result, every)) {
+    const std::string file = field_file(n);
+    write_vtu(directory / file, fields_of(result, result.steps[n], n + 1 == result.steps.size()));
+    entries.push_back({result.steps[n].increment->time, file});
+  }
+  write_pvd(directory / "fields.pvd", entries);
+}
+
+std::vector<std::string> field_files(const CaseResult& result, int every) {
+  std::vector<std::string> files{"fields.pvd"};
+  for (const std::size_t n : steps_with_fields(result, every)) files.push_back(field_file(n));
+  return files;
+}
+
+json picture_json(const CaseResult& result) {
+  if (result.steps.empty()) return nullptr;
+  const auto& problem = *result.problem;
+  const auto& scene = problem.model.scene;
+  const auto& last = *result.steps.back().increment;
+  json picture = bodies_json(problem, last.state);
+  picture["contact"] = contact_json(problem, last.state);
+  picture["obstacles"] = json::array();
+  for (const auto& obstacle : scene.obstacles)
+    picture["obstacles"].push_back(obstacle_json(obstacle, last.time, problem.slots.numbers));
+  picture["responses"] = json::object();
+  for (const auto& response : scene.responses) picture["responses"][response.name] = name_of(response.kind);
+  return picture;
+}
+
+}  // namespace stickslip

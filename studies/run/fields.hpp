@@ -1,0 +1,32 @@
+/// Pictures of a case: the .vtu / .pvd that ParaView reads, and the picture.json that the report draws.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "studies/run/case.hpp"
+
+namespace stickslip {
+
+/// Writes DIR/fields_NNNN.vtu for every `every`-th step and the last one (0: the last alone), and DIR/fields.pvd.
+/// Point fields: displacement, contact_state (-1: no contact point, 0 open, 1 stick, 2 slip), contact_pressure,
+/// contact_traction (force per area on the slave), gap; at the last step d_displacement_d_NAME per parameter. Cell
+/// fields: body, and for continua stress (xx yy zz xy yz xz) and von_mises.
+/// A node that is a slave in several contacts has the state that holds most (stick, then slip, then open), the sum of
+/// the pressures and of the tractions, and the smallest gap; the four fields of each contact NAME alone then follow,
+/// contact_state_NAME and so on.
+void write_fields(const std::filesystem::path& directory, const CaseResult& result, int every);
+
+/// Names of the files that write_fields writes, in order.
+std::vector<std::string> field_files(const CaseResult& result, int every);
+
+/// Force per area on the slave at contact point p.
+Vector<double> traction_vector(const Problem& problem, const State<double>& state, int p);
+
+/// The last step as the report's picture: points, elements, displacement, von Mises stress, contact points, obstacles
+/// as at the start with what they moved by since, and the kinds of the responses by name.
+nlohmann::json picture_json(const CaseResult& result);
+
+}  // namespace stickslip

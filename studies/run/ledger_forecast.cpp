@@ -1,0 +1,303 @@
+#include "studies/run/ledger_forecast.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/algebra/reverse.hpp"
+#include "core/model/response.hpp"
+#include "core/model/storage.hpp"
+#include "methods/engine_choice.hpp"
+#include "sensitivity/differentiation.hpp"
+#include "studies/run/ledger_parts.hpp"
+
+namespace stickslip {
+namespace {
+
+constexpr double exactly = 1, not_known = 0;
+constexpr double not_apart = std::numeric_limits<double>::quiet_NaN();
+constexpr double number = sizeof(double);
+
+/// Counts that a forecast is made of.
+struct Size {
+  double dofs, contact_dofs, free, solved;  ///< displacements; `solved`: in the systems of the engine
+  double points, tangential, contacts;      ///< `contacts`: with a work of friction
+  double feet, present;                     ///< of the slip history; points that keep a geometry in each state
+  double states;                            ///< that the run keeps
+  double steps, parameters, blocks, responses, objectives;
+  double together;  ///< increments that are differentiated at once
+  bool condensed, unknown, unsymmetric, uzawa, truncated, follows;
+};
+
+Size size_of(const Input& input, const Model& model) {
+  Size n{};
+  n.condensed = condenses(model, input.method, input.linear_algebra.engine);
+  n.unknown = has_unknown_multipliers(input.method);
+  n.unsymmetric = detail::symmetry_of(model, n.unknown, cone_radius(input.method)) == Symmetry::general;
+  n.dofs = model.dof_count();
+  n.contact_dofs = static_cast<double>(model.contact_nodes.size()) * model.dimension;
+  n.free = static_cast<double>(model.free_dofs.size());
+  n.solved = solved_displacements(model, n.condensed);
+  n.points = static_cast<double>(model.points.size());
+  n.tangential = model.multiplier_count - n.points;
+  n.feet = model.placement_count - n.tangential;
+  n.present = model.effects.current_geometry ? n.points : 0;
+  n.contacts = model.effects.friction ? static_cast<double>(model.scene.contacts.size()) : 0;
+  n.steps = static_cast<double>(model.times.size());
+  n.states = n.steps + 1;
+  n.parameters = static_cast<double>(model.scene.parameters.size());
+  n.blocks = std::ceil(n.parameters / directions);
+  n.responses = static_cast<double>(model.scene.responses.size());
+  n.objectives = static_cast<double>(model.scene.objectives.size());
+  const auto* uzawa = std::get_if<UzawaAL>(&input.method);
+  n.uzawa = uzawa != nullptr;
+  n.truncated = uzawa && uzawa->sensitivity == UzawaAL::Sensitivity::truncated;
+  n.follows = !n.condensed && (!uzawa || uzawa->sensitivity == UzawaAL::Sensitivity::iterated);
+  n.together = std::min(n.steps, std::max(1.0, std::floor(columns_together / std::max(n.parameters, 1.0))));
+  return n;
+}
+
+/// Of present geometries that a state keeps, one weight each: a rigid master.
+template <class T>
+double geometry_bytes(const Size& n) {
+  return n.present * (sizeof(PointGeometry<T>) + sizeof(T));
+}
+
+double multipliers(const Size& n) { return n.unknown ? n.points + n.tangential : 0; }
+
+LedgerRow bodies_row(const Problem& problem, const Size& n, double tangent_entries) {
+  const auto& model = problem.model;
+  return {"bodies",
+          !model.bodies.empty(),
+          {{"displacements", n.free}},
+          {{"mesh", mesh_bytes(model)},
+           {"slots", static_cast<double>(slot_bytes(problem.slots).bodies)},
+           {"matrix", number * tangent_entries},
+           {"states", number * n.dofs * n.states}},
+          {{"elements", element_count(model)}},
+          not_apart};
+}
+
+/// `factor`: bytes of a sparse symmetric factor of the tangent.
+void add_contact_rows(const Problem& problem, const Size& n, const Amount& factor, Ledger& ledger) {
+  const auto& model = problem.model;
+  const auto& effects = model.effects;
+  const auto [nodes, bytes] = masters_of(model);
+  ledger.push_back(
+      {"contact",
+       effects.contact,
+       {{"normal", n.unknown ? n.points : 0}},
+       {{"points", point_bytes(model, problem.slots) - bytes},
+        {"states", ((sizeof(ContactState) + 2 * number) * n.points + geometry_bytes<double>(n)) * n.states},
+        {"multipliers", number * n.points * n.states}},
+       {{"points", n.points}, {"evaluations", 0, effects.contact ? not_known : exactly}},
+       not_apart});
+  const bool spares = n.unsymmetric && !n.condensed;
+  ledger.push_back({"friction",
+                    effects.friction,
+                    {{"tangential", n.unknown ? n.tangential : 0}},
+                    {{"history", number * (2 * n.tangential + n.feet + n.contacts) * n.states},
+                     {"multipliers", 2 * number * n.tangential * n.states},
+                     {"factor", spares ? factor.value : 0, spares ? factor.within : exactly}},
+                    {{"unsymmetric_factorizations", 0, n.unsymmetric ? not_known : exactly}},
+                    not_apart});
+  ledger.push_back(
+      {"deformable_masters", effects.deformable_master, {}, {{"weights", bytes}}, {{"nodes", nodes}}, not_apart});
+}
+
+/// Numbers of a dual state of one block, but for the branches.
+double state_numbers(const Size& n) { return n.dofs + 3 * n.points + 4 * n.tangential + n.feet + n.contacts; }
+
+/// Back-solves and evaluations of derivatives with `columns` right-hand sides an increment, that are `evaluated` times
+/// as many points. A penalty takes one solve; multipliers that are unknown up to two more, where rounding asks for
+/// them; a factor that follows the run is brought up to date by others; what Uzawa's schemes take hangs on the
+/// contraction.
+std::vector<Amount> derivative_counts(const Method& method, const Size& n, double columns, double evaluated) {
+  const bool uzawa = std::holds_alternative<UzawaAL>(method);
+  const double on = columns > 0 ? 1 : 0;
+  const double within = on == 0 ? exactly : uzawa || n.follows ? not_known : n.unknown ? 3 : exactly;
+  const double known = on == 0 || within == not_known ? 0 : n.steps;
+  return {{"backsolves", columns * known, within},
+          {"body_backsolves", 0, on > 0 && n.condensed ? not_known : exactly},
+          {"factorizations", 0, on > 0 ? not_known : exactly},
+          {"evaluations", evaluated * n.points * known, within}};
+}
+
+LedgerRow direct_row(const Input& input, const Problem& problem, const Size& n) {
+  const auto& scene = problem.model.scene;
+  constexpr double dual = sizeof(Direction);
+  const bool on = n.parameters > 0 && scene.sensitivity_mode == SensitivityMode::direct;
+  const double p = on ? n.parameters : 0, blocks = on ? n.blocks : 0;
+  const double together = n.follows ? 1 : n.together;
+  const double within = n.follows ? n.together : exactly;  // the rest of a run with ties is differentiated at its end
+  const double engine_rows = n.condensed ? n.contact_dofs : n.dofs;
+  const bool ties = std::any_of(scene.responses.begin(), scene.responses.end(), can_tie);
+  const double slots = static_cast<double>(slot_bytes<Direction>(problem.slots).all());
+  const double state = dual * state_numbers(n) + sizeof(ContactState) * n.points + geometry_bytes<Direction>(n);
+  const double solve = blocks * dual * n.dofs + number * p * (n.dofs + 2 * engine_rows);
+  return {"direct_sensitivity",
+          on,
+          {{"parameters", p}},
+          {{"slots", blocks * slots},
+           {"states", together * blocks * state, within},
+           {"solves", together * solve, within},
+           {"sweeps", 0, on && n.truncated ? not_known : exactly},
+           {"derivatives", number * p * ((ties ? 3 : 1) * n.steps * n.responses + n.dofs + n.objectives)}},
+          derivative_counts(input.method, n, p, 2 * blocks),
+          on ? not_apart : 0};
+}
+
+LedgerRow adjoint_row(const Input& input, const Problem& problem, const Size& n) {
+  const auto& model = problem.model;
+  const bool on = n.parameters > 0 && model.scene.sensitivity_mode == SensitivityMode::adjoint;
+  const double objectives = on ? n.objectives : 0;
+  const bool any = objectives > 0;
+  return {"adjoint_sensitivity",
+          on,
+          {{"objectives", objectives}},
+          {{"slots", any ? static_cast<double>(slot_bytes<Reverse>(problem.slots).all()) : 0},
+           {"tape", 0, any ? not_known : exactly},
+           {"adjoints", 0, any ? not_known : exactly},
+           {"sweeps", 0, any && n.truncated ? not_known : exactly},
+           {"derivatives", number * objectives * n.parameters}},
+          derivative_counts(input.method, n, objectives, 1),
+          on ? not_apart : 0};
+}
+
+LedgerRow search_row(const Size& n) {
+  const double within = n.parameters > 0 ? not_known : exactly;
+  return {"one_sided_search",
+          n.parameters > 0,
+          {},
+          {{"derivatives", 0, within}},
+          {{"backsolves", 0, within},
+           {"body_backsolves", 0, exactly},
+           {"factorizations", 0, within},
+           {"evaluations", 0, within}},
+          n.parameters > 0 ? not_apart : 0};
+}
+
+/// Factors of the engine that runs: of the bodies, and of its tangents; bytes.
+struct Factors {
+  double tangent_entries = 0;  ///< of the sparse matrix
+  double point_entries = 0;    ///< of the blocks of the contact points
+  Amount bodies{"bodies_factor"}, tangent{"factor"};
+};
+
+/// Factor that the bytes of a factor hold to, forecast as entries of CHOLMOD's analysis. Libraries store zeros where
+/// they join columns, indices, and room for pivots that move: measured 1.1 to 1.6 times the entries from 1000 rows on.
+/// In small matrices they join all they can, and LU stands in for LDL^T: up to 4.9 times.
+double of_library(double rows) {
+  constexpr double small = 250;
+  return rows < small ? 6 : 2.5;
+}
+
+Factors condensed_factors(const Model& model, const Size& n) {
+  Factors out;
+  const double rows = n.solved + multipliers(n);
+  // multipliers of open points are left out
+  const double within = n.solved > 0 ? std::pow(rows / n.solved, 2) : not_known;
+  out.tangent = {"factor", number * rows * rows, within};
+  if (n.free > n.solved) out.bodies = {"bodies_factor", number * bodies_factor(model).entries, of_library(n.free)};
+  return out;
+}
+
+Factors sparse_factors(const Model& model, const Size& n) {
+  Factors out;
+  const auto lists = tangent_rows(model, n.unknown);
+  const auto pattern = make_pattern(static_cast<int>(n.solved + multipliers(n)), lists);
+  out.tangent_entries = pattern->nonzeros();
+  for (int k = lists.count() - static_cast<int>(model.points.size()); k < lists.count(); ++k)
+    out.point_entries += std::pow(lists.start[k + 1] - lists.start[k], 2);
+  out.tangent = {"factor", number * predict_factor(pattern, 0).entries, of_library(pattern->size)};
+  return out;
+}
+
+LedgerRow condensed_row(const Size& n, const Factors& factors) {
+  LedgerRow row{"condensed_engine", n.condensed, {{"eliminated", 0}}, {}, {}, n.condensed ? not_apart : 0};
+  const double unknown = n.condensed ? not_known : exactly;
+  Amount matrix = n.condensed ? factors.tangent : Amount{}, factor = matrix, entries = matrix, stored = matrix;
+  matrix.name = "matrix", factor.name = "factor", entries.name = "matrix_entries", stored.name = "factor_entries";
+  entries.value = stored.value = matrix.value / number;
+  if (n.condensed) row.unknowns[0].value = n.free - n.solved;
+  row.memory = {{"condensed", n.condensed ? number * n.contact_dofs * n.contact_dofs : 0},
+                n.condensed ? factors.bodies : Amount{"bodies_factor"},
+                matrix,
+                factor,
+                {"iterations", 0, unknown}};
+  row.counts = {{"body_backsolves", 0, unknown},
+                entries,
+                stored,
+                {"analyses", factors.bodies.value > 0 ? 1.0 : 0.0},
+                {"factorizations", 0, unknown},
+                {"backsolves", 0, unknown},
+                {"iterations", 0, unknown},
+                {"augmentations", 0, n.uzawa ? unknown : exactly}};
+  return row;
+}
+
+LedgerRow sparse_row(const Size& n, const Factors& factors) {
+  const bool on = !n.condensed;
+  const double unknown = on ? not_known : exactly, rows = n.solved + multipliers(n);
+  const double integers = on ? factors.tangent_entries + rows + 1 + factors.point_entries : 0;
+  Amount factor = on ? factors.tangent : Amount{"factor"}, stored = factor;
+  stored.name = "factor_entries";
+  stored.value = (n.unsymmetric ? 2 : 1) * factor.value / number;
+  return {"sparse_engine",
+          on,
+          {},
+          {{"matrix", number * factors.tangent_entries + sizeof(int) * integers}, factor, {"iterations", 0, unknown}},
+          {{"matrix_entries", factors.tangent_entries},
+           stored,
+           {"analyses", on ? 1.0 : 0.0},
+           {"factorizations", 0, unknown},
+           {"backsolves", 0, unknown},
+           {"iterations", 0, unknown},
+           {"augmentations", 0, n.uzawa ? unknown : exactly}},
+          on ? not_apart : 0};
+}
+
+/// Steps whose fields are written.
+double field_steps(const OutputOptions& output, double steps) {
+  switch (output.fields) {
+    case OutputOptions::Fields::last:
+      return std::min(steps, 1.0);
+    case OutputOptions::Fields::all:
+      return steps;
+    case OutputOptions::Fields::every:
+      return std::ceil(steps / output.every);
+  }
+  return 0;
+}
+
+LedgerRow files_row(const Input& input, const Model& model, const Size& n) {
+  // Base 64 of doubles and of three integers an element: coordinates, displacement and four fields of contact a node,
+  // three fields an element, at the last step derivatives. Names and folds take a few kilobytes a file.
+  constexpr double base64 = 4.0 / 3, head = 3000, within = 2;
+  const double files = field_steps(input.output, n.steps);
+  const double a_node = 6 + (model.effects.contact ? 6 : 0), an_element = 8 + 6;
+  const double bytes =
+      files * (head + base64 * number * (a_node * model.node_count + an_element * element_count(model))) +
+      base64 * number * 3 * n.parameters * model.node_count;
+  return {"output", true, {}, {{"fields", bytes, within}, {"picture", 0}, {"trace", 0}}, {{"files", files + 1}},
+          not_apart};
+}
+
+}  // namespace
+
+Ledger forecast(const Input& input, const Problem& problem) {
+  const Model& model = problem.model;
+  const Size n = size_of(input, model);
+  const Factors factors = n.condensed ? condensed_factors(model, n) : sparse_factors(model, n);
+  Ledger ledger{bodies_row(problem, n, factors.tangent_entries)};
+  add_contact_rows(problem, n, factors.tangent, ledger);
+  ledger.push_back(direct_row(input, problem, n));
+  ledger.push_back(adjoint_row(input, problem, n));
+  ledger.push_back(search_row(n));
+  ledger.push_back(condensed_row(n, factors));
+  ledger.push_back(sparse_row(n, factors));
+  ledger.push_back(files_row(input, model, n));
+  return ledger;
+}
+
+}  // namespace stickslip

@@ -1,0 +1,292 @@
+#include "studies/run/warnings.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "studies/run/strains.hpp"
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+
+constexpr double degree = M_PI / 180;
+
+/// Poisson's ratio from which locking is looked for, and spurious pressure that is told.
+constexpr double nearly_incompressible = 0.45, most_spurious = 0.2;
+
+struct Deformation {
+  double strain = 0, rotation = 0;  ///< largest component; radians
+};
+
+/// Largest strain and rotation in the elements of a body.
+Deformation deformation_of(const Problem& problem, const Vector<double>& displacement, std::size_t b) {
+  Deformation largest;
+  for_each_strain(problem, displacement, b, [&](int, const auto& H, double) {
+    largest.strain = std::max(largest.strain, (H + H.transpose()).cwiseAbs().maxCoeff() / 2);
+    largest.rotation = std::max(largest.rotation, std::abs(H(1, 0) - H(0, 1)) / 2);
+  });
+  return largest;
+}
+
+void add_deformations(const CaseResult& result, std::vector<Warning>& warnings) {
+  if (result.problem->model.scene.finite_strain) return;
+  constexpr double most_strain = 0.05, most_rotation = 5 * degree;
+  const auto& model = result.problem->model;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    Deformation largest;
+    for (const auto& step : result.steps) {
+      const auto now = deformation_of(*result.problem, step.increment->state.displacement, b);
+      largest = {std::max(largest.strain, now.strain), std::max(largest.rotation, now.rotation)};
+    }
+    const std::string& name = model.scene.bodies[b].name;
+    constexpr const char* smaller = R"(apply less load or motion, or try "strain": "finite")";
+    if (largest.strain > most_strain)
+      warnings.push_back({WarningCode::large_strain, name, largest.strain, smaller,
+                          fmt::format("{} is strained by up to {:.2g} %; small strain holds below some 5 %", name,
+                                      100 * largest.strain)});
+    if (largest.rotation > most_rotation)
+      warnings.push_back({WarningCode::large_rotation, name, largest.rotation / degree, smaller,
+                          fmt::format("{} rotates by up to {:.2g} degrees; small strain holds below some 5", name,
+                                      largest.rotation / degree)});
+  }
+}
+
+/// Whether sliding along it changes the geometry of the contact.
+bool is_flat(const Model& model, const ContactPoint& point) {
+  return point.obstacle >= 0 && std::holds_alternative<Plane>(model.scene.obstacles[point.obstacle].shape);
+}
+
+void add_slips(const CaseResult& result, std::vector<Warning>& warnings) {
+  constexpr double most = 0.5;  // of a slave element
+  const auto& model = result.problem->model;
+  const auto& contacts = model.scene.contacts;
+  std::vector<double> farthest(contacts.size(), 0);
+  std::vector<char> closed(contacts.size(), 0), slipped(contacts.size(), 0);
+  for (const auto& step : result.steps) {
+    const auto& field = step.increment->state.contact;
+    for (std::size_t p = 0; p < model.points.size(); ++p) {
+      const auto& point = model.points[p];
+      if (field.state[p] == ContactState::open) continue;
+      closed[point.contact] = 1;
+      if (point.tangents == 0) continue;
+      if (is_slipping(field.state[p])) slipped[point.contact] = 1;
+      const auto placement =
+          field.placement.segment(tangential_offset(model, static_cast<int>(p)), point.tangents).norm();
+      if (point.mesh_size > 0 && !is_flat(model, point) && !model.effects.current_geometry)
+        farthest[point.contact] = std::max(farthest[point.contact], placement / point.mesh_size);
+    }
+  }
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const std::string& name = contacts[c].name;
+    if (farthest[c] > most)
+      warnings.push_back({WarningCode::large_sliding, name, farthest[c],
+                          "slide less, or put a flat obstacle in the place of a stiff master",
+                          fmt::format("{}: a point slides by {:.2g} elements of the slave; the contact geometry is "
+                                      "that of the start, which holds below some half of one",
+                                      name, farthest[c])});
+    const auto& law = result.problem->slots.friction[c];
+    if (contacts[c].friction && !law.is_smooth() && closed[c] && !slipped[c])
+      warnings.push_back({WarningCode::idle_friction, name, law.coefficient ? *law.coefficient : *law.limit,
+                          "lower the friction, or pull harder",
+                          fmt::format("{}: no point slipped in any step, so that the {} has no influence", name,
+                                      law.coefficient ? fmt::format("friction coefficient of {:.6g}", *law.coefficient)
+                                                      : fmt::format("limit of friction, {:.6g},", *law.limit))});
+  }
+}
+
+void add_cut_steps(const CaseResult& result, std::vector<Warning>& warnings) {
+  if (!result.problem->model.effects.friction) return;
+  const auto cut = std::count_if(result.steps.begin(), result.steps.end(),
+                                 [](const StepResult& step) { return step.increment->cutbacks > 0; });
+  if (cut > 0)
+    warnings.push_back(
+        {WarningCode::cut_steps, "", static_cast<double>(cut), "ask for more steps",
+         fmt::format("{} of {} steps were cut into smaller ones: friction depends on the path, and this is another "
+                     "one than whole steps would take",
+                     cut, result.steps.size())});
+}
+
+/// Elements whose pressure locks where the material hardly changes its volume.
+bool may_lock(const Problem& problem, std::size_t b) {
+  const auto& body = problem.model.bodies[b];
+  const ElementShape shape = body.mesh.shape;
+  return problem.model.scene.space != Space::plane_stress && !has_mean_dilatation(body.kinematics) &&
+         (shape == ElementShape::quad4 || shape == ElementShape::tri3);
+}
+
+void add_locking(const CaseResult& result, std::vector<Warning>& warnings) {
+  const auto& problem = *result.problem;
+  for (std::size_t b = 0; b < problem.model.bodies.size(); ++b) {
+    const auto* law = std::get_if<LinearElasticLaw<double>>(&problem.slots.laws[b]);
+    if (!law || !may_lock(problem, b)) continue;
+    const double nu = law->lame / (2 * (law->lame + law->shear));
+    if (nu < nearly_incompressible) continue;
+    double largest = 0;
+    for (const auto& step : result.steps)
+      largest = larger(largest, spurious_pressure(problem, step.increment->state.displacement, b));
+    if (!(largest > most_spurious)) continue;
+    const std::string& name = problem.model.scene.bodies[b].name;
+    const bool quads = problem.model.bodies[b].mesh.shape == ElementShape::quad4;
+    warnings.push_back({WarningCode::locking, name, largest, quads ? "element Q4_mean_dilatation or Q8" : "element T6",
+                        fmt::format("{} locks: nu = {:.6g} in {} elements, and {:.2g} of its stress is a pressure "
+                                    "that alternates from element to element",
+                                    name, nu, quads ? "Q4" : "T3", largest)});
+  }
+}
+
+/// Share of the force of contact c that one node carries, and its force, at a step; nothing where it does not press.
+struct Share {
+  double of_one = 0, force = 0;
+  int points = 0;
+};
+Share share_of(const Problem& problem, const ContactField<double>& field, int c) {
+  Share share;
+  for (std::size_t p = 0; p < problem.model.points.size(); ++p) {
+    const auto& point = problem.model.points[p];
+    if (point.contact != c) continue;
+    const double force = -problem.slots.geometry[p].area * field.traction[point.multiplier];
+    ++share.points;
+    share.force += force;
+    share.of_one = larger(share.of_one, force);
+  }
+  share.of_one = share.force > 0 ? share.of_one / share.force : 0;
+  return share;
+}
+
+void add_single_nodes(const CaseResult& result, std::vector<Warning>& warnings) {
+  constexpr double nearly_all = 0.95;
+  const auto& model = result.problem->model;
+  std::vector<char> wide(model.scene.contacts.size(), 0);  // a side of a continuum
+  for (const auto& point : model.points) wide[point.contact] = is_continuum(model.bodies[point.slave_body].mesh.shape);
+  for (int c = 0; c < static_cast<int>(wide.size()); ++c) {
+    if (!wide[c]) continue;
+    Share hardest;  // pressed
+    for (const auto& step : result.steps) {
+      const Share now = share_of(*result.problem, step.increment->state.contact, c);
+      if (now.force > hardest.force) hardest = now;
+    }
+    if (hardest.points < 2 || !(hardest.of_one > nearly_all)) continue;
+    const std::string& name = model.scene.contacts[c].name;
+    warnings.push_back(
+        {WarningCode::single_node, name, hardest.of_one, "refine the slave's mesh towards the contact",
+         fmt::format("{}: one of {} nodes carries {:.3g} % of the force; pressure and half width there are those of "
+                     "the mesh",
+                     name, hardest.points, 100 * hardest.of_one)});
+  }
+}
+
+void add_loose_bodies(const CaseResult& result, std::vector<Warning>& warnings) {
+  if (const Body* const loose = loose_body(result.problem->model))
+    warnings.push_back({WarningCode::non_unique, loose->name, 0, "add a support or a contact",
+                        loose->name + " may be anywhere: no support holds it and no contact touches it; it is left "
+                                      "where it is"});
+}
+
+/// Steps with other solutions than the one that was taken, where these were counted, or with tangents that belong to
+/// problems of which some have several.
+void add_other_solutions(const CaseResult& result, std::vector<Warning>& warnings) {
+  std::size_t most = 0, several = 0, uncounted = 0;
+  double first = 0;
+  for (const auto& increment : result.trajectory.increments) {
+    if (increment.reversed && !increment.counted) ++uncounted;
+    if (increment.others.empty()) continue;
+    if (several++ == 0) first = increment.time;
+    most = std::max(most, 1 + increment.others.size());
+  }
+  const std::string remedy =
+      "look at `solutions`, and whether friction this high is meant; smaller steps follow a branch";
+  if (several > 0)
+    warnings.push_back(
+        {WarningCode::non_unique, "", static_cast<double>(most), remedy,
+         fmt::format("{} of {} increments have several solutions, up to {}, the first at t = {:.6g}; the one "
+                     "is taken in which the motion from the last increment comes to rest",
+                     several, result.trajectory.increments.size(), most, first)});
+  for (const auto& increment : result.trajectory.increments)
+    if (increment.jump)
+      warnings.push_back({WarningCode::branch_ends, "", *increment.jump,
+                          "control a displacement in place of a force, or lower the friction",
+                          fmt::format("the branch of solutions ends at t = {:.4g}, and the bodies jump to another one",
+                                      *increment.jump)});
+  if (several == 0 && uncounted > 0)
+    warnings.push_back(
+        {WarningCode::non_unique, "", 1, remedy,
+         fmt::format("{} of {} increments met tangents whose determinant has the other sign: there may be "
+                     "other solutions",
+                     uncounted, result.trajectory.increments.size())});
+}
+
+}  // namespace
+
+const Body* loose_body(const Model& model) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const auto in_body = [&, first = model.bodies[b].first_node](int node) {
+      return node >= first && node < first + model.bodies[b].mesh.node_count;
+    };
+    const bool held = std::any_of(model.constraints.begin(), model.constraints.end(),
+                                  [&](const Constraint& c) { return in_body(c.dof / model.dimension); });
+    const bool touched = std::any_of(model.contact_nodes.begin(), model.contact_nodes.end(), in_body);
+    if (!held && !touched) return &model.scene.bodies[b];
+  }
+  return nullptr;
+}
+
+double spurious_pressure(const Problem& problem, const Vector<double>& displacement, std::size_t b) {
+  const auto* law = std::get_if<LinearElasticLaw<double>>(&problem.slots.laws[b]);
+  if (!law || !may_lock(problem, b)) return 0;
+  const auto& mesh = problem.model.bodies[b].mesh;
+  const int nodes = nodes_of(mesh.shape);
+  Vector<double> volume = Vector<double>::Zero(mesh.element_count()), change = volume, around = volume;
+  for_each_strain(problem, displacement, b, [&](int e, const auto& H, double v) {
+    volume[e] += v;
+    change[e] += v * H.trace();
+  });
+  Vector<double> nodal_volume = Vector<double>::Zero(mesh.node_count), nodal_change = nodal_volume;
+  for (int e = 0; e < mesh.element_count(); ++e)
+    for (int a = 0; a < nodes; ++a) {
+      nodal_volume[mesh.connectivity[e * nodes + a]] += volume[e];
+      nodal_change[mesh.connectivity[e * nodes + a]] += change[e];
+    }
+  for (int e = 0; e < mesh.element_count(); ++e)
+    for (int a = 0; a < nodes; ++a) {
+      const int node = mesh.connectivity[e * nodes + a];
+      around[e] += nodal_change[node] / nodal_volume[node] / nodes;
+    }
+  const double bulk = law->lame + 2 * law->shear / 3;
+  double spurious = 0, all = 0;
+  for_each_strain(problem, displacement, b, [&](int e, const auto& H, double v) {
+    constexpr int rows = std::decay_t<decltype(H)>::RowsAtCompileTime;
+    const double out_of_plane = rows == 3 ? 0 : law->lame * H.trace();
+    spurious += v * std::pow(bulk * (H.trace() - around[e]), 2);
+    all += v * (law->template stress<double, rows>(H).squaredNorm() + out_of_plane * out_of_plane);
+  });
+  return all > 0 ? std::sqrt(spurious / all) : 0;
+}
+
+std::vector<Warning> warnings_of(const CaseResult& result) {
+  std::vector<Warning> warnings;
+  if (!is_converged(result.trajectory.status)) return warnings;
+  add_deformations(result, warnings);
+  add_slips(result, warnings);
+  add_cut_steps(result, warnings);
+  add_locking(result, warnings);
+  add_single_nodes(result, warnings);
+  add_loose_bodies(result, warnings);
+  add_other_solutions(result, warnings);
+  return warnings;
+}
+
+json warnings_json(const CaseResult& result) {
+  json out = json::array();
+  for (const auto& warning : warnings_of(result))
+    out.push_back({{"code", name_of(warning.code)},
+                   {"where", warning.where},
+                   {"value", warning.value},
+                   {"remedy", warning.remedy},
+                   {"text", warning.text}});
+  return out;
+}
+
+}  // namespace stickslip

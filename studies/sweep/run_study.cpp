@@ -1,0 +1,368 @@
+#include "studies/sweep/run_study.hpp"
+
+#include <fmt/core.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <vector>
+
+#include "studies/io/atomic_file.hpp"
+#include "studies/io/directory_lock.hpp"
+#include "studies/io/input_fault.hpp"
+#include "studies/io/printing.hpp"
+#include "studies/io/progress.hpp"
+#include "studies/io/result_rows.hpp"
+#include "studies/report/report.hpp"
+#include "studies/run/explain.hpp"
+#include "studies/run/fields.hpp"
+#include "studies/run/simulation.hpp"
+#include "studies/sweep/shard.hpp"
+#include "studies/sweep/study_cell.hpp"
+#include "studies/sweep/timing.hpp"
+#include "studies/sweep/workers.hpp"
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+using namespace nlohmann::literals;
+namespace fs = std::filesystem;
+
+/// A study that was found valid, and where its results go.
+struct Plan {
+  Study study;
+  std::vector<std::string> ids;  ///< of the study's cells
+  CellInput last;                ///< of these
+  std::vector<CellInput> cells;  ///< those of the shard
+  Shard shard;
+  fs::path directory;
+};
+
+/// "results/hertz.study" of hertz.study.json: apart from "results/hertz", where a run of its scene writes.
+fs::path directory_of(const StudyArguments& arguments) {
+  return arguments.output.empty() ? "results" / fs::path(arguments.study).stem() : fs::path(arguments.output);
+}
+
+/// Makes a model of every variant, so that a scene that makes no sense as a whole is found before anything is written.
+void check_models(const Study& study, const std::vector<CellInput>& cells, MeshFiles& meshes,
+                  Diagnostics& diagnostics) {
+  std::string checked;
+  for (const auto& cell : cells) {
+    if (variant_key(cell) == checked) continue;
+    checked = variant_key(cell);
+    try {
+      const Input input = input_of(cell, meshes);
+      check_memory(*problem_of(input), input);
+    } catch (const ModelError& error) {
+      diagnostics.error(in_study(study, {cell.document.place(error.pointer), error.pointer, error.what()}));
+    }
+  }
+}
+
+std::optional<Plan> make_plan(const StudyArguments& arguments, MeshFiles& meshes, Diagnostics& diagnostics) {
+  Plan plan;
+  if (const auto shard = parse_shard(arguments.shard))
+    plan.shard = *shard;
+  else
+    diagnostics.error({{"--shard " + arguments.shard}, "", "must be i/N, whole numbers with 1 <= i <= N"});
+  constexpr int most_jobs = 1024;  // beyond, a system runs out of processes
+  if (arguments.jobs < 1 || arguments.jobs > most_jobs)
+    diagnostics.error({{"--jobs " + std::to_string(arguments.jobs)}, "", "must be 1 to 1024"});
+  auto study = read_study(arguments.study, diagnostics);
+  if (!study) return std::nullopt;
+  plan.study = *std::move(study);
+  auto all = expand(plan.study, program_version(), diagnostics, meshes);
+  if (!all.empty()) plan.last = all.back();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    plan.ids.push_back(all[i].id);
+    if (plan.shard.holds(i)) plan.cells.push_back(std::move(all[i]));
+  }
+  if (!diagnostics.has_errors()) check_models(plan.study, plan.cells, meshes, diagnostics);
+  if (diagnostics.has_errors()) return std::nullopt;
+  plan.directory = directory_of(arguments);
+  return plan;
+}
+
+/// study.json: the study as given, which cells it has, and what the report says of the scene beside the rows.
+json description(const Plan& plan, const StudyArguments& arguments, MeshFiles& meshes) {
+  json out = plan.study.document.root();
+  const Input input = input_of(plan.last, meshes);
+  const auto problem = problem_of(input);
+  out["command"] = "stickslip study " + shell_word(arguments.study) +
+                   (arguments.output.empty() ? "" : " -o " + shell_word(arguments.output)) +
+                   (plan.shard.count > 1 ? " --shard " + plan.shard.text() : "");
+  out["program"] = program_version();
+  out["cells"] = plan.ids;
+  out["shard"] = plan.shard.text();
+  out["scene_title"] = problem->model.scene.title;
+  out["scene_hash"] = fingerprint(canonical_text(input));
+  out["explain"] = explain(input, *problem);
+  int elements = 0;
+  for (const auto& body : problem->model.bodies) elements += body.mesh.element_count();
+  out["mesh"] = {{"nodes", problem->model.node_count}, {"elements", elements}};
+  double size = 0;
+  for (const auto& point : problem->model.points)
+    if (point.mesh_size > 0) size = size == 0 ? point.mesh_size : std::min(size, point.mesh_size);
+  if (size > 0) out["mesh"]["size_at_contact"] = size;
+  out["analytic"] = nullptr;
+  return out;
+}
+
+void write_description(const fs::path& directory, const json& description) {
+  write_file_atomically(directory / "study.json", json_text(description, 2) + "\n");
+}
+
+std::ptrdiff_t rows_of_other_shards(const Plan& plan, const RowsById& rows) {
+  return static_cast<std::ptrdiff_t>(rows.size()) -
+         std::count_if(plan.cells.begin(), plan.cells.end(), [&](const auto& cell) { return rows.count(cell.id) > 0; });
+}
+
+/// Makes the rows those of this study where it differs in its error budget alone, which the id of a cell does not know:
+/// what was asked for and is not there is to be measured, and what is not asked for is not shown.
+void match_budgets(const Plan& plan, RowsById& rows) {
+  for (const auto& cell : plan.cells) {
+    const auto row = rows.find(cell.id);
+    if (row == rows.end()) continue;
+    if (plan.study.budget_copies == 0)
+      row->second.erase("error_budget");
+    else if (row->second.value("/error_budget/copies"_json_pointer, 0) != plan.study.budget_copies)
+      rows.erase(row);
+  }
+}
+
+struct Tally {
+  long run = 0, failed = 0;
+};
+
+/// Who is told of a study that runs.
+struct Listener {
+  std::ostream& log;
+  const std::function<void()>& on_run;  ///< after each run
+
+  void end_of_run() const {
+    if (on_run) on_run();
+  }
+};
+
+/// A cell in words: its label and variant.
+std::string name_of_cell(const CellInput& cell) {
+  const std::string variant = variant_text({{"vary", cell.vary}, {"refine", cell.refine}});
+  return cell.label + (variant.empty() ? "" : ", " + variant);
+}
+
+/// Whether such a signal comes from outside: the user, a scheduler, or the kernel where memory runs out. The others
+/// are the program's own fault.
+bool from_outside(int signal) {
+  return signal == SIGKILL || signal == SIGTERM || signal == SIGINT || signal == SIGHUP || signal == SIGXCPU;
+}
+
+/// The accuracy pass: runs what is missing and records each cell as soon as it is done.
+Tally run_missing(const Plan& plan, const DirectoryLock& lock, const Listener& listener, CellRunner& runner, int jobs,
+                  RowsById& rows) {
+  std::vector<std::size_t> missing;
+  for (std::size_t i = 0; i < plan.cells.size(); ++i)
+    if (rows.count(plan.cells[i].id) == 0) missing.push_back(i);
+  Tally tally;
+  Progress progress(listener.log, progress_style_of_stderr(), "cells", static_cast<long>(plan.cells.size()));
+  progress.skip(static_cast<long>(plan.cells.size() - missing.size()));
+  const auto record = [&](const CellInput& cell, json row) {
+    lock.check();
+    append_row(plan.directory, row);
+    ++tally.run;
+    if (!converged(row)) {
+      ++tally.failed;
+      progress.note(printable(fmt::format("{}: {} ({})", name_of_cell(cell), row["status"].get<std::string>(),
+                                          row["message"].get<std::string>())));
+    }
+    rows[cell.id] = std::move(row);
+    progress.advance();
+    listener.end_of_run();
+  };
+  run_in_processes(
+      jobs, missing.size(), [&](std::size_t i) { return json_text(runner.row(missing[i])); },
+      [&](std::size_t i, const std::string& text) { record(plan.cells[missing[i]], json::parse(text)); },
+      [&](std::size_t i, int signal) {
+        const std::string end = fmt::format("its process was ended by signal {} ({})", signal, ::strsignal(signal));
+        if (from_outside(signal))
+          progress.note(printable(fmt::format("{}: {}; it has no row", name_of_cell(plan.cells[missing[i]]), end)));
+        else
+          record(plan.cells[missing[i]], runner.failed_row(missing[i], "failed", end + ", please report it"));
+      });
+  return tally;
+}
+
+/// The timing pass: serial, over the cells that converged; what is recorded is not run again.
+void time_cells(const Plan& plan, const DirectoryLock& lock, const Listener& listener, CellRunner& runner,
+                const RowsById& rows) {
+  std::vector<std::size_t> cells;
+  std::vector<std::string> keys;
+  for (std::size_t i = 0; i < plan.cells.size(); ++i)
+    if (const auto row = rows.find(plan.cells[i].id); row != rows.end() && converged(row->second)) {
+      cells.push_back(i);
+      keys.push_back(variant_key(plan.cells[i]));
+    }
+  const auto timings = read_timings(plan.directory);
+  const auto known = [&](const TimedRun& run) {
+    const auto found = timings.find(plan.cells[cells[run.cell]].id);
+    return found != timings.end() && found->second.count(run.round) > 0;
+  };
+  auto runs = timing_plan(keys, plan.study.repeat);
+  std::erase_if(runs, known);
+  if (runs.empty()) return;
+  Progress progress(listener.log, progress_style_of_stderr(), "timed runs", static_cast<long>(runs.size()));
+  for (const auto& run : runs) {
+    const std::size_t cell = cells[run.cell];
+    json seconds;
+    try {
+      seconds = runner.seconds(cell);
+    } catch (const std::exception& error) {
+      progress.note(printable(fmt::format("{}: not timed: {}", name_of_cell(plan.cells[cell]), error.what())));
+    }
+    lock.check();
+    if (!seconds.is_null()) append_timing(plan.directory, plan.cells[cell].id, run.round, seconds);
+    progress.advance();
+    listener.end_of_run();
+  }
+}
+
+/// Puts what the timing pass measured into the rows: cost.seconds the least, cost.timing how many runs and the median.
+void take_timings(const fs::path& directory, std::ostream& log, RowsById& rows) {
+  int damaged = 0;
+  const auto timings = read_timings(directory, &damaged);
+  if (damaged > 0) log << "note: " << damaged << " line(s) of timings.jsonl are damaged and were left out\n";
+  for (const auto& [id, rounds] : timings) {
+    const auto row = rows.find(id);
+    if (row == rows.end()) continue;
+    std::vector<json> runs;
+    for (const auto& [round, seconds] : rounds) runs.push_back(seconds);
+    auto& cost = row->second["cost"];
+    cost["seconds"] = least_seconds(runs);
+    cost["timing"] = {{"repeat", runs.size()}, {"median", median_seconds(runs)}};
+  }
+}
+
+/// The picture of the last variant, its fields, and the closed form's curves beside it.
+void draw_showcase(const Plan& plan, CellRunner& runner, json& described) {
+  const auto result = runner.showcase(plan.cells.size() - 1);
+  remove_fields(plan.directory);
+  write_file_atomically(plan.directory / "picture.json", json_text(picture_json(result)));
+  write_fields(plan.directory, result, 0);
+  described["size"] = size_json(result);
+  if (is_converged(result.status()))
+    for (const auto& reference : plan.study.references)
+      if (reference.kind == Reference::Kind::analytic && described["analytic"].is_null())
+        if (const auto values = reference_values(reference.entry, result); !values.curves.is_null())
+          described["analytic"] = {{"name", reference.entry.value("analytic", "")}, {"curves", values.curves}};
+  write_description(plan.directory, described);
+}
+
+/// A picture that cannot be drawn, as for want of memory, is missing in the report; the rows are what counts.
+void try_to_draw(const Plan& plan, std::ostream& log, CellRunner& runner, json& described) {
+  try {
+    draw_showcase(plan, runner, described);
+  } catch (const std::system_error&) {
+    throw;  // the disk's
+  } catch (const std::exception& error) {
+    log << printable(fmt::format("note: there is no picture of the solution: {}", error.what())) << '\n';
+  }
+}
+
+/// Whether study.json is that of this study, and the picture beside it drawn.
+bool is_described(const fs::path& directory, const json& described) {
+  if (!fs::exists(directory / "study.json") || !fs::exists(directory / "picture.json")) return false;
+  json there = read_description(directory), ours = described;
+  for (const char* drawn : {"size", "analytic"})
+    for (json* each : {&there, &ours}) each->erase(drawn);
+  return there == ours;
+}
+
+/// Where Ctrl-C, or a scheduler, ends the study: says how to go on, while it lives. Workers, which are forked from it,
+/// are ended too, in silence.
+class InterruptNote {
+ public:
+  explicit InterruptNote(const std::string& command) {
+    text_ = "\ninterrupted: finished cells are kept; to go on:\n  " + command + " --resume\n";
+    owner_ = ::getpid();
+    struct sigaction action {
+    }, before{};
+    action.sa_handler = say;
+    action.sa_flags = SA_RESETHAND;
+    for (const int signal : {SIGINT, SIGTERM})
+      if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler == SIG_DFL)  // not of a job that ignores it
+        ::sigaction(signal, &action, nullptr);
+  }
+  ~InterruptNote() {
+    struct sigaction now {};
+    for (const int signal : {SIGINT, SIGTERM})
+      if (::sigaction(signal, nullptr, &now) == 0 && now.sa_handler == say) ::signal(signal, SIG_DFL);
+  }
+  InterruptNote(const InterruptNote&) = delete;
+  InterruptNote& operator=(const InterruptNote&) = delete;
+
+ private:
+  static void say(int signal) {  // only what a signal handler may call
+    if (::getpid() == owner_ && ::write(STDERR_FILENO, text_.data(), text_.size()) < 0) ::_exit(128 + signal);
+    ::raise(signal);
+  }
+  static inline std::string text_;
+  static inline pid_t owner_ = 0;
+};
+
+StudyOutcome carry_out(const Plan& plan, const StudyArguments& arguments, const Listener& listener, MeshFiles& meshes) {
+  if (holds(plan.directory, "result.json"))
+    throw InputFault(plan.directory.string() + ": holds the result of a run; -o DIR writes to another directory");
+  prepare_directory(plan.directory, {"results.jsonl", "timings.jsonl", "study.json", "picture.json", "report.html"},
+                    {"figures"});
+  const DirectoryLock lock(plan.directory);
+  if (!arguments.restart) check_records(plan.directory);
+  if (const auto found = read_rows(plan.directory).rows.size(); found > 0 && !arguments.resume && !arguments.restart)
+    throw InputFault(
+        fmt::format("{}: holds {} finished cells; --resume keeps those of this study and runs what is "
+                    "missing, --restart deletes them, -o DIR writes to another directory",
+                    plan.directory.string(), found));
+  if (arguments.restart)
+    for (const char* file : {"results.jsonl", "timings.jsonl", "study.json", "picture.json"})
+      fs::remove(plan.directory / file);
+  json described = description(plan, arguments, meshes);
+  const bool drawn = is_described(plan.directory, described);
+  if (!drawn) write_description(plan.directory, described);
+  std::vector<std::string> notes;
+  const InterruptNote note_of_interrupt(described["command"]);
+  RowsById rows = resume_rows(plan.directory, plan.ids, notes);
+  match_budgets(plan, rows);
+  if (const auto others = rows_of_other_shards(plan, rows); others > 0)
+    notes.push_back(
+        fmt::format("{} row(s) of this study that are not of shard {} stay as they are", others, plan.shard.text()));
+  for (const auto& note : notes) listener.log << "note: " << printable(note) << '\n';
+  CellRunner runner(plan.study, plan.cells, meshes);
+  const Tally tally = run_missing(plan, lock, listener, runner, arguments.jobs, rows);
+  lock.check();
+  if (!drawn && !plan.cells.empty()) try_to_draw(plan, listener.log, runner, described);
+  time_cells(plan, lock, listener, runner, rows);
+  lock.check();
+  take_timings(plan.directory, listener.log, rows);
+  write_rows(plan.directory, plan.ids, rows);
+  const auto recorded =
+      std::count_if(plan.cells.begin(), plan.cells.end(), [&](const auto& cell) { return rows.count(cell.id) > 0; });
+  rows.clear();  // the report reads them again, and not all of each
+  write_report(plan.directory);
+  return {plan.directory, std::ssize(plan.cells), tally.run, tally.failed, std::ssize(plan.cells) - recorded};
+}
+
+}  // namespace
+
+std::optional<StudyOutcome> run_study(const StudyArguments& arguments, std::ostream& log, Diagnostics& diagnostics,
+                                      const std::function<void()>& on_run) {
+  MeshFiles meshes;
+  const auto plan = make_plan(arguments, meshes, diagnostics);
+  if (!plan) return std::nullopt;
+  log << diagnostics.notes_text();
+  return carry_out(*plan, arguments, {log, on_run}, meshes);
+}
+
+}  // namespace stickslip
