@@ -50,7 +50,7 @@ SparseEngine<T>::SparseEngine(const Model& model, const Slots<T>& slots, bool un
 
 template <class T>
 void SparseEngine<T>::linearise(const Vector<T>& displacement) {
-  bulk_ = assemble_bodies<T>(model_, slots_, lists_, *pattern_, &displacement);
+  bulk_ = assemble_bodies<T>(model_, slots_, *lists_, *pattern_, &displacement);
   valid_ = false;
 }
 

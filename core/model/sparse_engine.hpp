@@ -1,6 +1,8 @@
 /// The engine that has the bodies in full.
 #pragma once
 
+#include <optional>
+
 #include "core/model/body_matrix.hpp"
 #include "core/model/engine_parts.hpp"
 
@@ -63,7 +65,7 @@ class SparseEngine {
   int size_;
   Vector<T> external_;  ///< in the frames
   std::shared_ptr<Pattern> pattern_;
-  RowLists lists_;                           ///< of the tangent; empty where the bodies' is constant
+  std::optional<RowLists> lists_;            ///< of the tangent; none where the bodies' is constant
   std::vector<std::vector<int>> point_map_;  ///< per point: entry of each (row, column) pair of its rows, -1 if fixed
   std::vector<T> bulk_, values_;
   double stiffness_ = 0;  ///< largest diagonal entry, for the rounding of a residual
