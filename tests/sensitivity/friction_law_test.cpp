@@ -4,9 +4,9 @@
 #include <array>
 
 #include "core/model/response.hpp"
-#include "sensitivity/adjoint.hpp"
 #include "sensitivity/one_sided.hpp"
 #include "tests/support/blocks.hpp"
+#include "tests/support/both_modes.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/oracle.hpp"
 
@@ -112,24 +112,9 @@ TEST(FrictionLawDerivatives, HaveBothSidesAtTheCorner) {
 
 TEST(FrictionLawDerivatives, EqualTheAdjoint) {
   Scene scene = block({0.4, 1.7});
-  for (int i = 0; i < static_cast<int>(scene.responses.size()); ++i) {
-    scene.objectives.push_back({"end of " + scene.responses[i].name, i, 2.0});
-    scene.objectives.push_back({"sum of " + scene.responses[i].name, i, {}});
-  }
-  for (const Method& method : methods()) {
-    const Model model = make_model(scene);
-    const auto slots = make_slots<double>(model, scene.as<double>());
-    Workspace<double> workspace;
-    const auto trajectory = solve(model, slots, method, {}, workspace);
-    const auto forward = differentiate(model, slots, method, trajectory, workspace);
-    const Matrix<double> direct = objective_gradients(model, slots, trajectory, forward);
-    const Matrix<double> backward = adjoint(model, slots, method, trajectory, workspace).of_objectives;
-    ASSERT_EQ(backward.rows(), direct.rows()) << name_of(method);
-    for (Eigen::Index i = 0; i < direct.rows(); ++i)
-      // iterated schemes end at 1e-10 of the largest; the rest is rounding
-      EXPECT_LE(largest_entry(backward.row(i) - direct.row(i)), 1e-9 * largest_entry(direct.row(i)))
-          << name_of(method) << " " << i;
-  }
+  scenes::ask_for_objectives(scene);
+  // iterated schemes end at 1e-10 of the largest; the rest is rounding
+  for (const Method& method : methods()) EXPECT_LE(scenes::difference_of_modes(scene, method), 1e-9) << name_of(method);
 }
 
 }  // namespace
