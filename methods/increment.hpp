@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <string>
 
+#include "core/model/shared_forces.hpp"
 #include "methods/newton.hpp"
 #include "methods/regularisation.hpp"
 

@@ -2,6 +2,7 @@
 /// factor.
 #pragma once
 
+#include "core/model/shared_forces.hpp"
 #include "methods/assumed_branches.hpp"
 
 namespace stickslip {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/model/engine.hpp"
+#include "core/model/shared_forces.hpp"
 #include "sensitivity/rays.hpp"
 #include "sensitivity/redundancy.hpp"
 
