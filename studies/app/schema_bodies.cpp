@@ -90,7 +90,8 @@ const char* const mesh = R"json({"type": "object", "title": "one of the followin
 
 const char* const material = R"json({"type": "object", "title": "one of the following", "minProperties": 1,
   "maxProperties": 1, "additionalProperties": false, "properties": {
-    "linear_elastic": {"description": "of bars, and where strains are small of all but points", "type": "object", "examples": [{"E": 1000, "nu": 0.3}],
+    "linear_elastic": {"description": "of bars, and where strains are small of all but points", "type": "object",
+      "examples": [{"E": 1000, "nu": 0.3}],
       "required": ["E", "nu"], "additionalProperties": false, "properties": {
         "E": {"description": "Young's modulus (force per area)", "$ref": "#/$defs/positive", "examples": [1000]},
         "nu": {"description": "Poisson's ratio", "title": "number > -1 and < 0.5", "type": "number",

@@ -77,7 +77,7 @@ TEST(FinitePatch, HasTheStretchAndTheForceOfTheClosedForm) {
       // of the stretch that there is: the penalty sinks in, by dP/dl1 some E times that
       const double overlap = std::abs(s.value("sunk"));
       EXPECT_NEAR(s.value("wide") / 2 + 1, c.l2, 1e-9 + overlap) << name_of(method);
-      EXPECT_NEAR(s.value("press") / 2, c.P1, 1e-6 + 2e4 * overlap) << name_of(method);
+      EXPECT_NEAR(s.value("press") / 2, c.P1, 1e-7 + 2e4 * overlap) << name_of(method);
       EXPECT_LE(overlap, std::holds_alternative<Penalty>(method) ? 1e-4 : 1e-11) << name_of(method);
     }
 }
@@ -215,6 +215,9 @@ TEST(FiniteStrain, DerivativesEqualTheComplexStepOfTheWholeRun) {
       const auto s = run(draped(mu), method);
       ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
       ASSERT_EQ(s.gradients.of.size(), s.trajectory.increments.size()) << s.gradients.message;
+      // 50 u cond where that is more; iterated schemes end at 1e-10 of the largest
+      const double allowed =
+          std::max(std::holds_alternative<UzawaAL>(method) ? 1e-9 : 1e-10, 50 * unit_roundoff * s.condition);
       const auto last = evaluate_responses(s.model, s.slots, s.trajectory.increments.back().state, 2);
       for (int j = 0; j < static_cast<int>(s.model.scene.parameters.size()); ++j) {
         const auto exact = oracle::complex_step(s.model, method, s.trajectory.step_table(), j);
@@ -222,8 +225,7 @@ TEST(FiniteStrain, DerivativesEqualTheComplexStepOfTheWholeRun) {
           const double scale =
               std::max(largest_entry(exact.row(r)), std::abs(last[r] / s.model.scene.parameters[j].value));
           for (Eigen::Index n = 0; n < exact.cols(); ++n)
-            // rounding: 50 u times a condition number of some 1e5; iterated schemes end at 1e-10 of the largest
-            EXPECT_NEAR(s.gradients.of[n](r, j), exact(r, n), 1e-9 * scale)
+            EXPECT_NEAR(s.gradients.of[n](r, j), exact(r, n), allowed * scale)
                 << name_of(method) << " " << s.model.scene.responses[r].name << " by "
                 << s.model.scene.parameters[j].name << ", increment " << n;
         }
@@ -236,7 +238,8 @@ TEST(FiniteStrain, AdjointEqualsDirect) {
   scenes::ask_for_objectives(scene);
   // iterated schemes end at 1e-10 of the largest; the rest is rounding
   for (const Method& method : all_schemes())
-    EXPECT_LE(scenes::difference_of_modes(scene, method), 1e-9) << name_of(method);
+    EXPECT_LE(scenes::difference_of_modes(scene, method), std::holds_alternative<UzawaAL>(method) ? 1e-9 : 1e-11)
+        << name_of(method);
 }
 
 TEST(FiniteStrain, FeetBeginAsFunctionsOfTheScene) {
