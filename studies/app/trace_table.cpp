@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "studies/run/contact_points.hpp"
+
 namespace stickslip {
 
 std::string trace_table(const Trace& trace) {
@@ -17,7 +19,6 @@ std::string trace_table(const Trace& trace) {
 }
 
 std::string trace_csv(const Problem& problem, const Trace& trace) {
-  static const char* const names[] = {"open", "stick", "slip", "slip"};
   const auto& points = problem.model.points;
   const bool few = points.size() <= Trace::most_points;
   std::string text = "time,solve,iterate,residual,equilibrium,normal,tangential,open,stick,slip,changed,step_length";
@@ -33,7 +34,7 @@ std::string trace_csv(const Problem& problem, const Trace& trace) {
     text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}", i.time, i.solve, i.number, r.residual, r.equilibrium,
                         r.normal, r.tangential, r.open, r.stick, r.slip, r.changed, r.step_length);
     for (std::size_t p = 0; few && p < points.size(); ++p) {
-      text += fmt::format(",{}", names[static_cast<int>(i.state[p])]);
+      text += fmt::format(",{}", branch_name(i.state[p]));
       for (const auto* of : {&i.multiplier, &i.trial, &i.traction})
         for (int c = 0; c < points[p].components(); ++c) text += fmt::format(",{}", (*of)[points[p].multiplier + c]);
     }

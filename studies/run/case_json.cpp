@@ -211,9 +211,7 @@ std::vector<double> arc_of(const Problem& problem, int contact) {
 }
 
 const char* state_name(const ContactPoint& point, ContactState state) {
-  if (state == ContactState::open) return "open";
-  if (point.tangents == 0) return "closed";
-  return state == ContactState::stick ? "stick" : "slip";
+  return state != ContactState::open && point.tangents == 0 ? "closed" : branch_name(state);
 }
 
 json interface_json(const CaseResult& result) {

@@ -8,6 +8,7 @@
 #include "core/model/loading.hpp"
 #include "studies/io/atomic_file.hpp"
 #include "studies/io/printing.hpp"
+#include "studies/run/contact_points.hpp"
 
 namespace stickslip {
 namespace {
@@ -75,14 +76,12 @@ std::string rows_csv(const Model& model, const Slots<double>& slots) {
 }
 
 std::string points_csv(const Model& model, const State<double>& state) {
-  static const char* const names[] = {"open", "stick", "slip", "slip"};
   std::string text = "row,contact,slave_node,component,state\n";
   for (std::size_t p = 0; p < model.points.size(); ++p)
     for (int c = 0; c < model.points[p].components(); ++c)
       text += fmt::format("{},{},{},{},{}\n", model.points[p].multiplier + c + 1,
                           csv_text(model.scene.contacts[model.points[p].contact].name), model.points[p].nodes[0],
-                          c == 0 ? "normal" : "tangent " + std::to_string(c),
-                          names[static_cast<int>(state.contact.state[p])]);
+                          c == 0 ? "normal" : "tangent " + std::to_string(c), branch_name(state.contact.state[p]));
   return text;
 }
 
