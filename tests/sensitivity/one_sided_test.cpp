@@ -209,6 +209,25 @@ TEST(OneSided, OfAPointOnAVertexThatItsMasterMovesHaveNone) {
   }
 }
 
+TEST(OneSided, OfAPointOnAVertexThatRisesAreThoseOfEitherFacet) {
+  // The vertex moves along (1, 1) on a straight line: the point then lies on the facet behind it, which rises, or, the
+  // other way, on the one before it, which falls. The line is as high under it on both sides; its slope s is not:
+  // k u_x' = -N s' and u_y' = 1 + s' u_x, with N = 5 and s' = 1 forward, -1 backward.
+  constexpr double k = 1000, along = 3, press = 5;
+  Scene s = stop(0, k, 0);
+  const Number moved = parameter(s, "moved", 0);
+  s.loads[0] = force("block.node", {along, -press});
+  s.obstacles = {{"stop", Polyline{{{-1.0, 0.0}, {moved, moved}, {1.0, 0.0}}}, {}}};
+  s.responses = {response("u", Response::Kind::displacement, "block.node", "x"),
+                 response("v", Response::Kind::displacement, "block.node", "y")};
+  for (const auto& method : exact_methods()) {
+    const auto found = sides(s, method);
+    ASSERT_TRUE(found.of) << name_of(method);
+    expect_sides(found.at("u", "moved"), press / k, -press / k, press / k);
+    expect_sides(found.at("v", "moved"), 1 - along / k, 1 + along / k, 1);
+  }
+}
+
 TEST(OneSided, OfMatchingNodesFaceTheFacetThatTheyMoveTo) {
   Scene s;
   s.legs = {{1, 1}};
