@@ -44,7 +44,8 @@ struct Plate {
   Model model;
   Slots<double> slots;
   std::vector<PointRegularisation<double>> rho;
-  Vector<double> compact, multiplier, placement;
+  Vector<double> compact, multiplier;
+  History<double> previous;
   std::vector<ContactState> states;
   Plate(int cells, ContactState branch, bool friction) {
     auto scene = scenes::greco_plate(cells);
@@ -62,10 +63,10 @@ struct Plate {
       multiplier[point.multiplier] = normal.normal;
       for (int a = 0; a < point.tangents; ++a) multiplier[point.multiplier + 1 + a] = normal.tangential[a];
     }
-    placement = Vector<double>::Zero(model.multiplier_count - static_cast<Eigen::Index>(model.points.size()));
+    previous = initial_history(model, slots);
     states.assign(model.points.size(), branch);
   }
-  ContactInput<double> input() const { return {model, slots, rho, placement, ConeRadius::augmented, 1}; }
+  ContactInput<double> input() const { return {model, slots, rho, previous, ConeRadius::augmented, 1}; }
 };
 
 void per_point(benchmark::State& state, const Model& model) {

@@ -44,7 +44,8 @@ std::vector<ContactState> step_branches(const ContactInput<T>& input, const Vect
   std::vector<ContactState> branches = field.state;
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     const auto& point = model.points[p];
-    if (!is_slipping(branches[p]) || point.tangents == 0 || input.slots.friction[point.contact].is_smooth()) continue;
+    if (!is_slipping(branches[p]) || point.tangents == 0 || input.slots.friction[point.contact].bears_nothing())
+      continue;
     const double rounding = tie_at(input, p, compact);
     bool apex = input.slots.friction[point.contact].has_apex() &&
                 std::abs(value(field.traction[point.multiplier])) <= value(input.rho[p].normal) * rounding;
@@ -68,7 +69,7 @@ std::vector<ContactState> presume_contact(const ContactInput<T>& input, std::vec
   for (std::size_t p = 0; p < branches.size(); ++p) {
     const auto& point = input.model.points[p];
     if (branches[p] != ContactState::open) continue;
-    const bool rough = point.tangents > 0 && !input.slots.friction[point.contact].is_smooth();
+    const bool rough = point.tangents > 0 && !input.slots.friction[point.contact].bears_nothing();
     branches[p] = rough ? ContactState::stick : ContactState::slip;
   }
   return branches;

@@ -14,15 +14,12 @@
 #include <string>
 
 #include "methods/acceleration.hpp"
+#include "methods/carried.hpp"
 #include "methods/increment.hpp"
 
 namespace stickslip {
 
 namespace detail {
-
-/// Largest derivative that rides on the entries: the imaginary part of the oracle, nothing on a double.
-inline double riding(const Vector<double>&) { return 0; }
-inline double riding(const Vector<std::complex<double>>& v) { return v.size() ? v.imag().cwiseAbs().maxCoeff() : 0; }
 
 /// Component c of the constraint that a closed point should meet: g_N, or in stick dg_T (length).
 template <class T>
@@ -74,10 +71,10 @@ class Augmentations {
   /// Whether all that is left is what a nodal force makes of the tractions, and of the gaps through k.
   bool is_within(double force) const;
   bool alternates() const { return undone_ >= patience; }
-  /// Whether the derivative that rides on the scalar (the oracle's) still falls, asked once the primal has settled.
-  bool derivative_moves() {
-    const bool moves = riding_ > 1e-13 * detail::riding(field_.traction) && riding_ < settled_riding_;
-    settled_riding_ = riding_;
+  /// Whether the update of what the scalar carries still falls, asked once the value has settled.
+  bool carried_moves() {
+    const bool moves = carried_ > 1e-13 * Carried<T>::size(field_.traction) && carried_ < settled_carried_;
+    settled_carried_ = carried_;
     return moves;
   }
   /// The next value is that of another map: rho has changed.
@@ -98,11 +95,11 @@ class Augmentations {
   const Slots<T>& slots_;
   UzawaAL::Acceleration acceleration_;
   bool settled_ = false, same_map_ = true;
-  double contraction_ = 0, last_update_ = 0, riding_ = 0;
+  double contraction_ = 0, last_update_ = 0, carried_ = 0;
   double inner_error_ = 0;   ///< of the last value, which the inner solve has left
   double least_update_ = 0;  ///< in the present states
   int idle_ = 0;             ///< augmentations since it last fell, to 0.7
-  double settled_riding_ = std::numeric_limits<double>::infinity();
+  double settled_carried_ = std::numeric_limits<double>::infinity();
   Vector<double> update_;
   std::vector<double> violations_, last_violations_;
   std::vector<Secant> secants_;  ///< the last few, of the same map in the same states
@@ -117,7 +114,7 @@ void Augmentations<T>::record(const Vector<T>& multiplier, const ContactField<T>
   const int points = static_cast<int>(model_.points.size());
   settled_ = field.state == field_.state;
   const Vector<T> change = field.traction - multiplier;
-  riding_ = detail::riding(change);
+  carried_ = Carried<T>::size(change);
   const Vector<double> update = values(change);
   const bool undone = update_.size() && update.norm() > 0 && (update + update_).norm() <= 1e-6 * update.norm();
   undone_ = undone ? undone_ + 1 : 0;

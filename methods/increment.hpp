@@ -36,15 +36,14 @@ struct Start {
   double tolerance(double asked) const { return is_step() && rough_step ? std::sqrt(asked) : asked; }
 };
 
-/// An equilibrium as the state that the next increment starts from. `multiplier`: the lambda it was found with.
+/// An equilibrium as the state that the next increment starts from. `at`: its multiplier is the lambda it was found with.
 template <class T, class E>
-State<T> settle(Run<T, E>& run, const ContactInput<T>& input, const Equilibrium<T>& equilibrium,
-                const Vector<T>& previous_dissipation) {
+State<T> settle(Run<T, E>& run, const ContactInput<T>& input, Unknowns<T> at, ContactField<T> field) {
   State<T> state;
-  state.displacement = run.engine.all(equilibrium.at.u);
-  state.multiplier = equilibrium.at.multiplier;
-  state.contact = equilibrium.field;
-  state.dissipation = dissipated(input, equilibrium.field, equilibrium.at.multiplier, previous_dissipation);
+  state.displacement = run.engine.all(at.u);
+  state.multiplier = std::move(at.multiplier);
+  state.contact = std::move(field);
+  state.history = next_history(input, state.contact, state.multiplier);
   return state;
 }
 

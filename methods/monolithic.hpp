@@ -3,7 +3,7 @@
 ///   t = P_mu(lambda + rho g),   R_u = f_int - f_ext + sum A t dg = 0,   R_l = A (t - lambda) = 0
 ///
 ///   rho  scale, force per length cubed: it shapes the path of Newton's method, not the solution
-///   cone augmented: radius -mu t_N;  multiplier: radius -mu lambda_N. Same zeros, another path
+///   cone augmented: radius -mu z_N, z = lambda + rho g;  multiplier: radius -mu lambda_N. Same zeros, another path
 ///
 /// At the solution lambda = t satisfies Signorini and Coulomb to rounding for every rho > 0. The only history is the
 /// slip placement; the last lambda is a mere start value. Options: methods/options.hpp. [AC91], [PC99]
@@ -27,15 +27,15 @@ Increment<T> solve_increment(const MonolithicAL& method, Run<T, E>& run, const S
                              const std::vector<double>&, double time, const Start<T>& start) {
   Increment<T> increment;
   const auto rho = initial_regularisation(run.slots, method);
-  const ContactInput<T> input{run.model, run.slots, rho, previous.contact.placement, cone_radius(method), time};
+  const ContactInput<T> input{run.model, run.slots, rho, previous.history, cone_radius(method), time};
   NewtonOptions options = method.newton;
   options.tolerance = start.tolerance(options.tolerance);
   const EquilibriumTask<T> task{input, Multipliers::unknown, start.anchor, start.resumed(previous)};
-  const auto equilibrium =
+  auto equilibrium =
       newton(run.engine, task, {run.engine.begin(time, start.from.displacement), start.from.contact.traction}, options,
              run.account);
   account_for(increment, equilibrium, 0);
-  increment.state = settle(run, input, equilibrium, previous.dissipation);
+  increment.state = settle(run, input, std::move(equilibrium.at), std::move(equilibrium.field));
   return increment;
 }
 

@@ -94,7 +94,7 @@ std::optional<Solutions<T>> try_all_branches(const M& method, Run<T, E>& run, co
   CondensedEngine<T> engine(run.model, run.slots, false, ConeRadius::augmented, run.condensation);
   const auto initial = initial_regularisation(run.slots, method);
   const auto rho = factor.empty() ? initial : adapted(initial, factor);
-  const ContactInput<T> input{run.model, run.slots, rho, previous.contact.placement, ConeRadius::augmented, time};
+  const ContactInput<T> input{run.model, run.slots, rho, previous.history, ConeRadius::augmented, time};
   const Vector<T> u = engine.begin(time, previous.displacement), stored = stored_traction(run.model, previous);
   const ContactProblem problem =
       contact_problem(input, engine, u, run.condensation->schur(), prevents_penetration(method) ? nullptr : &stored);
@@ -103,7 +103,7 @@ std::optional<Solutions<T>> try_all_branches(const M& method, Run<T, E>& run, co
   Solutions<T> solutions;
   for (const auto& solution : *all) {
     solutions.states.push_back(as_state(input, engine, u, problem, solution));
-    solutions.states.back().dissipation = previous.dissipation;
+    solutions.states.back().history.work = previous.history.work;
   }
   solutions.complete = !has_repeated_constraints(problem);
   solutions.resting = resting_solution(problem, *all);

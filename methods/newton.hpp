@@ -14,6 +14,7 @@
 /// What solves the problems in which it cycles is methods/motion.hpp. [AC91], [HSW08]; theory: core/README.md.
 #pragma once
 
+#include "methods/carried.hpp"
 #include "methods/line_search.hpp"
 #include "methods/newton_stop.hpp"
 #include "methods/newton_tangent.hpp"
@@ -24,13 +25,6 @@ namespace detail {
 
 inline constexpr const char* redundant_message =
     "constraints repeat one another: they share the force, and their sum alone is unique";
-
-/// Iterations after the one that has converged: nothing rides on a double; the oracle's imaginary part follows the real
-/// one an iteration later.
-template <class T>
-constexpr int extra_iterations() {
-  return std::is_same_v<T, double> ? 0 : 3;
-}
 
 template <class T>
 IterationRecord record(const Evaluation<T>& at, const std::vector<ContactState>& before, double step_length) {
@@ -65,7 +59,7 @@ Equilibrium<T> newton(E& engine, const EquilibriumTask<T>& task, Unknowns<T> unk
   const ContactInput<T>& input = task.contact;
   Evaluator<T, E> evaluate(engine, task, account);
   NewtonTangent<T, E> tangent(engine, task, account);
-  NewtonStop stop(options, task.forcing, detail::extra_iterations<T>());
+  NewtonStop stop(options, task.forcing, Carried<T>::newton_iterations);
   Equilibrium<T> result;
   std::vector<ContactState> used;  // states of the last tangent
   ContactField<T> directed;        // field and branches of the last step

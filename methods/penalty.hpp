@@ -68,7 +68,7 @@ std::string unyielding_point(Run<T, E>& run, const ContactInput<T>& found, const
     const T nodal = T(stiff) * run.slots.stiffness[p] / run.slots.geometry[p].area;
     rho.push_back({nodal, nodal / T(stiff * stiff)});  // across the normal a traction stays what it is
   }
-  const ContactInput<T> input{model, run.slots, rho, found.previous_placement, found.cone, found.time};
+  const ContactInput<T> input{model, run.slots, rho, found.previous, found.cone, found.time};
   const auto& traction = equilibrium.field.traction;
   const auto closed = [&](int p) { return model.points[p].tangents > 0 ? ContactState::stick : ContactState::slip; };
   std::vector<ContactState> states = equilibrium.field.state;
@@ -119,7 +119,7 @@ Increment<T> solve_increment(const Penalty& method, Run<T, E>& run, const State<
                              const std::vector<double>&, double time, const Start<T>& start) {
   Increment<T> increment;
   const auto rho = initial_regularisation(run.slots, method);
-  const ContactInput<T> input{run.model, run.slots, rho, previous.contact.placement, cone_radius(method), time};
+  const ContactInput<T> input{run.model, run.slots, rho, previous.history, cone_radius(method), time};
   NewtonOptions options = method.newton;
   options.tolerance = start.tolerance(options.tolerance);
   const EquilibriumTask<T> task{input, Multipliers::given, start.anchor, start.resumed(previous)};
@@ -127,7 +127,7 @@ Increment<T> solve_increment(const Penalty& method, Run<T, E>& run, const State<
       newton(run.engine, task, {run.engine.begin(time, start.from.displacement), stored_traction(run.model, previous)},
              options, run.account);
   account_for(increment, equilibrium, 0);
-  increment.state = settle(run, input, equilibrium, previous.dissipation);
+  increment.state = settle(run, input, equilibrium.at, equilibrium.field);
   if (!is_converged(equilibrium.status) || start.is_step()) return increment;
   const std::string point = detail::unyielding_point(run, input, equilibrium);
   if (point.empty()) return increment;

@@ -164,6 +164,7 @@ State<T> as_state(const ContactInput<T>& input, CondensedEngine<T>& engine, Vect
   state.multiplier = solution.traction.template cast<T>();
   state.contact = evaluate_contact<T>(input, engine.compact(u), state.multiplier, &solution.state);
   state.contact.traction = state.multiplier;
+  state.history.placement = std::move(state.contact.placement);
   return state;
 }
 

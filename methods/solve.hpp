@@ -3,7 +3,7 @@
 /// is its use in double.
 #pragma once
 
-#include <cassert>
+#include <stdexcept>
 
 #include "methods/diagnosis.hpp"
 #include "methods/engine_choice.hpp"
@@ -22,7 +22,7 @@ void count_solutions(const M& method, Run<T, E>& run, const State<T>& previous, 
   if (!all) return;
   for (auto& state : all->states) {
     if (same_solution(run.model, state, increment.state, all->motion)) continue;
-    state.dissipation = increment.state.dissipation;
+    state.history.work = increment.state.history.work;
     increment.others.push_back(std::move(state));
   }
 }
@@ -137,7 +137,7 @@ bool may_have_several(Run<T, E>& run) {
     const RegularisationField<double> rho(model.points.size(), {1, 1});
     const auto start = initial_state<double>(model, run.slots);
     CondensedEngine<double> engine(model, run.slots, false, ConeRadius::augmented, run.condensation);
-    const ContactInput<double> input{model, run.slots, rho, start.contact.placement};
+    const ContactInput<double> input{model, run.slots, rho, start.history};
     const auto u = engine.begin(0, start.displacement);
     return may_have_several(contact_problem<double>(input, engine, u, run.condensation->schur(), nullptr));
   }
@@ -184,12 +184,14 @@ void march(const M& method, const Model& model, const Slots<T>& slots, E& engine
 
 }  // namespace detail
 
-/// Runs a method through a model into an empty trajectory, which grows step by step. pre: the method's options go
-/// together (`conflict`). `model` and `slots` must outlive the workspace's engine.
+/// Runs a method through a model into an empty trajectory, which grows step by step. `model` and `slots` must outlive
+/// the workspace's engine. Throws std::invalid_argument where the method's options do not go together (`conflict`).
 template <class T>
 void solve_in(const Model& model, const Slots<T>& slots, const Method& method, const RunOptions& options,
               Workspace<T>& workspace, Trajectory<T>& trajectory) {
-  assert(std::visit([](const auto& m) { return conflict(m).option.empty(); }, method));
+  const auto [option, reason] = std::visit([](const auto& m) { return conflict(m); }, method);
+  if (!option.empty())
+    throw std::invalid_argument(std::string(name_of(method)) + ": " + std::string(option) + " " + std::string(reason));
   const Stopwatch total(trajectory.seconds.total);
   const bool reused = workspace.condensation != nullptr;
   {

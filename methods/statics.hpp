@@ -51,7 +51,7 @@ RigidStatics rigid_statics(const Model& model, const Slots<T>& slots, double tim
     const auto& point = model.points[p];
     const auto& geometry = slots.geometry[p];
     const auto& law = slots.friction[point.contact];
-    const bool rough = point.tangents > 0 && !law.is_smooth(), has_cone = !rough || law.couples();
+    const bool rough = point.tangents > 0 && !law.bears_nothing(), has_cone = !rough || law.couples();
     const double mu = rough ? value(law.slope_at_apex()) : 0;
     const Vec<double, 2> normal = values(geometry.normal);
     const Vec<double, 2> along = rough ? Vec<double, 2>(values(geometry.tangents.col(0))) : Vec<double, 2>(0, 0);

@@ -170,11 +170,10 @@ class AugmentationLoop {
   Increment<T> solve() {
     while (true) {
       const auto rho = adapted(initial_, increment_.rho_factor);
-      const ContactInput<T> input{run_.model,           run_.slots, rho, previous_.contact.placement,
-                                  cone_radius(method_), time_};
-      const auto equilibrium = balance(input);
+      const ContactInput<T> input{run_.model, run_.slots, rho, previous_.history, cone_radius(method_), time_};
+      auto equilibrium = balance(input);
       if (!is_converged(equilibrium.status) || ends_with(input, equilibrium)) {
-        increment_.state = settle(run_, input, equilibrium, previous_.dissipation);
+        increment_.state = settle(run_, input, std::move(equilibrium.at), std::move(equilibrium.field));
         return std::move(increment_);
       }
       update(equilibrium);
@@ -198,7 +197,7 @@ class AugmentationLoop {
   /// Whether the increment ends with this inner solve, as solved or given up; its status and message then stand.
   bool ends_with(const ContactInput<T>& input, const Equilibrium<T>& equilibrium) {
     if (truncated_ && run_.model.effects.sensitivity)
-      increment_.sweeps.push_back({settle(run_, input, equilibrium, previous_.dissipation), increment_.rho_factor});
+      increment_.augmented.push_back({settle(run_, input, equilibrium.at, equilibrium.field), increment_.rho_factor});
     const double reach = largest_nodal_norm(run_.engine.compact(equilibrium.at.u), run_.model.dimension);
     const double first = equilibrium.history.front().residual, rest = equilibrium.history.back().residual;
     const double noise = equilibrium.status == Status::converged_at_roundoff
@@ -213,7 +212,7 @@ class AugmentationLoop {
     const bool at_limit = increment_.augmentations >= limit_;
     conclude(now_, at_limit, increment_);
     const bool over = now_.done && !equilibrium.rough;
-    return at_limit || (over && (!is_converged(now_.status) || truncated_ || !progress_.derivative_moves()));
+    return at_limit || (over && (!is_converged(now_.status) || truncated_ || !progress_.carried_moves()));
   }
 
   /// lambda <- t, or an extrapolation; rho is adapted.
@@ -241,8 +240,7 @@ class AugmentationLoop {
   const Start<T>& start_;
   double time_;
   const bool truncated_ = method_.sensitivity == UzawaAL::Sensitivity::truncated;
-  /// (the oracle's derivative settles long after its value)
-  const int limit_ = method_.max_augmentations * (std::is_same_v<T, double> || truncated_ ? 1 : 20);
+  const int limit_ = method_.max_augmentations * (truncated_ ? 1 : Carried<T>::augmentations);
   const RegularisationField<T> initial_;
   const RunScales before_;                 ///< without what an extrapolated lambda may overshoot by
   std::span<const ContactState> resumed_;  ///< at the first augmentation

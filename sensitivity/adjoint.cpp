@@ -57,14 +57,13 @@ struct Recording {
   }
 };
 
-DerivativeStorage storage_of(const Recording& recording, const std::vector<Backward>& objectives) {
+DerivativeStorage storage_of(const Recording& recording, const std::vector<Backward>& objectives, long waiting) {
   DerivativeStorage storage;
+  storage.adjoints = waiting;
   storage.slots = slot_bytes(recording.slots).all();
   storage.tape = recording.tape.bytes();
   for (const auto& objective : objectives) {
     storage.adjoints += static_cast<long>(objective.by.capacity() * sizeof(double));
-    for (const auto* pairs : {&objective.weights, &objective.motions})
-      for (const auto& vector : *pairs) storage.adjoints += bytes_of(vector);
   }
   return storage;
 }
@@ -74,13 +73,15 @@ template <class E>
 void pull_back_initial_history(AdjointProblem<E>& problem) {
   if (!problem.model.effects.current_geometry) return;
   problem.tape.rewind(problem.slots_end);
-  const auto initial = initial_state<Reverse>(problem.model, problem.recorded);
+  const auto initial = initial_history<Reverse>(problem.model, problem.recorded);
   for (auto& objective : problem.objectives) {
     objective.by.resize(problem.slots_end);
     objective.by.resize(problem.tape.size(), 0);
-    const auto& placement = initial.contact.placement;
-    for (Eigen::Index i = 0; i < placement.size(); ++i)
-      if (placement[i].at >= 0) objective.by[placement[i].at] += objective.history.placement[i];
+    const auto seed = [&](const Vector<Reverse>& part, const Vector<double>& derivative) {
+      for (Eigen::Index i = 0; i < part.size(); ++i)
+        if (part[i].at >= 0) objective.by[part[i].at] += derivative[i];
+    };
+    for_each_part(seed, initial, objective.history.local);
     problem.tape.pull_back(objective.by, problem.slots_end);
   }
 }
@@ -89,13 +90,14 @@ template <class E, class M>
 bool run(const M& method, AdjointProblem<E>& problem, const Trajectory<double>& trajectory) {
   const Model& model = problem.model;
   for (auto& objective : problem.objectives)
-    objective.history = {Vector<double>::Zero(model.placement_count), Vector<double>::Zero(model.multiplier_count),
-                         Vector<double>::Zero(trajectory.initial.dissipation.size())};
+    objective.history = no_derivative(trajectory.initial.history, model.multiplier_count);
   const auto& increments = trajectory.increments;
   for (std::size_t n = increments.size(); n-- > 0;) {
     const auto& previous = n == 0 ? trajectory.initial : increments[n - 1].state;
     if (!pull_back_increment(method, problem, previous, increments[n])) return false;
+    if (problem.objectives.front().inside.size() >= columns_together) pull_back_inside(problem);
   }
+  pull_back_inside(problem);
   pull_back_initial_history(problem);
   return true;
 }
@@ -160,11 +162,13 @@ Gradients adjoint(const Model& model, const Slots<double>& slots, const Method& 
   std::vector<Backward> objectives(scene.objectives.size());
   for (auto& objective : objectives) objective.by.resize(tape.size(), 0);
   bool done = false;
+  long waiting = 0;
   auto backward = [&](const auto& m, auto& engine) {
     using E = std::decay_t<decltype(engine)>;
     AdjointProblem<E> problem{model, slots, engine, tape, recording.slots, tape.size(), objectives, {}};
     done = run(m, problem, consistent ? *consistent : trajectory);
     tape.rewind(problem.slots_end);
+    waiting = problem.waiting_bytes;
     gradients.counters += problem.counters;
     gradients.message = problem.message;
     if (!done) gradients.status = problem.status;
@@ -172,8 +176,7 @@ Gradients adjoint(const Model& model, const Slots<double>& slots, const Method& 
   std::visit(backward, method, *workspace.engine);
   if (!done) return gradients;
   for (auto& objective : objectives) objective.by.resize(tape.size());
-  pull_back_bodies(model, recording.slots, tape, objectives);
-  gradients.storage = storage_of(recording, objectives);
+  gradients.storage = storage_of(recording, objectives, waiting);
   gradients.of_objectives = Matrix<double>::Zero(objectives.size(), scene.parameters.size());
   for (std::size_t i = 0; i < objectives.size(); ++i) {
     const Vector<double> by = recording.by_numbers(model, objectives[i].by);

@@ -200,11 +200,11 @@ bool differentiate_side(const M& method, Differentiation<E>& problem, const Stat
   auto& block = problem.blocks[0];
   const State<Direction> start = block.previous;
   bool found = true;
-  for (auto& sweep : increment.sweeps) {
+  for (auto& sweep : increment.augmented) {
     Increment<double> alone;
     alone.time = increment.time;
-    alone.sweeps = {sweep};
-    auto& only = alone.sweeps[0];
+    alone.augmented = {sweep};
+    auto& only = alone.augmented[0];
     found = search(alone, only.state, only.rho_factor);
     if (!found) break;
     sweep = std::move(only);

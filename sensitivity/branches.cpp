@@ -34,6 +34,7 @@ double negligible(const Model& model, const Slots<double>& slots, const Paramete
   double size = along.parameter > 0 ? along.largest_so_far / along.parameter : 0, reach = 0;
   for (const auto& u : block.current.displacement) reach = std::max(reach, std::abs(u.d[0]));
   const auto& now = block.current.contact;
+  const auto& placement = block.current.history.placement;
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     const auto& point = model.points[p];
     const double elastic = elastic_traction(slots, p);
@@ -41,7 +42,7 @@ double negligible(const Model& model, const Slots<double>& slots, const Paramete
     size = std::max({size, elastic * std::abs(now.gap[p].d[0]), rigid * elastic * reach});
     for (int c = 0; c < point.components(); ++c)
       size = std::max(size, std::abs(now.traction[point.multiplier + c].d[0]));
-    for (int a = 0; a < point.tangents; ++a) size = std::max(size, elastic * std::abs(now.placement[offset + a].d[0]));
+    for (int a = 0; a < point.tangents; ++a) size = std::max(size, elastic * std::abs(placement[offset + a].d[0]));
   }
   return std::max(share, roundings * unit_roundoff * multiple) * size;
 }
@@ -110,7 +111,7 @@ double traction_scale(const Model& model, const Slots<double>& slots, const Stat
     largest = std::max({largest, -state.contact.traction[model.points[p].multiplier],
                         elastic * std::abs(state.contact.gap[p] - slots.geometry[p].gap)});
     const int offset = tangential_offset(model, static_cast<int>(p));
-    largest = std::max(largest, elastic * state.contact.placement.segment(offset, model.points[p].tangents).norm());
+    largest = std::max(largest, elastic * state.history.placement.segment(offset, model.points[p].tangents).norm());
   }
   return largest;
 }
@@ -128,7 +129,7 @@ std::vector<WeakPoint> weak_points(const Model& model, const Slots<double>& slot
     const bool at_apex = point.tangents > 0 && elastic / rho[p].tangential * tangential <= negligible;
     const auto& law = slots.friction[point.contact];
     if (open ? elastic / rho[p].normal * z[0] <= negligible : -z[0] <= negligible) {
-      weak.push_back({p, at_apex && law.slope_at_apex() > 0 && !law.is_smooth() ? Tie::apex : Tie::opens});
+      weak.push_back({p, at_apex && law.slope_at_apex() > 0 && !law.bears_nothing() ? Tie::apex : Tie::opens});
       continue;
     }
     if (open || point.tangents == 0) continue;

@@ -33,7 +33,7 @@ class LinearisedEquilibrium {
   /// `unknown`: lambda is part of p.
   LinearisedEquilibrium(Differentiation<E>& problem, const State<double>& at, const RegularisationField<double>& rho,
                         std::vector<RegularisationField<Direction>> rho_blocks, ConeRadius cone, double time,
-                        bool unknown, const Vector<double>& previous_placement);
+                        bool unknown, const History<double>& previous);
 
   bool valid() const { return valid_; }
   /// Solves for the derivative given D lambda (per block; read as a seed, also where lambda is unknown: then zero).
@@ -49,7 +49,7 @@ class LinearisedEquilibrium {
   Vector<double> reach() const {
     const Matrix<double> then = gather(
         problem_.blocks,
-        problem_.parameters, [&](auto& block, int) -> auto& { return block.previous.contact.placement; });
+        problem_.parameters, [&](auto& block, int) -> auto& { return block.previous.history.placement; });
     return largest(compact_).cwiseMax(largest(then));
   }
   Vector<double> load() const { return largest(load_.reduced); }
@@ -72,7 +72,7 @@ class LinearisedEquilibrium {
     return {problem_.model,
             problem_.blocks[block].slots,
             rho_blocks_[block],
-            problem_.blocks[block].previous.contact.placement,
+            problem_.blocks[block].previous.history,
             cone_,
             time_};
   }
@@ -96,9 +96,9 @@ template <class E>
 LinearisedEquilibrium<E>::LinearisedEquilibrium(Differentiation<E>& problem, const State<double>& at,
                                                 const RegularisationField<double>& rho,
                                                 std::vector<RegularisationField<Direction>> rho_blocks, ConeRadius cone,
-                                                double time, bool unknown, const Vector<double>& previous_placement)
+                                                double time, bool unknown, const History<double>& previous)
     : problem_(problem),
-      primal_{problem.model, problem.slots, rho, previous_placement, cone, time},
+      primal_{problem.model, problem.slots, rho, previous, cone, time},
       at_(at),
       rho_blocks_(std::move(rho_blocks)),
       rho_(rho),
@@ -216,8 +216,7 @@ void LinearisedEquilibrium<E>::settle(const std::vector<ContactField<Direction>>
     auto& block = problem_.blocks[b];
     block.current.multiplier = lambda[b];
     block.current.contact = fields[b];
-    block.current.dissipation =
-        dissipated(input(static_cast<int>(b)), fields[b], lambda[b], block.previous.dissipation);
+    block.current.history = next_history(input(static_cast<int>(b)), block.current.contact, lambda[b]);
   }
   problem_.unexpanded = {std::move(load_), increment_};
 }

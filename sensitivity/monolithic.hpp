@@ -16,7 +16,7 @@ bool differentiate_increment(const MonolithicAL& method, Differentiation<E>& pro
   const auto rho = initial_regularisation(problem.slots, method);
   std::vector<Vector<Direction>> lambda(problem.blocks.size(), lift(increment.state.multiplier));
   LinearisedEquilibrium<E> linearised(problem, increment.state, rho, regularisation_blocks(method, problem),
-                                      cone_radius(method), increment.time, true, previous.contact.placement);
+                                      cone_radius(method), increment.time, true, previous.history);
   if (!linearised.valid()) return false;
   std::vector<ContactField<Direction>> fields;
   if (!linearised.solve(lambda, fields)) return false;

@@ -54,7 +54,7 @@ bool has_ties_of(const M& method, const Model& model, const Slots<double>& slots
     return !weak_points(model, slots, at, detail::own_rho(method, slots, factor), cone_radius(method), largest).empty();
   };
   if (!detail::is_truncated(method)) return weak(increment.state, increment.rho_factor);
-  return std::any_of(increment.sweeps.begin(), increment.sweeps.end(),
+  return std::any_of(increment.augmented.begin(), increment.augmented.end(),
                      [&](const auto& sweep) { return weak(sweep.state, sweep.rho_factor); });
 }
 
@@ -247,7 +247,7 @@ std::optional<Trajectory<double>> consistent_at_ties(const Model& model, const S
     SideRun run(m, model, slots, engine, trajectory, make_slots<Direction>(model, all_growing(model.scene)), 1);
     const auto take = [&](std::size_t n, Increment<double>& increment) {
       consistent.increments[n].state.contact = increment.state.contact;
-      consistent.increments[n].sweeps = std::move(increment.sweeps);
+      consistent.increments[n].augmented = std::move(increment.augmented);
     };
     run.run(0, trajectory.increments.size(), 1, take, true);
     counters += run.counters;

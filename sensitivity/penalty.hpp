@@ -17,7 +17,7 @@ bool differentiate_increment(const Penalty& method, Differentiation<E>& problem,
   std::vector<Vector<Direction>> lambda;
   for (auto& block : problem.blocks) lambda.push_back(stored_traction(problem.model, block.previous));
   LinearisedEquilibrium<E> linearised(problem, increment.state, rho, regularisation_blocks(method, problem),
-                                      ConeRadius::augmented, increment.time, false, previous.contact.placement);
+                                      ConeRadius::augmented, increment.time, false, previous.history);
   if (!linearised.valid()) return false;
   std::vector<ContactField<Direction>> fields;
   if (!linearised.solve(lambda, fields)) return false;

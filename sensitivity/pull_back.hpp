@@ -7,8 +7,9 @@
 ///   K^T a = -c,      DJ += a . dR/dslots      history <- a . dR/dhistory
 ///
 /// where a is the force's weight along free dofs and -dJ/d(reaction) along prescribed ones, which then need no case of
-/// their own. The bodies' share of a . dR/dslots is collected as pairs (a, u) and taken at the end, for all increments
-/// in one visit of each element. The schemes differ in what becomes of the derivative by lambda.
+/// their own. An increment solves for a at the contact, in the engine's unknowns; a inside the bodies, and what it
+/// weighs there, is found for many increments together (sensitivity/pull_back_bodies.hpp). The schemes differ in what
+/// becomes of the derivative by lambda.
 /// Path-dependent adjoint: [MTV94]
 #pragma once
 
@@ -21,14 +22,29 @@ namespace stickslip {
 
 /// Derivatives of an objective by what the next increment reads of a state.
 struct HistoryDerivative {
-  Vector<double> placement, traction, dissipation;
+  History<double> local;
+  Vector<double> traction;
+};
+inline HistoryDerivative no_derivative(const History<double>& like, Eigen::Index traction) {
+  HistoryDerivative none{like, Vector<double>::Zero(traction)};
+  for_each_part([](Vector<double>& part) { part.setZero(); }, none.local);
+  return none;
+}
+
+/// What an equilibrium leaves to be done inside the bodies.
+struct Inside {
+  Vector<double> motion;  ///< u, all dofs in the axes
+  double time = 0;
+  Vector<double> forces;         ///< of bodies and contact, all dofs; empty where no node has a frame of its own
+  Vector<double> weights;        ///< a of what the objective reads of the bodies' forces, all dofs in the axes
+  Matrix<double> u, c, reduced;  ///< engine increment that -c belongs to; c over all dofs, in the frames, and reduced
 };
 
 /// One objective on its way back.
 struct Backward {
   std::vector<double> by;  ///< derivative by each entry of the tape
   HistoryDerivative history;
-  std::vector<Vector<double>> weights, motions;  ///< pairs (a, u), all dofs in the axes
+  std::vector<Inside> inside;  ///< of the increments that wait
 };
 
 /// Everything a scheme reads to take one increment back.
@@ -41,6 +57,7 @@ struct AdjointProblem {
   const Slots<Reverse>& recorded;
   int slots_end = 0;  ///< on the tape
   std::vector<Backward>& objectives;
+  long waiting_bytes = 0;  ///< largest, of what waited inside the bodies
   Counters counters;
   Status status = Status::singular;  ///< why a scheme gave up
   std::string message;
@@ -68,7 +85,7 @@ class RecordedEquilibrium {
   /// Largest derivative by a nodal force, of those that were added up on the way.
   double force_weight(int objective) const {
     const auto largest = [](const auto& m) { return m.size() ? m.cwiseAbs().maxCoeff() : 0.0; };
-    return std::max(largest(weights_[objective]), largest(aside_[objective].solution.u));
+    return std::max(largest(inside_[objective].weights), largest(inside_[objective].u));
   }
   /// All that an objective has gathered so far, to go back to it.
   struct Gathered;
@@ -82,15 +99,9 @@ class RecordedEquilibrium {
   void record(const State<double>& previous, const RegularisationField<Reverse>& rho, ConeRadius cone, double time,
               bool objectives);
   Vector<double> pull_back(int objective);
-  void pull_back_bodies(int objective, const Vector<double>& weight);
   void clear_free(int objective);
-  /// An increment in engine layout that -c belongs to: c over all dofs, in the frames, and in engine rows.
-  struct Solution {
-    Matrix<double> u, c, reduced;
-  };
-  template <class Which>
-  void seed_rows(int objective, const Solution& solution, Which&& which);
-  void put_aside(int objective, const Solution& solution);
+  void seed_contact(int objective, const BlockVector<double>& solution);
+  void clear_held(Matrix<double>& rows);
   std::vector<double>& by(int objective) { return problem_.objectives[objective].by; }
   Vector<double> gather(int objective, const Vector<Reverse>& at);
   static void seed(std::vector<double>& by, const Vector<Reverse>& at, const Vector<double>& derivative) {
@@ -103,23 +114,18 @@ class RecordedEquilibrium {
   Vector<double> scale_;  ///< rho of each multiplier component
   bool unknown_, valid_ = false, redundant_ = false;
   int outcome_start_ = 0;  ///< on the tape: behind it, functions of the variables below
-  Vector<Reverse> prescribed_, displacement_, internal_, multiplier_, placement_, dissipation_;
+  Vector<Reverse> prescribed_, displacement_, internal_, multiplier_;
+  History<Reverse> history_;  ///< that the increment starts from
   State<Reverse> state_;
   Vector<Reverse> rows_, multiplier_rows_;  ///< residual, in the frames of the nodes
   std::vector<Reverse> shares_;             ///< of this increment in each objective
-  std::vector<Vector<double>> weights_;     ///< per objective: a, gathered
-  struct Aside {
-    Vector<double> bodies;  ///< weights of the bodies' forces, still to be moved to what is prescribed
-    Solution solution;
-  };
-  std::vector<Aside> aside_;  ///< per objective, where lambda is given
+  std::vector<Inside> inside_;              ///< per objective
 };
 
 template <class E>
 struct RecordedEquilibrium<E>::Gathered {
   std::vector<double> by;
-  Vector<double> weights;
-  Aside aside;
+  Inside inside;
 };
 
 template <class E>
@@ -128,20 +134,24 @@ RecordedEquilibrium<E>::RecordedEquilibrium(AdjointProblem<E>& problem, const St
                                             ConeRadius cone, double time, bool unknown, bool objectives)
     : problem_(problem), at_(at), scale_(problem.model.multiplier_count), unknown_(unknown) {
   const Model& model = problem.model;
-  RegularisationField<double> values;
-  for (const auto& r : rho) values.push_back({r.normal.v, r.tangential.v});
+  RegularisationField<double> plain;
+  for (const auto& r : rho) plain.push_back({r.normal.v, r.tangential.v});
   for (std::size_t p = 0; p < model.points.size(); ++p)
     for (int c = 0; c < model.points[p].components(); ++c)
-      scale_[model.points[p].multiplier + c] = c == 0 ? values[p].normal : values[p].tangential;
-  const ContactInput<double> input{model, problem.slots, values, previous.contact.placement, cone, time};
+      scale_[model.points[p].multiplier + c] = c == 0 ? plain[p].normal : plain[p].tangential;
+  const ContactInput<double> input{model, problem.slots, plain, previous.history, cone, time};
   valid_ = factorise_converged(problem, input, at, unknown, redundant_);
   if (!valid_) return;
   record(previous, rho, cone, time, objectives);
+  Vector<double> forces;
+  if (!model.framed.empty()) {
+    forces = values(internal_);
+    add_compact(model, values(contact_forces(model, problem.recorded, state_.contact)), forces);
+  }
   for (auto& objective : problem.objectives) {
     objective.by.resize(problem.slots_end);
     objective.by.resize(problem.tape.size(), 0);
-    weights_.push_back(Vector<double>::Zero(model.dof_count()));
-    aside_.push_back({weights_.back(), {}});
+    inside_.push_back({at.displacement, time, forces, Vector<double>::Zero(model.dof_count()), {}, {}, {}});
   }
 }
 
@@ -157,15 +167,15 @@ void RecordedEquilibrium<E>::record(const State<double>& previous, const Regular
   displacement_ = leaves(at_.displacement, tape);
   internal_ = leaves(bulk_forces(model, problem_.slots, at_.displacement), tape);
   multiplier_ = leaves(at_.multiplier, tape);
-  placement_ = leaves(previous.contact.placement, tape);
-  dissipation_ = leaves(previous.dissipation, tape);
-  const ContactInput<Reverse> input{model, slots, rho, placement_, cone, time};
+  for_each_part([&](const Vector<double>& values, Vector<Reverse>& part) { part = leaves(values, tape); },
+                previous.history, history_);
+  const ContactInput<Reverse> input{model, slots, rho, history_, cone, time};
   state_.displacement = displacement_;
   state_.multiplier = multiplier_;
   state_.contact = evaluate_contact<Reverse>(input, to_compact(model, displacement_), multiplier_, &at_.contact.state);
   problem_.counters.contact_evaluations += static_cast<long>(model.points.size());
   take_rays(input, multiplier_, at_.contact.ray, state_.contact);
-  state_.dissipation = dissipated(input, state_.contact, multiplier_, dissipation_);
+  state_.history = next_history(input, state_.contact, multiplier_);
   const Vector<Reverse> balance = nodal_balance(model, slots, state_, internal_, time);
   rows_ = into_frames(model, slots.frames, Layout::all, balance);
   if (unknown_) multiplier_rows_ = multiplier_residual(model, slots, state_.contact.traction, multiplier_);
@@ -187,9 +197,10 @@ template <class E>
 void RecordedEquilibrium<E>::seed_outcome(int objective) {
   if (!shares_.empty() && shares_[objective].at >= 0) by(objective)[shares_[objective].at] += 1;
   const auto& history = problem_.objectives[objective].history;
-  seed(by(objective), state_.contact.placement, history.placement);
   seed(by(objective), state_.contact.traction, history.traction);
-  seed(by(objective), state_.dissipation, history.dissipation);
+  for_each_part(
+      [&](const Vector<Reverse>& part, const Vector<double>& derivative) { seed(by(objective), part, derivative); },
+      state_.history, history.local);
 }
 
 template <class E>
@@ -203,15 +214,7 @@ Vector<double> RecordedEquilibrium<E>::pull_back(int objective) {
   problem_.tape.pull_back(by(objective), outcome_start_);
   const Vector<double> weight = gather(objective, internal_);
   for (const auto& x : internal_) by(objective)[x.at] = 0;
-  weights_[objective] += weight;
   return weight;
-}
-
-/// Moves weights of the bodies' forces to the displacement: their tangent is symmetric.
-template <class E>
-void RecordedEquilibrium<E>::pull_back_bodies(int objective, const Vector<double>& weight) {
-  if (weight.size() > 0 && weight.cwiseAbs().maxCoeff() > 0)
-    seed(by(objective), displacement_, bulk_tangent_times(problem_.model, problem_.slots, at_.displacement, weight));
 }
 
 /// A solve took the derivative by the free displacements up.
@@ -225,41 +228,14 @@ void RecordedEquilibrium<E>::clear_free(int objective) {
 }
 
 template <class E>
-void RecordedEquilibrium<E>::balance(int objective) {
-  const Model& model = problem_.model;
-  pull_back_bodies(objective, pull_back(objective));
-  double first = 0;
-  for (int pass = 0; pass <= refinements; ++pass) {
-    const Matrix<double> c = into_frames(model, problem_.slots.frames, Layout::all, gather(objective, displacement_));
-    Matrix<double> l = Matrix<double>::Zero(model.multiplier_count, 1);
-    if (unknown_) l = gather(objective, multiplier_).cwiseProduct(scale_);
-    double size = l.size() ? l.cwiseAbs().maxCoeff() : 0;
-    for (int dof : model.free_dofs) size = std::max(size, std::abs(c(dof, 0)));
-    if (pass == 0) first = size;
-    if (size == 0 || (pass > 0 && !redundant_ && size <= 1e-13 * first)) return;
-    const Matrix<double> reduced = problem_.engine.reduce(c);
-    const auto a = problem_.engine.solve({-reduced, -l}, Solving::transposed);
-    ++problem_.counters.sensitivity_backsolves;
-    if (!unknown_) return put_aside(objective, {a.u, c, reduced});
-    seed_rows(objective, {a.u, c, reduced}, [](int) { return true; });
-    seed(by(objective), multiplier_rows_, a.l);
-    pull_back_bodies(objective, pull_back(objective));
-  }
+void RecordedEquilibrium<E>::clear_held(Matrix<double>& rows) {
+  for (Eigen::Index i = 0; i < rows.rows(); ++i)
+    if (!problem_.engine.is_free(i)) rows.row(i).setZero();
 }
 
-/// Seeds the rows of free dofs with a solution.
+/// Moves the weights that a solution gives the rows of the contact; the bodies' share in them waits.
 template <class E>
-template <class Which>
-void RecordedEquilibrium<E>::seed_rows(int objective, const Solution& solution, Which&& which) {
-  const Vector<double> all = problem_.engine.expand(solution.u, -solution.c, -solution.reduced);
-  const Vector<double> weight = into_frames(problem_.model, problem_.slots.frames, Layout::all, all);
-  for (int dof : problem_.model.free_dofs)
-    if (which(dof / problem_.model.dimension)) by(objective)[rows_[dof].at] += weight[dof];
-}
-
-/// Where lambda is given, it only feels the solution at the contact nodes; the rest is added up for finish().
-template <class E>
-void RecordedEquilibrium<E>::put_aside(int objective, const Solution& solution) {
+void RecordedEquilibrium<E>::seed_contact(int objective, const BlockVector<double>& solution) {
   const Model& model = problem_.model;
   const int D = model.dimension;
   const Vector<double> compact = into_frames(model, problem_.slots.frames, Layout::compact,
@@ -268,13 +244,49 @@ void RecordedEquilibrium<E>::put_aside(int objective, const Solution& solution) 
     for (int i = 0; i < D; ++i)
       if (const int dof = model.contact_nodes[n] * D + i; model.free_index[dof] >= 0)
         by(objective)[rows_[dof].at] += compact[n * D + i];
-  auto& aside = aside_[objective];
-  aside.bodies += pull_back(objective);
-  const auto add = [](Matrix<double>& sum, const Matrix<double>& x) { sum = sum.size() ? Matrix<double>(sum + x) : x; };
-  add(aside.solution.u, solution.u);
-  add(aside.solution.c, solution.c);
-  add(aside.solution.reduced, solution.reduced);
+  if (unknown_) seed(by(objective), multiplier_rows_, solution.l.col(0));
+  pull_back(objective);
+}
+
+template <class E>
+void RecordedEquilibrium<E>::balance(int objective) {
+  const Model& model = problem_.model;
+  auto& inside = inside_[objective];
+  const Vector<double> weight = pull_back(objective);
+  if (weight.size() > 0 && weight.cwiseAbs().maxCoeff() > 0) {  // (the bodies' tangent is symmetric)
+    inside.weights += weight;
+    seed(by(objective), displacement_, bulk_tangent_times(model, problem_.slots, at_.displacement, weight));
+  }
+  const auto in_frames = [&] {
+    return Matrix<double>(into_frames(model, problem_.slots.frames, Layout::all, gather(objective, displacement_)));
+  };
+  const auto of_multiplier = [&]() -> Matrix<double> {
+    if (!unknown_) return Matrix<double>::Zero(model.multiplier_count, 1);
+    return gather(objective, multiplier_).cwiseProduct(scale_);
+  };
+  const auto largest = [](const Matrix<double>& m) { return m.size() ? m.cwiseAbs().maxCoeff() : 0.0; };
+  const Matrix<double> c = in_frames(), reduced = problem_.engine.reduce(c);
   clear_free(objective);
+  Matrix<double> rows = reduced, rows_l = of_multiplier(), u = Matrix<double>::Zero(reduced.rows(), 1);
+  clear_held(rows);
+  const double first = std::max(largest(rows), largest(rows_l));
+  for (int pass = 0; pass <= refinements && first > 0; ++pass) {
+    if (pass > 0 && !redundant_ && std::max(largest(rows), largest(rows_l)) <= 1e-13 * first) break;
+    const auto a = problem_.engine.solve({-rows, -rows_l}, Solving::transposed);
+    ++problem_.counters.sensitivity_backsolves;
+    u += a.u;
+    seed_contact(objective, a);
+    if (!unknown_) break;
+    rows = reduced + problem_.engine.apply_stiffness(u) +
+           problem_.engine.scatter(to_compact<double>(model, in_frames().col(0)));
+    clear_held(rows);
+    rows_l = of_multiplier();
+  }
+  clear_free(objective);
+  const auto add = [](Matrix<double>& sum, const Matrix<double>& x) { sum = sum.size() ? Matrix<double>(sum + x) : x; };
+  add(inside.u, u);
+  add(inside.c, c);
+  add(inside.reduced, reduced);
 }
 
 template <class E>
@@ -286,33 +298,23 @@ Vector<double> RecordedEquilibrium<E>::take_multiplier(int objective) {
 
 template <class E>
 typename RecordedEquilibrium<E>::Gathered RecordedEquilibrium<E>::gathered(int objective) const {
-  return {problem_.objectives[objective].by, weights_[objective], aside_[objective]};
+  return {problem_.objectives[objective].by, inside_[objective]};
 }
 
 template <class E>
 void RecordedEquilibrium<E>::restore(int objective, const Gathered& gathered) {
   by(objective) = gathered.by;
-  weights_[objective] = gathered.weights;
-  aside_[objective] = gathered.aside;
+  inside_[objective] = gathered.inside;
 }
 
 template <class E>
 HistoryDerivative RecordedEquilibrium<E>::finish(int objective) {
-  auto& aside = aside_[objective];
-  if (aside.solution.u.size()) {
-    const auto& nodes = problem_.model.contact_nodes;
-    seed_rows(objective, aside.solution,
-              [&](int node) { return !std::binary_search(nodes.begin(), nodes.end(), node); });
-    aside.bodies += pull_back(objective);
-    pull_back_bodies(objective, aside.bodies);
-    clear_free(objective);
-  }
   seed(by(objective), prescribed_, gather(objective, displacement_));
-  const HistoryDerivative history{gather(objective, placement_), Vector<double>::Zero(scale_.size()),
-                                  gather(objective, dissipation_)};
+  HistoryDerivative history{{}, Vector<double>::Zero(scale_.size())};
+  for_each_part([&](Vector<double>& part, const Vector<Reverse>& of) { part = gather(objective, of); }, history.local,
+                history_);
   problem_.tape.pull_back(by(objective), problem_.slots_end);
-  problem_.objectives[objective].weights.push_back(weights_[objective]);
-  problem_.objectives[objective].motions.push_back(at_.displacement);
+  problem_.objectives[objective].inside.push_back(std::move(inside_[objective]));
   return history;
 }
 

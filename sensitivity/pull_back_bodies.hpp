@@ -1,16 +1,123 @@
-/// The bodies' share of a gradient: sum over the increments of a . df(u)/dslots, f the bodies' forces; where these are
-/// K u, for all increments in one visit of each element.
+/// What an adjoint leaves to be done inside the bodies, for many increments together: a inside, out of its values at
+/// the contact in one solve; what it weighs of the loads there and of the motion that is prescribed; and the bodies'
+/// share of the gradient, sum of a . df(u)/dslots, f the bodies' forces, in one visit of each element.
 #pragma once
 
-#include "core/algebra/reverse.hpp"
-#include "core/model/slots.hpp"
+#include "core/model/storage.hpp"
 #include "sensitivity/pull_back.hpp"
 
 namespace stickslip {
 
-/// Adds to each objective's derivatives by the entries of the tape, `Backward::by`, what its pairs (a, u) give. An
-/// element of a continuum is differentiated forward by its own inputs (coordinates, law, thickness), which are few, and
-/// the chain goes on from there; one of two nodes is recorded behind what `tape` holds, and taken off again.
-void pull_back_bodies(const Model& model, const Slots<Reverse>& slots, Tape& tape, std::vector<Backward>& objectives);
+/// Weights a and motions u of an objective, a column an increment, all dofs in the axes.
+struct WorkPairs {
+  Matrix<double> weights, motions;
+};
+
+/// Adds to the derivatives by the entries of the tape, `by`, what the pairs give. An element of a continuum is
+/// differentiated by its own inputs, which are few (core/solids/element_work.hpp), and the chain goes on from there;
+/// one of two nodes is recorded behind what `tape` holds, and taken off again.
+void pull_back_bodies(const Model& model, const Slots<Reverse>& slots, Tape& tape, const WorkPairs& pairs,
+                      std::vector<double>& by);
+
+namespace detail {
+
+/// Elements with a dof that is prescribed.
+inline ElementLists elements_at_supports(const Model& model) {
+  const int D = model.dimension;
+  ElementLists lists(model.bodies.size());
+  for (std::size_t b = 0; b < lists.size(); ++b)
+    for (int e = 0; e < model.bodies[b].mesh.element_count(); ++e) {
+      const auto nodes = element_nodes(model.bodies[b], e);
+      const auto is_held = [&](int node) {
+        for (int i = 0; i < D; ++i)
+          if (model.free_index[node * D + i] < 0) return true;
+        return false;
+      };
+      if (std::any_of(nodes.begin(), nodes.end(), is_held)) lists[b].push_back(e);
+    }
+  return lists;
+}
+
+/// a of the waiting equilibria over all dofs in the axes, zero where motion is prescribed.
+template <class E>
+Matrix<double> weights_inside(AdjointProblem<E>& problem, const std::vector<Inside>& waiting) {
+  const Model& model = problem.model;
+  const auto count = static_cast<Eigen::Index>(waiting.size());
+  const auto join = [&](Matrix<double> Inside::*part) {
+    Matrix<double> all((waiting[0].*part).rows(), count);
+    for (Eigen::Index n = 0; n < count; ++n) all.col(n) = waiting[n].*part;
+    return all;
+  };
+  Matrix<double> all = problem.engine.expand(join(&Inside::u), -join(&Inside::c), -join(&Inside::reduced));
+  for (Eigen::Index n = 0; n < count; ++n) {
+    Vector<double> a = into_frames(model, problem.slots.frames, Layout::all, Vector<double>(all.col(n)));
+    for (Eigen::Index dof = 0; dof < a.size(); ++dof)
+      if (model.free_index[dof] < 0) a[dof] = 0;
+    all.col(n) = out_of_frames(model, problem.slots.frames, Layout::all, std::move(a));
+  }
+  return all;
+}
+
+/// Moves weights `a` (all dofs, in the axes) inside the bodies to loads, frames and prescribed motion.
+template <class E>
+void pull_back_loads(AdjointProblem<E>& problem, const Inside& of, const Vector<double>& a,
+                     const ElementLists& at_supports, std::vector<double>& by) {
+  const Model& model = problem.model;
+  const auto& slots = problem.recorded;
+  Tape& tape = problem.tape;
+  tape.rewind(problem.slots_end);
+  const auto constant = [](double x) { return Reverse(x); };
+  Vector<Reverse> prescribed = of.motion.unaryExpr(constant);
+  prescribe(model, slots, of.time, prescribed);
+  Vector<Reverse> rows = -external_forces(model, slots, of.time);
+  if (of.forces.size() > 0) rows += of.forces.unaryExpr(constant);
+  rows = into_frames(model, slots.frames, Layout::all, std::move(rows));
+  by.resize(problem.slots_end);
+  by.resize(tape.size(), 0);
+  const auto seed = [&](const Reverse& x, double derivative) {
+    if (x.at >= 0) by[x.at] += derivative;
+  };
+  const Vector<double> weight = into_frames(model, problem.slots.frames, Layout::all, a);
+  std::vector<char> touches(model.node_count, 0);
+  for (int node : model.contact_nodes) touches[node] = 1;
+  for (int dof : model.free_dofs)
+    if (!touches[dof / model.dimension]) seed(rows[dof], weight[dof]);
+  Vector<double> held = into_frames(model, problem.slots.frames, Layout::all,
+                                    bulk_tangent_times(model, problem.slots, of.motion, a, &at_supports));
+  for (int dof : model.free_dofs) held[dof] = 0;
+  held = out_of_frames(model, problem.slots.frames, Layout::all, std::move(held));
+  for (Eigen::Index i = 0; i < held.size(); ++i) seed(prescribed[i], held[i]);
+  tape.pull_back(by, problem.slots_end);
+}
+
+}  // namespace detail
+
+/// Does what waits inside the bodies.
+template <class E>
+void pull_back_inside(AdjointProblem<E>& problem) {
+  const auto at_supports = detail::elements_at_supports(problem.model);
+  long waiting = 0;
+  for (const auto& objective : problem.objectives)
+    for (const auto& of : objective.inside)
+      waiting += bytes_of(of.motion) + bytes_of(of.forces) + bytes_of(of.weights) + bytes_of(of.u) + bytes_of(of.c) +
+                 bytes_of(of.reduced);
+  problem.waiting_bytes = std::max(problem.waiting_bytes, waiting);
+  for (auto& objective : problem.objectives) {
+    auto& waiting = objective.inside;
+    if (waiting.empty()) continue;
+    WorkPairs pairs{detail::weights_inside(problem, waiting), {}};
+    pairs.motions.resize(pairs.weights.rows(), pairs.weights.cols());
+    for (std::size_t n = 0; n < waiting.size(); ++n) {
+      const auto k = static_cast<Eigen::Index>(n);
+      detail::pull_back_loads(problem, waiting[n], pairs.weights.col(k), at_supports, objective.by);
+      pairs.weights.col(k) += waiting[n].weights;
+      pairs.motions.col(k) = waiting[n].motion;
+    }
+    problem.tape.rewind(problem.slots_end);
+    objective.by.resize(problem.slots_end);
+    pull_back_bodies(problem.model, problem.recorded, problem.tape, pairs, objective.by);
+    waiting.clear();
+  }
+}
 
 }  // namespace stickslip

@@ -24,7 +24,7 @@ namespace detail {
 template <class T, int Tangents>
 Traction<T, Tangents> traction_on_ray(const Traction<T, Tangents>& z, const Vector<double>& ray,
                                       const FrictionLaw<T>& friction) {
-  const bool line = friction.is_smooth();
+  const bool line = friction.bears_nothing();
   const T slope = friction.slope_at_apex();
   auto moved = [](const T& x, double to) { return x + T(to - value(x)); };
   Traction<T, Tangents> trial;
@@ -32,7 +32,7 @@ Traction<T, Tangents> traction_on_ray(const Traction<T, Tangents>& z, const Vect
   for (int a = 0; a < Tangents; ++a) trial.tangential[a] = moved(z.tangential[a], ray[1 + a]);
   const T bound =
       line ? friction.bound(T(-z.normal), friction.piece(-value(z.normal))) : T(T(-value(slope)) * trial.normal);
-  auto t = project_coulomb(trial, bound, ContactState::slip);
+  auto t = project_onto_cone(trial, bound, ContactState::slip);
   t.normal = z.normal;
   for (int a = 0; a < Tangents; ++a) t.tangential[a] = moved(t.tangential[a], 0);
   return t;
@@ -75,7 +75,7 @@ inline Vector<double> multiplier_on_rays(const ContactInput<double>& input, cons
     for (int a = 0; a < point.tangents; ++a) g[1 + a] = input.rho[p].tangential * at.contact.slip[offset + a];
     const double size =
         std::max(g.cwiseAbs().maxCoeff(), multiplier.segment(k, point.components()).cwiseAbs().maxCoeff());
-    const bool line = input.slots.friction[point.contact].is_smooth();
+    const bool line = input.slots.friction[point.contact].bears_nothing();
     for (int c = line ? 1 : 0; c < point.components(); ++c)
       multiplier[k + c] = (size > 0 ? size : 1) * ray[k + c] - g[c];
   }

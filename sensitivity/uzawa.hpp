@@ -4,12 +4,11 @@
 ///                   factorisation, a back-solve a parameter and pass, until settled: error q^m, q the contraction of
 ///                   the updates
 ///   truncated       (piggyback) one pass per augmentation that was performed, with its own tangent: the exact
-///   derivative
-///                   of the truncated algorithm, for a loop that was cut off or stopped at a coarse tolerance
+///                   derivative of the truncated algorithm, for a loop that was cut off or stopped at a coarse
+///                   tolerance
 ///   oversized       one pass with kappa_s rho in place of rho, states frozen: error O(1/kappa_s), no iteration [SZ00]
-///   preconditioned  the iterated scheme with kappa_s rho in place of rho: the
-///   fixed point is that of rho, for it is
-///                   Dg = 0 and D t_T = D(bound m), where rho stands nowhere; the error shrinks by
+///   preconditioned  the iterated scheme with kappa_s rho in place of rho. Its fixed point is that of rho: Dg = 0 and
+///                   D t_T = D(bound m) hold there, and rho stands in neither. The error shrinks by
 ///                   1 / (1 + kappa_s rho s_min) a pass, so that four to six passes reach rounding whatever q was
 ///
 /// kappa_s is `oversize`. Automatic it is 1e3 for the oversized scheme. The preconditioned one takes q / (1 - q) /
@@ -20,7 +19,7 @@
 ///
 /// All carry D lambda of the last increment in as D lambda^0. Adjoint: the same maps transposed. The derivative by t
 /// goes to lambda and back,  l <- l D t/D lambda,  until nothing is left (iterated; as a fixed point, accelerated),
-/// sweep by sweep (truncated), or once. [SLK10 sec. 1], [CD20]
+/// augmentation by augmentation (truncated), or once. [SLK10 sec. 1], [CD20]
 #pragma once
 
 #include "methods/uzawa.hpp"
@@ -44,8 +43,9 @@ std::vector<Vector<Direction>> carried_multiplier(Differentiation<E>& problem, c
   return lambda;
 }
 
-/// lambda with the derivative of `fields`.
-inline void update(std::vector<Vector<Direction>>& lambda, const std::vector<ContactField<Direction>>& fields) {
+/// D lambda <- D t of `fields`; values stay.
+inline void take_derivatives(std::vector<Vector<Direction>>& lambda,
+                             const std::vector<ContactField<Direction>>& fields) {
   for (std::size_t b = 0; b < lambda.size(); ++b)
     for (Eigen::Index k = 0; k < lambda[b].size(); ++k) lambda[b][k].d = fields[b].traction[k].d;
 }
@@ -57,7 +57,7 @@ LinearisedEquilibrium<E> linearise(const UzawaAL& method, Differentiation<E>& pr
   for (double& f : factor) f *= oversize;
   rho = adapted(initial_regularisation(problem.slots, method), factor);
   return LinearisedEquilibrium<E>(problem, at, rho, regularisation_blocks(method, problem, factor), cone_radius(method),
-                                  time, false, previous.contact.placement);
+                                  time, false, previous.history);
 }
 
 /// kappa_s of the preconditioned scheme, from the contraction of the updates (0: not measured).
@@ -129,7 +129,7 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
     const Matrix<double> before = columns([&](auto&, int b) -> auto& { return lambda[b]; });
     if (!linearised.solve(lambda, fields)) return false;
     const Matrix<double> after = columns([&](auto&, int b) -> auto& { return fields[b].traction; });
-    update(lambda, fields);
+    take_derivatives(lambda, fields);
     const Vector<double> floors = 8 * unit_roundoff * (stiffest * linearised.reach() + yielding * linearised.load());
     bool settled = true;
     double slowest = 0;  // largest change over what would be enough
@@ -166,17 +166,18 @@ bool differentiate_augmentations(const UzawaAL& method, Differentiation<E>& prob
                                  const Increment<double>& increment) {
   RegularisationField<double> rho;
   auto lambda = carried_multiplier(problem, previous.contact.traction);
-  for (const auto& sweep : increment.sweeps) {
-    auto linearised = linearise(method, problem, previous, sweep.state, sweep.rho_factor, 1, increment.time, rho);
+  for (const auto& augmented : increment.augmented) {
+    auto linearised =
+        linearise(method, problem, previous, augmented.state, augmented.rho_factor, 1, increment.time, rho);
     if (!linearised.valid()) return false;
     for (std::size_t b = 0; b < lambda.size(); ++b)
-      for (Eigen::Index k = 0; k < lambda[b].size(); ++k) lambda[b][k].v = sweep.state.multiplier[k];
+      for (Eigen::Index k = 0; k < lambda[b].size(); ++k) lambda[b][k].v = augmented.state.multiplier[k];
     std::vector<ContactField<Direction>> fields;
     if (!linearised.solve(lambda, fields)) return false;
     linearised.settle(fields, lambda);
-    update(lambda, fields);
+    take_derivatives(lambda, fields);
   }
-  problem.record = {static_cast<int>(increment.sweeps.size()), 1, 0};
+  problem.record = {static_cast<int>(increment.augmented.size()), 1, 0};
   return true;
 }
 
@@ -192,7 +193,7 @@ bool differentiate_preconditioned(const UzawaAL& method, Differentiation<E>& pro
   const std::vector<RegularisationField<Direction>> blocks(problem.blocks.size(), fixed);
   const State<double> at = restated(problem.model, increment.state, rho);
   LinearisedEquilibrium<E> linearised(problem, at, rho, blocks, cone_radius(method), increment.time, false,
-                                      previous.contact.placement);
+                                      previous.history);
   if (!linearised.valid()) return false;
   auto lambda = carried_multiplier(problem, at.multiplier);
   std::vector<ContactField<Direction>> fields;
@@ -291,17 +292,17 @@ bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, 
 
 /// All augmentations that were performed, the last one first.
 template <class E>
-bool pull_back_sweeps(const UzawaAL& method, AdjointProblem<E>& problem, const State<double>& previous,
-                      const Increment<double>& increment) {
+bool pull_back_augmentations(const UzawaAL& method, AdjointProblem<E>& problem, const State<double>& previous,
+                             const Increment<double>& increment) {
   const int objectives = static_cast<int>(problem.objectives.size());
   std::vector<HistoryDerivative> gathered(objectives);
   std::vector<Vector<double>> traction(objectives);
-  for (std::size_t k = increment.sweeps.size(); k-- > 0;) {
-    const auto& sweep = increment.sweeps[k];
-    const bool last = k + 1 == increment.sweeps.size();
-    RecordedEquilibrium<E> recorded(problem, previous, sweep.state,
-                                    recorded_regularisation(method, problem, sweep.rho_factor, 1), cone_radius(method),
-                                    increment.time, false, last && increment.requested);
+  for (std::size_t k = increment.augmented.size(); k-- > 0;) {
+    const auto& augmented = increment.augmented[k];
+    const bool last = k + 1 == increment.augmented.size();
+    RecordedEquilibrium<E> recorded(problem, previous, augmented.state,
+                                    recorded_regularisation(method, problem, augmented.rho_factor, 1),
+                                    cone_radius(method), increment.time, false, last && increment.requested);
     if (!recorded.valid()) return false;
     for (int j = 0; j < objectives; ++j) {
       if (last)
@@ -314,8 +315,8 @@ bool pull_back_sweeps(const UzawaAL& method, AdjointProblem<E>& problem, const S
       if (last) {
         gathered[j] = history;
       } else {
-        gathered[j].placement += history.placement;
-        gathered[j].dissipation += history.dissipation;
+        for_each_part([](Vector<double>& sum, const Vector<double>& part) { sum += part; }, gathered[j].local,
+                      history.local);
       }
     }
   }
@@ -369,7 +370,7 @@ bool pull_back_increment(const UzawaAL& method, AdjointProblem<E>& problem, cons
                          const Increment<double>& increment) {
   using Sensitivity = UzawaAL::Sensitivity;
   if (method.sensitivity == Sensitivity::truncated)
-    return detail::pull_back_sweeps(method, problem, previous, increment);
+    return detail::pull_back_augmentations(method, problem, previous, increment);
   if (method.sensitivity == Sensitivity::preconditioned)
     return detail::pull_back_preconditioned(method, problem, previous, increment);
   const bool oversized = method.sensitivity == Sensitivity::oversized;

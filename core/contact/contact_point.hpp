@@ -14,22 +14,12 @@
 #pragma once
 
 #include "core/contact/friction.hpp"
+#include "core/contact/point_geometry.hpp"
 
 namespace stickslip {
 
 /// Where the radius of the friction cone comes from: the projected normal traction or the multiplier itself.
 enum class ConeRadius { augmented, multiplier };
-
-/// Initial geometry of one contact point; a function of nodal coordinates and obstacle data, in any scalar.
-template <class T>
-struct PointGeometry {
-  T gap{};                                              ///< initial normal gap, with the offset of the contact
-  Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> normal;  ///< unit, out of the master
-  Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 2> tangents;  ///< orthonormal frame, one column each
-  Eigen::Matrix<T, Eigen::Dynamic, 1>
-      weights;  ///< of the nodes' displacements in w: slave nodes sum to 1, master to -1
-  T area{};     ///< tributary area of the slave node
-};
 
 /// What a contact point leaves behind at the end of an increment: its local unknowns, and the history of the next.
 template <class T, int Tangents>
@@ -58,16 +48,16 @@ void project_point(const Traction<T, Tangents>& multiplier, const PointRegularis
   trial.normal = multiplier.normal + rho.normal * point.gap;
   for (int a = 0; a < Tangents; ++a) trial.tangential[a] = multiplier.tangential[a] + rho.tangential * point.slip[a];
   T bound{};
-  ContactState slip = state && is_slipping(*state) ? *state : ContactState::slip;
+  ContactState piece = state && is_slipping(*state) ? *state : ContactState::slip;
   if constexpr (Tangents > 0) {
     const bool augmented = cone == ConeRadius::augmented;
     const T pressure = augmented ? T(-trial.normal) : T(-multiplier.normal);
-    if (!state) slip = friction.piece(value(pressure));
-    if (value(pressure) > 0 || augmented || slip == ContactState::limited) bound = friction.bound(pressure, slip);
+    if (!state) piece = friction.piece(value(pressure));
+    if (value(pressure) > 0 || augmented || piece == ContactState::limited) bound = friction.bound(pressure, piece);
   }
   point.state = state ? *state : classify(trial, value(bound), value(rho.normal) * tie_length);
-  if (point.state == ContactState::slip) point.state = slip;
-  point.traction = project_coulomb(trial, bound, point.state);
+  if (point.state == ContactState::slip) point.state = piece;
+  point.traction = project_onto_cone(trial, bound, point.state);
 }
 
 /// Evaluates the point in its initial geometry. `w`: relative displacement.

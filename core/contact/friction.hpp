@@ -37,7 +37,7 @@ ContactState classify(const Traction<T, Tangents>& trial, double bound, double t
 
 /// P_mu in the branch `state`. `bound` is the friction bound of a slipping point (not read otherwise).
 template <class T, int Tangents>
-Traction<T, Tangents> project_coulomb(const Traction<T, Tangents>& trial, const T& bound, ContactState state) {
+Traction<T, Tangents> project_onto_cone(const Traction<T, Tangents>& trial, const T& bound, ContactState state) {
   Traction<T, Tangents> t;
   if (state == ContactState::open) return t;
   t.normal = trial.normal;

@@ -4,10 +4,11 @@
 ///   bound(p) = min(mu p, limit)   both: Coulomb with a shear limit, as of a yielding surface (Orowan)
 ///   bound(p) = limit              limit alone: Tresca; at p = 0 it jumps, since an open point bears nothing
 ///
-/// All that the program knows of the law stands here: the bound, which linear piece of it holds, its derivative, what
-/// is left of it at the apex of the cone (p = 0), and whether it couples pressure and tangential traction. The bound is
-/// continuous and concave where the point is closed, with a corner where mu p = limit. E. Orowan, Proc. Inst. Mech.
-/// Eng. 150 (1943) 140-167 (limit); [AC91] (Coulomb).
+/// The bound stands here, which linear piece of it holds, its derivative, what is left of it at the apex of the cone
+/// (p = 0), and whether it couples pressure and tangential traction. It is the least of a multiple of p and a constant,
+/// hence concave, with a corner where mu p = limit: methods/solutions and statics, which look for all solutions, and
+/// sensitivity/branches, rays and one_sided, which know the sides of the corner, take it apart into these two pieces.
+/// E. Orowan, Proc. Inst. Mech. Eng. 150 (1943) 140-167 (limit); [AC91] (Coulomb).
 #pragma once
 
 #include <concepts>
@@ -54,7 +55,7 @@ struct FrictionLaw {
   /// Whether a point that is closed without pressure bears nothing: its cone has an apex.
   bool has_apex() const { return coefficient.has_value() || value(*limit) == 0; }
   /// Whether no pressure makes it bear anything.
-  bool is_smooth() const { return (coefficient && value(*coefficient) == 0) || (limit && value(*limit) == 0); }
+  bool bears_nothing() const { return (coefficient && value(*coefficient) == 0) || (limit && value(*limit) == 0); }
   /// Whether the bound depends on the pressure: the tangent of a slipping point is unsymmetric then.
   bool couples() const { return coefficient.has_value(); }
   /// Numbers that it consists of.

@@ -1,79 +1,10 @@
-/// Initial geometry of a slave point against each kind of master surface: gap, unit normal out of the master, frame and
-/// the weights of the displacements. Each is a closed form in the coordinates, so any scalar differentiates it.
-///
-/// In 2D the frame is e = (-n_y, n_x): a facet directed a -> b with the solid on its left has n = (tau_y, -tau_x) and
-/// e = tau.
+/// Geometry of a slave point against facets and vertices, and the normal that two deformable sides share.
 #pragma once
 
-#include "core/contact/contact_point.hpp"
-#include "core/model/scene.hpp"
+#include "core/contact/point_geometry.hpp"
+#include "core/mesh/mesh.hpp"
 
 namespace stickslip {
-
-namespace detail {
-
-/// Orthonormal frame of the plane normal to n (unit), D x (D-1).
-template <class T, class Normal>
-auto tangent_frame(const Normal& n) {
-  decltype(PointGeometry<T>::tangents) frame(n.size(), n.size() - 1);
-  if (n.size() == 2) {
-    frame(0, 0) = -n[1];
-    frame(1, 0) = n[0];
-    return frame;
-  }
-  int smallest = 0;  // the axis furthest from n
-  for (int i = 1; i < 3; ++i)
-    if (std::abs(value(n[i])) < std::abs(value(n[smallest]))) smallest = i;
-  Vec<T, 3> first;
-  for (int i = 0; i < 3; ++i) first[i] = T(i == smallest ? 1 : 0) - n[smallest] * n[i];
-  const T length = norm(first);
-  for (int i = 0; i < 3; ++i) first[i] /= length;
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    frame(i, 0) = first[i];
-    frame(i, 1) = n[j] * first[k] - n[k] * first[j];
-  }
-  return frame;
-}
-
-template <class T>
-PointGeometry<T> rigid(const T& gap, const Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1>& normal) {
-  PointGeometry<T> g;
-  g.gap = gap;
-  g.normal = normal;
-  g.tangents = tangent_frame<T>(normal);
-  g.weights.resize(1);
-  g.weights[0] = T(1);
-  return g;
-}
-
-}  // namespace detail
-
-/// Against the half-space behind `plane`. `numbers`: value of a number of the scene, as Numbers<T> gives it.
-template <class T, class Point, class Read>
-PointGeometry<T> against_plane(const Point& x, const Plane& plane, const Read& numbers) {
-  const int D = static_cast<int>(x.size());
-  Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> n(D);
-  for (int i = 0; i < D; ++i) n[i] = numbers(plane.normal[i]);
-  const T length = norm(n);
-  T gap{};
-  for (int i = 0; i < D; ++i) {
-    n[i] /= length;
-    gap += (x[i] - numbers(plane.point[i])) * n[i];
-  }
-  return detail::rigid<T>(gap, n);
-}
-
-/// Against a rigid disk, or the rim of a cup. Singular where the point is the centre.
-template <class T, class Read>
-PointGeometry<T> against_circle(const Vec<T, 2>& x, const Circle& circle, const Read& numbers) {
-  Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> n(2);
-  for (int i = 0; i < 2; ++i) n[i] = x[i] - numbers(circle.center[i]);
-  const T distance = norm(n);
-  const T sign(circle.inside ? -1.0 : 1.0);
-  for (int i = 0; i < 2; ++i) n[i] *= sign / distance;
-  return detail::rigid<T>(sign * (distance - numbers(circle.radius)), n);
-}
 
 /// Against the facet a -> b (solid on its left); the projection lies on the facet.
 template <class T>

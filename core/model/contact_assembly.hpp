@@ -19,7 +19,7 @@ struct ContactInput {
   const Model& model;
   const Slots<T>& slots;
   const RegularisationField<T>& rho;
-  const Vector<T>& previous_placement;  ///< slip history
+  const History<T>& previous;  ///< of the last increment
   ConeRadius cone = ConeRadius::augmented;
   double time = 0;
 };
@@ -29,7 +29,7 @@ namespace detail {
 /// The place on an obstacle that a place in its frame faces.
 template <class T, class Place, class Read>
 Vector<T> foot_on(const Obstacle& obstacle, const Place& x, const Read& numbers) {
-  const auto geometry = against_obstacle<T>(obstacle, x, numbers);
+  const auto geometry = against_rigid<T>(x, obstacle.shape, numbers);
   Vector<T> foot(x.size());
   for (Eigen::Index i = 0; i < foot.size(); ++i) foot[i] = x[i] - geometry.gap * geometry.normal[i];
   return foot;
@@ -37,8 +37,22 @@ Vector<T> foot_on(const Obstacle& obstacle, const Place& x, const Read& numbers)
 
 }  // namespace detail
 
-/// State before the first increment: nothing has moved, no traction. What history begins with is a function of the
-/// slots: where geometry is the present one, the feet of the points are.
+/// What history begins with: no slip, no work; where geometry is the present one, the feet of the points at the start.
+template <class T>
+History<T> initial_history(const Model& model, const Slots<T>& slots) {
+  const auto zeros = [](std::size_t n) { return Vector<T>::Constant(static_cast<Eigen::Index>(n), T(0)).eval(); };
+  History<T> history{zeros(model.multiplier_count - model.points.size()), zeros(model.foot_count),
+                     zeros(model.effects.friction ? model.scene.contacts.size() : 0)};
+  for (const auto& point : model.points) {
+    if (point.foot < 0) continue;
+    const Vector<T> at = slots.points.col(point.nodes[0]);
+    history.foot.segment(point.foot, model.dimension) =
+        detail::foot_on<T>(model.scene.obstacles[point.obstacle], at, slots.numbers);
+  }
+  return history;
+}
+
+/// State before the first increment: nothing has moved, no traction.
 template <class T>
 State<T> initial_state(const Model& model, const Slots<T>& slots) {
   State<T> state;
@@ -48,16 +62,9 @@ State<T> initial_state(const Model& model, const Slots<T>& slots) {
   state.multiplier = state.contact.traction = zeros(model.multiplier_count);
   state.contact.state.assign(points, ContactState::open);
   state.contact.gap = zeros(points);
-  state.contact.placement = zeros(model.placement_count);
   state.contact.slip = zeros(tangential);
   if (model.effects.current_geometry) state.contact.moved = slots.geometry;
-  for (const auto& point : model.points) {
-    if (point.foot < 0) continue;
-    const Vector<T> at = slots.points.col(point.nodes[0]);
-    state.contact.placement.segment(point.foot, model.dimension) =
-        detail::foot_on<T>(model.scene.obstacles[point.obstacle], at, slots.numbers);
-  }
-  state.dissipation = zeros(model.effects.friction ? model.scene.contacts.size() : 0);
+  state.history = initial_history(model, slots);
   return state;
 }
 
@@ -122,10 +129,10 @@ MovedPoint<U, D> moved_point(const ContactInput<T>& input, int p, const Vec<U, D
   for (int i = 0; i < D; ++i) x[i] = U(input.slots.points(i, point.nodes[0]) - shift[i]) + u[i];
   const auto& obstacle = input.model.scene.obstacles[point.obstacle];
   MovedPoint<U, D> at;
-  at.geometry = against_obstacle<U>(obstacle, x, number);
+  at.geometry = against_rigid<U>(x, obstacle.shape, number);
   for (int i = 0; i < D; ++i) {
     at.foot[i] = x[i] - at.geometry.gap * at.geometry.normal[i];
-    at.previous_foot[i] = point.foot < 0 ? at.foot[i] : U(input.previous_placement[point.foot + i]);
+    at.previous_foot[i] = point.foot < 0 ? at.foot[i] : U(input.previous.foot[point.foot + i]);
   }
   at.geometry.gap += number(input.model.scene.contacts[point.contact].offset);
   at.geometry.area = U(input.slots.geometry[p].area);
@@ -135,7 +142,7 @@ MovedPoint<U, D> moved_point(const ContactInput<T>& input, int p, const Vec<U, D
 template <class T, int Tangents>
 Vec<T, Tangents> previous_placement(const ContactInput<T>& input, int p) {
   Vec<T, Tangents> s;
-  for (int a = 0; a < Tangents; ++a) s[a] = input.previous_placement[tangential_offset(input.model, p) + a];
+  for (int a = 0; a < Tangents; ++a) s[a] = input.previous.placement[tangential_offset(input.model, p) + a];
   return s;
 }
 
@@ -192,7 +199,8 @@ ContactField<T> evaluate_contact(const ContactInput<T>& input, const Vector<T>& 
   field.state.resize(count);
   field.gap.resize(count);
   field.traction.resize(model.multiplier_count);
-  field.placement.resize(model.placement_count);
+  field.placement.resize(model.multiplier_count - count);
+  field.foot.resize(model.foot_count);
   field.slip.resize(model.multiplier_count - count);
   const bool present = model.effects.current_geometry;
   if (present) field.moved.resize(count);
@@ -217,7 +225,7 @@ ContactField<T> evaluate_contact(const ContactInput<T>& input, const Vector<T>& 
         field.traction[point.multiplier + 1 + a] = outcome.traction.tangential[a];
       }
       if constexpr (Tangents > 0)
-        if (point.foot >= 0) field.placement.template segment<D>(point.foot) = outcome.foot;
+        if (point.foot >= 0) field.foot.template segment<D>(point.foot) = outcome.foot;
     });
   }
   return field;
@@ -288,7 +296,7 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
     for (int a = 0; a < Tangents; ++a) {
       lambda.tangential[a] = Probe(lambda_value.tangential[a]);
       lambda.tangential[a].d[D + 1 + a] = input.rho[p].tangential;
-      previous[a] = Probe(input.previous_placement[tangential_offset(input.model, p) + a]);
+      previous[a] = Probe(input.previous.placement[tangential_offset(input.model, p) + a]);
     }
     PointOutcome<Probe, Tangents> outcome;
     PointGeometry<Probe> geometry;
@@ -317,12 +325,12 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
   });
 }
 
-/// Frictional work of the increment, added to the previous dissipation, per contact: sum A t_T . plastic slip, where
+/// Frictional work of the increment, added to that before, per contact: sum A t_T . plastic slip, where
 /// the elastic part (t - lambda)/rho of a regularised slip does no work that is lost.
 template <class T>
 Vector<T> dissipated(const ContactInput<T>& input, const ContactField<T>& field, const Vector<T>& multiplier,
-                     const Vector<T>& previous) {
-  Vector<T> work = previous;
+                     const Vector<T>& before) {
+  Vector<T> work = before;
   for (std::size_t p = 0; p < input.model.points.size(); ++p) {
     const auto& point = input.model.points[p];
     if (!is_slipping(field.state[p])) continue;
@@ -334,6 +342,13 @@ Vector<T> dissipated(const ContactInput<T>& input, const ContactField<T>& field,
     }
   }
   return work;
+}
+
+/// The history that an increment leaves: takes placement and feet out of its field. `multiplier`: lambda.
+template <class T>
+History<T> next_history(const ContactInput<T>& input, ContactField<T>& field, const Vector<T>& multiplier) {
+  Vector<T> work = dissipated(input, field, multiplier, input.previous.work);
+  return {std::move(field.placement), std::move(field.foot), std::move(work)};
 }
 
 }  // namespace stickslip

@@ -188,8 +188,8 @@ void place_contact_nodes(Model& model) {
 void place_feet(Model& model) {
   for (auto& point : model.points) {
     if (point.tangents == 0) continue;
-    point.foot = model.placement_count;
-    model.placement_count += model.dimension;
+    point.foot = model.foot_count;
+    model.foot_count += model.dimension;
   }
 }
 
@@ -258,6 +258,9 @@ Model make_model(const Scene& scene, Seconds& spent) {
     model.bodies.push_back({make_mesh(body.mesh, body.element, model.dimension), model.node_count,
                             kinematics_of(scene.space, has_mean_dilatation(body.element))});
     model.node_count += model.bodies.back().mesh.node_count;
+    if (!is_continuum(model.bodies.back().mesh.shape)) continue;
+    const std::string unfit = fault_of(body.material, model.bodies.back().kinematics, scene.finite_strain);
+    if (!unfit.empty()) throw ModelError("the material " + unfit, "/bodies/" + body.name + "/material");
   }
   Points<double> points(model.dimension, model.node_count);
   const auto numbers = scene.as<double>();

@@ -38,7 +38,7 @@ struct ContactPoint {
   Master master = Master::obstacle;
   int contact = 0;               ///< index in Scene::contacts
   int obstacle = -1;             ///< index in Scene::obstacles, -1 for a deformable master
-  int foot = -1;                 ///< offset of its foot's place in ContactField::placement; -1: it has none
+  int foot = -1;                 ///< offset of its foot's place in History::foot; -1: it has none
   std::vector<int> nodes;        ///< slave, then master nodes (facet: its two; vertex: itself, then the far ends of the
                                  ///< facets at whose very end the projection lies)
   int slave_nodes = 1;           ///< how many of `nodes` are the slave's; more than one if segment-integrated
@@ -111,7 +111,7 @@ struct Model {
   std::vector<BodyMesh> bodies;
   std::vector<ContactPoint> points;
   int multiplier_count = 0;
-  int placement_count = 0;              ///< entries of the slip history
+  int foot_count = 0;                   ///< entries of History::foot
   std::vector<Constraint> constraints;  ///< ascending dof; those of framed nodes included
   std::vector<FramedNode> framed;       ///< ascending; empty where no support is inclined
   std::vector<int> free_index;          ///< per dof: index among the free ones, or -1

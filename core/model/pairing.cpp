@@ -61,11 +61,9 @@ bool find_on_obstacle(const Points<double>& points, const Scene& scene, ContactP
   const auto numbers = scene.as<double>();
   if (const auto* polyline = std::get_if<Polyline>(&obstacle.shape))
     return find_on_polyline(points, *polyline, numbers, point);
-  const auto* circle = std::get_if<Circle>(&obstacle.shape);
-  const auto x = points.col(point.nodes[0]);
-  if (circle && x[0] == numbers(circle->center[0]) && x[1] == numbers(circle->center[1]))
-    throw ModelError("is where a slave node is, from which no place of the circle is nearer than another",
-                     "/obstacles/" + obstacle.name + "/circle/center");
+  if (const char* key = ambiguity(points.col(point.nodes[0]), obstacle.shape, numbers))
+    throw ModelError("is where a slave node is, from which no place of the surface is nearer than another",
+                     "/obstacles/" + obstacle.name + "/" + key);
   return true;
 }
 
@@ -95,7 +93,6 @@ void add_point(Model& model, ContactPoint point) {
   model.effects.deformable_master |= point.obstacle < 0;
   point.multiplier = model.multiplier_count;
   model.multiplier_count += point.components();
-  model.placement_count += point.tangents;
   model.points.push_back(std::move(point));
 }
 
@@ -175,8 +172,8 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
     pairing.master = model.side(contact.master);
     if (model.dimension == 3) throw ModelError("a deformable master needs a 2D space", where);
     if (pairing.master.facets.empty()) throw ModelError("the master side has no facets", where);
-  } else if (model.dimension == 3 && !std::holds_alternative<Plane>(model.scene.obstacles[pairing.obstacle].shape)) {
-    throw ModelError("in space an obstacle must be a plane", "/obstacles/" + contact.master);
+  } else if (model.dimension == 3 && !is_in_space(model.scene.obstacles[pairing.obstacle].shape)) {
+    throw ModelError("this surface is not made for space", "/obstacles/" + contact.master);
   }
   if (!contact.segment) return pair_nodes(model, points, pairing);
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;

@@ -92,10 +92,10 @@ template <class T>
 T slip_component(const Model& model, const Slots<T>& slots, const State<T>& state, int p,
                  const std::string& component) {
   const int offset = tangential_offset(model, p);
-  if (component.empty()) return state.contact.placement[offset];
+  if (component.empty()) return state.history.placement[offset];
   T s{};
   for (int a = 0; a < model.points[p].tangents; ++a)
-    s += geometry_in(state.contact, slots, p).tangents(component[0] - 'x', a) * state.contact.placement[offset + a];
+    s += geometry_in(state.contact, slots, p).tangents(component[0] - 'x', a) * state.history.placement[offset + a];
   return s;
 }
 
@@ -163,7 +163,7 @@ T contact_response(const Model& model, const Slots<T>& slots, const Response& re
                    const State<T>& state, Ties ties) {
   using Kind = Response::Kind;
   const int contact = model.contact_index(response.on);
-  if (response.kind == Kind::dissipation) return state.dissipation.size() ? state.dissipation[contact] : T(0);
+  if (response.kind == Kind::dissipation) return state.history.work.size() ? state.history.work[contact] : T(0);
   std::vector<int> of_contact;
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p)
     if (model.points[p].contact == contact && (place.contact_point < 0 || place.contact_point == p))

@@ -16,27 +16,14 @@
 #include <variant>
 #include <vector>
 
+#include "core/algebra/number.hpp"
 #include "core/algebra/scalar.hpp"
 #include "core/contact/friction_law.hpp"
+#include "core/contact/rigid_surfaces.hpp"
 #include "core/mesh/mesh.hpp"
+#include "core/solids/materials.hpp"
 
 namespace stickslip {
-
-/// A number of the scene. slot < 0: a constant nobody can differentiate with respect to.
-struct Number {
-  double value = 0;
-  int slot = -1;
-  Number() = default;
-  Number(double v) : value(v) {}  // NOLINT: scenes are written in C++ too
-  Number(double v, int s) : value(v), slot(s) {}
-};
-
-/// All numbers of a scene in the scalar T.
-template <class T>
-struct Numbers {
-  std::vector<T> at_slot;
-  T operator()(const Number& n) const { return n.slot < 0 ? T(n.value) : at_slot[n.slot]; }
-};
 
 /// Value in time: linear between points, held before the first and after the last. A plain number is one point at
 /// t = 0, in force from the first step on (times are not parameters, values are).
@@ -149,21 +136,6 @@ using MeshDescription =
 
 // --- bodies ------------------------------------------------------------------------------------------------------
 
-struct LinearElastic {
-  Number E, nu;
-};
-/// d x d symmetric stiffness of a point to its anchor.
-struct GroundedSpring {
-  std::vector<std::vector<Number>> stiffness;
-};
-/// Compressible, at finite strain; `volumetric`: its energy of a change of volume (core/solids/neo_hookean.hpp).
-struct NeoHookean {
-  enum class Volumetric { quadratic, log };
-  Number E, nu;
-  Volumetric volumetric = Volumetric::quadratic;
-};
-using Material = std::variant<LinearElastic, NeoHookean, GroundedSpring>;
-
 struct Body {
   std::string name;
   MeshDescription mesh;
@@ -173,21 +145,6 @@ struct Body {
   Number thickness = 1.0;  ///< of a continuum in a plane space
 };
 
-/// Rigid half-space behind a point; normal points out of it, into the free space (need not be a unit vector).
-struct Plane {
-  std::vector<Number> point, normal;
-};
-/// Rigid disk, or the outside of one (`inside`: a cup, the free space is inside).
-struct Circle {
-  std::array<Number, 2> center;
-  Number radius;
-  bool inside = false;
-};
-/// Rigid curve from point to point, the solid on its right. `closed`: the last point is the first again.
-struct Polyline {
-  std::vector<std::array<Number, 2>> points;  ///< without the repeated one
-  bool closed = false;
-};
 /// Rotation theta about a center, and in space an axis through it (need not be a unit vector); positive
 /// counter-clockwise. Small strain: u = theta x (X - center), for a body turned by a finite angle is not free of
 /// linear strain.
@@ -197,7 +154,7 @@ struct Rotation {
 };
 struct Obstacle {
   std::string name;
-  std::variant<Plane, Circle, Polyline> shape;
+  RigidSurface shape;
   std::map<char, Table> move = {};      ///< rigid displacement by axis
   std::optional<Rotation> rotate = {};  ///< added to it
 };
@@ -303,8 +260,6 @@ struct Leg {
   double end = 1;
   int steps = 1;
 };
-
-enum class Space { plane_strain, plane_stress, axisymmetric, solid };
 
 struct Scene {
   std::string title;

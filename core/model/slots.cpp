@@ -1,25 +1,28 @@
 #include "core/model/slots.hpp"
 
+#include <Eigen/LU>
+
 namespace stickslip {
 
 ElementLists inverted_elements(const Model& model, const Slots<double>& slots, const Vector<double>& u) {
   ElementLists inverted(model.bodies.size());
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     const auto& body = model.bodies[b];
-    if (!std::holds_alternative<NeoHookeanLaw<double>>(slots.laws[b])) continue;
-    for (int e = 0; e < body.mesh.element_count(); ++e) {
-      const auto nodes = detail::element_nodes(body, e);
-      with_shape(body.mesh.shape, [&]<class Shape>(Shape) {
+    const auto continuum = [&]<class Shape, Kinematics kinematics>(const auto& law) {
+      constexpr int rows = stress_dimension(kinematics);
+      for (int e = 0; law.is_finite && e < body.mesh.element_count(); ++e) {
+        const auto nodes = detail::element_nodes(body, e);
         const auto local = detail::gather_displacements<double, Shape>(u, nodes.data());
         bool positive = true;
-        for_each_gradient<double, Shape, Kinematics::plane>(
+        for_each_gradient<double, Shape, kinematics>(
             detail::gather_coordinates<double, Shape>(slots.points, nodes.data()), 1.0, [&](const auto& gradient) {
-              const Mat<double, 2> F = Mat<double, 2>::Identity() + gradient.of(local);
-              positive &= F(0, 0) * F(1, 1) - F(0, 1) * F(1, 0) > 0;
+              const Mat<double, rows> F = Mat<double, rows>::Identity() + gradient.of(local);
+              positive &= F.determinant() > 0;
             });
         if (!positive) inverted[b].push_back(e);
-      });
-    }
+      }
+    };
+    detail::with_law<double>(model, slots, b, continuum, []<int>(const auto&) {});
   }
   return inverted;
 }

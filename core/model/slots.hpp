@@ -6,31 +6,16 @@
 #include <variant>
 #include <vector>
 
+#include "core/contact/contact_point.hpp"
 #include "core/contact/surfaces.hpp"
 #include "core/mesh/generators.hpp"
 #include "core/model/model.hpp"
 #include "core/model/supports.hpp"
-#include "core/solids/bar.hpp"
 #include "core/solids/continuum.hpp"
 #include "core/solids/edges.hpp"
-#include "core/solids/linear_elastic.hpp"
-#include "core/solids/neo_hookean.hpp"
+#include "core/solids/materials.hpp"
 
 namespace stickslip {
-
-/// Bars of a body: E times the cross-section (force); of Green strain, or linear.
-template <class T>
-struct BarLaw {
-  T axial, area;
-  bool green = false;
-};
-/// Spring of a point to its anchor, D x D.
-template <class T>
-struct SpringLaw {
-  Matrix<T> stiffness;
-};
-template <class T>
-using Law = std::variant<LinearElasticLaw<T>, NeoHookeanLaw<T>, BarLaw<T>, SpringLaw<T>>;
 
 template <class T>
 struct Slots {
@@ -63,24 +48,21 @@ Vec<T, 2> point2(const Points<T>& points, int node) {
   return {points(0, node), points(1, node)};
 }
 
+/// The law of a body: of its material, or of bars of it.
 template <class T>
 Law<T> make_law(const Scene& scene, const Body& body, const Mesh& mesh, const Numbers<T>& numbers) {
-  if (const auto* spring = std::get_if<GroundedSpring>(&body.material)) {
-    const int d = static_cast<int>(spring->stiffness.size());
-    SpringLaw<T> law{Matrix<T>(d, d)};
-    for (int i = 0; i < d; ++i)
-      for (int j = 0; j < d; ++j) law.stiffness(i, j) = numbers(spring->stiffness[i][j]);
-    return law;
-  }
-  if (const auto* material = std::get_if<NeoHookean>(&body.material)) {
-    const LinearElasticLaw<T> small(numbers(material->E), numbers(material->nu), Space::plane_strain);
-    return NeoHookeanLaw<T>(small.lame, small.shear, material->volumetric);
-  }
-  const auto& elastic = std::get<LinearElastic>(body.material);
-  const T E = numbers(elastic.E);
-  if (mesh.shape == ElementShape::bar2)
-    return BarLaw<T>{E * numbers(body.area), numbers(body.area), scene.finite_strain};
-  return LinearElasticLaw<T>(E, numbers(elastic.nu), scene.space);
+  return std::visit(
+      [&]<class M>(const M& material) -> Law<T> {
+        if constexpr (std::is_same_v<M, GroundedSpring>) {
+          return law_of<T>(material, numbers);
+        } else {
+          if constexpr (std::is_same_v<M, LinearElastic>)
+            if (mesh.shape == ElementShape::bar2)
+              return BarLaw<T>{numbers(material.E) * numbers(body.area), numbers(body.area), scene.finite_strain};
+          return law_of<T>(material, scene.space, numbers);
+        }
+      },
+      body.material);
 }
 
 template <class T>
@@ -96,20 +78,13 @@ T tributary_area(const ContactPoint& point, const Slots<T>& slots) {
   return area;
 }
 
-/// Geometry of a place against an obstacle. `numbers`: value of a number of the scene.
-template <class T, class Place, class Read>
-PointGeometry<T> against_obstacle(const Obstacle& obstacle, const Place& x, const Read& numbers) {
-  if (const auto* plane = std::get_if<Plane>(&obstacle.shape)) return against_plane<T>(x, *plane, numbers);
-  return against_circle<T>(Vec<T, 2>(x[0], x[1]), std::get<Circle>(obstacle.shape), numbers);
-}
-
 /// Geometry of a segment-integrated point, its area included.
 template <class T>
 PointGeometry<T> integrated_geometry(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
   return against_pieces<T>(
       slots.points, point.pieces, point.nodes,
       [&](const Vec<T, 2>& x) {
-        const auto g = against_obstacle<T>(model.scene.obstacles[point.obstacle], x, slots.numbers);
+        const auto g = against_rigid<T>(x, model.scene.obstacles[point.obstacle].shape, slots.numbers);
         Foot<T> foot;
         for (int i = 0; i < 2; ++i) {
           foot.normal[i] = g.normal[i];
@@ -164,7 +139,7 @@ PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point,
     geometry = integrated_geometry(model, point, slots);
   } else if (point.master == ContactPoint::Master::obstacle) {
     const Vector<T> x = slots.points.col(point.nodes[0]);
-    geometry = against_obstacle<T>(model.scene.obstacles[point.obstacle], x, numbers);
+    geometry = against_rigid<T>(x, model.scene.obstacles[point.obstacle].shape, numbers);
   } else if (!point.of_polyline.empty()) {
     geometry = fixed(against_polyline(model, point, slots));
   } else if (point.master == ContactPoint::Master::facet) {
@@ -206,9 +181,10 @@ template <class T, class Sink>
 void for_each_element_tangent(const Model& model, const Slots<T>& slots, int b, const std::vector<int>* only,
                               Sink&& sink, const Vector<T>* u = nullptr);
 
-/// The bodies' tangent at displacements u times a vector, all dofs.
+/// The bodies' tangent at displacements u times a vector, all dofs. `only`: as of bulk_forces.
 template <class T>
-Vector<T> bulk_tangent_times(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& vector);
+Vector<T> bulk_tangent_times(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& vector,
+                             const ElementLists* only = nullptr);
 
 /// Strain energy of all bodies at displacements of all dofs.
 template <class T>
@@ -229,6 +205,7 @@ Slots<T> make_slots(const Model& model, const Numbers<T>& numbers);
 
 }  // namespace stickslip
 
+#include "core/model/bodies_impl.hpp"
 #include "core/model/slots_impl.hpp"
 
 namespace stickslip {

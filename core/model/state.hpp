@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/contact/contact_point.hpp"
+#include "core/model/history.hpp"
 #include "core/model/model.hpp"
 #include "core/model/result.hpp"
 #include "core/model/seconds.hpp"
@@ -19,11 +20,10 @@ template <class T>
 struct ContactField {
   std::vector<ContactState> state;
   Vector<T> gap;
-  /// s, the slip since the start; behind those of all points, where geometry is the present one, the feet of the points
-  /// on their obstacles (ContactPoint::foot): the slip history.
-  Vector<T> placement;
-  Vector<T> slip;      ///< dg_T of this increment
-  Vector<T> traction;  ///< t; compression negative
+  Vector<T> placement;  ///< s, the slip since the start; in a State it is part of its history, and empty here
+  Vector<T> foot;       ///< the same of places on obstacles
+  Vector<T> slip;       ///< dg_T of this increment
+  Vector<T> traction;   ///< t; compression negative
   /// Geometry of each point where it is now; empty where it stays that of the start (Slots::geometry).
   std::vector<PointGeometry<T>> moved;
   /// Of derivatives alone (sensitivity/branches.hpp): the direction that the trial of a slipping point takes from the
@@ -45,7 +45,7 @@ struct State {
   Vector<T> displacement;  ///< all dofs
   Vector<T> multiplier;    ///< lambda as the increment's last equilibrium used it, laid out as traction
   ContactField<T> contact;
-  Vector<T> dissipation;  ///< frictional work since the start, per contact; empty without friction
+  History<T> history;  ///< for the next increment
 };
 
 /// Uzawa: the equilibrium after one augmentation; kept only where the truncated sensitivity asks for it.
@@ -66,7 +66,7 @@ struct Increment {
   int newton = 0, augmentations = 0, cutbacks = 0;
   double contraction = 0;  ///< Uzawa: last measured ratio of multiplier updates; 0 if not measured
   std::vector<IterationRecord> history;
-  std::vector<AugmentedState<T>> sweeps;
+  std::vector<AugmentedState<T>> augmented;
   bool reversed = false;  ///< a tangent on the way was (Engine::reversed): there may be other solutions
   bool counted = false;   ///< all solutions of the increment were looked for
   std::vector<State<T>>

@@ -70,7 +70,8 @@ StateBytes state_bytes(const State<T>& state) {
       bytes_of(contact.state) + bytes_of(contact.gap) + bytes_of(contact.traction) - across(contact.traction);
   for (const auto& geometry : contact.moved)
     held.contact += static_cast<long>(sizeof(PointGeometry<T>)) + one * geometry.weights.size();
-  held.history = bytes_of(contact.placement) + bytes_of(contact.slip) + bytes_of(state.dissipation);
+  held.history = bytes_of(contact.slip);
+  for_each_part([&](const Vector<T>& part) { held.history += bytes_of(part); }, state.history);
   return held;
 }
 

@@ -8,55 +8,53 @@
 
 namespace stickslip {
 
-/// Tangent, (2 D) x (2 D), node-major; the residual of a small-strain bar is the tangent times u.
-/// `coordinates`: D x 2. `axial`: E times area (force).
-template <class T, int D>
-Mat<T, 2 * D> bar_tangent(const Mat<T, D, 2>& coordinates, const T& axial) {
-  const Vec<T, D> direction = coordinates.col(1) - coordinates.col(0);
-  const T length = norm(direction);
-  Mat<T, 2 * D> K;
-  for (int i = 0; i < D; ++i)
-    for (int j = 0; j < D; ++j) {
-      const T k = axial * direction[i] * direction[j] / (length * length * length);
-      K(i, j) = K(D + i, D + j) = k;
-      K(i, D + j) = K(D + i, j) = -k;
+/// `axial`: E times the cross-section (force); `green`: of Green strain.
+template <class T>
+struct BarLaw {
+  T axial, area;
+  bool green = false;
+
+  bool is_linear() const { return !green; }
+
+  /// Derivative of the force by d. `coordinates`: D x 2.
+  template <int D>
+  Mat<T, D> stiffness(const Mat<T, D, 2>& coordinates, const Vec<T, D>& d) const {
+    const Vec<T, D> axis = coordinates.col(1) - coordinates.col(0);
+    Mat<T, D> k;
+    if (!green) {
+      const T length = norm(axis);
+      for (int i = 0; i < D; ++i)
+        for (int j = 0; j < D; ++j) k(i, j) = axial * axis[i] * axis[j] / (length * length * length);
+      return k;
     }
-  return K;
-}
+    const T square = dot(axis, axis), length = norm(axis), strain = (dot(axis, d) + dot(d, d) / T(2)) / square;
+    for (int i = 0; i < D; ++i)
+      for (int j = 0; j < D; ++j) {
+        k(i, j) = axial * (axis[i] + d[i]) * (axis[j] + d[j]) / (square * length);
+        if (i == j) k(i, j) += axial * strain / length;
+      }
+    return k;
+  }
 
-/// Force of a bar of Green strain on its second node; the first one has the opposite.
-template <class T, int D>
-Vec<T, D> green_bar_force(const Mat<T, D, 2>& coordinates, const T& axial, const Vec<T, D>& d) {
-  const Vec<T, D> axis = coordinates.col(1) - coordinates.col(0);
-  const T square = dot(axis, axis), strain = (dot(axis, d) + dot(d, d) / T(2)) / square;
-  const T force = axial * strain / norm(axis);
-  Vec<T, D> f;
-  for (int i = 0; i < D; ++i) f[i] = force * (axis[i] + d[i]);
-  return f;
-}
+  /// Force on the second node; the first one has the opposite.
+  template <int D>
+  Vec<T, D> force(const Mat<T, D, 2>& coordinates, const Vec<T, D>& d) const {
+    if (!green) return stiffness<D>(coordinates, d) * d;
+    const Vec<T, D> axis = coordinates.col(1) - coordinates.col(0);
+    const T square = dot(axis, axis), strain = (dot(axis, d) + dot(d, d) / T(2)) / square;
+    const T force = axial * strain / norm(axis);
+    Vec<T, D> f;
+    for (int i = 0; i < D; ++i) f[i] = force * (axis[i] + d[i]);
+    return f;
+  }
 
-/// Tangent of a bar of Green strain, (2 D) x (2 D), node-major.
-template <class T, int D>
-Mat<T, 2 * D> green_bar_tangent(const Mat<T, D, 2>& coordinates, const T& axial, const Vec<T, D>& d) {
-  const Vec<T, D> axis = coordinates.col(1) - coordinates.col(0);
-  const T square = dot(axis, axis), length = norm(axis), strain = (dot(axis, d) + dot(d, d) / T(2)) / square;
-  Mat<T, 2 * D> K;
-  for (int i = 0; i < D; ++i)
-    for (int j = 0; j < D; ++j) {
-      T k = axial * (axis[i] + d[i]) * (axis[j] + d[j]) / (square * length);
-      if (i == j) k += axial * strain / length;
-      K(i, j) = K(D + i, D + j) = k;
-      K(i, D + j) = K(D + i, j) = -k;
-    }
-  return K;
-}
-
-/// Energy of a bar of Green strain.
-template <class T, int D>
-T green_bar_energy(const Mat<T, D, 2>& coordinates, const T& axial, const Vec<T, D>& d) {
-  const Vec<T, D> axis = coordinates.col(1) - coordinates.col(0);
-  const T strain = (dot(axis, d) + dot(d, d) / T(2)) / dot(axis, axis);
-  return axial * norm(axis) * strain * strain / T(2);
-}
+  template <int D>
+  T energy(const Mat<T, D, 2>& coordinates, const Vec<T, D>& d) const {
+    if (!green) return T(0.5) * dot(force<D>(coordinates, d), d);
+    const Vec<T, D> axis = coordinates.col(1) - coordinates.col(0);
+    const T strain = (dot(axis, d) + dot(d, d) / T(2)) / dot(axis, axis);
+    return axial * norm(axis) * strain * strain / T(2);
+  }
+};
 
 }  // namespace stickslip

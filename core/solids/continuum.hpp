@@ -18,29 +18,10 @@
 /// Tested against the Dual of the whole element.
 #pragma once
 
-#include "core/model/scene.hpp"
+#include "core/solids/kinematics.hpp"
 #include "core/solids/shapes.hpp"
 
 namespace stickslip {
-
-/// How displacements become strains.
-enum class Kinematics { plane, revolution, plane_mean_dilatation, revolution_mean_dilatation };
-
-constexpr bool is_of_revolution(Kinematics k) {
-  return k == Kinematics::revolution || k == Kinematics::revolution_mean_dilatation;
-}
-constexpr bool has_mean_dilatation(Kinematics k) {
-  return k == Kinematics::plane_mean_dilatation || k == Kinematics::revolution_mean_dilatation;
-}
-/// Rows of H and of the stress: 3 where out of the plane a component matters.
-constexpr int stress_dimension(Kinematics k) { return k == Kinematics::plane ? 2 : 3; }
-
-/// The kinematics of a body in a space with or without mean dilatation.
-constexpr Kinematics kinematics_of(Space space, bool mean_dilatation) {
-  if (space == Space::axisymmetric)
-    return mean_dilatation ? Kinematics::revolution_mean_dilatation : Kinematics::revolution;
-  return mean_dilatation ? Kinematics::plane_mean_dilatation : Kinematics::plane;
-}
 
 /// Calls f.template operator()<K>() with the kinematics as a compile-time constant. Mean dilatation is made for the
 /// four-node quadrilateral alone.
@@ -225,20 +206,14 @@ Mat<T, 2 * Shape::nodes> element_tangent(const Law& law, const Mat<T, 2, Shape::
   return K;
 }
 
-/// Strain energy 1/2 int sigma : H dV of a linear law.
+/// Strain energy int W dV.
 template <class T, class Shape, Kinematics kinematics = Kinematics::plane, class Law>
 T element_energy(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates, const Mat<T, 2, Shape::nodes>& u,
                  const T& depth = T(1)) {
-  return T(0.5) * element_forces<T, Shape, kinematics>(law, coordinates, u, depth).cwiseProduct(u).sum();
-}
-
-/// Strain energy int W dV of a law that has one.
-template <class T, class Shape, class Law>
-T stored_energy(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates, const Mat<T, 2, Shape::nodes>& u,
-                const T& depth = T(1)) {
+  constexpr int rows = stress_dimension(kinematics);
   T energy{};
-  for_each_gradient<T, Shape, Kinematics::plane>(coordinates, depth, [&](const auto& gradient) {
-    energy += law.template energy<T, 2>(gradient.of(u)) * gradient.volume;
+  for_each_gradient<T, Shape, kinematics>(coordinates, depth, [&](const auto& gradient) {
+    energy += law.template energy<T, rows>(gradient.of(u)) * gradient.volume;
   });
   return energy;
 }

@@ -6,25 +6,40 @@
 /// Linear in H; differentiable everywhere for E > 0, -1 < nu < 1/2.
 #pragma once
 
-#include "core/model/scene.hpp"
+#include <array>
+
+#include "core/algebra/number.hpp"
+#include "core/algebra/scalar.hpp"
+#include "core/solids/kinematics.hpp"
 
 namespace stickslip {
 
+struct LinearElastic {
+  Number E, nu;
+};
+
 template <class T>
 struct LinearElasticLaw {
+  static constexpr bool is_finite = false;
+  static constexpr bool is_made_for(Kinematics) { return true; }
+
   T lame, shear;
+  Space space = Space::plane_strain;
 
   LinearElasticLaw(const T& lambda, const T& G) : lame(lambda), shear(G) {}
-  LinearElasticLaw(const T& E, const T& nu, Space space) {
+  LinearElasticLaw(const T& E, const T& nu, Space in) : space(in) {
     lame = E * nu / ((T(1) + nu) * (T(1) - T(2) * nu));
     shear = E / (T(2) * (T(1) + nu));
     if (space == Space::plane_stress) lame = T(2) * lame * shear / (lame + T(2) * shear);
   }
 
-  /// The law with other numbers.
+  /// The numbers that it consists of, and the law with others.
+  std::array<T, 2> numbers() const { return {lame, shear}; }
   template <class U>
-  LinearElasticLaw<U> with(const U& lambda, const U& G) const {
-    return {lambda, G};
+  LinearElasticLaw<U> with(const std::array<U, 2>& numbers) const {
+    LinearElasticLaw<U> law(numbers[0], numbers[1]);
+    law.space = space;
+    return law;
   }
 
   /// Stress of a displacement gradient H (D x D), in the scalar of H: U is T, or a Dual built on T.
@@ -40,6 +55,25 @@ struct LinearElasticLaw {
       }
     return sigma;
   }
+
+  /// Stress across the plane.
+  double stress_across(const Mat<double, 2>& H) const {
+    return space == Space::plane_strain ? value(lame) * H.trace() : 0;
+  }
+
+  /// Energy per volume.
+  template <class U, int D>
+  U energy(const Mat<U, D>& H) const {
+    const Mat<U, D> sigma = stress<U, D>(H);
+    U twice{};
+    for (int k = 0; k < D * D; ++k) twice += sigma.data()[k] * H.data()[k];
+    return U(0.5) * twice;
+  }
 };
+
+template <class T>
+LinearElasticLaw<T> law_of(const LinearElastic& material, Space space, const Numbers<T>& numbers) {
+  return {numbers(material.E), numbers(material.nu), space};
+}
 
 }  // namespace stickslip

@@ -12,21 +12,31 @@
 
 #include <limits>
 
-#include "core/model/scene.hpp"
+#include "core/solids/linear_elastic.hpp"
 
 namespace stickslip {
 
+struct NeoHookean {
+  enum class Volumetric { quadratic, log };
+  Number E, nu;
+  Volumetric volumetric = Volumetric::quadratic;
+};
+
 template <class T>
 struct NeoHookeanLaw {
+  static constexpr bool is_finite = true;
+  static constexpr bool is_made_for(Kinematics kinematics) { return kinematics == Kinematics::plane; }
+
   T lame, shear;
   NeoHookean::Volumetric volumetric = NeoHookean::Volumetric::quadratic;
 
   NeoHookeanLaw(const T& lambda, const T& G, NeoHookean::Volumetric kind) : lame(lambda), shear(G), volumetric(kind) {}
 
-  /// The law with other numbers.
+  /// The numbers that it consists of, and the law with others.
+  std::array<T, 2> numbers() const { return {lame, shear}; }
   template <class U>
-  NeoHookeanLaw<U> with(const U& lambda, const U& G) const {
-    return {lambda, G, volumetric};
+  NeoHookeanLaw<U> with(const std::array<U, 2>& numbers) const {
+    return {numbers[0], numbers[1], volumetric};
   }
 
   /// First Piola-Kirchhoff stress of a displacement gradient H (2 x 2), in the scalar of H: U is T, or a Dual built
@@ -73,5 +83,11 @@ struct NeoHookeanLaw {
     return H(0, 0) + H(1, 1) + (H(0, 0) * H(1, 1) - H(0, 1) * H(1, 0));
   }
 };
+
+template <class T>
+NeoHookeanLaw<T> law_of(const NeoHookean& material, Space, const Numbers<T>& numbers) {
+  const LinearElasticLaw<T> small(numbers(material.E), numbers(material.nu), Space::plane_strain);
+  return {small.lame, small.shear, material.volumetric};
+}
 
 }  // namespace stickslip

@@ -3,7 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include "studies/app/schema_texts.hpp"
+#include "studies/input/materials.hpp"
 #include "studies/input/method_options.hpp"
+#include "studies/input/obstacle_kinds.hpp"
 #include "studies/sweep/closed_forms.hpp"
 
 namespace stickslip {
@@ -42,6 +44,27 @@ json kind_schema(const std::string& kind, const json& parts, const json& keys) {
   return schema;
 }
 
+/// {"KEY": {...}} with one of the kinds' keys.
+template <class Kinds>
+json one_of(const Kinds& kinds) {
+  json properties = json::object();
+  for (const auto& kind : kinds) properties[kind.key] = json::parse(kind.schema);
+  return {{"type", "object"},   {"title", "one of the following"}, {"minProperties", 1},
+          {"maxProperties", 1}, {"additionalProperties", false},   {"properties", properties}};
+}
+
+/// The kinds of obstacles, one of which goes with what all of them may have.
+void add_obstacle_kinds(json& obstacle) {
+  json properties = json::object(), one = json::array();
+  for (const auto& kind : obstacle_kinds()) {
+    properties[kind.key] = json::parse(kind.schema);
+    one.push_back({{"required", {kind.key}}});
+  }
+  properties.update(obstacle["properties"]);
+  obstacle["properties"] = properties;
+  obstacle["oneOf"] = one;
+}
+
 /// {"KIND": {...}}, one of the kinds.
 json response_schema() {
   const json texts = json::parse(schema_texts::response);
@@ -67,10 +90,12 @@ json scene_schema() {
   json definitions = json::parse(schema_texts::common);
   definitions.update(json::parse(schema_texts::motion));
   definitions["mesh"] = json::parse(schema_texts::mesh);
-  definitions["material"] = json::parse(schema_texts::material);
+  definitions["material"] = one_of(material_kinds());
   definitions["response"] = response_schema();
   definitions["method"] = method_schema(OptionLists::refused);
-  return document("stickslip scene", schema_texts::scene, {"bodies", "time"}, definitions);
+  json schema = document("stickslip scene", schema_texts::scene, {"bodies", "time"}, definitions);
+  add_obstacle_kinds(schema["properties"]["obstacles"]["additionalProperties"]);
+  return schema;
 }
 
 json study_schema() {

@@ -88,27 +88,4 @@ const char* const mesh = R"json({"type": "object", "title": "one of the followin
     {"required": ["half_disk"]}, {"required": ["point"]}, {"required": ["line"]}, {"required": ["arc"]},
     {"required": ["gmsh", "body"]}]})json";
 
-const char* const material = R"json({"type": "object", "title": "one of the following", "minProperties": 1,
-  "maxProperties": 1, "additionalProperties": false, "properties": {
-    "linear_elastic": {"description": "of bars, and where strains are small of all but points", "type": "object",
-      "examples": [{"E": 1000, "nu": 0.3}],
-      "required": ["E", "nu"], "additionalProperties": false, "properties": {
-        "E": {"description": "Young's modulus (force per area)", "$ref": "#/$defs/positive", "examples": [1000]},
-        "nu": {"description": "Poisson's ratio", "title": "number > -1 and < 0.5", "type": "number",
-          "exclusiveMinimum": -1, "exclusiveMaximum": 0.5, "examples": [0.3]}}},
-    "neo_hookean": {"description": "of all but bars and points where strains are finite", "type": "object",
-      "examples": [{"E": 1000, "nu": 0.3}], "required": ["E", "nu"], "additionalProperties": false, "properties": {
-        "E": {"description": "Young's modulus of small strains (force per area)", "$ref": "#/$defs/positive",
-          "examples": [1000]},
-        "nu": {"description": "Poisson's ratio of small strains", "title": "number > -1 and < 0.5", "type": "number",
-          "exclusiveMinimum": -1, "exclusiveMaximum": 0.5, "examples": [0.3]},
-        "volumetric": {"description": "energy of a change of volume: lame/2 (J - 1)^2, or lame/2 (ln J)^2",
-          "enum": ["quadratic", "log"], "default": "quadratic"}}},
-    "grounded_spring": {"description": "of a point: the spring to its anchor", "type": "object",
-      "examples": [{"stiffness": [[100, 0], [0, 100]]}], "required": ["stiffness"],
-      "additionalProperties": false, "properties": {
-        "stiffness": {"description": "symmetric and positive definite (force per length)",
-          "title": "2 x 2 matrix (3 x 3 in space)", "type": "array", "items": {"$ref": "#/$defs/vector"},
-          "minItems": 2, "maxItems": 3, "examples": [[[100, 0], [0, 100]]]}}}}})json";
-
 }  // namespace stickslip::schema_texts

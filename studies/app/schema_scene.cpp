@@ -73,27 +73,8 @@ const char* const scene = R"json({
     "examples": [{"floor": {"plane": {"point": [0, 0], "normal": [0, 1]}}}],
     "additionalProperties": {
       "type": "object", "title": "one of the following", "additionalProperties": false, "properties": {
-        "plane": {"description": "a half space", "type": "object", "required": ["point", "normal"],
-          "examples": [{"point": [0, 0], "normal": [0, 1]}], "additionalProperties": false, "properties": {
-            "point": {"description": "any of its surface (length)", "$ref": "#/$defs/vector", "examples": [[0, 0]]},
-            "normal": {"description": "out of the obstacle; of any length but 0", "$ref": "#/$defs/vector",
-              "examples": [[0, 1]]}}},
-        "circle": {"description": "a drum, or a cup; not in space", "type": "object",
-          "required": ["center", "radius"], "examples": [{"center": [0, 0], "radius": 1}],
-          "additionalProperties": false, "properties": {
-            "center": {"description": "of the circle (length)", "$ref": "#/$defs/pair", "examples": [[0, 0]]},
-            "radius": {"description": "of the circle (length)", "$ref": "#/$defs/positive", "examples": [1]},
-            "inside": {"description": "true: a cup, solid outside of the circle", "type": "boolean",
-              "default": false}}},
-        "polyline": {"description": "straight facets; not in space", "type": "object", "required": ["points"],
-          "examples": [{"points": [[5, 0], [0, 0], [0, 2]]}], "additionalProperties": false, "properties": {
-            "points": {
-              "description": "the solid is on the right of the way along them; the first once more closes it (length)",
-              "title": "two or more [x, y]", "type": "array",
-              "minItems": 2, "items": {"$ref": "#/$defs/pair"}, "examples": [[[5, 0], [0, 0], [0, 2]]]}}},
         "move": {"description": "displacement by axis", "$ref": "#/$defs/move"},
-        "rotate": {"description": "as a rigid body, added to move", "$ref": "#/$defs/rotate"}},
-      "oneOf": [{"required": ["plane"]}, {"required": ["circle"]}, {"required": ["polyline"]}]}},
+        "rotate": {"description": "as a rigid body, added to move", "$ref": "#/$defs/rotate"}}}},
   "contacts": {"description": "which surfaces may touch, by names of your choice", "title": "object by name",
     "type": "object", "examples": [{"sole": {"slave": "block.bottom", "master": "floor", "friction": 0.3}}],
     "additionalProperties": {

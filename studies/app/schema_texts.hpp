@@ -1,6 +1,6 @@
 /// What files may hold, in JSON Schema: for every key its type, its meaning with unit, its default and an example. This
-/// is the one place where they are described: editors read it by `stickslip schema`, and the tables of docs/ are
-/// printed from it (tools/key_tables.py).
+/// is where they are described, but for materials and obstacles, which have tables of their own (studies/input):
+/// editors read it by `stickslip schema`, and the tables of docs/ are printed from it (tools/key_tables.py).
 ///
 /// "title" is the name of a type in the tables; "default" is what holds where the key is left out.
 #pragma once
@@ -11,7 +11,6 @@ namespace stickslip::schema_texts {
 extern const char* const common;  ///< of both files
 extern const char* const motion;
 extern const char* const mesh;
-extern const char* const material;
 
 // Properties by key.
 extern const char* const scene;

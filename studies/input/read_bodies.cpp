@@ -1,4 +1,4 @@
-#include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -7,7 +7,7 @@
 #include "core/mesh/generators.hpp"
 #include "core/mesh/quality.hpp"
 #include "core/model/model.hpp"
-#include "studies/input/scene_reading.hpp"
+#include "studies/input/materials.hpp"
 #include "studies/input/size_estimate.hpp"
 #include "studies/io/atomic_file.hpp"
 
@@ -199,66 +199,30 @@ std::optional<MeshDescription> read_mesh(const JsonNode& node, SceneReading& rea
   return described(read_gmsh(node, mesh, reading));
 }
 
-std::optional<Material> read_elastic(const JsonNode& node, SceneReading& reading) {
-  if (!node.is_object({{"E", "nu"}})) return std::nullopt;
-  return LinearElastic{reading.required(node, "E", positive), reading.required(node, "nu", poisson_ratio)};
-}
-
-std::optional<Material> read_neo_hookean(const JsonNode& node, SceneReading& reading) {
-  if (!node.is_object({{"E", "nu"}, {"volumetric"}})) return std::nullopt;
-  NeoHookean material{reading.required(node, "E", positive), reading.required(node, "nu", poisson_ratio)};
-  if (const auto kind = node.find("volumetric"))
-    if (kind->choice({"quadratic", "log"}) == "log") material.volumetric = NeoHookean::Volumetric::log;
-  return material;
-}
-
-std::optional<Material> read_spring(const JsonNode& node, SceneReading& reading) {
-  if (!node.is_object({{"stiffness"}})) return std::nullopt;
-  const auto matrix = node.find("stiffness");
-  if (!matrix) return std::nullopt;
-  const int d = reading.dimension();
-  const std::string size = std::to_string(d) + " x " + std::to_string(d);
-  const auto rows = matrix->array(d, "a " + size + " matrix, [[...], ...]");
-  if (!rows) return std::nullopt;
-  GroundedSpring spring;
-  Eigen::MatrixXd values(d, d);
-  for (int i = 0; i < d; ++i) {
-    spring.stiffness.push_back(reading.vector((*rows)[i], d));
-    for (int j = 0; j < d; ++j) values(i, j) = spring.stiffness[i][j].value;
-  }
-  if (!values.allFinite()) return std::nullopt;
-  for (int i = 0; i < d; ++i)
-    for (int j = 0; j < i; ++j) {
-      const int below = spring.stiffness[i][j].slot, above = spring.stiffness[j][i].slot;
-      reading.symmetric[below] = above;
-      reading.symmetric[above] = below;
-      if (values(i, j) != values(j, i)) {
-        (*rows)[i].elements()[j].must_be(shown(values(j, i)) + ", so that the stiffness is symmetric");
-        return std::nullopt;
-      }
-    }
-  if (Eigen::LLT<Eigen::MatrixXd>(values).info() != Eigen::Success) {
-    matrix->must_be("positive definite, or nothing would hold the point");
-    return std::nullopt;
-  }
-  return spring;
+Filling filling_of(const MeshDescription& mesh) {
+  if (std::holds_alternative<PointMesh>(mesh)) return Filling::point;
+  const bool chain = std::holds_alternative<LineMesh>(mesh) || std::holds_alternative<ArcMesh>(mesh);
+  return chain ? Filling::bars : Filling::continuum;
 }
 
 std::optional<Material> read_material(const JsonNode& node, const MeshDescription* mesh, SceneReading& reading) {
-  const auto kind = node.kind({"linear_elastic", "neo_hookean", "grounded_spring"}, {"j2_plastic"});
-  if (!kind) return std::nullopt;
-  const auto& [name, material] = *kind;
-  const bool point = mesh && std::holds_alternative<PointMesh>(*mesh);
-  const bool bars = mesh && (std::holds_alternative<LineMesh>(*mesh) || std::holds_alternative<ArcMesh>(*mesh));
+  const auto& kinds = material_kinds();
+  std::vector<std::string> keys, allowed;
+  std::string places;
   const bool finite = reading.scene.finite_strain;
-  const std::string wanted = point ? "grounded_spring" : finite && !bars ? "neo_hookean" : "linear_elastic";
-  if (mesh && name != wanted)
+  for (const auto& kind : kinds) {
+    keys.push_back(kind.key);
+    if (mesh && kind.goes_with(filling_of(*mesh), finite)) allowed.push_back(kind.key);
+    places += (places.empty() ? "" : ", ") + keys.back() + " " + kind.place;
+  }
+  const auto chosen = node.kind(keys, {"j2_plastic"});
+  if (!chosen) return std::nullopt;
+  const auto& [name, material] = *chosen;
+  if (mesh && std::find(allowed.begin(), allowed.end(), name) == allowed.end())
     material.error_at_key(in_quotes(name) + " does not go with this mesh at " + (finite ? "finite" : "small") +
-                          " strain; allowed: " + wanted +
-                          " (grounded_spring holds a point, linear_elastic fills bars, " +
-                          "and the rest where strains are small; neo_hookean fills it where they are finite)");
-  if (name == "neo_hookean") return read_neo_hookean(material, reading);
-  return name == "grounded_spring" ? read_spring(material, reading) : read_elastic(material, reading);
+                          " strain; allowed: " + listed(allowed) + " (" + places + ")");
+  const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return name == k.key; });
+  return kind->read(material, reading);
 }
 
 /// Reports a fault of a generator, which begins with the key that it is about, at that key, with what it was given.

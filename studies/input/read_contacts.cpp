@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <set>
 
-#include "studies/input/scene_reading.hpp"
+#include "studies/input/obstacle_kinds.hpp"
 
 namespace stickslip {
 namespace {
@@ -10,71 +10,28 @@ bool is_in(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-std::optional<Plane> read_plane(const JsonNode& node, SceneReading& reading) {
-  if (!node.is_object({{"point", "normal"}})) return std::nullopt;
-  Plane plane{reading.required_vector(node, "point", reading.dimension()), {}};
-  if (const auto normal = node.find("normal"))
-    plane.normal = reading.direction(*normal, "a vector that is not zero; it points out of the obstacle");
-  return plane;
-}
-
-std::optional<Circle> read_circle(const JsonNode& node, SceneReading& reading) {
-  if (!node.is_object({{"center", "radius"}, {"inside"}})) return std::nullopt;
-  Circle circle;
-  const auto center = reading.required_vector(node, "center", 2);
-  circle.center = {center[0], center[1]};
-  circle.radius = reading.required(node, "radius", positive);
-  if (const auto inside = node.find("inside")) circle.inside = inside->boolean().value_or(false);
-  return circle;
-}
-
-std::optional<Polyline> read_polyline(const JsonNode& node, SceneReading& reading) {
-  constexpr const char* allowed = "an array of two points [x, y] or more, the solid on the right of the way along them";
-  if (!node.is_object({{"points"}})) return std::nullopt;
-  const auto points = node.find("points");
-  if (!points) return std::nullopt;
-  if (!points->value().is_array() || points->value().size() < 2) {
-    points->must_be(allowed);
-    return std::nullopt;
-  }
-  Polyline polyline;
-  auto same = [](const auto& a, const auto& b) { return a[0].value == b[0].value && a[1].value == b[1].value; };
-  for (const JsonNode& element : points->elements()) {
-    const bool last = polyline.points.size() + 1 == points->value().size();
-    const bool again = last && polyline.points.size() > 2 && element.value() == points->value().front();
-    if (again) {
-      polyline.closed = true;
-      for (int i = 0; i < 2; ++i)
-        reading.constants[child_pointer(element.pointer(), std::to_string(i))] =
-            "of the point that closes the polyline; its first point is the parameter";
-      break;
-    }
-    const auto x = reading.vector(element, 2);
-    polyline.points.push_back({x[0], x[1]});
-    if (const auto n = polyline.points.size(); n > 1 && same(polyline.points[n - 1], polyline.points[n - 2]))
-      element.error("is the point before it once more; two points in a row must differ");
-  }
-  return polyline;
-}
-
 void read_obstacle(const std::string& name, const JsonNode& node, SceneReading& reading) {
   check_name(node, name);
   if (is_in(reading.body_names, name)) node.error_at_key("a body has the name " + in_quotes(name) + " already");
-  const auto kind = node.kind({"plane", "circle", "polyline"}, {"cylinder", "sphere"}, {"move", "rotate"});
-  if (!kind) return;
+  const auto& kinds = obstacle_kinds();
+  std::vector<std::string> keys, in_space;
+  for (const auto& kind : kinds) {
+    keys.push_back(kind.key);
+    if (kind.is_in_space) in_space.push_back(kind.key);
+  }
+  const auto chosen = node.kind(keys, {"cylinder", "sphere"}, {"move", "rotate"});
+  if (!chosen) return;
+  const auto& [key, shape] = *chosen;
   Obstacle obstacle;
   obstacle.name = name;
   if (const auto move = node.find("move")) obstacle.move = reading.move(*move);
   if (const auto rotate = node.find("rotate")) obstacle.rotate = reading.rotation(*rotate);
-  if (kind->first == "plane") {
-    if (auto plane = read_plane(kind->second, reading)) obstacle.shape = *std::move(plane);
-  } else if (reading.dimension() == 3) {
-    kind->second.error_at_key("a " + kind->first + " needs a plane space; allowed in the space solid: plane");
-  } else if (kind->first == "polyline") {
-    reading.only_at_small_strain(kind->second);
-    if (auto polyline = read_polyline(kind->second, reading)) obstacle.shape = *std::move(polyline);
-  } else if (auto circle = read_circle(kind->second, reading)) {
-    obstacle.shape = *circle;
+  const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return key == k.key; });
+  if (reading.dimension() == 3 && !kind->is_in_space) {
+    shape.error_at_key("a " + key + " needs a plane space; allowed in the space solid: " + listed(in_space));
+  } else {
+    if (!kind->at_finite_strain) reading.only_at_small_strain(shape);
+    if (auto surface = kind->read(shape, reading)) obstacle.shape = *std::move(surface);
   }
   reading.scene.obstacles.push_back(std::move(obstacle));
 }

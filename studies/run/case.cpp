@@ -97,7 +97,8 @@ std::string overflow_of(const CaseResult& result, const StepResult& step) {
   const State<double>& state = step.increment->state;
   const auto& contact = state.contact;
   if (!state.displacement.allFinite()) return "the displacements are";
-  for (const auto* field : {&contact.gap, &contact.placement, &contact.slip, &contact.traction, &state.dissipation})
+  for (const auto* field :
+       {&contact.gap, &contact.slip, &contact.traction, &state.history.placement, &state.history.work})
     if (!field->allFinite()) return "gaps, slips or tractions are";
   const auto summaries = summarise(model, slots, state);
   for (std::size_t c = 0; c < summaries.size(); ++c)

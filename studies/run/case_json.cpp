@@ -233,7 +233,7 @@ json interface_json(const CaseResult& result) {
       normal.push_back(finite(state.contact.traction[point.multiplier]));
       const bool plane = point.tangents == 1;  // one component keeps its sign; two are shown by their size
       const auto t = state.contact.traction.segment(point.multiplier + 1, point.tangents);
-      const auto s = state.contact.placement.segment(tangential_offset(model, static_cast<int>(p)), point.tangents);
+      const auto s = state.history.placement.segment(tangential_offset(model, static_cast<int>(p)), point.tangents);
       tangential.push_back(finite(plane ? t[0] : t.norm()));
       slip.push_back(finite(plane ? s[0] : s.norm()));
       states.push_back(state_name(point, state.contact.state[p]));

@@ -114,8 +114,8 @@ std::vector<std::string> export_system(const std::filesystem::path& folder, cons
   const Vector<double> prescribed = u - Vector<double>(select.transpose() * (select * u));
   const Vector<double> f = in_frames(external_forces(model, slots, increment.time)) - K * prescribed;
   const RegularisationField<double> no_rho;
-  const Vector<double> no_placement;
-  const ContactInput<double> input{model, slots, no_rho, no_placement, ConeRadius::augmented, increment.time};
+  const History<double> no_history;
+  const ContactInput<double> input{model, slots, no_rho, no_history, ConeRadius::augmented, increment.time};
   Vector<double> g = G.transpose() * prescribed;
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];

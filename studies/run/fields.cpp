@@ -2,10 +2,12 @@
 
 #include <fmt/core.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "studies/input/obstacle_kinds.hpp"
 #include "studies/input/response_kinds.hpp"
 #include "studies/io/vtu.hpp"
 #include "studies/run/contact_points.hpp"
@@ -16,21 +18,24 @@ namespace {
 
 using nlohmann::json;
 
-/// Stress of a strain, xx yy zz xy; Cauchy's at finite strain.
+/// Stress of a displacement gradient, xx yy zz xy; Cauchy's at finite strain.
 template <int rows>
-std::array<double, 4> stress_of(const Model& model, const Law<double>& law, const Mat<double, rows>& H) {
-  if constexpr (rows == 2)
-    if (const auto* finite = std::get_if<NeoHookeanLaw<double>>(&law)) {
-      const Mat<double, 2> F = Mat<double, 2>::Identity() + H;
-      const Mat<double, 2> s =
-          finite->template stress<double, 2>(H) * F.transpose() / (F(0, 0) * F(1, 1) - F(0, 1) * F(1, 0));
-      return {s(0, 0), s(1, 1), finite->stress_across(H), s(0, 1)};
-    }
-  const auto& linear = std::get<LinearElasticLaw<double>>(law);
-  const Mat<double, rows> s = linear.template stress<double, rows>(H);
-  double zz = model.scene.space == Space::plane_strain ? linear.lame * H.trace() : 0;
-  if constexpr (rows == 3) zz = s(2, 2);
-  return {s(0, 0), s(1, 1), zz, s(0, 1)};
+std::array<double, 4> stress_of(const Law<double>& law, const Mat<double, rows>& H) {
+  return std::visit(
+      [&]<class L>(const L& of) -> std::array<double, 4> {
+        if constexpr (requires { L::is_finite; }) {
+          Mat<double, rows> s = Mat<double, rows>::Zero();
+          if constexpr (rows == 2 || L::is_made_for(Kinematics::revolution)) s = of.template stress<double, rows>(H);
+          if (L::is_finite) {
+            const Mat<double, rows> F = Mat<double, rows>::Identity() + H;
+            s = s * F.transpose() / F.determinant();
+          }
+          if constexpr (rows == 2) return {s(0, 0), s(1, 1), of.stress_across(H), s(0, 1)};
+          if constexpr (rows == 3) return {s(0, 0), s(1, 1), s(2, 2), s(0, 1)};
+        }
+        return {};
+      },
+      law);
 }
 
 /// Mean stress of each element, xx yy zz xy yz xz; zero for lumped elements. Plane strain: zz = nu (xx + yy);
@@ -46,7 +51,7 @@ Matrix<double> element_stress(const Problem& problem, const State<double>& state
     Vector<double> volumes = Vector<double>::Zero(model.bodies[b].mesh.element_count());
     for_each_strain(problem, state.displacement, b, [&](int e, const auto& H, double volume) {
       constexpr int rows = std::decay_t<decltype(H)>::RowsAtCompileTime;
-      const auto [xx, yy, zz, xy] = stress_of<rows>(model, law, H);
+      const auto [xx, yy, zz, xy] = stress_of<rows>(law, H);
       Eigen::Matrix<double, 6, 1> components;
       components << xx, yy, zz, xy, 0, 0;
       stress.col(first + e) += volume * components;
@@ -181,18 +186,9 @@ std::string field_file(std::size_t step) { return fmt::format("fields_{:04}.vtu"
 /// about a center.
 json obstacle_json(const Obstacle& obstacle, double time, const Numbers<double>& numbers) {
   json shape;
-  if (const auto* plane = std::get_if<Plane>(&obstacle.shape)) {
-    shape["plane"] = {{"point", numbers_json(plane->point)}, {"normal", numbers_json(plane->normal)}};
-  } else if (const auto* circle = std::get_if<Circle>(&obstacle.shape)) {
-    shape["circle"] = {{"center", {circle->center[0].value, circle->center[1].value}},
-                       {"radius", circle->radius.value},
-                       {"inside", circle->inside}};
-  } else if (const auto* polyline = std::get_if<Polyline>(&obstacle.shape)) {
-    json vertices = json::array();
-    for (const auto& x : polyline->points) vertices.push_back({x[0].value, x[1].value});
-    if (polyline->closed) vertices.push_back(vertices.front());
-    shape["polyline"] = {{"points", vertices}};
-  }
+  for (const auto& kind : obstacle_kinds())
+    if (json drawn = kind.drawn(obstacle.shape); !drawn.is_null()) shape = std::move(drawn);
+  if (shape.is_null()) return shape;
   json moved = {{"by", {0.0, 0.0}}};
   for (const auto& [axis, table] : obstacle.move)
     if (axis < 'z') moved["by"][axis == 'x' ? 0 : 1] = evaluate(table, time, numbers);

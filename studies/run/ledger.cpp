@@ -31,7 +31,7 @@ StateBytes kept_states(const Trajectory<double>& trajectory) {
 double kept_sweeps(const Trajectory<double>& trajectory) {
   long bytes = 0;
   for (const auto& increment : trajectory.increments)
-    for (const auto& sweep : increment.sweeps) bytes += state_bytes(sweep.state).all() + bytes_of(sweep.rho_factor);
+    for (const auto& sweep : increment.augmented) bytes += state_bytes(sweep.state).all() + bytes_of(sweep.rho_factor);
   return static_cast<double>(bytes);
 }
 

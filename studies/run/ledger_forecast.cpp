@@ -40,7 +40,7 @@ Size size_of(const Input& input, const Model& model) {
   n.solved = solved_displacements(model, n.condensed);
   n.points = static_cast<double>(model.points.size());
   n.tangential = model.multiplier_count - n.points;
-  n.feet = model.placement_count - n.tangential;
+  n.feet = model.foot_count;
   n.present = model.effects.current_geometry ? n.points : 0;
   n.contacts = model.effects.friction ? static_cast<double>(model.scene.contacts.size()) : 0;
   n.steps = static_cast<double>(model.times.size());

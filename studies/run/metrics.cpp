@@ -55,7 +55,7 @@ void enlarge(const Model& model, const Slots<double>& slots, const State<double>
     const double traction = state.contact.traction.segment(point.multiplier, point.components()).norm();
     const double normal = state.contact.gap[p] - slots.geometry[p].gap;
     const double along =
-        state.contact.placement.segment(tangential_offset(model, static_cast<int>(p)), point.tangents).norm();
+        state.history.placement.segment(tangential_offset(model, static_cast<int>(p)), point.tangents).norm();
     const double elastic = slots.stiffness[p] / slots.geometry[p].area;
     stiffest = larger(stiffest, elastic);
     scales.traction = larger(scales.traction, traction);

@@ -56,7 +56,7 @@ void add_deformations(const CaseResult& result, std::vector<Warning>& warnings) 
 
 /// Whether sliding along it changes the geometry of the contact.
 bool is_flat(const Model& model, const ContactPoint& point) {
-  return point.obstacle >= 0 && std::holds_alternative<Plane>(model.scene.obstacles[point.obstacle].shape);
+  return point.obstacle >= 0 && is_flat(model.scene.obstacles[point.obstacle].shape);
 }
 
 void add_slips(const CaseResult& result, std::vector<Warning>& warnings) {
@@ -73,8 +73,8 @@ void add_slips(const CaseResult& result, std::vector<Warning>& warnings) {
       closed[point.contact] = 1;
       if (point.tangents == 0) continue;
       if (is_slipping(field.state[p])) slipped[point.contact] = 1;
-      const auto placement =
-          field.placement.segment(tangential_offset(model, static_cast<int>(p)), point.tangents).norm();
+      const auto offset = tangential_offset(model, static_cast<int>(p));
+      const double placement = step.increment->state.history.placement.segment(offset, point.tangents).norm();
       if (point.mesh_size > 0 && !is_flat(model, point) && !model.effects.current_geometry)
         farthest[point.contact] = std::max(farthest[point.contact], placement / point.mesh_size);
     }
@@ -88,7 +88,7 @@ void add_slips(const CaseResult& result, std::vector<Warning>& warnings) {
                                       "that of the start, which holds below some half of one",
                                       name, farthest[c])});
     const auto& law = result.problem->slots.friction[c];
-    if (contacts[c].friction && !law.is_smooth() && closed[c] && !slipped[c])
+    if (contacts[c].friction && !law.bears_nothing() && closed[c] && !slipped[c])
       warnings.push_back({WarningCode::idle_friction, name, law.coefficient ? *law.coefficient : *law.limit,
                           "lower the friction, or pull harder",
                           fmt::format("{}: no point slipped in any step, so that the {} has no influence", name,

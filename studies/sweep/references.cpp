@@ -17,10 +17,14 @@ D contact_modulus(const Scene& scene, const Numbers<D>& numbers, const Contact& 
   D compliance{};
   for (const auto& side : {contact.slave, contact.master})
     for (const auto& body : scene.bodies) {
-      const auto* elastic = std::get_if<LinearElastic>(&body.material);
-      if (!elastic || side.rfind(body.name + ".", 0) != 0) continue;
-      const D nu = scene.space == Space::plane_stress ? D(0) : numbers(elastic->nu);
-      compliance += (D(1) - nu * nu) / numbers(elastic->E);
+      if (side.rfind(body.name + ".", 0) != 0) continue;
+      const auto add = [&](const auto& material) {
+        if constexpr (requires { material.E, material.nu; }) {
+          const D nu = scene.space == Space::plane_stress ? D(0) : numbers(material.nu);
+          compliance += (D(1) - nu * nu) / numbers(material.E);
+        }
+      };
+      std::visit(add, body.material);
     }
   return D(1) / compliance;
 }

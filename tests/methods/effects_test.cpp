@@ -64,7 +64,7 @@ TEST(Effects, FrictionlessContactHasNoTangentialUnknownsStatesOrHistory) {
   const auto s = scenes::run(scene, MonolithicAL{});
   EXPECT_EQ(s.model.multiplier_count, static_cast<int>(s.model.points.size()));
   const auto& contact = s.trajectory.increments.back().state.contact;
-  EXPECT_EQ(contact.slip.size() + contact.placement.size(), 0);
+  EXPECT_EQ(contact.slip.size() + s.trajectory.increments.back().state.history.placement.size(), 0);
   EXPECT_FALSE(s.model.effects.friction);
 }
 

@@ -48,8 +48,8 @@ TEST(FrictionLaw, IsTheLeastOfConeAndLimit) {
   EXPECT_TRUE(coulomb.has_apex() && limited.has_apex() && !tresca.has_apex());
   EXPECT_TRUE(coulomb.couples() && limited.couples() && !tresca.couples());
   EXPECT_EQ(limited.slope_at_infinity(), 0);
-  EXPECT_TRUE(FrictionLaw<double>(0.0).is_smooth() && FrictionLaw<double>(0.3, 0.0).is_smooth() &&
-              !limited.is_smooth());
+  EXPECT_TRUE(FrictionLaw<double>(0.0).bears_nothing() && FrictionLaw<double>(0.3, 0.0).bears_nothing() &&
+              !limited.bears_nothing());
 }
 
 /// Block on a spring k = 1000 under N = 100, drawn by .5: it follows until the spring bears the bound.

@@ -125,7 +125,7 @@ TEST(Invariance, FrictionZeroAndNoFrictionAgreeAndTheLatterHasFewerUnknowns) {
           << name_of(method);
     EXPECT_LT(none.model.multiplier_count, zero.model.multiplier_count);
     const auto& state = none.trajectory.increments.back().state;
-    EXPECT_EQ(state.contact.slip.size() + state.contact.placement.size() + state.dissipation.size(), 0);
+    EXPECT_EQ(state.contact.slip.size() + state.history.placement.size() + state.history.work.size(), 0);
   }
 }
 

@@ -234,7 +234,7 @@ TEST(Tables, AThousandCyclesOfTheSliderDriftByNothing) {
     const auto &second = s.trajectory.increments[1].state, &last = s.trajectory.increments.back().state;
     EXPECT_EQ(last.contact.traction.size() + last.displacement.size(),
               second.contact.traction.size() + second.displacement.size());
-    EXPECT_TRUE(s.trajectory.increments.back().sweeps.empty());
+    EXPECT_TRUE(s.trajectory.increments.back().augmented.empty());
   }
 }
 

@@ -37,16 +37,16 @@ Outcome differentiate_last(const Scene& scene, const M& method, std::optional<do
   auto blocks = parameter_blocks(run.model);
   for (auto& block : blocks) {
     block.previous.multiplier = lift(previous.multiplier);
-    block.previous.contact.placement = lift(previous.contact.placement);
+    for_each_part([](Vector<Direction>& part, const Vector<double>& values) { part = lift(values); },
+                  block.previous.history, previous.history);
     block.previous.contact.traction = lift(previous.contact.traction);
-    block.previous.dissipation = lift(previous.dissipation);
   }
-  Differentiation<CarelessEngine> problem{run.model, run.slots, engine, blocks,
-                                          static_cast<int>(run.model.scene.parameters.size()), {}};
+  Differentiation<CarelessEngine> problem{
+      run.model, run.slots, engine, blocks, static_cast<int>(run.model.scene.parameters.size()), {}};
   if (factor) {
     const auto rho = initial_regularisation(run.slots, method);
-    const ContactInput<double> input{run.model, run.slots, rho, previous.contact.placement, cone_radius(method),
-                                     increments.back().time};
+    const ContactInput<double> input{run.model,        run.slots,           rho,
+                                     previous.history, cone_radius(method), increments.back().time};
     auto tangents = converged_tangents(input, increments.back().state);
     for (auto& tangent : tangents)
       for (auto* part : {&tangent.force_w, &tangent.force_l}) *part *= *factor;

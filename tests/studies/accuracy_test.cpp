@@ -175,7 +175,7 @@ TEST(Accuracy, WhereNothingPressesErrorsOfRoundingPass) {
     Made made(scene);
     auto& state = made.next();
     state.displacement << 1, 0, 1, 0;  // moved by its support, and left by rounding with forces of 1e-13 of 200
-    state.contact.placement << -1;
+    state.history.placement << -1;
     state.contact.slip << -1;
     state.contact.state[0] = ContactState::slip;
     state.contact.traction << (presses ? -2e-3 : -2e-11), (presses ? 1e-3 : 1e-11);

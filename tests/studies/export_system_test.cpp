@@ -48,7 +48,7 @@ void expect_solution(const CaseResult& result, const std::string& name) {
     EXPECT_NEAR(moved[model.points[p].multiplier] / area, state.contact.gap[p], 1e-14 * length) << p;
     for (int a = 0; a < model.points[p].tangents; ++a)
       EXPECT_NEAR(moved[model.points[p].multiplier + 1 + a] / area,
-                  state.contact.placement[tangential_offset(model, static_cast<int>(p)) + a], 1e-14 * length)
+                  state.history.placement[tangential_offset(model, static_cast<int>(p)) + a], 1e-14 * length)
           << p;
   }
   for (const char* name : {"rows.csv", "points.csv", "README"}) EXPECT_GT(fs::file_size(folder / name), 0u) << name;

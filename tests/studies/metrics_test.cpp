@@ -70,10 +70,10 @@ TEST(Metrics, GapIsPenetrationOverTheLargestRelativeDisplacement) {
   Made made(scene);
   auto& state = made.next();
   state.contact.gap << -0.05;  // it came down by 0.3
-  state.contact.placement << 0.4;
+  state.history.placement << 0.4;
   expect_only(KktError{0, made.errors()[0].gap}, &KktError::gap, 0.05 / 0.5);
   state.contact.gap << 0.05;  // open by as much
-  state.contact.placement << 0.15;
+  state.history.placement << 0.15;
   EXPECT_EQ(made.errors()[0].gap, 0);
 }
 
@@ -289,7 +289,7 @@ TEST(Metrics, WhatRoundingMakesOfDisplacementsPressesNothing) {
   Made made(scene);
   auto& state = made.next();
   state.displacement << 1, 0, 1, 0;  // its support moved it
-  state.contact.placement << -1;
+  state.history.placement << -1;
   state.contact.slip << -1;
   state.contact.traction << -2e-11, 1e-12;  // 1e-13 of 200: inside its cone, if that were a pressure
   const auto e = made.errors()[0];

@@ -66,7 +66,7 @@ void compare_contact(const Problem& problem, const State<double>& before, const 
     EXPECT_LE((geometry.area * traction_vector(problem, state, p) - vector("force", i)).norm(), same_solution * force)
         << where;
     EXPECT_NEAR(state.contact.gap[p], expected["gap"][i].get<double>(), same_solution * length) << where;
-    const Vector<double> placed = state.contact.placement - before.contact.placement;
+    const Vector<double> placed = state.history.placement - before.history.placement;
     const Vector<double> slip =
         geometry.tangents.leftCols(point.tangents) * placed.segment(tangential_offset(model, p), point.tangents);
     EXPECT_LE((slip - vector("slip", i)).norm(), same_solution * length) << where;

@@ -22,7 +22,8 @@ struct EngineProblem {
   Model model;
   Slots<double> slots;
   RegularisationField<double> rho;
-  Vector<double> placement, u, multiplier;
+  History<double> previous;
+  Vector<double> u, multiplier;
   std::vector<ContactState> states;
 
   explicit EngineProblem(const Scene& of)
@@ -31,7 +32,9 @@ struct EngineProblem {
       const double local = slots.stiffness[p] / slots.geometry[p].area;
       rho.push_back({2 * local, 1.5 * local});
     }
-    placement = 1e-3 * derivatives::arbitrary(model.multiplier_count - static_cast<int>(model.points.size()), 1);
+    previous = initial_history(model, slots);
+    previous.placement =
+        1e-3 * derivatives::arbitrary(model.multiplier_count - static_cast<int>(model.points.size()), 1);
     u = 1e-2 * derivatives::arbitrary(model.dof_count(), 2);
     multiplier = 10 * derivatives::arbitrary(model.multiplier_count, 3);
     for (const auto& point : model.points) multiplier[point.multiplier] = -20;
@@ -40,7 +43,7 @@ struct EngineProblem {
       for (auto& state : states) state = state == ContactState::open ? state : ContactState::slip;
   }
 
-  ContactInput<double> input() const { return {model, slots, rho, placement, ConeRadius::augmented, 1.0}; }
+  ContactInput<double> input() const { return {model, slots, rho, previous, ConeRadius::augmented, 1.0}; }
   std::vector<PointTangent<double>> tangents() const {
     std::vector<PointTangent<double>> all;
     for (std::size_t p = 0; p < model.points.size(); ++p)

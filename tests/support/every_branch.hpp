@@ -148,8 +148,8 @@ inline double coulomb_error(const Model& model, const Slots<double>& slots, cons
     if (point.tangents == 0) continue;
     const int offset = tangential_offset(model, p);
     const Vector<double> t = after.contact.traction.segment(point.multiplier + 1, point.tangents);
-    const Vector<double> slip = after.contact.placement.segment(offset, point.tangents) -
-                                before.contact.placement.segment(offset, point.tangents);
+    const Vector<double> slip = after.history.placement.segment(offset, point.tangents) -
+                                before.history.placement.segment(offset, point.tangents);
     Vector<double> z = t + k * slip;
     const double bound = z_N > 0 ? 0 : most_friction(slots.friction[point.contact], -pressed), size = z.norm();
     if (size > bound) z *= size > 0 ? bound / size : 0;

@@ -4,6 +4,7 @@
 
 #include "core/model/response.hpp"
 #include "methods/solve.hpp"
+#include "tests/support/carried_complex.hpp"
 
 namespace stickslip::oracle {
 

@@ -18,10 +18,10 @@ inline bool same_bits(const Vector<double>& a, const Vector<double>& b) {
 inline void expect_same_bits(const State<double>& a, const State<double>& b, const std::string& what) {
   EXPECT_TRUE(same_bits(a.displacement, b.displacement)) << what << ": displacement";
   EXPECT_TRUE(same_bits(a.multiplier, b.multiplier)) << what << ": multiplier";
-  EXPECT_TRUE(same_bits(a.dissipation, b.dissipation)) << what << ": dissipation";
+  EXPECT_TRUE(same_bits(a.history.work, b.history.work)) << what << ": dissipation";
   EXPECT_EQ(a.contact.state, b.contact.state) << what;
   EXPECT_TRUE(same_bits(a.contact.gap, b.contact.gap)) << what << ": gap";
-  EXPECT_TRUE(same_bits(a.contact.placement, b.contact.placement)) << what << ": placement";
+  EXPECT_TRUE(same_bits(a.history.placement, b.history.placement)) << what << ": placement";
   EXPECT_TRUE(same_bits(a.contact.slip, b.contact.slip)) << what << ": slip";
   EXPECT_TRUE(same_bits(a.contact.traction, b.contact.traction)) << what << ": traction";
 }

@@ -35,7 +35,7 @@ template <int Tangents>
 Projected<Tangents> project(const Traction<double, Tangents>& trial, double mu) {
   const double bound = -mu * trial.normal;
   const ContactState state = classify(trial, bound, 0);
-  return {state, project_coulomb(trial, bound, state)};
+  return {state, project_onto_cone(trial, bound, state)};
 }
 
 /// A trial traction and a coefficient of friction.
@@ -117,8 +117,8 @@ TYPED_TEST(Projection, IsTheSameInBothBranchesOnTheCone) {
   direction /= direction.norm();
   const double bound = 0.3 * 2.5;
   const auto trial = traction<n>(-2.5, bound * direction);
-  const auto stick = project_coulomb(trial, bound, ContactState::stick);
-  const auto slip = project_coulomb(trial, bound, ContactState::slip);
+  const auto stick = project_onto_cone(trial, bound, ContactState::stick);
+  const auto slip = project_onto_cone(trial, bound, ContactState::slip);
   EXPECT_LE((stick.tangential - slip.tangential).norm(), 3 * epsilon * bound);  // one direction scaled anew
   EXPECT_EQ(stick.normal, slip.normal);
 }
@@ -126,10 +126,10 @@ TYPED_TEST(Projection, IsTheSameInBothBranchesOnTheCone) {
 TYPED_TEST(Projection, ReadsNothingThatItsBranchDoesNotNeed) {
   constexpr int n = TypeParam::value;
   const Vec<double, n> unknown = Vec<double, n>::Constant(nan), known = Vec<double, n>::Constant(0.5);
-  const auto open = project_coulomb(traction<n>(nan, unknown), nan, ContactState::open);
+  const auto open = project_onto_cone(traction<n>(nan, unknown), nan, ContactState::open);
   EXPECT_EQ(open.normal, 0);
   EXPECT_TRUE(open.tangential.isZero(0));
-  const auto stick = project_coulomb(traction<n>(-1, known), nan, ContactState::stick);
+  const auto stick = project_onto_cone(traction<n>(-1, known), nan, ContactState::stick);
   EXPECT_EQ(stick.tangential, known);
 }
 
@@ -161,7 +161,7 @@ TYPED_TEST(Projection, HasNoDirectionAndNoNotANumberAtTheApex) {
   Traction<Dual<1 + n>, n> trial;
   trial.normal = Dual<1 + n>::seed(0.0, 0);
   for (int a = 0; a < n; ++a) trial.tangential[a] = Dual<1 + n>::seed(0.0, 1 + a);
-  const auto t = project_coulomb(trial, Dual<1 + n>(-0.3) * trial.normal, ContactState::slip);
+  const auto t = project_onto_cone(trial, Dual<1 + n>(-0.3) * trial.normal, ContactState::slip);
   EXPECT_EQ(t.normal.d[0], 1);
   for (int a = 0; a < n; ++a) {
     EXPECT_EQ(t.tangential[a].v, 0);
@@ -178,7 +178,7 @@ auto in_branch(ContactState state) {
     trial.normal = x[0];
     for (int a = 0; a < n; ++a) trial.tangential[a] = x[1 + a];
     const T bound = -x[1 + n] * x[0];
-    const auto t = project_coulomb(trial, bound, state);
+    const auto t = project_onto_cone(trial, bound, state);
     Vector<T> out(1 + n);
     out[0] = t.normal;
     for (int a = 0; a < n; ++a) out[1 + a] = t.tangential[a];
@@ -230,7 +230,7 @@ TEST(FrictionlessProjection, SlidesWhereverItIsClosed) {
   for (double normal : {-1.0, 0.0}) {
     trial.normal = normal;
     EXPECT_EQ(classify(trial, 0, 0), ContactState::slip);
-    EXPECT_EQ(project_coulomb(trial, 0.0, ContactState::slip).normal, normal);
+    EXPECT_EQ(project_onto_cone(trial, 0.0, ContactState::slip).normal, normal);
   }
   trial.normal = 1;
   EXPECT_EQ(classify(trial, 0, 0), ContactState::open);

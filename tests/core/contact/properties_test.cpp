@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "core/contact/contact_point.hpp"
+#include "core/contact/rigid_surfaces.hpp"
 #include "core/contact/search.hpp"
 #include "core/contact/surfaces.hpp"
 #include "tests/support/derivatives.hpp"
@@ -284,7 +285,7 @@ Trial<N> trial() {
 template <int N>
 Traction<double, N> projected(const Traction<double, N>& z, double mu) {
   const double bound = -mu * z.normal;
-  return project_coulomb(z, bound, classify(z, bound, 0));
+  return project_onto_cone(z, bound, classify(z, bound, 0));
 }
 
 template <class Count>
@@ -354,7 +355,7 @@ struct AsFunction {
     Traction<T, N> trial;
     trial.normal = z[0];
     for (int a = 0; a < N; ++a) trial.tangential[a] = z[1 + a];
-    const auto t = project_coulomb<T, N>(trial, -z[N + 1] * z[0], state);
+    const auto t = project_onto_cone<T, N>(trial, -z[N + 1] * z[0], state);
     Vector<T> out(1 + N);
     out[0] = t.normal;
     for (int a = 0; a < N; ++a) out[1 + a] = t.tangential[a];

@@ -21,7 +21,9 @@ BlockVector<double> along(const EngineProblem& problem, const Vector<double>& du
   const auto slots = make_slots<D1>(problem.model, problem.scene.as<D1>());
   RegularisationField<D1> rho;
   for (const auto& r : problem.rho) rho.push_back({D1(r.normal), D1(r.tangential)});
-  const Vector<D1> placement = problem.placement.unaryExpr(lift);
+  History<D1> previous;
+  for_each_part([&](Vector<D1>& part, const Vector<double>& values) { part = values.unaryExpr(lift); }, previous,
+                problem.previous);
   Vector<D1> u = problem.u.unaryExpr(lift), multiplier = problem.multiplier.unaryExpr(lift);
   for (Eigen::Index i = 0; i < u.size(); ++i) u[i].d[0] = du[i];
   for (std::size_t p = 0; unknown && p < rho.size(); ++p)
@@ -29,7 +31,7 @@ BlockVector<double> along(const EngineProblem& problem, const Vector<double>& du
       const int k = problem.model.points[p].multiplier + c;
       multiplier[k].d[0] = dl[k] * (c == 0 ? problem.rho[p].normal : problem.rho[p].tangential);
     }
-  const ContactInput<D1> input{problem.model, slots, rho, placement, ConeRadius::augmented, 1.0};
+  const ContactInput<D1> input{problem.model, slots, rho, previous, ConeRadius::augmented, 1.0};
   const auto field = evaluate_contact<D1>(input, to_compact(problem.model, u), multiplier, &problem.states);
   Vector<D1> rows = bulk_forces(problem.model, slots, u);
   add_compact(problem.model, contact_forces(problem.model, slots, field), rows);

@@ -109,14 +109,14 @@ TEST(PressureResponse, AtAPointIsThatOfTheNearestContactPoint) {
 TEST(SlipResponse, IsAlongItsTangentOrAnAxis) {
   for (const auto& [component, expected] : {std::pair{"", 0.25}, {"x", -0.25}, {"y", 0.0}}) {
     auto b = block({response("s", Kind::slip, "sole", component)});
-    b.state.contact.placement.setConstant(0.25);  // along e = (-1, 0)
+    b.state.history.placement.setConstant(0.25);  // along e = (-1, 0)
     EXPECT_NEAR(first(b), expected, few) << component;
   }
 }
 
 TEST(DissipationResponse, IsThatOfItsContact) {
   auto b = block({response("heat", Kind::dissipation, "sole")});
-  b.state.dissipation[0] = 0.7;
+  b.state.history.work[0] = 0.7;
   EXPECT_EQ(first(b), 0.7);
 }
 

@@ -1,9 +1,8 @@
-/// The neo-Hookean law and the bar of Green strain against their energies, Hooke's law, and rotations.
+/// The neo-Hookean law against its energy, Hooke's law, and rotations.
 #include "core/solids/neo_hookean.hpp"
 
 #include <gtest/gtest.h>
 
-#include "core/solids/bar.hpp"
 #include "core/solids/linear_elastic.hpp"
 #include "tests/support/derivatives.hpp"
 
@@ -79,30 +78,6 @@ TEST_P(NeoHookeanLaws, HasNoStressWhereTheElementIsInverted) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Volumetric, NeoHookeanLaws, testing::Values(Volumetric::quadratic, Volumetric::log));
-
-TEST(GreenBar, HasForceAndTangentOfItsEnergy) {
-  const Mat<double, 2, 2> X{{0.0, 3.0}, {1.0, 5.0}};
-  const auto of = [&](auto&& f) {
-    return [&X, f](const auto& d) {
-      using T = typename std::decay_t<decltype(d)>::Scalar;
-      const Mat<T, 2, 2> places = X.unaryExpr([](double x) { return T(x); });
-      return f(places, T(7.0), Vec<T, 2>(d[0], d[1]));
-    };
-  };
-  const auto energy = of([](const auto& places, const auto& axial, const auto& d) {
-    using T = std::decay_t<decltype(axial)>;
-    return Vector<T>::Constant(1, green_bar_energy<T, 2>(places, axial, d)).eval();
-  });
-  const auto force = of([](const auto& places, const auto& axial, const auto& d) {
-    using T = std::decay_t<decltype(axial)>;
-    return Vector<T>(green_bar_force<T, 2>(places, axial, d));
-  });
-  const Vector<double> d = Vec<double, 2>(-0.7, 1.9);
-  EXPECT_LE(derivatives::relative_difference(derivatives::by_dual(energy, d).transpose(), force(d)), 50 * epsilon);
-  const Mat<double, 4> K = green_bar_tangent<double, 2>(X, 7.0, Vec<double, 2>(d));
-  const Matrix<double> by_dual = derivatives::by_dual(force, d), block = K.bottomRightCorner<2, 2>();
-  EXPECT_LE(derivatives::relative_difference(block, by_dual), 50 * epsilon);
-}
 
 }  // namespace
 }  // namespace stickslip

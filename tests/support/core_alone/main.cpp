@@ -9,6 +9,6 @@ int main() {
   Traction<double, 1> trial;
   trial.normal = -2;
   trial.tangential[0] = 5;
-  const auto t = project_coulomb(trial, 0.5, classify(trial, 0.5, 0));
+  const auto t = project_onto_cone(trial, 0.5, classify(trial, 0.5, 0));
   std::printf("t = %g %g, backends: %d\n", t.normal, t.tangential[0], has_backend(Backend::eigen));
 }

@@ -1,0 +1,36 @@
+/// Rigid disk, or the rim of a cup.
+#pragma once
+
+#include <array>
+
+#include "core/algebra/number.hpp"
+#include "core/contact/point_geometry.hpp"
+
+namespace stickslip {
+
+/// `inside`: the outside of a disk is solid, the free space is inside.
+struct Circle {
+  static constexpr bool is_in_space = false, is_flat = false;
+  std::array<Number, 2> center;
+  Number radius;
+  bool inside = false;
+};
+
+/// `numbers`: as of a plane. Singular where x is the centre.
+template <class T, class Point, class Read>
+PointGeometry<T> against(const Point& x, const Circle& circle, const Read& numbers) {
+  Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> n(2);
+  for (int i = 0; i < 2; ++i) n[i] = x[i] - numbers(circle.center[i]);
+  const T distance = norm(n);
+  const T sign(circle.inside ? -1.0 : 1.0);
+  for (int i = 0; i < 2; ++i) n[i] *= sign / distance;
+  return detail::rigid<T>(sign * (distance - numbers(circle.radius)), n);
+}
+
+/// The key of the surface that is at fault where no place of it is nearer to x than another; nullptr where one is.
+template <class Point>
+const char* ambiguous_at(const Point& x, const Circle& circle, const Numbers<double>& numbers) {
+  return x[0] == numbers(circle.center[0]) && x[1] == numbers(circle.center[1]) ? "circle/center" : nullptr;
+}
+
+}  // namespace stickslip

@@ -1,0 +1,32 @@
+/// Rigid half-space.
+#pragma once
+
+#include <vector>
+
+#include "core/algebra/number.hpp"
+#include "core/contact/point_geometry.hpp"
+
+namespace stickslip {
+
+/// Behind a point; the normal points out of it, into the free space (need not be a unit vector).
+struct Plane {
+  static constexpr bool is_in_space = true, is_flat = true;
+  std::vector<Number> point, normal;
+};
+
+/// `numbers`: value of a number of the scene, as Numbers<T> gives it.
+template <class T, class Point, class Read>
+PointGeometry<T> against(const Point& x, const Plane& plane, const Read& numbers) {
+  const int D = static_cast<int>(x.size());
+  Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> n(D);
+  for (int i = 0; i < D; ++i) n[i] = numbers(plane.normal[i]);
+  const T length = norm(n);
+  T gap{};
+  for (int i = 0; i < D; ++i) {
+    n[i] /= length;
+    gap += (x[i] - numbers(plane.point[i])) * n[i];
+  }
+  return detail::rigid<T>(gap, n);
+}
+
+}  // namespace stickslip

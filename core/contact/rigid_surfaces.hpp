@@ -1,0 +1,63 @@
+/// The list of rigid surfaces. Each has a file of its own: its description for the scene, which says whether it is made
+/// for space (is_in_space) and whether it is flat (is_flat), and against(x, surface, numbers), the geometry of a place.
+/// What it lacks does not compile. One with a place from which no part of it is nearer than another adds
+/// ambiguous_at(). A polyline has facets in place of against(): which one a place faces is found by search
+/// (core/contact/search.hpp).
+#pragma once
+
+#include <concepts>
+#include <variant>
+
+#include "core/contact/circle.hpp"
+#include "core/contact/plane.hpp"
+
+namespace stickslip {
+
+/// Rigid curve from point to point, the solid on its right. `closed`: the last point is the first again.
+struct Polyline {
+  static constexpr bool is_in_space = false, is_flat = false;
+  std::vector<std::array<Number, 2>> points;  ///< without the repeated one
+  bool closed = false;
+};
+
+using RigidSurface = std::variant<Plane, Circle, Polyline>;
+
+template <class S>
+concept WholeSurface = requires(const S& surface, const Vec<double, 2>& x, const Numbers<double>& numbers) {
+  { S::is_in_space } -> std::convertible_to<bool>;
+  { S::is_flat } -> std::convertible_to<bool>;
+  { against<double>(x, surface, numbers) } -> std::same_as<PointGeometry<double>>;
+};
+static_assert(WholeSurface<Plane> && WholeSurface<Circle> && !WholeSurface<Polyline>);
+
+inline bool is_in_space(const RigidSurface& surface) {
+  return std::visit([](const auto& shape) { return shape.is_in_space; }, surface);
+}
+inline bool is_flat(const RigidSurface& surface) {
+  return std::visit([](const auto& shape) { return shape.is_flat; }, surface);
+}
+
+/// Geometry of a place against a surface. pre: it is no polyline.
+template <class T, class Place, class Read>
+PointGeometry<T> against_rigid(const Place& x, const RigidSurface& surface, const Read& numbers) {
+  return std::visit(
+      [&]<class S>(const S& shape) -> PointGeometry<T> {
+        static_assert(WholeSurface<S> || std::is_same_v<S, Polyline>, "a rigid surface lacks something");
+        if constexpr (WholeSurface<S>) return against<T>(x, shape, numbers);
+        return {};
+      },
+      surface);
+}
+
+/// The key of the surface that is at fault where no place of it is nearer to x than another; nullptr where one is.
+template <class Place>
+const char* ambiguity(const Place& x, const RigidSurface& surface, const Numbers<double>& numbers) {
+  return std::visit(
+      [&](const auto& shape) -> const char* {
+        if constexpr (requires { ambiguous_at(x, shape, numbers); }) return ambiguous_at(x, shape, numbers);
+        return nullptr;
+      },
+      surface);
+}
+
+}  // namespace stickslip

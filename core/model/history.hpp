@@ -1,0 +1,26 @@
+/// Local history: all that an increment reads of the last one beside its start values, and beside the traction where a
+/// method carries that on. Kernels read it and never the last displacements, so direct differentiation carries its
+/// derivative from increment to increment, an adjoint goes back through it, and the oracle runs it in its own scalar.
+/// What it begins with is a function of the slots: initial_history().
+#pragma once
+
+#include "core/algebra/scalar.hpp"
+
+namespace stickslip {
+
+template <class T>
+struct History {
+  Vector<T> placement;  ///< s, the slip since the start, at tangential_offset()
+  Vector<T> foot;       ///< where geometry is the present one: places on the obstacles, at ContactPoint::foot
+  Vector<T> work;       ///< frictional work since the start, per contact; empty without friction
+};
+
+/// Calls f(part...) with each part of histories in turn.
+template <class F, class... Histories>
+void for_each_part(F&& f, Histories&&... of) {
+  f(of.placement...);
+  f(of.foot...);
+  f(of.work...);
+}
+
+}  // namespace stickslip

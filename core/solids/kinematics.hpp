@@ -1,0 +1,27 @@
+/// Spaces, and how displacements become strains in them.
+#pragma once
+
+namespace stickslip {
+
+enum class Space { plane_strain, plane_stress, axisymmetric, solid };
+
+/// How displacements become strains.
+enum class Kinematics { plane, revolution, plane_mean_dilatation, revolution_mean_dilatation };
+
+constexpr bool is_of_revolution(Kinematics k) {
+  return k == Kinematics::revolution || k == Kinematics::revolution_mean_dilatation;
+}
+constexpr bool has_mean_dilatation(Kinematics k) {
+  return k == Kinematics::plane_mean_dilatation || k == Kinematics::revolution_mean_dilatation;
+}
+/// Rows of the displacement gradient H and of the stress: 3 where out of the plane a component matters.
+constexpr int stress_dimension(Kinematics k) { return k == Kinematics::plane ? 2 : 3; }
+
+/// The kinematics of a body in a space with or without mean dilatation.
+constexpr Kinematics kinematics_of(Space space, bool mean_dilatation) {
+  if (space == Space::axisymmetric)
+    return mean_dilatation ? Kinematics::revolution_mean_dilatation : Kinematics::revolution;
+  return mean_dilatation ? Kinematics::plane_mean_dilatation : Kinematics::plane;
+}
+
+}  // namespace stickslip

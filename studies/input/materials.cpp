@@ -1,0 +1,95 @@
+#include "studies/input/materials.hpp"
+
+#include <Eigen/Cholesky>
+
+namespace stickslip {
+namespace {
+
+std::optional<Material> read_elastic(const JsonNode& node, SceneReading& reading) {
+  if (!node.is_object({{"E", "nu"}})) return std::nullopt;
+  return LinearElastic{reading.required(node, "E", positive), reading.required(node, "nu", poisson_ratio)};
+}
+
+std::optional<Material> read_neo_hookean(const JsonNode& node, SceneReading& reading) {
+  if (!node.is_object({{"E", "nu"}, {"volumetric"}})) return std::nullopt;
+  NeoHookean material{reading.required(node, "E", positive), reading.required(node, "nu", poisson_ratio)};
+  if (const auto kind = node.find("volumetric"))
+    if (kind->choice({"quadratic", "log"}) == "log") material.volumetric = NeoHookean::Volumetric::log;
+  return material;
+}
+
+std::optional<Material> read_spring(const JsonNode& node, SceneReading& reading) {
+  if (!node.is_object({{"stiffness"}})) return std::nullopt;
+  const auto matrix = node.find("stiffness");
+  if (!matrix) return std::nullopt;
+  const int d = reading.dimension();
+  const std::string size = std::to_string(d) + " x " + std::to_string(d);
+  const auto rows = matrix->array(d, "a " + size + " matrix, [[...], ...]");
+  if (!rows) return std::nullopt;
+  GroundedSpring spring;
+  Eigen::MatrixXd values(d, d);
+  for (int i = 0; i < d; ++i) {
+    spring.stiffness.push_back(reading.vector((*rows)[i], d));
+    for (int j = 0; j < d; ++j) values(i, j) = spring.stiffness[i][j].value;
+  }
+  if (!values.allFinite()) return std::nullopt;
+  for (int i = 0; i < d; ++i)
+    for (int j = 0; j < i; ++j) {
+      const int below = spring.stiffness[i][j].slot, above = spring.stiffness[j][i].slot;
+      reading.symmetric[below] = above;
+      reading.symmetric[above] = below;
+      if (values(i, j) != values(j, i)) {
+        (*rows)[i].elements()[j].must_be(shown(values(j, i)) + ", so that the stiffness is symmetric");
+        return std::nullopt;
+      }
+    }
+  if (Eigen::LLT<Eigen::MatrixXd>(values).info() != Eigen::Success) {
+    matrix->must_be("positive definite, or nothing would hold the point");
+    return std::nullopt;
+  }
+  return spring;
+}
+
+constexpr const char* elastic_schema = R"json({
+  "description": "of bars, and where strains are small of all but points", "type": "object",
+  "examples": [{"E": 1000, "nu": 0.3}],
+  "required": ["E", "nu"], "additionalProperties": false, "properties": {
+    "E": {"description": "Young's modulus (force per area)", "$ref": "#/$defs/positive", "examples": [1000]},
+    "nu": {"description": "Poisson's ratio", "title": "number > -1 and < 0.5", "type": "number",
+      "exclusiveMinimum": -1, "exclusiveMaximum": 0.5, "examples": [0.3]}}})json";
+
+constexpr const char* neo_hookean_schema = R"json({
+  "description": "of all but bars and points where strains are finite", "type": "object",
+  "examples": [{"E": 1000, "nu": 0.3}], "required": ["E", "nu"], "additionalProperties": false, "properties": {
+    "E": {"description": "Young's modulus of small strains (force per area)", "$ref": "#/$defs/positive",
+      "examples": [1000]},
+    "nu": {"description": "Poisson's ratio of small strains", "title": "number > -1 and < 0.5", "type": "number",
+      "exclusiveMinimum": -1, "exclusiveMaximum": 0.5, "examples": [0.3]},
+    "volumetric": {"description": "energy of a change of volume: lame/2 (J - 1)^2, or lame/2 (ln J)^2",
+      "enum": ["quadratic", "log"], "default": "quadratic"}}})json";
+
+constexpr const char* spring_schema = R"json({
+  "description": "of a point: the spring to its anchor", "type": "object",
+  "examples": [{"stiffness": [[100, 0], [0, 100]]}], "required": ["stiffness"],
+  "additionalProperties": false, "properties": {
+    "stiffness": {"description": "symmetric and positive definite (force per length)",
+      "title": "2 x 2 matrix (3 x 3 in space)", "type": "array", "items": {"$ref": "#/$defs/vector"},
+      "minItems": 2, "maxItems": 3, "examples": [[[100, 0], [0, 100]]]}}})json";
+
+}  // namespace
+
+const std::vector<MaterialKind>& material_kinds() {
+  static const std::vector<MaterialKind> kinds{
+      {"linear_elastic", elastic_schema, "fills bars, and where strains are small all but points",
+       [](Filling filling, bool finite) {
+         return filling == Filling::bars || (filling == Filling::continuum && !finite);
+       },
+       read_elastic},
+      {"neo_hookean", neo_hookean_schema, "fills all but bars and points where strains are finite",
+       [](Filling filling, bool finite) { return filling == Filling::continuum && finite; }, read_neo_hookean},
+      {"grounded_spring", spring_schema, "holds a point",
+       [](Filling filling, bool) { return filling == Filling::point; }, read_spring}};
+  return kinds;
+}
+
+}  // namespace stickslip

@@ -1,0 +1,120 @@
+#include "studies/input/obstacle_kinds.hpp"
+
+#include "studies/io/json_pointer.hpp"
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+
+std::optional<RigidSurface> read_plane(const JsonNode& node, SceneReading& reading) {
+  if (!node.is_object({{"point", "normal"}})) return std::nullopt;
+  Plane plane{reading.required_vector(node, "point", reading.dimension()), {}};
+  if (const auto normal = node.find("normal"))
+    plane.normal = reading.direction(*normal, "a vector that is not zero; it points out of the obstacle");
+  return plane;
+}
+
+std::optional<RigidSurface> read_circle(const JsonNode& node, SceneReading& reading) {
+  if (!node.is_object({{"center", "radius"}, {"inside"}})) return std::nullopt;
+  Circle circle;
+  const auto center = reading.required_vector(node, "center", 2);
+  circle.center = {center[0], center[1]};
+  circle.radius = reading.required(node, "radius", positive);
+  if (const auto inside = node.find("inside")) circle.inside = inside->boolean().value_or(false);
+  return circle;
+}
+
+std::optional<RigidSurface> read_polyline(const JsonNode& node, SceneReading& reading) {
+  constexpr const char* allowed = "an array of two points [x, y] or more, the solid on the right of the way along them";
+  if (!node.is_object({{"points"}})) return std::nullopt;
+  const auto points = node.find("points");
+  if (!points) return std::nullopt;
+  if (!points->value().is_array() || points->value().size() < 2) {
+    points->must_be(allowed);
+    return std::nullopt;
+  }
+  Polyline polyline;
+  auto same = [](const auto& a, const auto& b) { return a[0].value == b[0].value && a[1].value == b[1].value; };
+  for (const JsonNode& element : points->elements()) {
+    const bool last = polyline.points.size() + 1 == points->value().size();
+    const bool again = last && polyline.points.size() > 2 && element.value() == points->value().front();
+    if (again) {
+      polyline.closed = true;
+      for (int i = 0; i < 2; ++i)
+        reading.constants[child_pointer(element.pointer(), std::to_string(i))] =
+            "of the point that closes the polyline; its first point is the parameter";
+      break;
+    }
+    const auto x = reading.vector(element, 2);
+    polyline.points.push_back({x[0], x[1]});
+    if (const auto n = polyline.points.size(); n > 1 && same(polyline.points[n - 1], polyline.points[n - 2]))
+      element.error("is the point before it once more; two points in a row must differ");
+  }
+  return polyline;
+}
+
+template <class Vector>
+json values_json(const Vector& numbers) {
+  json out = json::array();
+  for (const Number& number : numbers) out.push_back(number.value);
+  return out;
+}
+
+json drawn_plane(const RigidSurface& surface) {
+  const auto* plane = std::get_if<Plane>(&surface);
+  if (!plane) return nullptr;
+  return {{"plane", {{"point", values_json(plane->point)}, {"normal", values_json(plane->normal)}}}};
+}
+
+json drawn_circle(const RigidSurface& surface) {
+  const auto* circle = std::get_if<Circle>(&surface);
+  if (!circle) return nullptr;
+  return {{"circle",
+           {{"center", values_json(circle->center)}, {"radius", circle->radius.value}, {"inside", circle->inside}}}};
+}
+
+json drawn_polyline(const RigidSurface& surface) {
+  const auto* polyline = std::get_if<Polyline>(&surface);
+  if (!polyline) return nullptr;
+  json vertices = json::array();
+  for (const auto& x : polyline->points) vertices.push_back(values_json(x));
+  if (polyline->closed) vertices.push_back(vertices.front());
+  return {{"polyline", {{"points", vertices}}}};
+}
+
+constexpr const char* plane_schema = R"json({
+  "description": "a half space", "type": "object", "required": ["point", "normal"],
+  "examples": [{"point": [0, 0], "normal": [0, 1]}], "additionalProperties": false, "properties": {
+    "point": {"description": "any of its surface (length)", "$ref": "#/$defs/vector", "examples": [[0, 0]]},
+    "normal": {"description": "out of the obstacle; of any length but 0", "$ref": "#/$defs/vector",
+      "examples": [[0, 1]]}}})json";
+
+constexpr const char* circle_schema = R"json({
+  "description": "a drum, or a cup; not in space", "type": "object",
+  "required": ["center", "radius"], "examples": [{"center": [0, 0], "radius": 1}],
+  "additionalProperties": false, "properties": {
+    "center": {"description": "of the circle (length)", "$ref": "#/$defs/pair", "examples": [[0, 0]]},
+    "radius": {"description": "of the circle (length)", "$ref": "#/$defs/positive", "examples": [1]},
+    "inside": {"description": "true: a cup, solid outside of the circle", "type": "boolean",
+      "default": false}}})json";
+
+constexpr const char* polyline_schema = R"json({
+  "description": "straight facets; not in space", "type": "object", "required": ["points"],
+  "examples": [{"points": [[5, 0], [0, 0], [0, 2]]}], "additionalProperties": false, "properties": {
+    "points": {
+      "description": "the solid is on the right of the way along them; the first once more closes it (length)",
+      "title": "two or more [x, y]", "type": "array",
+      "minItems": 2, "items": {"$ref": "#/$defs/pair"}, "examples": [[[5, 0], [0, 0], [0, 2]]]}}})json";
+
+}  // namespace
+
+const std::vector<ObstacleKind>& obstacle_kinds() {
+  static const std::vector<ObstacleKind> kinds{
+      {"plane", plane_schema, Plane::is_in_space, true, read_plane, drawn_plane},
+      {"circle", circle_schema, Circle::is_in_space, true, read_circle, drawn_circle},
+      {"polyline", polyline_schema, Polyline::is_in_space, false, read_polyline, drawn_polyline}};
+  return kinds;
+}
+
+}  // namespace stickslip
