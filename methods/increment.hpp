@@ -36,7 +36,8 @@ struct Start {
   double tolerance(double asked) const { return is_step() && rough_step ? std::sqrt(asked) : asked; }
 };
 
-/// An equilibrium as the state that the next increment starts from. `at`: its multiplier is the lambda it was found with.
+/// An equilibrium as the state that the next increment starts from. `at`: its multiplier is the lambda it was found
+/// with.
 template <class T, class E>
 State<T> settle(Run<T, E>& run, const ContactInput<T>& input, Unknowns<T> at, ContactField<T> field) {
   State<T> state;

@@ -78,20 +78,19 @@ PointOutcome<T, Tangents> evaluate_point(const PointGeometry<T>& geometry, const
   return point;
 }
 
-/// Evaluates the point in its present geometry. `foot`: the place on the obstacle that it faces, `previous_foot` that
-/// of the last increment, both in the frame of the obstacle, which carries the friction along: their distance is the
-/// slip, in the present frame. On a curved obstacle it is the chord, O(slip^3) from the arc.
+/// Evaluates the point in its present geometry. `foot`: the place on the obstacle that it faces, in the frame of the
+/// obstacle, which carries the friction along; `way`: from that of the last increment to it, as the obstacle stands
+/// now. Its tangential part is the slip; on a curved obstacle it is the chord, O(slip^3) from the arc.
 template <class T, int D, int Tangents>
 PointOutcome<T, Tangents> evaluate_moved_point(const PointGeometry<T>& geometry, const Vec<T, D>& foot,
-                                               const Traction<T, Tangents>& multiplier,
+                                               const Vec<T, D>& way, const Traction<T, Tangents>& multiplier,
                                                const Vec<T, Tangents>& previous_placement,
-                                               const Vec<T, D>& previous_foot, const PointRegularisation<T>& rho,
-                                               const FrictionLaw<T>& friction, ConeRadius cone, double tie_length,
-                                               const ContactState* state) {
+                                               const PointRegularisation<T>& rho, const FrictionLaw<T>& friction,
+                                               ConeRadius cone, double tie_length, const ContactState* state) {
   PointOutcome<T, Tangents> point;
   point.gap = geometry.gap;
   for (int a = 0; a < Tangents; ++a) {
-    point.slip[a] = dot(geometry.tangents.col(a).template head<D>(), Vec<T, D>(foot - previous_foot));
+    point.slip[a] = dot(geometry.tangents.col(a).template head<D>(), way);
     point.placement[a] = previous_placement[a] + point.slip[a];
   }
   if constexpr (Tangents > 0) point.foot = foot;

@@ -111,29 +111,56 @@ Vec<T, D> relative_displacement(const ContactInput<T>& input, int p, const Vecto
   return w;
 }
 
-/// A point where it is now: its geometry and its foot in the frame of the obstacle, which moves without turning, and
-/// the foot of the last increment.
+/// A point where it is now: its geometry, its foot in the frame of the obstacle, and the way of the foot since the last
+/// increment, which the obstacle carries along.
 template <class T, int D>
 struct MovedPoint {
   PointGeometry<T> geometry;
-  Vec<T, D> foot, previous_foot;
+  Vec<T, D> foot, way;
 };
+
+/// Where the frame of a point's obstacle is: turned about its centre, then shifted.
+template <class T, int D>
+struct Frame {
+  Vec<T, D> shift = Vec<T, D>::Constant(T(0)), center = Vec<T, D>::Constant(T(0));
+  std::optional<Turn<T>> turn;  ///< in the plane
+};
+template <class T, int D>
+Frame<T, D> frame_of_obstacle(const ContactInput<T>& input, const Obstacle& obstacle) {
+  Frame<T, D> frame;
+  for (const auto& [axis, table] : obstacle.move)
+    frame.shift[axis - 'x'] = evaluate(table, input.time, input.slots.numbers);
+  if (!obstacle.rotate) return frame;
+  for (int i = 0; i < D; ++i) frame.center[i] = input.slots.numbers(obstacle.rotate->center[i]);
+  frame.turn = Turn<T>::by(evaluate(obstacle.rotate->angle, input.time, input.slots.numbers));
+  return frame;
+}
 
 /// `u`: displacement of the slave node, in the scalar U built on T.
 template <class U, class T, int D>
 MovedPoint<U, D> moved_point(const ContactInput<T>& input, int p, const Vec<U, D>& u) {
   const auto& point = input.model.points[p];
   const auto number = [&](const Number& n) { return U(input.slots.numbers(n)); };
-  const Vec<T, D> shift = obstacle_displacement<T, D>(input, p);
-  Vec<U, D> x;
-  for (int i = 0; i < D; ++i) x[i] = U(input.slots.points(i, point.nodes[0]) - shift[i]) + u[i];
   const auto& obstacle = input.model.scene.obstacles[point.obstacle];
+  const auto frame = frame_of_obstacle<T, D>(input, obstacle);
+  Vec<U, D> x;
+  for (int i = 0; i < D; ++i) x[i] = U(input.slots.points(i, point.nodes[0]) - frame.shift[i]) + u[i];
+  if constexpr (D == 2)
+    if (frame.turn) x += frame.turn->back().change(Vec<U, 2>(x[0] - U(frame.center[0]), x[1] - U(frame.center[1])));
   MovedPoint<U, D> at;
   at.geometry = against_rigid<U>(x, obstacle.shape, number);
   for (int i = 0; i < D; ++i) {
     at.foot[i] = x[i] - at.geometry.gap * at.geometry.normal[i];
-    at.previous_foot[i] = point.foot < 0 ? at.foot[i] : U(input.previous.foot[point.foot + i]);
+    at.way[i] = point.foot < 0 ? U(0) : U(at.foot[i] - U(input.previous.foot[point.foot + i]));
   }
+  if constexpr (D == 2)
+    if (frame.turn) {  // what is of the frame is turned with it
+      const auto turned = [&](const Vec<U, 2>& v) { return Vec<U, 2>(v + frame.turn->change(v)); };
+      const Vec<U, 2> normal = turned(Vec<U, 2>(at.geometry.normal[0], at.geometry.normal[1]));
+      at.geometry.normal << normal[0], normal[1];
+      at.geometry.tangents = tangent_frame<U>(at.geometry.normal);
+      at.way = turned(at.way);
+    }
   at.geometry.gap += number(input.model.scene.contacts[point.contact].offset);
   at.geometry.area = U(input.slots.geometry[p].area);
   return at;
@@ -180,7 +207,7 @@ PointOutcome<T, Tangents> evaluate_present(const ContactInput<T>& input, int p, 
   const Vec<T, D> u = compact.template segment<D>(point.places[0] * D);
   auto at = moved_point<T, T, D>(input, p, u);
   const auto outcome = evaluate_moved_point<T, D, Tangents>(
-      at.geometry, at.foot, multiplier, previous_placement<T, Tangents>(input, p), at.previous_foot, input.rho[p],
+      at.geometry, at.foot, at.way, multiplier, previous_placement<T, Tangents>(input, p), input.rho[p],
       input.slots.friction[point.contact], input.cone, tie_at<T>(input, p, compact), state);
   geometry = std::move(at.geometry);
   return outcome;
@@ -302,8 +329,8 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
     PointGeometry<Probe> geometry;
     if (present) {
       auto at = detail::moved_point<Probe, T, D>(input, p, w);
-      outcome = evaluate_moved_point<Probe, D, Tangents>(at.geometry, at.foot, lambda, previous, at.previous_foot, rho,
-                                                         friction, input.cone, 0, &state);
+      outcome = evaluate_moved_point<Probe, D, Tangents>(at.geometry, at.foot, at.way, lambda, previous, rho, friction,
+                                                         input.cone, 0, &state);
       geometry = std::move(at.geometry);
     } else {
       geometry = detail::promote<Probe>(input.slots.geometry[p]);

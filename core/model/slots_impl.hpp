@@ -143,7 +143,9 @@ Slots<T> make_slots(const Model& model, const Numbers<T>& numbers, Points<T> poi
   slots.stiffness = contact_stiffness(model, slots);
   for (const auto& load : model.scene.loads) slots.loads.push_back(load_vector(model, load, slots));
   const auto& obstacles = model.scene.obstacles;
-  if (std::any_of(obstacles.begin(), obstacles.end(), [](const auto& o) { return o.rotate.has_value(); }))
+  const bool turns =
+      std::any_of(obstacles.begin(), obstacles.end(), [](const auto& o) { return o.rotate.has_value(); });
+  if (turns && !model.effects.current_geometry)
     for (int p = 0; p < static_cast<int>(model.points.size()); ++p)
       slots.spins.push_back(detail::spin(model, p, slots));
   return slots;

@@ -58,6 +58,9 @@ struct Held {
     const auto take = [&](double t) { times.insert(t); };
     for_each_breakpoint(scene.supports[constraint.support], take);
     for (const auto& other : by) for_each_breakpoint(scene.supports[other.support], take);
+    if (scene.finite_strain)  // between breakpoints a place that is turned runs along an arc
+      for (auto next = times.begin(); next != times.end() && std::next(next) != times.end(); ++next)
+        next = times.insert((*next + *std::next(next)) / 2).first;
     double largest = 0, difference = 0;
     std::size_t with = 0;  // who has the largest say
     for (std::size_t c = 1; c < by.size(); ++c)

@@ -6,7 +6,7 @@
 ///   d_c.u = v_c    gives    q_c.u = (v_c - sum over k < c of (q_k.d_c) q_k.u) / (q_c.d_c)
 ///
 /// In small strain a rotation is theta x (X - center): the exact one of a finite angle would strain a body that it
-/// turns as a whole.
+/// turns as a whole. At finite strain it is the exact one.
 #pragma once
 
 #include "core/contact/surfaces.hpp"
@@ -35,6 +35,34 @@ Vector<T> displacement_per_degree(const Rotation& rotation, const Place& x, cons
   return u;
 }
 
+/// A rotation in the plane by a finite angle.
+template <class T>
+struct Turn {
+  T sine, cosine_less_one;  ///< the latter without cancellation at small angles
+
+  /// `degrees`: the angle, positive counter-clockwise.
+  static Turn by(const T& degrees) {
+    using std::sin;
+    const T angle = degrees * T(std::acos(-1.0) / 180), half = sin(angle / T(2));
+    return {sin(angle), T(-2) * half * half};
+  }
+  Turn back() const { return {-sine, cosine_less_one}; }
+  /// What a vector changes by.
+  template <class U>
+  Vec<U, 2> change(const Vec<U, 2>& x) const {
+    const U s(sine), c(cosine_less_one);
+    return {c * x[0] - s * x[1], s * x[0] + c * x[1]};
+  }
+};
+
+/// Displacement of the place x when it is rotated by an angle in degrees: by a finite one exactly, in the plane.
+template <class T, class Place>
+Vector<T> rotated(const Rotation& rotation, const Place& x, const T& degrees, bool finite, const Numbers<T>& numbers) {
+  if (!finite) return degrees * displacement_per_degree<T>(rotation, x, numbers);
+  const Vec<T, 2> arm(x[0] - numbers(rotation.center[0]), x[1] - numbers(rotation.center[1]));
+  return Turn<T>::by(degrees).change(arm);
+}
+
 /// Unit vector that a constraint prescribes the displacement along. pre: it has a support.
 template <class T>
 Vector<T> direction(const Scene& scene, const Constraint& constraint, const Numbers<T>& numbers) {
@@ -60,8 +88,8 @@ T prescribed_value(const Scene& scene, const Constraint& constraint, const Place
   const auto move = support.move.find(constraint.axis);
   T u = move == support.move.end() ? T(0) : evaluate(move->second, t, numbers);
   if (support.rotate)
-    u += evaluate(support.rotate->angle, t, numbers) *
-         displacement_per_degree<T>(*support.rotate, x, numbers)[constraint.axis - 'x'];
+    u += rotated<T>(*support.rotate, x, evaluate(support.rotate->angle, t, numbers), scene.finite_strain,
+                    numbers)[constraint.axis - 'x'];
   return u;
 }
 

@@ -40,7 +40,7 @@ const char* const motion = R"json({
       "axis": {"description": "in space: the direction that it turns about", "title": "[x, y, z]",
         "$ref": "#/$defs/vector",
         "examples": [[0, 0, 1]]},
-      "angle": {"description": "in degrees, counter-clockwise; displacements are linear in it",
+      "angle": {"description": "in degrees, counter-clockwise; at small strain displacements are linear in it",
         "$ref": "#/$defs/value", "examples": [[[0, 0], [1, 5]]]}}}
 })json";
 

@@ -19,8 +19,9 @@ void read_space(const JsonNode& root, SceneReading& reading) {
 
 void read_strain(const JsonNode& node, SceneReading& reading) {
   reading.scene.finite_strain = node.choice({"small", "finite"}) == "finite";
-  if (reading.scene.finite_strain && reading.scene.space != Space::plane_strain)
-    node.error(R"(is "finite", which needs the space "plane_strain" in this version)");
+  const Space space = reading.scene.space;
+  if (reading.scene.finite_strain && space != Space::plane_strain && space != Space::axisymmetric)
+    node.error(R"(is "finite", which needs the space "plane_strain" or "axisymmetric" in this version)");
 }
 
 void read_linear_solver(const JsonNode& node, const Scene& scene, Input& input) {

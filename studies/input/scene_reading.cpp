@@ -100,7 +100,6 @@ void SceneReading::only_at_small_strain(const JsonNode& node) const {
 }
 
 Rotation SceneReading::rotation(const JsonNode& node) {
-  only_at_small_strain(node);
   Rotation rotation;
   rotation.angle.points = {{0, Number()}};
   const bool space = dimension() == 3;

@@ -228,7 +228,8 @@ std::optional<Scene> lay_out(const json& picture) {
   scene.contact = read_contact(array_at(picture, "contact"), scene.mesh.displacement);
   const double extent = extent_of(scene.mesh);
   const bool points_alone = extent == 0;
-  scene.scale = points_alone ? 1 : scale_of(scene.mesh, extent);
+  const bool true_scale = points_alone || at(picture, "finite") == true;
+  scene.scale = true_scale ? 1 : scale_of(scene.mesh, extent);
   for (const auto& p : deformed(scene.mesh, scene.scale)) scene.whole.add(p);
   if (points_alone) scene.whole.add(scene.mesh.points.front());  // where they come from
   if (!(std::max(scene.whole.width(), scene.whole.height()) > 0)) return std::nullopt;

@@ -11,7 +11,8 @@ using nlohmann::json;
 
 namespace {
 
-/// What an obstacle moved by, enlarged: u = by + angle x (X - center), linear as small strain is.
+/// What an obstacle moved by, enlarged: u = by + (R - I) (X - center). At small strain R - I is linear in the angle; at
+/// finite strain pictures are at true scale, and the angle is turned by in full.
 class Motion {
  public:
   Motion(const json& moved, double scale) {
@@ -19,16 +20,22 @@ class Motion {
     by_ = {scale * by_.x, scale * by_.y};
     if (!is_point(at(moved, "center"))) return;
     center_ = to_point(moved["center"]);
-    angle_ = scale * number_at(moved, "degrees") * std::acos(-1.0) / 180;
+    const double angle = number_at(moved, "degrees") * std::acos(-1.0) / 180;
+    const bool finite = at(moved, "finite") == true;
+    sine_ = finite ? std::sin(angle) : scale * angle;
+    cosine_less_one_ = finite ? std::cos(angle) - 1 : 0;
   }
   Point place(Point p) const {
-    return {p.x + by_.x - angle_ * (p.y - center_.y), p.y + by_.y + angle_ * (p.x - center_.x)};
+    const Point turned = direction({p.x - center_.x, p.y - center_.y});
+    return {center_.x + by_.x + turned.x, center_.y + by_.y + turned.y};
   }
-  Point direction(Point n) const { return {n.x - angle_ * n.y, n.y + angle_ * n.x}; }
+  Point direction(Point n) const {
+    return {n.x + cosine_less_one_ * n.x - sine_ * n.y, n.y + sine_ * n.x + cosine_less_one_ * n.y};
+  }
 
  private:
   Point by_, center_;
-  double angle_ = 0;
+  double sine_ = 0, cosine_less_one_ = 0;
 };
 
 /// The stretch of a plane that covers the window, whichever of its points is named.

@@ -77,18 +77,25 @@ Matrix<double> nodal(const Model& model, const Eigen::Ref<const Vector<double>>&
 }
 
 /// Fields of contact over the nodes, of one contact or of several together.
+/// Nominal tractions, per area of the start; at finite strain `current` has those per present area too.
 struct ContactFields {
   Matrix<double> state, pressure, traction, gap;
+  struct Current {
+    Matrix<double> pressure, traction;
+  };
+  std::optional<Current> current;
 
   explicit ContactFields(const Model& model)
       : state(Matrix<double>::Constant(1, model.node_count, -1)),
         pressure(Matrix<double>::Zero(1, model.node_count)),
         traction(Matrix<double>::Zero(model.dimension, model.node_count)),
-        gap(pressure) {}
+        gap(pressure) {
+    if (model.effects.current_geometry) current = {pressure, traction};
+  }
 
   /// Adds what contact point p does to its slave node. Of several: the state that holds most, the sum of the pressures
   /// and of the tractions, the smallest gap.
-  void add(const Problem& problem, const State<double>& of, int p) {
+  void add(const Problem& problem, const State<double>& of, int p, const std::vector<double>& present_areas) {
     const auto& point = problem.model.points[p];
     const int node = point.nodes[0];
     const auto hold = [](double code) { return code == 1 ? 2 : code == 2 ? 1 : code; };  // open < slip < stick
@@ -97,6 +104,10 @@ struct ContactFields {
     if (hold(code) > hold(state(0, node))) state(0, node) = code;
     pressure(0, node) -= of.contact.traction[point.multiplier];
     traction.col(node) += traction_vector(problem, of, p);
+    if (!current) return;
+    const double stretch = present_areas[p] / problem.slots.geometry[p].area;
+    current->pressure(0, node) -= of.contact.traction[point.multiplier] / stretch;
+    current->traction.col(node) += traction_vector(problem, of, p) / stretch;
   }
 
   void append_to(VtuData& data, const std::string& ending) const {
@@ -104,8 +115,22 @@ struct ContactFields {
     data.point_fields.push_back({"contact_pressure" + ending, pressure});
     data.point_fields.push_back({"contact_traction" + ending, traction});
     data.point_fields.push_back({"gap" + ending, gap});
+    if (!current) return;
+    data.point_fields.push_back({"contact_pressure_current" + ending, current->pressure});
+    data.point_fields.push_back({"contact_traction_current" + ending, current->traction});
   }
 };
+
+/// Tributary areas of the points where they are now; empty where geometry stays that of the start.
+std::vector<double> present_areas(const Problem& problem, const State<double>& state) {
+  const auto& model = problem.model;
+  std::vector<double> areas;
+  if (!model.effects.current_geometry) return areas;
+  Slots<double> moved = problem.slots;
+  moved.points += nodal(model, state.displacement);
+  for (const auto& point : model.points) areas.push_back(detail::tributary_area(point, moved));
+  return areas;
+}
 
 /// Whether some node is a slave in more than one contact.
 bool contacts_share_nodes(const Model& model) {
@@ -120,14 +145,15 @@ bool contacts_share_nodes(const Model& model) {
 void append_contact_fields(VtuData& data, const Problem& problem, const State<double>& state) {
   const auto& model = problem.model;
   const int count = static_cast<int>(model.points.size());
+  const auto areas = present_areas(problem, state);
   ContactFields together(model);
-  for (int p = 0; p < count; ++p) together.add(problem, state, p);
+  for (int p = 0; p < count; ++p) together.add(problem, state, p, areas);
   together.append_to(data, "");
   if (!contacts_share_nodes(model)) return;
   for (std::size_t c = 0; c < model.scene.contacts.size(); ++c) {
     ContactFields alone(model);
     for (int p = 0; p < count; ++p)
-      if (model.points[p].contact == static_cast<int>(c)) alone.add(problem, state, p);
+      if (model.points[p].contact == static_cast<int>(c)) alone.add(problem, state, p, areas);
     alone.append_to(data, "_" + model.scene.contacts[c].name);
   }
 }
@@ -184,7 +210,7 @@ std::string field_file(std::size_t step) { return fmt::format("fields_{:04}.vtu"
 
 /// The shape at the start, and what it moved by until `time`: a displacement, and where it rotates an angle in degrees
 /// about a center.
-json obstacle_json(const Obstacle& obstacle, double time, const Numbers<double>& numbers) {
+json obstacle_json(const Obstacle& obstacle, double time, bool finite, const Numbers<double>& numbers) {
   json shape;
   for (const auto& kind : obstacle_kinds())
     if (json drawn = kind.drawn(obstacle.shape); !drawn.is_null()) shape = std::move(drawn);
@@ -195,6 +221,7 @@ json obstacle_json(const Obstacle& obstacle, double time, const Numbers<double>&
   if (obstacle.rotate) {
     moved["degrees"] = evaluate(obstacle.rotate->angle, time, numbers);
     moved["center"] = numbers_json(obstacle.rotate->center);
+    if (finite) moved["finite"] = true;
   }
   if (!obstacle.move.empty() || obstacle.rotate) shape.begin().value()["moved"] = moved;
   return shape;
@@ -277,9 +304,10 @@ json picture_json(const CaseResult& result) {
   const auto& last = *result.steps.back().increment;
   json picture = bodies_json(problem, last.state);
   picture["contact"] = contact_json(problem, last.state);
+  if (scene.finite_strain) picture["finite"] = true;  // it is drawn at true scale
   picture["obstacles"] = json::array();
   for (const auto& obstacle : scene.obstacles)
-    picture["obstacles"].push_back(obstacle_json(obstacle, last.time, problem.slots.numbers));
+    picture["obstacles"].push_back(obstacle_json(obstacle, last.time, scene.finite_strain, problem.slots.numbers));
   picture["responses"] = json::object();
   for (const auto& response : scene.responses) picture["responses"][response.name] = name_of(response.kind);
   return picture;

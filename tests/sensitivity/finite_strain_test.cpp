@@ -1,43 +1,25 @@
 /// Finite strain on rigid obstacles, the thin path: closed forms by every method, derivatives by every scheme against
 /// the complex step of the whole program, and the adjoint against those.
+#include "tests/support/finite_strain.hpp"
+
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "core/model/response.hpp"
 #include "tests/support/blocks.hpp"
 #include "tests/support/both_modes.hpp"
-#include "tests/support/largest.hpp"
-#include "tests/support/oracle.hpp"
 
 namespace stickslip {
 namespace {
 
+using scenes::finite_methods;
+using scenes::finite_schemes;
 using scenes::parameter;
 using scenes::relative;
 using scenes::response;
 using scenes::run;
 using scenes::table;
 using Kind = Response::Kind;
-
-/// Penalties that leave 1e-5 of an overlap; closed forms are held against the stretch that is there.
-std::vector<Method> all_methods() {
-  Penalty penalty;
-  penalty.stiffness = relative(1e5);
-  UzawaAL uzawa;
-  uzawa.tolerance = 1e-12;
-  return {penalty, uzawa, MonolithicAL{}};
-}
-
-std::vector<Method> all_schemes() {
-  UzawaAL iterated, truncated, preconditioned;
-  iterated.tolerance = truncated.tolerance = preconditioned.tolerance = 1e-12;
-  truncated.sensitivity = UzawaAL::Sensitivity::truncated;
-  preconditioned.sensitivity = UzawaAL::Sensitivity::preconditioned;
-  Penalty penalty;  // (ten times as stiff, its overlap is less than what a step leaves the disk by along its tangent)
-  penalty.stiffness = relative(100);
-  return {penalty, iterated, truncated, preconditioned, MonolithicAL{}};
-}
 
 Obstacle plane(const std::string& name, std::array<Number, 2> point, std::array<double, 2> normal) {
   return {name, Plane{{point[0], point[1]}, {normal[0], normal[1]}}};
@@ -70,7 +52,7 @@ TEST(FinitePatch, HasTheStretchAndTheForceOfTheClosedForm) {
   };
   for (const auto& c : {Case{0.9, 1.0449972898, -120.5210836}, Case{0.7, 1.1507960463, -458.4239232},
                         Case{0.5, 1.2883049724, -1084.4074629}})
-    for (const auto& method : all_methods()) {
+    for (const auto& method : finite_methods()) {
       const auto s = run(patch(c.l1, NeoHookean::Volumetric::log), method);
       ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
       EXPECT_EQ(s.trajectory.counters.cutbacks, 0) << name_of(method);
@@ -84,7 +66,7 @@ TEST(FinitePatch, HasTheStretchAndTheForceOfTheClosedForm) {
 
 TEST(FinitePatch, IsThatOfItsOwnStretchToRounding) {
   constexpr double lame = 1000 * 0.3 / (1.3 * 0.4), G = 1000 / 2.6;
-  for (const auto& method : all_methods()) {
+  for (const auto& method : finite_methods()) {
     const auto s = run(patch(0.6, NeoHookean::Volumetric::log), method);
     const double l1 = 0.6 - s.value("sunk"), l2 = 1 + s.value("wide") / 2;
     EXPECT_NEAR(G * (l2 - 1 / l2) + lame * std::log(l1 * l2) / l2, 0, 1e-9 * lame) << name_of(method);
@@ -122,7 +104,7 @@ double truss_force(double w) {
 
 TEST(Truss, HasTheForceOfTheClosedFormUpToItsLimitPointAndBeyond) {
   constexpr double at_limit = 0.4226497308;
-  for (const auto& method : all_methods())
+  for (const auto& method : finite_methods())
     for (double push : {0.2, at_limit, 0.9}) {
       const auto s = run(truss(push), method);
       ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
@@ -163,7 +145,7 @@ Scene led_around(double mu, double radius, double angle, int steps) {
 TEST(LedAround, StaysBehindItsAnchorByTheAngleOfFriction) {
   constexpr double radius = 0.5, angle = 2.5;
   for (double mu : {0.0, 0.2})
-    for (const auto& method : all_methods()) {
+    for (const auto& method : finite_methods()) {
       if (std::holds_alternative<Penalty>(method)) continue;  // (its overlap is another radius)
       const auto s = run(led_around(mu, radius, angle, 20), method);
       ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
@@ -211,33 +193,14 @@ Scene draped(double mu) {
 
 TEST(FiniteStrain, DerivativesEqualTheComplexStepOfTheWholeRun) {
   for (double mu : {0.0, 0.3})
-    for (const Method& method : all_schemes()) {
-      const auto s = run(draped(mu), method);
-      ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
-      ASSERT_EQ(s.gradients.of.size(), s.trajectory.increments.size()) << s.gradients.message;
-      // 50 u cond where that is more; iterated schemes end at 1e-10 of the largest
-      const double allowed =
-          std::max(std::holds_alternative<UzawaAL>(method) ? 1e-9 : 1e-10, 50 * unit_roundoff * s.condition);
-      const auto last = evaluate_responses(s.model, s.slots, s.trajectory.increments.back().state, 2);
-      for (int j = 0; j < static_cast<int>(s.model.scene.parameters.size()); ++j) {
-        const auto exact = oracle::complex_step(s.model, method, s.trajectory.step_table(), j);
-        for (Eigen::Index r = 0; r < exact.rows(); ++r) {
-          const double scale =
-              std::max(largest_entry(exact.row(r)), std::abs(last[r] / s.model.scene.parameters[j].value));
-          for (Eigen::Index n = 0; n < exact.cols(); ++n)
-            EXPECT_NEAR(s.gradients.of[n](r, j), exact(r, n), allowed * scale)
-                << name_of(method) << " " << s.model.scene.responses[r].name << " by "
-                << s.model.scene.parameters[j].name << ", increment " << n;
-        }
-      }
-    }
+    for (const Method& method : finite_schemes()) scenes::expect_derivatives_of_the_oracle(draped(mu), method);
 }
 
 TEST(FiniteStrain, AdjointEqualsDirect) {
   Scene scene = draped(0.3);
   scenes::ask_for_objectives(scene);
   // iterated schemes end at 1e-10 of the largest; the rest is rounding
-  for (const Method& method : all_schemes())
+  for (const Method& method : finite_schemes())
     EXPECT_LE(scenes::difference_of_modes(scene, method), std::holds_alternative<UzawaAL>(method) ? 1e-9 : 1e-11)
         << name_of(method);
 }
@@ -301,7 +264,7 @@ TEST(FiniteStrain, IsSmallStrainWhereMotionsAreSmall) {
     if (!finite) s.bodies[0].material = LinearElastic{1000.0, 0.3};
     return s;
   };
-  for (const auto& method : all_methods()) {
+  for (const auto& method : finite_methods()) {
     const auto finite = run(scaled(true), method), small = run(scaled(false), method);
     EXPECT_NEAR(finite.value("press"), small.value("press"), 1e-6 * std::abs(small.value("press"))) << name_of(method);
     EXPECT_NEAR(finite.value("wide"), small.value("wide"), 1e-6 * small.value("wide")) << name_of(method);

@@ -110,6 +110,23 @@ TEST(Fields, VonMisesOfHugeStressesIsFinite) {
   EXPECT_NEAR(made.array("von_mises")[0], 8e202, 8e202 * exact);
 }
 
+TEST(Fields, OfContactAreOfPresentAreasTooAtFiniteStrain) {
+  Scene scene = block(Space::plane_strain);
+  scene.finite_strain = true;
+  scene.bodies[0].material = NeoHookean{1000, 0.25};
+  Made made(scene);
+  auto& state = made.state();
+  // half as wide again; areas of the start are 1 a node, 1.5 now
+  for (int n = 0; n < 4; ++n) state.displacement[2 * n] = 0.5 * made.result.problem->slots.points(0, n);
+  state.contact.state = {ContactState::slip, ContactState::open};
+  state.contact.traction << -6, 3, 0, 0;
+  const int node = made.model().side("block.bottom").nodes[0];
+  EXPECT_DOUBLE_EQ(made.array("contact_pressure")[node], 6);
+  EXPECT_DOUBLE_EQ(made.array("contact_pressure_current")[node], 4);
+  const auto nominal = made.array("contact_traction"), current = made.array("contact_traction_current");
+  for (int i = 0; i < 2; ++i) EXPECT_DOUBLE_EQ(current[3 * node + i], nominal[3 * node + i] / 1.5);
+}
+
 TEST(Fields, OfContactAreThoseOfTheSlaveNodes) {
   Made made(block(Space::plane_strain));
   auto& state = made.state();

@@ -77,6 +77,42 @@ TEST_P(NeoHookeanLaws, HasNoStressWhereTheElementIsInverted) {
   }
 }
 
+/// H of revolution by its five components.
+template <class V>
+auto of_revolution(const V& v) {
+  using T = typename V::Scalar;
+  Mat<T, 3> H = Mat<T, 3>::Constant(T(0));
+  H(0, 0) = v[0];
+  H(1, 0) = v[1];
+  H(0, 1) = v[2];
+  H(1, 1) = v[3];
+  H(2, 2) = v[4];
+  return H;
+}
+
+TEST_P(NeoHookeanLaws, HasTheStressOfItsEnergyOfRevolution) {
+  const auto energy = [](const auto& v) {
+    using T = typename std::decay_t<decltype(v)>::Scalar;
+    return Vector<T>::Constant(1, law<T>(GetParam()).template energy<T, 3>(of_revolution(v))).eval();
+  };
+  Vector<double> v(5);
+  v << some_gradient(1).reshaped(), 0.35;
+  const Mat<double, 3> P = law<double>(GetParam()).stress<double, 3>(of_revolution(v));
+  Vector<double> stress(5);
+  stress << P(0, 0), P(1, 0), P(0, 1), P(1, 1), P(2, 2);
+  // (some thirty operations, and a logarithm)
+  EXPECT_LE(derivatives::relative_difference(derivatives::by_dual(energy, v).transpose(), stress), 100 * epsilon);
+  for (double size : {1e-3, 1e-8, 1e-14}) {
+    const Mat<double, 3> H = of_revolution(Vector<double>(size * v));
+    const Mat<double, 3> small = LinearElasticLaw<double>(E, nu, Space::axisymmetric).stress<double, 3>(H);
+    EXPECT_LE(derivatives::relative_difference(law<double>(GetParam()).stress<double, 3>(H), small),
+              3 * size + 20 * epsilon)
+        << size;
+  }
+  v[4] = -1;
+  EXPECT_TRUE(std::isnan(law<double>(GetParam()).stress<double, 3>(of_revolution(v))(0, 0)));
+}
+
 INSTANTIATE_TEST_SUITE_P(Volumetric, NeoHookeanLaws, testing::Values(Volumetric::quadratic, Volumetric::log));
 
 }  // namespace
