@@ -17,7 +17,8 @@ ElementLists inverted_elements(const Model& model, const Slots<double>& slots, c
         for_each_gradient<double, Shape, kinematics>(
             detail::gather_coordinates<double, Shape>(slots.points, nodes.data()), 1.0, [&](const auto& gradient) {
               const Mat<double, rows> F = Mat<double, rows>::Identity() + gradient.of(local);
-              positive &= F.determinant() > 0;
+              positive &= F.template topLeftCorner<2, 2>().determinant() > 0;
+              if constexpr (rows == 3) positive &= F(2, 2) > 0;  // (where both are negative their product is not)
             });
         if (!positive) inverted[b].push_back(e);
       }

@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "tests/support/blocks.hpp"
-#include "tests/support/both_modes.hpp"
 #include "tests/support/finite_strain.hpp"
 
 namespace stickslip {
@@ -88,14 +87,7 @@ Scene ring() {
 }
 
 TEST(FiniteRevolution, DerivativesEqualTheComplexStepOfTheWholeRun) {
-  for (const Method& method : finite_schemes()) {
-    Scene scene = ring();
-    scenes::expect_derivatives_of_the_oracle(scene, method);
-    scenes::ask_for_objectives(scene);
-    // iterated schemes end at 1e-10 of the largest; the rest is rounding
-    EXPECT_LE(scenes::difference_of_modes(scene, method), std::holds_alternative<UzawaAL>(method) ? 1e-9 : 1e-11)
-        << name_of(method);
-  }
+  for (const Method& method : finite_schemes()) scenes::expect_derivatives_in_both_modes(ring(), method);
 }
 
 }  // namespace

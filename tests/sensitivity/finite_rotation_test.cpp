@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "tests/support/blocks.hpp"
-#include "tests/support/both_modes.hpp"
 #include "tests/support/finite_strain.hpp"
 
 namespace stickslip {
@@ -111,14 +110,7 @@ TEST(FiniteRotation, OfADrumCarriesAPointToTheAngleOfFriction) {
 }
 
 TEST(FiniteRotation, OfADrumHasTheDerivativesOfTheWholeRun) {
-  for (const Method& method : finite_schemes()) {
-    Scene scene = on_a_drum(0.2, 40, 4);
-    scenes::expect_derivatives_of_the_oracle(scene, method);
-    scenes::ask_for_objectives(scene);
-    // iterated schemes end at 1e-10 of the largest; the rest is rounding
-    EXPECT_LE(scenes::difference_of_modes(scene, method), std::holds_alternative<UzawaAL>(method) ? 1e-9 : 1e-11)
-        << name_of(method);
-  }
+  for (const Method& method : finite_schemes()) scenes::expect_derivatives_in_both_modes(on_a_drum(0.2, 40, 4), method);
 }
 
 /// A block whose top is turned by a support, while its bottom stands on a rough floor.
@@ -144,13 +136,7 @@ Scene twisted_block() {
 }
 
 TEST(FiniteRotation, OfASupportHasTheDerivativesOfTheWholeRun) {
-  for (const Method& method : finite_schemes()) {
-    Scene scene = twisted_block();
-    scenes::expect_derivatives_of_the_oracle(scene, method);
-    scenes::ask_for_objectives(scene);
-    EXPECT_LE(scenes::difference_of_modes(scene, method), std::holds_alternative<UzawaAL>(method) ? 1e-9 : 1e-11)
-        << name_of(method);
-  }
+  for (const Method& method : finite_schemes()) scenes::expect_derivatives_in_both_modes(twisted_block(), method);
 }
 
 TEST(FiniteRotation, OfSmallAnglesIsThatOfSmallStrain) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/model/response.hpp"
+#include "tests/support/both_modes.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/solved.hpp"
@@ -48,6 +49,15 @@ inline void expect_derivatives_of_the_oracle(const Scene& scene, const Method& m
             << ", increment " << n;
     }
   }
+}
+
+/// The same, and the adjoint of all objectives equals the direct derivatives: to 1e-11 of the largest by what is
+/// rounding, to 1e-9 by schemes that are iterated to 1e-10.
+inline void expect_derivatives_in_both_modes(Scene scene, const Method& method) {
+  expect_derivatives_of_the_oracle(scene, method);
+  ask_for_objectives(scene);
+  EXPECT_LE(difference_of_modes(scene, method), std::holds_alternative<UzawaAL>(method) ? 1e-9 : 1e-11)
+      << name_of(method);
 }
 
 }  // namespace stickslip::scenes
