@@ -59,7 +59,8 @@ std::string free_motion(const Model& model, const Slots<T>& slots, std::size_t b
     if (model.free_index[dof] < 0) hold(nodal.row(dof));
   for (std::size_t p = 0; p < states.size(); ++p) {
     const auto& point = model.points[p];
-    if (states[p] == ContactState::open || (!body.has(point.nodes[0]) && !body.has(point.nodes.back()))) continue;
+    if (states[p] == ContactState::open || (!body.has(point.nodes[0]) && !body.has(master_node(model, point))))
+      continue;
     const auto motions = motions_at(points.col(point.nodes[0]));
     hold(values(slots.geometry[p].normal).transpose() * motions);
     if (states[p] == ContactState::stick && point.tangents > 0)

@@ -50,6 +50,8 @@ struct EquilibriumTask {
   /// Share of its first residual at which a solve that is one of many may also end, while states still change; 0: it
   /// does not.
   double forcing = 0;
+  /// Displacement of the state that is left, all dofs; nullptr: what supports prescribe stays what it is.
+  const Vector<T>* from = nullptr;
   bool solves_for_multipliers() const { return multipliers == Multipliers::unknown; }
 };
 

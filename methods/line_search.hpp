@@ -7,29 +7,34 @@ namespace stickslip {
 
 /// Moves the unknowns, and their evaluation, along a step; returns the share of it. The full step is taken where it
 /// lands in another active set, for that is how the set is found; within one set the residual must fall: backtracking,
-/// down to 1/64. A trial that is not finite is always halved; where all are, the full step is taken as it is.
+/// down to 1/64. A trial that is not finite is always halved; where all are, the full step is taken as it is. Points
+/// that slide over other surfaces go no further than a facet at once: beyond, the tangent knows nothing.
 /// `used`: states of the last tangent.
 template <class T, class E>
 double search_line(Evaluator<T, E>& evaluate, const BlockVector<T>& step, const std::vector<ContactState>& used,
                    const NewtonOptions& options, Unknowns<T>& unknowns, detail::Evaluation<T>& at) {
-  constexpr double shortest_step = 1.0 / 64;
+  const double whole = evaluate.good_share(step.u.col(0)), shortest_step = whole / 64;
   const double before = at.residuals.largest();
-  double best = std::numeric_limits<double>::infinity(), taken = 1;
+  double best = std::numeric_limits<double>::infinity(), taken = whole;
   const Unknowns<T> start = unknowns;
-  for (double length = 1; length >= shortest_step; length /= 2) {
+  const std::vector<Facing> faced = at.field.facing;
+  for (double length = whole; length >= shortest_step; length /= 2) {
     Unknowns<T> moved{start.u + T(length) * step.u.col(0), start.multiplier};
     if (step.l.size() > 0) moved.multiplier += T(length) * step.l.col(0);
     auto trial = evaluate(moved);
     const bool finite = trial.residuals.finite();
     const double merit = trial.residuals.largest();
-    if (length == 1 || (finite && !(merit >= best))) {
+    if (length == whole || (finite && !(merit >= best))) {
       if (finite) best = merit;
       taken = length;
       unknowns = std::move(moved);
       at = std::move(trial);
     }
     if (!finite) continue;
-    const bool new_branch = length == 1 && at.field.state != used;
+    bool crossed = false;  // a closed point came to another patch
+    for (std::size_t p = 0; p < faced.size(); ++p)
+      crossed |= at.field.state[p] != ContactState::open && faced[p].patch != at.field.facing[p].patch;
+    const bool new_branch = length == whole && (at.field.state != used || crossed);
     if (!options.line_search || merit < 0.9 * before || new_branch) break;
     if (at.residuals.within_rounding(options.tolerance)) break;
   }

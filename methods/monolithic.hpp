@@ -30,7 +30,8 @@ Increment<T> solve_increment(const MonolithicAL& method, Run<T, E>& run, const S
   const ContactInput<T> input{run.model, run.slots, rho, previous.history, cone_radius(method), time};
   NewtonOptions options = method.newton;
   options.tolerance = start.tolerance(options.tolerance);
-  const EquilibriumTask<T> task{input, Multipliers::unknown, start.anchor, start.resumed(previous)};
+  const EquilibriumTask<T> task{input, Multipliers::unknown,    start.anchor, start.resumed(previous),
+                                0,     &start.from.displacement};
   auto equilibrium =
       newton(run.engine, task, {run.engine.begin(time, start.from.displacement), start.from.contact.traction}, options,
              run.account);

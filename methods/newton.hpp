@@ -10,14 +10,18 @@
 ///   methods/assumed_branches.hpp  what is assumed of a point on a tie
 ///   methods/newton_tangent.hpp    what is factorised, and what a singular tangent is taken for
 ///   methods/line_search.hpp       how far a step is gone along
+///   methods/predictor.hpp         where it begins, of bodies that are not linear
 ///
 /// What solves the problems in which it cycles is methods/motion.hpp. [AC91], [HSW08]; theory: core/README.md.
 #pragma once
 
+#include <optional>
+#include <tuple>
+
 #include "methods/carried.hpp"
 #include "methods/line_search.hpp"
 #include "methods/newton_stop.hpp"
-#include "methods/newton_tangent.hpp"
+#include "methods/predictor.hpp"
 
 namespace stickslip {
 
@@ -27,13 +31,15 @@ inline constexpr const char* redundant_message =
     "constraints repeat one another: they share the force, and their sum alone is unique";
 
 template <class T>
-IterationRecord record(const Evaluation<T>& at, const std::vector<ContactState>& before, double step_length) {
+IterationRecord record(const Evaluation<T>& at, const std::vector<ContactState>& before, int crossed,
+                       double step_length) {
   IterationRecord r;
   r.residual = at.residuals.largest();
   r.equilibrium = at.residuals.equilibrium;
   r.normal = at.residuals.normal;
   r.tangential = at.residuals.tangential;
   r.step_length = step_length;
+  r.changed = crossed;
   for (std::size_t p = 0; p < at.field.state.size(); ++p) {
     const ContactState s = at.field.state[p];
     ++(s == ContactState::open ? r.open : s == ContactState::stick ? r.stick : r.slip);
@@ -42,12 +48,35 @@ IterationRecord record(const Evaluation<T>& at, const std::vector<ContactState>&
   return r;
 }
 
-/// Turns l, the multipliers over rho that the engine solves for, into multipliers.
+inline constexpr const char* kept_message =
+    "a point at a vertex of facets has no equilibrium on either of them: it is held on one; try a smooth surface";
+
+/// A solution of points on patches that they do not face.
 template <class T>
-void multiply_by_rho(const ContactInput<T>& input, Matrix<T>& l) {
-  for (std::size_t p = 0; l.size() > 0 && p < input.model.points.size(); ++p)
-    for (int c = 0; c < input.model.points[p].components(); ++c)
-      l(input.model.points[p].multiplier + c, 0) *= c == 0 ? input.rho[p].normal : input.rho[p].tangential;
+using KeptSolution = std::tuple<NewtonEnd, Unknowns<T>, Evaluation<T>>;
+
+/// Whether points that slide along curves give another way on from an end. Where states cycle because points go to and
+/// fro at a vertex, they are kept on their patches; from the solution of that there may be a way to one in which all
+/// points face what they are on. Where there is none, the end is that of the kept points, and says so.
+template <class T, class E>
+bool goes_on(Evaluator<T, E>& evaluate, NewtonStop& stop, NewtonEnd& end, Unknowns<T>& unknowns, Evaluation<T>& at,
+             std::optional<KeptSolution<T>>& kept) {
+  const bool wrong = evaluate.keeps_wrong(unknowns, at.field);
+  const bool first = is_converged(end.status) && !kept && wrong;
+  if (first) {
+    kept = {end, unknowns, at};
+    evaluate.release();
+  }
+  if (first || (end.status == Status::cycle && evaluate.keep_patches())) {
+    stop.forget();
+    at = evaluate(unknowns);
+    return true;
+  }
+  if (kept && (!is_converged(end.status) || wrong)) {
+    std::tie(end, unknowns, at) = std::move(*kept);
+    end.message = kept_message;
+  }
+  return false;
 }
 
 }  // namespace detail
@@ -63,22 +92,25 @@ Equilibrium<T> newton(E& engine, const EquilibriumTask<T>& task, Unknowns<T> unk
   Equilibrium<T> result;
   std::vector<ContactState> used;  // states of the last tangent
   ContactField<T> directed;        // field and branches of the last step
+  std::optional<detail::KeptSolution<T>> kept;
   double step_length = 1;
+  const int predictions = predict(engine, task, evaluate, tangent, account, unknowns) ? 1 : 0;
   auto at = evaluate(unknowns);
   const auto finish = [&](NewtonEnd end) {
     result.status = end.status;
     result.message = std::move(end.message);
     result.rough = end.rough;
-    result.iterations = static_cast<int>(result.history.size()) - 1;
+    result.iterations = static_cast<int>(result.history.size()) - 1 + predictions;
     if (is_converged(end.status)) account.scales = at.scales;
     result.at = std::move(unknowns);
     result.field = std::move(at.field);
     return std::move(result);
   };
   for (int iteration = 0;; ++iteration) {
-    result.history.push_back(detail::record(at, used, step_length));
+    result.history.push_back(detail::record(at, used, evaluate.accept(at), step_length));
     if (account.trace) account.trace->take(input, unknowns.multiplier, at.field, result.history.back(), iteration);
-    if (auto end = stop.judge(at.residuals, at.field.state, result.history)) {
+    auto end = stop.judge(at.residuals, at.field, result.history);
+    if (end && !detail::goes_on(evaluate, stop, *end, unknowns, at, kept)) {
       if (end->status == Status::converged && !end->rough && tangent.redundant())
         end->message = detail::redundant_message;
       return finish(std::move(*end));

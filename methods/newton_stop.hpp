@@ -27,10 +27,11 @@ class NewtonStop {
       : options_(options), forcing_(forcing), extra_(extra) {}
 
   /// Takes in an iterate, whose record is the last of the history; nothing where the method goes on.
-  std::optional<NewtonEnd> judge(const detail::Residuals& residuals, const std::vector<ContactState>& states,
+  template <class T>
+  std::optional<NewtonEnd> judge(const detail::Residuals& residuals, const ContactField<T>& field,
                                  const std::vector<IterationRecord>& history) {
     if (!residuals.finite()) return NewtonEnd{Status::not_finite, "the residual is not finite"};
-    take_states(residuals, states, history);
+    take_states(residuals, signature(field), history);
     const int iteration = static_cast<int>(history.size()) - 1;
     if (auto end = solved(residuals, history)) {
       if (extra_-- == 0) return end;
@@ -48,17 +49,23 @@ class NewtonStop {
     return std::nullopt;
   }
 
+  /// Goes on from a cycle that was broken.
+  void forget() {
+    least_residual_.clear();
+    steady_ = 0;
+  }
+
  private:
   static constexpr int patience = 10;  // iterations in one active set that leave more than half of the residual
 
-  void take_states(const detail::Residuals& residuals, const std::vector<ContactState>& states,
+  void take_states(const detail::Residuals& residuals, std::size_t states,
                    const std::vector<IterationRecord>& history) {
     const bool first = history.size() == 1;
     unchanged_ = first || history.back().changed == 0;
     steady_ = unchanged_ && !first ? steady_ + 1 : 0;
     repeats_ = false;
     if (unchanged_) return;
-    const auto [entry, fresh] = least_residual_.try_emplace(signature(states), residuals.largest());
+    const auto [entry, fresh] = least_residual_.try_emplace(states, residuals.largest());
     repeats_ = !fresh && residuals.largest() > 0.5 * entry->second;
     entry->second = std::min(entry->second, residuals.largest());
   }
@@ -73,9 +80,14 @@ class NewtonStop {
     return NewtonEnd{Status::converged_at_roundoff, "the residual stopped falling at the level of rounding"};
   }
 
-  static std::size_t signature(const std::vector<ContactState>& states) {
+  /// Of the states, and of the patches that closed points face.
+  template <class T>
+  static std::size_t signature(const ContactField<T>& field) {
     std::size_t hash = 1469598103934665603ull;
-    for (ContactState s : states) hash = (hash ^ static_cast<std::size_t>(s)) * 1099511628211ull;
+    for (ContactState s : field.state) hash = (hash ^ static_cast<std::size_t>(s)) * 1099511628211ull;
+    for (std::size_t p = 0; p < field.facing.size(); ++p)
+      if (field.state[p] != ContactState::open)
+        hash = (hash ^ static_cast<std::size_t>(field.facing[p].patch)) * 1099511628211ull;
     return hash;
   }
 

@@ -38,14 +38,15 @@ class NewtonTangent {
     if (task.solves_for_multipliers()) decided_ = decided_elsewhere(task.contact.model, task.contact.slots);
   }
 
-  /// Takes the tangent of what depends on the place: of the bodies where it is not constant, and which multipliers are
-  /// decided elsewhere where normals turn.
+  /// Takes the tangent of what depends on the place: of the bodies where it is not constant, what points face, and
+  /// which multipliers are decided elsewhere where normals turn.
   void move_to(const Unknowns<T>& unknowns, const ContactField<T>& field) {
     const auto& [model, slots] = std::tie(task_.contact.model, task_.contact.slots);
     if (!model.effects.linear_bulk) {
       const Stopwatch time(account_.seconds.assembly);
       engine_.linearise(engine_.all(unknowns.u));
     }
+    facing_ = field.facing;
     if (model.effects.current_geometry && task_.solves_for_multipliers())
       decided_ = decided_elsewhere(model, slots, &field);
   }
@@ -54,6 +55,8 @@ class NewtonTangent {
   /// body that nothing holds but the contact it is about to make, they are presumed closed, in `branches` too: those
   /// that should not be are in tension then, and open. False where the tangent stays singular.
   bool factorise(const Unknowns<T>& unknowns, std::vector<ContactState>& branches);
+  /// Of the points, as they were factorised last.
+  const std::vector<PointTangent<T>>& tangents() const { return tangents_; }
   /// Constraints repeat one another: they share the force.
   bool redundant() const { return redundant_; }
 
@@ -65,6 +68,8 @@ class NewtonTangent {
   const EquilibriumTask<T>& task_;
   Account& account_;
   std::vector<char> decided_;
+  std::vector<Facing> facing_;  ///< of the place
+  std::vector<PointTangent<T>> tangents_;
   bool redundant_ = false;
   int presumptions_ = 3;  ///< left
 };
@@ -86,13 +91,14 @@ std::vector<PointTangent<T>> NewtonTangent<T, E>::point_tangents(const std::vect
   std::vector<PointTangent<T>> tangents;
   const Vector<T> compact = engine_.compact(unknowns.u);
   for (int p = 0; p < static_cast<int>(input.model.points.size()); ++p)
-    tangents.push_back(point_tangent<T>(input, p, compact, unknowns.multiplier, branches[p]));
+    tangents.push_back(point_tangent<T>(input, p, compact, unknowns.multiplier, branches[p], facing_));
   return tangents;
 }
 
 template <class T, class E>
 bool NewtonTangent<T, E>::factorise_in(const std::vector<ContactState>& branches, const Unknowns<T>& unknowns) {
   auto tangents = point_tangents(branches, unknowns);
+  if (task_.from && !task_.contact.model.effects.linear_bulk) tangents_ = tangents;
   if (!decided_.empty()) detail::yield_decided(task_.contact, decided_, tangents);
   const auto& hold = task_.anchor.stiffness;
   if (!redundant_) {

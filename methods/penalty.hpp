@@ -10,6 +10,7 @@
 #pragma once
 
 #include "methods/increment.hpp"
+#include "methods/softened.hpp"
 
 namespace stickslip {
 
@@ -68,7 +69,7 @@ std::string unyielding_point(Run<T, E>& run, const ContactInput<T>& found, const
     const T nodal = T(stiff) * run.slots.stiffness[p] / run.slots.geometry[p].area;
     rho.push_back({nodal, nodal / T(stiff * stiff)});  // across the normal a traction stays what it is
   }
-  const ContactInput<T> input{model, run.slots, rho, found.previous, found.cone, found.time};
+  const ContactInput<T> input{model, run.slots, rho, found.previous, found.cone, found.time, &equilibrium.field.facing};
   const auto& traction = equilibrium.field.traction;
   const auto closed = [&](int p) { return model.points[p].tangents > 0 ? ContactState::stick : ContactState::slip; };
   std::vector<ContactState> states = equilibrium.field.state;
@@ -84,7 +85,7 @@ std::string unyielding_point(Run<T, E>& run, const ContactInput<T>& found, const
       if (!run.engine.is_free(row)) rows[row] = T(0);
     std::vector<PointTangent<T>> tangents;
     for (int p = 0; p < static_cast<int>(model.points.size()); ++p)
-      tangents.push_back(point_tangent<T>(input, p, compact, traction, states[p]));
+      tangents.push_back(point_tangent<T>(input, p, compact, traction, states[p], equilibrium.field.facing));
     if (!run.engine.factorise(tangents, run.account.counters)) return "";
     const Vector<T> u = equilibrium.at.u + run.engine.solve({-rows, {}}).u.col(0);
     ++run.account.counters.backsolves;
@@ -122,10 +123,11 @@ Increment<T> solve_increment(const Penalty& method, Run<T, E>& run, const State<
   const ContactInput<T> input{run.model, run.slots, rho, previous.history, cone_radius(method), time};
   NewtonOptions options = method.newton;
   options.tolerance = start.tolerance(options.tolerance);
-  const EquilibriumTask<T> task{input, Multipliers::given, start.anchor, start.resumed(previous)};
-  const auto equilibrium =
-      newton(run.engine, task, {run.engine.begin(time, start.from.displacement), stored_traction(run.model, previous)},
-             options, run.account);
+  const EquilibriumTask<T> task{input, Multipliers::given,      start.anchor, start.resumed(previous),
+                                0,     &start.from.displacement};
+  const auto equilibrium = newton_softened<T>(
+      run.engine, task, {run.engine.begin(time, start.from.displacement), stored_traction(run.model, previous)},
+      options, run.account);
   account_for(increment, equilibrium, 0);
   increment.state = settle(run, input, equilibrium.at, equilibrium.field);
   if (!is_converged(equilibrium.status) || start.is_step()) return increment;

@@ -146,10 +146,29 @@ class Evaluator {
       : engine_(engine),
         task_(task),
         account_(account),
-        prescribed_(detail::prescribed_motion(task.contact.model, task.contact.slots, task.contact.time)) {}
+        prescribed_(detail::prescribed_motion(task.contact.model, task.contact.slots, task.contact.time)) {
+    if (!task.contact.model.effects.current_geometry) return;
+    for (const auto& point : task.contact.model.points) longest_step_ = std::max(longest_step_, point.mesh_size);
+  }
 
   /// Field, rows and residuals, each point in the branch that it is in.
   detail::Evaluation<T> operator()(const Unknowns<T>& unknowns);
+  /// The share of a step (engine dofs) that takes no contact node further than a facet; 1 where geometry is not the
+  /// present one.
+  double good_share(const Vector<T>& step) const {
+    if (longest_step_ == 0) return 1;
+    const double reach = largest_nodal_norm(engine_.compact(step), task_.contact.model.dimension);
+    return reach > longest_step_ ? longest_step_ / reach : 1;
+  }
+  /// Takes an evaluation for the next iterate; returns how many closed points came to another patch of their curves.
+  int accept(const detail::Evaluation<T>& at);
+  /// Lets points that went to and fro between patches that meet at a corner stay on theirs until the equilibrium is
+  /// found, as at a vertex whose two normals push a point to either side. False where none did.
+  bool keep_patches();
+  /// Whether points were kept on patches that they do not face.
+  bool keeps_wrong(const Unknowns<T>& unknowns, const ContactField<T>& field) const;
+  /// Lets all points face what they face again.
+  void release();
   /// The rows of an evaluation anew, in given branches.
   void take_rows_in(const std::vector<ContactState>& branches, const Unknowns<T>& unknowns, detail::Evaluation<T>& at);
 
@@ -168,7 +187,12 @@ class Evaluator {
   E& engine_;
   const EquilibriumTask<T>& task_;
   Account& account_;
-  double prescribed_;  ///< largest displacement that supports prescribe
+  double prescribed_;                      ///< largest displacement that supports prescribe
+  double longest_step_ = 0;                ///< of a contact node: a facet; 0: any
+  std::vector<Facing> last_;               ///< of the last iterate, where points slide along curves
+  std::vector<std::vector<int>> visited_;  ///< patches, per point
+  std::vector<char> returned_;             ///< to one of them
+  std::vector<int> kept_;                  ///< patches that points stay on; empty: none does
 };
 
 /// Forces of contact, and of the anchor where there is one, on the contact nodes.
@@ -181,12 +205,68 @@ Vector<T> Evaluator<T, E>::contact_field_forces(const Vector<T>& compact, const 
 }
 
 template <class T, class E>
+int Evaluator<T, E>::accept(const detail::Evaluation<T>& at) {
+  const auto& facing = at.field.facing;
+  int crossed = 0;
+  for (std::size_t p = 0; p < facing.size() && !last_.empty(); ++p) {
+    if (at.field.state[p] == ContactState::open || facing[p].patch == last_[p].patch) continue;
+    ++crossed;
+    auto& visited = visited_[p];
+    const bool again = std::find(visited.begin(), visited.end(), facing[p].patch) != visited.end();
+    if (again) returned_[p] = 1;
+    visited.push_back(facing[p].patch);
+  }
+  if (last_.empty()) {
+    for (const Facing& f : facing) visited_.push_back({f.patch});
+    returned_.assign(facing.size(), 0);
+  }
+  last_ = facing;
+  return crossed;
+}
+
+template <class T, class E>
+bool Evaluator<T, E>::keep_patches() {
+  bool any = false;
+  for (std::size_t p = 0; p < last_.size(); ++p) {
+    if (!returned_[p] || last_[p].patch == Patch::none || (!kept_.empty() && kept_[p] != Patch::none)) continue;
+    const auto& point = task_.contact.model.points[p];
+    const Patch& patch = task_.contact.model.curves[point.curve].patches[last_[p].patch];
+    if (patch.goes_on_before() && patch.goes_on_after()) continue;
+    kept_.resize(last_.size(), Patch::none);
+    kept_[p] = last_[p].patch;
+    any = true;
+  }
+  return any;
+}
+
+template <class T, class E>
+bool Evaluator<T, E>::keeps_wrong(const Unknowns<T>& unknowns, const ContactField<T>& field) const {
+  if (kept_.empty()) return false;
+  const auto free = detail::facings(task_.contact, engine_.compact(unknowns.u));
+  for (std::size_t p = 0; p < kept_.size(); ++p)
+    if (kept_[p] != Patch::none && field.state[p] != ContactState::open && free[p].patch != kept_[p]) return true;
+  return false;
+}
+
+template <class T, class E>
+void Evaluator<T, E>::release() {
+  kept_.clear();
+  last_.clear();
+  visited_.clear();
+}
+
+template <class T, class E>
 detail::Evaluation<T> Evaluator<T, E>::operator()(const Unknowns<T>& unknowns) {
-  const auto& input = task_.contact;
+  ContactInput<T> input = task_.contact;
   const Model& model = input.model;
   detail::Evaluation<T> at;
   at.scales = account_.scales;
   const Vector<T> compact = engine_.compact(unknowns.u);
+  std::vector<Facing> facing;
+  if (model.slides_along_curves()) {
+    facing = detail::facings(input, compact, kept_);
+    input.facing = &facing;
+  }
   at.field = evaluate_contact<T>(input, compact, unknowns.multiplier, nullptr);
   count();
   ForceScale force{at.scales.force, 0};
@@ -207,7 +287,8 @@ detail::Evaluation<T> Evaluator<T, E>::operator()(const Unknowns<T>& unknowns) {
 template <class T, class E>
 void Evaluator<T, E>::take_rows_in(const std::vector<ContactState>& branches, const Unknowns<T>& unknowns,
                                    detail::Evaluation<T>& at) {
-  const auto& input = task_.contact;
+  ContactInput<T> input = task_.contact;
+  input.facing = &at.field.facing;
   const Vector<T> compact = engine_.compact(unknowns.u);
   const auto field = evaluate_contact<T>(input, compact, unknowns.multiplier, &branches);
   count();

@@ -21,6 +21,7 @@
 #pragma once
 
 #include "methods/augmentation.hpp"
+#include "methods/softened.hpp"
 
 namespace stickslip {
 
@@ -184,10 +185,12 @@ class AugmentationLoop {
   /// The inner solve: lambda stays as it is.
   Equilibrium<T> balance(const ContactInput<T>& input) {
     rough_ &= increment_.augmentations + 1 < limit_;
+    const bool first = increment_.augmentations == 0;
     run_.account.scales = before_;
-    const EquilibriumTask<T> task{input, Multipliers::given, start_.anchor, resumed_, rough_ ? forcing : 0};
+    const EquilibriumTask<T> task{input,    Multipliers::given,   start_.anchor,
+                                  resumed_, rough_ ? forcing : 0, first ? &start_.from.displacement : nullptr};
     auto equilibrium =
-        newton(run_.engine, task, unknowns_, inner_options(method_, progress_.contraction()), run_.account);
+        newton_softened(run_.engine, task, unknowns_, inner_options(method_, progress_.contraction()), run_.account);
     account_for(increment_, equilibrium, ++increment_.augmentations);
     ++run_.account.counters.augmentations;
     if (equilibrium.status == Status::cycle && !is_globalised(method_)) increment_.message += frozen_advice;

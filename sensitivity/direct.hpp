@@ -74,7 +74,8 @@ class LinearisedEquilibrium {
             rho_blocks_[block],
             problem_.blocks[block].previous.history,
             cone_,
-            time_};
+            time_,
+            &at_.contact.facing};
   }
 
   Differentiation<E>& problem_;
@@ -98,7 +99,7 @@ LinearisedEquilibrium<E>::LinearisedEquilibrium(Differentiation<E>& problem, con
                                                 std::vector<RegularisationField<Direction>> rho_blocks, ConeRadius cone,
                                                 double time, bool unknown, const History<double>& previous)
     : problem_(problem),
-      primal_{problem.model, problem.slots, rho, previous, cone, time},
+      primal_{problem.model, problem.slots, rho, previous, cone, time, &at.contact.facing},
       at_(at),
       rho_blocks_(std::move(rho_blocks)),
       rho_(rho),

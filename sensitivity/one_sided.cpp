@@ -70,12 +70,11 @@ std::size_t first_tie(const Model& model, const Slots<double>& slots, const Meth
 /// A pressure that is about to begin widens a contact of one point, or of none, with an infinite slope.
 bool widens_at_once(const Model& model, const Slots<double>& slots, const State<double>& state, const Response& asked) {
   if (asked.kind != Response::Kind::contact_half_width) return false;
-  const int contact = model.contact_index(asked.on);
   const double largest = traction_scale(model, slots, state);
   const bool rings = model.scene.space == Space::axisymmetric;
   int wide = 0, weak = 0;  // points that make a width; those that are about to
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
-    if (model.points[p].contact != contact) continue;
+    if (!model.is_of_contact(model.points[p].contact, asked.on)) continue;
     const bool is_weak = margins_of(model, slots, state, p, largest).open <= weak_margin;
     const bool closed = state.contact.state[p] != ContactState::open;
     weak += is_weak;

@@ -139,7 +139,7 @@ RecordedEquilibrium<E>::RecordedEquilibrium(AdjointProblem<E>& problem, const St
   for (std::size_t p = 0; p < model.points.size(); ++p)
     for (int c = 0; c < model.points[p].components(); ++c)
       scale_[model.points[p].multiplier + c] = c == 0 ? plain[p].normal : plain[p].tangential;
-  const ContactInput<double> input{model, problem.slots, plain, previous.history, cone, time};
+  const ContactInput<double> input{model, problem.slots, plain, previous.history, cone, time, &at.contact.facing};
   valid_ = factorise_converged(problem, input, at, unknown, redundant_);
   if (!valid_) return;
   record(previous, rho, cone, time, objectives);
@@ -169,7 +169,8 @@ void RecordedEquilibrium<E>::record(const State<double>& previous, const Regular
   multiplier_ = leaves(at_.multiplier, tape);
   for_each_part([&](const Vector<double>& values, Vector<Reverse>& part) { part = leaves(values, tape); },
                 previous.history, history_);
-  const ContactInput<Reverse> input{model, slots, rho, history_, cone, time};
+  history_.patch = previous.history.patch;
+  const ContactInput<Reverse> input{model, slots, rho, history_, cone, time, &at_.contact.facing};
   state_.displacement = displacement_;
   state_.multiplier = multiplier_;
   state_.contact = evaluate_contact<Reverse>(input, to_compact(model, displacement_), multiplier_, &at_.contact.state);

@@ -11,18 +11,20 @@ namespace {
 constexpr double independent = 1e-8;
 
 /// Constraint rows of a closed point over the free dofs (node * D + i, along the axes of the support).
-std::vector<std::map<int, double>> rows_of(const Model& model, const Slots<double>& slots, int p, ContactState state,
+std::vector<std::map<int, double>> rows_of(const Model& model, const Slots<double>& slots,
+                                           const ContactField<double>& field, int p, const std::vector<int>& nodes,
                                            const std::vector<char>& decided) {
   const auto& point = model.points[p];
-  const auto& geometry = slots.geometry[p];
+  const auto& geometry = geometry_in(field, slots, p);
+  const ContactState state = field.state[p];
   const int D = model.dimension, components = state == ContactState::stick ? point.components() : 1;
   std::vector<std::map<int, double>> rows;
   for (int c = 0; c < components; ++c) {
     if (!decided.empty() && decided[point.multiplier + c]) continue;
     const Vector<double> direction = c == 0 ? geometry.normal : geometry.tangents.col(c - 1);
     auto& row = rows.emplace_back();
-    for (std::size_t n = 0; n < point.nodes.size(); ++n) {
-      const int node = point.nodes[n], framed = framed_index(model, node);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      const int node = nodes[n], framed = framed_index(model, node);
       for (int i = 0; i < D; ++i) {
         const double along = framed < 0 ? direction[i] : slots.frames[framed].col(i).dot(direction);
         if (model.free_index[node * D + i] >= 0 && along != 0) row[node * D + i] += geometry.weights[n] * along;
@@ -55,16 +57,18 @@ bool are_independent(const std::vector<std::map<int, double>>& rows, Counts&& co
 
 }  // namespace
 
-bool constraints_repeat(const Model& model, const Slots<double>& slots, const std::vector<ContactState>& states,
+bool constraints_repeat(const Model& model, const Slots<double>& slots, const ContactField<double>& field,
                         const std::vector<char>& decided) {
   constexpr std::size_t most = 500;  // rows of a dense factorisation; beyond, constraints count as repeated
   std::vector<int> left, users(model.node_count, 0);
   std::vector<std::vector<std::map<int, double>>> rows(model.points.size());
+  std::vector<std::vector<int>> nodes(model.points.size());
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
-    if (states[p] == ContactState::open) continue;
-    rows[p] = rows_of(model, slots, p, states[p], decided);
+    if (field.state[p] == ContactState::open) continue;
+    nodes[p] = nodes_in(model, field, p);
+    rows[p] = rows_of(model, slots, field, p, nodes[p], decided);
     left.push_back(p);
-    for (int node : model.points[p].nodes) ++users[node];
+    for (int node : nodes[p]) ++users[node];
   }
   // Rows that are independent on nodes of their own depend on no others: they go, and may leave others alone.
   const auto stands_alone = [&](int p) {
@@ -78,7 +82,7 @@ bool constraints_repeat(const Model& model, const Slots<double>& slots, const st
         rest.push_back(p);
         continue;
       }
-      for (int node : model.points[p].nodes) --users[node];
+      for (int node : nodes[p]) --users[node];
     }
     left = std::move(rest);
   }

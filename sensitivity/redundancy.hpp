@@ -14,7 +14,7 @@ namespace stickslip {
 
 /// True where the rows of closed points, and of the sticking ones along their tangents, depend on one another on the
 /// free dofs. `decided`: multipliers that supports decide, which do not count; may be empty.
-bool constraints_repeat(const Model& model, const Slots<double>& slots, const std::vector<ContactState>& states,
+bool constraints_repeat(const Model& model, const Slots<double>& slots, const ContactField<double>& field,
                         const std::vector<char>& decided);
 
 }  // namespace stickslip

@@ -10,10 +10,11 @@
 namespace stickslip {
 namespace {
 
-/// Whether a point can come to face another part of its master.
+/// Whether what a point faces hangs on where it is at the start: at a vertex, or at the end of a piece.
 bool may_leave(const ContactPoint& point) {
-  return point.master == ContactPoint::Master::pieces ? point.obstacle < 0
-                                                      : point.master != ContactPoint::Master::obstacle;
+  using Master = ContactPoint::Master;
+  if (point.master == Master::pieces) return point.obstacle < 0;
+  return point.master == Master::facet || point.master == Master::vertex;
 }
 
 bool same_part(const ContactPoint& a, const ContactPoint& b) {

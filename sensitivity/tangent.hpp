@@ -15,7 +15,7 @@ inline std::vector<PointTangent<double>> converged_tangents(const ContactInput<d
   const Vector<double> multiplier = multiplier_on_rays(input, at);
   std::vector<PointTangent<double>> tangents;
   for (int p = 0; p < static_cast<int>(input.model.points.size()); ++p)
-    tangents.push_back(point_tangent<double>(input, p, compact, multiplier, at.contact.state[p]));
+    tangents.push_back(point_tangent<double>(input, p, compact, multiplier, at.contact.state[p], at.contact.facing));
   return tangents;
 }
 
@@ -36,7 +36,7 @@ bool factorise_converged(Problem& problem, const ContactInput<double>& input, co
   spent.sensitivity_factorizations = spent.factorizations;
   problem.counters += spent;
   if (!valid) problem.message = "the tangent of the converged state is singular: " + problem.engine.message();
-  if (valid && redundant && !constraints_repeat(problem.model, problem.slots, at.contact.state, decided)) {
+  if (valid && redundant && !constraints_repeat(problem.model, problem.slots, at.contact, decided)) {
     problem.message =
         "the tangent of the converged state is singular: it is about to lose its balance, and has no derivative";
     return false;

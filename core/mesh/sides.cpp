@@ -1,6 +1,7 @@
 #include "core/mesh/sides.hpp"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -38,11 +39,56 @@ std::vector<std::pair<SideOperation, std::string>> split(const std::string& text
 
 std::string quoted(const std::string& text) { return "\"" + text + "\""; }
 
+constexpr const char* whole_boundary = "boundary";
+
+bool has_side(const Mesh& mesh, const std::string& name) {
+  return mesh.sides.count(name) > 0 || (name == whole_boundary && is_continuum(mesh.shape));
+}
+
+/// All sides of elements that only one element has, the solid on their left.
+Side boundary_of(const Mesh& mesh) {
+  const int nodes = nodes_of(mesh.shape), corners = corners_of(mesh.shape);
+  std::map<std::pair<int, int>, std::vector<int>> edges;  // start and end -> start, end (, middle)
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int* at = mesh.connectivity.data() + static_cast<std::ptrdiff_t>(e) * nodes;
+    for (int c = 0; c < corners; ++c) {
+      std::vector<int> edge{at[c], at[(c + 1) % corners]};
+      if (is_quadratic(mesh.shape)) edge.push_back(at[corners + c]);
+      if (edges.erase({edge[1], edge[0]}) == 0) edges.emplace(std::pair{edge[0], edge[1]}, edge);
+    }
+  }
+  Side side;
+  std::map<int, std::vector<int>> by_start;
+  for (const auto& [ends, edge] : edges) by_start.emplace(ends.first, edge);
+  while (!by_start.empty()) {  // one loop after another
+    for (auto next = by_start.begin(); next != by_start.end();) {
+      const std::vector<int> edge = next->second;
+      by_start.erase(next);
+      side.nodes.push_back(edge[0]);
+      if (edge.size() == 3) {
+        side.nodes.push_back(edge[2]);
+        side.facets.push_back({edge[0], edge[2]});
+        side.facets.push_back({edge[2], edge[1]});
+        side.quadratic.push_back(edge);
+      } else {
+        side.facets.push_back(edge);
+      }
+      next = by_start.find(edge[1]);
+    }
+  }
+  return side;
+}
+
+Side side_named(const Mesh& mesh, const std::string& name) {
+  const auto found = mesh.sides.find(name);
+  return found == mesh.sides.end() ? boundary_of(mesh) : found->second;
+}
+
 /// The expression without a body; every term may or may not name one.
 SideExpression without_body(const Mesh& mesh, const std::string& text) {
   auto bare = [&](const std::string& term) {
     const auto dot = term.find('.');
-    return mesh.sides.count(term) || dot == std::string::npos ? term : trimmed(term.substr(dot + 1));
+    return has_side(mesh, term) || dot == std::string::npos ? term : trimmed(term.substr(dot + 1));
   };
   const auto terms = split(text);
   SideExpression expression{"", bare(terms.front().second), {}, ""};
@@ -52,7 +98,7 @@ SideExpression without_body(const Mesh& mesh, const std::string& text) {
 }
 
 std::string unknown_side(const Mesh& mesh, const std::string& name) {
-  if (mesh.sides.count(name)) return "";
+  if (has_side(mesh, name)) return "";
   std::vector<std::string> names;
   std::string list;
   for (const auto& [side, unused] : mesh.sides) {
@@ -66,9 +112,9 @@ std::string unknown_side(const Mesh& mesh, const std::string& name) {
 
 /// pre: all names exist.
 Side apply(const Mesh& mesh, const SideExpression& expression) {
-  Side result = mesh.sides.at(expression.side);
+  Side result = side_named(mesh, expression.side);
   for (const auto& [operation, name] : expression.operations) {
-    const Side& other = mesh.sides.at(name);
+    const Side other = side_named(mesh, name);
     const std::set<int> others(other.nodes.begin(), other.nodes.end());
     const bool keep = operation == SideOperation::intersect;
     std::erase_if(result.nodes, [&](int node) { return (others.count(node) == 1) != keep; });

@@ -1,5 +1,6 @@
-/// Sides by name and by set operations: "left" of a mesh; "block.left & block.bottom" is the intersection of two sides
-/// (a corner); "block.bottom - block.right" leaves nodes out. Operations apply from left to right.
+/// Sides by name and by set operations: "left" of a mesh, "boundary" all around a solid one; "block.left &
+/// block.bottom" is the intersection of two sides (a corner); "block.bottom - block.right" leaves nodes out. Operations
+/// apply from left to right.
 #pragma once
 
 #include <string>

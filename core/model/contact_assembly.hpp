@@ -5,37 +5,9 @@
 #pragma once
 
 #include "core/model/frames.hpp"
-#include "core/model/state.hpp"
+#include "core/model/moved_point.hpp"
 
 namespace stickslip {
-
-/// Regularisation of all points, force per length cubed.
-template <class T>
-using RegularisationField = std::vector<PointRegularisation<T>>;
-
-/// Everything a contact evaluation reads beside displacement and multiplier.
-template <class T>
-struct ContactInput {
-  const Model& model;
-  const Slots<T>& slots;
-  const RegularisationField<T>& rho;
-  const History<T>& previous;  ///< of the last increment
-  ConeRadius cone = ConeRadius::augmented;
-  double time = 0;
-};
-
-namespace detail {
-
-/// The place on an obstacle that a place in its frame faces.
-template <class T, class Place, class Read>
-Vector<T> foot_on(const Obstacle& obstacle, const Place& x, const Read& numbers) {
-  const auto geometry = against_rigid<T>(x, obstacle.shape, numbers);
-  Vector<T> foot(x.size());
-  for (Eigen::Index i = 0; i < foot.size(); ++i) foot[i] = x[i] - geometry.gap * geometry.normal[i];
-  return foot;
-}
-
-}  // namespace detail
 
 /// What history begins with: no slip, no work; where geometry is the present one, the feet of the points at the start.
 template <class T>
@@ -43,8 +15,16 @@ History<T> initial_history(const Model& model, const Slots<T>& slots) {
   const auto zeros = [](std::size_t n) { return Vector<T>::Constant(static_cast<Eigen::Index>(n), T(0)).eval(); };
   History<T> history{zeros(model.multiplier_count - model.points.size()), zeros(model.foot_count),
                      zeros(model.effects.friction ? model.scene.contacts.size() : 0)};
-  for (const auto& point : model.points) {
+  if (model.slides_along_curves()) history.patch.assign(model.points.size(), Patch::none);
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const auto& point = model.points[p];
     if (point.foot < 0) continue;
+    if (point.curve >= 0) {
+      if (point.facing.patch == Patch::none) continue;
+      history.patch[p] = point.facing.patch;
+      history.foot[point.foot] = detail::foot_of_start(model, point, slots).xi;
+      continue;
+    }
     const Vector<T> at = slots.points.col(point.nodes[0]);
     history.foot.segment(point.foot, model.dimension) =
         detail::foot_on<T>(model.scene.obstacles[point.obstacle], at, slots.numbers);
@@ -64,6 +44,8 @@ State<T> initial_state(const Model& model, const Slots<T>& slots) {
   state.contact.gap = zeros(points);
   state.contact.slip = zeros(tangential);
   if (model.effects.current_geometry) state.contact.moved = slots.geometry;
+  for (std::size_t p = 0; model.slides_along_curves() && p < points; ++p)
+    state.contact.facing.push_back(model.points[p].facing);
   state.history = initial_history(model, slots);
   return state;
 }
@@ -111,61 +93,6 @@ Vec<T, D> relative_displacement(const ContactInput<T>& input, int p, const Vecto
   return w;
 }
 
-/// A point where it is now: its geometry, its foot in the frame of the obstacle, and the way of the foot since the last
-/// increment, which the obstacle carries along.
-template <class T, int D>
-struct MovedPoint {
-  PointGeometry<T> geometry;
-  Vec<T, D> foot, way;
-};
-
-/// Where the frame of a point's obstacle is: turned about its centre, then shifted.
-template <class T, int D>
-struct Frame {
-  Vec<T, D> shift = Vec<T, D>::Constant(T(0)), center = Vec<T, D>::Constant(T(0));
-  std::optional<Turn<T>> turn;  ///< in the plane
-};
-template <class T, int D>
-Frame<T, D> frame_of_obstacle(const ContactInput<T>& input, const Obstacle& obstacle) {
-  Frame<T, D> frame;
-  for (const auto& [axis, table] : obstacle.move)
-    frame.shift[axis - 'x'] = evaluate(table, input.time, input.slots.numbers);
-  if (!obstacle.rotate) return frame;
-  for (int i = 0; i < D; ++i) frame.center[i] = input.slots.numbers(obstacle.rotate->center[i]);
-  frame.turn = Turn<T>::by(evaluate(obstacle.rotate->angle, input.time, input.slots.numbers));
-  return frame;
-}
-
-/// `u`: displacement of the slave node, in the scalar U built on T.
-template <class U, class T, int D>
-MovedPoint<U, D> moved_point(const ContactInput<T>& input, int p, const Vec<U, D>& u) {
-  const auto& point = input.model.points[p];
-  const auto number = [&](const Number& n) { return U(input.slots.numbers(n)); };
-  const auto& obstacle = input.model.scene.obstacles[point.obstacle];
-  const auto frame = frame_of_obstacle<T, D>(input, obstacle);
-  Vec<U, D> x;
-  for (int i = 0; i < D; ++i) x[i] = U(input.slots.points(i, point.nodes[0]) - frame.shift[i]) + u[i];
-  if constexpr (D == 2)
-    if (frame.turn) x += frame.turn->back().change(Vec<U, 2>(x[0] - U(frame.center[0]), x[1] - U(frame.center[1])));
-  MovedPoint<U, D> at;
-  at.geometry = against_rigid<U>(x, obstacle.shape, number);
-  for (int i = 0; i < D; ++i) {
-    at.foot[i] = x[i] - at.geometry.gap * at.geometry.normal[i];
-    at.way[i] = point.foot < 0 ? U(0) : U(at.foot[i] - U(input.previous.foot[point.foot + i]));
-  }
-  if constexpr (D == 2)
-    if (frame.turn) {  // what is of the frame is turned with it
-      const auto turned = [&](const Vec<U, 2>& v) { return Vec<U, 2>(v + frame.turn->change(v)); };
-      const Vec<U, 2> normal = turned(Vec<U, 2>(at.geometry.normal[0], at.geometry.normal[1]));
-      at.geometry.normal << normal[0], normal[1];
-      at.geometry.tangents = tangent_frame<U>(at.geometry.normal);
-      at.way = turned(at.way);
-    }
-  at.geometry.gap += number(input.model.scene.contacts[point.contact].offset);
-  at.geometry.area = U(input.slots.geometry[p].area);
-  return at;
-}
-
 template <class T, int Tangents>
 Vec<T, Tangents> previous_placement(const ContactInput<T>& input, int p) {
   Vec<T, Tangents> s;
@@ -198,17 +125,37 @@ double tie_at(const ContactInput<T>& input, int p, const Vector<T>& compact) {
   return tie_length(point, input.slots.geometry[p], reach);
 }
 
+/// A point where it is now. `facing`: where a curve is faced; `moved(place)`: displacement of a contact node, in the
+/// scalar U built on T.
+template <class U, class T, int D, class Moved>
+MovedPoint<U, D> present_point(const ContactInput<T>& input, int p, const Facing* facing, Moved&& moved) {
+  const auto& point = input.model.points[p];
+  if constexpr (D == 2)
+    if (point.curve >= 0) return moved_on_curve<U, T>(input, p, *facing, moved);
+  return moved_point<U, T, D>(input, p, moved(point.places[0]));
+}
+
+/// Takes a point where it is now to its traction. Where it faces nothing it is open.
+template <class U, class T, int D, int Tangents>
+PointOutcome<U, Tangents> outcome_of(const ContactInput<T>& input, const MovedPoint<U, D>& at,
+                                     const Traction<U, Tangents>& multiplier, const Vec<U, Tangents>& previous,
+                                     const PointRegularisation<U>& rho, const FrictionLaw<U>& friction,
+                                     double tie_length, const ContactState* state) {
+  constexpr ContactState open = ContactState::open;
+  return evaluate_moved_point<U, D, Tangents>(at.geometry, at.foot, at.way, multiplier, previous, rho, friction,
+                                              input.cone, tie_length, at.faces ? state : &open);
+}
+
 /// Evaluates a point where it is now, which sets `geometry`.
 template <class T, int D, int Tangents>
 PointOutcome<T, Tangents> evaluate_present(const ContactInput<T>& input, int p, const Vector<T>& compact,
-                                           const Traction<T, Tangents>& multiplier, const ContactState* state,
-                                           PointGeometry<T>& geometry) {
-  const auto& point = input.model.points[p];
-  const Vec<T, D> u = compact.template segment<D>(point.places[0] * D);
-  auto at = moved_point<T, T, D>(input, p, u);
-  const auto outcome = evaluate_moved_point<T, D, Tangents>(
-      at.geometry, at.foot, at.way, multiplier, previous_placement<T, Tangents>(input, p), input.rho[p],
-      input.slots.friction[point.contact], input.cone, tie_at<T>(input, p, compact), state);
+                                           const Facing* facing, const Traction<T, Tangents>& multiplier,
+                                           const ContactState* state, PointGeometry<T>& geometry) {
+  auto at = present_point<T, T, D>(input, p, facing,
+                                   [&](int place) -> Vec<T, D> { return compact.template segment<D>(place * D); });
+  const auto outcome = outcome_of<T, T, D, Tangents>(input, at, multiplier, previous_placement<T, Tangents>(input, p),
+                                                     input.rho[p], input.slots.friction[input.model.points[p].contact],
+                                                     tie_at<T>(input, p, compact), state);
   geometry = std::move(at.geometry);
   return outcome;
 }
@@ -229,15 +176,17 @@ ContactField<T> evaluate_contact(const ContactInput<T>& input, const Vector<T>& 
   field.placement.resize(model.multiplier_count - count);
   field.foot.resize(model.foot_count);
   field.slip.resize(model.multiplier_count - count);
-  const bool present = model.effects.current_geometry;
+  const bool present = model.effects.current_geometry, along_curves = model.slides_along_curves();
   if (present) field.moved.resize(count);
+  if (along_curves) field.facing = input.facing ? *input.facing : detail::facings(input, compact);
   for (int p = 0; p < count; ++p) {
     const auto& point = model.points[p];
     const ContactState* const state = states ? &(*states)[p] : nullptr;
     detail::with_point(model, point, [&]<int D, int Tangents>() {
       const auto lambda = detail::gather_traction<T, Tangents>(multiplier, point.multiplier);
       const auto outcome =
-          present ? detail::evaluate_present<T, D, Tangents>(input, p, compact, lambda, state, field.moved[p])
+          present ? detail::evaluate_present<T, D, Tangents>(
+                        input, p, compact, along_curves ? &field.facing[p] : nullptr, lambda, state, field.moved[p])
                   : evaluate_point<T, D, Tangents>(
                         input.slots.geometry[p], detail::relative_displacement<T, D>(input, p, compact), lambda,
                         detail::previous_placement<T, Tangents>(input, p), input.rho[p],
@@ -252,7 +201,8 @@ ContactField<T> evaluate_contact(const ContactInput<T>& input, const Vector<T>& 
         field.traction[point.multiplier + 1 + a] = outcome.traction.tangential[a];
       }
       if constexpr (Tangents > 0)
-        if (point.foot >= 0) field.foot.template segment<D>(point.foot) = outcome.foot;
+        if (point.foot >= 0)
+          for (int i = 0; i < (point.curve >= 0 ? 1 : D); ++i) field.foot[point.foot + i] = outcome.foot[i];
     });
   }
   return field;
@@ -269,8 +219,9 @@ Vector<T> contact_forces(const Model& model, const Slots<T>& slots, const Contac
       const auto& geometry = geometry_in(field, slots, p);
       const Vec<T, d> force =
           point_force<T, d, Tangents>(geometry, detail::gather_traction<T, Tangents>(field.traction, point.multiplier));
-      for (std::size_t n = 0; n < point.places.size(); ++n)
-        for (int i = 0; i < d; ++i) forces[point.places[n] * d + i] += geometry.weights[n] * force[i];
+      for_each_place(model, field, p, [&](std::size_t n, int place) {
+        for (int i = 0; i < d; ++i) forces[place * d + i] += geometry.weights[n] * force[i];
+      });
     });
   }
   return forces;
@@ -287,69 +238,6 @@ Vector<T> multiplier_residual(const Model& model, const Slots<T>& slots, const V
       rows[k] = slots.geometry[p].area * (traction[k] - multiplier[k]);
     }
   return rows;
-}
-
-/// Tangent of one point with respect to its relative displacement w (where geometry is the present one: the
-/// displacement of its slave node, which turns normal and frame) and its scaled multiplier l = lambda / rho.
-template <class T>
-struct PointTangent {
-  Matrix<T> force_w, force_l;  ///< D x D, D x components
-  Matrix<T> row_w, row_l;      ///< of A (t - lambda): components x D, components x components
-};
-
-template <class T>
-PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<T>& compact,
-                              const Vector<T>& multiplier, ContactState state) {
-  const auto& point = input.model.points[p];
-  return detail::with_point(input.model, point, [&]<int D, int Tangents>() {
-    constexpr int C = 1 + Tangents;
-    using Probe = Dual<D + C, T>;
-    const auto friction =
-        input.slots.friction[point.contact].template as<Probe>([](const T& number) { return Probe(number); });
-    const bool present = input.model.effects.current_geometry;
-    Vec<T, D> w_value;
-    if (present)
-      w_value = compact.template segment<D>(point.places[0] * D);
-    else
-      w_value = detail::relative_displacement<T, D>(input, p, compact);
-    const auto lambda_value = detail::gather_traction<T, Tangents>(multiplier, point.multiplier);
-    const PointRegularisation<Probe> rho{Probe(input.rho[p].normal), Probe(input.rho[p].tangential)};
-    Vec<Probe, D> w;
-    for (int i = 0; i < D; ++i) w[i] = Probe::seed(w_value[i], i);
-    Traction<Probe, Tangents> lambda;
-    lambda.normal = Probe(lambda_value.normal);
-    lambda.normal.d[D] = input.rho[p].normal;
-    Vec<Probe, Tangents> previous;
-    for (int a = 0; a < Tangents; ++a) {
-      lambda.tangential[a] = Probe(lambda_value.tangential[a]);
-      lambda.tangential[a].d[D + 1 + a] = input.rho[p].tangential;
-      previous[a] = Probe(input.previous.placement[tangential_offset(input.model, p) + a]);
-    }
-    PointOutcome<Probe, Tangents> outcome;
-    PointGeometry<Probe> geometry;
-    if (present) {
-      auto at = detail::moved_point<Probe, T, D>(input, p, w);
-      outcome = evaluate_moved_point<Probe, D, Tangents>(at.geometry, at.foot, at.way, lambda, previous, rho, friction,
-                                                         input.cone, 0, &state);
-      geometry = std::move(at.geometry);
-    } else {
-      geometry = detail::promote<Probe>(input.slots.geometry[p]);
-      outcome = evaluate_point<Probe, D, Tangents>(geometry, w, lambda, previous, rho, friction, input.cone, 0, &state);
-    }
-    const Vec<Probe, D> force = point_force<Probe, D, Tangents>(geometry, outcome.traction);
-    PointTangent<T> tangent{Matrix<T>(D, D), Matrix<T>(D, C), Matrix<T>(C, D), Matrix<T>(C, C)};
-    for (int i = 0; i < D; ++i) {
-      for (int j = 0; j < D; ++j) tangent.force_w(i, j) = force[i].d[j];
-      for (int c = 0; c < C; ++c) tangent.force_l(i, c) = force[i].d[D + c];
-    }
-    for (int r = 0; r < C; ++r) {
-      const Probe row = r == 0 ? outcome.traction.normal - lambda.normal
-                               : outcome.traction.tangential[r - 1] - lambda.tangential[r - 1];
-      for (int j = 0; j < D; ++j) tangent.row_w(r, j) = input.slots.geometry[p].area * row.d[j];
-      for (int c = 0; c < C; ++c) tangent.row_l(r, c) = input.slots.geometry[p].area * row.d[D + c];
-    }
-    return tangent;
-  });
 }
 
 /// Frictional work of the increment, added to that before, per contact: sum A t_T . plastic slip, where
@@ -375,7 +263,9 @@ Vector<T> dissipated(const ContactInput<T>& input, const ContactField<T>& field,
 template <class T>
 History<T> next_history(const ContactInput<T>& input, ContactField<T>& field, const Vector<T>& multiplier) {
   Vector<T> work = dissipated(input, field, multiplier, input.previous.work);
-  return {std::move(field.placement), std::move(field.foot), std::move(work)};
+  std::vector<int> patch;
+  for (const auto& facing : field.facing) patch.push_back(facing.patch);
+  return {std::move(field.placement), std::move(field.foot), std::move(work), std::move(patch)};
 }
 
 }  // namespace stickslip

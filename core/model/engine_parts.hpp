@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/algebra/linear_solver.hpp"
-#include "core/model/contact_assembly.hpp"
 #include "core/model/frames.hpp"
+#include "core/model/point_tangent.hpp"
 #include "core/model/tangent_update.hpp"
 
 namespace stickslip {
@@ -60,6 +60,7 @@ namespace detail {
 /// Whether two tangents of a point are the same up to rounding.
 template <class T>
 bool same_tangent(const PointTangent<T>& a, const PointTangent<T>& b) {
+  if (a.places != b.places) return false;
   const double scale = std::max(a.force_w.cwiseAbs().maxCoeff(), a.row_l.cwiseAbs().maxCoeff());
   const auto close = [&](const Matrix<T>& x, const Matrix<T>& y) {
     for (Eigen::Index i = 0; i < x.size(); ++i)
@@ -80,11 +81,28 @@ bool same_tangents(const std::vector<PointTangent<T>>& a, const std::vector<Poin
 /// Whether two vectors are the same to the last bit, their sizes included.
 inline bool same_values(const Vector<double>& a, const Vector<double>& b) { return a.size() == b.size() && a == b; }
 
+/// The entries of a point's tangent that has a row for each dof.
+template <class T, class Add>
+void for_each_entry_along_curve(const PointTangent<T>& tangent, bool unknown_multipliers, Add&& add) {
+  const int count = static_cast<int>(tangent.force_w.rows()), C = static_cast<int>(tangent.row_l.rows());
+  for (int r = 0; r < count; ++r)
+    for (int c = 0; c < count; ++c) add(r, c, tangent.force_w(r, c));
+  if (!unknown_multipliers) return;
+  for (int r = 0; r < count; ++r)
+    for (int c = 0; c < C; ++c) {
+      add(r, count + c, tangent.force_l(r, c));
+      add(count + c, r, tangent.row_w(c, r));
+    }
+  for (int r = 0; r < C; ++r)
+    for (int c = 0; c < C; ++c) add(count + r, count + c, tangent.row_l(r, c));
+}
+
 /// Adds one point's tangent to a matrix through add(row index in rows, column index in rows, value), where rows are
 /// the point's displacement rows (node-major) followed by its multiplier rows (if unknown).
 template <class T, class Add>
 void for_each_entry(const PointGeometry<T>& geometry, const PointTangent<T>& tangent, bool unknown_multipliers,
                     Add&& add) {
+  if (!tangent.places.empty()) return for_each_entry_along_curve(tangent, unknown_multipliers, add);
   const int D = static_cast<int>(tangent.force_w.rows()), C = static_cast<int>(tangent.row_l.rows());
   const int nodes = static_cast<int>(geometry.weights.size());
   for (int n = 0; n < nodes; ++n)
@@ -109,10 +127,14 @@ void for_each_framed_entry(const Model& model, const Slots<T>& slots, int p, con
                            bool unknown_multipliers, Add&& add) {
   const auto& geometry = slots.geometry[p];
   if (model.framed.empty()) return for_each_entry(geometry, tangent, unknown_multipliers, add);
-  const auto rows = geometry.weights.size() * model.dimension + (unknown_multipliers ? tangent.row_l.rows() : 0);
+  std::vector<int> nodes = model.points[p].nodes;
+  if (!tangent.places.empty()) nodes.clear();
+  for (int place : tangent.places) nodes.push_back(model.contact_nodes[place]);
+  const auto rows =
+      static_cast<Eigen::Index>(nodes.size()) * model.dimension + (unknown_multipliers ? tangent.row_l.rows() : 0);
   Matrix<T> K = Matrix<T>::Constant(rows, rows, T(0));
   for_each_entry(geometry, tangent, unknown_multipliers, [&](int r, int c, const T& x) { K(r, c) += x; });
-  K = into_frames(model, slots.frames, model.points[p].nodes, std::move(K));
+  K = into_frames(model, slots.frames, nodes, std::move(K));
   for (int c = 0; c < rows; ++c)
     for (int r = 0; r < rows; ++r) add(r, c, K(r, c));
 }
@@ -158,9 +180,11 @@ Matrix<T> solve_updated(const TangentUpdate& update, const Matrix<T>& b, Solving
 }
 
 /// Slip couples the normal into the tangential rows, not the other way round; with the radius of the cone fixed while
-/// the system is solved (that of known multipliers), or a law of friction without pressure, nothing couples them.
+/// the system is solved (that of known multipliers), or a law of friction without pressure, nothing couples them. Where
+/// frames turn, friction follows them and has no potential whatever its law.
 inline Symmetry symmetry_of(const Model& model, bool unknown_multipliers, ConeRadius cone) {
   const bool fixed_radius = cone == ConeRadius::multiplier && !unknown_multipliers;
+  if (model.effects.friction && model.effects.current_geometry) return Symmetry::general;
   if (model.effects.coupled_friction && !fixed_radius) return Symmetry::general;
   return unknown_multipliers ? Symmetry::indefinite : Symmetry::positive_definite;
 }

@@ -4,6 +4,8 @@
 /// What it begins with is a function of the slots: initial_history().
 #pragma once
 
+#include <vector>
+
 #include "core/algebra/scalar.hpp"
 
 namespace stickslip {
@@ -11,11 +13,13 @@ namespace stickslip {
 template <class T>
 struct History {
   Vector<T> placement;  ///< s, the slip since the start, at tangential_offset()
-  Vector<T> foot;       ///< where geometry is the present one: places on the obstacles, at ContactPoint::foot
+  Vector<T> foot;       ///< where geometry is the present one: places on what is faced, at ContactPoint::foot
   Vector<T> work;       ///< frictional work since the start, per contact; empty without friction
+  /// Of points that slide along curves: the patch that a foot is on, per point. A label, which has no derivative.
+  std::vector<int> patch = {};
 };
 
-/// Calls f(part...) with each part of histories in turn.
+/// Calls f(part...) with each part of histories that numbers make up, in turn.
 template <class F, class... Histories>
 void for_each_part(F&& f, Histories&&... of) {
   f(of.placement...);

@@ -133,11 +133,10 @@ ResponsePlace locate_response(const Model& model, const Points<double>& points, 
     }
     throw ModelError("no element holds the point of `at`", "/responses/" + response.name);
   }
-  const int contact = model.contact_index(response.on);
   double nearest = INFINITY;
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const double distance = (points.col(model.points[p].nodes[0]) - x).norm();
-    if (model.points[p].contact == contact && distance < nearest) {
+    if (model.is_of_contact(model.points[p].contact, response.on) && distance < nearest) {
       nearest = distance;
       place.contact_point = static_cast<int>(p);
     }
@@ -173,6 +172,15 @@ ElementLists elements_at_reactions(const Model& model) {
 void place_contact_nodes(Model& model) {
   std::set<int> nodes;
   for (const auto& point : model.points) nodes.insert(point.nodes.begin(), point.nodes.end());
+  const bool slides = model.scene.finite_strain;
+  const auto turns = [&](const ContactPoint& point) {  // the normal of its side tells what it faces
+    return slides && point.curve >= 0 && is_continuum(model.bodies[point.slave_body].mesh.shape);
+  };
+  for (const auto& curve : model.curves)
+    if (slides) nodes.insert(curve.nodes.begin(), curve.nodes.end());
+  for (const auto& point : model.points)
+    if (turns(point))
+      for (const auto& [a, b] : point.area_facets) nodes.insert({a, b});
   model.contact_nodes.assign(nodes.begin(), nodes.end());
   auto place_of = [&](int node) {
     const auto found = std::lower_bound(model.contact_nodes.begin(), model.contact_nodes.end(), node);
@@ -180,6 +188,12 @@ void place_contact_nodes(Model& model) {
   };
   for (auto& point : model.points)
     for (int node : point.nodes) point.places.push_back(place_of(node));
+  for (auto& point : model.points)
+    if (turns(point))
+      for (const auto& [a, b] : point.area_facets) point.facet_places.emplace_back(place_of(a), place_of(b));
+  for (auto& curve : model.curves)
+    for (int node : curve.nodes)
+      if (slides) curve.places.push_back(place_of(node));
   for (auto& framed : model.framed)
     if (nodes.count(framed.node)) framed.place = place_of(framed.node);
 }
@@ -189,7 +203,7 @@ void place_feet(Model& model) {
   for (auto& point : model.points) {
     if (point.tangents == 0) continue;
     point.foot = model.foot_count;
-    model.foot_count += model.dimension;
+    model.foot_count += point.curve >= 0 ? 1 : model.dimension;  // a curve has one coordinate
   }
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/contact/contact_point.hpp"
+#include "core/contact/curve.hpp"
 #include "core/contact/segments.hpp"
 #include "core/mesh/mesh.hpp"
 #include "core/model/design_velocity.hpp"
@@ -32,23 +33,37 @@ struct BodyMesh {
   Kinematics kinematics = Kinematics::plane;
 };
 
+/// A side of a body, or a rigid polyline, that points face by patches (core/contact/curve.hpp).
+struct MasterCurve {
+  int contact = 0;
+  int obstacle = -1;        ///< index in Scene::obstacles of a polyline; -1: of nodes
+  std::vector<int> nodes;   ///< of the vertices; empty for a polyline, whose vertices are its points
+  std::vector<int> places;  ///< of these in Model::contact_nodes
+  int vertex_count = 0;
+  std::vector<Patch> patches;
+};
+
 /// One slave node and what it can touch. Fixed for small strain.
 struct ContactPoint {
-  enum class Master { obstacle, facet, vertex, pieces };  ///< facet and vertex of a deformable side or a polyline
+  /// facet and vertex of a deformable side or a polyline; curve: patches, which points slide along at finite strain
+  enum class Master { obstacle, facet, vertex, pieces, curve };
   Master master = Master::obstacle;
   int contact = 0;               ///< index in Scene::contacts
   int obstacle = -1;             ///< index in Scene::obstacles, -1 for a deformable master
+  int curve = -1;                ///< index in Model::curves; -1: it faces none
+  Facing facing = {};            ///< the place of the curve that it faces at the start
   int foot = -1;                 ///< offset of its foot's place in History::foot; -1: it has none
   std::vector<int> nodes;        ///< slave, then master nodes (facet: its two; vertex: itself, then the far ends of the
-                                 ///< facets at whose very end the projection lies)
+                                 ///< facets at whose very end the projection lies; curve: of the patch of the start)
   int slave_nodes = 1;           ///< how many of `nodes` are the slave's; more than one if segment-integrated
   std::vector<int> places;       ///< of `nodes` in Model::contact_nodes
   std::vector<int> neighbours;   ///< vertex: the vertices before and after it, whose facets share the normal
   std::vector<int> of_polyline;  ///< points of the polyline: the facet's two, or the vertex between its neighbours
-  std::vector<std::pair<int, int>> area_facets;  ///< facets of the slave side at the node
-  std::vector<std::vector<int>> area_edges;      ///< sides of elements there, of which a share is tributary to the node
-  std::vector<Piece> pieces;                     ///< segment-integrated: what the multiplier of nodes[0] acts on
-  bool area_of_bar = false;    ///< tributary area is the bar's cross-section; with no facets either: 1
+  std::vector<std::pair<int, int>> area_facets;   ///< facets of the slave side at the node
+  std::vector<std::pair<int, int>> facet_places;  ///< the same in Model::contact_nodes, of a solid body's along a curve
+  std::vector<std::vector<int>> area_edges;  ///< sides of elements there, of which a share is tributary to the node
+  std::vector<Piece> pieces;                 ///< segment-integrated: what the multiplier of nodes[0] acts on
+  bool area_of_bar = false;                  ///< tributary area is the bar's cross-section; with no facets either: 1
   bool shares_normal = false;  ///< deformable continua on both sides: the normal is the bisector of the two
   int slave_body = 0;
   double mesh_size = 0;   ///< local size of the slave side, 0 for a lumped point
@@ -80,6 +95,7 @@ struct Effects {
   bool friction = false;
   bool coupled_friction = false;  ///< its bound depends on the pressure somewhere
   bool deformable_master = false;
+  bool smoothing = false;  ///< of some master's facets
   bool sensitivity = false;
   /// The internal forces are linear in the displacements: the tangent of the bodies is constant.
   bool linear_bulk = true;
@@ -110,6 +126,7 @@ struct Model {
   int node_count = 0;
   std::vector<BodyMesh> bodies;
   std::vector<ContactPoint> points;
+  std::vector<MasterCurve> curves;
   int multiplier_count = 0;
   int foot_count = 0;                   ///< entries of History::foot
   std::vector<Constraint> constraints;  ///< ascending dof; those of framed nodes included
@@ -131,9 +148,15 @@ struct Model {
   ~Model();
 
   int dof_count() const { return dimension * node_count; }
+  /// Whether points face other places of their curves as they move.
+  bool slides_along_curves() const { return effects.current_geometry && !curves.empty(); }
   /// The nodes and facets of "body.side", "body.a & body.b", "body.a - body.b". Throws ModelError.
   SideSet side(const std::string& expression) const;
   int contact_index(const std::string& name) const;
+  /// Whether a contact has this name, or is one of its pairs.
+  bool is_of_contact(int contact, const std::string& name) const {
+    return scene.contacts[contact].name == name || scene.contacts[contact].group == name;
+  }
   /// Whether a node lies on the axis of revolution, to the rounding of the coordinates: it is held there.
   bool is_on_axis(const Points<double>& points, int node) const;
 };
@@ -156,6 +179,12 @@ inline int framed_index(const Model& model, int node) {
   const auto found = std::lower_bound(model.framed.begin(), model.framed.end(), node,
                                       [](const FramedNode& framed, int sought) { return framed.node < sought; });
   return found == model.framed.end() || found->node != node ? -1 : static_cast<int>(found - model.framed.begin());
+}
+
+/// A node of what a point faces, or may come to face; of an obstacle the slave node itself.
+inline int master_node(const Model& model, const ContactPoint& point) {
+  if (point.curve < 0 || point.obstacle >= 0) return point.nodes.back();
+  return model.curves[point.curve].nodes.front();
 }
 
 /// Calls f with the space dimension as a compile-time constant: f.template operator()<D>().

@@ -4,21 +4,33 @@
 #include <map>
 #include <optional>
 
+#include "core/contact/curve_search.hpp"
 #include "core/contact/search.hpp"
 #include "core/mesh/sides.hpp"
 
 namespace stickslip {
 namespace {
 
+Eigen::Matrix2Xd vertices_of(const Polyline& polyline, const Numbers<double>& numbers) {
+  Eigen::Matrix2Xd vertices(2, static_cast<Eigen::Index>(polyline.points.size()));
+  for (Eigen::Index v = 0; v < vertices.cols(); ++v)
+    for (int i = 0; i < 2; ++i) vertices(i, v) = numbers(polyline.points[v][i]);
+  return vertices;
+}
+
+/// Reversed: those of a search have the solid on their left.
+std::vector<std::vector<int>> facets_of(const Polyline& polyline) {
+  const int count = static_cast<int>(polyline.points.size());
+  std::vector<std::vector<int>> facets;
+  for (int v = 0; v + 1 < count + polyline.closed; ++v) facets.push_back({(v + 1) % count, v});
+  return facets;
+}
+
 /// Finds the facet or vertex of a polyline that a slave node faces; false where it lies past a free end.
 bool find_on_polyline(const Points<double>& points, const Polyline& polyline, const Numbers<double>& numbers,
                       ContactPoint& point) {
-  const int count = static_cast<int>(polyline.points.size());
-  Points<double> vertices(2, count);
-  for (int v = 0; v < count; ++v)
-    for (int i = 0; i < 2; ++i) vertices(i, v) = numbers(polyline.points[v][i]);
-  std::vector<std::vector<int>> facets;  // reversed: those of the search have the solid on their left
-  for (int v = 0; v + 1 < count + polyline.closed; ++v) facets.push_back({(v + 1) % count, v});
+  const Points<double> vertices = vertices_of(polyline, numbers);
+  const auto facets = facets_of(polyline);
   const auto closest = closest_point(vertices, facets, points.col(point.nodes[0]).head<2>());
   if (!closest) return false;
   const auto& facet = facets[closest->facet];
@@ -130,6 +142,61 @@ void pair_nodes(Model& model, const Points<double>& points, const Pairing& pairi
   }
 }
 
+/// The curve that a contact's master is, with the places of its vertices.
+std::pair<MasterCurve, Eigen::Matrix2Xd> make_curve(const Model& model, const Points<double>& points,
+                                                    const Pairing& pairing) {
+  const Contact& contact = model.scene.contacts[pairing.index];
+  MasterCurve curve;
+  curve.contact = pairing.index;
+  curve.obstacle = pairing.obstacle;
+  std::vector<std::vector<int>> facets = pairing.master.facets;  // of vertices
+  Eigen::Matrix2Xd places;
+  if (pairing.obstacle >= 0) {
+    const auto& polyline = std::get<Polyline>(model.scene.obstacles[pairing.obstacle].shape);
+    places = vertices_of(polyline, model.scene.as<double>());
+    facets = facets_of(polyline);
+  } else {
+    std::map<int, int> number;
+    for (auto& facet : facets)
+      for (int& node : facet) {
+        const auto [found, is_new] = number.emplace(node, static_cast<int>(number.size()));
+        if (is_new) curve.nodes.push_back(node);
+        node = found->second;
+      }
+    places.resize(2, static_cast<Eigen::Index>(curve.nodes.size()));
+    for (std::size_t v = 0; v < curve.nodes.size(); ++v)
+      places.col(static_cast<Eigen::Index>(v)) = points.col(curve.nodes[v]).head<2>();
+  }
+  curve.vertex_count = static_cast<int>(places.cols());
+  curve.patches = make_patches(facets, contact.smoothing, contact.corner, places);
+  return {std::move(curve), std::move(places)};
+}
+
+/// Each slave node against the place of a curve that it faces; at finite strain also those that face none yet.
+void pair_along_curve(Model& model, const Points<double>& points, const Pairing& pairing) {
+  const auto shape = model.bodies[pairing.slave.body].mesh.shape;
+  auto [curve, places] = make_curve(model, points, pairing);
+  const CurveSearch search(curve.patches, places);
+  for (int node : pairing.slave.nodes) {
+    if (is_quadratic(shape) && model.is_on_axis(points, node)) continue;  // it has no tributary area
+    ContactPoint point = slave_point(model, points, pairing, node);
+    const bool has_side = is_continuum(shape) && !point.area_facets.empty();
+    const Vec<double, 2> outward = has_side ? slave_normal(point.area_facets, points) : Vec<double, 2>::Zero().eval();
+    point.master = ContactPoint::Master::curve;
+    point.curve = static_cast<int>(model.curves.size());
+    point.facing = search.facing(points.col(node).head<2>(), outward);
+    const bool faces = point.facing.patch != Patch::none;
+    if (!faces && !model.scene.finite_strain) continue;
+    point.shares_normal = !model.scene.finite_strain && pairing.obstacle < 0 && has_side;
+    if (faces && pairing.obstacle < 0)
+      for (int vertex : curve.patches[point.facing.patch].vertices)
+        if (vertex != Patch::none) point.nodes.push_back(curve.nodes[vertex]);
+    add_point(model, std::move(point));
+  }
+  model.effects.smoothing |= model.scene.contacts[pairing.index].smoothing != Smoothing::none;
+  model.curves.push_back(std::move(curve));
+}
+
 /// Segment-integrated: the multiplier of each slave node on the pieces of its facets.
 void pair_segments(Model& model, const Points<double>& points, const Pairing& pairing) {
   const auto& nodes = pairing.slave.nodes;
@@ -175,6 +242,10 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
   } else if (model.dimension == 3 && !is_in_space(model.scene.obstacles[pairing.obstacle].shape)) {
     throw ModelError("this surface is not made for space", "/obstacles/" + contact.master);
   }
+  const bool has_facets =
+      pairing.obstacle < 0 || std::holds_alternative<Polyline>(model.scene.obstacles[pairing.obstacle].shape);
+  const bool along_curve = model.scene.finite_strain || contact.smoothing != Smoothing::none || !contact.group.empty();
+  if (has_facets && along_curve && !contact.segment) return pair_along_curve(model, points, pairing);
   if (!contact.segment) return pair_nodes(model, points, pairing);
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
   const bool quadratic_master = pairing.obstacle < 0 && is_quadratic(model.bodies[pairing.master.body].mesh.shape);

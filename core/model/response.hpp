@@ -162,11 +162,16 @@ template <class T>
 T contact_response(const Model& model, const Slots<T>& slots, const Response& response, const ResponsePlace& place,
                    const State<T>& state, Ties ties) {
   using Kind = Response::Kind;
-  const int contact = model.contact_index(response.on);
-  if (response.kind == Kind::dissipation) return state.history.work.size() ? state.history.work[contact] : T(0);
+  if (response.kind == Kind::dissipation) {
+    T work{};
+    for (Eigen::Index c = 0; c < state.history.work.size(); ++c)
+      if (model.is_of_contact(static_cast<int>(c), response.on)) work += state.history.work[c];
+    return work;
+  }
   std::vector<int> of_contact;
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p)
-    if (model.points[p].contact == contact && (place.contact_point < 0 || place.contact_point == p))
+    if (model.is_of_contact(model.points[p].contact, response.on) &&
+        (place.contact_point < 0 || place.contact_point == p))
       of_contact.push_back(p);
   if (response.kind == Kind::contact_force) return contact_force(model, slots, response, state, of_contact);
   if (response.kind == Kind::contact_half_width) return contact_half_width(model, slots, state, of_contact);

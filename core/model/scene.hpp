@@ -18,6 +18,7 @@
 
 #include "core/algebra/number.hpp"
 #include "core/algebra/scalar.hpp"
+#include "core/contact/curve.hpp"
 #include "core/contact/friction_law.hpp"
 #include "core/contact/rigid_surfaces.hpp"
 #include "core/mesh/mesh.hpp"
@@ -166,6 +167,9 @@ struct Contact {
   std::optional<FrictionLaw<Number>> friction;  ///< none: frictionless, no tangential unknowns or code path
   Number offset = 0.0;                          ///< added to the geometric gap
   bool segment = false;                         ///< segment-integrated gap and slip in place of node-to-segment
+  Smoothing smoothing = Smoothing::none;        ///< of a master of facets
+  double corner = 30;                           ///< degrees that facets turn by at most where they are smoothed
+  std::string group = {};                       ///< of a pair of "between": the name that stands for all pairs
 };
 
 /// Prescribed displacement n.u along a direction, free across it.

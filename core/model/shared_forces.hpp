@@ -1,7 +1,7 @@
 /// Multipliers that equilibrium does not determine: constraints that supports decide, and such as repeat one another.
 #pragma once
 
-#include "core/model/contact_assembly.hpp"
+#include "core/model/point_tangent.hpp"
 
 namespace stickslip {
 
@@ -20,13 +20,14 @@ std::vector<char> decided_elsewhere(const Model& model, const Slots<T>& slots, c
       const auto first = model.free_index.begin() + node * D;
       return std::all_of(first, first + D, [](int index) { return index >= 0; });
     };
-    if (std::all_of(point.nodes.begin(), point.nodes.end(), is_free)) continue;
-    Matrix<double> rows = Matrix<double>::Zero(point.components(), point.nodes.size() * D);  // on free directions
-    for (std::size_t n = 0; n < point.nodes.size(); ++n) {
-      const int framed = framed_index(model, point.nodes[n]);
+    const auto nodes = field ? nodes_in(model, *field, p) : point.nodes;
+    if (std::all_of(nodes.begin(), nodes.end(), is_free)) continue;
+    Matrix<double> rows = Matrix<double>::Zero(point.components(), nodes.size() * D);  // on free directions
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      const int framed = framed_index(model, nodes[n]);
       const Matrix<double> Q = framed < 0 ? Matrix<double>::Identity(D, D).eval() : values(slots.frames[framed]);
       for (int i = 0; i < D; ++i) {
-        if (model.free_index[point.nodes[n] * D + i] < 0) continue;
+        if (model.free_index[nodes[n] * D + i] < 0) continue;
         const auto column = static_cast<Eigen::Index>(n) * D + i;
         rows(0, column) = value(geometry.weights[n]) * values(geometry.normal).dot(Q.col(i));
         for (int a = 0; a < point.tangents; ++a)

@@ -110,6 +110,43 @@ PointGeometry<T> against_polyline(const Model& model, const ContactPoint& point,
   return against_vertex<T>(x, vertex(0), vertex(1), vertex(2));
 }
 
+/// The foot of a point on its curve at the start. pre: it faces a place of it.
+template <class T>
+CurveFoot<T> foot_of_start(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
+  const auto& curve = model.curves[point.curve];
+  const auto place = [&](int vertex) -> Vec<T, 2> {
+    if (curve.obstacle < 0) return point2(slots.points, curve.nodes[vertex]);
+    const auto& x = std::get<Polyline>(model.scene.obstacles[curve.obstacle].shape).points[vertex];
+    return {slots.numbers(x[0]), slots.numbers(x[1])};
+  };
+  const Vec<T, 2> x = point2(slots.points, point.nodes[0]);
+  return foot_on_patch<T>(curve.patches[point.facing.patch], point.facing.xi, x, place);
+}
+
+/// Geometry against the place of a curve that a point faces at the start; where it faces none, gap and normal are such
+/// that it neither presses nor weighs: its distance, and against its own side.
+template <class T>
+PointGeometry<T> against_curve(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
+  PointGeometry<T> geometry;
+  if (point.facing.patch == Patch::none) {
+    decltype(geometry.normal) normal(2);
+    normal << T(0), T(1);
+    if (!point.area_facets.empty()) {
+      const Vec<T, 2> outward = slave_normal(point.area_facets, slots.points);
+      const T length = norm(outward);
+      normal << -outward[0] / length, -outward[1] / length;
+    }
+    return rigid<T>(T(point.facing.distance), normal);
+  }
+  const auto foot = foot_of_start(model, point, slots);
+  const auto& curve = model.curves[point.curve];
+  geometry.gap = foot.gap;
+  geometry.normal = foot.normal;
+  geometry.tangents = tangent_frame<T>(geometry.normal);
+  geometry.weights = foot_weights(curve.patches[point.facing.patch], foot.weights, curve.obstacle >= 0);
+  return geometry;
+}
+
 /// Displacement of the obstacle at the place that a point faces (the mean one, where it is segment-integrated) when it
 /// rotates by one degree; zero where it does not.
 template <class T>
@@ -137,6 +174,8 @@ PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point,
   PointGeometry<T> geometry;
   if (point.master == ContactPoint::Master::pieces) {
     geometry = integrated_geometry(model, point, slots);
+  } else if (point.master == ContactPoint::Master::curve) {
+    geometry = against_curve(model, point, slots);
   } else if (point.master == ContactPoint::Master::obstacle) {
     const Vector<T> x = slots.points.col(point.nodes[0]);
     geometry = against_rigid<T>(x, model.scene.obstacles[point.obstacle].shape, numbers);

@@ -56,7 +56,8 @@ T stiffness_between(const Model& model, const Slots<T>& slots, int p, const T& s
     const Vector<double> direction = c == 0 ? values(geometry.normal) : values(geometry.tangents.col(c - 1));
     const auto held = [&](int node) { return is_held(model, slots, node, direction); };
     const bool slave_held = std::all_of(point.nodes.begin(), middle, held);
-    const bool master_held = std::all_of(middle, point.nodes.end(), held);
+    const auto& masters = point.curve < 0 ? point.nodes : model.curves[point.curve].nodes;
+    const bool master_held = std::all_of(point.curve < 0 ? middle : masters.begin(), masters.end(), held);
     slave_yields |= master_held && !slave_held;
     master_yields |= slave_held && !master_held;
   }
@@ -72,9 +73,12 @@ T stiffness_between(const Model& model, const Slots<T>& slots, int p, const T& s
 template <class T>
 std::vector<T> contact_stiffness(const Model& model, const Slots<T>& slots) {
   const auto blocks = nodal_stiffness(model, slots);
-  auto along = [&](int node, const auto& n) {
+  const auto block_of = [&](int node) -> const Matrix<T>& {
     const auto& nodes = model.contact_nodes;
-    const auto& K = blocks[std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin()];
+    return blocks[std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin()];
+  };
+  auto along = [&](int node, const auto& n) {
+    const auto& K = block_of(node);
     const int D = model.dimension;
     T k{}, mean{};
     for (int i = 0; i < D; ++i) {
@@ -83,6 +87,15 @@ std::vector<T> contact_stiffness(const Model& model, const Slots<T>& slots) {
     }
     return value(k) > 1e-6 * value(mean) ? k : mean;
   };
+  const auto mean_along_curve = [&](const MasterCurve& curve) {  // it does not jump where a point crosses facets
+    T sum{};
+    for (int node : curve.nodes)
+      for (int i = 0; i < model.dimension; ++i) sum += block_of(node)(i, i);
+    return sum / T(static_cast<double>(model.dimension) * static_cast<double>(curve.nodes.size()));
+  };
+  std::vector<T> of_curve;
+  for (const auto& curve : model.curves)
+    of_curve.push_back(model.slides_along_curves() && curve.obstacle < 0 ? mean_along_curve(curve) : T(0));
   std::vector<T> stiffness;
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     const auto& point = model.points[p];
@@ -95,6 +108,7 @@ std::vector<T> contact_stiffness(const Model& model, const Slots<T>& slots) {
       else
         master += -geometry.weights[i] * k;
     }
+    if (point.curve >= 0 && model.slides_along_curves()) master = of_curve[point.curve];
     stiffness.push_back(point.obstacle >= 0 ? slave : stiffness_between(model, slots, p, slave, master));
   }
   return stiffness;

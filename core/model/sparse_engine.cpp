@@ -5,10 +5,11 @@
 namespace stickslip {
 namespace {
 
-std::vector<int> point_rows(const Model& model, const ContactPoint& point, bool unknown_multipliers) {
+std::vector<int> point_rows(const Model& model, const std::vector<int>& nodes, const ContactPoint& point,
+                            bool unknown_multipliers) {
   std::vector<int> rows;
   const int D = model.dimension;
-  for (int node : point.nodes)
+  for (int node : nodes)
     for (int i = 0; i < D; ++i) rows.push_back(model.free_index[node * D + i]);
   if (unknown_multipliers)
     for (int c = 0; c < point.components(); ++c)
@@ -16,11 +17,19 @@ std::vector<int> point_rows(const Model& model, const ContactPoint& point, bool 
   return rows;
 }
 
+/// Entry of each (row, column) pair; -1: of a row that is not there.
+std::vector<int> map_of(const Pattern& pattern, const std::vector<int>& rows) {
+  std::vector<int> map;
+  for (int row : rows)
+    for (int column : rows) map.push_back(row < 0 || column < 0 ? -1 : locate(pattern, row, column));
+  return map;
+}
+
 }  // namespace
 
 RowLists tangent_rows(const Model& model, bool unknown_multipliers) {
   auto lists = element_rows(model, model.free_index);
-  for (const auto& point : model.points) lists.add(point_rows(model, point, unknown_multipliers));
+  for (const auto& point : model.points) lists.add(point_rows(model, point.nodes, point, unknown_multipliers));
   return lists;
 }
 
@@ -33,24 +42,75 @@ SparseEngine<T>::SparseEngine(const Model& model, const Slots<T>& slots, bool un
       symmetry_(detail::symmetry_of(model, unknown_multipliers, cone)),
       size_(static_cast<int>(model.free_dofs.size()) + (unknown_multipliers ? model.multiplier_count : 0)),
       solver_(backend) {
-  auto lists = tangent_rows(model, unknown_multipliers);
-  pattern_ = make_pattern(size_, lists);
-  for (const auto& point : model.points) {
-    const auto rows = point_rows(model, point, unknown_multipliers);
-    std::vector<int> map;
-    for (int row : rows)
-      for (int column : rows) map.push_back(row < 0 || column < 0 ? -1 : locate(*pattern_, row, column));
-    point_map_.push_back(std::move(map));
-  }
-  bulk_ = assemble_bodies<T>(model, slots, lists, *pattern_);
+  std::vector<std::vector<int>> places;
+  for (const auto& point : model.points) places.push_back(point.places);
+  lay_out(places);
   for (int i = 0; i < static_cast<int>(model.free_dofs.size()); ++i)
     stiffness_ = std::max(stiffness_, value(bulk_[locate(*pattern_, i, i)]));
-  if (!model.effects.linear_bulk) lists_ = std::move(lists);
+}
+
+template <class T>
+std::vector<int> SparseEngine<T>::rows_of(std::size_t p, const std::vector<int>& places) const {
+  std::vector<int> nodes;
+  for (int place : places) nodes.push_back(model_.contact_nodes[place]);
+  return point_rows(model_, nodes, model_.points[p], unknown_multipliers_);
+}
+
+template <class T>
+void SparseEngine<T>::lay_out(const std::vector<std::vector<int>>& places) {
+  auto lists = element_rows(model_, model_.free_index);
+  for (std::size_t p = 0; p < places.size(); ++p) lists.add(rows_of(p, places[p]));
+  pattern_ = make_pattern(size_, lists);
+  point_map_.clear();
+  for (std::size_t p = 0; p < places.size() && !model_.slides_along_curves(); ++p)
+    point_map_.push_back(map_of(*pattern_, rows_of(p, places[p])));
+  bulk_ = assemble_bodies<T>(model_, slots_, lists, *pattern_, linearised_.size() > 0 ? &linearised_ : nullptr);
+  if (model_.slides_along_curves()) places_ = places;
+  if (!model_.effects.linear_bulk) lists_ = std::move(lists);
+  analysed_ = false;
+}
+
+template <class T>
+std::vector<int> SparseEngine<T>::places_around(std::size_t p, const PointTangent<T>& tangent) const {
+  std::vector<int> places = tangent.places;
+  const auto& curve = model_.curves[model_.points[p].curve];
+  const auto add = [&](const Patch& patch) {
+    for (int vertex : patch.vertices)
+      if (vertex != Patch::none) places.push_back(curve.places[vertex]);
+  };
+  const auto is_faced = [&](const Patch& patch) {
+    const auto holds = [&](int vertex) {
+      return std::find(tangent.places.begin(), tangent.places.end(), curve.places[vertex]) != tangent.places.end();
+    };
+    return holds(patch.vertices[1]) || holds(patch.vertices[2]);
+  };
+  if (curve.obstacle < 0 && tangent.places.size() > 1)
+    for (const auto& patch : curve.patches)
+      if (is_faced(patch)) add(patch);
+  std::sort(places.begin(), places.end());
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  return places;
+}
+
+template <class T>
+void SparseEngine<T>::make_room(const std::vector<PointTangent<T>>& tangents) {
+  const auto has_room = [&](std::size_t p) {
+    return std::all_of(tangents[p].places.begin(), tangents[p].places.end(),
+                       [&](int place) { return std::binary_search(places_[p].begin(), places_[p].end(), place); });
+  };
+  bool enough = true;
+  for (std::size_t p = 0; p < tangents.size() && enough; ++p) enough = has_room(p);
+  if (enough) return;
+  auto places = places_;
+  for (std::size_t p = 0; p < tangents.size(); ++p)
+    if (!tangents[p].places.empty()) places[p] = places_around(p, tangents[p]);
+  lay_out(places);
 }
 
 template <class T>
 void SparseEngine<T>::linearise(const Vector<T>& displacement) {
   bulk_ = assemble_bodies<T>(model_, slots_, *lists_, *pattern_, &displacement);
+  if (model_.slides_along_curves()) linearised_ = displacement;
   valid_ = false;
 }
 
@@ -80,13 +140,18 @@ bool SparseEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents, Co
   update_.clear();
   const bool same = detail::same_values(hold, held_) && detail::same_tangents(tangents, factorised_);
   if (valid_ && model_.effects.linear_bulk && same) return true;
+  const bool along_curves = model_.slides_along_curves();
+  if (along_curves) make_room(tangents);
   values_ = bulk_;
   for (Eigen::Index n = 0; n < hold.size(); ++n)
     for (int i = 0; i < model_.dimension; ++i)
       if (const int row = model_.free_index[model_.contact_nodes[n] * model_.dimension + i]; row >= 0)
         values_[locate(*pattern_, row, row)] += T(hold[n]);
   for (std::size_t p = 0; p < tangents.size(); ++p) {
-    const auto& map = point_map_[p];
+    const bool moves = !tangents[p].places.empty();
+    const auto own = along_curves ? map_of(*pattern_, rows_of(p, moves ? tangents[p].places : model_.points[p].places))
+                                  : std::vector<int>();
+    const auto& map = along_curves ? own : point_map_[p];
     const int n = static_cast<int>(std::lround(std::sqrt(static_cast<double>(map.size()))));
     auto add = [&](int row, int column, const T& x) {
       if (const int entry = map[row * n + column]; entry >= 0) values_[entry] += x;
@@ -111,7 +176,7 @@ template <class T>
 bool SparseEngine<T>::update(const std::vector<PointTangent<T>>& tangents, Counters& counters,
                              const Vector<double>& hold) {
   if (!valid_ || !model_.effects.linear_bulk || !detail::same_values(hold, held_)) return false;
-  const auto rows = [&](std::size_t p) { return point_rows(model_, model_.points[p], unknown_multipliers_); };
+  const auto rows = [&](std::size_t p) { return rows_of(p, model_.points[p].places); };
   return detail::update_factor<T>(
       model_, slots_, factorised_, tangents, unknown_multipliers_, rows, size_, counters,
       [&](const Matrix<T>& b) { return solver_.solve(b); }, update_);

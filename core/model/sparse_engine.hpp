@@ -13,7 +13,8 @@ namespace stickslip {
 RowLists tangent_rows(const Model& model, bool unknown_multipliers);
 
 /// The bodies in full: one sparse matrix over the free dofs and the multipliers, its pattern fixed for every contact
-/// state, the bodies' part assembled once.
+/// state, the bodies' part assembled once where it is constant. Where points slide along curves the pattern holds the
+/// patches next to those that they face too, and is made anew when a point gets further.
 template <class T>
 class SparseEngine {
  public:
@@ -65,7 +66,18 @@ class SparseEngine {
   int size_;
   Vector<T> external_;  ///< in the frames
   std::shared_ptr<Pattern> pattern_;
+  /// Makes the pattern of the bodies and of points with these places (Model::contact_nodes), and what hangs on it.
+  void lay_out(const std::vector<std::vector<int>>& places);
+  /// Places of a point whose tangent it is, with those of the patches around.
+  std::vector<int> places_around(std::size_t p, const PointTangent<T>& tangent) const;
+  /// Lays the pattern out anew where a tangent has places that it has not.
+  void make_room(const std::vector<PointTangent<T>>& tangents);
+  /// Rows of a point's entries.
+  std::vector<int> rows_of(std::size_t p, const std::vector<int>& places) const;
+
   std::optional<RowLists> lists_;            ///< of the tangent; none where the bodies' is constant
+  std::vector<std::vector<int>> places_;     ///< per point: those that the pattern has, sorted; none slides: empty
+  Vector<T> linearised_;                     ///< displacements that the bodies' tangent is taken at
   std::vector<std::vector<int>> point_map_;  ///< per point: entry of each (row, column) pair of its rows, -1 if fixed
   std::vector<T> bulk_, values_;
   double stiffness_ = 0;  ///< largest diagonal entry, for the rounding of a residual

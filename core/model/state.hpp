@@ -26,6 +26,8 @@ struct ContactField {
   Vector<T> traction;   ///< t; compression negative
   /// Geometry of each point where it is now; empty where it stays that of the start (Slots::geometry).
   std::vector<PointGeometry<T>> moved;
+  /// What each point faces of its curve; empty where no point slides along one.
+  std::vector<Facing> facing;
   /// Of derivatives alone (sensitivity/branches.hpp): the direction that the trial of a slipping point takes from the
   /// apex of its cone, laid out as traction, zero elsewhere; empty where no point is there.
   Vector<double> ray;
@@ -35,6 +37,31 @@ struct ContactField {
 template <class S, class T>
 const PointGeometry<T>& geometry_in(const ContactField<T>& field, const S& slots, std::size_t p) {
   return field.moved.empty() ? slots.geometry[p] : field.moved[p];
+}
+
+/// Calls f(n, place) with the places in Model::contact_nodes of the nodes that weights[n] of geometry_in() are of.
+template <class T, class F>
+void for_each_place(const Model& model, const ContactField<T>& field, std::size_t p, F&& f) {
+  const auto& point = model.points[p];
+  if (field.facing.empty() || point.curve < 0) {
+    for (std::size_t n = 0; n < point.places.size(); ++n) f(n, point.places[n]);
+    return;
+  }
+  f(std::size_t{0}, point.places[0]);
+  const auto& curve = model.curves[point.curve];
+  const int patch = field.facing[p].patch;
+  if (curve.obstacle >= 0 || patch == Patch::none) return;
+  std::size_t n = 0;
+  for (int vertex : curve.patches[patch].vertices)
+    if (vertex != Patch::none) f(++n, curve.places[vertex]);
+}
+
+/// The nodes that the weights of geometry_in() are of.
+template <class T>
+std::vector<int> nodes_in(const Model& model, const ContactField<T>& field, std::size_t p) {
+  std::vector<int> nodes;
+  for_each_place(model, field, p, [&](std::size_t, int place) { nodes.push_back(model.contact_nodes[place]); });
+  return nodes;
 }
 
 /// Where the tangential quantities of point p stand (each earlier point has exactly one normal component).

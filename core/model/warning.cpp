@@ -18,6 +18,8 @@ std::string_view name_of(WarningCode code) {
       return "locking";
     case WarningCode::single_node:
       return "single_node";
+    case WarningCode::held_on_facet:
+      return "held_on_facet";
     case WarningCode::branch_ends:
       return "branch_ends";
     case WarningCode::non_unique:

@@ -78,7 +78,14 @@ const char* const scene = R"json({
   "contacts": {"description": "which surfaces may touch, by names of your choice", "title": "object by name",
     "type": "object", "examples": [{"sole": {"slave": "block.bottom", "master": "floor", "friction": 0.3}}],
     "additionalProperties": {
-      "type": "object", "required": ["slave", "master"], "additionalProperties": false, "properties": {
+      "type": "object", "oneOf": [{"required": ["slave", "master"]}, {"required": ["between"]}],
+      "additionalProperties": false, "properties": {
+        "between": {
+          "description": "in place of slave and master: solid bodies, each against each, along all of their boundaries",
+          "title": "all, or list of bodies", "examples": [["a", "b", "c"]],
+          "anyOf": [{"enum": ["all"]}, {"type": "array", "minItems": 2, "items": {"type": "string"}}]},
+        "self": {"description": "of between: whether a body may touch itself, which this version does not have",
+          "enum": [false], "default": false},
         "slave": {"description": "the side whose nodes are kept out of the master", "$ref": "#/$defs/side",
           "examples": ["block.bottom"]},
         "master": {"description": "what the slave may not enter: SIDE or an obstacle", "type": "string",
@@ -97,7 +104,15 @@ const char* const scene = R"json({
                 "$ref": "#/$defs/not_negative", "examples": [5]}}}]},
         "offset": {"description": "added to the gap (length); negative: an interference", "type": "number",
           "default": 0, "examples": [-0.01]},
-        "surface": {"description": "of the master: its straight facets", "enum": ["faceted"], "default": "faceted"},
+        "surface": {
+          "description": "of a master of facets: straight, or smooth through their ends (Catmull-Rom, normals go on)",
+          "title": "faceted, smooth or object", "default": "faceted", "examples": ["smooth"],
+          "anyOf": [{"enum": ["faceted", "smooth"]},
+            {"type": "object", "required": ["smooth"], "additionalProperties": false, "properties": {
+              "smooth": {"description": "b_spline: curvatures go on too, a little inside of the facets' ends",
+                "enum": ["catmull_rom", "b_spline"], "examples": ["b_spline"]},
+              "corner": {"description": "facets that turn by more stay a corner (degrees)", "type": "number",
+                "exclusiveMinimum": 0, "maximum": 180, "default": 30, "examples": [60]}}}]},
         "discretization": {
           "description": "node: node-to-segment; segment: mortar, gap and slip integrated along both sides",
           "enum": ["node", "segment"], "default": "node"}}}},

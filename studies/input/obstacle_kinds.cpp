@@ -111,9 +111,9 @@ constexpr const char* polyline_schema = R"json({
 
 const std::vector<ObstacleKind>& obstacle_kinds() {
   static const std::vector<ObstacleKind> kinds{
-      {"plane", plane_schema, Plane::is_in_space, true, read_plane, drawn_plane},
-      {"circle", circle_schema, Circle::is_in_space, true, read_circle, drawn_circle},
-      {"polyline", polyline_schema, Polyline::is_in_space, false, read_polyline, drawn_polyline}};
+      {"plane", plane_schema, Plane::is_in_space, read_plane, drawn_plane},
+      {"circle", circle_schema, Circle::is_in_space, read_circle, drawn_circle},
+      {"polyline", polyline_schema, Polyline::is_in_space, read_polyline, drawn_polyline}};
   return kinds;
 }
 

@@ -11,7 +11,7 @@ namespace stickslip {
 struct ObstacleKind {
   const char* key;                                                                   ///< of {"KEY": {...}}
   const char* schema;                                                                ///< JSON Schema of what it holds
-  bool is_in_space, at_finite_strain;                                                ///< where it is available
+  bool is_in_space;                                                                  ///< or in the plane alone
   std::optional<RigidSurface> (*read)(const JsonNode& node, SceneReading& reading);  ///< none where it is at fault
   /// {"KIND": {...}} of picture.json, where it stands at the start, or null where it is no such surface. The report
   /// draws planes, circles and polylines: any other is one of these.

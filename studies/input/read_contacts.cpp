@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <set>
 
+#include "core/mesh/generators.hpp"
+#include "core/mesh/sides.hpp"
 #include "studies/input/obstacle_kinds.hpp"
 
 namespace stickslip {
@@ -30,7 +32,6 @@ void read_obstacle(const std::string& name, const JsonNode& node, SceneReading& 
   if (reading.dimension() == 3 && !kind->is_in_space) {
     shape.error_at_key("a " + key + " needs a plane space; allowed in the space solid: " + listed(in_space));
   } else {
-    if (!kind->at_finite_strain) reading.only_at_small_strain(shape);
     if (auto surface = kind->read(shape, reading)) obstacle.shape = *std::move(surface);
   }
   reading.scene.obstacles.push_back(std::move(obstacle));
@@ -50,11 +51,6 @@ void check_master(const JsonNode& node, const std::optional<NamedSide>& slave, S
   if (reading.dimension() == 3) {
     node.error("is " + shown(node.value()) +
                "; in the space solid the master must be an obstacle: " + listed(reading.obstacle_names));
-    return;
-  }
-  if (reading.scene.finite_strain) {
-    node.error("is " + shown(node.value()) +
-               "; at finite strain the master must be an obstacle in this version: " + listed(reading.obstacle_names));
     return;
   }
   const auto master = touching_side(node, reading);
@@ -85,9 +81,115 @@ FrictionLaw<Number> friction_law(const JsonNode& node, SceneReading& reading) {
   return law;
 }
 
-void read_contact(const std::string& name, const JsonNode& node, SceneReading& reading) {
-  if (!node.is_object({{"slave", "master"}, {"friction", "offset", "surface", "discretization"}, {"between", "self"}}))
+/// How the facets of the master are smoothed.
+void read_surface(const JsonNode& node, Contact& contact, const SceneReading& reading) {
+  if (node.value() == "faceted") return;
+  const auto is_master = [&](const Obstacle& obstacle) {
+    return obstacle.name == contact.master && !std::holds_alternative<Polyline>(obstacle.shape);
+  };
+  const auto& obstacles = reading.scene.obstacles;
+  if (std::any_of(obstacles.begin(), obstacles.end(), is_master)) {
+    node.error("smooths facets, and the master " + in_quotes(contact.master) + " has none; allowed: \"faceted\"");
     return;
+  }
+  contact.smoothing = Smoothing::catmull_rom;
+  if (!node.value().is_object()) {
+    if (node.value() != "smooth")
+      node.must_be(R"("faceted", "smooth" or {"smooth": "catmull_rom" or "b_spline", "corner": degrees})");
+    return;
+  }
+  if (!node.is_object({{"smooth"}, {"corner"}})) return;
+  if (const auto kind = node.find("smooth"))
+    if (kind->choice({"catmull_rom", "b_spline"}) == "b_spline") contact.smoothing = Smoothing::b_spline;
+  constexpr Rule angle{"an angle > 0 and <= 180, in degrees", [](double x) { return x > 0 && x <= 180; }};
+  if (const auto corner = node.find("corner")) contact.corner = corner->number(angle).value_or(contact.corner);
+}
+
+/// Mean length of the facets around a body at the start.
+double facet_length(const std::string& body, const Side& boundary, const SceneReading& reading) {
+  const auto& bodies = reading.scene.bodies;
+  const auto of = std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.name == body; });
+  const auto points = make_points<double>(of->mesh, reading.meshes.at(body), reading.scene.as<double>());
+  double length = 0;
+  for (const auto& facet : boundary.facets)
+    length += (points.col(facet[0]) - points.col(facet[1])).norm() / static_cast<double>(boundary.facets.size());
+  return length;
+}
+
+/// The bodies that {"between": ...} names; empty where it is at fault.
+std::vector<std::string> bodies_between(const JsonNode& node, const SceneReading& reading) {
+  const auto is_solid = [&](const std::string& name) {
+    const auto mesh = reading.meshes.find(name);
+    return mesh != reading.meshes.end() && is_continuum(mesh->second.shape);
+  };
+  if (node.value() == "all") {
+    std::vector<std::string> all = reading.body_names;
+    std::erase_if(all, [&](const std::string& name) { return !is_solid(name); });
+    if (all.size() < 2) node.error(R"(is "all", and the scene has less than two solid bodies)");
+    return all.size() < 2 ? std::vector<std::string>() : all;
+  }
+  if (!node.value().is_array() || node.value().size() < 2) {
+    node.must_be("\"all\" or an array of two bodies or more: " + listed(reading.body_names));
+    return {};
+  }
+  std::vector<std::string> names;
+  bool valid = true;
+  for (const JsonNode& element : node.elements()) {
+    const auto name = element.text();
+    valid &= name.has_value();
+    if (!name) continue;
+    const bool is_new = !is_in(names, *name);
+    if (!is_in(reading.body_names, *name))
+      element.error("is " + in_quotes(*name) + ": there is no such body;" + suggestion(*name, reading.body_names) +
+                    " allowed: " + listed(reading.body_names));
+    else if (!is_new)
+      element.error("is " + in_quotes(*name) +
+                    " once more; that a body touches itself is not available in this version");
+    else if (reading.meshes.count(*name) && !is_solid(*name))
+      element.error("is " + in_quotes(*name) +
+                    ", which has no boundary of facets: solid bodies alone may be named here");
+    valid &= is_new && is_solid(*name);
+    names.push_back(*name);
+  }
+  return valid ? names : std::vector<std::string>();
+}
+
+/// One contact for each pair of bodies, along their whole boundaries. The slave is the body of the shorter facets, or
+/// of two alike the one named first.
+void read_pairs(const Contact& common, const JsonNode& between, SceneReading& reading) {
+  if (reading.dimension() == 3) {
+    between.error_at_key("bodies touch one another in a plane space alone; in the space solid masters are obstacles");
+    return;
+  }
+  constexpr double alike = 1e-9;
+  std::vector<std::pair<std::string, double>> bodies;
+  for (const std::string& body : bodies_between(between, reading)) {
+    const Side boundary = evaluate_side(reading.meshes.at(body), "boundary");
+    bodies.emplace_back(body, facet_length(body, boundary, reading));
+  }
+  for (std::size_t a = 0; a < bodies.size(); ++a)
+    for (std::size_t b = a + 1; b < bodies.size(); ++b) {
+      const bool second = bodies[b].second < bodies[a].second * (1 - alike);
+      const std::string &slave = bodies[second ? b : a].first, &master = bodies[second ? a : b].first;
+      Contact pair = common;
+      pair.group = common.name;
+      pair.name = common.name + "/" + slave + "~" + master;
+      pair.slave = slave + ".boundary";
+      pair.master = master + ".boundary";
+      reading.contact_names.push_back(pair.name);
+      reading.scene.contacts.push_back(std::move(pair));
+    }
+}
+
+void read_contact(const std::string& name, const JsonNode& node, SceneReading& reading) {
+  const auto between = node.value().is_object() ? node.find("between") : std::nullopt;
+  if (!node.is_object(
+          between ? Keys{{"between"}, {"slave", "master", "self", "friction", "offset", "surface", "discretization"}}
+                  : Keys{{"slave", "master"}, {"between", "self", "friction", "offset", "surface", "discretization"}}))
+    return;
+  for (const char* key : between ? std::vector{"slave", "master", "discretization"} : std::vector{"self"})
+    if (const auto other = node.find(key))
+      other->error_at_key(between ? R"(does not go with "between", which names bodies)" : R"(belongs to "between")");
   Contact contact;
   contact.name = name;
   std::optional<NamedSide> slave_side;
@@ -111,10 +213,17 @@ void read_contact(const std::string& name, const JsonNode& node, SceneReading& r
   }
   if (const auto friction = node.find("friction")) contact.friction = friction_law(*friction, reading);
   contact.offset = reading.optional(node, "offset", 0, any_number);
-  if (const auto surface = node.find("surface")) surface->choice({"faceted"}, {"smooth"});
+  if (const auto surface = node.find("surface")) read_surface(*surface, contact, reading);
+  if (between) {
+    if (const auto self = node.find("self"); self && self->boolean().value_or(false))
+      self->error("is true: that a body touches itself is not available in this version; allowed: false");
+    return read_pairs(contact, *between, reading);
+  }
   if (const auto discretization = node.find("discretization")) {
     contact.segment = discretization->choice({"node", "segment"}) == "segment";
     if (contact.segment) reading.only_at_small_strain(*discretization);
+    if (contact.segment && contact.smoothing != Smoothing::none)
+      discretization->error(R"(is "segment", which integrates along straight facets; with a smooth surface: "node")");
     const bool solid = !slave_side || (is_continuum(slave_side->mesh->shape) && !slave_side->side.facets.empty());
     if (contact.segment && !solid)
       discretization->error("is \"segment\", which integrates along the facets of a solid body; the slave " +

@@ -57,7 +57,7 @@ void read_contact_name(const JsonNode& node, const Kind& kind, Response& respons
                       " allowed: " + listed(names));
   if (kind.kind != Response::Kind::slip) return;
   for (const Contact& contact : reading.scene.contacts)
-    if (contact.name == *name && !contact.friction)
+    if ((contact.name == *name || contact.group == *name) && !contact.friction)
       node.error("is " + in_quotes(*name) + ", a contact without friction, whose slip is not followed; give it a " +
                  "friction, which may be 0");
 }

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "studies/run/contact_points.hpp"
 #include "studies/run/fields.hpp"
 
 namespace stickslip {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/model/response.hpp"
@@ -122,13 +123,21 @@ json objectives_json(const CaseResult& result) {
 json contacts_json(const Problem& problem, const State<double>& state) {
   json contacts = json::object();
   const auto summaries = summarise(problem.model, problem.slots, state);
-  for (std::size_t c = 0; c < summaries.size(); ++c)
-    contacts[problem.model.scene.contacts[c].name] = {{"open", summaries[c].open},
-                                                      {"stick", summaries[c].stick},
-                                                      {"slip", summaries[c].slip},
-                                                      {"penetration", finite(summaries[c].penetration)},
-                                                      {"normal_force", finite(summaries[c].normal_force)},
-                                                      {"tangential_force", summaries[c].tangential_force}};
+  const auto entry = [](const ContactSummary& summary) -> json {
+    return {{"open", summary.open},
+            {"stick", summary.stick},
+            {"slip", summary.slip},
+            {"penetration", finite(summary.penetration)},
+            {"normal_force", finite(summary.normal_force)},
+            {"tangential_force", summary.tangential_force}};
+  };
+  std::map<std::string, ContactSummary> groups;  // the sums of their pairs
+  for (std::size_t c = 0; c < summaries.size(); ++c) {
+    const Contact& contact = problem.model.scene.contacts[c];
+    contacts[contact.name] = entry(summaries[c]);
+    if (!contact.group.empty()) groups[contact.group] += summaries[c];
+  }
+  for (const auto& [name, summary] : groups) contacts[name] = entry(summary);
   return contacts;
 }
 
@@ -259,7 +268,7 @@ json result_json(const CaseResult& result, const std::string& scene_text) {
   out["effects"] = {{"friction", effects.friction},
                     {"finite_strain", model.scene.finite_strain},
                     {"plasticity", false},
-                    {"smoothing", false},
+                    {"smoothing", effects.smoothing},
                     {"sensitivity", effects.sensitivity}};
   out["ledger"] = ledger_json(ledger(result));
   out["warnings"] = warnings_json(result);

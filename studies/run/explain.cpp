@@ -110,8 +110,9 @@ std::string explain(const Input& input, const Problem& problem) {
   if (effects.contact) text += "  unilateral contact\n";
   if (effects.friction) text += "  friction, path dependent (slip is remembered)\n";
   if (!effects.linear_bulk) text += "  finite strain\n";
-  if (effects.current_geometry) text += "  large sliding on rigid obstacles, normals that turn\n";
+  if (effects.current_geometry) text += "  large sliding, normals that turn\n";
   if (effects.deformable_master) text += "  contact between deformable bodies\n";
+  if (effects.smoothing) text += "  smooth masters\n";
   const bool adjoint = scene.sensitivity_mode == SensitivityMode::adjoint;
   if (effects.sensitivity)
     text += fmt::format("  derivatives of {} with respect to {}, {}\n",
@@ -121,8 +122,8 @@ std::string explain(const Input& input, const Problem& problem) {
   if (!effects.contact) text += "  contact: no slave node faces a master\n";
   if (!effects.friction) text += "  friction: no contact has any\n";
   if (!effects.sensitivity) text += "  derivatives: the scene names no parameters\n";
-  text += scene.finite_strain ? "  plasticity, smoothing, inertia\n"
-                              : "  large displacements and sliding, plasticity, smoothing, inertia\n";
+  text += fmt::format("  {}plasticity, {}inertia\n", scene.finite_strain ? "" : "large displacements and sliding, ",
+                      effects.smoothing ? "" : "smoothing, ");
   return text;
 }
 

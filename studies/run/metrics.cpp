@@ -190,6 +190,17 @@ bool ContactSummary::is_finite() const {
          std::all_of(tangential_force.begin(), tangential_force.end(), [](double f) { return std::isfinite(f); });
 }
 
+ContactSummary& ContactSummary::operator+=(const ContactSummary& other) {
+  open += other.open;
+  stick += other.stick;
+  slip += other.slip;
+  penetration = larger(penetration, other.penetration);
+  normal_force += other.normal_force;
+  tangential_force.resize(other.tangential_force.size(), 0.0);
+  for (std::size_t i = 0; i < tangential_force.size(); ++i) tangential_force[i] += other.tangential_force[i];
+  return *this;
+}
+
 std::vector<ContactSummary> summarise(const Model& model, const Slots<double>& slots, const State<double>& state) {
   std::vector<ContactSummary> all(model.scene.contacts.size());
   for (auto& summary : all) summary.tangential_force.assign(model.dimension, 0.0);

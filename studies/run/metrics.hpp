@@ -76,6 +76,7 @@ struct ContactSummary {
   double normal_force = 0;               ///< sum, positive in compression
   std::vector<double> tangential_force;  ///< on the slave, by axis
   bool is_finite() const;
+  ContactSummary& operator+=(const ContactSummary& other);
 };
 
 /// Measures of the increments of a trajectory, in order (the creep of sticking points is summed along the way).

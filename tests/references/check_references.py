@@ -1,8 +1,9 @@
-"""Checks contact_reference.py itself: check_references.py [PART...]; without parts, those of seconds. One line a check.
+"""Checks contact_reference.py and finite_reference.py themselves: check_references.py [PART...]; without parts,
+those of seconds. One line a check.
 
 Closed forms and published numbers of the scenes, derivatives against differences of the whole path with free states,
 all combinations of states tried one by one where there are few points, and the stored solutions, solved anew.
-`check_references.py faults` plants an error at a time in contact_reference.py; the parts of seconds must see each.
+`check_references.py faults` plants an error at a time in the two solvers; the parts of seconds must see each.
 """
 
 import itertools
@@ -15,8 +16,10 @@ import tempfile
 
 import numpy as np
 
+import finite_reference as finite
 from contact_reference import Model, Path, at_pointer, differences, reference, solve, weights_of
-from make_references import HERE, SCENES, belt, boxes, cases, changed, plate, points_plane, pull_out, shipped
+from make_references import (HERE, SCENES, belt, boxes, cases, changed, finite_cases, ironing, plate, points_plane,
+                             pull_out, shipped)
 
 FAILED = []
 
@@ -319,6 +322,170 @@ def slow_stored():
     stored([name for name in cases() if name not in stored.__defaults__[0] + ("cattaneo_mindlin",)])
 
 
+# --- finite strain ---------------------------------------------------------------------------------------------------
+
+
+def finite_block(surface="faceted", down=0.3):
+    """A block of 2 x 1, free to widen to the right, that is pressed on a block that is held everywhere."""
+    neo_hookean = {"neo_hookean": {"E": 10, "nu": 0.3, "volumetric": "log"}}
+    return {
+        "space": "plane_strain", "strain": "finite",
+        "bodies": {"block": {"mesh": {"box": {"min": [0, 0], "max": [2, 1], "cells": [2, 2]}}, "material": neo_hookean},
+                   "base": {"mesh": {"box": {"min": [-1, -1], "max": [4, 0], "cells": [5, 1]}},
+                            "material": neo_hookean}},
+        "contacts": {"sole": {"slave": "block.bottom", "master": "base.top", "surface": surface}},
+        "supports": [{"on": "base.bottom", "move": {"x": 0, "y": 0}}, {"on": "base.top", "move": {"x": 0, "y": 0}},
+                     {"on": "block.left", "move": {"x": 0}}, {"on": "block.top", "move": {"y": [[0, 0], [1, -down]]}}],
+        "time": {"end": 1, "steps": 3},
+        "responses": {"hold": {"reaction": {"on": "block.top", "component": "y"}}, "energy": {"strain_energy": {}},
+                      "press": {"contact_force": {"contact": "sole", "component": "normal"}},
+                      "gap": {"gap": {"contact": "sole"}}},
+        "parameters": {"down": {"/supports/3/move/y/1/1": -1}, "E": "/bodies/block/material/neo_hookean/E"}}
+
+
+def curves():
+    """A parabola, on which Catmull-Rom stays within and from which a B-spline is off by a sixth of the nodes' second
+    difference; straight lines up to their ends; facets by the bisector of a concave and of a convex vertex."""
+    n = 6
+    facets = [(i, i + 1) for i in range(n - 1)]
+    line = np.stack([np.arange(n), 2.0 * np.arange(n)], axis=1)
+    parabola = np.stack([np.arange(n), np.arange(n) ** 2], axis=1).astype(float)
+    for kind, shift in (("catmull_rom", 0), ("b_spline", 1 / 3), ("faceted", None)):
+        curve = finite.Curve(kind, facets)
+        place = lambda nodes, j, xi: finite.value(curve.powers[j] @ nodes[curve.nodes[j]], xi)[0]
+        for j, xi in ((0, 0.0), (0, 0.3), (2, 0.6), (n - 2, 0.7), (n - 2, 1.0)):
+            check(f"{kind}: line, {j + xi}", np.abs(place(line, j, xi) - (j + xi) * np.array([1, 2])).max(), 0, 1e-14)
+            found = curve.locate(place(line, j, xi) + np.array([0.2, -0.1]), line)
+            check(f"{kind}: foot on a line, {j + xi}", sum(found), j + xi, 1e-13)
+        check(f"{kind}: past the end", curve.locate(line[-1] + np.array([0.1, 0.2]), line) is None, True, 0)
+        if shift is not None:
+            check(f"{kind}: parabola", place(parabola, 2, 0.6)[1], 2.6 ** 2 + shift, 1e-14)
+    curve = finite.Curve("faceted", [(0, 1), (1, 2), (2, 3)])
+    at = np.array([[3.0, 0], [2, 0], [1, 1], [0, 1]])
+    bisector, across = np.array([math.cos(3 * math.pi / 8), math.sin(3 * math.pi / 8)]), np.array([-0.01, 0.0])
+    for vertex_, inside in ((1, "concave"), (2, "convex")):
+        for depth in (-0.2, 0.2):
+            for side in (0, 1):
+                x = at[vertex_] + depth * bisector + (2 * side - 1) * across
+                check(f"facets: {inside} vertex, depth {depth}", curve.locate(x, at)[0], vertex_ - 1 + side, 0)
+
+
+def finite_uniform():
+    """Uniform compression: the stretch across from the traction that is zero there, then force and energy."""
+    young, nu, down = 10, 0.3, 0.3
+    G, La, l1 = young / (2 * (1 + nu)), young * nu / ((1 + nu) * (1 - 2 * nu)), 1 - down
+    l2 = 1.0
+    for _ in range(50):
+        l2 -= ((G * (l2 - 1 / l2) + La * math.log(l1 * l2) / l2)
+               / (G * (1 + 1 / l2 ** 2) + La * (1 - math.log(l1 * l2)) / l2 ** 2))
+    force = -2 * (G * (l1 - 1 / l1) + La * math.log(l1 * l2) / l1)
+    energy = 2 * (G / 2 * (l1 ** 2 + l2 ** 2 - 2 - 2 * math.log(l1 * l2)) + La / 2 * math.log(l1 * l2) ** 2)
+    for surface in ("faceted", "smooth", {"smooth": "b_spline"}):
+        model, results, values, gradients, _ = finite.solve(finite_block(surface, down))
+        v, g, name = values[-1], gradients[-1], f"block on a base, {surface}"
+        corner = model.bodies["block"].sides["bottom"].nodes[-1]
+        check(name + ": stretch across", 1 + results[-1]["u"][2 * corner] / 2, l2, 1e-12)
+        check(name + ": force", v["press"], force, 1e-12)
+        check(name + ": reaction", v["hold"], -force, 1e-12)
+        check(name + ": energy", v["energy"], energy, 1e-12)
+        check(name + ": d energy / d down", g["energy"]["down"], force, 1e-11)
+        check(name + ": E d force / d E", g["press"]["E"] * young, force, 1e-11)
+        document = changed(finite_block(surface, down - 0.05), {"/contacts/sole/offset": -0.05})
+        document["parameters"]["offset"] = "/contacts/sole/offset"
+        _, _, values, gradients, _ = finite.solve(document)
+        check(name + ": force of an interference", values[-1]["press"], force, 1e-12)
+        check(name + ": d force / d offset", gradients[-1]["press"]["offset"], -g["press"]["down"], 1e-11)
+
+
+def finite_balance():
+    """Supports are in balance, moments in the current configuration included; without friction energy is a potential
+    of the supports' forces, whatever was slid over, and their derivatives are symmetric."""
+    for surface, friction in (("faceted", None), ("smooth", None), ({"smooth": "b_spline"}, None), ("smooth", 0.3)):
+        model, results, values, gradients, worst = finite.solve(ironing(surface, friction))
+        name = f"ironing, {surface}, friction {friction}"
+        check(name + ": largest violation", worst, 0, 1e-13)
+        total = finite.residual_forces(model, results[-1]).real
+        place = model.X + results[-1]["u"].reshape(-1, 2)
+        check(name + ": forces in balance", np.abs(total.sum(axis=0)).max(), 0, 1e-13)
+        check(name + ": moments in balance", (place[:, 0] * total[:, 1] - place[:, 1] * total[:, 0]).sum(), 0, 1e-13)
+        if friction is None:
+            v, g = values[-1], gradients[-1]
+            check(name + ": d energy / d down", g["energy"]["down"], -v["y"], 1e-10)
+            check(name + ": d energy / d along", g["energy"]["along"], v["x"], 1e-10)
+            check(name + ": symmetry", g["x"]["down"], -g["y"]["along"], 1e-10)
+
+
+def vertex():
+    """On facets, with friction, drawn along by 0.7: the leading node is between two facets at the end, each of which
+    leaves it on the other; no step before has less than one solution."""
+    document = ironing("faceted")
+    model = finite.FiniteModel(document)
+    path = finite.FinitePath(model)
+    document["time"] = {"legs": [[1, 2], [1.75, 3]]}
+    results = finite.FinitePath(finite.FiniteModel(document)).run()
+    check("vertex: states and facets agree until then", len(results), 5, 0)
+    check("vertex: reaction at time 1.5",
+          finite.responses(finite.FiniteModel(document), results[3])["x"].real, 0.0450126625723, 1e-10)
+    before, search, node = results[-1], model.locate, 4
+    for facet, other in ((5, 4), (4, 5)):
+        def held(u):
+            feet, place, p = search(u), model.X + u.reshape(-1, 2), model.points[node]
+            a, b = (place[p.curve.chain[facet + k]] for k in (0, 1))
+            feet[node] = (facet, (place[p.slave] - a) @ (b - a) / ((b - a) @ (b - a)))
+            return feet
+        model.locate = held
+        u = path.step(before["u"], before["p"], before["t"], before["feet"], 1.75, 2.0)[0]
+        check(f"vertex: facet that the solution on facet {facet} is on", search(u)[node][0], other, 0)
+    model.locate = search
+
+
+def finite_derivatives(names=("finite_ironing_smooth",), parameters=("mu", "tip_y")):
+    """Complex step against differences of the whole path, states free."""
+    for name in names:
+        document = finite_cases()[name]()
+        gradients = finite.solve(document)[3]
+        for parameter in parameters or document["parameters"]:
+            if parameter not in document["parameters"]:
+                continue
+            rows = finite.differences(document, document["parameters"][parameter])
+            worst, where = 0.0, ""
+            for response in rows[0]:
+                size = max(abs(g[response][parameter]) for g in gradients) or 1.0
+                error = max(abs(g[response][parameter] - row[response]) for g, row in zip(gradients, rows)) / size
+                if not error <= worst:
+                    worst, where = error, response
+            check(f"{name}: d/d{parameter} against differences, worst at {where}", worst, 0, 1e-7)
+
+
+def slow_finite_derivatives():
+    finite_derivatives(finite_cases(), None)
+
+
+def finite_stored():
+    for name, scene in finite_cases().items():
+        document = scene()
+        with open(os.path.join(HERE, name + ".json"), encoding="utf-8") as f:
+            file = json.load(f)
+        check(f"{name}: scene as stored", file["scene"] == json.loads(json.dumps(document)), True, 0)
+        fresh = json.loads(json.dumps(finite.finite_reference(document)))
+        same_solution(name, None, document, file["solutions"]["exact"], fresh)
+
+
+def press_fit():
+    """Rings by collocation against shooting, and their limit of small interference: Lame's rings, of displacements
+    A R + B / R that vanish at the walls."""
+    young, nu = 1000.0, 0.3
+    for interference, pressure in ((0.001, 0.523865607559), (0.01, 5.24370805044), (0.1, 52.9471019151)):
+        p = finite.press_fit(interference)
+        check(f"rings, interference {interference}: pressure", p, finite.press_fit(interference, shooting=True), 1e-9)
+        check(f"rings, interference {interference}: pressure as known", p, pressure, 1e-9)
+    G, La = young / (2 * (1 + nu)), young * nu / ((1 + nu) * (1 - 2 * nu))
+    stiffness = lambda wall, R: (2 * (La + G) + 2 * G * wall ** 2 / R ** 2) / (R - wall ** 2 / R)  # P_R / u at R
+    k = [abs(stiffness(wall, 2.0)) for wall in (1.0, 4.0)]
+    small = 1e-5
+    check("rings: stiffness of small interference", finite.press_fit(small) / small, k[0] * k[1] / (k[0] + k[1]), 1e-5)
+
+
 # Errors that a reference solver may have: text of contact_reference.py, and what is planted in its place.
 FAULTS = {
     "gap without its offset": ("n, gap + offset, a,", "n, gap, a,"),
@@ -341,29 +508,59 @@ FAULTS = {
 }
 
 
-def faults():
-    """Each fault in a copy of the folder: the parts of seconds must fail there."""
-    with open(os.path.join(HERE, "contact_reference.py"), encoding="utf-8") as f:
-        sound = f.read()
-    for name, (text, faulty) in FAULTS.items():
-        assert sound.count(text) == 1, f"the text of the fault is no longer there, or twice: {name}: {text}"
-        with tempfile.TemporaryDirectory() as folder:
-            with open(os.path.join(folder, "contact_reference.py"), "w", encoding="utf-8") as f:
-                f.write(sound.replace(text, faulty))
-            result = subprocess.run(
-                [sys.executable, "-c", "import sys; sys.path.insert(0, sys.argv[1]); sys.path.append(sys.argv[2]); "
-                 "import contact_reference; assert contact_reference.__file__.startswith(sys.argv[1]); "
-                 "import check_references; sys.exit(check_references.run(check_references.QUICK, True))", folder, HERE],
-                capture_output=True, text=True, check=False)
-            seen = next((line for line in result.stdout.split("\n") if line.startswith("FAIL")),
-                        result.stderr.strip().split("\n")[-1])
-            check(f"seen: {name}", result.returncode != 0, True, 0)
-            print("     by", seen[:100])
+FINITE_FAULTS = {
+    "volume of plane stress": ("invariant - 3 - 2", "invariant - 2 - 2"),
+    "logarithm not weighed by J": ("self.La * np.log(J) if self.log else self.La * (J - 1) * J",
+                                   "self.La * np.log(J) * J if self.log else self.La * (J - 1) * J"),
+    "gap without its offset": ("shared.shape[:-2] + (18,)), gap + self.model.offset[self.on]",
+                               "shared.shape[:-2] + (18,)), gap + 0 * self.model.offset[self.on]"),
+    "force on the master at its segment's start": ("-N[..., :, None] * force", "-np.eye(4)[0][:, None] * force"),
+    "slip from the start, not from the last step": ("feet, dissipation, start = m.locate(u), result",
+                                                    "dissipation, start = result"),
+    "last foot without derivative": ("(feet[i][0], xi[k])", "(feet[i][0], xi[k].real)"),
+    "places of the last foot of the first body alone": ("y_then = value(self.powers_then @ local[..., 5:9, :]",
+                                                        "y_then = value(self.powers_then @ local[..., 1:5, :]"),
+    "Catmull-Rom of half the slope": ("[-1, 6, 1, 0], [0, 1, 6, -1]", "[-0.5, 6, 0.5, 0], [0, 0.5, 6, -0.5]"),
+    "free end without its ghost": ("share[c, 0], share[c, 1] = 2, -1", "share[c, 0] = 1"),
+    "bisectors forgotten": ("(unit[j] + unit[j + 1]) > 0", "unit[j] > 0"),
+    "dissipation with the wrong sign": ('"dissipation": dissipation - ', '"dissipation": dissipation + '),
+    "hoop stress that is radial": ("hoop = self.G * (b - 1 / b)", "hoop = self.G * (a - 1 / a)"),
+}
 
 
+def faults(which=None):
+    """Each fault in a copy of its file: the parts of seconds must fail there."""
+    for module, planted, parts in (("contact_reference", FAULTS, "QUICK"),
+                                   ("finite_reference", FINITE_FAULTS, "FINITE")):
+        if which and module != which:
+            continue
+        with open(os.path.join(HERE, module + ".py"), encoding="utf-8") as f:
+            sound = f.read()
+        for name, (text, faulty) in planted.items():
+            assert sound.count(text) == 1, f"the text of the fault is no longer there, or twice: {name}: {text}"
+            with tempfile.TemporaryDirectory() as folder:
+                with open(os.path.join(folder, module + ".py"), "w", encoding="utf-8") as f:
+                    f.write(sound.replace(text, faulty))
+                result = subprocess.run(
+                    [sys.executable, "-c", "import sys; sys.path.insert(0, sys.argv[1]); sys.path.append(sys.argv[2]); "
+                     f"import {module}; assert {module}.__file__.startswith(sys.argv[1]); import check_references; "
+                     f"sys.exit(check_references.run(check_references.{parts}, True))", folder, HERE],
+                    capture_output=True, text=True, check=False)
+                seen = next((line for line in result.stdout.split("\n") if line.startswith("FAIL")),
+                            result.stderr.strip().split("\n")[-1])
+                check(f"seen: {name}", result.returncode != 0, True, 0)
+                print("     by", seen[:100])
+
+
+def finite_faults():
+    faults("finite_reference")
+
+
+FINITE = ("press_fit", "curves", "finite_uniform", "finite_balance", "vertex", "finite_stored",
+          "finite_derivatives")
 QUICK = ("stop", "uniform", "balance", "inequalities", "bar", "capstan", "enumeration", "few_derivatives", "slider",
-         "tractrix", "stored")
-SLOW = ("greco", "slow_tractrix", "derivatives", "slow_stored")
+         "tractrix", "stored") + FINITE
+SLOW = ("greco", "slow_tractrix", "derivatives", "slow_stored", "slow_finite_derivatives")
 
 
 def run(parts, until_one_fails=False):

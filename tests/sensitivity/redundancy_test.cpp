@@ -17,7 +17,9 @@ namespace {
 bool repeat(const Scene& scene, ContactState state) {
   const Model model = make_model(scene);
   const auto slots = make_slots<double>(model, scene.as<double>());
-  return constraints_repeat(model, slots, std::vector<ContactState>(model.points.size(), state), {});
+  ContactField<double> field;
+  field.state.assign(model.points.size(), state);
+  return constraints_repeat(model, slots, field, {});
 }
 
 TEST(Constraints, RepeatOneAnotherWhereANodeIsHeldMoreThanItCanMove) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/mesh/generators.hpp"
+#include "core/mesh/sides.hpp"
 #include "studies/input/method_options.hpp"
 #include "tests/studies/scene_texts.hpp"
 
@@ -120,6 +121,39 @@ TEST(SceneReader, ReadsABlockOnAFloor) {
   EXPECT_EQ(method.scale.kind, Regularisation::Kind::relative);
   EXPECT_EQ(method.scale.value.value, 2);
   EXPECT_EQ(input.output.fields, OutputOptions::Fields::last);
+}
+
+TEST(SceneReader, MakesAContactOfEachPairOfBodies) {
+  const char* text = R"({
+    "strain": "finite",
+    "bodies": {
+      "a": {"mesh": {"box": {"min": [0, 0], "max": [1, 1], "cells": [2, 2]}}, "material": {"neo_hookean": {"E": 1, "nu": 0}}},
+      "b": {"mesh": {"box": {"min": [2, 0], "max": [3, 1], "cells": [4, 4]}}, "material": {"neo_hookean": {"E": 1, "nu": 0}}},
+      "c": {"mesh": {"box": {"min": [4, 0], "max": [5, 1], "cells": [2, 2]}}, "material": {"neo_hookean": {"E": 1, "nu": 0}}}},
+    "contacts": {"pile": {"between": "all", "friction": 0.2, "surface": {"smooth": "b_spline", "corner": 40}}},
+    "supports": [{"on": "a.boundary", "move": {"x": 0, "y": 0}}],
+    "time": {"end": 1, "steps": 1},
+    "responses": {"heat": {"dissipation": {"contact": "pile"}}, "slid": {"slip": {"contact": "pile/b~a"}}},
+    "parameters": {"mu": "/contacts/pile/friction"},
+    "method": {"monolithic_al": {}}
+  })";
+  const Scene scene = valid(text).scene;
+  ASSERT_EQ(scene.contacts.size(), 3u);
+  std::vector<std::string> names;
+  for (const Contact& contact : scene.contacts) {
+    names.push_back(contact.name);
+    EXPECT_EQ(contact.group, "pile");
+    EXPECT_EQ(contact.smoothing, Smoothing::b_spline);
+    EXPECT_EQ(contact.corner, 40);
+    EXPECT_EQ(contact.friction->coefficient->slot, scene.contacts[0].friction->coefficient->slot);
+  }
+  // the finer body is the slave; of two alike the one that is named first
+  EXPECT_THAT(names, ElementsAre("pile/b~a", "pile/a~c", "pile/b~c"));
+  EXPECT_EQ(scene.contacts[0].slave, "b.boundary");
+  EXPECT_EQ(scene.contacts[0].master, "a.boundary");
+  const auto mesh = make_mesh(scene.bodies[1].mesh, "", 2);
+  EXPECT_EQ(evaluate_side(mesh, "boundary").facets.size(), 16u);
+  EXPECT_EQ(evaluate_side(mesh, "boundary - b.left").nodes.size(), 11u);
 }
 
 TEST(SceneReader, ReadsLumpedBodies) {

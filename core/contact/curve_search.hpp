@@ -1,0 +1,45 @@
+/// Which place of a master curve a point faces: the nearest, found among few facets by a grid over the plane.
+///
+/// At a corner the curve is two straight lines that end in their bisector, so that the gap is continuous there and has
+/// no states of its own: beyond a convex corner a point has the gap of the line on its side of the bisector.
+#pragma once
+
+#include "core/contact/curve.hpp"
+
+namespace stickslip {
+
+/// Search along one curve, where its vertices are now.
+class CurveSearch {
+ public:
+  /// Both must outlive it. `places`: of the vertices, by number.
+  CurveSearch(const std::vector<Patch>& patches, const Eigen::Matrix2Xd& places);
+
+  /// The place that x faces; none where it lies past a free end, or at the centre of a bend. Only patches count whose
+  /// normal is against `outward`, the normal of the side that x is on; zero: all do. A point that is outside of the
+  /// solid by the nearest patch of all is not inside of it by another. Where two patches meet it is the second's.
+  Facing facing(const Vec<double, 2>& x, const Vec<double, 2>& outward) const;
+  /// The foot of x on one patch, beyond its ends too.
+  Facing stay(int patch, const Vec<double, 2>& x) const;
+
+ private:
+  struct Nearest {
+    int patch = Patch::none;
+    double xi = 0, distance = std::numeric_limits<double>::infinity();
+  };
+  Vec<double, 2> vertex(int patch, int end) const { return places_.col(patches_[patch].vertices[1 + end]); }
+  Nearest nearest_facet(const Vec<double, 2>& x, const Vec<double, 2>& outward) const;
+  void try_facet(int patch, const Vec<double, 2>& x, const Vec<double, 2>& outward, Nearest& best) const;
+  Facing slide(Facing from, const Vec<double, 2>& x, int hops) const;
+  Vec<double, 2> tangent_at_end(int patch, int end) const;
+  Facing at_end(Facing at, const Vec<double, 2>& x) const;
+  Facing faced(const Vec<double, 2>& x, const Vec<double, 2>& outward) const;
+
+  const std::vector<Patch>& patches_;
+  const Eigen::Matrix2Xd& places_;
+  Vec<double, 2> corner_;  ///< of the grid
+  double cell_ = 1;
+  std::array<int, 2> cells_{{1, 1}};
+  std::vector<int> start_, in_cell_;  ///< patches of each cell, one list after another
+};
+
+}  // namespace stickslip

@@ -1,0 +1,157 @@
+/// Tangents of contact points: dual numbers through the kernel that the residual is made of.
+#pragma once
+
+#include "core/model/contact_assembly.hpp"
+
+namespace stickslip {
+
+/// Tangent of one point with respect to its relative displacement w (where it faces an obstacle as that is now: the
+/// displacement of its slave node, which turns normal and frame) and its scaled multiplier l = lambda / rho. Along a
+/// curve: with respect to the displacements of all `places` that it depends on, node-major.
+template <class T>
+struct PointTangent {
+  Matrix<T> force_w, force_l;    ///< D x D, D x components; along a curve: a row, or a column, for each dof of `places`
+  Matrix<T> row_w, row_l;        ///< of A (t - lambda): components x D, components x components
+  std::vector<int> places = {};  ///< in Model::contact_nodes; empty: those of the weights
+};
+
+namespace detail {
+
+/// lambda / rho as variables behind `first` others.
+template <class Probe, class T, int Tangents>
+Traction<Probe, Tangents> seeded_multiplier(const ContactInput<T>& input, int p, const Vector<T>& multiplier,
+                                            int first) {
+  const auto lambda = gather_traction<T, Tangents>(multiplier, input.model.points[p].multiplier);
+  Traction<Probe, Tangents> seeded;
+  seeded.normal = Probe(lambda.normal);
+  seeded.normal.d[first] = input.rho[p].normal;
+  for (int a = 0; a < Tangents; ++a) {
+    seeded.tangential[a] = Probe(lambda.tangential[a]);
+    seeded.tangential[a].d[first + 1 + a] = input.rho[p].tangential;
+  }
+  return seeded;
+}
+
+/// What of a point's input does not vary, in the scalar of its variables.
+template <class Probe, class T, int Tangents>
+struct FixedInput {
+  FixedInput(const ContactInput<T>& input, int p)
+      : rho{Probe(input.rho[p].normal), Probe(input.rho[p].tangential)},
+        friction(input.slots.friction[input.model.points[p].contact].template as<Probe>(
+            [](const T& number) { return Probe(number); })) {
+    const auto previous = previous_placement<T, Tangents>(input, p);
+    for (int a = 0; a < Tangents; ++a) placement[a] = Probe(previous[a]);
+  }
+  PointRegularisation<Probe> rho;
+  FrictionLaw<Probe> friction;
+  Vec<Probe, Tangents> placement;
+};
+
+/// Rows of A (t - lambda) by `count` displacements, then multipliers.
+template <class T, class Probe, int Tangents>
+void take_rows(const Traction<Probe, Tangents>& traction, const Traction<Probe, Tangents>& lambda, const T& area,
+               int count, PointTangent<T>& tangent) {
+  constexpr int C = 1 + Tangents;
+  tangent.row_w.resize(C, count);
+  tangent.row_l.resize(C, C);
+  for (int r = 0; r < C; ++r) {
+    const Probe row = r == 0 ? traction.normal - lambda.normal : traction.tangential[r - 1] - lambda.tangential[r - 1];
+    for (int j = 0; j < count; ++j) tangent.row_w(r, j) = area * row.d[j];
+    for (int c = 0; c < C; ++c) tangent.row_l(r, c) = area * row.d[count + c];
+  }
+}
+
+template <class T, int Tangents>
+PointTangent<T> tangent_along_curve(const ContactInput<T>& input, int p, const Facing& facing, const Vector<T>& compact,
+                                    const Vector<T>& multiplier, ContactState state) {
+  constexpr int C = 1 + Tangents, most = 9;  // the slave, and four vertices each of this patch and of the last
+  using Probe = Dual<2 * most + C, T>;
+  const auto& point = input.model.points[p];
+  const auto& curve = input.model.curves[point.curve];
+  PointTangent<T> tangent;
+  auto& places = tangent.places;
+  places = {point.places[0]};
+  const auto index = [&](int place) {
+    return static_cast<int>(std::find(places.begin(), places.end(), place) - places.begin());
+  };
+  const auto add_patch = [&](int patch) {
+    if (curve.obstacle >= 0 || patch == Patch::none) return;
+    for (int vertex : curve.patches[patch].vertices)
+      if (vertex != Patch::none && index(curve.places[vertex]) == static_cast<int>(places.size()))
+        places.push_back(curve.places[vertex]);
+  };
+  add_patch(facing.patch);
+  const int faced = static_cast<int>(places.size());
+  if (point.foot >= 0) add_patch(input.previous.patch[p]);
+  const int count = static_cast<int>(2 * places.size());
+  const auto moved = [&](int place) {
+    const int n = index(place);
+    Vec<Probe, 2> u;
+    for (int i = 0; i < 2; ++i) u[i] = Probe::seed(compact[2 * place + i], 2 * n + i);
+    return u;
+  };
+  const auto at = moved_on_curve<Probe, T>(input, p, facing, moved);
+  const auto lambda = seeded_multiplier<Probe, T, Tangents>(input, p, multiplier, count);
+  const FixedInput<Probe, T, Tangents> fixed_input(input, p);
+  const auto outcome = outcome_of<Probe, T, 2, Tangents>(input, at, lambda, fixed_input.placement, fixed_input.rho,
+                                                         fixed_input.friction, 0, &state);
+  const Vec<Probe, 2> force = point_force<Probe, 2, Tangents>(at.geometry, outcome.traction);
+  tangent.force_w = Matrix<T>::Constant(count, count, T(0));
+  tangent.force_l = Matrix<T>::Constant(count, C, T(0));
+  for (int n = 0; n < std::min(faced, static_cast<int>(at.geometry.weights.size())); ++n)
+    for (int i = 0; i < 2; ++i) {
+      const Probe share = at.geometry.weights[n] * force[i];
+      for (int j = 0; j < count; ++j) tangent.force_w(2 * n + i, j) = share.d[j];
+      for (int c = 0; c < C; ++c) tangent.force_l(2 * n + i, c) = share.d[count + c];
+    }
+  take_rows<T>(outcome.traction, lambda, input.slots.geometry[p].area, count, tangent);
+  return tangent;
+}
+
+}  // namespace detail
+
+/// `facing`: what the points face of their curves; unread where none slides along one.
+template <class T>
+PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<T>& compact,
+                              const Vector<T>& multiplier, ContactState state, const std::vector<Facing>& facing = {}) {
+  const auto& point = input.model.points[p];
+  return detail::with_point(input.model, point, [&]<int D, int Tangents>() {
+    if constexpr (D == 2)
+      if (point.curve >= 0 && input.model.effects.current_geometry)
+        return detail::tangent_along_curve<T, Tangents>(input, p, facing[p], compact, multiplier, state);
+    constexpr int C = 1 + Tangents;
+    using Probe = Dual<D + C, T>;
+    const bool present = input.model.effects.current_geometry;
+    Vec<T, D> w_value;
+    if (present)
+      w_value = compact.template segment<D>(point.places[0] * D);
+    else
+      w_value = detail::relative_displacement<T, D>(input, p, compact);
+    Vec<Probe, D> w;
+    for (int i = 0; i < D; ++i) w[i] = Probe::seed(w_value[i], i);
+    const auto lambda = detail::seeded_multiplier<Probe, T, Tangents>(input, p, multiplier, D);
+    const detail::FixedInput<Probe, T, Tangents> fixed_input(input, p);
+    PointOutcome<Probe, Tangents> outcome;
+    PointGeometry<Probe> geometry;
+    if (present) {
+      auto at = detail::moved_point<Probe, T, D>(input, p, w);
+      outcome = detail::outcome_of<Probe, T, D, Tangents>(input, at, lambda, fixed_input.placement, fixed_input.rho,
+                                                          fixed_input.friction, 0, &state);
+      geometry = std::move(at.geometry);
+    } else {
+      geometry = detail::promote<Probe>(input.slots.geometry[p]);
+      outcome = evaluate_point<Probe, D, Tangents>(geometry, w, lambda, fixed_input.placement, fixed_input.rho,
+                                                   fixed_input.friction, input.cone, 0, &state);
+    }
+    const Vec<Probe, D> force = point_force<Probe, D, Tangents>(geometry, outcome.traction);
+    PointTangent<T> tangent{Matrix<T>(D, D), Matrix<T>(D, C), {}, {}};
+    for (int i = 0; i < D; ++i) {
+      for (int j = 0; j < D; ++j) tangent.force_w(i, j) = force[i].d[j];
+      for (int c = 0; c < C; ++c) tangent.force_l(i, c) = force[i].d[D + c];
+    }
+    detail::take_rows<T>(outcome.traction, lambda, input.slots.geometry[p].area, D, tangent);
+    return tangent;
+  });
+}
+
+}  // namespace stickslip

@@ -1,0 +1,79 @@
+/// Where Newton's method begins when supports move bodies that are not linear: displaced along the tangent of the state
+/// that is left,
+///
+///   K du_free = -R(u, t) - K du_prescribed,
+///
+/// for a step taken by the nodes at the supports alone would crush the elements there.
+#pragma once
+
+#include "methods/newton_tangent.hpp"
+
+namespace stickslip {
+
+namespace detail {
+
+/// Adds what a motion of the contact nodes (compact) makes of contact forces (compact) and multiplier rows.
+template <class T>
+void add_tangent_times(const Model& model, const std::vector<PointTangent<T>>& tangents, const Vector<T>& motion,
+                       Vector<T>& forces, Vector<T>& rows) {
+  const int D = model.dimension;
+  for (std::size_t p = 0; p < tangents.size(); ++p) {
+    const auto& tangent = tangents[p];
+    const auto places = tangent.places.empty() ? std::vector<int>{model.points[p].places[0]} : tangent.places;
+    Vector<T> u(static_cast<Eigen::Index>(places.size()) * D);
+    for (std::size_t n = 0; n < places.size(); ++n)
+      u.segment(static_cast<Eigen::Index>(n) * D, D) = motion.segment(places[n] * D, D);
+    const Vector<T> f = tangent.force_w * u;
+    for (std::size_t n = 0; n < places.size(); ++n)
+      forces.segment(places[n] * D, D) += f.segment(static_cast<Eigen::Index>(n) * D, D);
+    if (rows.size() > 0) rows.segment(model.points[p].multiplier, tangent.row_w.rows()) += tangent.row_w * u;
+  }
+}
+
+/// Turns l, the multipliers over rho that the engine solves for, into multipliers.
+template <class T>
+void multiply_by_rho(const ContactInput<T>& input, Matrix<T>& l) {
+  for (std::size_t p = 0; l.size() > 0 && p < input.model.points.size(); ++p)
+    for (int c = 0; c < input.model.points[p].components(); ++c)
+      l(input.model.points[p].multiplier + c, 0) *= c == 0 ? input.rho[p].normal : input.rho[p].tangential;
+}
+
+}  // namespace detail
+
+/// Moves the unknowns of an equilibrium there; false, and nothing is changed, where nothing is prescribed anew or the
+/// place is out of bounds.
+template <class T, class E>
+bool predict(E& engine, const EquilibriumTask<T>& task, Evaluator<T, E>& evaluate, NewtonTangent<T, E>& tangent,
+             Account& account, Unknowns<T>& unknowns) {
+  const auto& [model, slots] = std::tie(task.contact.model, task.contact.slots);
+  if (model.effects.linear_bulk || !task.from) return false;
+  Unknowns<T> start{into_frames(model, slots.frames, Layout::all, *task.from), unknowns.multiplier};
+  const Vector<T> prescribed = unknowns.u - start.u;
+  if (values(prescribed).cwiseAbs().maxCoeff() == 0) return false;
+  auto at = evaluate(start);
+  if (!at.residuals.finite()) return false;
+  if (!task.resumed.empty()) detail::resume_on_cone(task.contact, start.multiplier, task.resumed, at.field);
+  auto branches = detail::step_branches(task.contact, engine.compact(start.u), at.field, start.multiplier, {});
+  tangent.move_to(start, at.field);
+  if (!tangent.factorise(start, branches)) return false;
+  evaluate.take_rows_in(branches, start, at);
+  const Vector<T> motion = engine.all(prescribed);
+  Vector<T> forces = Vector<T>::Constant(static_cast<Eigen::Index>(model.contact_nodes.size()) * model.dimension, T(0));
+  detail::add_tangent_times(model, tangent.tangents(), Vector<T>(engine.compact(prescribed)), forces, at.rows_l);
+  Vector<T> rows = bulk_tangent_times(model, slots, *task.from, motion);
+  add_compact(model, forces, rows);
+  rows = at.rows_u + into_frames(model, slots.frames, Layout::all, std::move(rows));
+  for (Eigen::Index row = 0; row < rows.size(); ++row)
+    if (!engine.is_free(row)) rows[row] = T(0);
+  auto step = engine.solve({-rows, task.solves_for_multipliers() ? Matrix<T>(-at.rows_l) : Matrix<T>()});
+  account.counters.backsolves += engine.solves();
+  ++account.counters.newton;
+  detail::multiply_by_rho(task.contact, step.l);
+  Unknowns<T> moved{unknowns.u + step.u.col(0), unknowns.multiplier};
+  if (step.l.size() > 0) moved.multiplier += step.l.col(0);
+  if (!moved.u.allFinite() || !evaluate(moved).residuals.finite()) return false;
+  unknowns = std::move(moved);
+  return true;
+}
+
+}  // namespace stickslip

@@ -1,0 +1,218 @@
+/// Master curves: smooth ones against what they interpolate, feet against their definition, search against trying all.
+#include "core/contact/curve.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <random>
+
+#include "core/contact/curve_search.hpp"
+#include "tests/support/largest.hpp"
+
+namespace stickslip {
+namespace {
+
+using Place = Vec<double, 2>;
+
+/// Facets around a circle, solid inside, counter-clockwise; open: without the last one.
+struct Ring {
+  explicit Ring(int count, bool closed = true) : places(2, count) {
+    for (int v = 0; v < count; ++v) {
+      const double angle = 2 * std::numbers::pi * v / count;
+      places.col(v) = Place(std::cos(angle), std::sin(angle));
+      if (closed || v + 1 < count) facets.push_back({v, (v + 1) % count});
+    }
+  }
+  std::vector<Patch> patches(Smoothing smoothing, double corner = 180) const {
+    return make_patches(facets, smoothing, corner, places);
+  }
+  Place at(const Patch& patch, double xi) const { return place_on<double>(patch, xi, where()); }
+  std::function<Place(int)> where() const {
+    return [this](int v) -> Place { return places.col(v); };
+  }
+  Eigen::Matrix2Xd places;
+  std::vector<std::vector<int>> facets;
+};
+
+constexpr std::array<Smoothing, 3> kinds{Smoothing::none, Smoothing::catmull_rom, Smoothing::b_spline};
+
+TEST(Curve, WeightsSumToOneAndTheirSlopesAreDerivatives) {
+  constexpr double step = 1e-30;
+  const Ring ring(7, false);
+  for (const Smoothing kind : kinds)
+    for (const Patch& patch : ring.patches(kind))
+      for (double xi : {0.0, 0.3, 1.0, 1.2}) {
+        const auto w = detail::patch_weights<double>(patch, xi);
+        const auto c = detail::patch_weights<std::complex<double>>(patch, {xi, step});
+        double sum = 0;
+        for (int i = 0; i < 4; ++i) {
+          sum += w.at[i];
+          EXPECT_NEAR(w.slope[i], c.at[i].imag() / step, 1e-14);
+          EXPECT_NEAR(w.bend[i], c.slope[i].imag() / step, 1e-14);
+        }
+        EXPECT_NEAR(sum, 1, 1e-15);
+      }
+}
+
+TEST(Curve, SmoothPatchesMeetWithTheirNormalsAndSplinesWithTheirCurvatures) {
+  const Ring ring(9);
+  for (const Smoothing kind : {Smoothing::catmull_rom, Smoothing::b_spline}) {
+    const auto patches = ring.patches(kind);
+    for (const Patch& patch : patches) {
+      const auto end = detail::patch_weights<double>(patch, 1.0);
+      const auto start = detail::patch_weights<double>(patches[patch.next], 0.0);
+      const auto gap = [&](const auto& a, const auto& b) {
+        return (detail::on_patch<double>(patch, a, ring.where()) -
+                detail::on_patch<double>(patches[patch.next], b, ring.where()))
+            .norm();
+      };
+      EXPECT_LE(gap(end.at, start.at), 1e-15);
+      EXPECT_LE(gap(end.slope, start.slope), 1e-15);
+      if (kind == Smoothing::b_spline) {
+        EXPECT_LE(gap(end.bend, start.bend), 1e-15);
+      } else {
+        EXPECT_GT(gap(end.bend, start.bend), 0.01);  // the slope goes on, and no more
+        EXPECT_LE((ring.at(patch, 0) - ring.places.col(patch.vertices[1])).norm(), 1e-15);
+      }
+    }
+  }
+}
+
+TEST(Curve, ApproachesACircleByTheOrderOfItsKind) {
+  // largest distance from the circle on 16 and on 32 facets: facets and B-splines are second order, Catmull-Rom fourth
+  const auto farthest = [](int count, Smoothing kind) {
+    const Ring ring(count);
+    double most = 0;
+    for (const Patch& patch : ring.patches(kind))
+      for (int k = 0; k <= 10; ++k) most = larger(most, std::abs(ring.at(patch, 0.1 * k).norm() - 1));
+    return most;
+  };
+  for (const auto& [kind, order] :
+       {std::pair{Smoothing::none, 2.0}, {Smoothing::catmull_rom, 4.0}, {Smoothing::b_spline, 2.0}})
+    EXPECT_NEAR(std::log2(farthest(16, kind) / farthest(32, kind)), order, 0.1);
+}
+
+TEST(Curve, GoesStraightAtFreeEndsAndKeepsCorners) {
+  Eigen::Matrix2Xd square(2, 8);
+  square << 0, 1, 2, 2, 2, 1, 0, 0, 0, 0, 0, 1, 2, 2, 2, 1;
+  std::vector<std::vector<int>> facets;
+  for (int v = 0; v < 8; ++v) facets.push_back({v, (v + 1) % 8});
+  const auto where = [&](int v) -> Place { return square.col(v); };
+  for (const Smoothing kind : {Smoothing::catmull_rom, Smoothing::b_spline}) {
+    for (const Patch& patch : make_patches(facets, kind, 60, square))  // straight sides stay as they are
+      for (double xi : {0.0, 0.4, 1.0}) {
+        const Place at = place_on<double>(patch, xi, where);
+        const Place a = square.col(patch.vertices[1]), b = square.col(patch.vertices[2]);
+        EXPECT_NEAR(std::abs((at - a)[0] * (b - a)[1] - (at - a)[1] * (b - a)[0]), 0, 1e-15);
+      }
+    bool round = false;
+    for (const Patch& patch : make_patches(facets, kind, 120, square))
+      round |= patch.goes_on_before() && patch.goes_on_after();
+    EXPECT_TRUE(round);
+  }
+}
+
+TEST(Curve, FeetAreAtRightAnglesAndDifferentiateThroughTheirDefinition) {
+  constexpr double step = 1e-30;
+  using C = std::complex<double>;
+  const Ring ring(11);
+  for (const Smoothing kind : kinds) {
+    const auto patches = ring.patches(kind);
+    const CurveSearch search(patches, ring.places);
+    for (double angle : {0.1, 1.3, 4.0})
+      for (double radius : {0.97, 1.05}) {
+        const Place x(radius * std::cos(angle), radius * std::sin(angle));
+        const Facing facing = search.facing(x, Place::Zero());
+        ASSERT_NE(facing.patch, Patch::none);
+        const Patch& patch = patches[facing.patch];
+        const auto foot = foot_on_patch<double>(patch, facing.xi, x, ring.where());
+        EXPECT_NEAR((x - foot.at - foot.gap * foot.normal).norm(), 0, 1e-14);
+        EXPECT_NEAR(foot.gap, radius - 1, 0.1);
+        // by x: dg = n . dx; complex step through two Newton steps against a difference of feet found anew
+        for (int i : {0, 1}) {
+          Vec<C, 2> moved(x[0], x[1]);
+          moved[i] += C(0, step);
+          const auto c = foot_on_patch<C>(patch, facing.xi, moved,
+                                          [&](int v) -> Vec<C, 2> { return ring.places.col(v).cast<C>(); });
+          EXPECT_NEAR(c.gap.imag() / step, foot.normal[i], 1e-13);
+          const auto xi_at = [&](double h) {
+            Place y = x;
+            y[i] += h;
+            return foot_on_patch<double>(patch, search.stay(facing.patch, y).xi, y, ring.where()).xi;
+          };
+          EXPECT_NEAR(c.xi.imag() / step, (xi_at(1e-5) - xi_at(-1e-5)) / 2e-5, 1e-7);  // 1e-10 f''' and rounding
+        }
+      }
+  }
+}
+
+TEST(CurveSearch, FindsWhatTryingAllFinds) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> in_box(-2, 2);
+  for (const bool closed : {true, false}) {
+    const Ring ring(37, closed);
+    const auto patches = ring.patches(Smoothing::none);
+    const CurveSearch search(patches, ring.places);
+    int found = 0;
+    for (int n = 0; n < 2000; ++n) {
+      const Place x(in_box(random), in_box(random));
+      double least = 1e9;
+      for (const auto& facet : ring.facets) {
+        const Place a = ring.places.col(facet[0]), tau = ring.places.col(facet[1]) - a;
+        const double xi = std::clamp((x - a).dot(tau) / tau.squaredNorm(), 0.0, 1.0);
+        if (const double distance = (x - a - xi * tau).norm(); distance < least) least = distance;
+      }
+      const Facing facing = search.facing(x, Place::Zero());
+      if (facing.patch == Patch::none) {
+        EXPECT_NEAR(facing.distance, least, 1e-14);
+        continue;
+      }
+      ++found;
+      const Place at = ring.at(patches[facing.patch], std::clamp(facing.xi, 0.0, 1.0));
+      EXPECT_NEAR((x - at).norm(), least, 1e-14);
+    }
+    EXPECT_GT(found, closed ? 1999 : 1500);
+  }
+}
+
+TEST(CurveSearch, HasAContinuousGapAroundCornersOfBothKinds) {  // C24
+  // a step: convex at (1, 1), concave at (1, 0); solid on the left of right to left
+  Eigen::Matrix2Xd places(2, 4);
+  places << 3, 1, 1, -1, 0, 0, 1, 1;
+  const auto patches = make_patches({{0, 1}, {1, 2}, {2, 3}}, Smoothing::none, 60, places);
+  const CurveSearch search(patches, places);
+  const auto where = [&](int v) -> Place { return places.col(v); };
+  const auto gap_at = [&](const Place& x) {
+    const Facing facing = search.facing(x, Place::Zero());
+    return foot_on_patch<double>(patches[facing.patch], facing.xi, x, where).gap;
+  };
+  for (const Place& corner : {Place(1, 1), Place(1, 0)})
+    for (double radius : {1e-3, 0.1, 0.3}) {
+      double last = gap_at(corner + Place(radius, 0));
+      constexpr int count = 3600;
+      for (int n = 1; n <= count; ++n) {
+        const double angle = 2 * std::numbers::pi * n / count;
+        const double gap = gap_at(corner + radius * Place(std::cos(angle), std::sin(angle)));
+        EXPECT_LE(std::abs(gap - last), 1.1 * radius * 2 * std::numbers::pi / count) << corner[1] << " " << angle;
+        last = gap;
+      }
+    }
+}
+
+TEST(CurveSearch, IgnoresSidesThatLookTheSameWayAndWhatLiesPastAnEnd) {
+  Eigen::Matrix2Xd strip(2, 4);  // two faces of a thin strip: the lower one looks down, the upper one up
+  strip << 0, 1, 1, 0, 0, 0, 0.01, 0.01;
+  const auto patches = make_patches({{0, 1}, {2, 3}}, Smoothing::none, 60, strip);
+  const CurveSearch search(patches, strip);
+  const Place just_in(0.5, 0.004);
+  EXPECT_EQ(search.facing(just_in, Place(0, -1)).patch, 1);  // of a side that looks down: the upper face
+  EXPECT_EQ(search.facing(just_in, Place(0, 1)).patch, 0);
+  EXPECT_EQ(search.facing(just_in, Place::Zero()).patch, 0);  // the nearer one
+  EXPECT_EQ(search.facing(Place(1.1, 0.01), Place(0, -1)).patch, Patch::none);
+  EXPECT_EQ(search.facing(Place(1 + 1e-7, 0.01), Place(0, -1)).patch, 1);
+}
+
+}  // namespace
+}  // namespace stickslip
