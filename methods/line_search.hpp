@@ -13,7 +13,7 @@ namespace stickslip {
 template <class T, class E>
 double search_line(Evaluator<T, E>& evaluate, const BlockVector<T>& step, const std::vector<ContactState>& used,
                    const NewtonOptions& options, Unknowns<T>& unknowns, detail::Evaluation<T>& at) {
-  const double whole = evaluate.good_share(step.u.col(0)), shortest_step = whole / 64;
+  const double whole = evaluate.good_share(step.u), shortest_step = whole / 64;
   const double before = at.residuals.largest();
   double best = std::numeric_limits<double>::infinity(), taken = whole;
   const Unknowns<T> start = unknowns;

@@ -155,9 +155,9 @@ class Evaluator {
   detail::Evaluation<T> operator()(const Unknowns<T>& unknowns);
   /// The share of a step (engine dofs) that takes no contact node further than a facet; 1 where geometry is not the
   /// present one.
-  double good_share(const Vector<T>& step) const {
+  double good_share(const Matrix<T>& step) const {
     if (longest_step_ == 0) return 1;
-    const double reach = largest_nodal_norm(engine_.compact(step), task_.contact.model.dimension);
+    const double reach = largest_nodal_norm(engine_.compact(Vector<T>(step.col(0))), task_.contact.model.dimension);
     return reach > longest_step_ ? longest_step_ / reach : 1;
   }
   /// Takes an evaluation for the next iterate; returns how many closed points came to another patch of their curves.

@@ -15,12 +15,12 @@ namespace stickslip {
 
 /// newton() for a task whose multipliers are given.
 template <class T, class E>
-Equilibrium<T> newton_softened(E& engine, const EquilibriumTask<T>& task, const Unknowns<T>& start,
+Equilibrium<T> newton_softened(E& engine, const EquilibriumTask<T>& task, Unknowns<T> start,
                                const NewtonOptions& options, Account& account) {
   constexpr int soon = 15;
   constexpr double softest = 1, stiffer = 10;  // local stiffnesses; times, from solve to solve
   const auto& input = task.contact;
-  if (!input.model.effects.current_geometry) return newton(engine, task, start, options, account);
+  if (!input.model.effects.current_geometry) return newton(engine, task, std::move(start), options, account);
   double multiple = 0;
   for (std::size_t p = 0; p < input.rho.size(); ++p)
     multiple = std::max(

@@ -20,7 +20,8 @@ std::vector<char> decided_elsewhere(const Model& model, const Slots<T>& slots, c
       const auto first = model.free_index.begin() + node * D;
       return std::all_of(first, first + D, [](int index) { return index >= 0; });
     };
-    const auto nodes = field ? nodes_in(model, *field, p) : point.nodes;
+    const auto faced = field && !field->facing.empty() ? nodes_in(model, *field, p) : std::vector<int>();
+    const auto& nodes = faced.empty() ? point.nodes : faced;
     if (std::all_of(nodes.begin(), nodes.end(), is_free)) continue;
     Matrix<double> rows = Matrix<double>::Zero(point.components(), nodes.size() * D);  // on free directions
     for (std::size_t n = 0; n < nodes.size(); ++n) {

@@ -176,7 +176,9 @@ template <class T>
 bool SparseEngine<T>::update(const std::vector<PointTangent<T>>& tangents, Counters& counters,
                              const Vector<double>& hold) {
   if (!valid_ || !model_.effects.linear_bulk || !detail::same_values(hold, held_)) return false;
-  const auto rows = [&](std::size_t p) { return rows_of(p, model_.points[p].places); };
+  const auto rows = [&](std::size_t p) {
+    return point_rows(model_, model_.points[p].nodes, model_.points[p], unknown_multipliers_);
+  };
   return detail::update_factor<T>(
       model_, slots_, factorised_, tangents, unknown_multipliers_, rows, size_, counters,
       [&](const Matrix<T>& b) { return solver_.solve(b); }, update_);
