@@ -7,6 +7,13 @@
 #include "core/contact/search.hpp"
 
 namespace stickslip {
+namespace {
+
+auto place_in(const Eigen::Matrix2Xd& places) {
+  return [&places](int vertex) -> Vec<double, 2> { return places.col(vertex); };
+}
+
+}  // namespace
 
 CurveSearch::CurveSearch(const std::vector<Patch>& patches, const Eigen::Matrix2Xd& places)
     : patches_(patches), places_(places) {
@@ -20,9 +27,10 @@ CurveSearch::CurveSearch(const std::vector<Patch>& patches, const Eigen::Matrix2
     }
     length += (vertex(p, 1) - vertex(p, 0)).norm() / count;
   }
+  const Vec<double, 2> size = high - low;
+  if (!places.allFinite() || !size.allFinite() || !(length > 0)) return;  // of a trial out of bounds: no cells
   // cells about as large as the facets, and no more than four times as many
   corner_ = low;
-  const Vec<double, 2> size = high - low;
   cell_ = std::max({length, std::sqrt(size[0] * size[1] / (4.0 * count)), size.maxCoeff() / (4.0 * count)});
   for (int i = 0; i < 2; ++i) cells_[i] = 1 + static_cast<int>(size[i] / cell_);
   const auto cell_of = [&](double x, int i) {
@@ -58,6 +66,7 @@ void CurveSearch::try_facet(int patch, const Vec<double, 2>& x, const Vec<double
 
 CurveSearch::Nearest CurveSearch::nearest_facet(const Vec<double, 2>& x, const Vec<double, 2>& outward) const {
   Nearest best;
+  if (start_.empty() || !x.allFinite()) return best;
   std::array<int, 2> at;
   for (int i = 0; i < 2; ++i)
     at[i] = static_cast<int>(std::clamp((x[i] - corner_[i]) / cell_, 0.0, static_cast<double>(cells_[i] - 1)));
@@ -87,8 +96,7 @@ CurveSearch::Nearest CurveSearch::nearest_facet(const Vec<double, 2>& x, const V
 
 Vec<double, 2> CurveSearch::tangent_at_end(int patch, int end) const {
   const auto w = detail::patch_weights<double>(patches_[patch], end);
-  return detail::on_patch<double>(patches_[patch], w.slope, [&](int v) -> Vec<double, 2> { return places_.col(v); })
-      .normalized();
+  return detail::on_patch<double>(patches_[patch], w.slope, place_in(places_)).normalized();
 }
 
 /// The place faced by a point whose foot is beyond the end of a patch at a corner, or at a free end.
@@ -99,16 +107,14 @@ Facing CurveSearch::at_end(Facing at, const Vec<double, 2>& x) const {
   const Vec<double, 2> along = tangent_at_end(at.patch, end) + tangent_at_end(other, 1 - end);
   const double side = (x - vertex(at.patch, end)).dot(along);
   if (end == 1 ? side <= 0 : side >= 0) return at;
-  const auto foot =
-      foot_on_patch<double>(patches_[other], 1 - end, x, [&](int v) -> Vec<double, 2> { return places_.col(v); });
-  return {other, foot.xi};
+  return {other, foot_on_patch<double>(patches_[other], 1 - end, x, place_in(places_)).xi};
 }
 
 /// Newton's method for the foot on smooth patches, from one to the next where they go on, `hops` times at most.
 Facing CurveSearch::slide(Facing at, const Vec<double, 2>& x, int hops) const {
   constexpr int most = 50;
   constexpr double longest = 0.5;
-  const auto place = [&](int v) -> Vec<double, 2> { return places_.col(v); };
+  const auto place = place_in(places_);
   const int all = hops;
   for (int step = 0; step < most; ++step) {
     const Patch& patch = patches_[at.patch];
@@ -153,8 +159,7 @@ Facing CurveSearch::stay(int patch, const Vec<double, 2>& x) const { return slid
 Facing CurveSearch::facing(const Vec<double, 2>& x, const Vec<double, 2>& outward) const {
   Facing at = faced(x, outward);
   const auto is_inside = [&](const Facing& facing) {
-    const auto place = [&](int v) -> Vec<double, 2> { return places_.col(v); };
-    return foot_on_patch<double>(patches_[facing.patch], facing.xi, x, place).gap < 0;
+    return foot_on_patch<double>(patches_[facing.patch], facing.xi, x, place_in(places_)).gap < 0;
   };
   if (at.patch != Patch::none && outward != Vec<double, 2>::Zero() && is_inside(at)) {
     const Facing nearest = faced(x, Vec<double, 2>::Zero());  // of a face beyond the solid that x is outside of

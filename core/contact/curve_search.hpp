@@ -17,6 +17,7 @@ class CurveSearch {
   /// The place that x faces; none where it lies past a free end, or at the centre of a bend. Only patches count whose
   /// normal is against `outward`, the normal of the side that x is on; zero: all do. A point that is outside of the
   /// solid by the nearest patch of all is not inside of it by another. Where two patches meet it is the second's.
+  /// Where places are not finite, as in a trial that is rejected, nothing is faced, at no finite distance.
   Facing facing(const Vec<double, 2>& x, const Vec<double, 2>& outward) const;
   /// The foot of x on one patch, beyond its ends too.
   Facing stay(int patch, const Vec<double, 2>& x) const;

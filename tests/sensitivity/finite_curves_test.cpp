@@ -132,7 +132,7 @@ TEST(FiniteCurves, MethodsAgreeOnADieThatCrossesFacets) {
 }
 
 TEST(FiniteCurves, FrictionWorkAndStrainEnergyAddUpToTheWorkDone) {
-  // the trapezoid of the reactions along the way: an error of the second order in the step, here 24 and 48 of them
+  // What 24 and 48 steps lose is of the first order: friction works at the tractions of the end of a step.
   for (const Smoothing kind : kinds) {
     std::array<double, 2> lost;
     for (int k : {0, 1}) {
@@ -152,12 +152,12 @@ TEST(FiniteCurves, FrictionWorkAndStrainEnergyAddUpToTheWorkDone) {
       }
       lost[k] = std::abs(work - s.value("energy") - s.value("heat")) / work;
     }
-    EXPECT_LE(lost[0], 0.03);
-    EXPECT_LE(lost[1], 0.7 * lost[0]);
+    EXPECT_GE(std::log2(lost[0] / lost[1]), 0.8);
   }
 }
 
 TEST(FiniteCurves, DoNotKnowDirectionsInSpace) {
+  // (the method that solves in few iterations: the others take hundreds a step on curves, and on facets may give up)
   for (const Smoothing kind : kinds)
     for (const Method& method : {Method(MonolithicAL{})}) {
       const auto s = run(ironing(kind), method);

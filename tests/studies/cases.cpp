@@ -1,5 +1,6 @@
 #include "tests/studies/cases.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <memory>
 #include <optional>
@@ -27,6 +28,16 @@ CaseResult run(nlohmann::json document, const nlohmann::json& method, const std:
   std::shared_ptr<Condensation<double>> condensation;
   return run_case(std::make_shared<const Problem>(input.scene), input.method,
                   {input.linear_algebra, input.backend, {}, {}}, condensation);
+}
+
+std::vector<nlohmann::json> scales_of(const nlohmann::json& scene) {
+  const auto is_faceted = [](const nlohmann::json& contact) {
+    return !contact.contains("surface") || contact["surface"] == "faceted";
+  };
+  const auto& contacts = scene["contacts"];
+  const bool finite = scene.value("strain", "small") == "finite";
+  if (finite && std::any_of(contacts.begin(), contacts.end(), is_faceted)) return {1e-2, "auto"};
+  return {1e-2, "auto", 1e2};
 }
 
 }  // namespace stickslip::cases

@@ -121,9 +121,7 @@ TEST_P(Reference, AgreesWithEveryMethod) {
   std::ifstream file(folder / (GetParam() + ".json"));
   const json reference = json::parse(file);
   const auto& solutions = reference["solutions"];
-  // at finite strain rho decides which of several solutions a step of this size comes to
-  const bool finite = reference["scene"].value("strain", "small") == "finite";
-  for (const json& scale : finite ? std::vector<json>{"auto"} : std::vector<json>{1e-2, "auto", 1e2})
+  for (const json& scale : cases::scales_of(reference["scene"]))
     compare(run_reference(reference["scene"], {{"monolithic_al", {{"scale", scale}}}}), solutions["exact"],
             GetParam() + " monolithic_al " + scale.dump());
   compare(run_reference(reference["scene"], {{"uzawa_al", {{"tolerance", 1e-12}, {"max_augmentations", 2000}}}}),

@@ -32,12 +32,10 @@ std::vector<json> methods_of(const fs::path& file) {
   const json document = cases::load(file);
   const json uzawa = {{"uzawa_al", {{"tolerance", 1e-12}, {"max_augmentations", 2000}}}};
   const json solutions = document.value("solutions", json::object());
-  // (at finite strain some scales come to a vertex of facets, where rounding decides on which one a point is held)
-  if (!solutions.empty() && !solutions.contains("penalty")) return {uzawa, {{"monolithic_al", json::object()}}};
-  json penalty = {{"penalty", json::object()}};
-  if (!solutions.empty()) penalty = solutions["penalty"]["method"];
-  std::vector<json> methods{penalty, uzawa};
-  for (const json& scale : {json(1e-2), json("auto"), json(1e2)})
+  std::vector<json> methods{uzawa};
+  if (solutions.empty()) methods.push_back({{"penalty", json::object()}});
+  if (solutions.contains("penalty")) methods.push_back(solutions["penalty"]["method"]);
+  for (const json& scale : cases::scales_of(document_of(file)))
     methods.push_back({{"monolithic_al", {{"scale", scale}}}});
   return methods;
 }

@@ -214,5 +214,27 @@ TEST(CurveSearch, IgnoresSidesThatLookTheSameWayAndWhatLiesPastAnEnd) {
   EXPECT_EQ(search.facing(Place(1 + 1e-7, 0.01), Place(0, -1)).patch, 1);
 }
 
+TEST(CurveSearch, FacesNothingWhereATrialIsOutOfBounds) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(), huge = 1e308;
+  const Ring ring(12);
+  for (const Smoothing kind : kinds) {
+    const auto patches = ring.patches(kind);
+    const CurveSearch search(patches, ring.places);
+    for (const Place& x : {Place(nan, 0), Place(0, -nan), Place(std::numeric_limits<double>::infinity(), 0)}) {
+      const Facing facing = search.facing(x, Place::Zero());
+      EXPECT_EQ(facing.patch, Patch::none);
+      EXPECT_FALSE(std::isfinite(facing.distance));
+    }
+    for (const double bad : {nan, huge}) {
+      Eigen::Matrix2Xd places = ring.places;
+      places(0, 3) = bad;
+      places(0, 7) = -bad;
+      EXPECT_EQ(CurveSearch(patches, places).facing(Place(1.1, 0), Place::Zero()).patch, Patch::none);
+    }
+    const Eigen::Matrix2Xd collapsed = Eigen::Matrix2Xd::Ones(2, 12);
+    EXPECT_EQ(CurveSearch(patches, collapsed).facing(Place(1.1, 0), Place::Zero()).patch, Patch::none);
+  }
+}
+
 }  // namespace
 }  // namespace stickslip
