@@ -42,7 +42,7 @@ template <class T>
 void forces(benchmark::State& state, const std::string& element) {
   const Plate<T> plate(static_cast<int>(state.range(0)), element);
   const Vector<T> u = Vector<T>::Constant(plate.model.dof_count(), T(1e-3));
-  for (auto _ : state) benchmark::DoNotOptimize(bulk_forces(plate.model, plate.slots, u));
+  for (auto _ : state) benchmark::DoNotOptimize(bulk_forces(plate.model, plate.slots, u, {}));
   per_element(state, plate.model);
 }
 

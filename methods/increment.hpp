@@ -45,6 +45,7 @@ State<T> settle(Run<T, E>& run, const ContactInput<T>& input, Unknowns<T> at, Co
   state.multiplier = std::move(at.multiplier);
   state.contact = std::move(field);
   state.history = next_history(input, state.contact, state.multiplier);
+  state.history.bodies = bulk_flow(run.model, run.slots, state.displacement, input.previous.bodies);
   return state;
 }
 

@@ -95,7 +95,7 @@ std::optional<Solutions<T>> try_all_branches(const M& method, Run<T, E>& run, co
   const auto initial = initial_regularisation(run.slots, method);
   const auto rho = factor.empty() ? initial : adapted(initial, factor);
   const ContactInput<T> input{run.model, run.slots, rho, previous.history, ConeRadius::augmented, time};
-  const Vector<T> u = engine.begin(time, previous.displacement), stored = stored_traction(run.model, previous);
+  const Vector<T> u = engine.begin(time, previous.displacement, {}), stored = stored_traction(run.model, previous);
   const ContactProblem problem =
       contact_problem(input, engine, u, run.condensation->schur(), prevents_penetration(method) ? nullptr : &stored);
   const auto all = all_solutions(problem);

@@ -44,7 +44,8 @@ class NewtonTangent {
     const auto& [model, slots] = std::tie(task_.contact.model, task_.contact.slots);
     if (!model.effects.linear_bulk) {
       const Stopwatch time(account_.seconds.assembly);
-      engine_.linearise(engine_.all(unknowns.u));
+      const Vector<T> moved = engine_.all(unknowns.u);
+      engine_.linearise({moved, task_.contact.previous.bodies});
     }
     facing_ = field.facing;
     if (model.effects.current_geometry && task_.solves_for_multipliers())

@@ -60,7 +60,7 @@ bool predict(E& engine, const EquilibriumTask<T>& task, Evaluator<T, E>& evaluat
   const Vector<T> motion = engine.all(prescribed);
   Vector<T> forces = Vector<T>::Constant(static_cast<Eigen::Index>(model.contact_nodes.size()) * model.dimension, T(0));
   detail::add_tangent_times(model, tangent.tangents(), Vector<T>(engine.compact(prescribed)), forces, at.rows_l);
-  Vector<T> rows = bulk_tangent_times(model, slots, *task.from, motion);
+  Vector<T> rows = bulk_tangent_times(model, slots, {*task.from, task.contact.previous.bodies}, motion);
   add_compact(model, forces, rows);
   rows = at.rows_u + into_frames(model, slots.frames, Layout::all, std::move(rows));
   for (Eigen::Index row = 0; row < rows.size(); ++row)

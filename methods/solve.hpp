@@ -30,7 +30,7 @@ void count_solutions(const M& method, Run<T, E>& run, const State<T>& previous, 
 /// Where the branch of solutions that leads to an increment's solution ends and this jumps: the end of the thousandth
 /// of the increment in which at least a quarter of its motion falls, but not the first of a run. It is looked for where
 /// solutions were counted, and there were several at either end or a tangent on the way had the other sign of its
-/// determinant.
+/// determinant; and where bodies that are not linear move suddenly.
 template <class T, class E, class M>
 std::optional<double> find_jump(const M& method, Run<T, E>& run, const State<T>& previous,
                                 const std::vector<double>& factor, double start, double end, const State<T>& reached) {
@@ -64,6 +64,23 @@ std::optional<double> find_jump(const M& method, Run<T, E>& run, const State<T>&
   return end;
 }
 
+/// Whether bodies that are not linear move at four times the pace of the increment before, or more: as beyond a limit
+/// point, if it is a jump.
+template <class T>
+bool is_sudden(const Model& model, const std::vector<Increment<T>>& increments, const State<T>& initial,
+               const State<T>& reached, double time) {
+  constexpr double sudden = 4;
+  if (model.effects.linear_bulk || increments.empty()) return false;
+  const std::size_t last = increments.size() - 1;
+  const State<T>& before = last == 0 ? initial : increments[last - 1].state;
+  const double start = last == 0 ? 0 : increments[last - 1].time, middle = increments[last].time;
+  const auto pace = [&](const State<T>& from, const State<T>& to, double duration) {
+    return largest_nodal_norm(Vector<T>(to.displacement - from.displacement), model.dimension) / duration;
+  };
+  return pace(increments[last].state, reached, time - middle) >
+         sudden * pace(before, increments[last].state, middle - start);
+}
+
 /// Advances the trajectory to `target`; false where it gave up (the failed increment is then the last).
 template <class T, class E, class M>
 bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double target, bool may_cut) {
@@ -92,7 +109,8 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
       count_solutions(method, run, previous, next, increment);
       const bool folded = increment.reversed || !increment.others.empty() ||
                           (!trajectory.increments.empty() && !trajectory.increments.back().others.empty());
-      if (increment.counted && folded)
+      const bool sudden = is_sudden(run.model, increments, trajectory.initial, increment.state, next);
+      if ((increment.counted && folded) || sudden)
         increment.jump = find_jump(method, run, previous, factor, reached, next, increment.state);
       trajectory.increments.push_back(std::move(increment));
       if (last) return true;
@@ -138,7 +156,7 @@ bool may_have_several(Run<T, E>& run) {
     const auto start = initial_state<double>(model, run.slots);
     CondensedEngine<double> engine(model, run.slots, false, ConeRadius::augmented, run.condensation);
     const ContactInput<double> input{model, run.slots, rho, start.history};
-    const auto u = engine.begin(0, start.displacement);
+    const auto u = engine.begin(0, start.displacement, {});
     return may_have_several(contact_problem<double>(input, engine, u, run.condensation->schur(), nullptr));
   }
   return false;

@@ -165,7 +165,8 @@ class AugmentationLoop {
     increment_.rho_factor = std::move(rho_factor);
     // (a loop that is differentiated as it was cut off begins with the last increment's lambda, as its derivative does)
     const State<T>& with_lambda = truncated_ && !start.is_step() ? previous : start.from;
-    unknowns_ = {run.engine.begin(time, start.from.displacement), with_lambda.contact.traction};
+    unknowns_ = {run.engine.begin(time, start.from.displacement, previous.history.bodies),
+                 with_lambda.contact.traction};
   }
 
   Increment<T> solve() {

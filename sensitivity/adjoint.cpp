@@ -95,7 +95,8 @@ bool run(const M& method, AdjointProblem<E>& problem, const Trajectory<double>& 
   for (std::size_t n = increments.size(); n-- > 0;) {
     const auto& previous = n == 0 ? trajectory.initial : increments[n - 1].state;
     if (!pull_back_increment(method, problem, previous, increments[n])) return false;
-    if (problem.objectives.front().inside.size() >= columns_together) pull_back_inside(problem);
+    const std::size_t together = model.effects.plasticity ? 1 : columns_together;  // history needs what is inside
+    if (problem.objectives.front().inside.size() >= together) pull_back_inside(problem);
   }
   pull_back_inside(problem);
   pull_back_initial_history(problem);

@@ -8,7 +8,9 @@
 namespace stickslip {
 
 template Vector<Direction> bulk_forces(const Model&, const Slots<Direction>&, const Vector<Direction>&,
-                                       const ElementLists*);
+                                       const Vector<Direction>&, const ElementLists*);
+template Vector<Direction> bulk_flow(const Model&, const Slots<Direction>&, const Vector<Direction>&,
+                                     const Vector<Direction>&);
 template Slots<Direction> make_slots(const Model&, const Numbers<Direction>&);
 
 namespace {
@@ -101,7 +103,7 @@ struct Derivatives::Progress {
   const Slots<double>& slots;
   const Method& method;
   Workspace<double>& workspace;
-  const bool inside = reads_inside(model);
+  const bool inside = reads_inside(model) || model.effects.plasticity;
   Gradients gradients = {};
   std::vector<ParameterBlock> blocks = {};
   std::size_t done = 0;    ///< increments
@@ -118,11 +120,12 @@ struct Derivatives::Progress {
     for (const auto& block : blocks) gradients.storage.slots += slot_bytes(block.slots).all();
   }
 
-  /// Differentiates the increments up to `end`, as many together as their columns fit into one solve.
+  /// Differentiates the increments up to `end`, as many together as their columns fit into one solve; one by one where
+  /// the bodies' share in one needs what they remember of the last.
   /// `follows`: the engine has the factor of the last of them.
   void advance(const Trajectory<double>& trajectory, std::size_t end, bool follows) {
     if (blocks.empty()) begin();
-    const std::size_t together = std::max(1, columns_together / parameters());
+    const std::size_t together = model.effects.plasticity ? 1 : std::max(1, columns_together / parameters());
     std::visit(
         [&](const auto& m) {
           std::visit(

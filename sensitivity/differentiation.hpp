@@ -15,7 +15,9 @@ using Direction = Dual<directions>;
 
 // Compiled once, in differentiate.cpp.
 extern template Vector<Direction> bulk_forces(const Model&, const Slots<Direction>&, const Vector<Direction>&,
-                                              const ElementLists*);
+                                              const Vector<Direction>&, const ElementLists*);
+extern template Vector<Direction> bulk_flow(const Model&, const Slots<Direction>&, const Vector<Direction>&,
+                                            const Vector<Direction>&);
 extern template Slots<Direction> make_slots(const Model&, const Numbers<Direction>&);
 
 /// Numbers of the scene with up to `directions` parameters seeded, each in a direction of its own.
@@ -47,7 +49,7 @@ inline std::vector<ParameterBlock> parameter_blocks(const Model& model) {
 }
 
 /// What parameters and prescribed motions do to the bodies' balance in an increment whose free displacements are held:
-/// it does not depend on the derivatives so far.
+/// it does not depend on the derivatives so far, but on those of what bodies remember.
 struct PseudoLoad {
   std::vector<Vector<Direction>> displacement;  ///< per block: with the derivative of prescribed motion
   Matrix<double> rows, reduced;                 ///< a column a parameter: all dofs, and the engine's rows
@@ -107,7 +109,9 @@ PseudoLoad pseudo_load(const Differentiation<E>& problem, const Vector<double>& 
     Vector<Direction> u = lift(displacement), prescribed = u;
     prescribe(model, block.slots, time, prescribed);
     for (Eigen::Index i = 0; i < u.size(); ++i) u[i].d = prescribed[i].d;
-    const Vector<Direction> balance = bulk_forces(model, block.slots, u) - external_forces(model, block.slots, time);
+    const Vector<Direction> memory = bulk_flow(model, block.slots, u, block.previous.history.bodies);
+    const Vector<Direction> balance =
+        bulk_forces(model, block.slots, u, memory) - external_forces(model, block.slots, time);
     rows.push_back(into_frames(model, block.slots.frames, Layout::all, balance));
     load.displacement.push_back(std::move(u));
   }

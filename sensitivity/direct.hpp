@@ -41,7 +41,8 @@ class LinearisedEquilibrium {
   /// turns out to be singular.
   bool solve(std::vector<Vector<Direction>>& lambda, std::vector<ContactField<Direction>>& fields);
 
-  /// Completes the state of every block from the last solve, but for the displacements, which are left unexpanded.
+  /// Completes the state of every block from the last solve, but for the displacements, which are left unexpanded (of
+  /// bodies that remember they are expanded here too).
   void settle(const std::vector<ContactField<Direction>>& fields, const std::vector<Vector<Direction>>& lambda);
 
   /// Largest derivatives, by parameter, of the contact displacements, then and now, and of the forces of bodies and
@@ -218,6 +219,14 @@ void LinearisedEquilibrium<E>::settle(const std::vector<ContactField<Direction>>
     block.current.multiplier = lambda[b];
     block.current.contact = fields[b];
     block.current.history = next_history(input(static_cast<int>(b)), block.current.contact, lambda[b]);
+  }
+  if (problem_.model.effects.plasticity) {
+    const auto displacement = expand(problem_, {Unexpanded{load_, increment_}});
+    for (std::size_t b = 0; b < problem_.blocks.size(); ++b) {
+      auto& block = problem_.blocks[b];
+      block.current.history.bodies =
+          bulk_flow(problem_.model, block.slots, displacement[0][b], block.previous.history.bodies);
+    }
   }
   problem_.unexpanded = {std::move(load_), increment_};
 }

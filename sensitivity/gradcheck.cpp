@@ -17,6 +17,7 @@ constexpr double base_tolerance = 1e-8;
 struct Path {
   Matrix<double> values;  ///< one column an increment
   std::vector<std::vector<ContactState>> states;
+  std::vector<std::vector<bool>> flowing;  ///< numbers that bodies remember: whether the increment changed them
   bool usable = false;
 };
 
@@ -31,6 +32,10 @@ Path run(const Model& model, const Numbers<double>& numbers, const Method& metho
     const auto& increment = trajectory.increments[n];
     path.values.col(n).head(responses) = evaluate_responses(model, slots, increment.state, increment.time);
     path.states.push_back(increment.state.contact.state);
+    const auto& before = (n == 0 ? trajectory.initial : trajectory.increments[n - 1].state).history.bodies;
+    const auto& after = increment.state.history.bodies;
+    path.flowing.emplace_back(after.size());
+    for (Eigen::Index i = 0; i < after.size(); ++i) path.flowing.back()[i] = after[i] != before[i];
   }
   if (path.values.cols() > 0)
     path.values.rightCols(1).bottomRows(objectives) = objective_values(model, slots, trajectory);
@@ -152,7 +157,10 @@ Differences difference(const Model& model, const Method& method, const RunOption
       side[s] = run(model, shifted, method, replay);
       if (progress) progress(++check.runs, total);
     }
-    if (!side[0].usable || !side[1].usable || side[0].states != base.states || side[1].states != base.states) {
+    const auto is_other = [&](const Path& path) {
+      return !path.usable || path.states != base.states || path.flowing != base.flowing;
+    };
+    if (is_other(side[0]) || is_other(side[1])) {
       check.rejected += 2;
       continue;
     }

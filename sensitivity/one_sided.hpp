@@ -12,6 +12,7 @@
 /// its adjoint, and exact again where the kink has passed.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -21,10 +22,11 @@ namespace stickslip {
 
 /// How far the nearest contact point is from a change of state: `open` between open and closed (pressure, or k g / A of
 /// an open point, over the largest pressure or k / A times the largest motion); `slip` between stick and slip
-/// (distance to the cone, or k |dg_T| / A of a slipping point, over the friction bound). Infinity where there is no
-/// such point.
+/// (distance to the cone, or k |dg_T| / A of a slipping point, over the friction bound); `yield` between elastic and
+/// plastic of a point of a body (yield_margin). Infinity where there is no such point.
 struct Margins {
-  double open, slip;
+  double open, slip, yield = std::numeric_limits<double>::infinity();
+  double least() const { return std::min({open, slip, yield}); }
 };
 
 /// A distance from a change of state up to this is none: a point is weak.

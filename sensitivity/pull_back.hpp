@@ -31,9 +31,29 @@ inline HistoryDerivative no_derivative(const History<double>& like, Eigen::Index
   return none;
 }
 
+/// Weights a and motions u of an objective, a column an increment, all dofs in the axes.
+struct WorkPairs {
+  Matrix<double> weights, motions;  ///< no weights: of what is remembered alone
+  Matrix<double> before;            ///< what bodies remember of the last increment
+  Matrix<double> memory;            ///< weights of what they remember of this one; empty: none
+};
+
+/// Derivatives by motion (no rows: no body remembers) and by what bodies remember of the last increment.
+struct WorkLeft {
+  Matrix<double> motion, before;
+};
+
+/// Adds to the derivatives by the entries of the tape, `by`, what the pairs give. An element of a continuum is
+/// differentiated by its own inputs, which are few (core/solids/element_work.hpp), and the chain goes on from there;
+/// one of two nodes is recorded behind what `tape` holds, and taken off again.
+WorkLeft pull_back_bodies(const Model& model, const Slots<Reverse>& slots, Tape& tape, const WorkPairs& pairs,
+                          std::vector<double>& by);
+
 /// What an equilibrium leaves to be done inside the bodies.
 struct Inside {
-  Vector<double> motion;  ///< u, all dofs in the axes
+  Vector<double> motion;          ///< u, all dofs in the axes
+  Vector<double> before;          ///< what bodies remember of the last increment
+  Vector<double> by_before = {};  ///< derivative by that, of what they remember of this one
   double time = 0;
   Vector<double> forces;         ///< of bodies and contact, all dofs; empty where no node has a frame of its own
   Vector<double> weights;        ///< a of what the objective reads of the bodies' forces, all dofs in the axes
@@ -99,6 +119,7 @@ class RecordedEquilibrium {
   void record(const State<double>& previous, const RegularisationField<Reverse>& rho, ConeRadius cone, double time,
               bool objectives);
   Vector<double> pull_back(int objective);
+  void pull_back_memory(int objective);
   void clear_free(int objective);
   void seed_contact(int objective, const BlockVector<double>& solution);
   void clear_held(Matrix<double>& rows);
@@ -115,6 +136,7 @@ class RecordedEquilibrium {
   bool unknown_, valid_ = false, redundant_ = false;
   int outcome_start_ = 0;  ///< on the tape: behind it, functions of the variables below
   Vector<Reverse> prescribed_, displacement_, internal_, multiplier_;
+  Vector<Reverse> memory_;    ///< what bodies remember of the increment
   History<Reverse> history_;  ///< that the increment starts from
   State<Reverse> state_;
   Vector<Reverse> rows_, multiplier_rows_;  ///< residual, in the frames of the nodes
@@ -151,7 +173,15 @@ RecordedEquilibrium<E>::RecordedEquilibrium(AdjointProblem<E>& problem, const St
   for (auto& objective : problem.objectives) {
     objective.by.resize(problem.slots_end);
     objective.by.resize(problem.tape.size(), 0);
-    inside_.push_back({at.displacement, time, forces, Vector<double>::Zero(model.dof_count()), {}, {}, {}});
+    inside_.push_back({at.displacement,
+                       previous.history.bodies,
+                       Vector<double>::Zero(model.memory_count),
+                       time,
+                       forces,
+                       Vector<double>::Zero(model.dof_count()),
+                       {},
+                       {},
+                       {}});
   }
 }
 
@@ -165,7 +195,9 @@ void RecordedEquilibrium<E>::record(const State<double>& previous, const Regular
   prescribe(model, slots, time, prescribed_);
   outcome_start_ = tape.size();
   displacement_ = leaves(at_.displacement, tape);
-  internal_ = leaves(bulk_forces(model, problem_.slots, at_.displacement), tape);
+  const Vector<double> memory = bulk_flow(model, problem_.slots, at_.displacement, previous.history.bodies);
+  internal_ = leaves(bulk_forces(model, problem_.slots, at_.displacement, memory), tape);
+  memory_ = leaves(memory, tape);
   multiplier_ = leaves(at_.multiplier, tape);
   for_each_part([&](const Vector<double>& values, Vector<Reverse>& part) { part = leaves(values, tape); },
                 previous.history, history_);
@@ -177,6 +209,7 @@ void RecordedEquilibrium<E>::record(const State<double>& previous, const Regular
   problem_.counters.contact_evaluations += static_cast<long>(model.points.size());
   take_rays(input, multiplier_, at_.contact.ray, state_.contact);
   state_.history = next_history(input, state_.contact, multiplier_);
+  state_.history.bodies = memory_;
   const Vector<Reverse> balance = nodal_balance(model, slots, state_, internal_, time);
   rows_ = into_frames(model, slots.frames, Layout::all, balance);
   if (unknown_) multiplier_rows_ = multiplier_residual(model, slots, state_.contact.traction, multiplier_);
@@ -218,6 +251,20 @@ Vector<double> RecordedEquilibrium<E>::pull_back(int objective) {
   return weight;
 }
 
+/// Moves the derivative by what bodies remember of the increment to its displacement, to the slots, and to what they
+/// remembered before.
+template <class E>
+void RecordedEquilibrium<E>::pull_back_memory(int objective) {
+  auto& inside = inside_[objective];
+  const Vector<double> weight = gather(objective, memory_);
+  if (weight.size() == 0 || weight.cwiseAbs().maxCoeff() == 0) return;
+  for (const auto& x : memory_) by(objective)[x.at] = 0;
+  const auto left = pull_back_bodies(problem_.model, problem_.recorded, problem_.tape,
+                                     {{}, inside.motion, inside.before, weight}, by(objective));
+  seed(by(objective), displacement_, left.motion);
+  inside.by_before += left.before;
+}
+
 /// A solve took the derivative by the free displacements up.
 template <class E>
 void RecordedEquilibrium<E>::clear_free(int objective) {
@@ -254,9 +301,11 @@ void RecordedEquilibrium<E>::balance(int objective) {
   const Model& model = problem_.model;
   auto& inside = inside_[objective];
   const Vector<double> weight = pull_back(objective);
+  pull_back_memory(objective);
   if (weight.size() > 0 && weight.cwiseAbs().maxCoeff() > 0) {  // (the bodies' tangent is symmetric)
     inside.weights += weight;
-    seed(by(objective), displacement_, bulk_tangent_times(model, problem_.slots, at_.displacement, weight));
+    seed(by(objective), displacement_,
+         bulk_tangent_times(model, problem_.slots, {at_.displacement, inside.before}, weight));
   }
   const auto in_frames = [&] {
     return Matrix<double>(into_frames(model, problem_.slots.frames, Layout::all, gather(objective, displacement_)));
@@ -314,6 +363,7 @@ HistoryDerivative RecordedEquilibrium<E>::finish(int objective) {
   HistoryDerivative history{{}, Vector<double>::Zero(scale_.size())};
   for_each_part([&](Vector<double>& part, const Vector<Reverse>& of) { part = gather(objective, of); }, history.local,
                 history_);
+  if (inside_[objective].by_before.size() > 0) history.local.bodies += inside_[objective].by_before;
   problem_.tape.pull_back(by(objective), problem_.slots_end);
   problem_.objectives[objective].inside.push_back(std::move(inside_[objective]));
   return history;

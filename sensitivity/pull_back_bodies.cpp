@@ -14,26 +14,40 @@ auto plain_law(const L& law) {
   return std::make_pair(law.with(plain), recorded);
 }
 
+/// The columns of pairs, one an increment.
+Eigen::Index increments_in(const WorkPairs& pairs) { return pairs.motions.cols(); }
+
+/// The part of a column that a body's element e remembers, or is to; of a matrix that is empty, zeros.
+Vector<double> remembered(const Matrix<double>& of, const BodyMesh& body, int e, Eigen::Index column) {
+  if (of.size() == 0) return Vector<double>::Zero(body.memory);
+  return of.col(column).segment(body.first_memory + e * body.memory, body.memory);
+}
+
 /// The elements of a continuum: each is differentiated by its own inputs, for all increments together.
 template <class Shape, Kinematics kinematics, class L>
 void pull_back_continuum(const L& law, const Model& model, const Slots<Reverse>& slots, int b, const WorkPairs& pairs,
-                         std::vector<double>& by) {
+                         std::vector<double>& by, WorkLeft& left) {
   const auto& body = model.bodies[b];
   const auto [plain, numbers] = plain_law(law);
   const Reverse& thickness = slots.depths[b].thickness;
-  std::vector<StateOfElement<Shape::nodes>> states(pairs.weights.cols());
+  std::vector<StateOfElement<Shape::nodes>> states(increments_in(pairs));
+  if (!Remembers<L> && pairs.weights.size() == 0) return;
   for (int e = 0; e < body.mesh.element_count(); ++e) {
     const auto nodes = detail::element_nodes(body, e);
     Mat<double, 2, Shape::nodes> X;
     for (int a = 0; a < Shape::nodes; ++a)
       for (int i = 0; i < 2; ++i) X(i, a) = slots.points(i, nodes[a]).v;
-    for (Eigen::Index n = 0; n < pairs.weights.cols(); ++n) {
+    for (Eigen::Index n = 0; n < increments_in(pairs); ++n) {
       StateOfElement<Shape::nodes>& state = states[n];
       for (int a = 0; a < Shape::nodes; ++a)
         for (int i = 0; i < 2; ++i) {
           state.motion(i, a) = pairs.motions(2 * nodes[a] + i, n);
-          state.weight(i, a) = pairs.weights(2 * nodes[a] + i, n);
+          state.weight(i, a) = pairs.weights.size() > 0 ? pairs.weights(2 * nodes[a] + i, n) : 0;
         }
+      if constexpr (Remembers<L>) {
+        state.before = remembered(pairs.before, body, e, n);
+        state.memory = remembered(pairs.memory, body, e, n);
+      }
     }
     const auto work = element_work<Shape, kinematics>(plain, X, thickness.v, states);
     const auto add = [&](const Reverse& input, double derivative) {
@@ -43,28 +57,55 @@ void pull_back_continuum(const L& law, const Model& model, const Slots<Reverse>&
       for (int i = 0; i < 2; ++i) add(slots.points(i, nodes[a]), work.coordinates(i, a));
     add(thickness, work.depth);
     for (std::size_t k = 0; k < numbers.size(); ++k) add(numbers[k], work.law[k]);
+    for (std::size_t n = 0; n < work.before.size(); ++n) {
+      const auto column = static_cast<Eigen::Index>(n);
+      left.before.col(column).segment(body.first_memory + e * body.memory, body.memory) += work.before[n];
+      for (int a = 0; a < Shape::nodes; ++a) left.motion.col(column).segment<2>(2 * nodes[a]) += work.motion[n].col(a);
+    }
   }
 }
 
 /// Elements of two nodes: each is recorded behind what the tape holds, increment by increment, and taken off again.
 template <int D, class L>
 void pull_back_two_nodes(const L& law, const Model& model, const Slots<Reverse>& slots, int b, Tape& tape,
-                         const WorkPairs& pairs, std::vector<double>& by) {
+                         const WorkPairs& pairs, std::vector<double>& by, WorkLeft& left) {
   const int start = tape.size();
+  if (!Remembers<L> && pairs.weights.size() == 0) return;
+  const auto& body = model.bodies[b];
   for (int e = 0; e < model.bodies[b].mesh.element_count(); ++e) {
     const auto nodes = detail::element_nodes(model.bodies[b], e);
     const auto X = detail::two_places<Reverse, D>(slots.points, nodes);
     const auto stretch = [&](const Matrix<double>& of, Eigen::Index n) -> Vec<double, D> {
       return of.col(n).template segment<D>(nodes[1] * D) - of.col(n).template segment<D>(nodes[0] * D);
     };
-    for (Eigen::Index n = 0; n < pairs.weights.cols(); ++n) {
+    for (Eigen::Index n = 0; n < increments_in(pairs); ++n) {
       const Vec<Reverse, D> d = stretch(pairs.motions, n).template cast<Reverse>();
-      const Vec<double, D> weight = stretch(pairs.weights, n);
-      const Vec<Reverse, D> force = law.template force<D>(X, d);
-      by.resize(tape.size(), 0);
-      for (int i = 0; i < D; ++i)
-        if (force[i].at >= 0) by[force[i].at] += weight[i];
-      tape.pull_back(by, start);
+      Vec<double, D> weight = Vec<double, D>::Zero();
+      if (pairs.weights.size() > 0) weight = stretch(pairs.weights, n);
+      const auto seed = [&](const auto& results, const auto& weights) {
+        by.resize(tape.size(), 0);
+        for (Eigen::Index i = 0; i < results.size(); ++i)
+          if (results[i].at >= 0) by[results[i].at] += weights[i];
+        tape.pull_back(by, start);
+      };
+      if constexpr (Remembers<L>) {
+        const Vector<Reverse> variables = leaves(values(d), tape),
+                              before = leaves(remembered(pairs.before, body, e, n), tape);
+        const Vec<Reverse, D> moved = variables;
+        const Vec<Reverse, L::memory> after = law.template flow<D>(X, moved, before);
+        const Vec<Reverse, D> force = law.template force<D>(X, moved, after);
+        by.resize(tape.size(), 0);
+        for (int m = 0; m < L::memory; ++m)
+          if (after[m].at >= 0) by[after[m].at] += remembered(pairs.memory, body, e, n)[m];
+        seed(force, weight);
+        for (int m = 0; m < L::memory; ++m) left.before(body.first_memory + e * body.memory + m, n) += by[before[m].at];
+        for (int i = 0; i < D; ++i) {
+          left.motion(nodes[1] * D + i, n) += by[variables[i].at];
+          left.motion(nodes[0] * D + i, n) -= by[variables[i].at];
+        }
+      } else {
+        seed(law.template force<D>(X, d), weight);
+      }
       by.resize(start);
       tape.rewind(start);
     }
@@ -73,15 +114,21 @@ void pull_back_two_nodes(const L& law, const Model& model, const Slots<Reverse>&
 
 }  // namespace
 
-void pull_back_bodies(const Model& model, const Slots<Reverse>& slots, Tape& tape, const WorkPairs& pairs,
-                      std::vector<double>& by) {
+WorkLeft pull_back_bodies(const Model& model, const Slots<Reverse>& slots, Tape& tape, const WorkPairs& pairs,
+                          std::vector<double>& by) {
+  WorkLeft left;
+  if (model.memory_count > 0) {
+    left.motion = Matrix<double>::Zero(model.dof_count(), increments_in(pairs));
+    left.before = Matrix<double>::Zero(model.memory_count, increments_in(pairs));
+  }
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
     detail::with_law<Reverse>(
         model, slots, b,
         [&]<class Shape, Kinematics kinematics>(const auto& law) {
-          pull_back_continuum<Shape, kinematics>(law, model, slots, b, pairs, by);
+          pull_back_continuum<Shape, kinematics>(law, model, slots, b, pairs, by, left);
         },
-        [&]<int D>(const auto& law) { pull_back_two_nodes<D>(law, model, slots, b, tape, pairs, by); });
+        [&]<int D>(const auto& law) { pull_back_two_nodes<D>(law, model, slots, b, tape, pairs, by, left); });
+  return left;
 }
 
 }  // namespace stickslip

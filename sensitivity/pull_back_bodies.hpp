@@ -8,17 +8,6 @@
 
 namespace stickslip {
 
-/// Weights a and motions u of an objective, a column an increment, all dofs in the axes.
-struct WorkPairs {
-  Matrix<double> weights, motions;
-};
-
-/// Adds to the derivatives by the entries of the tape, `by`, what the pairs give. An element of a continuum is
-/// differentiated by its own inputs, which are few (core/solids/element_work.hpp), and the chain goes on from there;
-/// one of two nodes is recorded behind what `tape` holds, and taken off again.
-void pull_back_bodies(const Model& model, const Slots<Reverse>& slots, Tape& tape, const WorkPairs& pairs,
-                      std::vector<double>& by);
-
 namespace detail {
 
 /// Elements with a dof that is prescribed.
@@ -83,7 +72,7 @@ void pull_back_loads(AdjointProblem<E>& problem, const Inside& of, const Vector<
   for (int dof : model.free_dofs)
     if (!touches[dof / model.dimension]) seed(rows[dof], weight[dof]);
   Vector<double> held = into_frames(model, problem.slots.frames, Layout::all,
-                                    bulk_tangent_times(model, problem.slots, of.motion, a, &at_supports));
+                                    bulk_tangent_times(model, problem.slots, {of.motion, of.before}, a, &at_supports));
   for (int dof : model.free_dofs) held[dof] = 0;
   held = out_of_frames(model, problem.slots.frames, Layout::all, std::move(held));
   for (Eigen::Index i = 0; i < held.size(); ++i) seed(prescribed[i], held[i]);
@@ -92,7 +81,7 @@ void pull_back_loads(AdjointProblem<E>& problem, const Inside& of, const Vector<
 
 }  // namespace detail
 
-/// Does what waits inside the bodies.
+/// Does what waits inside the bodies. What these remember adds to the derivatives by history.
 template <class E>
 void pull_back_inside(AdjointProblem<E>& problem) {
   const auto at_supports = detail::elements_at_supports(problem.model);
@@ -105,17 +94,20 @@ void pull_back_inside(AdjointProblem<E>& problem) {
   for (auto& objective : problem.objectives) {
     auto& waiting = objective.inside;
     if (waiting.empty()) continue;
-    WorkPairs pairs{detail::weights_inside(problem, waiting), {}};
+    WorkPairs pairs{detail::weights_inside(problem, waiting), {}, {}, {}};
     pairs.motions.resize(pairs.weights.rows(), pairs.weights.cols());
+    pairs.before.resize(problem.model.memory_count, pairs.weights.cols());
     for (std::size_t n = 0; n < waiting.size(); ++n) {
       const auto k = static_cast<Eigen::Index>(n);
       detail::pull_back_loads(problem, waiting[n], pairs.weights.col(k), at_supports, objective.by);
       pairs.weights.col(k) += waiting[n].weights;
       pairs.motions.col(k) = waiting[n].motion;
+      pairs.before.col(k) = waiting[n].before;
     }
     problem.tape.rewind(problem.slots_end);
     objective.by.resize(problem.slots_end);
-    pull_back_bodies(problem.model, problem.recorded, problem.tape, pairs, objective.by);
+    const auto left = pull_back_bodies(problem.model, problem.recorded, problem.tape, pairs, objective.by);
+    if (left.before.size() > 0) objective.history.local.bodies += left.before.rowwise().sum();
     waiting.clear();
   }
 }

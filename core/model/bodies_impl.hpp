@@ -63,12 +63,20 @@ void with_law(const Model& model, const Slots<T>& slots, int b, Continuum&& cont
       [&]<class L>(const L& law) {
         if constexpr (requires { L::is_finite; })
           with_element(model.bodies[b], [&]<class Shape, Kinematics kinematics>() {
-            if constexpr (L::is_made_for(kinematics)) continuum.template operator()<Shape, kinematics>(law);
+            if constexpr (L::is_made_for(kinematics, false) || L::is_made_for(kinematics, true))
+              continuum.template operator()<Shape, kinematics>(law);
           });
         else
           with_dimension(model.dimension, [&]<int D>() { two_nodes.template operator()<D>(law); });
       },
       slots.laws[b]);
+}
+
+/// What element e of a body remembers; nothing of a law that does not.
+template <class L, class T>
+ElementMemory<T> memory_of_element(const BodyMesh& body, int e, const Vector<T>& memory) {
+  if constexpr (Remembers<L>) return memory.data() + body.first_memory + static_cast<Eigen::Index>(e) * body.memory;
+  return {};
 }
 
 /// Whether no derivative rides on any entry.
@@ -82,8 +90,9 @@ bool is_constant(const A& entries) {
 /// few elements, and those of a material no gradient.
 template <class T, class Shape, Kinematics kinematics, class L>
 Mat<T, 2, Shape::nodes> forces_of_element(const L& law, const Mat<T, 2, Shape::nodes>& coordinates,
-                                          const Mat<T, 2, Shape::nodes>& u, const T& thickness) {
-  if constexpr (tells_constants<T>) {
+                                          const Mat<T, 2, Shape::nodes>& u, const T& thickness,
+                                          const ElementMemory<T>& memory) {
+  if constexpr (tells_constants<T> && !Remembers<L>) {
     if (stickslip::is_constant(thickness) && is_constant(coordinates)) {
       const Mat<double, 2, Shape::nodes> fixed = values(coordinates);
       const auto numbers = law.numbers();
@@ -96,39 +105,45 @@ Mat<T, 2, Shape::nodes> forces_of_element(const L& law, const Mat<T, 2, Shape::n
       return forces.unaryExpr([](double x) { return T(x); });
     }
   }
-  return element_forces<T, Shape, kinematics>(law, coordinates, u, thickness);
+  return element_forces<T, Shape, kinematics>(law, coordinates, u, thickness, memory);
 }
 
 /// Adds the forces of an element of two nodes. Of a linear law: of the relative displacement, free of cancellation.
 template <class T, int D, class L>
 void add_two_node_forces(const L& law, const Slots<T>& slots, const std::vector<int>& nodes, const Vector<T>& u,
-                         Vector<T>& forces) {
+                         ElementMemory<T> memory, Vector<T>& forces) {
   const auto X = two_places<T, D>(slots.points, nodes);
   const auto add = [&](int i, const T& force) {
     forces[nodes[0] * D + i] -= force;
     forces[nodes[1] * D + i] += force;
   };
   const Vec<T, D> d = two_node_stretch<T, D>(nodes, &u);
-  if (!law.is_linear()) {
-    const Vec<T, D> force = law.template force<D>(X, d);
+  if constexpr (Remembers<L>) {
+    const Vec<T, D> force = law.template force<D>(X, d, memory.template take<L::memory>());
     for (int i = 0; i < D; ++i) add(i, force[i]);
-    return;
+  } else {
+    if (!law.is_linear()) {
+      const Vec<T, D> force = law.template force<D>(X, d);
+      for (int i = 0; i < D; ++i) add(i, force[i]);
+      return;
+    }
+    const Mat<T, D> k = law.template stiffness<D>(X, d);
+    for (int i = 0; i < D; ++i)
+      for (int j = 0; j < D; ++j) add(i, k(i, j) * d[j]);
   }
-  const Mat<T, D> k = law.template stiffness<D>(X, d);
-  for (int i = 0; i < D; ++i)
-    for (int j = 0; j < D; ++j) add(i, k(i, j) * d[j]);
 }
 
 }  // namespace detail
 
 template <class T>
-Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>& u, const ElementLists* only) {
+Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& memory,
+                      const ElementLists* only) {
   Vector<T> forces = Vector<T>::Constant(model.dof_count(), T(0));
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     const auto& body = model.bodies[b];
     const int count = only ? static_cast<int>((*only)[b].size()) : body.mesh.element_count();
     const auto element = [&](int k) { return only ? (*only)[b][k] : k; };
-    const auto continuum = [&]<class Shape, Kinematics kinematics>(const auto& law) {
+    const auto continuum = [&]<class Shape, Kinematics kinematics, class L>(const L& law) {
       const T& thickness = slots.depths[b].thickness;
       std::array<int, Shape::nodes> nodes;
       for (int k = 0; k < count; ++k) {
@@ -136,40 +151,118 @@ Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>
           nodes[a] = body.first_node + body.mesh.connectivity[element(k) * Shape::nodes + a];
         const auto f = detail::forces_of_element<T, Shape, kinematics>(
             law, detail::gather_coordinates<T, Shape>(slots.points, nodes.data()),
-            detail::gather_displacements<T, Shape>(u, nodes.data()), thickness);
+            detail::gather_displacements<T, Shape>(u, nodes.data()), thickness,
+            detail::memory_of_element<L>(body, element(k), memory));
         for (int a = 0; a < Shape::nodes; ++a)
           for (int i = 0; i < 2; ++i) forces[nodes[a] * 2 + i] += f(i, a);
       }
     };
-    const auto two_nodes = [&]<int D>(const auto& law) {
+    const auto two_nodes = [&]<int D, class L>(const L& law) {
       for (int k = 0; k < count; ++k)
-        detail::add_two_node_forces<T, D>(law, slots, detail::element_nodes(body, element(k)), u, forces);
+        detail::add_two_node_forces<T, D>(law, slots, detail::element_nodes(body, element(k)), u,
+                                          detail::memory_of_element<L>(body, element(k), memory), forces);
     };
     detail::with_law<T>(model, slots, b, continuum, two_nodes);
   }
   return forces;
 }
 
+template <class T>
+Vector<T> bulk_flow(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& before) {
+  Vector<T> after = before;
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    const auto& body = model.bodies[b];
+    if (body.memory == 0) continue;
+    const auto continuum = [&]<class Shape, Kinematics kinematics, class L>(const L& law) {
+      if constexpr (Remembers<L>)
+        for (int e = 0; e < body.mesh.element_count(); ++e) {
+          const auto nodes = detail::element_nodes(body, e);
+          element_flow<T, Shape, kinematics>(law, detail::gather_coordinates<T, Shape>(slots.points, nodes.data()),
+                                             detail::gather_displacements<T, Shape>(u, nodes.data()),
+                                             detail::memory_of_element<L>(body, e, before),
+                                             after.data() + body.first_memory + e * body.memory);
+        }
+    };
+    const auto two_nodes = [&]<int D, class L>(const L& law) {
+      if constexpr (Remembers<L>)
+        for (int e = 0; e < body.mesh.element_count(); ++e) {
+          const auto nodes = detail::element_nodes(body, e);
+          after.template segment<L::memory>(body.first_memory + e * body.memory) = law.template flow<D>(
+              detail::two_places<T, D>(slots.points, nodes), detail::two_node_stretch<T, D>(nodes, &u),
+              detail::memory_of_element<L>(body, e, before).template take<L::memory>());
+        }
+    };
+    detail::with_law<T>(model, slots, b, continuum, two_nodes);
+  }
+  return after;
+}
+
+template <class T, class F>
+void for_each_plastic_strain(const Model& model, const Slots<T>& slots, int b, const Vector<T>& memory, F&& f) {
+  const auto& body = model.bodies[b];
+  if (body.memory == 0) return;
+  const auto continuum = [&]<class Shape, Kinematics kinematics, class L>(const L&) {
+    if constexpr (Remembers<L>)
+      for (int e = 0; e < body.mesh.element_count(); ++e) {
+        auto remembered = detail::memory_of_element<L>(body, e, memory);
+        for_each_gradient<T, Shape, kinematics>(
+            detail::gather_coordinates<T, Shape>(slots.points, detail::element_nodes(body, e).data()),
+            slots.depths[b].thickness, [&](const auto& gradient) {
+              f(L::template plastic_strain<T>(remembered.template take<L::memory>()), gradient.volume);
+            });
+      }
+  };
+  const auto two_nodes = [&]<int D, class L>(const L&) {
+    if constexpr (Remembers<L>)
+      for (int e = 0; e < body.mesh.element_count(); ++e) {
+        const auto X = detail::two_places<T, D>(slots.points, detail::element_nodes(body, e));
+        f(L::plastic_strain(detail::memory_of_element<L>(body, e, memory).template take<L::memory>()),
+          norm((X.col(1) - X.col(0)).eval()) * detail::area_of(slots.laws[b]));
+      }
+  };
+  detail::with_law<T>(model, slots, b, continuum, two_nodes);
+}
+
 template <class T, class Sink>
 void for_each_element_tangent(const Model& model, const Slots<T>& slots, int b, const std::vector<int>* only,
-                              Sink&& sink, const Vector<T>* u) {
+                              Sink&& sink, const BodyMotion<T>* at) {
+  constexpr bool solves = std::is_same_v<T, double> || std::is_same_v<T, std::complex<double>>;
   const auto& body = model.bodies[b];
+  const Vector<T>* const u = at ? &at->displacement : nullptr;
   const int count = only ? static_cast<int>(only->size()) : body.mesh.element_count();
   const auto element = [&](int k) { return only ? (*only)[k] : k; };
-  const auto continuum = [&]<class Shape, Kinematics kinematics>(const auto& law) {
+  const auto continuum = [&]<class Shape, Kinematics kinematics, class L>(const L& law) {
     for (int k = 0; k < count; ++k) {
       const auto nodes = detail::element_nodes(body, element(k));
       Mat<T, 2, Shape::nodes> local = Mat<T, 2, Shape::nodes>::Constant(T(0));
       if (u) local = detail::gather_displacements<T, Shape>(*u, nodes.data());
       const auto X = detail::gather_coordinates<T, Shape>(slots.points, nodes.data());
-      sink(nodes, element_tangent<T, Shape, kinematics>(law, X, local, slots.depths[b].thickness));
+      const T& thickness = slots.depths[b].thickness;
+      if constexpr (Remembers<L>) {
+        if constexpr (solves)
+          if (at) {
+            const auto before = detail::memory_of_element<L>(body, element(k), at->before);
+            sink(nodes, element_tangent<T, Shape, kinematics>(law, X, local, thickness, before));
+            continue;
+          }
+        sink(nodes, element_tangent<T, Shape, kinematics>(law.at_rest(), X, local, thickness));
+      } else {
+        sink(nodes, element_tangent<T, Shape, kinematics>(law, X, local, thickness));
+      }
     }
   };
-  const auto two_nodes = [&]<int D>(const auto& law) {
+  const auto two_nodes = [&]<int D, class L>(const L& law) {
     for (int k = 0; k < count; ++k) {
       const auto nodes = detail::element_nodes(body, element(k));
-      const Mat<T, D> block = law.template stiffness<D>(detail::two_places<T, D>(slots.points, nodes),
-                                                        detail::two_node_stretch<T, D>(nodes, u));
+      const auto X = detail::two_places<T, D>(slots.points, nodes);
+      const auto d = detail::two_node_stretch<T, D>(nodes, u);
+      Mat<T, D> block;
+      if constexpr (Remembers<L>)
+        block = at ? law.template stiffness<D>(
+                         X, d, detail::memory_of_element<L>(body, element(k), at->before).template take<L::memory>())
+                   : law.at_rest().template stiffness<D>(X, d);
+      else
+        block = law.template stiffness<D>(X, d);
       Mat<T, 2 * D> K;
       K << block, -block, -block, block;
       sink(nodes, K);
@@ -179,9 +272,9 @@ void for_each_element_tangent(const Model& model, const Slots<T>& slots, int b, 
 }
 
 template <class T>
-Vector<T> bulk_tangent_times(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& vector,
-                             const ElementLists* only) {
-  if (model.effects.linear_bulk) return bulk_forces(model, slots, vector, only);
+Vector<T> bulk_tangent_times(const Model& model, const Slots<T>& slots, const BodyMotion<T>& at,
+                             const Vector<T>& vector, const ElementLists* only) {
+  if (model.effects.linear_bulk) return bulk_forces(model, slots, vector, {}, only);
   const int D = model.dimension;
   Vector<T> product = Vector<T>::Constant(model.dof_count(), T(0));
   const auto add = [&](const auto& nodes, const auto& K) {
@@ -190,29 +283,35 @@ Vector<T> bulk_tangent_times(const Model& model, const Slots<T>& slots, const Ve
         product[nodes[r / D] * D + r % D] += K(r, c) * vector[nodes[c / D] * D + c % D];
   };
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
-    for_each_element_tangent(model, slots, b, only ? &(*only)[b] : nullptr, add, &u);
+    for_each_element_tangent(model, slots, b, only ? &(*only)[b] : nullptr, add, &at);
   return product;
 }
 
 template <class T>
-T bulk_energy(const Model& model, const Slots<T>& slots, const Vector<T>& u) {
-  if (model.effects.linear_bulk) return T(0.5) * dot(bulk_forces(model, slots, u), u);
+T bulk_energy(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& memory) {
+  if (model.effects.linear_bulk) return T(0.5) * dot(bulk_forces(model, slots, u, memory), u);
   T energy{};
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     const auto& body = model.bodies[b];
-    const auto continuum = [&]<class Shape, Kinematics kinematics>(const auto& law) {
+    const auto continuum = [&]<class Shape, Kinematics kinematics, class L>(const L& law) {
       for (int e = 0; e < body.mesh.element_count(); ++e) {
         const auto nodes = detail::element_nodes(body, e);
         energy += element_energy<T, Shape, kinematics>(
             law, detail::gather_coordinates<T, Shape>(slots.points, nodes.data()),
-            detail::gather_displacements<T, Shape>(u, nodes.data()), slots.depths[b].thickness);
+            detail::gather_displacements<T, Shape>(u, nodes.data()), slots.depths[b].thickness,
+            detail::memory_of_element<L>(body, e, memory));
       }
     };
-    const auto two_nodes = [&]<int D>(const auto& law) {
+    const auto two_nodes = [&]<int D, class L>(const L& law) {
       for (int e = 0; e < body.mesh.element_count(); ++e) {
         const auto nodes = detail::element_nodes(body, e);
-        energy += law.template energy<D>(detail::two_places<T, D>(slots.points, nodes),
-                                         detail::two_node_stretch<T, D>(nodes, &u));
+        const auto X = detail::two_places<T, D>(slots.points, nodes);
+        const auto d = detail::two_node_stretch<T, D>(nodes, &u);
+        if constexpr (Remembers<L>)
+          energy +=
+              law.template energy<D>(X, d, detail::memory_of_element<L>(body, e, memory).template take<L::memory>());
+        else
+          energy += law.template energy<D>(X, d);
       }
     };
     detail::with_law<T>(model, slots, b, continuum, two_nodes);

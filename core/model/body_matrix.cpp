@@ -58,11 +58,11 @@ int locate(const Pattern& pattern, int row, int column) {
 
 template <class T>
 std::vector<T> assemble_bodies(const Model& model, const Slots<T>& slots, const RowLists& lists, const Pattern& pattern,
-                               const Vector<T>* u) {
+                               const BodyMotion<T>* at) {
   std::vector<T> values(pattern.nonzeros(), T(0));
   int list = 0;
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    for_each_framed_tangent<T>(model, slots, static_cast<int>(b), u, [&](const auto&, const auto& K) {
+    for_each_framed_tangent<T>(model, slots, static_cast<int>(b), at, [&](const auto&, const auto& K) {
       const int* rows = lists.row.data() + lists.start[list];
       const int count = lists.start[list + 1] - lists.start[list];
       for (int c = 0; c < count; ++c)
@@ -74,9 +74,9 @@ std::vector<T> assemble_bodies(const Model& model, const Slots<T>& slots, const 
 }
 
 template std::vector<double> assemble_bodies(const Model&, const Slots<double>&, const RowLists&, const Pattern&,
-                                             const Vector<double>*);
+                                             const BodyMotion<double>*);
 template std::vector<std::complex<double>> assemble_bodies(const Model&, const Slots<std::complex<double>>&,
                                                            const RowLists&, const Pattern&,
-                                                           const Vector<std::complex<double>>*);
+                                                           const BodyMotion<std::complex<double>>*);
 
 }  // namespace stickslip

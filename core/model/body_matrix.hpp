@@ -26,22 +26,22 @@ std::shared_ptr<Pattern> make_pattern(int size, const RowLists& lists);
 /// Entry of (row, column) in the pattern. pre: it exists.
 int locate(const Pattern& pattern, int row, int column);
 
-/// Values of the bodies' tangent on a pattern; the first lists are those of element_rows(). `u`: displacements of all
-/// dofs; nullptr: none.
+/// Values of the bodies' tangent on a pattern; the first lists are those of element_rows(). `at`: a motion; nullptr: of
+/// the start.
 template <class T>
 std::vector<T> assemble_bodies(const Model& model, const Slots<T>& slots, const RowLists& lists, const Pattern& pattern,
-                               const Vector<T>* u = nullptr);
+                               const BodyMotion<T>* at = nullptr);
 
 /// for_each_element_tangent of a body, in the frames of the nodes.
 template <class T, class Sink>
-void for_each_framed_tangent(const Model& model, const Slots<T>& slots, int b, const Vector<T>* u, Sink&& sink) {
+void for_each_framed_tangent(const Model& model, const Slots<T>& slots, int b, const BodyMotion<T>* at, Sink&& sink) {
   const auto framed = [&](const auto& nodes, const auto& K) {
     if (model.framed.empty())
       sink(nodes, K);
     else
       sink(nodes, into_frames(model, slots.frames, nodes, Matrix<T>(K)));
   };
-  for_each_element_tangent(model, slots, b, nullptr, framed, u);
+  for_each_element_tangent(model, slots, b, nullptr, framed, at);
 }
 
 }  // namespace stickslip

@@ -22,7 +22,7 @@ CondensedEngine<T>::CondensedEngine(const Model& model, const Slots<T>& slots, b
 }
 
 template <class T>
-Vector<T> CondensedEngine<T>::begin(double time, const Vector<T>& displacement) {
+Vector<T> CondensedEngine<T>::begin(double time, const Vector<T>& displacement, const Vector<T>& /*before*/) {
   Vector<T> u = displacement;
   prescribe(model_, slots_, time, u);
   u = into_frames(model_, slots_.frames, Layout::all, std::move(u));
@@ -34,7 +34,7 @@ Vector<T> CondensedEngine<T>::begin(double time, const Vector<T>& displacement) 
   const Vector<T> external = external_forces(model_, slots_, time);
   largest_external_ = largest_nodal_norm(external, model_.dimension);
   rest_rows_ =
-      into_frames(model_, slots_.frames, Layout::all, Vector<T>(external - bulk_forces(model_, slots_, moved)));
+      into_frames(model_, slots_.frames, Layout::all, Vector<T>(external - bulk_forces(model_, slots_, moved, {})));
   load_ = condensation_->reduce(rest_rows_);
   return to_compact(model_, u);
 }

@@ -13,13 +13,13 @@ class CondensedEngine {
   CondensedEngine(const Model& model, const Slots<T>& slots, bool unknown_multipliers, ConeRadius cone,
                   std::shared_ptr<Condensation<T>> condensation);
 
-  Vector<T> begin(double time, const Vector<T>& displacement);
+  Vector<T> begin(double time, const Vector<T>& displacement, const Vector<T>& before);
   Vector<T> compact(const Vector<T>& u) const { return out_of_frames(model_, slots_.frames, Layout::compact, u); }
   Vector<T> all(const Vector<T>& u);
   Vector<T> residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const;
   bool is_free(Eigen::Index row) const { return free_[row]; }
   /// `hold`: stiffness against motion of each contact node, the same in all directions, force per length; empty: none.
-  void linearise(const Vector<T>&) {}  ///< (the bodies' tangent is constant)
+  void linearise(const BodyMotion<T>&) {}  ///< (the bodies' tangent is constant)
   bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
   /// In place of factorise() where few points changed since (model/tangent_update.hpp); until the next factorise() all
   /// solves are with these tangents. False, and nothing changed, where it does not pay or can't be.

@@ -14,7 +14,7 @@ template <class T>
 History<T> initial_history(const Model& model, const Slots<T>& slots) {
   const auto zeros = [](std::size_t n) { return Vector<T>::Constant(static_cast<Eigen::Index>(n), T(0)).eval(); };
   History<T> history{zeros(model.multiplier_count - model.points.size()), zeros(model.foot_count),
-                     zeros(model.effects.friction ? model.scene.contacts.size() : 0)};
+                     zeros(model.effects.friction ? model.scene.contacts.size() : 0), zeros(model.memory_count)};
   if (model.slides_along_curves()) history.patch.assign(model.points.size(), Patch::none);
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
@@ -259,13 +259,14 @@ Vector<T> dissipated(const ContactInput<T>& input, const ContactField<T>& field,
   return work;
 }
 
-/// The history that an increment leaves: takes placement and feet out of its field. `multiplier`: lambda.
+/// The history that an increment leaves at its contacts: takes placement and feet out of its field. `multiplier`:
+/// lambda. (That of the bodies is bulk_flow.)
 template <class T>
 History<T> next_history(const ContactInput<T>& input, ContactField<T>& field, const Vector<T>& multiplier) {
   Vector<T> work = dissipated(input, field, multiplier, input.previous.work);
   std::vector<int> patch;
   for (const auto& facing : field.facing) patch.push_back(facing.patch);
-  return {std::move(field.placement), std::move(field.foot), std::move(work), std::move(patch)};
+  return {std::move(field.placement), std::move(field.foot), std::move(work), {}, std::move(patch)};
 }
 
 }  // namespace stickslip

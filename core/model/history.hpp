@@ -15,6 +15,7 @@ struct History {
   Vector<T> placement;  ///< s, the slip since the start, at tangential_offset()
   Vector<T> foot;       ///< where geometry is the present one: places on what is faced, at ContactPoint::foot
   Vector<T> work;       ///< frictional work since the start, per contact; empty without friction
+  Vector<T> bodies;     ///< what materials remember, at BodyMesh::first_memory; empty where none does
   /// Of points that slide along curves: the patch that a foot is on, per point. A label, which has no derivative.
   std::vector<int> patch = {};
 };
@@ -25,6 +26,7 @@ void for_each_part(F&& f, Histories&&... of) {
   f(of.placement...);
   f(of.foot...);
   f(of.work...);
+  f(of.bodies...);
 }
 
 }  // namespace stickslip

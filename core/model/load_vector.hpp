@@ -66,7 +66,7 @@ void add_body_force(const Model& model, const Load& load, const Slots<T>& slots,
     const auto nodes = element_nodes(body, e);
     if (body.mesh.shape == ElementShape::bar2) {
       const T length = norm((slots.points.col(nodes[1]) - slots.points.col(nodes[0])).eval());
-      const T half = T(0.5) * length * std::get<BarLaw<T>>(slots.laws[b]).area;
+      const T half = T(0.5) * length * area_of(slots.laws[b]);
       for (int node : nodes) add(node, half);
     }
     with_shape(body.mesh.shape, [&]<class Shape>(Shape) {

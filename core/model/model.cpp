@@ -198,6 +198,16 @@ void place_contact_nodes(Model& model) {
     if (nodes.count(framed.node)) framed.place = place_of(framed.node);
 }
 
+/// Gives the elements of a body their places in what bodies remember.
+void place_memory(Model& model, const Material& material, BodyMesh& body) {
+  int points = 1;
+  if (is_continuum(body.mesh.shape))
+    with_shape(body.mesh.shape, [&]<class Shape>(Shape) { points = points_of<Shape>(body.kinematics); });
+  body.memory = points * memory_of(material, !is_continuum(body.mesh.shape));
+  body.first_memory = model.memory_count;
+  model.memory_count += body.memory * body.mesh.element_count();
+}
+
 /// Gives the feet of points with friction their places behind the slips, in the slip history.
 void place_feet(Model& model) {
   for (auto& point : model.points) {
@@ -272,6 +282,7 @@ Model make_model(const Scene& scene, Seconds& spent) {
     model.bodies.push_back({make_mesh(body.mesh, body.element, model.dimension), model.node_count,
                             kinematics_of(scene.space, has_mean_dilatation(body.element))});
     model.node_count += model.bodies.back().mesh.node_count;
+    place_memory(model, body.material, model.bodies.back());
     if (!is_continuum(model.bodies.back().mesh.shape)) continue;
     const std::string unfit = fault_of(body.material, model.bodies.back().kinematics, scene.finite_strain);
     if (!unfit.empty()) throw ModelError("the material " + unfit, "/bodies/" + body.name + "/material");
@@ -305,7 +316,8 @@ Model make_model(const Scene& scene, Seconds& spent) {
   model.at_reactions = elements_at_reactions(model);
   model.times = step_ends(scene);
   model.effects.sensitivity = !scene.parameters.empty();
-  model.effects.linear_bulk = !scene.finite_strain;
+  model.effects.plasticity = model.memory_count > 0;
+  model.effects.linear_bulk = has_constant_stiffness(scene);
   model.effects.current_geometry = scene.finite_strain && !model.points.empty();
   if (model.effects.current_geometry) place_feet(model);
   return model;

@@ -31,6 +31,8 @@ struct BodyMesh {
   Mesh mesh;
   int first_node = 0;
   Kinematics kinematics = Kinematics::plane;
+  int memory = 0;        ///< numbers that an element remembers, point by point
+  int first_memory = 0;  ///< where those of the body begin in History::bodies
 };
 
 /// A side of a body, or a rigid polyline, that points face by patches (core/contact/curve.hpp).
@@ -95,7 +97,8 @@ struct Effects {
   bool friction = false;
   bool coupled_friction = false;  ///< its bound depends on the pressure somewhere
   bool deformable_master = false;
-  bool smoothing = false;  ///< of some master's facets
+  bool smoothing = false;   ///< of some master's facets
+  bool plasticity = false;  ///< a body flows, and remembers
   bool sensitivity = false;
   /// The internal forces are linear in the displacements: the tangent of the bodies is constant.
   bool linear_bulk = true;
@@ -129,6 +132,7 @@ struct Model {
   std::vector<MasterCurve> curves;
   int multiplier_count = 0;
   int foot_count = 0;                   ///< entries of History::foot
+  int memory_count = 0;                 ///< entries of History::bodies
   std::vector<Constraint> constraints;  ///< ascending dof; those of framed nodes included
   std::vector<FramedNode> framed;       ///< ascending; empty where no support is inclined
   std::vector<int> free_index;          ///< per dof: index among the free ones, or -1

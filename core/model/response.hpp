@@ -19,7 +19,7 @@ Vector<T> nodal_balance(const Model& model, const Slots<T>& slots, const State<T
 }
 template <class T>
 Vector<T> nodal_balance(const Model& model, const Slots<T>& slots, const State<T>& state, double time) {
-  return nodal_balance(model, slots, state, bulk_forces(model, slots, state.displacement), time);
+  return nodal_balance(model, slots, state, bulk_forces(model, slots, state.displacement, state.history.bodies), time);
 }
 
 /// Samples that differ by up to this share of the largest are the same: to choose among them is left to rounding.
@@ -195,6 +195,23 @@ struct NodalForces {
   Vector<T> held;      ///< support_forces
 };
 
+namespace detail {
+
+/// Mean (by volume), largest or least equivalent plastic strain of a body.
+template <class T>
+T plastic_strain(const Model& model, const Slots<T>& slots, const Response& response, const State<T>& state) {
+  std::vector<T> samples, volumes;
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
+    if (model.scene.bodies[b].name == response.on)
+      for_each_plastic_strain(model, slots, b, state.history.bodies, [&](const T& strain, const T& volume) {
+        samples.push_back(strain);
+        volumes.push_back(volume);
+      });
+  return samples.empty() ? T(0) : take_of(response.take, samples, volumes, Ties::mean);
+}
+
+}  // namespace detail
+
 /// Value of a response at a state.
 template <class T>
 T evaluate_response(const Model& model, const Slots<T>& slots, int index, const State<T>& state,
@@ -221,7 +238,8 @@ T evaluate_response(const Model& model, const Slots<T>& slots, int index, const 
   }
   if (response.kind == Response::Kind::strain_energy)
     return model.effects.linear_bulk ? T(T(0.5) * dot(forces.internal, state.displacement))
-                                     : bulk_energy(model, slots, state.displacement);
+                                     : bulk_energy(model, slots, state.displacement, state.history.bodies);
+  if (response.kind == Response::Kind::plastic_strain) return detail::plastic_strain(model, slots, response, state);
   return detail::contact_response(model, slots, response, place, state, ties);
 }
 
@@ -245,7 +263,8 @@ Vector<T> evaluate_responses(const Model& model, const Slots<T>& slots, const St
   NodalForces<T> forces;
   const bool energy = asked(Response::Kind::strain_energy);  // of all elements; a reaction needs those at its support
   if (reaction || energy)
-    forces.internal = bulk_forces(model, slots, state.displacement, energy ? nullptr : &model.at_reactions);
+    forces.internal =
+        bulk_forces(model, slots, state.displacement, state.history.bodies, energy ? nullptr : &model.at_reactions);
   if (reaction) forces.held = support_forces(model, slots, nodal_balance(model, slots, state, forces.internal, time));
   Vector<T> out(responses.size());
   for (std::size_t i = 0; i < responses.size(); ++i)

@@ -217,6 +217,7 @@ struct Response {
     slip,
     dissipation,
     strain_energy,
+    plastic_strain,
     contact_half_width
   };
   enum class Take { mean, max, min };
@@ -301,5 +302,11 @@ struct Scene {
 };
 
 inline int Scene::dimension() const { return space == Space::solid ? 3 : 2; }
+
+/// Whether the stiffness of all bodies is constant: strains are small, and nothing flows.
+inline bool has_constant_stiffness(const Scene& scene) {
+  const auto flows = [](const Body& body) { return std::holds_alternative<J2Plastic>(body.material); };
+  return !scene.finite_strain && std::none_of(scene.bodies.begin(), scene.bodies.end(), flows);
+}
 
 }  // namespace stickslip

@@ -28,13 +28,52 @@ ElementLists inverted_elements(const Model& model, const Slots<double>& slots, c
   return inverted;
 }
 
-template Vector<double> bulk_forces(const Model&, const Slots<double>&, const Vector<double>&, const ElementLists*);
+double yield_margin(const Model& model, const Slots<double>& slots, const BodyMotion<double>& at) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    const auto& body = model.bodies[b];
+    if (body.memory == 0) continue;
+    const auto take = [&](double excess) { least = std::min(least, std::abs(excess)); };
+    const auto continuum = [&]<class Shape, Kinematics kinematics, class L>(const L& law) {
+      if constexpr (Remembers<L>)
+        for (int e = 0; e < body.mesh.element_count(); ++e) {
+          const auto nodes = detail::element_nodes(body, e);
+          const auto local = detail::gather_displacements<double, Shape>(at.displacement, nodes.data());
+          auto before = detail::memory_of_element<L>(body, e, at.before);
+          for_each_gradient<double, Shape, kinematics>(
+              detail::gather_coordinates<double, Shape>(slots.points, nodes.data()), 1.0, [&](const auto& gradient) {
+                take(law.template excess<stress_dimension(kinematics)>(gradient.of(local),
+                                                                       before.template take<L::memory>()));
+              });
+        }
+    };
+    const auto two_nodes = [&]<int D, class L>(const L& law) {
+      if constexpr (Remembers<L>)
+        for (int e = 0; e < body.mesh.element_count(); ++e) {
+          const auto nodes = detail::element_nodes(body, e);
+          take(law.template excess<D>(detail::two_places<double, D>(slots.points, nodes),
+                                      detail::two_node_stretch<double, D>(nodes, &at.displacement),
+                                      detail::memory_of_element<L>(body, e, at.before).template take<L::memory>()));
+        }
+    };
+    detail::with_law<double>(model, slots, b, continuum, two_nodes);
+  }
+  return least;
+}
+
+template Vector<double> bulk_forces(const Model&, const Slots<double>&, const Vector<double>&, const Vector<double>&,
+                                    const ElementLists*);
+template Vector<double> bulk_flow(const Model&, const Slots<double>&, const Vector<double>&, const Vector<double>&);
 template Vector<double> load_vector(const Model&, const Load&, const Slots<double>&);
 template Points<double> initial_points(const Model&, const Numbers<double>&);
 template Slots<double> make_slots(const Model&, const Numbers<double>&, Points<double>);
 template Slots<double> make_slots(const Model&, const Numbers<double>&);
 template Vector<std::complex<double>> bulk_forces(const Model&, const Slots<std::complex<double>>&,
+                                                  const Vector<std::complex<double>>&,
                                                   const Vector<std::complex<double>>&, const ElementLists*);
+template Vector<std::complex<double>> bulk_flow(const Model&, const Slots<std::complex<double>>&,
+                                                const Vector<std::complex<double>>&,
+                                                const Vector<std::complex<double>>&);
 template Vector<std::complex<double>> load_vector(const Model&, const Load&, const Slots<std::complex<double>>&);
 template Points<std::complex<double>> initial_points(const Model&, const Numbers<std::complex<double>>&);
 template Slots<std::complex<double>> make_slots(const Model&, const Numbers<std::complex<double>>&,

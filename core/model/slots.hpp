@@ -56,18 +56,27 @@ Law<T> make_law(const Scene& scene, const Body& body, const Mesh& mesh, const Nu
         if constexpr (std::is_same_v<M, GroundedSpring>) {
           return law_of<T>(material, numbers);
         } else {
-          if constexpr (std::is_same_v<M, LinearElastic>)
-            if (mesh.shape == ElementShape::bar2)
-              return BarLaw<T>{numbers(material.E) * numbers(body.area), numbers(body.area), scene.finite_strain};
-          return law_of<T>(material, scene.space, numbers);
+          if (mesh.shape == ElementShape::bar2) {
+            const BarLaw<T> bar{numbers(material.E) * numbers(body.area), numbers(body.area), scene.finite_strain};
+            if constexpr (std::is_same_v<M, LinearElastic>) return bar;
+            if constexpr (std::is_same_v<M, J2Plastic>) return bar_of<T>(material, bar, numbers);
+          }
+          return law_of<T>(material, scene.space, scene.finite_strain, numbers);
         }
       },
       body.material);
 }
 
+/// Cross-section of bars.
+template <class T>
+T area_of(const Law<T>& bars) {
+  if (const auto* plastic = std::get_if<PlasticBarLaw<T>>(&bars)) return plastic->elastic.area;
+  return std::get<BarLaw<T>>(bars).area;
+}
+
 template <class T>
 T tributary_area(const ContactPoint& point, const Slots<T>& slots) {
-  if (point.area_of_bar) return std::get<BarLaw<T>>(slots.laws[point.slave_body]).area;
+  if (point.area_of_bar) return area_of(slots.laws[point.slave_body]);
   if (point.area_edges.empty()) return T(1);
   T area{};
   for (const auto& edge : point.area_edges) {
@@ -204,30 +213,51 @@ PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point,
 
 }  // namespace detail
 
-/// Internal nodal forces of all bodies, dof-wise. u: all dofs. `only`: elements that are visited, per body; nullptr:
-/// all.
+/// How bodies move in an increment: where to, and what they remember of the last one (History::bodies).
 template <class T>
-Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>& u,
+struct BodyMotion {
+  const Vector<T>& displacement;  ///< all dofs, in the axes
+  const Vector<T>& before;
+};
+
+/// What bodies remember at displacements of all dofs, of what they did `before`; empty where none does.
+template <class T>
+Vector<T> bulk_flow(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& before);
+
+/// Internal nodal forces of all bodies, dof-wise. u: all dofs; `memory`: what they remember there. `only`: elements
+/// that are visited, per body; nullptr: all.
+template <class T>
+Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& memory,
                       const ElementLists* only = nullptr);
 
 /// Nodal forces of a load at history = 1, all dofs.
 template <class T>
 Vector<T> load_vector(const Model& model, const Load& load, const Slots<T>& slots);
 
-/// Calls sink(nodes, K) for each element of body b (or those listed in `only`): node list and tangent, node-major. `u`:
-/// displacements of all dofs; nullptr: none, as for bodies whose tangent is constant.
+/// Calls sink(nodes, K) for each element of body b (or those listed in `only`): node list and tangent, node-major.
+/// `at`: a motion, whose flow the tangent takes in (pre: T is a scalar that is solved in, double or complex); nullptr:
+/// of the start, as for bodies whose tangent is constant.
 template <class T, class Sink>
 void for_each_element_tangent(const Model& model, const Slots<T>& slots, int b, const std::vector<int>* only,
-                              Sink&& sink, const Vector<T>* u = nullptr);
+                              Sink&& sink, const BodyMotion<T>* at = nullptr);
 
-/// The bodies' tangent at displacements u times a vector, all dofs. `only`: as of bulk_forces.
+/// The bodies' tangent at a motion times a vector, all dofs. `only`: as of bulk_forces.
 template <class T>
-Vector<T> bulk_tangent_times(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& vector,
-                             const ElementLists* only = nullptr);
+Vector<T> bulk_tangent_times(const Model& model, const Slots<T>& slots, const BodyMotion<T>& at,
+                             const Vector<T>& vector, const ElementLists* only = nullptr);
 
-/// Strain energy of all bodies at displacements of all dofs.
+/// Strain energy of all bodies at displacements of all dofs, and what they remember there.
 template <class T>
-T bulk_energy(const Model& model, const Slots<T>& slots, const Vector<T>& u);
+T bulk_energy(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& memory);
+
+/// How far the nearest point of the bodies is from beginning to flow, or ceasing to: least |q / bound - 1| of the
+/// trials of a motion. Infinity where no body flows.
+double yield_margin(const Model& model, const Slots<double>& slots, const BodyMotion<double>& at);
+
+/// Calls f(a, volume) at each point of body b with its equivalent plastic strain and volume (of a bar, length times
+/// cross-section); nothing where it does not flow. `memory`: what bodies remember.
+template <class T, class F>
+void for_each_plastic_strain(const Model& model, const Slots<T>& slots, int b, const Vector<T>& memory, F&& f);
 
 /// Elements that displacements invert, body by body; none where the bodies' strains are small.
 ElementLists inverted_elements(const Model& model, const Slots<double>& slots, const Vector<double>& u);
@@ -251,13 +281,19 @@ namespace stickslip {
 
 // Compiled once, in slots.cpp: of what each source would compile again, these took the most time.
 extern template Vector<double> bulk_forces(const Model&, const Slots<double>&, const Vector<double>&,
-                                           const ElementLists*);
+                                           const Vector<double>&, const ElementLists*);
+extern template Vector<double> bulk_flow(const Model&, const Slots<double>&, const Vector<double>&,
+                                         const Vector<double>&);
 extern template Vector<double> load_vector(const Model&, const Load&, const Slots<double>&);
 extern template Points<double> initial_points(const Model&, const Numbers<double>&);
 extern template Slots<double> make_slots(const Model&, const Numbers<double>&, Points<double>);
 extern template Slots<double> make_slots(const Model&, const Numbers<double>&);
 extern template Vector<std::complex<double>> bulk_forces(const Model&, const Slots<std::complex<double>>&,
+                                                         const Vector<std::complex<double>>&,
                                                          const Vector<std::complex<double>>&, const ElementLists*);
+extern template Vector<std::complex<double>> bulk_flow(const Model&, const Slots<std::complex<double>>&,
+                                                       const Vector<std::complex<double>>&,
+                                                       const Vector<std::complex<double>>&);
 extern template Vector<std::complex<double>> load_vector(const Model&, const Load&, const Slots<std::complex<double>>&);
 extern template Points<std::complex<double>> initial_points(const Model&, const Numbers<std::complex<double>>&);
 extern template Slots<std::complex<double>> make_slots(const Model&, const Numbers<std::complex<double>>&,

@@ -64,7 +64,12 @@ void SparseEngine<T>::lay_out(const std::vector<std::vector<int>>& places) {
   point_map_.clear();
   for (std::size_t p = 0; p < places.size() && !model_.slides_along_curves(); ++p)
     point_map_.push_back(map_of(*pattern_, rows_of(p, places[p])));
-  bulk_ = assemble_bodies<T>(model_, slots_, lists, *pattern_, linearised_.size() > 0 ? &linearised_ : nullptr);
+  if (linearised_) {
+    const BodyMotion<T> at{linearised_->first, linearised_->second};
+    bulk_ = assemble_bodies<T>(model_, slots_, lists, *pattern_, &at);
+  } else {
+    bulk_ = assemble_bodies<T>(model_, slots_, lists, *pattern_);
+  }
   if (model_.slides_along_curves()) places_ = places;
   if (!model_.effects.linear_bulk) lists_ = std::move(lists);
   analysed_ = false;
@@ -108,14 +113,15 @@ void SparseEngine<T>::make_room(const std::vector<PointTangent<T>>& tangents) {
 }
 
 template <class T>
-void SparseEngine<T>::linearise(const Vector<T>& displacement) {
-  bulk_ = assemble_bodies<T>(model_, slots_, *lists_, *pattern_, &displacement);
-  if (model_.slides_along_curves()) linearised_ = displacement;
+void SparseEngine<T>::linearise(const BodyMotion<T>& at) {
+  bulk_ = assemble_bodies<T>(model_, slots_, *lists_, *pattern_, &at);
+  if (model_.slides_along_curves()) linearised_.emplace(at.displacement, at.before);
   valid_ = false;
 }
 
 template <class T>
-Vector<T> SparseEngine<T>::begin(double time, const Vector<T>& displacement) {
+Vector<T> SparseEngine<T>::begin(double time, const Vector<T>& displacement, const Vector<T>& before) {
+  before_ = before;
   external_ = into_frames(model_, slots_.frames, Layout::all, external_forces(model_, slots_, time));
   Vector<T> u = displacement;
   prescribe(model_, slots_, time, u);
@@ -124,7 +130,9 @@ Vector<T> SparseEngine<T>::begin(double time, const Vector<T>& displacement) {
 
 template <class T>
 Vector<T> SparseEngine<T>::residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const {
-  Vector<T> rows = into_frames(model_, slots_.frames, Layout::all, bulk_forces(model_, slots_, all(u)));
+  const Vector<T> moved = all(u);
+  Vector<T> rows = into_frames(model_, slots_.frames, Layout::all,
+                               bulk_forces(model_, slots_, moved, bulk_flow(model_, slots_, moved, before_)));
   const int D = model_.dimension;
   scale.force = std::max(
       {scale.force, largest_nodal_norm(rows, D), largest_nodal_norm(external_, D), largest_nodal_norm(contact, D)});

@@ -21,7 +21,8 @@ class SparseEngine {
   /// `unknown_multipliers`: the monolithic method's layout, [free dofs; multipliers]. `cone`: of all its systems.
   SparseEngine(const Model& model, const Slots<T>& slots, bool unknown_multipliers, ConeRadius cone, Backend backend);
 
-  Vector<T> begin(double time, const Vector<T>& displacement);  ///< all dofs, prescribed values at `time` set
+  /// All dofs, prescribed values at `time` set. `before`: what bodies remember of the last increment.
+  Vector<T> begin(double time, const Vector<T>& displacement, const Vector<T>& before);
   Vector<T> compact(const Vector<T>& u) const {
     return out_of_frames(model_, slots_.frames, Layout::compact, to_compact(model_, u));
   }
@@ -29,8 +30,8 @@ class SparseEngine {
   /// f_int - f_ext + contact.
   Vector<T> residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const;
   bool is_free(Eigen::Index row) const { return model_.free_index[row] >= 0; }
-  /// Takes the bodies' tangent at displacements (all dofs, in the axes), for all that follows. pre: it depends on them.
-  void linearise(const Vector<T>& displacement);
+  /// Takes the bodies' tangent at a motion, for all that follows. pre: it depends on that.
+  void linearise(const BodyMotion<T>& at);
   /// `hold`: stiffness against motion of each contact node, the same in all directions, force per length; empty: none.
   bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
   /// In place of factorise() where few points changed since (model/tangent_update.hpp); until the next factorise() all
@@ -65,6 +66,7 @@ class SparseEngine {
   Symmetry symmetry_;
   int size_;
   Vector<T> external_;  ///< in the frames
+  Vector<T> before_;    ///< what bodies remember of the last increment
   std::shared_ptr<Pattern> pattern_;
   /// Makes the pattern of the bodies and of points with these places (Model::contact_nodes), and what hangs on it.
   void lay_out(const std::vector<std::vector<int>>& places);
@@ -75,9 +77,10 @@ class SparseEngine {
   /// Rows of a point's entries.
   std::vector<int> rows_of(std::size_t p, const std::vector<int>& places) const;
 
-  std::optional<RowLists> lists_;            ///< of the tangent; none where the bodies' is constant
-  std::vector<std::vector<int>> places_;     ///< per point: those that the pattern has, sorted; none slides: empty
-  Vector<T> linearised_;                     ///< displacements that the bodies' tangent is taken at
+  std::optional<RowLists> lists_;         ///< of the tangent; none where the bodies' is constant
+  std::vector<std::vector<int>> places_;  ///< per point: those that the pattern has, sorted; none slides: empty
+  /// Motion that the bodies' tangent is taken at, kept where the pattern may change: displacements, what is remembered.
+  std::optional<std::pair<Vector<T>, Vector<T>>> linearised_;
   std::vector<std::vector<int>> point_map_;  ///< per point: entry of each (row, column) pair of its rows, -1 if fixed
   std::vector<T> bulk_, values_;
   double stiffness_ = 0;  ///< largest diagonal entry, for the rounding of a residual

@@ -16,6 +16,21 @@ struct BarLaw {
 
   bool is_linear() const { return !green; }
 
+  /// `coordinates`: D x 2.
+  template <int D>
+  T strain(const Mat<T, D, 2>& coordinates, const Vec<T, D>& d) const {
+    const Vec<T, D> axis = coordinates.col(1) - coordinates.col(0);
+    return (dot(axis, d) + (green ? dot(d, d) / T(2) : T(0))) / dot(axis, axis);
+  }
+  /// Of the force on the second node per stress resultant: a unit vector where strains are small.
+  template <int D>
+  Vec<T, D> direction(const Mat<T, D, 2>& coordinates, const Vec<T, D>& d) const {
+    const Vec<T, D> axis = coordinates.col(1) - coordinates.col(0);
+    Vec<T, D> along;
+    for (int i = 0; i < D; ++i) along[i] = (green ? T(axis[i] + d[i]) : axis[i]) / norm(axis);
+    return along;
+  }
+
   /// Derivative of the force by d. `coordinates`: D x 2.
   template <int D>
   Mat<T, D> stiffness(const Mat<T, D, 2>& coordinates, const Vec<T, D>& d) const {

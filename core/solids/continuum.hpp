@@ -142,14 +142,37 @@ void for_each_gradient(const Mat<T, 2, Shape::nodes>& coordinates, const T& dept
   }
 }
 
+/// What the points of an element remember: a law's numbers a point, one after another; nullptr where it has none.
+template <class T>
+class ElementMemory {
+ public:
+  ElementMemory(const T* numbers = nullptr) : next_(numbers) {}  // NOLINT: what is remembered is one
+  /// Of the next point.
+  template <int count>
+  Vec<T, count> take() {
+    const Vec<T, count> memory = Eigen::Map<const Vec<T, count>>(next_);
+    next_ += count;
+    return memory;
+  }
+
+ private:
+  const T* next_;
+};
+
 /// Internal nodal forces, 2 x nodes. G, the scalar of the geometry, is T, or double where no derivative rides on it.
+/// `memory`: that the forces are at, of a law that remembers.
 template <class T, class Shape, Kinematics kinematics = Kinematics::plane, class G = T, class Law>
 Mat<T, 2, Shape::nodes> element_forces(const Law& law, const std::type_identity_t<Mat<G, 2, Shape::nodes>>& coordinates,
-                                       const Mat<T, 2, Shape::nodes>& u, const std::type_identity_t<G>& depth = G(1)) {
+                                       const Mat<T, 2, Shape::nodes>& u, const std::type_identity_t<G>& depth = G(1),
+                                       ElementMemory<T> memory = {}) {
   Mat<T, 2, Shape::nodes> forces = Mat<T, 2, Shape::nodes>::Constant(T(0));
   for_each_gradient<G, Shape, kinematics>(coordinates, depth, [&](const auto& gradient) {
     constexpr int rows = stress_dimension(kinematics);
-    Mat<T, rows> sigma = law.template stress<T, rows>(gradient.of(u));
+    Mat<T, rows> sigma;
+    if constexpr (requires { Law::memory; })
+      sigma = law.template stress<T, rows>(gradient.of(u), memory.template take<Law::memory>());
+    else
+      sigma = law.template stress<T, rows>(gradient.of(u));
     for (int k = 0; k < rows * rows; ++k) sigma.data()[k] = sigma.data()[k] * gradient.volume;
     for (int a = 0; a < Shape::nodes; ++a)
       for (int i = 0; i < 2; ++i)
@@ -163,15 +186,22 @@ namespace detail {
 /// Place of H_pq, or sigma_pq, among those that are not always zero: 00 01 10 11 22.
 constexpr int component(int p, int q) { return p == 2 ? 4 : 2 * p + q; }
 
-/// dsigma/dH times a volume, component by component.
+/// dsigma/dH times a volume, component by component; of a law that remembers, with the flow from `before`.
 template <class T, int components, int rows, class Law>
-Mat<T, components> material_tangent(const Law& law, const Mat<T, rows>& H, const T& volume) {
+Mat<T, components> material_tangent(const Law& law, const Mat<T, rows>& H, const T& volume, ElementMemory<T>& before) {
   using Probe = Dual<components, T>;
   Mat<Probe, rows> seeded = Mat<Probe, rows>::Constant(Probe(T(0)));
   for (int p = 0; p < rows; ++p)
     for (int q = 0; q < rows; ++q)
       if ((p == 2) == (q == 2)) seeded(p, q) = Probe::seed(H(p, q), component(p, q));
-  const Mat<Probe, rows> sigma = law.template stress<Probe, rows>(seeded);
+  Mat<Probe, rows> sigma;
+  if constexpr (requires { Law::memory; }) {
+    const auto memory = before.template take<Law::memory>();
+    const Vec<Probe, Law::memory> constant = memory.unaryExpr([](const T& x) { return Probe(x); });
+    sigma = law.template stress<Probe, rows>(seeded, law.template flow<Probe, rows>(seeded, constant));
+  } else {
+    sigma = law.template stress<Probe, rows>(seeded);
+  }
   Mat<T, components> tangent;
   for (int p = 0; p < rows; ++p)
     for (int q = 0; q < rows; ++q)
@@ -181,15 +211,16 @@ Mat<T, components> material_tangent(const Law& law, const Mat<T, rows>& H, const
 
 }  // namespace detail
 
-/// Tangent, (2 nodes) x (2 nodes), node-major.
+/// Tangent, (2 nodes) x (2 nodes), node-major. `before`: the memory that a law which remembers flows from.
 template <class T, class Shape, Kinematics kinematics = Kinematics::plane, class Law>
 Mat<T, 2 * Shape::nodes> element_tangent(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates,
-                                         const Mat<T, 2, Shape::nodes>& u, const T& depth = T(1)) {
+                                         const Mat<T, 2, Shape::nodes>& u, const T& depth = T(1),
+                                         ElementMemory<T> before = {}) {
   constexpr int n = Shape::nodes;
   Mat<T, 2 * n> K = Mat<T, 2 * n>::Constant(T(0));
   for_each_gradient<T, Shape, kinematics>(coordinates, depth, [&](const auto& gradient) {
     constexpr int rows = stress_dimension(kinematics), components = rows == 2 ? 4 : 5;
-    const auto C = detail::material_tangent<T, components, rows>(law, gradient.of(u), gradient.volume);
+    const auto C = detail::material_tangent<T, components, rows>(law, gradient.of(u), gradient.volume, before);
     for (int b = 0; b < n; ++b)
       for (int k = 0; k < 2; ++k) {
         Vec<T, components> column = Vec<T, components>::Constant(T(0));  // dsigma/du_kb
@@ -206,16 +237,38 @@ Mat<T, 2 * Shape::nodes> element_tangent(const Law& law, const Mat<T, 2, Shape::
   return K;
 }
 
-/// Strain energy int W dV.
+/// Strain energy int W dV, of a law that remembers at a memory.
 template <class T, class Shape, Kinematics kinematics = Kinematics::plane, class Law>
 T element_energy(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates, const Mat<T, 2, Shape::nodes>& u,
-                 const T& depth = T(1)) {
+                 const T& depth = T(1), ElementMemory<T> memory = {}) {
   constexpr int rows = stress_dimension(kinematics);
   T energy{};
   for_each_gradient<T, Shape, kinematics>(coordinates, depth, [&](const auto& gradient) {
-    energy += law.template energy<T, rows>(gradient.of(u)) * gradient.volume;
+    if constexpr (requires { Law::memory; })
+      energy += law.template energy<T, rows>(gradient.of(u), memory.template take<Law::memory>()) * gradient.volume;
+    else
+      energy += law.template energy<T, rows>(gradient.of(u)) * gradient.volume;
   });
   return energy;
+}
+
+/// The memory that displacements leave, point by point, of the one before. `after` has room for it.
+template <class T, class Shape, Kinematics kinematics = Kinematics::plane, class Law>
+void element_flow(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates, const Mat<T, 2, Shape::nodes>& u,
+                  ElementMemory<T> before, T* after) {
+  constexpr int rows = stress_dimension(kinematics);
+  for_each_gradient<T, Shape, kinematics>(coordinates, T(1), [&](const auto& gradient) {
+    const Vec<T, Law::memory> flown = law.template flow<T, rows>(gradient.of(u), before.template take<Law::memory>());
+    std::copy(flown.begin(), flown.end(), after);
+    after += Law::memory;
+  });
+}
+
+/// Quadrature points of an element.
+template <class Shape>
+constexpr int points_of(Kinematics kinematics) {
+  return static_cast<int>(is_of_revolution(kinematics) ? std::tuple_size_v<decltype(Shape::quadrature_of_revolution())>
+                                                       : std::tuple_size_v<decltype(Shape::quadrature())>);
 }
 
 }  // namespace stickslip

@@ -21,7 +21,7 @@ struct LinearElastic {
 template <class T>
 struct LinearElasticLaw {
   static constexpr bool is_finite = false;
-  static constexpr bool is_made_for(Kinematics) { return true; }
+  static constexpr bool is_made_for(Kinematics, bool finite_strain) { return !finite_strain; }
 
   T lame, shear;
   Space space = Space::plane_strain;
@@ -72,7 +72,8 @@ struct LinearElasticLaw {
 };
 
 template <class T>
-LinearElasticLaw<T> law_of(const LinearElastic& material, Space space, const Numbers<T>& numbers) {
+LinearElasticLaw<T> law_of(const LinearElastic& material, Space space, bool /*finite_strain*/,
+                           const Numbers<T>& numbers) {
   return {numbers(material.E), numbers(material.nu), space};
 }
 

@@ -26,7 +26,9 @@ struct NeoHookean {
 template <class T>
 struct NeoHookeanLaw {
   static constexpr bool is_finite = true;
-  static constexpr bool is_made_for(Kinematics kinematics) { return !has_mean_dilatation(kinematics); }
+  static constexpr bool is_made_for(Kinematics kinematics, bool finite_strain) {
+    return finite_strain && !has_mean_dilatation(kinematics);
+  }
 
   T lame, shear;
   NeoHookean::Volumetric volumetric = NeoHookean::Volumetric::quadratic;
@@ -105,7 +107,7 @@ struct NeoHookeanLaw {
 };
 
 template <class T>
-NeoHookeanLaw<T> law_of(const NeoHookean& material, Space, const Numbers<T>& numbers) {
+NeoHookeanLaw<T> law_of(const NeoHookean& material, Space, bool /*finite_strain*/, const Numbers<T>& numbers) {
   const LinearElasticLaw<T> small(numbers(material.E), numbers(material.nu), Space::plane_strain);
   return {small.lame, small.shear, material.volumetric};
 }

@@ -164,9 +164,10 @@ int run_command(const RunArguments& arguments) {
   const bool writes = !arguments.json || !arguments.output.empty();
   const auto directory = output_directory(arguments.output, arguments.scene);
   if (!arguments.export_to.empty()) check_folder(arguments.export_to);
-  if (!arguments.export_to.empty() && loaded->input.scene.finite_strain)
+  if (!arguments.export_to.empty() && !has_constant_stiffness(loaded->input.scene))
     throw InputFault(
-        "--export: the system of a scene of finite strain is not linear; only small strain has a K to write");
+        "--export: the system of finite strain, or of bodies that flow, is not linear; only linear bodies have a K to "
+        "write");
   if (!writes && arguments.report) throw InputFault("--report: with --json nothing is written; give -o DIR too");
   if (writes) prepare_run_directory(directory, arguments.report);
   std::optional<DirectoryLock> lock;

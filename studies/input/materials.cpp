@@ -18,6 +18,12 @@ std::optional<Material> read_neo_hookean(const JsonNode& node, SceneReading& rea
   return material;
 }
 
+std::optional<Material> read_j2(const JsonNode& node, SceneReading& reading) {
+  if (!node.is_object({{"E", "nu", "yield", "hardening"}})) return std::nullopt;
+  return J2Plastic{reading.required(node, "E", positive), reading.required(node, "nu", poisson_ratio),
+                   reading.required(node, "yield", positive), reading.required(node, "hardening", not_negative)};
+}
+
 std::optional<Material> read_spring(const JsonNode& node, SceneReading& reading) {
   if (!node.is_object({{"stiffness"}})) return std::nullopt;
   const auto matrix = node.find("stiffness");
@@ -68,6 +74,18 @@ constexpr const char* neo_hookean_schema = R"json({
     "volumetric": {"description": "energy of a change of volume: lame/2 (J - 1)^2, or lame/2 (ln J)^2",
       "enum": ["quadratic", "log"], "default": "quadratic"}}})json";
 
+constexpr const char* j2_schema = R"json({
+  "description": "elastoplastic, of all but points: J2 (von Mises) with linear isotropic hardening", "type": "object",
+  "examples": [{"E": 1000, "nu": 0.3, "yield": 10, "hardening": 100}],
+  "required": ["E", "nu", "yield", "hardening"], "additionalProperties": false, "properties": {
+    "E": {"description": "Young's modulus (force per area)", "$ref": "#/$defs/positive", "examples": [1000]},
+    "nu": {"description": "Poisson's ratio", "title": "number > -1 and < 0.5", "type": "number",
+      "exclusiveMinimum": -1, "exclusiveMaximum": 0.5, "examples": [0.3]},
+    "yield": {"description": "stress at which it begins to flow (force per area)", "$ref": "#/$defs/positive",
+      "examples": [10]},
+    "hardening": {"description": "rise of that stress with the equivalent plastic strain; 0: perfect plasticity (force per area)",
+      "title": "number >= 0", "type": "number", "minimum": 0, "examples": [100]}}})json";
+
 constexpr const char* spring_schema = R"json({
   "description": "of a point: the spring to its anchor", "type": "object",
   "examples": [{"stiffness": [[100, 0], [0, 100]]}], "required": ["stiffness"],
@@ -87,6 +105,8 @@ const std::vector<MaterialKind>& material_kinds() {
        read_elastic},
       {"neo_hookean", neo_hookean_schema, "fills all but bars and points where strains are finite",
        [](Filling filling, bool finite) { return filling == Filling::continuum && finite; }, read_neo_hookean},
+      {"j2_plastic", j2_schema, "fills all but points", [](Filling filling, bool) { return filling != Filling::point; },
+       read_j2},
       {"grounded_spring", spring_schema, "holds a point",
        [](Filling filling, bool) { return filling == Filling::point; }, read_spring}};
   return kinds;

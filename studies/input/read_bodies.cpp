@@ -215,7 +215,7 @@ std::optional<Material> read_material(const JsonNode& node, const MeshDescriptio
     if (mesh && kind.goes_with(filling_of(*mesh), finite)) allowed.push_back(kind.key);
     places += (places.empty() ? "" : ", ") + keys.back() + " " + kind.place;
   }
-  const auto chosen = node.kind(keys, {"j2_plastic"});
+  const auto chosen = node.kind(keys);
   if (!chosen) return std::nullopt;
   const auto& [name, material] = *chosen;
   if (mesh && std::find(allowed.begin(), allowed.end(), name) == allowed.end())

@@ -25,6 +25,7 @@ constexpr std::array kinds{
     Kind{"slip", Response::Kind::slip, true, Kind::Component::axis_in_space, true},
     Kind{"dissipation", Response::Kind::dissipation, true, Kind::Component::none, false},
     Kind{"strain_energy", Response::Kind::strain_energy, false, Kind::Component::none, false},
+    Kind{"plastic_strain", Response::Kind::plastic_strain, false, Kind::Component::none, true},
     Kind{"contact_half_width", Response::Kind::contact_half_width, true, Kind::Component::none, false},
 };
 
@@ -42,7 +43,11 @@ Keys keys_of(const Kind& kind, const SceneReading& reading) {
     (reading.dimension() == 3 ? keys.required : keys.optional).push_back("component");
   else if (kind.component != Kind::Component::none)
     keys.required.push_back("component");
-  if (kind.sampled) keys.optional.insert(keys.optional.end(), {"take", "at"});
+  if (kind.sampled) keys.optional.emplace_back("take");
+  if (kind.kind == Response::Kind::plastic_strain)
+    keys.required.emplace_back("on");
+  else if (kind.sampled)
+    keys.optional.emplace_back("at");
   if (has_moment(kind, reading)) keys.optional.push_back("about");
   return keys;
 }
@@ -70,6 +75,25 @@ void read_on(const JsonNode& node, bool beside_at, Response& response, SceneRead
     reading.side(node);
   else if (std::find(names.begin(), names.end(), response.on) == names.end())
     node.error(R"(must be a body beside "at": a point is taken, and not a side; allowed: )" + listed(names));
+}
+
+/// "on" of a plastic strain: a body that flows.
+void read_flowing_body(const JsonNode& node, Response& response, SceneReading& reading) {
+  const auto name = node.text();
+  if (!name) return;
+  response.on = *name;
+  std::vector<std::string> flowing;
+  for (const Body& body : reading.scene.bodies)
+    if (std::holds_alternative<J2Plastic>(body.material)) flowing.push_back(body.name);
+  if (std::find(flowing.begin(), flowing.end(), *name) != flowing.end()) return;
+  const auto& names = reading.body_names;
+  if (flowing.empty())
+    node.error("is " + in_quotes(*name) + ": no body flows; give one the material j2_plastic");
+  else
+    node.error("is " + in_quotes(*name) + ": " +
+               (std::find(names.begin(), names.end(), *name) == names.end() ? "there is no such body"
+                                                                            : "that body does not flow") +
+               "; allowed: " + listed(flowing));
 }
 
 /// Coordinates that say where a response is taken: they are no parameters.
@@ -116,7 +140,10 @@ void read_response(const std::string& name, const JsonNode& outer, SceneReading&
   const auto on = node.find("on"), at = node.find("at"), take = node.find("take"), component = node.find("component");
   if (const auto contact = node.find("contact"); contact && kind.of_contact)
     read_contact_name(*contact, kind, response, reading);
-  if (on && !kind.of_contact) read_on(*on, at.has_value(), response, reading);
+  if (on && kind.kind == Response::Kind::plastic_strain)
+    read_flowing_body(*on, response, reading);
+  else if (on && !kind.of_contact)
+    read_on(*on, at.has_value(), response, reading);
   if (kind.kind == Response::Kind::displacement && !on && !at)
     node.error(R"(one of the keys is missing: "on", a side BODY.SIDE, or "at", a point)");
   if (component && kind.component != Kind::Component::none) read_component(node, *component, kind, response, reading);

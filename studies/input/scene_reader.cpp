@@ -31,9 +31,9 @@ void read_linear_solver(const JsonNode& node, const Scene& scene, Input& input) 
     const auto name = engine->choice({"auto", "sparse", "condensed"});
     if (name == "sparse") input.linear_algebra.engine = Engine::sparse;
     if (name == "condensed") input.linear_algebra.engine = Engine::condensed;
-    if (name == "condensed" && scene.finite_strain)
+    if (name == "condensed" && !has_constant_stiffness(scene))
       engine->error(
-          R"(is "condensed", which needs bodies of a constant stiffness; allowed at finite strain: auto, sparse)");
+          R"(is "condensed", which needs bodies of a constant stiffness; allowed where strains are finite or bodies flow: auto, sparse)");
   }
   if (const auto backend = node.find("backend")) {
     const std::map<std::string, Backend> all{{"auto", Backend::automatic},

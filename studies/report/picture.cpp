@@ -29,6 +29,7 @@ struct Mesh {
   std::vector<Point> displacement;         ///< 0 where not recorded
   std::vector<std::vector<int>> elements;  ///< node lists with valid indices
   std::vector<double> stress;              ///< one an element, or empty
+  std::vector<double> plastic;             ///< equivalent plastic strain, one an element; empty where nothing flows
   std::vector<int> body;                   ///< one an element, or empty
   bool in_space = false;                   ///< three coordinates, of which two are kept: seen along z
 };
@@ -66,7 +67,7 @@ Mesh read_mesh(const json& picture) {
     mesh.displacement.push_back(i < moved.size() ? seen(moved[i]).value_or(Point{}) : Point{});
   }
   const json &stress = array_at(picture, "von_mises"), &body = array_at(picture, "bodies");
-  const json& elements = array_at(picture, "elements");
+  const json &elements = array_at(picture, "elements"), &plastic = array_at(picture, "plastic_strain");
   for (std::size_t e = 0; e < elements.size(); ++e) {
     std::vector<int> nodes;
     for (const auto& node : elements[e])
@@ -74,6 +75,8 @@ Mesh read_mesh(const json& picture) {
     if (nodes.size() < 2 || nodes.size() != elements[e].size()) continue;
     mesh.elements.push_back(nodes);
     mesh.stress.push_back(e < stress.size() && stress[e].is_number() ? stress[e].get<double>() : 0);
+    if (!plastic.empty())
+      mesh.plastic.push_back(e < plastic.size() && plastic[e].is_number() ? plastic[e].get<double>() : 0);
     mesh.body.push_back(e < body.size() && body[e].is_number_integer() ? body[e].get<int>() : 0);
   }
   return mesh;
@@ -178,6 +181,25 @@ void draw_elements(const Mesh& mesh, const std::vector<Point>& at, const Frame& 
   drawing.path(std::move(lines), {"ink", "", 2, {}});
 }
 
+/// A dot in the middle of each element that has flowed.
+void draw_flowed(const Mesh& mesh, const std::vector<Point>& at, const Frame& frame, Drawing& drawing) {
+  constexpr double size = 2.6;  // pixels
+  Path dots;
+  for (std::size_t e = 0; e < mesh.plastic.size(); ++e) {
+    if (!(mesh.plastic[e] > 0)) continue;
+    Point middle;
+    Box box;
+    for (const int i : mesh.elements[e]) {
+      middle.x += at[i].x / static_cast<double>(mesh.elements[e].size());
+      middle.y += at[i].y / static_cast<double>(mesh.elements[e].size());
+      box.add(at[i]);
+    }
+    if (box.overlaps(frame.window()))
+      dots.rectangle(frame.x(middle.x) - size / 2, frame.y(middle.y) - size / 2, size, size);
+  }
+  drawing.path(std::move(dots), {"", "ink", 0, {}});
+}
+
 constexpr double canvas = 1000, tallest = 520;  // of the picture; the legend comes below
 
 /// A square around the contact points that touch (around all where none does), and some room; empty without points.
@@ -249,10 +271,17 @@ std::string in_words(const Scene& scene, bool with_close_up) {
   const auto& elements = scene.mesh.elements;
   const bool springs =
       std::all_of(elements.begin(), elements.end(), [&](const auto& nodes) { return is_spring(scene.mesh, nodes); });
+  const auto& plastic = scene.mesh.plastic;
+  const auto largest = std::max_element(plastic.begin(), plastic.end());
+  const std::string flow =
+      plastic.empty() ? ""
+      : !(*largest > 0)
+          ? "; nothing has flowed"
+          : fmt::format("; a dot is an element that has flowed, by {:.3g} of plastic strain at most", *largest);
   return fmt::format(
       "At the last step: {}, {}; {}{}.{}", counted(std::ssize(elements), springs ? "spring" : "element"),
       counted(std::ssize(scene.contact), "contact point"), scale,
-      std::string(springs ? "; a cross is a spring's anchor" : "") + (scene.mesh.in_space ? "; seen along z" : ""),
+      flow + (springs ? "; a cross is a spring's anchor" : "") + (scene.mesh.in_space ? "; seen along z" : ""),
       scene.zooms && with_close_up ? " Right: the contact at true scale." : "");
 }
 
@@ -265,6 +294,7 @@ json rows_of(const Scene& scene, const std::vector<Point>& nodes) {
     std::string corners;
     for (const int node : scene.mesh.elements[e]) corners += (corners.empty() ? "" : " ") + std::to_string(node);
     rows.push_back({{"what", "element"}, {"number", e}, {"nodes", corners}, {"stress", scene.mesh.stress[e]}});
+    if (!scene.mesh.plastic.empty()) rows.back()["plastic_strain"] = scene.mesh.plastic[e];
   }
   const double scale = scene.zooms ? 1 : scene.scale;
   for (std::size_t i = 0; i < scene.contact.size(); ++i) {
@@ -283,6 +313,7 @@ void draw_bodies(const Scene& scene, const json& obstacles, double scale, const 
                  const Frame& frame, bool with_mesh, Drawing& drawing) {
   draw_obstacles(obstacles, scale, frame, drawing);
   draw_elements(scene.mesh, nodes, frame, scene.peak, with_mesh, drawing);
+  draw_flowed(scene.mesh, nodes, frame, drawing);
   draw_outlines(scene.mesh, nodes, frame, drawing);
 }
 

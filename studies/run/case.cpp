@@ -16,7 +16,7 @@ namespace {
 void take_sides(const CaseResult& result, std::size_t n, StepResult& step) {
   const auto& scene = result.problem->model.scene;
   if (scene.sensitivity_mode == SensitivityMode::adjoint)  // (which has no sides)
-    step.differentiable = std::min(step.margins.open, step.margins.slip) > weak_margin;
+    step.differentiable = step.margins.least() > weak_margin;
   const auto take = [&](const auto& backward, const auto& forward) {
     if (n >= backward.size()) return;
     step.backward = backward[n];
@@ -26,10 +26,17 @@ void take_sides(const CaseResult& result, std::size_t n, StepResult& step) {
     take(result.one_sided->backward, result.one_sided->forward);
   else
     take(result.gradients.below, result.gradients.above);
+  if (step.margins.yield <= weak_margin) step.differentiable = false;  // (whose sides are not known)
   if (step.backward.size() == 0) return;
   for (std::size_t i = 0; i < scene.responses.size(); ++i)
     for (std::size_t j = 0; j < scene.parameters.size(); ++j)
       if (step.has_kink(scene, result.method, i, j)) step.differentiable = false;
+}
+
+/// Whether bodies move in an increment; where they rest, what is on its bound stays there.
+bool flows_on(const State<double>& from, const State<double>& to) {
+  constexpr double rest = 1e-12;  // of the displacement: rounding
+  return (to.displacement - from.displacement).cwiseAbs().maxCoeff() > rest * to.displacement.cwiseAbs().maxCoeff();
 }
 
 /// `errors`: per increment.
@@ -46,6 +53,9 @@ std::vector<StepResult> gather_steps(const CaseResult& result, const std::vector
     step.increment = &increment;
     step.kkt = errors[n];
     step.margins = margins(model, slots, increment.state);
+    const auto& previous = n == 0 ? result.trajectory.initial : result.trajectory.increments[n - 1].state;
+    if (model.effects.plasticity && flows_on(previous, increment.state))
+      step.margins.yield = yield_margin(model, slots, {increment.state.displacement, previous.history.bodies});
     step.responses = evaluate_responses(model, slots, increment.state, increment.time);
     if (n < result.gradients.of.size()) step.sensitivities = result.gradients.of[n];
     if (n < result.gradients.records.size()) step.scheme = result.gradients.records[n];

@@ -177,6 +177,7 @@ json steps_json(const CaseResult& result) {
                   {"kkt", kkt_json(step.kkt)},
                   {"margins", {{"open", finite(step.margins.open)}, {"slip", finite(step.margins.slip)}}},
                   {"responses", responses}};
+    if (result.problem->model.effects.plasticity) entry["margins"]["yield"] = finite(step.margins.yield);
     if (!scene.parameters.empty()) {
       if (scene.sensitivity_mode == SensitivityMode::direct) entry["sensitivities"] = sensitivities;
       entry["differentiable"] = step.differentiable;
@@ -267,7 +268,7 @@ json result_json(const CaseResult& result, const std::string& scene_text) {
   out["message"] = result.message();
   out["effects"] = {{"friction", effects.friction},
                     {"finite_strain", model.scene.finite_strain},
-                    {"plasticity", false},
+                    {"plasticity", effects.plasticity},
                     {"smoothing", effects.smoothing},
                     {"sensitivity", effects.sensitivity}};
   out["ledger"] = ledger_json(ledger(result));

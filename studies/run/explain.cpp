@@ -109,7 +109,8 @@ std::string explain(const Input& input, const Problem& problem) {
   text += "\nsimulated:\n";
   if (effects.contact) text += "  unilateral contact\n";
   if (effects.friction) text += "  friction, path dependent (slip is remembered)\n";
-  if (!effects.linear_bulk) text += "  finite strain\n";
+  if (scene.finite_strain) text += "  finite strain\n";
+  if (effects.plasticity) text += "  plasticity, path dependent (plastic strains are remembered)\n";
   if (effects.current_geometry) text += "  large sliding, normals that turn\n";
   if (effects.deformable_master) text += "  contact between deformable bodies\n";
   if (effects.smoothing) text += "  smooth masters\n";
@@ -122,8 +123,8 @@ std::string explain(const Input& input, const Problem& problem) {
   if (!effects.contact) text += "  contact: no slave node faces a master\n";
   if (!effects.friction) text += "  friction: no contact has any\n";
   if (!effects.sensitivity) text += "  derivatives: the scene names no parameters\n";
-  text += fmt::format("  {}plasticity, {}inertia\n", scene.finite_strain ? "" : "large displacements and sliding, ",
-                      effects.smoothing ? "" : "smoothing, ");
+  text += fmt::format("  {}{}{}inertia\n", scene.finite_strain ? "" : "large displacements and sliding, ",
+                      effects.plasticity ? "" : "plasticity, ", effects.smoothing ? "" : "smoothing, ");
   return text;
 }
 

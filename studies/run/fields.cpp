@@ -18,26 +18,6 @@ namespace {
 
 using nlohmann::json;
 
-/// Stress of a displacement gradient, xx yy zz xy; Cauchy's at finite strain.
-template <int rows>
-std::array<double, 4> stress_of(const Law<double>& law, const Mat<double, rows>& H) {
-  return std::visit(
-      [&]<class L>(const L& of) -> std::array<double, 4> {
-        if constexpr (requires { L::is_finite; }) {
-          Mat<double, rows> s = Mat<double, rows>::Zero();
-          if constexpr (rows == 2 || L::is_made_for(Kinematics::revolution)) s = of.template stress<double, rows>(H);
-          if (L::is_finite) {
-            const Mat<double, rows> F = Mat<double, rows>::Identity() + H;
-            s = s * F.transpose() / F.determinant();
-          }
-          if constexpr (rows == 2) return {s(0, 0), s(1, 1), of.stress_across(H), s(0, 1)};
-          if constexpr (rows == 3) return {s(0, 0), s(1, 1), s(2, 2), s(0, 1)};
-        }
-        return {};
-      },
-      law);
-}
-
 /// Mean stress of each element, xx yy zz xy yz xz; zero for lumped elements. Plane strain: zz = nu (xx + yy);
 /// axisymmetric: zz is the hoop stress.
 Matrix<double> element_stress(const Problem& problem, const State<double>& state) {
@@ -49,9 +29,9 @@ Matrix<double> element_stress(const Problem& problem, const State<double>& state
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const auto& law = problem.slots.laws[b];
     Vector<double> volumes = Vector<double>::Zero(model.bodies[b].mesh.element_count());
-    for_each_strain(problem, state.displacement, b, [&](int e, const auto& H, double volume) {
+    for_each_strain(problem, state, b, [&](int e, const auto& H, double volume, const double* memory) {
       constexpr int rows = std::decay_t<decltype(H)>::RowsAtCompileTime;
-      const auto [xx, yy, zz, xy] = stress_of<rows>(law, H);
+      const auto [xx, yy, zz, xy] = stress_of<rows>(law, H, memory);
       Eigen::Matrix<double, 6, 1> components;
       components << xx, yy, zz, xy, 0, 0;
       stress.col(first + e) += volume * components;
@@ -158,6 +138,28 @@ void append_contact_fields(VtuData& data, const Problem& problem, const State<do
   }
 }
 
+/// Mean equivalent plastic strain of each element, one row.
+Matrix<double> element_plastic_strain(const Problem& problem, const State<double>& state) {
+  const auto& model = problem.model;
+  std::vector<double> means;
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    std::vector<std::pair<double, double>> points;  // strain times volume, volume
+    for_each_plastic_strain(model, problem.slots, b, state.history.bodies,
+                            [&](double strain, double volume) { points.emplace_back(strain * volume, volume); });
+    const int elements = model.bodies[b].mesh.element_count();
+    const std::size_t each = points.size() / elements;
+    for (int e = 0; e < elements; ++e) {
+      double sum = 0, volume = 0;
+      for (std::size_t k = e * each; k < (e + 1) * each; ++k) {
+        sum += points[k].first;
+        volume += points[k].second;
+      }
+      means.push_back(each > 0 ? sum / volume : 0);
+    }
+  }
+  return Eigen::Map<const Vector<double>>(means.data(), static_cast<Eigen::Index>(means.size())).transpose();
+}
+
 VtuData fields_of(const CaseResult& result, const StepResult& step, bool last) {
   const auto& problem = *result.problem;
   const auto& model = problem.model;
@@ -185,6 +187,7 @@ VtuData fields_of(const CaseResult& result, const StepResult& step, bool last) {
   for (Eigen::Index e = 0; e < stress.cols(); ++e) mises(0, e) = von_mises(stress.col(e));
   data.cell_fields.push_back({"stress", stress});
   data.cell_fields.push_back({"von_mises", mises});
+  if (model.effects.plasticity) data.cell_fields.push_back({"plastic_strain", element_plastic_strain(problem, state)});
   return data;
 }
 
@@ -246,8 +249,13 @@ json bodies_json(const Problem& problem, const State<double>& state) {
       mises.push_back(von_mises(stress.col(column)));
     }
   }
-  return {{"points", points}, {"displacement", displacement}, {"elements", elements},
-          {"bodies", bodies}, {"body_names", names},          {"von_mises", mises}};
+  json out = {{"points", points}, {"displacement", displacement}, {"elements", elements},
+              {"bodies", bodies}, {"body_names", names},          {"von_mises", mises}};
+  if (model.effects.plasticity) {
+    const Matrix<double> strain = element_plastic_strain(problem, state);
+    out["plastic_strain"] = std::vector<double>(strain.data(), strain.data() + strain.size());
+  }
+  return out;
 }
 
 /// Contact points where they have moved to, with their states and tractions.

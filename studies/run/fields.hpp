@@ -13,7 +13,8 @@ namespace stickslip {
 /// Writes DIR/fields_NNNN.vtu for every `every`-th step and the last one (0: the last alone), and DIR/fields.pvd.
 /// Point fields: displacement, contact_state (-1: no contact point, 0 open, 1 stick, 2 slip), contact_pressure,
 /// contact_traction (force per area on the slave), gap; at the last step d_displacement_d_NAME per parameter. Cell
-/// fields: body, and for continua stress (xx yy zz xy yz xz) and von_mises.
+/// fields: body, and for continua stress (xx yy zz xy yz xz) and von_mises; where a body flows plastic_strain, the mean
+/// equivalent one of the element.
 /// A node that is a slave in several contacts has the state that holds most (stick, then slip, then open), the sum of
 /// the pressures and of the tractions, and the smallest gap; the four fields of each contact NAME alone then follow,
 /// contact_state_NAME and so on.

@@ -68,8 +68,8 @@ void enlarge(const Model& model, const Slots<double>& slots, const State<double>
   const double rounding = 10 * unit_roundoff * scales.stiffness * scales.reach;
   if (!(largest_nodal_norm(loads, D) > rounding))
     scales.force = larger(scales.force, telling * scales.stiffness * scales.reach);
-  for (const auto& forces :
-       {bulk_forces(model, slots, state.displacement), loads, contact_forces(model, slots, state.contact)})
+  for (const auto& forces : {bulk_forces(model, slots, state.displacement, state.history.bodies), loads,
+                             contact_forces(model, slots, state.contact)})
     scales.force = larger(scales.force, largest_nodal_norm(forces, D));
 }
 

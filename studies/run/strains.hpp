@@ -1,25 +1,61 @@
-/// Strains of a solution, where a picture or a check wants them.
+/// Strains and stresses of a solution, where a picture or a check wants them.
 #pragma once
+
+#include <Eigen/LU>
 
 #include "studies/run/case.hpp"
 
 namespace stickslip {
 
-/// Calls f(e, H, volume) at each quadrature point of each element of body b; nothing where it is no continuum. H:
-/// displacement gradient, 2 x 2, or 3 x 3 where a component out of the plane matters. `volume`: of a unit thickness.
+/// Calls f(e, H, volume, memory) at each quadrature point of each element of body b; nothing where it is no continuum.
+/// H: displacement gradient, 2 x 2, or 3 x 3 where a component out of the plane matters. `volume`: of a unit thickness.
+/// `memory`: what the point remembers; nullptr where it does not.
 template <class F>
-void for_each_strain(const Problem& problem, const Vector<double>& displacement, std::size_t b, F&& f) {
+void for_each_strain(const Problem& problem, const State<double>& state, std::size_t b, F&& f) {
   const auto& body = problem.model.bodies[b];
   if (!is_continuum(body.mesh.shape)) return;
+  const int count = memory_of(problem.model.scene.bodies[b].material, false);
+  const double* const first = count > 0 ? state.history.bodies.data() + body.first_memory : nullptr;
   detail::with_element(body, [&]<class Shape, Kinematics kinematics>() {
     for (int e = 0; e < body.mesh.element_count(); ++e) {
       const auto nodes = detail::element_nodes(body, e);
       const auto X = detail::gather_coordinates<double, Shape>(problem.slots.points, nodes.data());
-      const auto u = detail::gather_displacements<double, Shape>(displacement, nodes.data());
-      for_each_gradient<double, Shape, kinematics>(
-          X, 1, [&](const auto& gradient) { f(e, gradient.of(u), gradient.volume); });
+      const auto u = detail::gather_displacements<double, Shape>(state.displacement, nodes.data());
+      int point = 0;
+      for_each_gradient<double, Shape, kinematics>(X, 1, [&](const auto& gradient) {
+        f(e, gradient.of(u), gradient.volume, first ? first + e * body.memory + point * count : nullptr);
+        ++point;
+      });
     }
   });
+}
+
+/// Stress of a displacement gradient at what its point remembers, xx yy zz xy; Cauchy's at finite strain.
+template <int rows>
+std::array<double, 4> stress_of(const Law<double>& law, const Mat<double, rows>& H, const double* memory) {
+  return std::visit(
+      [&]<class L>(const L& of) -> std::array<double, 4> {
+        if constexpr (ContinuumLaw<L>) {
+          Mat<double, rows> s;
+          double across = 0;
+          if constexpr (Remembers<L>) {
+            const Vec<double, L::memory> h = Eigen::Map<const Vec<double, L::memory>>(memory);
+            s = of.template stress<double, rows>(H, h);
+            if constexpr (rows == 2) across = of.stress_across(H, h);
+          } else {
+            s = of.template stress<double, rows>(H);
+            if constexpr (rows == 2) across = of.stress_across(H);
+          }
+          if (of.is_finite) {
+            const Mat<double, rows> F = Mat<double, rows>::Identity() + H;
+            s = s * F.transpose() / F.determinant();
+          }
+          if constexpr (rows == 3) across = s(2, 2);
+          return {s(0, 0), s(1, 1), across, s(0, 1)};
+        }
+        return {};
+      },
+      law);
 }
 
 }  // namespace stickslip

@@ -22,9 +22,9 @@ struct Deformation {
 };
 
 /// Largest strain and rotation in the elements of a body.
-Deformation deformation_of(const Problem& problem, const Vector<double>& displacement, std::size_t b) {
+Deformation deformation_of(const Problem& problem, const State<double>& state, std::size_t b) {
   Deformation largest;
-  for_each_strain(problem, displacement, b, [&](int, const auto& H, double) {
+  for_each_strain(problem, state, b, [&](int, const auto& H, double, const double*) {
     largest.strain = std::max(largest.strain, (H + H.transpose()).cwiseAbs().maxCoeff() / 2);
     largest.rotation = std::max(largest.rotation, std::abs(H(1, 0) - H(0, 1)) / 2);
   });
@@ -38,7 +38,7 @@ void add_deformations(const CaseResult& result, std::vector<Warning>& warnings) 
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     Deformation largest;
     for (const auto& step : result.steps) {
-      const auto now = deformation_of(*result.problem, step.increment->state.displacement, b);
+      const auto now = deformation_of(*result.problem, step.increment->state, b);
       largest = {std::max(largest.strain, now.strain), std::max(largest.rotation, now.rotation)};
     }
     const std::string& name = model.scene.bodies[b].name;
@@ -143,23 +143,37 @@ bool may_lock(const Problem& problem, std::size_t b) {
          (shape == ElementShape::quad4 || shape == ElementShape::tri3);
 }
 
+/// What a body of small strain resists: of linear elasticity, or of a metal, whose flow keeps the volume.
+struct Moduli {
+  double lame, shear;
+  bool flows;
+  double nu() const { return lame / (2 * (lame + shear)); }
+};
+std::optional<Moduli> moduli_of(const Law<double>& law) {
+  if (const auto* elastic = std::get_if<LinearElasticLaw<double>>(&law))
+    return Moduli{elastic->lame, elastic->shear, false};
+  if (const auto* metal = std::get_if<J2Law<double>>(&law); metal && !metal->is_finite)
+    return Moduli{metal->lame, metal->shear, true};
+  return std::nullopt;
+}
+
 void add_locking(const CaseResult& result, std::vector<Warning>& warnings) {
   const auto& problem = *result.problem;
   for (std::size_t b = 0; b < problem.model.bodies.size(); ++b) {
-    const auto* law = std::get_if<LinearElasticLaw<double>>(&problem.slots.laws[b]);
-    if (!law || !may_lock(problem, b)) continue;
-    const double nu = law->lame / (2 * (law->lame + law->shear));
-    if (nu < nearly_incompressible) continue;
+    const auto moduli = moduli_of(problem.slots.laws[b]);
+    if (!moduli || !may_lock(problem, b) || (!moduli->flows && moduli->nu() < nearly_incompressible)) continue;
     double largest = 0;
     for (const auto& step : result.steps)
-      largest = larger(largest, spurious_pressure(problem, step.increment->state.displacement, b));
+      largest = larger(largest, spurious_pressure(problem, step.increment->state, b));
     if (!(largest > most_spurious)) continue;
     const std::string& name = problem.model.scene.bodies[b].name;
     const bool quads = problem.model.bodies[b].mesh.shape == ElementShape::quad4;
-    warnings.push_back({WarningCode::locking, name, largest, quads ? "element Q4_mean_dilatation or Q8" : "element T6",
-                        fmt::format("{} locks: nu = {:.6g} in {} elements, and {:.2g} of its stress is a pressure "
-                                    "that alternates from element to element",
-                                    name, nu, quads ? "Q4" : "T3", largest)});
+    warnings.push_back(
+        {WarningCode::locking, name, largest, quads ? "element Q4_mean_dilatation or Q8" : "element T6",
+         fmt::format("{} locks: {} in {} elements, and {:.2g} of its stress is a pressure "
+                     "that alternates from element to element",
+                     name, moduli->flows ? "plastic flow keeps the volume" : fmt::format("nu = {:.6g}", moduli->nu()),
+                     quads ? "Q4" : "T3", largest)});
   }
 }
 
@@ -259,13 +273,14 @@ const Body* loose_body(const Model& model) {
   return nullptr;
 }
 
-double spurious_pressure(const Problem& problem, const Vector<double>& displacement, std::size_t b) {
-  const auto* law = std::get_if<LinearElasticLaw<double>>(&problem.slots.laws[b]);
-  if (!law || !may_lock(problem, b)) return 0;
+double spurious_pressure(const Problem& problem, const State<double>& state, std::size_t b) {
+  const auto& law = problem.slots.laws[b];
+  const auto moduli = moduli_of(law);
+  if (!moduli || !may_lock(problem, b)) return 0;
   const auto& mesh = problem.model.bodies[b].mesh;
   const int nodes = nodes_of(mesh.shape);
   Vector<double> volume = Vector<double>::Zero(mesh.element_count()), change = volume, around = volume;
-  for_each_strain(problem, displacement, b, [&](int e, const auto& H, double v) {
+  for_each_strain(problem, state, b, [&](int e, const auto& H, double v, const double*) {
     volume[e] += v;
     change[e] += v * H.trace();
   });
@@ -280,13 +295,13 @@ double spurious_pressure(const Problem& problem, const Vector<double>& displacem
       const int node = mesh.connectivity[e * nodes + a];
       around[e] += nodal_change[node] / nodal_volume[node] / nodes;
     }
-  const double bulk = law->lame + 2 * law->shear / 3;
+  const double bulk = moduli->lame + 2 * moduli->shear / 3;
   double spurious = 0, all = 0;
-  for_each_strain(problem, displacement, b, [&](int e, const auto& H, double v) {
+  for_each_strain(problem, state, b, [&](int e, const auto& H, double v, const double* memory) {
     constexpr int rows = std::decay_t<decltype(H)>::RowsAtCompileTime;
-    const double out_of_plane = rows == 3 ? 0 : law->lame * H.trace();
+    const auto [xx, yy, zz, xy] = stress_of<rows>(law, H, memory);
     spurious += v * std::pow(bulk * (H.trace() - around[e]), 2);
-    all += v * (law->template stress<double, rows>(H).squaredNorm() + out_of_plane * out_of_plane);
+    all += v * (xx * xx + yy * yy + zz * zz + 2 * xy * xy);
   });
   return all > 0 ? std::sqrt(spurious / all) : 0;
 }

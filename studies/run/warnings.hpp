@@ -36,6 +36,6 @@ const Body* loose_body(const Model& model);
 /// What locking does to a body: the root mean square, over its volume, of the pressure that is left once the dilatation
 /// has been averaged over the elements around each node, relative to that of the stress. 0 where the body is no Q4
 /// without mean dilatation and no T3, or the space is plane stress.
-double spurious_pressure(const Problem& problem, const Vector<double>& displacement, std::size_t body);
+double spurious_pressure(const Problem& problem, const State<double>& state, std::size_t body);
 
 }  // namespace stickslip

@@ -1,6 +1,7 @@
 """Independent reference solver for finite-strain frictional contact of two bodies, for the tests of stickslip.
 
-Reads a scene in stickslip's own JSON: plane strain, boxes and quads of Q4, neo-Hookean, supports, one contact or more.
+Reads a scene in stickslip's own JSON: plane strain, boxes and quads of Q4, neo-Hookean or metal (J2, multiplicative),
+supports, one contact or more.
 All of contact is where it is now:
 
   gap    g = (x - y(xi)) . n, y(xi) the closest point of the master's curve, n out of the master, + offset
@@ -55,7 +56,7 @@ class FiniteBody(Body):
         assert (det.real > 0).all(), "element turned inside out"
         self.weight = det
         self.gradient = np.einsum("qak,eqki->eqai", local, inverse2(jacobian, det))
-        law = self.description["material"]["neo_hookean"]
+        (self.kind, law), = self.description["material"].items()
         young, nu = law["E"], law["nu"]
         self.G, self.La = young / (2 * (1 + nu)), young * nu / ((1 + nu) * (1 - 2 * nu))
         self.log = law.get("volumetric", "quadratic") == "log"
@@ -79,10 +80,93 @@ class FiniteBody(Body):
         vol = self.La / 2 * (np.log(J) if self.log else J - 1) ** 2
         return np.sum((self.G / 2 * (invariant - 3 - 2 * np.log(J)) + vol) * self.weight)
 
+    def settle(self, ue):
+        """Remembers what elements that stay at these displacements do."""
+
     def tangents(self, ue):
         """d forces / d displacements (e, 8, 8), the displacements real."""
         turned = ue[None] + 1j * STEP * np.eye(8).reshape(8, 1, 4, 2)
         return np.moveaxis(self.forces(turned).imag.reshape(8, len(ue), 8) / STEP, 0, 2)
+
+
+class MetalBody(FiniteBody):
+    """Elastic by Hooke's law between Kirchhoff's stress and the logarithmic strain of F C F^T, C the inverse of the
+    plastic right Cauchy-Green tensor, which flow along the stress deviator changes. `memory`: C in the plane, across
+    it, and the equivalent plastic strain, (e, q) each."""
+
+    def prepare(self):
+        super().prepare()
+        law = self.description["material"]["j2_plastic"]
+        self.bound, self.slope = law["yield"], law["hardening"]
+        self.forget()
+
+    def forget(self):
+        shape = self.weight.shape
+        self.memory = (np.zeros(shape + (2, 2), dtype=complex) + np.eye(2), np.ones(shape, dtype=complex),
+                       np.zeros(shape, dtype=complex))
+
+    def flow(self, ue):
+        """F, elastic logarithmic strain in the plane and across, equivalent plastic strain."""
+        F, J = self.deformation(ue.astype(complex))
+        if not (J.real > 0).all():
+            raise Inverted
+        C, across, hardened = self.memory
+        e, z = logarithm(F @ C @ np.swapaxes(F, -1, -2)) / 2, np.log(across) / 2
+        third = (e[..., 0, 0] + e[..., 1, 1] + z) / 3
+        d, dz = e - third[..., None, None] * np.eye(2), z - third
+        q = 2 * self.G * np.sqrt(1.5 * (np.einsum("...ij,...ij->...", d, d) + dz ** 2))
+        bound = self.bound + self.slope * hardened
+        flows = q.real > bound.real
+        grown = np.where(flows, (q - bound) / (3 * self.G + self.slope), 0)
+        share = np.where(flows, 3 * self.G * grown / np.where(flows, q, 1), 0)
+        return F, J, e - share[..., None, None] * d, z - share * dz, hardened + grown
+
+    def forces(self, ue):
+        F, J, e, z, _ = self.flow(ue)
+        pressure = self.La * (e[..., 0, 0] + e[..., 1, 1] + z)
+        P = (pressure[..., None, None] * np.eye(2) + 2 * self.G * e) @ np.swapaxes(inverse2(F, J), -1, -2)
+        return np.einsum("...eqik,eqak,eq->...eai", P, self.gradient, self.weight)
+
+    def energy(self, ue):
+        _, _, e, z, _ = self.flow(ue)
+        squares = np.einsum("...ij,...ij->...", e, e) + z ** 2
+        return np.sum((self.La / 2 * (e[..., 0, 0] + e[..., 1, 1] + z) ** 2 + self.G * squares) * self.weight)
+
+    def settle(self, ue):
+        F, J, e, z, hardened = self.flow(ue)
+        inverse = inverse2(F, J)
+        self.memory = inverse @ exponential(2 * e) @ np.swapaxes(inverse, -1, -2), np.exp(2 * z), hardened
+
+
+def body_of(description, dimension):
+    return (MetalBody if "j2_plastic" in description["material"] else FiniteBody)(description, dimension)
+
+
+def root(A):
+    """The square root of 2 x 2 matrices with positive eigenvalues (Cayley-Hamilton)."""
+    s = np.sqrt(A[..., 0, 0] * A[..., 1, 1] - A[..., 0, 1] * A[..., 1, 0])
+    return (A + s[..., None, None] * np.eye(2)) / np.sqrt(A[..., 0, 0] + A[..., 1, 1] + 2 * s)[..., None, None]
+
+
+def logarithm(A):
+    """By the series of artanh near one, after roots."""
+    for _ in range(5):
+        A = root(A)
+    B = A + np.eye(2)
+    Z = (A - np.eye(2)) @ inverse2(B, B[..., 0, 0] * B[..., 1, 1] - B[..., 0, 1] * B[..., 1, 0])
+    return 2 ** 6 * sum(np.linalg.matrix_power(Z, k) / k for k in range(1, 14, 2))
+
+
+def exponential(A):
+    """By Taylor's series of a share, squared."""
+    A = A / 2 ** 5
+    power, total = np.eye(2) + 0 * A, np.eye(2) + 0 * A
+    for k in range(1, 14):
+        power = power @ A / k
+        total = total + power
+    for _ in range(5):
+        total = total @ total
+    return total
 
 
 class Inverted(RuntimeError):
@@ -199,7 +283,7 @@ class FiniteModel:
         self.document = document
         self.bodies, self.first, n = {}, {}, 0
         for name, description in document["bodies"].items():
-            body = self.bodies[name] = FiniteBody(description, 2)
+            body = self.bodies[name] = body_of(description, 2)
             body.prepare()
             self.first[name] = n
             n += len(body.X)
@@ -255,6 +339,17 @@ class FiniteModel:
         for body, dofs in self.dofs():
             np.add.at(K, (dofs[:, :, None], dofs[:, None, :]), body.tangents(u[dofs].reshape(-1, 4, 2)))
         return K
+
+    def settle(self, u):
+        for body, dofs in self.dofs():
+            body.settle(u[dofs].reshape(-1, 4, 2))
+
+    def memory(self):
+        return {name: body.memory for name, body in self.bodies.items() if isinstance(body, MetalBody)}
+
+    def remember(self, memory):
+        for name, numbers in memory.items():
+            self.bodies[name].memory = numbers
 
     def locate(self, u):
         """Feet of all points: (segment or -1, xi), on the real configuration."""
@@ -328,7 +423,7 @@ class FinitePath:
     def __init__(self, model):
         self.model, self.n = model, len(model.points)
         self.size = 2 * len(model.X)
-        young = max(np.real(b.description["material"]["neo_hookean"]["E"]) for b in model.bodies.values())
+        young = max(np.real(b.description["material"][b.kind]["E"]) for b in model.bodies.values())
         lengths = [np.sqrt(np.abs(b.weight.real.sum(axis=1)).max()) for b in model.bodies.values()]
         self.length, self.force = max(lengths), young * max(lengths)
         self.rho = young / max(lengths)  # pressure per length
@@ -472,12 +567,16 @@ class FinitePath:
         every_gap, every_slip = np.zeros(self.n, dtype=complex), np.zeros(self.n, dtype=complex)
         every_gap[pairing.on], every_slip[pairing.on] = gap, slip
         return {"time": time, "u": u, "p": p, "t": t, "feet": feet, "states": states, "pairing": pairing,
+                "memory": self.model.memory(),  # that the step starts from
                 "gap": every_gap, "slip": every_slip,
                 "dissipation": dissipation - self.model.area * t * every_slip *
                                np.array([s[0] == "slip" and s[1] != 0 for s in states])}
 
     def run(self):
         m, n = self.model, self.n
+        for body in m.bodies.values():
+            if isinstance(body, MetalBody):
+                body.forget()
         u, p, t = np.zeros(self.size), np.zeros(n), np.zeros(n)
         feet, results, dissipation, start = m.locate(u), [], np.zeros(n), 0.0
         for end in time_grid(m.document["time"]):
@@ -489,6 +588,7 @@ class FinitePath:
             feet, dissipation, start = m.locate(u), result["dissipation"], end
             result["feet"] = feet
             results.append(result)
+            m.settle(u)
         return results
 
     def tangents(self, results):
@@ -497,6 +597,7 @@ class FinitePath:
         unknown = np.concatenate([m.free, np.arange(size, size + 2 * n)])
         factors = []
         for r in results:
+            m.remember(r["memory"])
             J = self.system(r["u"], r["p"], r["t"], r["pairing"], r["states"])[3]
             factors.append((unknown, scipy.linalg.lu_factor(J[np.ix_(unknown, unknown)])))
         return factors
@@ -517,6 +618,7 @@ class FinitePath:
                 whole[unknown] = step
                 u, p, t = u + whole[:size], p + whole[size:size + n], t + whole[size + n:]
             path.append(twin.result(r["time"], u, p, t, r["feet"], r["states"], pairing, dissipation))
+            m.settle(u)
             before, dissipation = FinitePath.feet_at(m, u, r["feet"]), path[-1]["dissipation"]
         return m, path
 
@@ -555,6 +657,7 @@ def slave_forces(model, r):
 
 def responses(model, r):
     values = {}
+    model.remember(r["memory"])
     for name, response in model.document.get("responses", {}).items():
         (kind, q), = response.items()
         mine = [i for i, p in enumerate(model.points) if p.contact == q.get("contact")]
@@ -569,6 +672,13 @@ def responses(model, r):
             values[name] = sum(model.area[i] * r["gap"][i] for i in mine) / sum(model.area[i] for i in mine)
         elif kind == "dissipation":
             values[name] = sum(r["dissipation"][i] for i in mine)
+        elif kind == "plastic_strain":
+            body = model.bodies[q["on"]]
+            dofs, = (dofs for b, dofs in model.dofs() if b is body)
+            strain = body.flow(r["u"][dofs].reshape(-1, 4, 2))[4]
+            at = strain.real.argmax()
+            values[name] = (strain.flat[at] if q.get("take") == "max"
+                            else np.sum(strain * body.weight) / np.sum(body.weight))
         else:
             raise ValueError(f"response {name}: {kind}")
     return values

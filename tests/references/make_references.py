@@ -218,6 +218,21 @@ def ironing(surface, friction=0.3, along=0.7):
         "method": {"monolithic_al": {}}}
 
 
+def metal(surface):
+    """The same of a metal slab, which flows below the die, and of less depth; the die is lifted a little at the end."""
+    document = ironing(surface, along=0.5)
+    document["title"] = "Die ironing a metal slab at finite strain"
+    document["bodies"]["slab"]["material"] = {"j2_plastic": {"E": 1, "nu": 0.3, "yield": 0.04, "hardening": 0.1}}
+    document["supports"][1]["move"] = {"x": [[0, 0], [1, 0], [2, 0.5], [3, 0.5]],
+                                       "y": [[0, 0], [1, -0.12], [2, -0.12], [3, -0.11]]}
+    document["time"]["legs"] = [[1, 3], [2, 4], [3, 1]]
+    document["responses"]["plastic"] = {"plastic_strain": {"on": "slab"}}
+    document["responses"]["most"] = {"plastic_strain": {"on": "slab", "take": "max"}}
+    slab = "/bodies/slab/material/j2_plastic/"
+    document["parameters"] |= {"nu_slab": slab + "nu", "yield": slab + "yield", "hardening": slab + "hardening"}
+    return document
+
+
 def finite_cases():
     """Name: scene. On facets drawn along by 0.7 the last step has no solution, see check_references.vertex."""
     return {
@@ -225,6 +240,7 @@ def finite_cases():
         "finite_ironing_smooth": lambda: ironing("smooth"),
         "finite_ironing_b_spline": lambda: ironing({"smooth": "b_spline"}),
         "finite_ironing_frictionless": lambda: ironing("faceted", None),
+        "finite_ironing_metal": lambda: metal({"smooth": "b_spline"}),
     }
 
 

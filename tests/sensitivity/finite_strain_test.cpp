@@ -116,6 +116,29 @@ TEST(Truss, HasTheForceOfTheClosedFormUpToItsLimitPointAndBeyond) {
     }
 }
 
+TEST(Truss, UnderAForceBeyondItsLimitPointJumpsAndSaysWhen) {
+  constexpr double most = 3.7919801295 / 2, load = 2.5;
+  for (const auto& method : finite_methods()) {
+    Scene scene = truss(0.0);
+    scene.obstacles[0] = plane("floor", {0.0, -1.1}, {0, 1});  // which the bar falls on
+    scene.contacts[0].master = "floor";
+    scene.loads = {scenes::force("bar.end", {0.0, -load})};
+    scene.loads[0].history = table({{0, 0.0}, {1, 1.0}});
+    scene.legs = {{1, 20}};
+    const auto s = run(scene, method);
+    ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
+    int jumps = 0;
+    for (const auto& increment : s.trajectory.increments) {
+      if (!increment.jump) continue;
+      ++jumps;
+      EXPECT_NEAR(*increment.jump, most / load, 0.05 / 1000) << name_of(method);
+    }
+    EXPECT_EQ(jumps, 1) << name_of(method);
+    EXPECT_GT(s.value("press"), 0) << name_of(method);
+  }
+  for (const auto& increment : run(truss(0.9), MonolithicAL{}).trajectory.increments) EXPECT_FALSE(increment.jump);
+}
+
 // --- a point that a spring leads around a disk: large sliding on a normal that turns
 // ----------------------------------
 

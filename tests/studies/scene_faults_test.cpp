@@ -85,7 +85,7 @@ std::vector<Broken> broken_finite() {
       {"finite_segments", f, R"("master": "floor"})", R"("master": "floor", @"discretization": "segment"})",
        "/contacts/sole/discretization", small},
       {"finite_condensed", f, R"("time")", R"("linear_solver": {"engine": @"condensed"}, "time")",
-       "/linear_solver/engine", "allowed at finite strain: auto, sparse"},
+       "/linear_solver/engine", "allowed where strains are finite or bodies flow: auto, sparse"},
   };
 }
 
@@ -125,8 +125,12 @@ std::vector<Broken> broken_bodies() {
        R"(is "0.25"; must be a number)"},
       {"nu_missing", b, R"({"E": 1000, "nu": 0.25})", R"(@{"E": 1000})", "/bodies/block/material/linear_elastic",
        R"("nu" is missing)"},
-      {"plasticity", b, R"("linear_elastic")", R"(@"j2_plastic")", "/bodies/block/material/j2_plastic",
-       "is not available in this version; allowed: linear_elastic, neo_hookean, grounded_spring"},
+      {"plasticity_without_yield", b, R"("linear_elastic": {"E": 1000, "nu": 0.25})",
+       R"("j2_plastic": @{"E": 1000, "nu": 0.25, "hardening": 1})", "/bodies/block/material/j2_plastic",
+       R"("yield" is missing)"},
+      {"negative_hardening", b, R"("linear_elastic": {"E": 1000, "nu": 0.25})",
+       R"("j2_plastic": {"E": 1000, "nu": 0.25, "yield": 1, "hardening": @-1})",
+       "/bodies/block/material/j2_plastic/hardening", "is -1; must be a number >= 0"},
       {"unknown_material", b, R"("linear_elastic")", R"(@"linear_elastc")", "/bodies/block/material/linear_elastc",
        R"(did you mean "linear_elastic"?)"},
       {"spring_in_a_box", b, R"({"linear_elastic": {"E": 1000, "nu": 0.25}})",

@@ -33,7 +33,7 @@ BlockVector<double> along(const EngineProblem& problem, const Vector<double>& du
     }
   const ContactInput<D1> input{problem.model, slots, rho, previous, ConeRadius::augmented, 1.0};
   const auto field = evaluate_contact<D1>(input, to_compact(problem.model, u), multiplier, &problem.states);
-  Vector<D1> rows = bulk_forces(problem.model, slots, u);
+  Vector<D1> rows = bulk_forces(problem.model, slots, u, {});
   add_compact(problem.model, contact_forces(problem.model, slots, field), rows);
   const Vector<D1> rows_l = multiplier_residual(problem.model, slots, field.traction, multiplier);
   auto derivative = [](const D1& x) { return x.d[0]; };
@@ -49,7 +49,7 @@ TEST(Engines, SolveWithTheDerivativeOfTheResidual) {
           unknown ? Matrix<double>(derivatives::arbitrary(problem.model.multiplier_count, 20)) : Matrix<double>();
       auto check = [&](auto engine) {
         Counters counters;
-        engine.begin(1.0, problem.u);
+        engine.begin(1.0, problem.u, {});
         ASSERT_TRUE(engine.factorise(problem.tangents(), counters)) << engine.message();
         const Matrix<double> reduced = engine.reduce(r);
         const auto step = engine.solve({reduced, l});
@@ -95,7 +95,7 @@ TEST(Engines, HaveOneResidualOnceTheInteriorIsInEquilibrium) {
   const double time = 2.5;  // the supports have moved
   auto sparse = problem.sparse(false);
   auto condensed = problem.condensed(false);
-  const Vector<double> u0 = sparse.begin(time, problem.u), compact = condensed.begin(time, problem.u);
+  const Vector<double> u0 = sparse.begin(time, problem.u, {}), compact = condensed.begin(time, problem.u, {});
   EXPECT_EQ(compact, to_compact(problem.model, u0));
   const Vector<double> all = condensed.all(compact);
   EXPECT_EQ(to_compact(problem.model, all), compact);
@@ -139,7 +139,7 @@ TEST(Engines, ApplyTheStiffnessThatTheyCondense) {
       }
     // forces that the bulk has for the same displacements
     const Vector<double> whole = condensed.expand(du.col(0), none.col(0), condensed.reduce(none.col(0)));
-    const Vector<double> forces = bulk_forces(problem.model, problem.slots, whole);
+    const Vector<double> forces = bulk_forces(problem.model, problem.slots, whole, {});
     for (int dof : problem.model.free_dofs) EXPECT_NEAR(full(dof, 0), forces[dof], solved * largest);
   }
 }

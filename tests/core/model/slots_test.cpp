@@ -82,7 +82,7 @@ std::vector<Vector<T>> groups(const Model& model, const Slots<T>& slots) {
   for (const auto& list : lists) out.push_back(Eigen::Map<const Vector<T>>(list.data(), list.size()));
   for (const auto& load : slots.loads) out.push_back(load);
   const Vector<double> u = derivatives::arbitrary(model.dof_count());
-  out.push_back(bulk_forces<T>(model, slots, u.unaryExpr([](double x) { return T(x); })));
+  out.push_back(bulk_forces<T>(model, slots, u.unaryExpr([](double x) { return T(x); }), {}));
   return out;
 }
 
@@ -310,7 +310,7 @@ TEST(BulkForces, AreTheElementTangentsTimesTheDisplacements) {
             forces[nodes[i / 2] * 2 + i % 2] += K(i, j) * u[nodes[j / 2] * 2 + j % 2];
       });
     // some thirty products of displacements up to one
-    EXPECT_LE(largest_entry(bulk_forces(model, slots, u) - forces), 60 * epsilon * stiffest);
+    EXPECT_LE(largest_entry(bulk_forces(model, slots, u, {}) - forces), 60 * epsilon * stiffest);
   }
 }
 
@@ -320,7 +320,7 @@ TEST(BulkForces, VanishInARigidTranslationOfFreeBodies) {
   const auto slots = make_slots<double>(model, scene.as<double>());
   Vector<double> u(model.dof_count());
   for (int node = 0; node < model.node_count; ++node) u.segment<2>(2 * node) << 0.3, -0.7;
-  EXPECT_LE(largest_entry(bulk_forces(model, slots, u)), 60 * epsilon * 10 * 10);  // E times the worst stretch
+  EXPECT_LE(largest_entry(bulk_forces(model, slots, u, {})), 60 * epsilon * 10 * 10);  // E times the worst stretch
 }
 
 }  // namespace

@@ -1,0 +1,219 @@
+/// Elastoplastic bodies in contact: closed forms by every method, derivatives by every scheme against the complex step
+/// of the whole program, and the adjoint against those.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/support/blocks.hpp"
+#include "tests/support/finite_strain.hpp"
+
+namespace stickslip {
+namespace {
+
+using scenes::finite_methods;
+using scenes::finite_schemes;
+using scenes::parameter;
+using scenes::response;
+using scenes::run;
+using scenes::table;
+using Kind = Response::Kind;
+
+// --- A16 (1): a bar pushed against a wall beyond its yield stress and withdrawn
+// ---------------------------------------
+
+/// E = 1000, hardening 100, yield 10, length and area 1, gap .005: pushed by .035 in seven steps, withdrawn in
+/// fourteen.
+Scene bar_on_a_wall() {
+  Scene s;
+  s.legs = {{1, 9}, {2, 20}};
+  LineMesh line;
+  line.from = {0.0, 0.0};
+  line.to = {1.0, 0.0};
+  line.cells = 3;
+  const J2Plastic material{parameter(s, "E", 1000), 0.3, parameter(s, "sy", 10), parameter(s, "H", 100)};
+  s.bodies = {{"bar", line, material, "bar", 1.0}};
+  s.obstacles = {{"wall", Plane{{-0.005, 0.0}, {1.0, 0.0}}}};
+  s.contacts = {scenes::contact("stop", "bar.start", "wall")};
+  s.supports = {scenes::support("bar.nodes", {{'y', table({{0, 0.0}})}}),
+                scenes::support("bar.end", {{'x', table({{0, 0.0}, {1, -0.035}, {2, 0.0}})}})};
+  s.responses = {response("force", Kind::contact_force, "stop", "normal"), response("gap", Kind::gap, "stop"),
+                 response("energy", Kind::strain_energy, "")};
+  return s;
+}
+
+TEST(Plasticity, OfABarOnAWallHasTheForceOfTheClosedForm) {
+  const double E = 1000, H = 100, yield = 10, Et = E * H / (E + H), top = yield + Et * (0.03 - yield / E);
+  EXPECT_NEAR(top, 11.8181818, 1e-7);
+  for (const Method& method : scenes::exact_methods()) {
+    const auto s = run(bar_on_a_wall(), method);
+    ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
+    for (std::size_t n = 0; n < s.trajectory.increments.size(); ++n) {
+      const double t = s.trajectory.increments[n].time, pushed = t <= 1 ? 0.035 * t : 0.035 * (2 - t);
+      const double strain = pushed - 0.005;
+      double force = strain <= 0 ? 0 : strain <= yield / E ? E * strain : yield + Et * (strain - yield / E);
+      if (t > 1) force = std::max(0.0, top - E * (0.035 - pushed));
+      EXPECT_NEAR(s.value("force", n), force, 1e-9 * top) << name_of(method) << " at " << t;
+      // by the yield stress: 1 - Et / E once it flows, and while contact lasts; then the gap left by plastic strain
+      const bool flows = strain > yield / E || t > 1;
+      EXPECT_NEAR(s.gradients.of[n](0, 1), flows && force > 0 ? 1 - Et / E : 0, 1e-9) << name_of(method) << " at " << t;
+      if (t > 1 && force == 0) {
+        EXPECT_NEAR(s.gradients.of[n](1, 1), -(1 - Et / E) / E, 1e-12) << name_of(method) << " at " << t;
+      }
+    }
+    const Vector<double>& remembered = s.trajectory.increments.back().state.history.bodies;
+    ASSERT_EQ(remembered.size(), 6);
+    for (int e = 0; e < 3; ++e) {
+      EXPECT_NEAR(remembered[2 * e], -0.0181818181818, 1e-12);  // shortened
+      EXPECT_NEAR(remembered[2 * e + 1], 0.0181818181818, 1e-12);
+    }
+  }
+}
+
+// --- A16 (2): a thick cylinder widened until it is plastic up to a radius --------------------------------------------
+
+TEST(Plasticity, OfAThickCylinderReachesTheRadiusOfTheClosedForm) {
+  // Hill's solution, of a plastic zone in which the axial stress is the middle one: exact but for 1 %
+  const double a = 100, b = 200, E = 210, nu = 0.3, yield = 0.24;
+  Scene s;
+  s.space = Space::axisymmetric;
+  s.legs = {{1, 20}};
+  BoxMesh box;
+  box.min = {a, 0.0};
+  box.max = {b, 5.0};
+  box.cells = {30, 1};
+  s.bodies = {{"wall", box, J2Plastic{E, nu, yield, 0.0}, "Q4_mean_dilatation", 1.0}};
+  s.supports = {scenes::support("wall.left", {{'x', scenes::ramp(0.4)}}),
+                scenes::support("wall.bottom", {{'y', table({{0, 0.0}})}}),
+                scenes::support("wall.top", {{'y', table({{0, 0.0}})}})};
+  s.responses = {response("force", Kind::reaction, "wall.left", "x"),
+                 response("outside", Kind::displacement, "wall.right", "x")};
+  const auto r = run(s, MonolithicAL{});
+  ASSERT_TRUE(is_converged(r.trajectory.status)) << r.trajectory.message;
+  const double elastic = yield * a * a / std::sqrt(3) * 2 * (1 - nu * nu) / (E * b);  // u(b) at first yield
+  int plastic = 0;
+  for (std::size_t n = 0; n < r.trajectory.increments.size(); ++n) {
+    const double u = r.value("outside", n), p = r.value("force", n) / (2 * std::numbers::pi * a * 5);
+    const double c = a * std::sqrt(u / elastic);
+    if (u <= 1.01 * elastic || c >= b) continue;
+    ++plastic;
+    const double closed = yield / std::sqrt(3) * (1 - c * c / (b * b) + 2 * std::log(c / a));
+    EXPECT_NEAR(p, closed, 0.01 * closed) << "c = " << c;
+  }
+  EXPECT_GE(plastic, 5);
+}
+
+// --- derivatives
+// ------------------------------------------------------------------------------------------------------
+
+struct Setting {
+  Space space;
+  bool finite;
+  const char* element;
+};
+
+/// A soft metal block (its ring, of revolution) pressed onto a disk that is rough, drawn along it, and lifted a bit: it
+/// flows below, on its way back too, sticks and slips.
+Scene pressed(const Setting& setting) {
+  Scene s;
+  s.space = setting.space;
+  s.finite_strain = setting.finite;
+  s.legs = {{1, 3}, {2, 3}, {3, 2}};
+  const double left = setting.space == Space::axisymmetric ? 1.0 : 0.0;
+  BoxMesh box;
+  box.min = {left, 0.0};
+  box.max = {left + 2, parameter(s, "height", 0.8)};
+  box.cells = {4, 2};
+  const J2Plastic material{parameter(s, "E", 100), parameter(s, "nu", 0.3), parameter(s, "yield", 2.3),
+                           parameter(s, "hardening", 12)};
+  s.bodies = {{"block", box, material, setting.element, 1.0}};
+  s.obstacles = {{"disk", Circle{{left + 1.07, -1.5}, parameter(s, "R", 1.5)}}};
+  s.contacts = {scenes::contact("sole", "block.bottom", "disk")};
+  s.contacts[0].friction = parameter(s, "mu", 0.3);
+  const Number down = parameter(s, "down", -0.11), along = parameter(s, "along", 0.06);
+  s.supports = {scenes::support("block.top", {{'y', table({{0, 0.0}, {1, down}, {2, down}, {3, -0.098}})},
+                                              {'x', table({{0, 0.0}, {1, 0.0}, {2, along}})}})};
+  s.responses = {response("press", Kind::reaction, "block.top", "y"),
+                 response("drag", Kind::reaction, "block.top", "x"),
+                 response("side", Kind::displacement, "block.right", "x"),
+                 response("energy", Kind::strain_energy, ""),
+                 response("slid", Kind::slip, "sole"),
+                 response("heat", Kind::dissipation, "sole")};
+  return s;
+}
+
+class PlasticBlocks : public testing::TestWithParam<Setting> {};
+
+TEST_P(PlasticBlocks, FlowAndHaveTheDerivativesOfTheWholeRun) {
+  const Scene scene = pressed(GetParam());
+  const auto s = run(scene, MonolithicAL{});
+  ASSERT_TRUE(is_converged(s.trajectory.status)) << s.trajectory.message;
+  EXPECT_GT(largest_entry(s.trajectory.increments[4].state.history.bodies), 0.01);
+  for (const Method& method : finite_schemes()) scenes::expect_derivatives_in_both_modes(scene, method);
+}
+
+INSTANTIATE_TEST_SUITE_P(Settings, PlasticBlocks,
+                         testing::Values(Setting{Space::plane_strain, false, "Q4_mean_dilatation"},
+                                         Setting{Space::plane_strain, false, "T6"},
+                                         Setting{Space::plane_stress, false, "Q4"},
+                                         Setting{Space::axisymmetric, false, "Q4_mean_dilatation"},
+                                         Setting{Space::plane_strain, true, "Q4"},
+                                         Setting{Space::axisymmetric, true, "T3"}));
+
+/// A truss of two bars, elastoplastic, pushed down on a stop that is rough.
+Scene truss(bool finite) {
+  Scene s;
+  s.finite_strain = finite;
+  s.legs = {{1, 4}, {2, 4}};
+  const J2Plastic material{parameter(s, "E", 1000), 0.3, parameter(s, "yield", 2), parameter(s, "hardening", 90)};
+  LineMesh line;
+  line.from = {-10.0, 0.0};
+  line.to = {0.3, parameter(s, "rise", 1.0)};
+  line.cells = 1;
+  s.bodies = {{"bar", line, material, "bar", parameter(s, "area", 2)}};
+  s.obstacles = {{"stop", Plane{{0.0, 0.8}, {0.2, 1.0}}}};
+  s.contacts = {scenes::contact("sole", "bar.end", "stop")};
+  s.contacts[0].friction = parameter(s, "mu", 0.1);
+  s.supports = {
+      scenes::support("bar.start", {{'x', scenes::ramp(parameter(s, "push", 0.8))}, {'y', table({{0, 0.0}})}})};
+  s.loads = {scenes::force("bar.end", {-14.0, -40.0})};
+  s.responses = {response("press", Kind::contact_force, "sole", "normal"), response("slid", Kind::slip, "sole"),
+                 response("energy", Kind::strain_energy, ""), response("push", Kind::reaction, "bar.start", "x")};
+  return s;
+}
+
+TEST(Plasticity, OfBarsHasTheDerivativesOfTheWholeRun) {
+  for (bool finite : {false, true})
+    for (const Method& method : finite_schemes()) {
+      const Scene scene = truss(finite);
+      const auto s = run(scene, method);
+      ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
+      EXPECT_GT(s.trajectory.increments.back().state.history.bodies[1], 1e-4) << finite;
+      scenes::expect_derivatives_in_both_modes(scene, method);
+    }
+}
+
+// --- only where a scene calls for it ---------------------------------------------------------------------------------
+
+TEST(Plasticity, OfAMaterialThatNeverFlowsIsElasticity) {
+  for (const Setting& setting : {Setting{Space::plane_strain, false, "Q4"}, Setting{Space::plane_stress, false, "Q8"},
+                                 Setting{Space::axisymmetric, false, "Q4_mean_dilatation"}}) {
+    Scene hard = pressed(setting), elastic = hard;
+    auto& material = std::get<J2Plastic>(hard.bodies[0].material);
+    material.yield = 1e30;
+    elastic.bodies[0].material = LinearElastic{material.E, material.nu};
+    for (const Method& method : finite_methods()) {
+      const auto a = run(hard, method), b = run(elastic, method);
+      ASSERT_TRUE(is_converged(a.trajectory.status)) << a.trajectory.message;
+      for (std::size_t n = 0; n < a.trajectory.increments.size(); ++n)
+        for (const auto& r : hard.responses)
+          EXPECT_NEAR(a.value(r.name, n), b.value(r.name, n), 1e-9 * std::abs(b.value(r.name))) << r.name;
+      EXPECT_EQ(largest_entry(a.trajectory.increments.back().state.history.bodies), 0);
+      EXPECT_EQ(b.trajectory.increments.back().state.history.bodies.size(), 0);
+      EXPECT_FALSE(b.model.effects.plasticity);
+      EXPECT_TRUE(b.model.effects.linear_bulk);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace stickslip
