@@ -113,13 +113,27 @@ std::string words_of_imbalance(const Model& model, const Slots<T>& slots, double
          ": neither its supports nor its contacts hold it, and " + load;
 }
 
-}  // namespace detail
-
-/// Says why an increment failed. Supports may drive a point into its obstacle, against a method that
-/// `prevents_penetration`. A body without a support of which no contact point sticks may move without resistance, where
-/// the tangent is singular, and so may one whose supports leave a motion free.
+/// A body that has flowed in a state, in words; empty where none has.
 template <class T>
-void diagnose(const Model& model, const Slots<T>& slots, double time, bool prevents_penetration, Increment<T>& failed) {
+std::string words_of_flow(const Model& model, const Slots<T>& slots, const State<T>& state) {
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    bool flows = false;
+    for_each_plastic_strain(model, slots, b, state.history.bodies,
+                            [&](const T& strain, const T&) { flows |= value(strain) > 0; });
+    if (flows)
+      return model.scene.bodies[b].name +
+             " flows: its loads may be more than it bears; control a displacement, give it hardening, or take more "
+             "steps";
+  }
+  return "";
+}
+
+/// Supports may drive a point into its obstacle, against a method that `prevents_penetration`. A body without a support
+/// of which no contact point sticks may move without resistance, where the tangent is singular, and so may one whose
+/// supports leave a motion free.
+template <class T>
+void name_failure(const Model& model, const Slots<T>& slots, double time, bool prevents_penetration,
+                  Increment<T>& failed) {
   if (const std::string inverted = detail::words_of_inversion(model, slots, failed.state); !inverted.empty()) {
     failed.status = Status::inverted_element;
     failed.message = inverted;
@@ -160,6 +174,19 @@ void diagnose(const Model& model, const Slots<T>& slots, double time, bool preve
                      failed.message + ")";
     return;
   }
+}
+
+}  // namespace detail
+
+/// Says why an increment failed.
+template <class T>
+void diagnose(const Model& model, const Slots<T>& slots, double time, bool prevents_penetration, Increment<T>& failed) {
+  detail::name_failure(model, slots, time, prevents_penetration, failed);
+  const bool may_collapse =
+      failed.status == Status::singular || failed.status == Status::stagnated || failed.status == Status::not_finite;
+  if (!model.effects.plasticity || !may_collapse) return;
+  if (const std::string flow = detail::words_of_flow(model, slots, failed.state); !flow.empty())
+    failed.message += (failed.message.empty() ? "" : "; ") + flow;
 }
 
 }  // namespace stickslip

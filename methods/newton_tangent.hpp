@@ -45,7 +45,7 @@ class NewtonTangent {
     if (!model.effects.linear_bulk) {
       const Stopwatch time(account_.seconds.assembly);
       const Vector<T> moved = engine_.all(unknowns.u);
-      engine_.linearise({moved, task_.contact.previous.bodies});
+      engine_.linearise({moved, task_.contact.previous.bodies, task_.contact.time});
     }
     facing_ = field.facing;
     if (model.effects.current_geometry && task_.solves_for_multipliers())

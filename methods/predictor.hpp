@@ -1,9 +1,11 @@
-/// Where Newton's method begins when supports move bodies that are not linear: displaced along the tangent of the state
-/// that is left,
+/// Where Newton's method begins when supports or obstacles move bodies that are not linear: displaced along the tangent
+/// of the state that is left,
 ///
 ///   K du_free = -R(u, t) - K du_prescribed,
 ///
-/// for a step taken by the nodes at the supports alone would crush the elements there.
+/// for a step taken by the nodes at the supports alone would crush the elements there, and an obstacle that withdraws
+/// by a step leaves all that it touches: R is that of obstacles where they have moved to, and what touched follows
+/// them.
 #pragma once
 
 #include "methods/newton_tangent.hpp"
@@ -30,6 +32,21 @@ void add_tangent_times(const Model& model, const std::vector<PointTangent<T>>& t
   }
 }
 
+/// Whether the obstacle of a point moves.
+inline bool moves(const Model& model, const ContactPoint& point) {
+  if (point.obstacle < 0) return false;
+  const auto& obstacle = model.scene.obstacles[point.obstacle];
+  return !obstacle.move.empty() || obstacle.rotate.has_value();
+}
+
+/// Branches in which points that touched an obstacle that moves go on with it.
+template <class T>
+void follow_obstacles(const ContactInput<T>& input, std::span<const ContactState> last,
+                      std::vector<ContactState>& branches) {
+  for (std::size_t p = 0; p < last.size(); ++p)
+    if (last[p] != ContactState::open && moves(input.model, input.model.points[p])) branches[p] = last[p];
+}
+
 /// Turns l, the multipliers over rho that the engine solves for, into multipliers.
 template <class T>
 void multiply_by_rho(const ContactInput<T>& input, Matrix<T>& l) {
@@ -40,8 +57,8 @@ void multiply_by_rho(const ContactInput<T>& input, Matrix<T>& l) {
 
 }  // namespace detail
 
-/// Moves the unknowns of an equilibrium there; false, and nothing is changed, where nothing is prescribed anew or the
-/// place is out of bounds.
+/// Moves the unknowns of an equilibrium there; false, and nothing is changed, where nothing moves or the place is out
+/// of bounds.
 template <class T, class E>
 bool predict(E& engine, const EquilibriumTask<T>& task, Evaluator<T, E>& evaluate, NewtonTangent<T, E>& tangent,
              Account& account, Unknowns<T>& unknowns) {
@@ -49,18 +66,22 @@ bool predict(E& engine, const EquilibriumTask<T>& task, Evaluator<T, E>& evaluat
   if (model.effects.linear_bulk || !task.from) return false;
   Unknowns<T> start{into_frames(model, slots.frames, Layout::all, *task.from), unknowns.multiplier};
   const Vector<T> prescribed = unknowns.u - start.u;
-  if (values(prescribed).cwiseAbs().maxCoeff() == 0) return false;
+  const auto& points = model.points;
+  const bool pushed = std::any_of(points.begin(), points.end(), [&](const auto& p) { return detail::moves(model, p); });
+  if (!pushed && values(prescribed).cwiseAbs().maxCoeff() == 0) return false;
   auto at = evaluate(start);
   if (!at.residuals.finite()) return false;
   if (!task.resumed.empty()) detail::resume_on_cone(task.contact, start.multiplier, task.resumed, at.field);
   auto branches = detail::step_branches(task.contact, engine.compact(start.u), at.field, start.multiplier, {});
+  detail::follow_obstacles(task.contact, task.resumed, branches);
   tangent.move_to(start, at.field);
   if (!tangent.factorise(start, branches)) return false;
   evaluate.take_rows_in(branches, start, at);
   const Vector<T> motion = engine.all(prescribed);
   Vector<T> forces = Vector<T>::Constant(static_cast<Eigen::Index>(model.contact_nodes.size()) * model.dimension, T(0));
   detail::add_tangent_times(model, tangent.tangents(), Vector<T>(engine.compact(prescribed)), forces, at.rows_l);
-  Vector<T> rows = bulk_tangent_times(model, slots, {*task.from, task.contact.previous.bodies}, motion);
+  const BodyMotion<T> at_start{*task.from, task.contact.previous.bodies, task.contact.time};
+  Vector<T> rows = tangent_times(model, slots, at_start, motion, false);
   add_compact(model, forces, rows);
   rows = at.rows_u + into_frames(model, slots.frames, Layout::all, std::move(rows));
   for (Eigen::Index row = 0; row < rows.size(); ++row)

@@ -81,7 +81,8 @@ RigidStatics rigid_statics(const Model& model, const Slots<T>& slots, double tim
     if (framed >= 0) direction = values(slots.frames[framed]).col(dof % 2);
     add(statics.holds.col(k), node, direction);
   }
-  const Vector<double> external = values(external_forces(model, slots, time));
+  const Vector<double> external =
+      values(external_forces(model, slots, time, Vector<T>::Constant(model.dof_count(), T(0)).eval()));
   for (int node = 0; node < model.node_count; ++node)
     add(statics.load.col(0), node, Vec<double, 2>(external.segment(2 * node, 2)));
   return statics;

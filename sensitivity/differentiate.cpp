@@ -11,6 +11,8 @@ template Vector<Direction> bulk_forces(const Model&, const Slots<Direction>&, co
                                        const Vector<Direction>&, const ElementLists*);
 template Vector<Direction> bulk_flow(const Model&, const Slots<Direction>&, const Vector<Direction>&,
                                      const Vector<Direction>&);
+template Direction bulk_energy(const Model&, const Slots<Direction>&, const Vector<Direction>&,
+                               const Vector<Direction>&);
 template Slots<Direction> make_slots(const Model&, const Numbers<Direction>&);
 
 namespace {

@@ -18,6 +18,8 @@ extern template Vector<Direction> bulk_forces(const Model&, const Slots<Directio
                                               const Vector<Direction>&, const ElementLists*);
 extern template Vector<Direction> bulk_flow(const Model&, const Slots<Direction>&, const Vector<Direction>&,
                                             const Vector<Direction>&);
+extern template Direction bulk_energy(const Model&, const Slots<Direction>&, const Vector<Direction>&,
+                                      const Vector<Direction>&);
 extern template Slots<Direction> make_slots(const Model&, const Numbers<Direction>&);
 
 /// Numbers of the scene with up to `directions` parameters seeded, each in a direction of its own.
@@ -111,7 +113,7 @@ PseudoLoad pseudo_load(const Differentiation<E>& problem, const Vector<double>& 
     for (Eigen::Index i = 0; i < u.size(); ++i) u[i].d = prescribed[i].d;
     const Vector<Direction> memory = bulk_flow(model, block.slots, u, block.previous.history.bodies);
     const Vector<Direction> balance =
-        bulk_forces(model, block.slots, u, memory) - external_forces(model, block.slots, time);
+        bulk_forces(model, block.slots, u, memory) - external_forces(model, block.slots, time, u);
     rows.push_back(into_frames(model, block.slots.frames, Layout::all, balance));
     load.displacement.push_back(std::move(u));
   }

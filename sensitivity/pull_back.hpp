@@ -211,7 +211,14 @@ void RecordedEquilibrium<E>::record(const State<double>& previous, const Regular
   state_.history = next_history(input, state_.contact, multiplier_);
   state_.history.bodies = memory_;
   const Vector<Reverse> balance = nodal_balance(model, slots, state_, internal_, time);
-  rows_ = into_frames(model, slots.frames, Layout::all, balance);
+  // (the engine has the tangent of pressures that follow the bodies; rows know what else they depend on)
+  rows_ = balance;
+  if (!model.followers.empty()) {
+    const Vector<Reverse> still = at_.displacement.unaryExpr([](double x) { return Reverse(x); });
+    rows_ = internal_ - external_forces(model, slots, time, still);
+    add_compact(model, contact_forces(model, slots, state_.contact), rows_);
+  }
+  rows_ = into_frames(model, slots.frames, Layout::all, std::move(rows_));
   if (unknown_) multiplier_rows_ = multiplier_residual(model, slots, state_.contact.traction, multiplier_);
   if (!objectives) return;
   const NodalForces<Reverse> forces{internal_, support_forces(model, slots, balance)};
@@ -327,7 +334,7 @@ void RecordedEquilibrium<E>::balance(int objective) {
     u += a.u;
     seed_contact(objective, a);
     if (!unknown_) break;
-    rows = reduced + problem_.engine.apply_stiffness(u) +
+    rows = reduced + problem_.engine.apply_stiffness(u, true) +
            problem_.engine.scatter(to_compact<double>(model, in_frames().col(0)));
     clear_held(rows);
     rows_l = of_multiplier();

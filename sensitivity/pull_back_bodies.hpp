@@ -58,7 +58,8 @@ void pull_back_loads(AdjointProblem<E>& problem, const Inside& of, const Vector<
   const auto constant = [](double x) { return Reverse(x); };
   Vector<Reverse> prescribed = of.motion.unaryExpr(constant);
   prescribe(model, slots, of.time, prescribed);
-  Vector<Reverse> rows = -external_forces(model, slots, of.time);
+  const Vector<Reverse> still = of.motion.unaryExpr(constant);
+  Vector<Reverse> rows = -external_forces(model, slots, of.time, still);
   if (of.forces.size() > 0) rows += of.forces.unaryExpr(constant);
   rows = into_frames(model, slots.frames, Layout::all, std::move(rows));
   by.resize(problem.slots_end);
@@ -71,8 +72,9 @@ void pull_back_loads(AdjointProblem<E>& problem, const Inside& of, const Vector<
   for (int node : model.contact_nodes) touches[node] = 1;
   for (int dof : model.free_dofs)
     if (!touches[dof / model.dimension]) seed(rows[dof], weight[dof]);
-  Vector<double> held = into_frames(model, problem.slots.frames, Layout::all,
-                                    bulk_tangent_times(model, problem.slots, {of.motion, of.before}, a, &at_supports));
+  Vector<double> held =
+      into_frames(model, problem.slots.frames, Layout::all,
+                  tangent_times(model, problem.slots, {of.motion, of.before, of.time}, a, true, &at_supports));
   for (int dof : model.free_dofs) held[dof] = 0;
   held = out_of_frames(model, problem.slots.frames, Layout::all, std::move(held));
   for (Eigen::Index i = 0; i < held.size(); ++i) seed(prescribed[i], held[i]);

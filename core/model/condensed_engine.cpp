@@ -31,7 +31,7 @@ Vector<T> CondensedEngine<T>::begin(double time, const Vector<T>& displacement, 
   for (int node : model_.contact_nodes)
     for (int i = 0; i < model_.dimension; ++i) rest_[node * model_.dimension + i] = T(0);
   const Vector<T> moved = out_of_frames(model_, slots_.frames, Layout::all, rest_);
-  const Vector<T> external = external_forces(model_, slots_, time);
+  const Vector<T> external = dead_forces(model_, slots_, time);
   largest_external_ = largest_nodal_norm(external, model_.dimension);
   rest_rows_ =
       into_frames(model_, slots_.frames, Layout::all, Vector<T>(external - bulk_forces(model_, slots_, moved, {})));

@@ -30,7 +30,9 @@ class CondensedEngine {
   BlockVector<T> solve(const BlockVector<T>& rows, Solving how = Solving::refined);
   /// Right-hand sides that the factor solves for one that is refined.
   int solves() const { return update_.empty() ? 1 : 2; }
-  Matrix<T> apply_stiffness(const Matrix<T>& u) const { return condensation_->schur() * u; }
+  Matrix<T> apply_stiffness(const Matrix<T>& u, bool /*transposed*/ = false) const {
+    return condensation_->schur() * u;  // (symmetric)
+  }
   Matrix<T> reduce(const Matrix<T>& rows) { return condensation_->reduce(rows); }
   Matrix<T> expand(const Matrix<T>& u, const Matrix<T>& rows, const Matrix<T>& reduced) {
     return out_of_frames(model_, slots_.frames, Layout::all, condensation_->expand(u, rows, reduced));

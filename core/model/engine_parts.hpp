@@ -184,6 +184,7 @@ Matrix<T> solve_updated(const TangentUpdate& update, const Matrix<T>& b, Solving
 /// frames turn, friction follows them and has no potential whatever its law.
 inline Symmetry symmetry_of(const Model& model, bool unknown_multipliers, ConeRadius cone) {
   const bool fixed_radius = cone == ConeRadius::multiplier && !unknown_multipliers;
+  if (!model.followers.empty()) return Symmetry::general;  // of a pressure that follows a side with ends
   if (model.effects.friction && model.effects.current_geometry) return Symmetry::general;
   if (model.effects.coupled_friction && !fixed_radius) return Symmetry::general;
   return unknown_multipliers ? Symmetry::indefinite : Symmetry::positive_definite;

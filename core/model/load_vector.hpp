@@ -1,4 +1,5 @@
-/// Nodal forces of a load: consistent shares of what acts on facets and in elements, in any scalar.
+/// Nodal forces of a load: consistent shares of what acts on facets and in elements, in any scalar; and those of
+/// pressures that follow a side, by its displacements.
 #pragma once
 
 #include "core/model/slots.hpp"
@@ -85,11 +86,82 @@ void add_body_force(const Model& model, const Load& load, const Slots<T>& slots,
   }
 }
 
+/// Forces of a pressure on an edge at its nodes' places, 2 x nodes. `loaded`: nodes that it acts on.
+template <class T>
+Points<T> pressure_on(const Points<T>& places, const std::vector<char>& loaded, const Depth<T>& depth,
+                      const T& pressure) {
+  std::vector<int> edge(loaded.size());
+  for (std::size_t a = 0; a < edge.size(); ++a) edge[a] = static_cast<int>(a);
+  Points<T> forces = Points<T>::Constant(2, places.cols(), T(0));
+  for_each_edge_point(places, edge, depth, [&](const auto& values, const auto& tau, const T&) {
+    for (std::size_t a = 0; a < edge.size(); ++a) {
+      if (!loaded[a]) continue;
+      forces(0, a) += T(values[a]) * (-tau[1] * pressure);
+      forces(1, a) += T(values[a]) * (tau[0] * pressure);
+    }
+  });
+  return forces;
+}
+
+/// Calls f(nodes, loaded, depth, pressure) for each edge that a pressure follows at a time.
+template <class T, class F>
+void for_each_followed_edge(const Model& model, const Slots<T>& slots, double t, F&& f) {
+  for (const auto& follower : model.followers) {
+    const Load& load = model.scene.loads[follower.load];
+    const T factor = load.history ? evaluate(*load.history, t, slots.numbers) : T(1);
+    const T pressure = factor * slots.numbers(load.vector[0]);
+    for (const auto& edge : follower.side.edges) {
+      std::vector<char> loaded;
+      for (int node : edge) loaded.push_back(is_of(follower.side, node));
+      f(edge, loaded, slots.depths[follower.side.body], pressure);
+    }
+  }
+}
+
 }  // namespace detail
+
+/// Nodal forces of the pressures that follow their sides, at displacements of all dofs.
+template <class T>
+Vector<T> follower_forces(const Model& model, const Slots<T>& slots, double t, const Vector<T>& u) {
+  Vector<T> forces = Vector<T>::Constant(model.dof_count(), T(0));
+  detail::for_each_followed_edge(model, slots, t,
+                                 [&](const auto& nodes, const auto& loaded, const auto& depth, const T& pressure) {
+                                   Points<T> places(2, nodes.size());
+                                   for (std::size_t a = 0; a < nodes.size(); ++a)
+                                     for (int i = 0; i < 2; ++i)
+                                       places(i, a) = slots.points(i, nodes[a]) + u[nodes[a] * 2 + i];
+                                   const Points<T> force = detail::pressure_on(places, loaded, depth, pressure);
+                                   for (std::size_t a = 0; a < nodes.size(); ++a)
+                                     for (int i = 0; i < 2; ++i) forces[nodes[a] * 2 + i] += force(i, a);
+                                 });
+  return forces;
+}
+
+/// Calls sink(nodes, K) for each edge that a pressure follows: derivatives of its forces by displacements, node-major.
+template <class T, class Sink>
+void for_each_follower_tangent(const Model& model, const Slots<T>& slots, const BodyMotion<T>& at, Sink&& sink) {
+  constexpr int most = 6;  // dofs of an edge
+  using Probe = Dual<most, T>;
+  detail::for_each_followed_edge(
+      model, slots, at.time, [&](const auto& nodes, const auto& loaded, const auto& depth, const T& pressure) {
+        const int n = static_cast<int>(nodes.size());
+        Points<Probe> places(2, n);
+        for (int a = 0; a < n; ++a)
+          for (int i = 0; i < 2; ++i)
+            places(i, a) = Probe::seed(slots.points(i, nodes[a]) + at.displacement[nodes[a] * 2 + i], 2 * a + i);
+        const auto force =
+            detail::pressure_on<Probe>(places, loaded, {depth.of_revolution, Probe(depth.thickness)}, Probe(pressure));
+        Matrix<T> K(2 * n, 2 * n);
+        for (int r = 0; r < 2 * n; ++r)
+          for (int c = 0; c < 2 * n; ++c) K(r, c) = force(r % 2, r / 2).d[c];
+        sink(nodes, K);
+      });
+}
 
 template <class T>
 Vector<T> load_vector(const Model& model, const Load& load, const Slots<T>& slots) {
   Vector<T> forces = Vector<T>::Constant(model.dof_count(), T(0));
+  if (load.kind == Load::Kind::pressure && !model.followers.empty()) return forces;  // (follower_forces)
   if (load.kind == Load::Kind::body_force) {
     detail::add_body_force(model, load, slots, forces);
     return forces;

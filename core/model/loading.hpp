@@ -2,12 +2,13 @@
 #pragma once
 
 #include "core/model/frames.hpp"
+#include "core/model/load_vector.hpp"
 
 namespace stickslip {
 
-/// External nodal forces at time t, all dofs.
+/// External nodal forces at time t that do not depend on displacements, all dofs.
 template <class T>
-Vector<T> external_forces(const Model& model, const Slots<T>& slots, double t) {
+Vector<T> dead_forces(const Model& model, const Slots<T>& slots, double t) {
   Vector<T> forces = Vector<T>::Constant(model.dof_count(), T(0));
   for (std::size_t l = 0; l < slots.loads.size(); ++l) {
     const auto& history = model.scene.loads[l].history;
@@ -15,6 +16,28 @@ Vector<T> external_forces(const Model& model, const Slots<T>& slots, double t) {
     for (int dof = 0; dof < model.dof_count(); ++dof) forces[dof] += factor * slots.loads[l][dof];
   }
   return forces;
+}
+
+/// External nodal forces at time t and displacements of all dofs.
+template <class T>
+Vector<T> external_forces(const Model& model, const Slots<T>& slots, double t, const Vector<T>& u) {
+  if (model.followers.empty()) return dead_forces(model, slots, t);
+  return dead_forces(model, slots, t) + follower_forces(model, slots, t, u);
+}
+
+/// The tangent of what is inside and on the bodies, forces of elements less those of pressures that follow them, times
+/// a vector, all dofs; or, `transposed`, its transpose times it. `only`: elements that are visited.
+template <class T>
+Vector<T> tangent_times(const Model& model, const Slots<T>& slots, const BodyMotion<T>& at, const Vector<T>& vector,
+                        bool transposed, const ElementLists* only = nullptr) {
+  Vector<T> product = bulk_tangent_times(model, slots, at, vector, only);
+  if (!model.followers.empty())
+    for_each_follower_tangent(model, slots, at, [&](const std::vector<int>& nodes, const Matrix<T>& K) {
+      for (Eigen::Index r = 0; r < K.rows(); ++r)
+        for (Eigen::Index c = 0; c < K.cols(); ++c)
+          product[nodes[r / 2] * 2 + r % 2] -= (transposed ? K(c, r) : K(r, c)) * vector[nodes[c / 2] * 2 + c % 2];
+    });
+  return product;
 }
 
 /// Sets what is prescribed of a displacement vector (all dofs, in the axes) to its values at time t; the rest of it

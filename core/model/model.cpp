@@ -198,6 +198,14 @@ void place_contact_nodes(Model& model) {
     if (nodes.count(framed.node)) framed.place = place_of(framed.node);
 }
 
+/// Whether the elements of a body have a mean dilatation: where that is asked for; and quadrilaterals of four nodes of
+/// a body that flows where nothing is asked for, for they would lock.
+bool averages(const Scene& scene, const Body& body, ElementShape shape) {
+  const bool may = shape == ElementShape::quad4 && scene.space != Space::plane_stress;
+  const bool flows = std::holds_alternative<J2Plastic>(body.material);
+  return has_mean_dilatation(body.element) || (body.element.empty() && may && flows);
+}
+
 /// Gives the elements of a body their places in what bodies remember.
 void place_memory(Model& model, const Material& material, BodyMesh& body) {
   int points = 1;
@@ -279,8 +287,9 @@ Model make_model(const Scene& scene, Seconds& spent) {
     std::string fault = mesh_fault(body.mesh, body.element, model.dimension);
     if (fault.empty()) fault = space_fault(scene.space, body);
     if (!fault.empty()) throw ModelError(fault, "/bodies/" + body.name + "/mesh");
-    model.bodies.push_back({make_mesh(body.mesh, body.element, model.dimension), model.node_count,
-                            kinematics_of(scene.space, has_mean_dilatation(body.element))});
+    auto mesh = make_mesh(body.mesh, body.element, model.dimension);
+    const Kinematics kinematics = kinematics_of(scene.space, averages(scene, body, mesh.shape));
+    model.bodies.push_back({std::move(mesh), model.node_count, kinematics});
     model.node_count += model.bodies.back().mesh.node_count;
     place_memory(model, body.material, model.bodies.back());
     if (!is_continuum(model.bodies.back().mesh.shape)) continue;
@@ -314,6 +323,8 @@ Model make_model(const Scene& scene, Seconds& spent) {
   for (const auto& response : scene.responses)
     model.response_places.push_back(locate_response(model, points, response));
   model.at_reactions = elements_at_reactions(model);
+  for (int l = 0; scene.finite_strain && l < static_cast<int>(scene.loads.size()); ++l)
+    if (scene.loads[l].kind == Load::Kind::pressure) model.followers.push_back({l, model.side(scene.loads[l].on)});
   model.times = step_ends(scene);
   model.effects.sensitivity = !scene.parameters.empty();
   model.effects.plasticity = model.memory_count > 0;

@@ -113,6 +113,12 @@ struct SideSet {
   std::vector<std::vector<int>> edges;  ///< Side::edges
 };
 
+/// A pressure that follows the side that it acts on, as at finite strain.
+struct Follower {
+  int load = 0;  ///< index in Scene::loads
+  SideSet side = {};
+};
+
 /// Where a response is taken that names a point: nodes and weights of the element that holds it (fixed: the point is
 /// convected with the shape parameters), or the nearest contact point.
 struct ResponsePlace {
@@ -130,6 +136,7 @@ struct Model {
   std::vector<BodyMesh> bodies;
   std::vector<ContactPoint> points;
   std::vector<MasterCurve> curves;
+  std::vector<Follower> followers;
   int multiplier_count = 0;
   int foot_count = 0;                   ///< entries of History::foot
   int memory_count = 0;                 ///< entries of History::bodies

@@ -13,7 +13,7 @@ namespace stickslip {
 template <class T>
 Vector<T> nodal_balance(const Model& model, const Slots<T>& slots, const State<T>& state, const Vector<T>& internal,
                         double time) {
-  Vector<T> rows = internal - external_forces(model, slots, time);
+  Vector<T> rows = internal - external_forces(model, slots, time, state.displacement);
   add_compact(model, contact_forces(model, slots, state.contact), rows);
   return rows;
 }

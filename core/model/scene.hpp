@@ -199,7 +199,8 @@ struct Load {
   enum class Kind { traction, pressure, force, body_force };
   std::string on;  ///< a side; a body for body_force
   Kind kind = Kind::traction;
-  /// traction: per area (per length on a bar); pressure: one number, per area, along the inward normal of the start;
+  /// traction: per area (per length on a bar); pressure: one number, per area, along the inward normal of the start, at
+  /// finite strain along the present one, on the present area;
   /// force: total, shared by tributary area; body_force: per volume
   std::vector<Number> vector;
   std::optional<Table> history;  ///< factor in time; none: 1 from the first step on

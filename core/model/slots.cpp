@@ -14,9 +14,10 @@ ElementLists inverted_elements(const Model& model, const Slots<double>& slots, c
         const auto nodes = detail::element_nodes(body, e);
         const auto local = detail::gather_displacements<double, Shape>(u, nodes.data());
         bool positive = true;
-        for_each_gradient<double, Shape, kinematics>(
-            detail::gather_coordinates<double, Shape>(slots.points, nodes.data()), 1.0, [&](const auto& gradient) {
-              const Mat<double, rows> F = Mat<double, rows>::Identity() + gradient.of(local);
+        for_each_strain_in<double, Shape, kinematics>(
+            law.is_finite, detail::gather_coordinates<double, Shape>(slots.points, nodes.data()), 1.0, local,
+            [&](const auto& H, double) {
+              const Mat<double, rows> F = Mat<double, rows>::Identity() + H;
               positive &= F.template topLeftCorner<2, 2>().determinant() > 0;
               if constexpr (rows == 3) positive &= F(2, 2) > 0;  // (where both are negative their product is not)
             });
@@ -40,10 +41,10 @@ double yield_margin(const Model& model, const Slots<double>& slots, const BodyMo
           const auto nodes = detail::element_nodes(body, e);
           const auto local = detail::gather_displacements<double, Shape>(at.displacement, nodes.data());
           auto before = detail::memory_of_element<L>(body, e, at.before);
-          for_each_gradient<double, Shape, kinematics>(
-              detail::gather_coordinates<double, Shape>(slots.points, nodes.data()), 1.0, [&](const auto& gradient) {
-                take(law.template excess<stress_dimension(kinematics)>(gradient.of(local),
-                                                                       before.template take<L::memory>()));
+          for_each_strain_in<double, Shape, kinematics>(
+              law.is_finite, detail::gather_coordinates<double, Shape>(slots.points, nodes.data()), 1.0, local,
+              [&](const auto& H, double) {
+                take(law.template excess<stress_dimension(kinematics)>(H, before.template take<L::memory>()));
               });
         }
     };
@@ -79,5 +80,14 @@ template Points<std::complex<double>> initial_points(const Model&, const Numbers
 template Slots<std::complex<double>> make_slots(const Model&, const Numbers<std::complex<double>>&,
                                                 Points<std::complex<double>>);
 template Slots<std::complex<double>> make_slots(const Model&, const Numbers<std::complex<double>>&);
+
+template Vector<double> bulk_tangent_times(const Model&, const Slots<double>&, const BodyMotion<double>&,
+                                           const Vector<double>&, const ElementLists*);
+template double bulk_energy(const Model&, const Slots<double>&, const Vector<double>&, const Vector<double>&);
+template Vector<std::complex<double>> bulk_tangent_times(const Model&, const Slots<std::complex<double>>&,
+                                                         const BodyMotion<std::complex<double>>&,
+                                                         const Vector<std::complex<double>>&, const ElementLists*);
+template std::complex<double> bulk_energy(const Model&, const Slots<std::complex<double>>&,
+                                          const Vector<std::complex<double>>&, const Vector<std::complex<double>>&);
 
 }  // namespace stickslip

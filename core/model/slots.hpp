@@ -11,8 +11,8 @@
 #include "core/mesh/generators.hpp"
 #include "core/model/model.hpp"
 #include "core/model/supports.hpp"
-#include "core/solids/continuum.hpp"
 #include "core/solids/edges.hpp"
+#include "core/solids/elements.hpp"
 #include "core/solids/materials.hpp"
 
 namespace stickslip {
@@ -218,6 +218,7 @@ template <class T>
 struct BodyMotion {
   const Vector<T>& displacement;  ///< all dofs, in the axes
   const Vector<T>& before;
+  double time = 0;  ///< at its end; of the pressures that follow it
 };
 
 /// What bodies remember at displacements of all dofs, of what they did `before`; empty where none does.
@@ -230,7 +231,7 @@ template <class T>
 Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& memory,
                       const ElementLists* only = nullptr);
 
-/// Nodal forces of a load at history = 1, all dofs.
+/// Nodal forces of a load at history = 1, all dofs; zero of a pressure that follows its side.
 template <class T>
 Vector<T> load_vector(const Model& model, const Load& load, const Slots<T>& slots);
 
@@ -299,5 +300,16 @@ extern template Points<std::complex<double>> initial_points(const Model&, const 
 extern template Slots<std::complex<double>> make_slots(const Model&, const Numbers<std::complex<double>>&,
                                                        Points<std::complex<double>>);
 extern template Slots<std::complex<double>> make_slots(const Model&, const Numbers<std::complex<double>>&);
+
+extern template Vector<double> bulk_tangent_times(const Model&, const Slots<double>&, const BodyMotion<double>&,
+                                                  const Vector<double>&, const ElementLists*);
+extern template double bulk_energy(const Model&, const Slots<double>&, const Vector<double>&, const Vector<double>&);
+extern template Vector<std::complex<double>> bulk_tangent_times(const Model&, const Slots<std::complex<double>>&,
+                                                                const BodyMotion<std::complex<double>>&,
+                                                                const Vector<std::complex<double>>&,
+                                                                const ElementLists*);
+extern template std::complex<double> bulk_energy(const Model&, const Slots<std::complex<double>>&,
+                                                 const Vector<std::complex<double>>&,
+                                                 const Vector<std::complex<double>>&);
 
 }  // namespace stickslip

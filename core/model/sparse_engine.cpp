@@ -65,14 +65,27 @@ void SparseEngine<T>::lay_out(const std::vector<std::vector<int>>& places) {
   for (std::size_t p = 0; p < places.size() && !model_.slides_along_curves(); ++p)
     point_map_.push_back(map_of(*pattern_, rows_of(p, places[p])));
   if (linearised_) {
-    const BodyMotion<T> at{linearised_->first, linearised_->second};
-    bulk_ = assemble_bodies<T>(model_, slots_, lists, *pattern_, &at);
+    const BodyMotion<T> at{linearised_->displacement, linearised_->before, linearised_->time};
+    assemble(lists, &at);
   } else {
-    bulk_ = assemble_bodies<T>(model_, slots_, lists, *pattern_);
+    assemble(lists, nullptr);
   }
   if (model_.slides_along_curves()) places_ = places;
   if (!model_.effects.linear_bulk) lists_ = std::move(lists);
   analysed_ = false;
+}
+
+template <class T>
+void SparseEngine<T>::assemble(const RowLists& lists, const BodyMotion<T>* at) {
+  bulk_ = assemble_bodies<T>(model_, slots_, lists, *pattern_, at);
+  if (!at || model_.followers.empty()) return;
+  for_each_follower_tangent(model_, slots_, *at, [&](const std::vector<int>& nodes, const Matrix<T>& K) {
+    const Matrix<T> framed = into_frames(model_, slots_.frames, nodes, K);
+    const auto row_of = [&](Eigen::Index k) { return model_.free_index[nodes[k / 2] * 2 + k % 2]; };
+    for (Eigen::Index r = 0; r < K.rows(); ++r)
+      for (Eigen::Index c = 0; c < K.cols(); ++c)
+        if (row_of(r) >= 0 && row_of(c) >= 0) bulk_[locate(*pattern_, row_of(r), row_of(c))] -= framed(r, c);
+  });
 }
 
 template <class T>
@@ -114,15 +127,16 @@ void SparseEngine<T>::make_room(const std::vector<PointTangent<T>>& tangents) {
 
 template <class T>
 void SparseEngine<T>::linearise(const BodyMotion<T>& at) {
-  bulk_ = assemble_bodies<T>(model_, slots_, *lists_, *pattern_, &at);
-  if (model_.slides_along_curves()) linearised_.emplace(at.displacement, at.before);
+  assemble(*lists_, &at);
+  if (model_.slides_along_curves()) linearised_ = {at.displacement, at.before, at.time};
   valid_ = false;
 }
 
 template <class T>
 Vector<T> SparseEngine<T>::begin(double time, const Vector<T>& displacement, const Vector<T>& before) {
   before_ = before;
-  external_ = into_frames(model_, slots_.frames, Layout::all, external_forces(model_, slots_, time));
+  time_ = time;
+  external_ = into_frames(model_, slots_.frames, Layout::all, dead_forces(model_, slots_, time));
   Vector<T> u = displacement;
   prescribe(model_, slots_, time, u);
   return into_frames(model_, slots_.frames, Layout::all, std::move(u));
@@ -138,6 +152,12 @@ Vector<T> SparseEngine<T>::residual(const Vector<T>& u, const Vector<T>& contact
       {scale.force, largest_nodal_norm(rows, D), largest_nodal_norm(external_, D), largest_nodal_norm(contact, D)});
   scale.rounding = unit_roundoff * stiffness_ * largest_nodal_norm(u, D);
   rows -= external_;
+  if (!model_.followers.empty()) {
+    const Vector<T> follower =
+        into_frames(model_, slots_.frames, Layout::all, follower_forces(model_, slots_, time_, moved));
+    scale.force = std::max(scale.force, largest_nodal_norm(follower, D));
+    rows -= follower;
+  }
   add_compact(model_, into_frames(model_, slots_.frames, Layout::compact, contact), rows);
   return rows;
 }
@@ -221,12 +241,14 @@ BlockVector<T> SparseEngine<T>::solve(const BlockVector<T>& rows, Solving how) {
 }
 
 template <class T>
-Matrix<T> SparseEngine<T>::apply_stiffness(const Matrix<T>& u) const {
+Matrix<T> SparseEngine<T>::apply_stiffness(const Matrix<T>& u, bool transposed) const {
   Matrix<T> rows = Matrix<T>::Zero(u.rows(), u.cols());
   for (std::size_t j = 0; j < model_.free_dofs.size(); ++j)
     for (int k = pattern_->column_start[j]; k < pattern_->column_start[j + 1]; ++k)
-      if (pattern_->row[k] < static_cast<int>(model_.free_dofs.size()))
-        rows.row(model_.free_dofs[pattern_->row[k]]) += bulk_[k] * u.row(model_.free_dofs[j]);
+      if (pattern_->row[k] < static_cast<int>(model_.free_dofs.size())) {
+        const int row = model_.free_dofs[pattern_->row[k]], column = model_.free_dofs[j];
+        rows.row(transposed ? column : row) += bulk_[k] * u.row(transposed ? row : column);
+      }
   return rows;
 }
 

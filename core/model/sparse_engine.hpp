@@ -43,8 +43,8 @@ class SparseEngine {
   BlockVector<T> solve(const BlockVector<T>& rows, Solving how = Solving::refined);
   /// Right-hand sides that the factor solves for one that is refined.
   int solves() const { return update_.empty() ? 1 : 2; }
-  /// The bodies' stiffness times engine increments (engine rows).
-  Matrix<T> apply_stiffness(const Matrix<T>& u) const;
+  /// The bodies' stiffness times engine increments (engine rows), or its transpose.
+  Matrix<T> apply_stiffness(const Matrix<T>& u, bool transposed = false) const;
   /// Rows over all dofs, in the frames -> engine rows.
   Matrix<T> reduce(const Matrix<T>& rows) { return rows; }
   /// The increment over all dofs, in the axes, that belongs to an engine increment and to such rows.
@@ -65,7 +65,8 @@ class SparseEngine {
   bool unknown_multipliers_;
   Symmetry symmetry_;
   int size_;
-  Vector<T> external_;  ///< in the frames
+  double time_ = 0;
+  Vector<T> external_;  ///< in the frames, of what does not depend on displacements
   Vector<T> before_;    ///< what bodies remember of the last increment
   std::shared_ptr<Pattern> pattern_;
   /// Makes the pattern of the bodies and of points with these places (Model::contact_nodes), and what hangs on it.
@@ -79,8 +80,13 @@ class SparseEngine {
 
   std::optional<RowLists> lists_;         ///< of the tangent; none where the bodies' is constant
   std::vector<std::vector<int>> places_;  ///< per point: those that the pattern has, sorted; none slides: empty
-  /// Motion that the bodies' tangent is taken at, kept where the pattern may change: displacements, what is remembered.
-  std::optional<std::pair<Vector<T>, Vector<T>>> linearised_;
+  /// Motion that the bodies' tangent is taken at, kept where the pattern may change.
+  struct Linearised {
+    Vector<T> displacement, before;
+    double time;
+  };
+  std::optional<Linearised> linearised_;
+  void assemble(const RowLists& lists, const BodyMotion<T>* at);
   std::vector<std::vector<int>> point_map_;  ///< per point: entry of each (row, column) pair of its rows, -1 if fixed
   std::vector<T> bulk_, values_;
   double stiffness_ = 0;  ///< largest diagonal entry, for the rounding of a residual

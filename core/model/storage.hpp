@@ -45,13 +45,15 @@ struct StateBytes {
   long multipliers = 0;  ///< normal
   long history = 0;      ///< friction: placement, slip, work
   long tangential = 0;   ///< friction: tractions and multipliers
-  long all() const { return displacements + contact + multipliers + history + tangential; }
+  long bodies = 0;       ///< plasticity: what bodies remember
+  long all() const { return displacements + contact + multipliers + history + tangential + bodies; }
   StateBytes& operator+=(const StateBytes& o) {
     displacements += o.displacements;
     contact += o.contact;
     multipliers += o.multipliers;
     history += o.history;
     tangential += o.tangential;
+    bodies += o.bodies;
     return *this;
   }
 };
@@ -72,6 +74,8 @@ StateBytes state_bytes(const State<T>& state) {
     held.contact += static_cast<long>(sizeof(PointGeometry<T>)) + one * geometry.weights.size();
   held.history = bytes_of(contact.slip);
   for_each_part([&](const Vector<T>& part) { held.history += bytes_of(part); }, state.history);
+  held.bodies = bytes_of(state.history.bodies);
+  held.history -= held.bodies;
   return held;
 }
 

@@ -1,21 +1,20 @@
-/// The element template of the continuum: residual and tangent of any shape, in the plane or of revolution, with or
-/// without mean dilatation, for any material routine.
+/// The continuum's gradients at the quadrature points of an element of any shape, in the plane or of revolution, with
+/// or without mean dilatation:
 ///
-///   R_ia = int sigma_pq B_pq,ia dV        K = int B_pq,ia (dsigma_pq/dH_rs) B_rs,kb dV        H_pq = B_pq,ia u_ia
+///   H_pq = B_pq,ia u_ia        dV
 ///
-/// H is the displacement gradient, sigma the stress that does work on it: at finite strain the first Piola-Kirchhoff
-/// stress. In the plane it has four components, B_pq,ia = delta_ip dN_a/dX_q, and dV is area
+/// H is the displacement gradient. In the plane it has four components, B_pq,ia = delta_ip dN_a/dX_q, and dV is area
 /// times thickness. Of revolution (X_0 = r, X_1 axial) the hoop strain H_22 = u_r / r joins them, and dV is area times
-/// the circumference 2 pi r. With mean dilatation the trace of H is replaced by its mean over the element,
+/// the circumference 2 pi r. With mean dilatation, at small strain, the trace of H is replaced by its mean over the
+/// element,
 ///
 ///   H -> H + (theta - tr H)/3 I,   theta = int tr H dV / V,
 ///
-/// so that a nearly incompressible element has one volume to keep and not one at every point: the small-strain limit of
-/// F -> (theta/J)^(1/3) F. It has a potential, hence a symmetric tangent. In plane strain it too has H_22, the spread
-/// of the dilatation out of the plane. [H80]
+/// so that a nearly incompressible element has one volume to keep and not one at every point: the limit of
+/// F -> (theta/J)^(1/3) F (core/solids/mean_dilatation.hpp). It has a potential, hence a symmetric tangent. In plane
+/// strain it too has H_22, the spread of the dilatation out of the plane. [H80]
 ///
-/// The material tangent is the Dual of the stress routine; this file writes its assembly into an element once, by hand.
-/// Tested against the Dual of the whole element.
+/// What elements make of them is in core/solids/elements.hpp.
 #pragma once
 
 #include "core/solids/kinematics.hpp"
@@ -140,128 +139,6 @@ void for_each_gradient(const Mat<T, 2, Shape::nodes>& coordinates, const T& dept
   } else {
     for (const auto& point : quadrature) f(Gradient<T, Shape, kinematics>(point, coordinates, depth));
   }
-}
-
-/// What the points of an element remember: a law's numbers a point, one after another; nullptr where it has none.
-template <class T>
-class ElementMemory {
- public:
-  ElementMemory(const T* numbers = nullptr) : next_(numbers) {}  // NOLINT: what is remembered is one
-  /// Of the next point.
-  template <int count>
-  Vec<T, count> take() {
-    const Vec<T, count> memory = Eigen::Map<const Vec<T, count>>(next_);
-    next_ += count;
-    return memory;
-  }
-
- private:
-  const T* next_;
-};
-
-/// Internal nodal forces, 2 x nodes. G, the scalar of the geometry, is T, or double where no derivative rides on it.
-/// `memory`: that the forces are at, of a law that remembers.
-template <class T, class Shape, Kinematics kinematics = Kinematics::plane, class G = T, class Law>
-Mat<T, 2, Shape::nodes> element_forces(const Law& law, const std::type_identity_t<Mat<G, 2, Shape::nodes>>& coordinates,
-                                       const Mat<T, 2, Shape::nodes>& u, const std::type_identity_t<G>& depth = G(1),
-                                       ElementMemory<T> memory = {}) {
-  Mat<T, 2, Shape::nodes> forces = Mat<T, 2, Shape::nodes>::Constant(T(0));
-  for_each_gradient<G, Shape, kinematics>(coordinates, depth, [&](const auto& gradient) {
-    constexpr int rows = stress_dimension(kinematics);
-    Mat<T, rows> sigma;
-    if constexpr (requires { Law::memory; })
-      sigma = law.template stress<T, rows>(gradient.of(u), memory.template take<Law::memory>());
-    else
-      sigma = law.template stress<T, rows>(gradient.of(u));
-    for (int k = 0; k < rows * rows; ++k) sigma.data()[k] = sigma.data()[k] * gradient.volume;
-    for (int a = 0; a < Shape::nodes; ++a)
-      for (int i = 0; i < 2; ++i)
-        gradient.for_each(i, a, [&](int p, int q, const G& b) { forces(i, a) += sigma(p, q) * b; });
-  });
-  return forces;
-}
-
-namespace detail {
-
-/// Place of H_pq, or sigma_pq, among those that are not always zero: 00 01 10 11 22.
-constexpr int component(int p, int q) { return p == 2 ? 4 : 2 * p + q; }
-
-/// dsigma/dH times a volume, component by component; of a law that remembers, with the flow from `before`.
-template <class T, int components, int rows, class Law>
-Mat<T, components> material_tangent(const Law& law, const Mat<T, rows>& H, const T& volume, ElementMemory<T>& before) {
-  using Probe = Dual<components, T>;
-  Mat<Probe, rows> seeded = Mat<Probe, rows>::Constant(Probe(T(0)));
-  for (int p = 0; p < rows; ++p)
-    for (int q = 0; q < rows; ++q)
-      if ((p == 2) == (q == 2)) seeded(p, q) = Probe::seed(H(p, q), component(p, q));
-  Mat<Probe, rows> sigma;
-  if constexpr (requires { Law::memory; }) {
-    const auto memory = before.template take<Law::memory>();
-    const Vec<Probe, Law::memory> constant = memory.unaryExpr([](const T& x) { return Probe(x); });
-    sigma = law.template stress<Probe, rows>(seeded, law.template flow<Probe, rows>(seeded, constant));
-  } else {
-    sigma = law.template stress<Probe, rows>(seeded);
-  }
-  Mat<T, components> tangent;
-  for (int p = 0; p < rows; ++p)
-    for (int q = 0; q < rows; ++q)
-      if ((p == 2) == (q == 2)) tangent.row(component(p, q)) = sigma(p, q).d * volume;
-  return tangent;
-}
-
-}  // namespace detail
-
-/// Tangent, (2 nodes) x (2 nodes), node-major. `before`: the memory that a law which remembers flows from.
-template <class T, class Shape, Kinematics kinematics = Kinematics::plane, class Law>
-Mat<T, 2 * Shape::nodes> element_tangent(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates,
-                                         const Mat<T, 2, Shape::nodes>& u, const T& depth = T(1),
-                                         ElementMemory<T> before = {}) {
-  constexpr int n = Shape::nodes;
-  Mat<T, 2 * n> K = Mat<T, 2 * n>::Constant(T(0));
-  for_each_gradient<T, Shape, kinematics>(coordinates, depth, [&](const auto& gradient) {
-    constexpr int rows = stress_dimension(kinematics), components = rows == 2 ? 4 : 5;
-    const auto C = detail::material_tangent<T, components, rows>(law, gradient.of(u), gradient.volume, before);
-    for (int b = 0; b < n; ++b)
-      for (int k = 0; k < 2; ++k) {
-        Vec<T, components> column = Vec<T, components>::Constant(T(0));  // dsigma/du_kb
-        gradient.for_each(k, b, [&](int p, int q, const T& x) {
-          for (int c = 0; c < components; ++c) column[c] += C(c, detail::component(p, q)) * x;
-        });
-        for (int a = 0; a < n; ++a)
-          for (int i = 0; i < 2; ++i)
-            gradient.for_each(i, a, [&](int p, int q, const T& x) {
-              K(a * 2 + i, b * 2 + k) += column[detail::component(p, q)] * x;
-            });
-      }
-  });
-  return K;
-}
-
-/// Strain energy int W dV, of a law that remembers at a memory.
-template <class T, class Shape, Kinematics kinematics = Kinematics::plane, class Law>
-T element_energy(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates, const Mat<T, 2, Shape::nodes>& u,
-                 const T& depth = T(1), ElementMemory<T> memory = {}) {
-  constexpr int rows = stress_dimension(kinematics);
-  T energy{};
-  for_each_gradient<T, Shape, kinematics>(coordinates, depth, [&](const auto& gradient) {
-    if constexpr (requires { Law::memory; })
-      energy += law.template energy<T, rows>(gradient.of(u), memory.template take<Law::memory>()) * gradient.volume;
-    else
-      energy += law.template energy<T, rows>(gradient.of(u)) * gradient.volume;
-  });
-  return energy;
-}
-
-/// The memory that displacements leave, point by point, of the one before. `after` has room for it.
-template <class T, class Shape, Kinematics kinematics = Kinematics::plane, class Law>
-void element_flow(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates, const Mat<T, 2, Shape::nodes>& u,
-                  ElementMemory<T> before, T* after) {
-  constexpr int rows = stress_dimension(kinematics);
-  for_each_gradient<T, Shape, kinematics>(coordinates, T(1), [&](const auto& gradient) {
-    const Vec<T, Law::memory> flown = law.template flow<T, rows>(gradient.of(u), before.template take<Law::memory>());
-    std::copy(flown.begin(), flown.end(), after);
-    after += Law::memory;
-  });
 }
 
 /// Quadrature points of an element.

@@ -13,7 +13,7 @@
 
 #include <vector>
 
-#include "core/solids/continuum.hpp"
+#include "core/solids/elements.hpp"
 
 namespace stickslip {
 
@@ -108,12 +108,55 @@ PointWork<rows> point_work(const Law& law, const Mat<double, rows>& H, const Mat
   return work;
 }
 
+/// The derivatives of the work of an element with mean dilatation at finite strain: the Dual of the whole element.
+template <class Shape, Kinematics kinematics, class Law>
+auto averaged_work(const Law& law, const Mat<double, 2, Shape::nodes>& coordinates, double depth,
+                   const std::vector<StateOfElement<Shape::nodes>>& states) {
+  constexpr int n = Shape::nodes, count = static_cast<int>(std::tuple_size_v<decltype(law.numbers())>);
+  constexpr int memory = [] {
+    if constexpr (requires { Law::memory; }) return points_of<Shape>(kinematics) * Law::memory;
+    return 0;
+  }();
+  constexpr int at_motion = 2 * n + 1 + count, at_memory = at_motion + 2 * n;
+  constexpr int inputs = memory > 0 ? at_memory + memory : at_motion;
+  using Probe = Dual<inputs>;
+  Mat<Probe, 2, n> X;
+  for (int k = 0; k < 2 * n; ++k) X.data()[k] = Probe::seed(coordinates.data()[k], k);
+  std::array<Probe, count> numbers;
+  for (int m = 0; m < count; ++m) numbers[m] = Probe::seed(law.numbers()[m], 2 * n + 1 + m);
+  const auto probed = law.with(numbers);
+  ElementWork<n, static_cast<std::size_t>(count)> out;
+  for (const auto& state : states) {
+    Mat<Probe, 2, n> u;
+    Vec<Probe, memory> before, after;
+    for (int k = 0; k < 2 * n; ++k)
+      u.data()[k] = memory > 0 ? Probe::seed(state.motion.data()[k], at_motion + k) : Probe(state.motion.data()[k]);
+    for (int m = 0; m < memory; ++m) before[m] = Probe::seed(state.before[m], at_memory + m);
+    const auto forces = averaged_forces<true, Probe, Shape, kinematics, Probe>(probed, X, u, Probe::seed(depth, 2 * n),
+                                                                               before.data(), after.data());
+    Probe work(0.0);
+    for (int k = 0; k < 2 * n; ++k) work += state.weight.data()[k] * forces.data()[k];
+    for (int m = 0; m < memory; ++m) work += state.memory[m] * after[m];
+    for (int k = 0; k < 2 * n; ++k) out.coordinates.data()[k] += work.d[k];
+    out.depth += work.d[2 * n];
+    for (int m = 0; m < count; ++m) out.law[m] += work.d[2 * n + 1 + m];
+    if constexpr (memory > 0) {
+      out.motion.emplace_back();
+      for (int k = 0; k < 2 * n; ++k) out.motion.back().data()[k] = work.d[at_motion + k];
+      out.before.emplace_back(work.d.template segment<memory>(at_memory).matrix());
+    }
+  }
+  return out;
+}
+
 }  // namespace detail
 
 /// The derivatives of the work of one element. `law`: in double; `depth`: thickness of a plane body.
 template <class Shape, Kinematics kinematics, class Law>
 auto element_work(const Law& law, const Mat<double, 2, Shape::nodes>& coordinates, double depth,
                   const std::vector<StateOfElement<Shape::nodes>>& states) {
+  if constexpr (detail::averages<Law, kinematics>())
+    if (law.is_finite) return detail::averaged_work<Shape, kinematics>(law, coordinates, depth, states);
   constexpr int n = Shape::nodes, rows = stress_dimension(kinematics);
   constexpr std::size_t count = std::tuple_size_v<decltype(law.numbers())>;
   using Geometry = Dual<2 * n + 1>;

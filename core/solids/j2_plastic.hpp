@@ -47,9 +47,7 @@ struct PlaneStressReturn {
 template <class T>
 struct J2Law {
   static constexpr int memory = 4;
-  static constexpr bool is_made_for(Kinematics kinematics, bool finite_strain) {
-    return !finite_strain || !has_mean_dilatation(kinematics);
-  }
+  static constexpr bool is_made_for(Kinematics, bool /*finite_strain*/) { return true; }
   template <class U>
   using Memory = Vec<U, memory>;
 

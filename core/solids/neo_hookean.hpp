@@ -26,9 +26,7 @@ struct NeoHookean {
 template <class T>
 struct NeoHookeanLaw {
   static constexpr bool is_finite = true;
-  static constexpr bool is_made_for(Kinematics kinematics, bool finite_strain) {
-    return finite_strain && !has_mean_dilatation(kinematics);
-  }
+  static constexpr bool is_made_for(Kinematics, bool finite_strain) { return finite_strain; }
 
   T lame, shear;
   NeoHookean::Volumetric volumetric = NeoHookean::Volumetric::quadratic;

@@ -335,7 +335,6 @@ void read_body(const std::string& name, const JsonNode& node, SceneReading& read
   body.name = name;
   if (const auto element = node.find("element")) {
     body.element = element->choice({"Q4", "Q4_mean_dilatation", "Q8", "T3", "T6", "bar", "point"}).value_or("");
-    if (has_mean_dilatation(body.element)) reading.only_at_small_strain(*element);
   }
   const auto mesh_node = node.find("mesh");
   const auto mesh = mesh_node ? read_mesh(*mesh_node, reading) : std::nullopt;

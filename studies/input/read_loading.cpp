@@ -117,7 +117,6 @@ void read_load(const JsonNode& node, SceneReading& reading) {
   if (!kind) return;
   Load load;
   load.kind = kinds.at(kind->first);
-  if (load.kind == Load::Kind::pressure) reading.only_at_small_strain(kind->second);
   if (varies_in_time(kind->second, load.kind, reading))
     load.vector.clear();
   else if (load.kind == Load::Kind::pressure)

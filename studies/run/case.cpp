@@ -15,8 +15,8 @@ namespace {
 /// Fills in the one-sided derivatives of increment n, and whether they are one.
 void take_sides(const CaseResult& result, std::size_t n, StepResult& step) {
   const auto& scene = result.problem->model.scene;
-  if (scene.sensitivity_mode == SensitivityMode::adjoint)  // (which has no sides)
-    step.differentiable = step.margins.least() > weak_margin;
+  const bool has_sides = scene.sensitivity_mode == SensitivityMode::direct;
+  if (!has_sides) step.differentiable = step.margins.least() > weak_margin;
   const auto take = [&](const auto& backward, const auto& forward) {
     if (n >= backward.size()) return;
     step.backward = backward[n];
@@ -26,7 +26,9 @@ void take_sides(const CaseResult& result, std::size_t n, StepResult& step) {
     take(result.one_sided->backward, result.one_sided->forward);
   else
     take(result.gradients.below, result.gradients.above);
-  if (step.margins.yield <= weak_margin) step.differentiable = false;  // (whose sides are not known)
+  if (has_sides && step.margins.yield <= weak_margin)  // which sides a flow that is about to begin has is not known
+    step.backward = step.forward = Matrix<double>::Constant(scene.responses.size(), scene.parameters.size(),
+                                                            std::numeric_limits<double>::quiet_NaN());
   if (step.backward.size() == 0) return;
   for (std::size_t i = 0; i < scene.responses.size(); ++i)
     for (std::size_t j = 0; j < scene.parameters.size(); ++j)

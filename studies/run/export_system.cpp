@@ -112,7 +112,7 @@ std::vector<std::string> export_system(const std::filesystem::path& folder, cons
   const Sparse K = stiffness_of(model, slots), G = gradient_of(model, slots), select = selection(model);
   const Vector<double> u = in_frames(state.displacement);
   const Vector<double> prescribed = u - Vector<double>(select.transpose() * (select * u));
-  const Vector<double> f = in_frames(external_forces(model, slots, increment.time)) - K * prescribed;
+  const Vector<double> f = in_frames(dead_forces(model, slots, increment.time)) - K * prescribed;
   const RegularisationField<double> no_rho;
   const History<double> no_history;
   const ContactInput<double> input{model, slots, no_rho, no_history, ConeRadius::augmented, increment.time};

@@ -82,8 +82,8 @@ LedgerRow bodies_row(const CaseResult& result, const StateBytes& states) {
           seconds.setup + (model.effects.contact ? 0 : evaluation_seconds(result))};
 }
 
-/// Contact without friction, friction, and masters that deform. Multipliers are unknowns where the systems that were
-/// solved had rows for them.
+/// Contact without friction, friction, masters that deform, and bodies that flow. Multipliers are unknowns where the
+/// systems that were solved had rows for them.
 void add_contact_rows(const CaseResult& result, const StateBytes& states, Ledger& ledger) {
   const auto& [model, slots, unused] = *result.problem;
   const auto& trajectory = result.trajectory;
@@ -116,6 +116,12 @@ void add_contact_rows(const CaseResult& result, const StateBytes& states, Ledger
                     {{"weights", masters.bytes}},
                     {{"nodes", masters.nodes}},
                     model.effects.deformable_master ? not_apart : 0});
+  ledger.push_back({"plasticity",
+                    model.effects.plasticity,
+                    {},
+                    {{"history", static_cast<double>(states.bodies)}},
+                    {{"numbers", static_cast<double>(model.memory_count)}},
+                    model.effects.plasticity ? not_apart : 0});
 }
 
 /// Back-solves, factorisations and evaluations; of derivatives but for `without`.

@@ -23,6 +23,7 @@ struct Size {
   double dofs, contact_dofs, free, solved;  ///< displacements; `solved`: in the systems of the engine
   double points, tangential, contacts;      ///< `contacts`: with a work of friction
   double feet, present;                     ///< of the slip history; points that keep a geometry in each state
+  double remembered;                        ///< numbers of bodies that flow
   double states;                            ///< that the run keeps
   double steps, parameters, blocks, responses, objectives;
   double together;  ///< increments that are differentiated at once
@@ -41,6 +42,7 @@ Size size_of(const Input& input, const Model& model) {
   n.points = static_cast<double>(model.points.size());
   n.tangential = model.multiplier_count - n.points;
   n.feet = model.foot_count;
+  n.remembered = model.memory_count;
   n.present = model.effects.current_geometry ? n.points : 0;
   n.contacts = model.effects.friction ? static_cast<double>(model.scene.contacts.size()) : 0;
   n.steps = static_cast<double>(model.times.size());
@@ -53,7 +55,9 @@ Size size_of(const Input& input, const Model& model) {
   n.uzawa = uzawa != nullptr;
   n.truncated = uzawa && uzawa->sensitivity == UzawaAL::Sensitivity::truncated;
   n.follows = !n.condensed && (!uzawa || uzawa->sensitivity == UzawaAL::Sensitivity::iterated);
-  n.together = std::min(n.steps, std::max(1.0, std::floor(columns_together / std::max(n.parameters, 1.0))));
+  n.together = model.effects.plasticity
+                   ? 1
+                   : std::min(n.steps, std::max(1.0, std::floor(columns_together / std::max(n.parameters, 1.0))));
   return n;
 }
 
@@ -103,10 +107,18 @@ void add_contact_rows(const Problem& problem, const Size& n, const Amount& facto
                     not_apart});
   ledger.push_back(
       {"deformable_masters", effects.deformable_master, {}, {{"weights", bytes}}, {{"nodes", nodes}}, not_apart});
+  ledger.push_back({"plasticity",
+                    effects.plasticity,
+                    {},
+                    {{"history", number * model.memory_count * n.states}},
+                    {{"numbers", static_cast<double>(model.memory_count)}},
+                    not_apart});
 }
 
 /// Numbers of a dual state of one block, but for the branches.
-double state_numbers(const Size& n) { return n.dofs + 3 * n.points + 4 * n.tangential + n.feet + n.contacts; }
+double state_numbers(const Size& n) {
+  return n.dofs + 3 * n.points + 4 * n.tangential + n.feet + n.contacts + n.remembered;
+}
 
 /// Back-solves and evaluations of derivatives with `columns` right-hand sides an increment, that are `evaluated` times
 /// as many points. A penalty takes one solve; multipliers that are unknown up to two more, where rounding asks for

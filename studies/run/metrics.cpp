@@ -63,7 +63,7 @@ void enlarge(const Model& model, const Slots<double>& slots, const State<double>
   }
   scales.least_traction = telling * stiffest * (scales.reach + scales.length);
   scales.traction = larger(scales.traction, scales.least_traction);
-  const Vector<double> loads = external_forces(model, slots, time);
+  const Vector<double> loads = external_forces(model, slots, time, state.displacement);
   // A load is exact: above the rounding of the bodies' forces it tells how large forces are, be it ever so small.
   const double rounding = 10 * unit_roundoff * scales.stiffness * scales.reach;
   if (!(largest_nodal_norm(loads, D) > rounding))

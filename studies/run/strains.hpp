@@ -8,7 +8,8 @@
 namespace stickslip {
 
 /// Calls f(e, H, volume, memory) at each quadrature point of each element of body b; nothing where it is no continuum.
-/// H: displacement gradient, 2 x 2, or 3 x 3 where a component out of the plane matters. `volume`: of a unit thickness.
+/// H: displacement gradient (of mean dilatation the averaged one), 2 x 2, or 3 x 3 where a component out of the plane
+/// matters. `volume`: of a unit thickness.
 /// `memory`: what the point remembers; nullptr where it does not.
 template <class F>
 void for_each_strain(const Problem& problem, const State<double>& state, std::size_t b, F&& f) {
@@ -22,10 +23,11 @@ void for_each_strain(const Problem& problem, const State<double>& state, std::si
       const auto X = detail::gather_coordinates<double, Shape>(problem.slots.points, nodes.data());
       const auto u = detail::gather_displacements<double, Shape>(state.displacement, nodes.data());
       int point = 0;
-      for_each_gradient<double, Shape, kinematics>(X, 1, [&](const auto& gradient) {
-        f(e, gradient.of(u), gradient.volume, first ? first + e * body.memory + point * count : nullptr);
-        ++point;
-      });
+      for_each_strain_in<double, Shape, kinematics>(
+          problem.model.scene.finite_strain, X, 1, u, [&](const auto& H, double volume) {
+            f(e, H, volume, first ? first + e * body.memory + point * count : nullptr);
+            ++point;
+          });
     }
   });
 }

@@ -223,6 +223,7 @@ def metal(surface):
     document = ironing(surface, along=0.5)
     document["title"] = "Die ironing a metal slab at finite strain"
     document["bodies"]["slab"]["material"] = {"j2_plastic": {"E": 1, "nu": 0.3, "yield": 0.04, "hardening": 0.1}}
+    document["bodies"]["slab"]["element"] = "Q4"
     document["supports"][1]["move"] = {"x": [[0, 0], [1, 0], [2, 0.5], [3, 0.5]],
                                        "y": [[0, 0], [1, -0.12], [2, -0.12], [3, -0.11]]}
     document["time"]["legs"] = [[1, 3], [2, 4], [3, 1]]

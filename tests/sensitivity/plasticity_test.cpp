@@ -157,6 +157,7 @@ INSTANTIATE_TEST_SUITE_P(Settings, PlasticBlocks,
                                          Setting{Space::plane_stress, false, "Q4"},
                                          Setting{Space::axisymmetric, false, "Q4_mean_dilatation"},
                                          Setting{Space::plane_strain, true, "Q4"},
+                                         Setting{Space::plane_strain, true, "Q4_mean_dilatation"},
                                          Setting{Space::axisymmetric, true, "T3"}));
 
 /// A truss of two bars, elastoplastic, pushed down on a stop that is rough.
@@ -190,6 +191,23 @@ TEST(Plasticity, OfBarsHasTheDerivativesOfTheWholeRun) {
       EXPECT_GT(s.trajectory.increments.back().state.history.bodies[1], 1e-4) << finite;
       scenes::expect_derivatives_in_both_modes(scene, method);
     }
+}
+
+TEST(Plasticity, BeyondWhatABarBearsIsNamed) {
+  Scene s = bar_on_a_wall();
+  s.bodies[0].material = J2Plastic{1000.0, 0.3, 10.0, 0.0};  // perfect: no more than 10
+  s.supports = {scenes::support("bar.nodes", {{'y', table({{0, 0.0}})}}),
+                scenes::support("bar.start", {{'x', table({{0, 0.0}})}})};
+  s.loads = {scenes::force("bar.end", {12.0, 0.0})};
+  s.loads[0].history = table({{0, 0.0}, {1, 1.0}});
+  s.legs = {{1, 9}};
+  for (const Method& method : {Method(MonolithicAL{}), Method(UzawaAL{}), Method(Penalty{})}) {
+    const auto r = run(s, method);
+    EXPECT_FALSE(is_converged(r.trajectory.status)) << name_of(method);
+    EXPECT_NE(r.trajectory.message.find("bar flows: its loads may be more than it bears"), std::string::npos)
+        << r.trajectory.message;
+    EXPECT_NEAR(r.trajectory.increments.back().time, 7.0 / 9, 1e-9 + 1.0 / 9) << name_of(method);
+  }
 }
 
 // --- only where a scene calls for it ---------------------------------------------------------------------------------

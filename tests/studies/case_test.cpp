@@ -60,6 +60,25 @@ TEST(Case, GivesBothSidesOfALargestValueThatTwoNodesShare) {
   EXPECT_TRUE(off["differentiable"]);
 }
 
+TEST(Case, DoesNotKnowTheSidesOfAFlowThatIsAboutToBegin) {
+  // seven steps to 0.035: at the third the bar is at its yield stress, to the last bits
+  const std::filesystem::path file = STICKSLIP_SOURCE_DIR "/studies/scenes/plastic_bar.json";
+  json scene = cases::load(file);
+  scene["time"] = {{"legs", {{1, 7}}}};
+  scene["supports"][0]["move"]["x"] = {{0, 0}, {1, 0.035}};
+  const auto result = cases::run(scene, {{"monolithic_al", json::object()}}, file);
+  ASSERT_EQ(result.steps.size(), 7u);
+  for (std::size_t n = 1; n < 7; ++n) {  // (the first closes a gap of zero)
+    const auto& step = result.steps[n];
+    EXPECT_EQ(step.margins.yield <= weak_margin, n == 2) << n;
+    EXPECT_EQ(step.differentiable, n != 2) << n;
+    if (n == 2) {
+      EXPECT_TRUE(step.backward.array().isNaN().all() && step.forward.array().isNaN().all());
+      EXPECT_EQ(step.forward.rows(), 3);
+    }
+  }
+}
+
 TEST(Case, RecordsTheContractionAndWhatTheDerivativesTook) {
   UzawaAL method;
   method.scale = scenes::relative(0.3);

@@ -84,7 +84,7 @@ void expect_rounding_does_not_matter(const fs::path& file) {
 }
 
 /// Too large for every build.
-bool is_large(const std::string& name) { return name == "cattaneo_mindlin"; }
+bool is_large(const std::string& name) { return name == "cattaneo_mindlin" || name == "arch" || name == "indentation"; }
 
 std::vector<fs::path> scenes(bool large) {
   std::vector<fs::path> found;

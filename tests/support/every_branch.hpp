@@ -41,7 +41,7 @@ inline Vector<double> along(const Model& model, const Slots<double>& slots, int 
 /// zero.
 inline double free_motion(const Model& model, const Slots<double>& slots, double time) {
   Matrix<double> K = dense_stiffness(model, slots);
-  Vector<double> f = external_forces(model, slots, time);
+  Vector<double> f = dead_forces(model, slots, time);
   for (int dof = 0; dof < model.dof_count(); ++dof)
     if (model.free_index[dof] < 0) {
       K.row(dof) = Vector<double>::Unit(K.rows(), dof);
@@ -61,7 +61,7 @@ inline double most_friction(const FrictionLaw<double>& law, double pressure) {
 inline std::vector<FoundSolution> every_solution(const Model& model, const Slots<double>& slots, double time) {
   const int n = static_cast<int>(model.points.size()), dofs = model.dof_count(), size = dofs + 2 * n;
   const Matrix<double> K = dense_stiffness(model, slots);
-  const Vector<double> f = external_forces(model, slots, time);
+  const Vector<double> f = dead_forces(model, slots, time);
   Matrix<double> base = Matrix<double>::Zero(size, size);
   Vector<double> right = Vector<double>::Zero(size);
   base.topLeftCorner(dofs, dofs) = K;

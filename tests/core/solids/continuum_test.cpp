@@ -1,12 +1,11 @@
 /// The element template with both shapes in both plane spaces: tangent, rigid motions, patch test, stresses.
-#include "core/solids/continuum.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <limits>
 
 #include "core/mesh/generators.hpp"
+#include "core/solids/elements.hpp"
 #include "core/solids/linear_elastic.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/largest.hpp"

@@ -62,7 +62,51 @@ TEST(ElementWork, HasTheDerivativesOfTheComplexStep) {
     const NeoHookeanLaw<double> finite(3.0, 2.0, kind);
     expect_derivatives<Quad4, Kinematics::plane>(finite);
     expect_derivatives<Tri6, Kinematics::plane>(finite);
+    expect_derivatives<Quad4, Kinematics::plane_mean_dilatation>(finite);
+    expect_derivatives<Quad4, Kinematics::revolution_mean_dilatation>(finite);
   }
+}
+
+/// Inputs: coordinates, thickness, the law's numbers, the motion, and what is remembered of the last increment.
+template <class Shape, Kinematics kinematics>
+void expect_derivatives_of_flow(const J2Law<double>& law) {
+  constexpr int n = Shape::nodes, memory = points_of<Shape>(kinematics) * J2Law<double>::memory;
+  StateOfElement<n> state{0.05 * derivatives::arbitrary(2 * n, 10).reshaped(2, n),
+                          derivatives::arbitrary(2 * n, 20).reshaped(2, n), 0.01 * derivatives::arbitrary(memory, 30),
+                          derivatives::arbitrary(memory, 40)};
+  for (int m = 3; m < memory; m += 4) state.before[m] = std::abs(state.before[m]);
+  const Mat<double, 2, n> X = some_element<Shape>();
+  Vector<double> inputs(4 * n + 5 + memory);
+  inputs << X.reshaped(), 0.7, law.lame, law.shear, law.yield, law.hardening, state.motion.reshaped(), state.before;
+  const auto work = [&](const auto& x) {
+    using T = typename std::decay_t<decltype(x)>::Scalar;
+    const Mat<T, 2, n> coordinates = x.head(2 * n).reshaped(2, n), u = x.segment(2 * n + 5, 2 * n).reshaped(2, n);
+    const auto with = law.with(std::array<T, 4>{x[2 * n + 1], x[2 * n + 2], x[2 * n + 3], x[2 * n + 4]});
+    const Vector<T> before = x.tail(memory);
+    Vector<T> after(memory);
+    element_flow<T, Shape, kinematics>(with, coordinates, u, before.data(), after.data());
+    const auto forces = element_forces<T, Shape, kinematics>(with, coordinates, u, x[2 * n], after.data());
+    T sum{};
+    for (int k = 0; k < 2 * n; ++k) sum += forces.data()[k] * T(state.weight.data()[k]);
+    for (int m = 0; m < memory; ++m) sum += after[m] * T(state.memory[m]);
+    return Vector<T>::Constant(1, sum).eval();
+  };
+  const auto found = element_work<Shape, kinematics>(law, X, 0.7, {state});
+  Matrix<double> derivative(1, inputs.size());
+  derivative << found.coordinates.reshaped().transpose(), found.depth, found.law[0], found.law[1], found.law[2],
+      found.law[3], found.motion[0].reshaped().transpose(), found.before[0].transpose();
+  EXPECT_LE(derivatives::relative_difference(derivative, derivatives::by_complex_step(work, inputs)), 1e-12);
+}
+
+TEST(ElementWork, HasThoseOfAFlowAndOfWhatItRemembers) {
+  for (bool finite : {false, true}) {
+    const J2Law<double> metal{3.0, 2.0, 0.05, 0.3, Space::plane_strain, finite};
+    expect_derivatives_of_flow<Quad4, Kinematics::plane>(metal);
+    expect_derivatives_of_flow<Tri6, Kinematics::revolution>(metal);
+    expect_derivatives_of_flow<Quad4, Kinematics::plane_mean_dilatation>(metal);
+    expect_derivatives_of_flow<Quad4, Kinematics::revolution_mean_dilatation>(metal);
+  }
+  expect_derivatives_of_flow<Quad8, Kinematics::plane>(J2Law<double>{3.0, 2.0, 0.05, 0.3, Space::plane_stress, false});
 }
 
 }  // namespace

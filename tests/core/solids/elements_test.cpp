@@ -1,4 +1,6 @@
 /// Every element in every kinematics: tangent, rigid motions, rank, patch test, volumes; and the shares of their edges.
+#include "core/solids/elements.hpp"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -7,7 +9,6 @@
 
 #include "core/mesh/generators.hpp"
 #include "core/mesh/quality.hpp"
-#include "core/solids/continuum.hpp"
 #include "core/solids/edges.hpp"
 #include "core/solids/linear_elastic.hpp"
 #include "tests/support/largest.hpp"

@@ -1,0 +1,201 @@
+/// The element template of the continuum: forces, tangent, energy and flow of any shape and kinematics, for any
+/// material routine.
+///
+///   R_ia = int sigma_pq B_pq,ia dV        K = int B_pq,ia (dsigma_pq/dH_rs) B_rs,kb dV        H_pq = B_pq,ia u_ia
+///
+/// sigma is the stress that does work on H: at finite strain the first Piola-Kirchhoff stress. The material tangent is
+/// the Dual of the stress routine; this file writes its assembly into an element once, by hand, but with mean
+/// dilatation at finite strain, where the tangent is the Dual of the whole element. Tested against that of all.
+#pragma once
+
+#include "core/solids/mean_dilatation.hpp"
+
+namespace stickslip {
+
+/// What the points of an element remember: a law's numbers a point, one after another; nullptr where it has none.
+template <class T>
+class ElementMemory {
+ public:
+  ElementMemory(const T* numbers = nullptr) : next_(numbers) {}  // NOLINT: what is remembered is one
+  /// Of the next point.
+  template <int count>
+  Vec<T, count> take() {
+    const Vec<T, count> memory = Eigen::Map<const Vec<T, count>>(next_);
+    next_ += count;
+    return memory;
+  }
+
+ private:
+  const T* next_;
+};
+
+namespace detail {
+
+/// Whether elements of a law can have a mean dilatation at finite strain.
+template <class Law, Kinematics kinematics>
+constexpr bool averages() {
+  if constexpr (has_mean_dilatation(kinematics) && requires { Law::is_made_for(kinematics, true); })
+    return Law::is_made_for(kinematics, true);
+  return false;
+}
+
+/// Forces of an element with mean dilatation at finite strain. `flows`: from `memory`, to `after` where that is given.
+template <bool flows, class T, class Shape, Kinematics kinematics, class G, class Law>
+Mat<T, 2, Shape::nodes> averaged_forces(const Law& law, const Mat<G, 2, Shape::nodes>& coordinates,
+                                        const Mat<T, 2, Shape::nodes>& u, const G& depth, ElementMemory<T> memory,
+                                        T* after = nullptr) {
+  using Element = MeanDilatation<T, G, Shape, kinematics>;
+  const Element element(coordinates, depth, u);
+  std::array<Mat<T, 3>, Element::points> P;
+  for (std::size_t q = 0; q < Element::points; ++q) {
+    if constexpr (requires { Law::memory; }) {
+      Vec<T, Law::memory> remembered = memory.template take<Law::memory>();
+      if constexpr (flows) remembered = law.template flow<T, 3>(element.strain(q), remembered);
+      if (after) after = std::copy(remembered.begin(), remembered.end(), after);
+      P[q] = law.template stress<T, 3>(element.strain(q), remembered);
+    } else {
+      P[q] = law.template stress<T, 3>(element.strain(q));
+    }
+  }
+  return element.forces(P);
+}
+
+}  // namespace detail
+
+/// Internal nodal forces, 2 x nodes. G, the scalar of the geometry, is T, or double where no derivative rides on it.
+/// `memory`: that the forces are at, of a law that remembers.
+template <class T, class Shape, Kinematics kinematics = Kinematics::plane, class G = T, class Law>
+Mat<T, 2, Shape::nodes> element_forces(const Law& law, const std::type_identity_t<Mat<G, 2, Shape::nodes>>& coordinates,
+                                       const Mat<T, 2, Shape::nodes>& u, const std::type_identity_t<G>& depth = G(1),
+                                       ElementMemory<T> memory = {}) {
+  if constexpr (detail::averages<Law, kinematics>())
+    if (law.is_finite)
+      return detail::averaged_forces<false, T, Shape, kinematics, G>(law, coordinates, u, depth, memory);
+  Mat<T, 2, Shape::nodes> forces = Mat<T, 2, Shape::nodes>::Constant(T(0));
+  for_each_gradient<G, Shape, kinematics>(coordinates, depth, [&](const auto& gradient) {
+    constexpr int rows = stress_dimension(kinematics);
+    Mat<T, rows> sigma;
+    if constexpr (requires { Law::memory; })
+      sigma = law.template stress<T, rows>(gradient.of(u), memory.template take<Law::memory>());
+    else
+      sigma = law.template stress<T, rows>(gradient.of(u));
+    for (int k = 0; k < rows * rows; ++k) sigma.data()[k] = sigma.data()[k] * gradient.volume;
+    for (int a = 0; a < Shape::nodes; ++a)
+      for (int i = 0; i < 2; ++i)
+        gradient.for_each(i, a, [&](int p, int q, const G& b) { forces(i, a) += sigma(p, q) * b; });
+  });
+  return forces;
+}
+
+namespace detail {
+
+/// Place of H_pq, or sigma_pq, among those that are not always zero: 00 01 10 11 22.
+constexpr int component(int p, int q) { return p == 2 ? 4 : 2 * p + q; }
+
+/// dsigma/dH times a volume, component by component; of a law that remembers, with the flow from `before`.
+template <class T, int components, int rows, class Law>
+Mat<T, components> material_tangent(const Law& law, const Mat<T, rows>& H, const T& volume, ElementMemory<T>& before) {
+  using Probe = Dual<components, T>;
+  Mat<Probe, rows> seeded = Mat<Probe, rows>::Constant(Probe(T(0)));
+  for (int p = 0; p < rows; ++p)
+    for (int q = 0; q < rows; ++q)
+      if ((p == 2) == (q == 2)) seeded(p, q) = Probe::seed(H(p, q), component(p, q));
+  Mat<Probe, rows> sigma;
+  if constexpr (requires { Law::memory; }) {
+    const auto memory = before.template take<Law::memory>();
+    const Vec<Probe, Law::memory> constant = memory.unaryExpr([](const T& x) { return Probe(x); });
+    sigma = law.template stress<Probe, rows>(seeded, law.template flow<Probe, rows>(seeded, constant));
+  } else {
+    sigma = law.template stress<Probe, rows>(seeded);
+  }
+  Mat<T, components> tangent;
+  for (int p = 0; p < rows; ++p)
+    for (int q = 0; q < rows; ++q)
+      if ((p == 2) == (q == 2)) tangent.row(component(p, q)) = sigma(p, q).d * volume;
+  return tangent;
+}
+
+}  // namespace detail
+
+namespace detail {
+
+/// Tangent of an element with mean dilatation at finite strain.
+template <class T, class Shape, Kinematics kinematics, class Law>
+Mat<T, 2 * Shape::nodes> averaged_tangent(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates,
+                                          const Mat<T, 2, Shape::nodes>& u, const T& depth, ElementMemory<T> before) {
+  constexpr int n = Shape::nodes;
+  using Probe = Dual<2 * n, T>;
+  Mat<Probe, 2, n> seeded;
+  for (int k = 0; k < 2 * n; ++k) seeded.data()[k] = Probe::seed(u.data()[k], k);
+  Mat<Probe, 2, n> forces;
+  if constexpr (requires { Law::memory; }) {
+    constexpr int count = points_of<Shape>(kinematics) * Law::memory;
+    const Vec<T, count> numbers = before.template take<count>();
+    const Vec<Probe, count> constant = numbers.unaryExpr([](const T& x) { return Probe(x); });
+    forces = averaged_forces<true, Probe, Shape, kinematics, T>(law, coordinates, seeded, depth, constant.data());
+  } else {
+    forces = averaged_forces<true, Probe, Shape, kinematics, T>(law, coordinates, seeded, depth, {});
+  }
+  Mat<T, 2 * n> K;
+  for (int k = 0; k < 2 * n; ++k) K.row(k) = forces.data()[k].d;
+  return K;
+}
+
+}  // namespace detail
+
+/// Tangent, (2 nodes) x (2 nodes), node-major. `before`: the memory that a law which remembers flows from.
+template <class T, class Shape, Kinematics kinematics = Kinematics::plane, class Law>
+Mat<T, 2 * Shape::nodes> element_tangent(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates,
+                                         const Mat<T, 2, Shape::nodes>& u, const T& depth = T(1),
+                                         ElementMemory<T> before = {}) {
+  constexpr int n = Shape::nodes;
+  if constexpr (detail::averages<Law, kinematics>())
+    if (law.is_finite) return detail::averaged_tangent<T, Shape, kinematics>(law, coordinates, u, depth, before);
+  Mat<T, 2 * n> K = Mat<T, 2 * n>::Constant(T(0));
+  for_each_gradient<T, Shape, kinematics>(coordinates, depth, [&](const auto& gradient) {
+    constexpr int rows = stress_dimension(kinematics), components = rows == 2 ? 4 : 5;
+    const auto C = detail::material_tangent<T, components, rows>(law, gradient.of(u), gradient.volume, before);
+    for (int b = 0; b < n; ++b)
+      for (int k = 0; k < 2; ++k) {
+        Vec<T, components> column = Vec<T, components>::Constant(T(0));  // dsigma/du_kb
+        gradient.for_each(k, b, [&](int p, int q, const T& x) {
+          for (int c = 0; c < components; ++c) column[c] += C(c, detail::component(p, q)) * x;
+        });
+        for (int a = 0; a < n; ++a)
+          for (int i = 0; i < 2; ++i)
+            gradient.for_each(i, a, [&](int p, int q, const T& x) {
+              K(a * 2 + i, b * 2 + k) += column[detail::component(p, q)] * x;
+            });
+      }
+  });
+  return K;
+}
+
+/// Strain energy int W dV, of a law that remembers at a memory.
+template <class T, class Shape, Kinematics kinematics = Kinematics::plane, class Law>
+T element_energy(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates, const Mat<T, 2, Shape::nodes>& u,
+                 const T& depth = T(1), ElementMemory<T> memory = {}) {
+  constexpr int rows = stress_dimension(kinematics);
+  T energy{};
+  for_each_strain_in<T, Shape, kinematics>(law.is_finite, coordinates, depth, u, [&](const auto& H, const T& volume) {
+    if constexpr (requires { Law::memory; })
+      energy += law.template energy<T, rows>(H, memory.template take<Law::memory>()) * volume;
+    else
+      energy += law.template energy<T, rows>(H) * volume;
+  });
+  return energy;
+}
+
+/// The memory that displacements leave, point by point, of the one before. `after` has room for it.
+template <class T, class Shape, Kinematics kinematics = Kinematics::plane, class Law>
+void element_flow(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates, const Mat<T, 2, Shape::nodes>& u,
+                  ElementMemory<T> before, T* after) {
+  constexpr int rows = stress_dimension(kinematics);
+  for_each_strain_in<T, Shape, kinematics>(law.is_finite, coordinates, T(1), u, [&](const auto& H, const T&) {
+    const Vec<T, Law::memory> flown = law.template flow<T, rows>(H, before.template take<Law::memory>());
+    std::copy(flown.begin(), flown.end(), after);
+    after += Law::memory;
+  });
+}
+
+}  // namespace stickslip
