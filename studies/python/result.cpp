@@ -1,6 +1,7 @@
 #include "studies/python/result.hpp"
 
 #include <limits>
+#include <tuple>
 
 #include "studies/run/contact_points.hpp"
 #include "studies/run/fields.hpp"
@@ -66,7 +67,7 @@ RunResult gather(Simulation simulation, CaseResult result) {
       run.contacts.back().push_back(contact_table(*run.simulation.problem, step.increment->state, c));
   }
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    const auto& [mesh, first, unused] = model.bodies[b];
+    const auto& [mesh, first] = std::tie(model.bodies[b].mesh, model.bodies[b].first_node);
     ElementTable table{model.scene.bodies[b].name, nodes_of(mesh.shape), mesh.connectivity};
     for (int& node : table.nodes) node += first;
     run.elements.push_back(std::move(table));
