@@ -344,6 +344,10 @@ std::vector<Broken> broken_loading() {
 std::vector<Broken> broken_responses() {
   const char* b = block_scene;
   return {
+      {"plastic_strain_of_an_elastic_body", b, pull, R"({"plastic_strain": {"on": @"block"}})",
+       "/responses/pull/plastic_strain/on", "no body flows; give one the material j2_plastic"},
+      {"plastic_strain_of_nothing", b, pull, R"({"plastic_strain": @{"take": "max"}})",
+       "/responses/pull/plastic_strain", R"("on" is missing)"},
       {"unknown_response", b, pull, R"({@"reacton": {}})", "/responses/pull/reacton", R"(did you mean "reaction"?)"},
       {"reaction_of_nothing", b, pull, R"({"reaction": @{"component": "x"}})", "/responses/pull/reaction",
        R"("on" is missing)"},
