@@ -32,8 +32,8 @@ Increment<T> solve_increment(const MonolithicAL& method, Run<T, E>& run, const S
   options.tolerance = start.tolerance(options.tolerance);
   const EquilibriumTask<T> task{input, Multipliers::unknown,    start.anchor, start.resumed(previous),
                                 0,     &start.from.displacement};
-  const auto u = run.engine.begin(time, start.from.displacement, previous.history.bodies);
-  auto equilibrium = newton(run.engine, task, {u, start.from.contact.traction}, options, run.account);
+  auto u = run.engine.begin(time, start.from.displacement, previous.history.bodies);
+  auto equilibrium = newton(run.engine, task, {std::move(u), start.from.contact.traction}, options, run.account);
   account_for(increment, equilibrium, 0);
   increment.state = settle(run, input, std::move(equilibrium.at), std::move(equilibrium.field));
   return increment;

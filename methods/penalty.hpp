@@ -125,9 +125,9 @@ Increment<T> solve_increment(const Penalty& method, Run<T, E>& run, const State<
   options.tolerance = start.tolerance(options.tolerance);
   const EquilibriumTask<T> task{input, Multipliers::given,      start.anchor, start.resumed(previous),
                                 0,     &start.from.displacement};
-  const auto u = run.engine.begin(time, start.from.displacement, previous.history.bodies);
+  auto u = run.engine.begin(time, start.from.displacement, previous.history.bodies);
   const auto equilibrium =
-      newton_softened<T>(run.engine, task, {u, stored_traction(run.model, previous)}, options, run.account);
+      newton_softened<T>(run.engine, task, {std::move(u), stored_traction(run.model, previous)}, options, run.account);
   account_for(increment, equilibrium, 0);
   increment.state = settle(run, input, equilibrium.at, equilibrium.field);
   if (!is_converged(equilibrium.status) || start.is_step()) return increment;

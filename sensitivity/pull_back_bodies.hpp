@@ -58,8 +58,11 @@ void pull_back_loads(AdjointProblem<E>& problem, const Inside& of, const Vector<
   const auto constant = [](double x) { return Reverse(x); };
   Vector<Reverse> prescribed = of.motion.unaryExpr(constant);
   prescribe(model, slots, of.time, prescribed);
-  const Vector<Reverse> still = of.motion.unaryExpr(constant);
-  Vector<Reverse> rows = -external_forces(model, slots, of.time, still);
+  Vector<Reverse> rows = -dead_forces(model, slots, of.time);
+  if (!model.followers.empty()) {
+    const Vector<Reverse> still = of.motion.unaryExpr(constant);
+    rows -= follower_forces(model, slots, of.time, still);
+  }
   if (of.forces.size() > 0) rows += of.forces.unaryExpr(constant);
   rows = into_frames(model, slots.frames, Layout::all, std::move(rows));
   by.resize(problem.slots_end);

@@ -212,7 +212,9 @@ TEST(Plasticity, BeyondWhatABarBearsIsNamed) {
 
 // --- only where a scene calls for it ---------------------------------------------------------------------------------
 
-TEST(Plasticity, OfAMaterialThatNeverFlowsIsElasticity) {
+TEST(Plasticity, OfAMaterialThatNeverFlowsIsElasticity) {  // D2
+  RunOptions same_engine;                                  // (the elastic one would be condensed)
+  same_engine.linear_algebra.engine = LinearAlgebra::Engine::sparse;
   for (const Setting& setting : {Setting{Space::plane_strain, false, "Q4"}, Setting{Space::plane_stress, false, "Q8"},
                                  Setting{Space::axisymmetric, false, "Q4_mean_dilatation"}}) {
     Scene hard = pressed(setting), elastic = hard;
@@ -220,11 +222,14 @@ TEST(Plasticity, OfAMaterialThatNeverFlowsIsElasticity) {
     material.yield = 1e30;
     elastic.bodies[0].material = LinearElastic{material.E, material.nu};
     for (const Method& method : finite_methods()) {
-      const auto a = run(hard, method), b = run(elastic, method);
+      // a penalty of 1e5 nodal stiffnesses makes that much of rounding, and Uzawa's loop ends at 1e-12 of the largest
+      const double same = std::holds_alternative<MonolithicAL>(method) ? 1e-12 : 1e-10;
+      const auto a = run(hard, method), b = run(elastic, method, same_engine);
       ASSERT_TRUE(is_converged(a.trajectory.status)) << a.trajectory.message;
       for (std::size_t n = 0; n < a.trajectory.increments.size(); ++n)
         for (const auto& r : hard.responses)
-          EXPECT_NEAR(a.value(r.name, n), b.value(r.name, n), 1e-9 * std::abs(b.value(r.name))) << r.name;
+          EXPECT_NEAR(a.value(r.name, n), b.value(r.name, n), same * std::abs(b.value(r.name)))
+              << name_of(method) << r.name;
       EXPECT_EQ(largest_entry(a.trajectory.increments.back().state.history.bodies), 0);
       EXPECT_EQ(b.trajectory.increments.back().state.history.bodies.size(), 0);
       EXPECT_FALSE(b.model.effects.plasticity);
