@@ -110,8 +110,8 @@ std::string how_to_read(const Study& study) {
          "<b>discretisation error</b> compares with a closed form, a finer mesh or given values and blames mesh and "
          "method together. All errors are "
          "relative. <b>Counts</b> (factorisations, back-solves) are equal on every machine; <b>seconds</b> are of the "
-         "machine named at the end. Error and cost axes are logarithmic: a grid line is usually a factor of ten. Runs "
-         "that failed stay, as crosses and as rows. " +
+         "machine named at the end. Error and cost axes are logarithmic. Runs that failed stay, as crosses and as "
+         "rows. " +
          escape(ratio_text(study)) + "</p>\n";
 }
 

@@ -79,7 +79,8 @@ void SeriesList::add(const std::string& name, const std::string& family) {
   const std::size_t count = count_[family]++;
   const std::size_t shape = count == 0 ? method % shapes.size() : own + further_++ % (shapes.size() - own);
   list.push_back({name, shade(color_of(study_, family), count), shapes[shape],
-                  dashes[(method + 3 * count) % dashes.size()], sizes[static_cast<std::size_t>(at) % sizes.size()]});
+                  dashes[(method + 3 * count + count / 2) % dashes.size()],
+                  sizes[static_cast<std::size_t>(at) % sizes.size()]});
 }
 
 std::size_t SeriesList::place(const std::string& name) const {
@@ -229,15 +230,25 @@ json near_the_pointer() {
           {"select", {{"type", "point"}, {"on", "pointerover"}, {"clear", "pointerout"}, {"nearest", true}}}};
 }
 
-json words_beside(const char* which, const char* align, int dx) {
-  return {{"transform", only_if(which)},
-          {"mark", {{"type", "text"}, {"align", align}, {"dx", dx}, {"dy", -8}, {"fontSize", 11}, {"color", "$ink"}}},
-          {"encoding", {{"text", {{"field", "tag"}}}}}};
+/// Words at each of the four sides.
+std::vector<json> words_beside(const std::string& tag) {
+  constexpr int aside = 9, above = -8, below = 15;
+  std::vector<json> out;
+  for (const bool left : {false, true})
+    for (const bool low : {false, true}) {
+      const std::string side = std::string(left ? "left" : "right") + (low ? " below" : "");
+      json mark = {{"type", "text"}, {"align", left ? "right" : "left"}, {"fontSize", 11}, {"color", "$ink"}};
+      mark.update({{"dx", left ? -aside : aside}, {"dy", low ? below : above}});
+      out.push_back({{"transform", only_if(fmt::format("isValid(datum.{0}) && datum.{0}_at == '{1}'", tag, side))},
+                     {"mark", mark},
+                     {"encoding", {{"text", {{"field", tag}}}}}});
+    }
+  return out;
 }
 
 }  // namespace
 
-json curves(const std::string& description, const json& x, const json& y, const json& tips) {
+json curves(const std::string& description, const json& x, const json& y, const json& tips, const std::string& tag) {
   json line = {{"transform", only_if("!datum.failed && !datum.guide")},
                {"mark", {{"type", "line"}, {"strokeWidth", 2}}},
                {"encoding",
@@ -259,8 +270,6 @@ json curves(const std::string& description, const json& x, const json& y, const 
       {"mark",
        {{"type", "point"}, {"shape", "M-1,-1L1,1M-1,1L1,-1"}, {"size", 110}, {"strokeWidth", 2.5}, {"opacity", 1}}},
       {"encoding", {{"color", series_channel("$colors")}, {"tooltip", tips}}}};
-  json tags = words_beside("isValid(datum.tag) && !datum.tag_left", "left", 9);
-  json tags_left = words_beside("isValid(datum.tag) && datum.tag_left", "right", -9);
   json ground = {
       {"transform", json::array({{{"filter", "datum.zero && !datum.guide"}},
                                  {{"aggregate", json::array({{{"op", "min"}, {"field", "shown"}, {"as", "shown"}}})},
@@ -278,15 +287,18 @@ json curves(const std::string& description, const json& x, const json& y, const 
                                 {"color", "$ink"},
                                 {"fontSize", 11},
                                 {"text", "exactly 0"}}}}})}};
-  for (json* layer : {&line, &points, &failures, &tags, &tags_left}) {
-    (*layer)["encoding"]["x"] = x;
-    (*layer)["encoding"]["y"] = y;
+  json layers = json::array({line, points, failures});
+  for (json& words : words_beside(tag)) layers.push_back(std::move(words));
+  for (json& layer : layers) {
+    layer["encoding"]["x"] = x;
+    layer["encoding"]["y"] = y;
   }
-  json layers = json::array({ground, line, points, failures, tags, tags_left});
+  layers.insert(layers.begin(), ground);
   return {{"description", description},
           {"width", "container"},
-          {"height", 330},
+          {"height", chart_height},
           {"autosize", {{"type", "fit-x"}, {"contains", "padding"}}},
+          {"padding", {{"left", 5}, {"top", 5}, {"right", 14}, {"bottom", 5}}},  // room for the end of a tick's label
           {"data", {{"name", "rows"}}},
           {"layer", layers}};
 }

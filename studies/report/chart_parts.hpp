@@ -74,14 +74,18 @@ nlohmann::json only_if(const std::string& test);
 nlohmann::json tooltip(const std::vector<std::pair<std::string, std::string>>& fields);
 
 /// Lines, markers, crosses for what failed, and the ground for exact zeros. Rows: series, line, order, shown, zero,
-/// failed, and `tag`, a word beside the marker.
+/// failed, and in the field `tag` a word beside the marker, at the side that `tag`_at says: "right", "left", "right
+/// below" or "left below".
 nlohmann::json curves(const std::string& description, const nlohmann::json& x, const nlohmann::json& y,
-                      const nlohmann::json& tips);
+                      const nlohmann::json& tips, const std::string& tag = "tag");
 
-/// Writes beside the lines of a work-precision chart: the option's value at both ends, so that a reader sees which way
-/// a line runs, and the name of its series, so that grey print needs no legend. A line that stays in one place, where
-/// the option does nothing, has its name alone. A name that would cover other words is tried at the line's other
-/// places.
-void tag_lines(nlohmann::json& rows, const std::string& text_field);
+/// The field of the words in a work-precision chart against the field `across`.
+std::string tag_field(const std::string& across);
+
+/// Writes beside the lines of such a chart, of so many pixels' height: the option's value at both ends, so that a
+/// reader sees which way a line runs, and the name of its series, so that grey print needs no legend. A line that stays
+/// in one place, where the option does nothing, has its name alone. No word covers another, a marker or a curve: a name
+/// is tried on each side of each point, and is left to the legend where there is no room; then so are its values.
+void tag_lines(nlohmann::json& rows, const std::string& across, double height, const std::string& text_field);
 
 }  // namespace stickslip::report

@@ -30,7 +30,10 @@ struct Panel {
   bool x_log = true, y_log = true;
   std::string only;  ///< rows of this panel: those whose `panel` is this; empty: all
   bool folded = false;
+  std::string tag = "tag";  ///< field of the words beside points
 };
+
+constexpr double chart_height = 330;  ///< of a panel, in pixels, unless its specification says another
 
 /// A choice of rows: those whose `field` is (one of) the chosen, among rows whose `when_field` is `when`.
 struct Choice {

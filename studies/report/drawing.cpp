@@ -91,13 +91,23 @@ class Drawing::SvgWriter {
 };
 
 std::string Drawing::inline_svg() const {
+  const std::string id = slug(title_) + "-all";
   std::string out = fmt::format(
-      "<svg class=\"plot text\" viewBox=\"0 0 {0} {1}\" style=\"max-width:{0}px\" role=\"img\"><title>{2}</title>"
+      "<svg class=\"plot text{4}\" viewBox=\"0 0 {0} {1}\" style=\"max-width:{0}px\" role=\"img\"><title>{2}</title>"
       "<desc>{3}</desc>\n",
-      short_number(width_), short_number(height_), escape(title_), escape(description_));
+      short_number(width_), short_number(height_), escape(title_), escape(description_),
+      parts_.empty() ? "" : " whole");
+  if (!parts_.empty()) out += "<g id=\"" + id + "\">\n";
   SvgWriter write(in_page, slug(title_) + "-clip-");
   for (const auto& item : items_) out += std::visit(write, item);
-  return out + "</svg>\n";
+  out += parts_.empty() ? "</svg>\n" : "</g></svg>\n";
+  for (const auto& part : parts_)
+    out += fmt::format(
+        "<svg class=\"plot text part\" viewBox=\"{} {} {} {}\" style=\"max-width:{}px\" aria-hidden=\"true\">"
+        "<use href=\"#{}\"/></svg>\n",
+        short_number(part.x), short_number(part.y), short_number(part.width), short_number(part.height),
+        short_number(part.width), id);
+  return out;
 }
 
 std::string Drawing::svg_file() const {

@@ -73,6 +73,8 @@ class Drawing {
   /// Only what lies inside `path` is drawn from here on, until unclip(). Clips may nest.
   void clip(Path path);
   void unclip();
+  /// A rectangle that a narrow screen shows alone, as large as it can, and the next one below it.
+  void part(double x, double y, double width, double height) { parts_.push_back({x, y, width, height}); }
   /// Cuts off, or adds, room at the bottom.
   void set_height(double height) { height_ = height; }
   bool empty() const { return items_.empty(); }
@@ -102,6 +104,9 @@ class Drawing {
     Path path;
   };
   struct Unclip {};
+  struct Part {
+    double x, y, width, height;
+  };
   using Item = std::variant<Shape, Text, Clip, Unclip>;
   class SvgWriter;
   class PdfWriter;
@@ -110,6 +115,7 @@ class Drawing {
   double width_, height_;
   std::string title_, description_;
   std::vector<Item> items_;
+  std::vector<Part> parts_;
 };
 
 /// A marker of some 9 pixels by its name: circle, square, triangle-up (-down, -left, -right), diamond, cross (upright),

@@ -117,7 +117,7 @@ class Names {
         }
     if (!best) return;
     (*best)["tag"] = part;
-    (*best)["tag_left"] = high_.x - place_of(*best).x < word / 2 * (high_.x - low_.x);
+    (*best)["tag_at"] = high_.x - place_of(*best).x < word / 2 * (high_.x - low_.x) ? "left" : "right";
     named_.push_back(best);
   }
 

@@ -25,8 +25,10 @@ std::string csv_cell(const json& value) {
 }
 
 /// How a row is drawn, as opposed to what it says.
-const std::set<std::string> only_looks = {"guide_tag", "line",     "of_cell",  "order", "shown",
-                                          "tag",       "tag_left", "unmarked", "zero"};
+bool is_of_looks(const std::string& field) {
+  static const std::set<std::string> names = {"guide_tag", "line", "of_cell", "order", "shown", "unmarked", "zero"};
+  return names.count(field) > 0 || field.starts_with("tag");
+}
 
 void write_drawing(const fs::path& stem, const Drawing& drawing) {
   write_file_atomically(stem.string() + ".svg", drawing.svg_file());
@@ -51,7 +53,7 @@ std::vector<std::string> columns_of(const json& rows) {
   std::set<std::string> texts, others;
   for (const auto& row : rows)
     for (const auto& [field, value] : row.items())
-      if (!only_looks.count(field)) (value.is_string() ? texts : others).insert(field);
+      if (!is_of_looks(field)) (value.is_string() ? texts : others).insert(field);
   std::vector<std::string> fields(texts.begin(), texts.end());
   std::copy_if(others.begin(), others.end(), std::back_inserter(fields), [&](auto& f) { return !texts.count(f); });
   return fields;

@@ -38,6 +38,14 @@ std::string control(const Choice& choice) {
                      escape(choice.label), data, out);
 }
 
+/// "Quantity: worst response; Scene: mu = 0.1": for paper, and where no script shows the choices.
+std::string what_is_chosen(const Figure& figure) {
+  std::string out;
+  for (const auto& choice : figure.choices)
+    if (!choice.several) out += (out.empty() ? "" : "; ") + choice.label + ": " + choice.chosen.front();
+  return out.empty() ? out : "<p class=\"chosen\">" + escape(out) + "</p>\n";
+}
+
 /// The panel for readers without scripts; "" where it has nothing to draw.
 std::string plain_picture(const Figure& figure, const Panel& panel) {
   const auto drawing = draw_plot(figure, panel);
@@ -114,7 +122,7 @@ std::string to_html(const Figure& figure) {
   for (const auto& choice : figure.choices) controls += control(choice);
   std::string out = fmt::format("<figure data-chart id=\"{0}\" aria-labelledby=\"{0}-title\">\n", figure.id) +
                     caption(figure.id, figure.title, figure.text, figure.folded);
-  if (!controls.empty()) out += "<div class=\"choices\">" + controls + "</div>\n";
+  if (!controls.empty()) out += "<div class=\"choices\">" + controls + "</div>\n" + what_is_chosen(figure);
   out += "<div class=\"legend\"></div>\n<div class=\"panels\">" + open + "</div>\n";
   if (!folded_panels.empty())
     out += "<details class=\"panels-folded\"><summary>More views</summary><div class=\"panels\">" + folded_panels +

@@ -63,10 +63,27 @@ std::vector<Look> looks_of(const std::vector<Strip>& strips) {
   return out;
 }
 
-constexpr double strip_width = 292, strip_height = 170, gap = 40, head = 20, foot = 30, indent = 34;
+constexpr double strip_height = 170, gap = 20, head = 20, foot = 30, small = 10, aside = 5;
+
+/// One or two strips side by side over the whole width.
+struct Layout {
+  std::size_t columns;
+  double canvas, indent, strip_width;
+  double cell_width() const { return indent + strip_width + gap; }
+};
+
+Layout layout_of(const std::vector<Strip>& strips) {
+  const bool single = strips.size() == 1;
+  Layout out{single ? 1u : 2u, single ? 500.0 : 692.0, 0, 0};
+  for (const auto& strip : strips)
+    for (const double time : strip.times) out.indent = std::max(out.indent, text_width(number(time), small));
+  out.indent += 2 * aside;
+  out.strip_width = out.canvas / static_cast<double>(out.columns) - out.indent - gap;
+  return out;
+}
 
 /// The strip as a grid, steps downwards, points to the right; one path a state.
-void draw_strip(const Strip& strip, double left, double top, Drawing& drawing) {
+void draw_strip(const Strip& strip, double left, double top, double strip_width, Drawing& drawing) {
   drawing.text(left, top - 6, strip.title, {Anchor::start, 11});
   const double width = strip_width / static_cast<double>(strip.steps.front().size());
   const double height = strip_height / static_cast<double>(strip.steps.size());
@@ -87,26 +104,26 @@ void draw_strip(const Strip& strip, double left, double top, Drawing& drawing) {
   // Times from the last step upwards, as many as have room.
   const auto stride = static_cast<std::size_t>(std::ceil(14 / height));
   for (std::size_t n = strip.steps.size(); n > 0; n -= std::min(stride, n))
-    drawing.text(left - 5, top + height * (static_cast<double>(n) - 0.5) + 4, number(strip.times[n - 1]),
-                 {Anchor::end, 10, "soft"});
+    drawing.text(left - aside, top + height * (static_cast<double>(n) - 0.5) + 4, number(strip.times[n - 1]),
+                 {Anchor::end, small, "soft"});
   if (height >= 8)
     for (std::size_t n = 1; n < strip.steps.size(); ++n) {
       const double y = top + height * static_cast<double>(n);
       drawing.line(left, y, left + strip_width, y, {"line", "", 0.6, {}});
     }
-  drawing.text(left, top + strip_height + 14, "point 1", {Anchor::start, 10, "soft"});
+  drawing.text(left, top + strip_height + 14, "point 1", {Anchor::start, small, "soft"});
   drawing.text(left + strip_width, top + strip_height + 14, std::to_string(strip.steps.front().size()),
-               {Anchor::end, 10, "soft"});
+               {Anchor::end, small, "soft"});
 }
 
-void draw_legend(const std::vector<Strip>& strips, double y, Drawing& drawing) {
-  double x = indent;
+void draw_legend(const std::vector<Strip>& strips, double x, double y, Drawing& drawing) {
   for (const auto& look : looks_of(strips)) {
     drawing.path(Path().rectangle(x, y, 16, 12), {"ink", look.fill, 1, {}});
     drawing.text(x + 22, y + 10, look.words);
-    x += 90;
+    x += 75;
   }
   drawing.text(x, y + 10, "down: time; across: contact points");
+  drawing.part(0, y - 4, x + 200, 24);
 }
 
 Table tabulate(const std::vector<Strip>& strips) {
@@ -179,20 +196,18 @@ std::optional<Plate> film_of_states(const Study& study) {
         "disagree on the state of a point";
   text += ".";
   if (left_out > 0) text += fmt::format(" {} more are left out.", left_out);
-  const std::size_t columns = std::min<std::size_t>(strips.size(), 2);
-  const double cell_width = indent + strip_width + gap / 2, cell_height = head + strip_height + foot;
-  const std::size_t lines = (strips.size() + columns - 1) / columns;
+  const Layout layout = layout_of(strips);
+  const double cell_height = head + strip_height + foot;
+  const std::size_t lines = (strips.size() + layout.columns - 1) / layout.columns;
   const double bottom = cell_height * static_cast<double>(lines) + 6;
-  Plate plate{"film",
-              title,
-              text,
-              Drawing(cell_width * static_cast<double>(std::max<std::size_t>(columns, 2)), bottom + 20, title, text),
-              tabulate(strips),
-              rows_of(strips)};
-  for (std::size_t i = 0; i < strips.size(); ++i)
-    draw_strip(strips[i], indent + cell_width * static_cast<double>(i % columns),
-               head + cell_height * static_cast<double>(i / columns), plate.drawing);
-  draw_legend(strips, bottom, plate.drawing);
+  Plate plate{"film", title, text, Drawing(layout.canvas, bottom + 20, title, text), tabulate(strips), rows_of(strips)};
+  for (std::size_t i = 0; i < strips.size(); ++i) {
+    const double left = layout.cell_width() * static_cast<double>(i % layout.columns);
+    const double top = cell_height * static_cast<double>(i / layout.columns);
+    draw_strip(strips[i], left + layout.indent, top + head, layout.strip_width, plate.drawing);
+    plate.drawing.part(left, top, layout.cell_width(), cell_height);
+  }
+  draw_legend(strips, layout.indent, bottom, plate.drawing);
   if (nothing_changes(strips) && (agree || study.cells.size() == 1)) plate.folded = "no point changes its state";
   return plate;
 }

@@ -34,7 +34,7 @@ struct Measure {
 /// Work and, where they were measured, seconds.
 std::string spent(const Cell& cell, const Measure& measure) {
   std::string out = work_in_words(cell, measure.prefix == "sensitivity:" ? Of::sensitivities : Of::responses);
-  if (cell.*measure.seconds > 0) out += fmt::format(" ({} s)", number(cell.*measure.seconds, 2));
+  if (cell.*measure.seconds > 0) out += " (" + seconds_in_words(cell.*measure.seconds) + ")";
   return out;
 }
 
@@ -84,7 +84,7 @@ std::string cost_sentence(const Study& study, const Measure& measure) {
             [&](const Cell* a, const Cell* b) { return a->*measure.work < b->*measure.work; });
 
   std::string out = fmt::format("To bring every {} within {} of the exact contact conditions on the same mesh, ",
-                                measure.words, number(*target, 2));
+                                measure.words, percent(*target));
   const auto factor_of = [&](const Cell& cell) { return cell.*measure.work / (reached.front()->*measure.work); };
   const bool one_wins = by_family.size() > 1 && (reached.size() < 2 || !(factor_of(*reached[1]) <= much_the_same));
   for (std::size_t i = 0; i < reached.size(); ++i) {
@@ -103,7 +103,7 @@ std::string cost_sentence(const Study& study, const Measure& measure) {
   out += ".";
   for (const Cell* cell : missed)
     out += fmt::format(" {} did not get there: its best was {} with {}.", family_name(cell->family),
-                       number(*worst(cell->enforcement, measure.prefix), 2), label_in_words(*cell));
+                       percent(*worst(cell->enforcement, measure.prefix)), label_in_words(*cell));
   for (const auto& family : study.families) {
     const bool tried = std::any_of(cells.begin(), cells.end(), [&](const Cell* c) { return c->family == family; });
     if (tried && by_family.count(family) == 0) out += " " + family_name(family) + " has no converged run here.";
@@ -158,11 +158,12 @@ std::string penalty_sentence(const Study& study) {
   return out + "." + penalty_failures(study);
 }
 
-/// What, besides the method, makes the difference to the references.
-std::string what_else_errs(const Study& study) {
-  const std::string reference = discretization_reference(study);
-  if (reference == "the finer mesh") return "the mesh";
-  return reference == "the closed form" ? "mesh and steps" : "mesh, steps or the references themselves";
+/// "the mesh", "mesh and steps", "mesh, steps or the references themselves".
+std::string in_words(const std::vector<std::string>& errs) {
+  if (errs.size() == 1) return "the " + errs.front();
+  std::string out = errs.front();
+  for (std::size_t i = 1; i + 1 < errs.size(); ++i) out += ", " + errs[i];
+  return out + (errs.back() == "references" ? " or the references themselves" : " and " + errs.back());
 }
 
 std::string mesh_sentence(const Study& study) {
@@ -176,11 +177,11 @@ std::string mesh_sentence(const Study& study) {
   const auto own = own_error(study, Of::responses), error = own ? own : best_mesh;
   if (!error) return {};
   std::string out = fmt::format("Against {} the {} is off by {} in its worst response", discretization_reference(study),
-                                own ? "run that enforces contact best" : "best run", number(*error, 2));
+                                own ? "run that enforces contact best" : "best run", percent(*error));
   if (*error <= rounding) return out + ", which is rounding.";
   if (own && *best_method < *own)
     out += fmt::format(": that is {}, and enforcing contact more strictly does not bring the answer nearer to it",
-                       what_else_errs(study));
+                       in_words(what_else_errs(study)));
   return out + ".";
 }
 
@@ -213,10 +214,27 @@ std::string failure_sentence(const Study& study) {
 
 }  // namespace
 
+std::vector<std::string> what_else_errs(const Study& study) {
+  const std::string reference = discretization_reference(study);
+  if (reference == "the finer mesh") return {"mesh"};
+  std::vector<std::string> out = {"mesh", "steps"};
+  if (number_at(at(study.description, "mesh"), "elements") == 1) out.erase(out.begin());  // there is none to refine
+  if (reference != "the closed form") out.emplace_back("references");
+  return out;
+}
+
 Counts counts_of(const Cell& cell, Of of) {
   const bool derivative = of == Of::sensitivities;
   return {std::lround(cell.count("factorizations") - (derivative ? 0 : cell.count("sensitivity_factorizations"))),
           std::lround(cell.count("backsolves") + (derivative ? cell.count("sensitivity_backsolves") : 0))};
+}
+
+std::string seconds_in_words(double seconds) {
+  return seconds < 0.1 ? number(1e3 * seconds, 2) + " ms" : number(seconds, 2) + " s";
+}
+
+std::string percent(double error) {
+  return error >= 1e-3 && error < 1 ? number(100 * error, 2) + " %" : number(error, 2);
 }
 
 std::string work_in_words(const Cell& cell, Of of) {

@@ -14,6 +14,9 @@ namespace stickslip::report {
 /// stiffness; what the mesh itself costs in accuracy; what failed. At least one sentence.
 std::vector<std::string> headline(const Study& study);
 
+/// What, besides the method, makes the difference to the references: of mesh, steps and references those that may.
+std::vector<std::string> what_else_errs(const Study& study);
+
 /// A sentence for each kind of warning and place, in the words of the run where it is worst.
 std::vector<std::string> warning_sentences(const Study& study);
 
@@ -22,6 +25,12 @@ struct Counts {
   long factorizations = 0, backsolves = 0;
 };
 Counts counts_of(const Cell& cell, Of of);
+
+/// "1.3 ms", "0.25 s".
+std::string seconds_in_words(double seconds);
+
+/// "2.4 %"; below 0.1 % and from 1 on the number itself.
+std::string percent(double error);
 
 /// "4 factorisations and 19 back-solves" of a run, those of the derivatives included where they are what is asked for.
 std::string work_in_words(const Cell& cell, Of of);

@@ -14,8 +14,9 @@ std::optional<Figure> convergence_histories(const Study& study) {
   figure.title = "Convergence: residual per iteration in the hardest step";
   figure.text =
       "For each run, the load step that took most iterations (of a run that failed, the last). The residual "
-      "is the largest of equilibrium, normal and tangential contact, each relative to its own scale; an "
-      "augmented run starts anew with each augmentation, which is the sawtooth.";
+      "is the largest of equilibrium" +
+      std::string(is_frictionless(study) ? " and contact" : ", normal and tangential contact") +
+      ", each relative to its own scale; an augmented run starts anew with each augmentation, which is the sawtooth.";
   const auto shown = telling_cells(study, Furthest::left_out);
   add_first(series, study, shown);
   for (const auto& cell : study.cells) {
@@ -33,6 +34,8 @@ std::optional<Figure> convergence_histories(const Study& study) {
     const json& history = steps[hardest]["history"];
     const std::string name = in_words(cell);
     series.add(name, cell.family);
+    // Long curves stay readable where they mark few points, and other ones than their neighbours.
+    const std::size_t stride = std::max<std::size_t>(history.size() / 15, 1), turn = 2 * series.place(name);
     for (std::size_t i = 0; i < history.size(); ++i) {
       const json& record = history[i];
       const json& residual = at(record, "residual");
@@ -44,6 +47,7 @@ std::optional<Figure> convergence_histories(const Study& study) {
       r["error"] = residual;
       r["step"] = hardest + 1;
       r["iteration"] = r["order"] = i + 1;
+      r["unmarked"] = (i + turn) % stride != 0;
       r["changed"] = number_at(record, "changed");
       r["augmentation"] = number_at(record, "augmentation");
       figure.rows.push_back(r);

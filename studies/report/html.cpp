@@ -67,7 +67,9 @@ std::string escape(std::string_view text) {
 
 std::string escape_sentence(std::string_view text) {
   static const std::regex small(R"((\d[\d.]*e-)0*(\d+))");
-  return std::regex_replace(escape(text), small, "<span class=\"number\">$1$2</span>");
+  static const std::regex unit(R"((\d) (ms|s|%)(?!\w))");
+  return std::regex_replace(std::regex_replace(escape(text), unit, "$1&nbsp;$2"), small,
+                            "<span class=\"number\">$1$2</span>");
 }
 
 std::string embed(const nlohmann::json& value) {

@@ -11,7 +11,8 @@ namespace stickslip::report {
 /// `text` with & < > " ' replaced by entities: safe as element content and as an attribute value.
 std::string escape(std::string_view text);
 
-/// escape(), with numbers such as 2e-4 kept on one line, and without the noughts of 2e-04.
+/// escape(), with numbers such as 2e-4 kept on one line, together with units such as "0.5 s", and without the noughts
+/// of 2e-04.
 std::string escape_sentence(std::string_view text);
 
 /// `value` as JSON that may stand inside <script type="application/json">: every '<' is written \u003c, so no text of a

@@ -44,7 +44,7 @@ void rows_along(const Study& study, const std::vector<std::string>& knobs, Serie
       series.add(r["series"], cell.family);
       add(r, cell);
     } else if (with_knob.count(cell.family) == 0 && &cell == best_cell(study, cell.family)) {
-      r["series"] = r["line"] = family_name(cell.family) + " (has no such option)";
+      r["series"] = r["line"] = family_name(cell.family) + " (best run, without this option)";
       r["unmarked"] = true;
       series.add(r["series"], cell.family);
       for (const double x : {low, high}) {
@@ -136,11 +136,13 @@ std::optional<Figure> error_against_knob(const Study& study, const std::vector<s
   figure.text = "Enforcement error (same mesh) as the option is turned. ";
   figure.text += penalty
                      ? "Penalty lets bodies penetrate" + std::string(is_frictionless(study) ? "" : " and creep") +
-                           " by an amount proportional to 1/stiffness, so its "
-                           "error falls with slope -1, until rounding, which grows with the stiffness, lifts it again. "
+                           " by an amount that is proportional to 1/stiffness where it is small: the dotted line of "
+                           "slope -1. Rounding, which grows with the stiffness, may lift the error again. "
                            "What an augmented Lagrangian converges to does not depend on its scale: its line shows "
                            "what its tolerance leaves, which may, and rounding. "
                      : "";
+  if (std::any_of(figure.rows.begin(), figure.rows.end(), [](const json& r) { return r.value("unmarked", false); }))
+    figure.text += "A level line is the best run of a method without the option. ";
   figure.text += "Crosses are runs that did not converge.";
   const json tips =
       tooltip({{"label", "method"}, {"option_value", "value of the option"}, {"error", "error"}, {"status", "status"}});
@@ -185,12 +187,14 @@ std::optional<Figure> iterations_against_knob(const Study& study, const std::vec
   const json tips =
       tooltip({{"label", "method"}, {"option_value", "value of the option"}, {"count", "count"}, {"status", "status"}});
   for (const auto& [panel, unused] : counted_along_knobs) {
-    if (distinct(figure.rows, "label", panel).empty()) continue;
+    const auto along_the_knob = [&](const json& r) { return r["panel"] == panel && !r.value("unmarked", false); };
+    if (std::none_of(figure.rows.begin(), figure.rows.end(), along_the_knob)) continue;
     json spec = curves(figure.title + ", " + panel, channel("option_value", knob_title(knobs), true),
                        channel("count", panel, true), tips);
     spec["transform"] = only_if("datum.panel == '" + panel + "'");
     figure.panels.push_back({panel, spec, "option_value", "count", true, true, panel, false});
   }
+  if (figure.panels.empty()) return std::nullopt;
   offer(figure, "Scene", "scene", study.main_variant);
   return figure;
 }

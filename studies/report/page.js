@@ -107,16 +107,16 @@
   /** A button for each series that is among the rows: it takes the series out of all panels and puts it back. */
   function drawLegend(figure, series, rows) {
     const names = new Set(rows.map((row) => row.series)), off = switchedOff.get(figure) ?? new Set();
-    const present = series.filter((s) => names.has(s.name));
+    const marked = new Set(rows.filter((row) => !row.unmarked).map((row) => row.series));
     const place = figure.querySelector('.legend');
     place.replaceChildren();
-    for (const s of present.length > 1 ? present : []) {
+    for (const s of series.length > 1 ? series.filter((s) => names.has(s.name)) : []) {
       const button = place.appendChild(document.createElement('button'));
       const color = s.color === '$ink' ? css('--ink') : s.color;
       button.type = 'button';
       button.setAttribute('aria-pressed', !off.has(s.name));
       button.innerHTML = `<svg width="44" height="16" aria-hidden="true" fill="none" stroke="${color}" stroke-width="2">` +
-          `<path d="M0,8H44" stroke-dasharray="${s.dash.at(-1) ? s.dash : 'none'}"/><path d="${markers[s.shape]}"/></svg>`;
+          `<path d="M0,8H44" stroke-dasharray="${s.dash.at(-1) ? s.dash : 'none'}"/>${marked.has(s.name) ? `<path d="${markers[s.shape]}"/>` : ''}</svg>`;
       button.append(s.name.replaceAll(/e-(?=\d)/g, 'e-\u2060'));  // not broken after its hyphen
       button.addEventListener('click', () => {
         off.has(s.name) ? off.delete(s.name) : off.add(s.name);
@@ -153,7 +153,21 @@
   const chosenRows = (figure, data) => rowsShown(figure, data.rows.map((values) => Object.fromEntries(
       data.fields.map((field, i) => [field, meant(data, field, values[i])]).filter(([, value]) => value !== null))));
 
-  async function draw(figure) {
+  /** What is chosen, in a line for paper. */
+  function tellChosen(figure) {
+    const line = figure.querySelector('.chosen');
+    if (!line) return;
+    const selects = [...figure.querySelectorAll('.choices select')];
+    line.textContent = selects.map((select) => select.parentElement.firstChild.data + select.value).join('; ');
+  }
+
+  /** A row without words beside its point that are too long for a narrow panel, or say nothing without a name. */
+  const inBrief = (row) => Object.fromEntries(Object.entries(row).filter(
+      ([field, entry]) => !field.startsWith('tag') || (entry.length <= 12 && Number.isNaN(Number(entry)))));
+
+  /** Draws a figure: as wide as its place, or as wide as paper is. */
+  async function draw(figure, paper) {
+    tellChosen(figure);
     const data = dataOf(figure), all = chosenRows(figure, data), off = switchedOff.get(figure);
     const rows = off ? all.filter((row) => !off.has(row.series)) : all;
     const panels = figure.querySelectorAll('.panel');
@@ -163,11 +177,13 @@
       if (panel.closest('details:not([open])')) continue;  // has no width yet; drawn when it is opened
       const only = spec.usermeta.panel;
       const own = (only ? rows.filter((row) => row.panel === only) : rows)
-          .map((row) => row.tag?.length > 12 && panel.clientWidth < 400 ? {...row, tag: undefined} : row);
+          .map((row) => panel.clientWidth < 400 ? inBrief(row) : row);
       panel.hidden = !all.some((row) => !only || row.panel === only);
       if (panel.hidden) continue;
       inPanels.push(...(only ? all.filter((row) => row.panel === only) : all));
-      await vegaEmbed(panel.querySelector('.vega'), filled(spec, data.series, own, panel.clientWidth), {
+      const full = filled(spec, data.series, own, paper ?? panel.clientWidth);
+      if (paper) Object.assign(full, {width: paper, height: Math.min(full.height, 220)});
+      await vegaEmbed(panel.querySelector('.vega'), full, {
         mode: 'vega-lite', renderer: 'svg', config: config(), logLevel: vega.Error,
         actions: {export: true, source: false, compiled: false, editor: false},
         tooltip: {theme: dark.matches ? 'dark' : 'light', formatTooltip: tooltipTable},
@@ -228,8 +244,12 @@
     unfolded = [...document.querySelectorAll(
         'details.fold:not([open]), details:not([open]):not(figure details):has(> .wide)')];
     for (const details of unfolded) details.open = true;
+    for (const figure of figures) draw(figure, 680).catch(console.error);
   });
-  addEventListener('afterprint', () => unfolded.forEach((details) => (details.open = false)));
+  addEventListener('afterprint', () => {
+    for (const figure of figures) draw(figure).catch(console.error);
+    unfolded.forEach((details) => (details.open = false));
+  });
 
   // Each table can be taken along.
   for (const table of document.querySelectorAll('table')) {

@@ -219,6 +219,17 @@ Box close_up(const std::vector<ContactPoint>& contact, double scale) {
   return out;
 }
 
+/// The box moved into another one, along each axis where it fits.
+Box moved_into(const Box& outer, Box box) {
+  for (double Point::*along : {&Point::x, &Point::y}) {
+    const double size = box.max.*along - box.min.*along;
+    if (size > outer.max.*along - outer.min.*along) continue;
+    box.min.*along = std::clamp(box.min.*along, outer.min.*along, outer.max.*along - size);
+    box.max.*along = box.min.*along + size;
+  }
+  return box;
+}
+
 Box padded(Box box, double share) {
   const double room = share * std::max(box.width(), box.height());
   box.add({box.min.x - room, box.min.y - room});
@@ -228,6 +239,7 @@ Box padded(Box box, double share) {
 
 void draw_stresses(double peak, double y, Drawing& drawing) {
   if (!(peak > 0)) return;
+  drawing.part(0, y - 4, 350, 36);
   drawing.text(10, y + 12, "equivalent stress");
   for (std::size_t i = 0; i < colors.size(); ++i)
     drawing.path(Path().rectangle(145 + 22.0 * static_cast<double>(i), y + 2, 22, 12), {"", colors[i], 1, {}});
@@ -250,14 +262,15 @@ std::optional<Scene> lay_out(const json& picture) {
   scene.contact = read_contact(array_at(picture, "contact"), scene.mesh.displacement);
   const double extent = extent_of(scene.mesh);
   const bool points_alone = extent == 0;
-  const bool true_scale = points_alone || at(picture, "finite") == true;
+  const bool of_bodies_alone = !scene.contact.empty() && array_at(picture, "obstacles").empty();  // else these part
+  const bool true_scale = points_alone || of_bodies_alone || at(picture, "finite") == true;
   scene.scale = true_scale ? 1 : scale_of(scene.mesh, extent);
   for (const auto& p : deformed(scene.mesh, scene.scale)) scene.whole.add(p);
   if (points_alone) scene.whole.add(scene.mesh.points.front());  // where they come from
   if (!(std::max(scene.whole.width(), scene.whole.height()) > 0)) return std::nullopt;
   scene.whole = padded(scene.whole, points_alone ? 0.3 : 0.03);
   for (const double s : scene.mesh.stress) scene.peak = std::max(scene.peak, s);
-  scene.zoom = close_up(scene.contact, 1);
+  scene.zoom = moved_into(scene.whole, close_up(scene.contact, 1));
   // A close-up of most of the picture would show the same thing twice.
   scene.zooms = scene.zoom.width() > 0 && scene.zoom.width() < 0.8 * extent;
   return scene;
@@ -340,6 +353,7 @@ std::optional<Plate> draw_overview(const json& picture) {
               scene->mesh.elements.size() <= lines_up_to, drawing);
   draw_contact(scene->contact, scene->scale, frame, drawing);
   drawing.unclip();
+  drawing.part(0, 0, wide, height);
   draw_stresses(scene->peak, height + 12, drawing);
   draw_states(scene->contact, height + 12, drawing);
   return Plate{"overview", title, text, drawing, {}, rows_of(*scene, nodes)};
@@ -362,7 +376,7 @@ std::optional<Plate> draw_picture(const json& picture) {
   drawing.clip(Path().rectangle(0, 0, wide, height));
   draw_bodies(*scene, obstacles, scene->scale, exaggerated, main, scene->mesh.elements.size() <= lines_up_to, drawing);
   if (scene->zooms) {
-    const Box box = close_up(scene->contact, scene->scale);
+    const Box box = moved_into(scene->whole, close_up(scene->contact, scene->scale));
     drawing.path(
         Path().rectangle(main.x(box.min.x), main.y(box.max.y), main.length(box.width()), main.length(box.height())),
         {"ink"});
@@ -370,7 +384,9 @@ std::optional<Plate> draw_picture(const json& picture) {
     draw_contact(scene->contact, scene->scale, main, drawing);
   }
   drawing.unclip();
+  drawing.part(0, 0, wide, height);
   if (scene->zooms) {
+    drawing.part(wide + gap, 0, inset, inset);
     const Frame close(scene->zoom, inset, inset, wide + gap);
     const auto actual = deformed(scene->mesh, 1);
     drawing.clip(Path().rectangle(wide + gap, 0, inset, inset));

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <map>
-#include <tuple>
+#include <utility>
 
 #include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
@@ -30,8 +30,10 @@ void draw_state(const std::string& state, double x, double y, const std::string&
 int hold(const std::string& state) { return state == "stick" ? 2 : state == "open" ? 0 : 1; }
 
 std::string in_words(const ContactPoint& c) {
-  return fmt::format("{}: {}, normal traction {}, tangential {}", c.name, c.state, plain(c.normal),
-                     plain(c.tangential));
+  if (c.state == "open") return c.name + ": open";
+  const bool rubs = c.state == "stick" || c.state == "slip";
+  return fmt::format("{}: {}, normal traction {}{}", c.name, c.state, plain(c.normal),
+                     rubs ? ", tangential " + plain(c.tangential) : "");
 }
 
 }  // namespace
@@ -83,17 +85,16 @@ void draw_states(const std::vector<ContactPoint>& contact, double y, Drawing& dr
   const auto present = [&](const std::string& state) {
     return std::any_of(contact.begin(), contact.end(), [&](const ContactPoint& c) { return c.state == state; });
   };
-  const bool rubs = present("stick") || present("slip");
-  double x = 400;
-  for (const auto& [state, words, shown] : {std::tuple{"stick", "sticks", rubs},
-                                            {"slip", "slips", rubs},
-                                            {"closed", "touches", present("closed")},
-                                            {"open", "open", present("open")}}) {
-    if (!shown) continue;
+  constexpr double left = 400;
+  double x = left;
+  for (const auto& [state, words] :
+       {std::pair{"stick", "sticks"}, {"slip", "slips"}, {"closed", "touches"}, {"open", "open"}}) {
+    if (!present(state)) continue;
     draw_state(state, x, y + 8, "", drawing);
     drawing.text(x + 10, y + 12, words);
     x += 80;
   }
+  if (x > left) drawing.part(left - 10, y - 4, x - left, 24);
 }
 
 }  // namespace stickslip::report

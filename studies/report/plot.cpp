@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <vector>
 
 namespace stickslip::report {
@@ -82,16 +83,35 @@ std::optional<Frame> frame_of(const Figure& figure, const Panel& panel) {
                Axis(y_low, y_high, panel.y_log, bottom, top), ground_of(rows, panel)};
 }
 
+/// Ticks with their labels, in as many digits as tell them apart.
+std::vector<std::pair<double, std::string>> labelled(const std::vector<double>& ticks) {
+  constexpr int fewest = 3, most = 12;
+  std::vector<std::pair<double, std::string>> out;
+  for (int digits = fewest; digits <= most; ++digits) {
+    out.clear();
+    std::set<std::string> labels;
+    for (const double tick : ticks) labels.insert(out.emplace_back(tick, number(tick, digits)).second);
+    if (labels.size() == ticks.size()) break;
+  }
+  return out;
+}
+
+/// The least step between ticks that the axis allows: 1 where it counts; 0 where it says nothing.
+double least_step(const json& spec, const std::string& name) {
+  const json channel = channel_of(spec, name);
+  return channel.is_null() ? 0 : channel["axis"].value("tickMinStep", 0.0);
+}
+
 void draw_axes(const Frame& frame, const json& spec, Drawing& drawing) {
   const Style grid{"line"};
-  for (const double tick : frame.x.ticks()) {
+  for (const auto& [tick, label] : labelled(frame.x.ticks(least_step(spec, "x")))) {
     drawing.line(frame.x(tick), top, frame.x(tick), bottom, grid);
-    drawing.text(frame.x(tick), bottom + 16, number(tick), {Anchor::middle});
+    drawing.text(frame.x(tick), bottom + 16, label, {Anchor::middle});
   }
-  for (const double tick : frame.y.ticks()) {
+  for (const auto& [tick, label] : labelled(frame.y.ticks())) {
     if (frame.ground && tick < 5 * *frame.ground) continue;
     drawing.line(left, frame.y(tick), right, frame.y(tick), grid);
-    drawing.text(left - 6, frame.y(tick) + 4, number(tick), {Anchor::end});
+    drawing.text(left - 6, frame.y(tick) + 4, label, {Anchor::end});
   }
   drawing.path(Path().move(left, top).line(left, bottom).line(right, bottom), {"ink"});
   drawing.text((left + right) / 2, bottom + 36, axis_text(spec, "x", *frame.rows.front()), {Anchor::middle});
@@ -122,14 +142,21 @@ void draw_guides(const Frame& frame, const Panel& panel, Drawing& drawing) {
 
 /// The names of curves, and the option's values at their ends.
 void draw_tags(const Frame& frame, const Panel& panel, Drawing& drawing) {
-  constexpr double size = 11, aside = 9, above = 8;
+  constexpr double size = 11, aside = 9, above = 8, below = 15;
   for (const json* row : frame.rows) {
-    const std::string tag = row->value("tag", "");
+    const std::string tag = row->value(panel.tag, ""), side = row->value(panel.tag + "_at", "");
     if (tag.empty()) continue;
     const double x = frame.x(number_of(*row, panel.x)), y = frame.y(number_of(*row, panel.y));
-    const bool fits = !row->value("tag_left", false) && x + aside + text_width(tag, size) < width;
-    drawing.text(fits ? x + aside : x - aside, y - above, tag, {fits ? Anchor::start : Anchor::end, size});
+    const bool fits = side.starts_with("right") && x + aside + text_width(tag, size) < width;
+    drawing.text(fits ? x + aside : x - aside, side.ends_with("below") ? y + below : y - above, tag,
+                 {fits ? Anchor::start : Anchor::end, size});
   }
+}
+
+bool has_markers(const Frame& frame, const Series& series) {
+  return std::any_of(frame.rows.begin(), frame.rows.end(), [&](const json* row) {
+    return row->value("series", "") == series.name && !row->value("unmarked", false);
+  });
 }
 
 /// Markers and lines of one series; false where it has none.
@@ -172,7 +199,7 @@ Axis::Axis(double low, double high, bool logarithmic, double from, double to, bo
     low_ = bounded ? low_ : middle - 0.5;
     high_ = low_ + 1;
   }
-  constexpr double rounding = 1e-9;  // of a number: what an axis must not magnify
+  constexpr double rounding = 1e-5;  // of a number: what an axis must not magnify, nor the six digits of a page show
   if (!log_ && high_ - low_ < rounding * std::max(std::abs(low_), std::abs(high_))) low_ = high_ = (low_ + high_) / 2;
   const double room = high_ > low_ ? 0.05 * (high_ - low_) : high_ == 0 ? 1 : std::abs(high_) / 2;
   if (!bounded) low_ -= room;
@@ -183,7 +210,7 @@ double Axis::operator()(double value) const { return from_ + (to_ - from_) * (sc
 
 double Axis::scaled(double value) const { return log_ ? std::log10(value) : value; }
 
-std::vector<double> Axis::ticks() const {
+std::vector<double> Axis::ticks(double least_step) const {
   std::vector<double> out;
   if (log_ && high_ - low_ >= 2) {
     const double step = std::max(1.0, std::ceil((high_ - low_) / 7));
@@ -199,6 +226,7 @@ std::vector<double> Axis::ticks() const {
         step *= m;
         break;
       }
+    step = std::max(step, least_step);
     for (double i = std::ceil(low_ / step); i * step <= high_; ++i) out.push_back(i * step + 0.0);  // 0, never -0
   }
   return out;
@@ -221,7 +249,7 @@ std::optional<Drawing> draw_plot(const Figure& figure, const Panel& panel) {
   for (const auto& series : figure.series) {
     if (!draw_series(*frame, panel, series, drawing)) continue;
     drawing.line(left, legend, left + 34, legend, style_of(series, true));
-    drawing.path(marker(series.shape, left + 17, legend), style_of(series, false));
+    if (has_markers(*frame, series)) drawing.path(marker(series.shape, left + 17, legend), style_of(series, false));
     drawing.text(left + 42, legend + 4, series.name);
     legend += 18;
   }

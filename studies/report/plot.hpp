@@ -19,8 +19,8 @@ class Axis {
  public:
   Axis(double low, double high, bool logarithmic, double from, double to, bool bounded = false);
   double operator()(double value) const;
-  /// Some four to eight round values inside the axis.
-  std::vector<double> ticks() const;
+  /// Some four to eight round values inside the axis; fewer where they are to lie `least_step` apart.
+  std::vector<double> ticks(double least_step = 0) const;
 
  private:
   double scaled(double value) const;

@@ -38,12 +38,27 @@ Knob read_knob(const std::string& name, const json& value) {
   return {name, plain(value), std::nullopt};
 }
 
-std::string scene_text(const json& vary) {
-  std::string out;
-  for (const auto& [pointer, value] : vary.items())
-    out += fmt::format("{}{} = {}", out.empty() ? "" : ", ", pointer,
-                       value.is_number() ? exact_number(value) : plain(value));
-  return out;
+/// The parts at the end of a pointer, as many as tell it from the others and begin with a name.
+std::string short_name(const std::string& pointer, const std::set<std::string>& all) {
+  for (std::size_t slash = pointer.rfind('/'); slash != std::string::npos && slash > 0;
+       slash = pointer.rfind('/', slash - 1)) {
+    const std::string end = pointer.substr(slash);
+    const auto has_it = [&](const std::string& other) { return other.ends_with(end); };
+    if (std::isdigit(static_cast<unsigned char>(end[1])) == 0 && std::count_if(all.begin(), all.end(), has_it) == 1)
+      return end.substr(1);
+  }
+  return pointer;
+}
+
+/// Says in each cell what is varied, "friction = 0.3" of /contacts/sole/friction.
+void name_scenes(std::vector<Cell>& cells) {
+  std::set<std::string> pointers;
+  for (const auto& cell : cells)
+    for (const auto& [pointer, unused] : object_at(cell.record, "vary").items()) pointers.insert(pointer);
+  for (auto& cell : cells)
+    for (const auto& [pointer, value] : object_at(cell.record, "vary").items())
+      cell.scene += fmt::format("{}{} = {}", cell.scene.empty() ? "" : ", ", short_name(pointer, pointers),
+                                value.is_number() ? exact_number(value) : plain(value));
 }
 
 Cell read_cell(json&& row) {
@@ -63,7 +78,6 @@ Cell read_cell(json&& row) {
   if (cell.family.empty()) cell.family = cell.label.substr(0, cell.label.find(' '));
   cell.status = text_at(record, "status");
   cell.converged = cell.status == "converged" || cell.status == "converged_at_roundoff";
-  cell.scene = scene_text(object_at(record, "vary"));
   cell.refine = static_cast<int>(number_at(record, "refine"));
   const json& errors = at(record, "errors");
   cell.enforcement = errors_at(errors, "enforcement");
@@ -190,6 +204,13 @@ void shorten_labels(Study& study) {
   }
 }
 
+/// Puts the methods' names before their options.
+void put_in_words(std::vector<Cell>& cells) {
+  for (auto& cell : cells)
+    cell.label =
+        family_name(cell.family) + cell.label.substr(cell.label.starts_with(cell.family) ? cell.family.size() : 0);
+}
+
 json read_json(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) return nullptr;
   json content = json::parse(read_file(path), nullptr, false);
@@ -215,6 +236,7 @@ Study read_study(const std::filesystem::path& directory) {
   for (const json& id : array_at(study.description, "cells"))
     study.unrecorded += id.is_string() && stored.rows.count(id) == 0;
 
+  name_scenes(study.cells);
   std::set<int> levels;
   for (const auto& cell : study.cells) levels.insert(cell.refine);
   study.refined = levels.size() > 1;
@@ -228,6 +250,7 @@ Study read_study(const std::filesystem::path& directory) {
   study.families = distinct(study.cells, [](const Cell& c) { return c.family; });
   complete_knobs(study.cells);
   shorten_labels(study);
+  put_in_words(study.cells);
   study.variants = distinct(study.cells, [](const Cell& c) { return c.variant; });
   study.main_variant = main_variant_of(study);
   attach_curves(study, directory);
@@ -249,6 +272,7 @@ Study read_run(const std::filesystem::path& directory) {
   for (const char* part : {"interface", "film"})
     if (study.picture.is_object()) result[part] = at(study.picture, part);
   study.cells.push_back(read_cell(std::move(result)));
+  put_in_words(study.cells);
   study.families = {study.cells.front().family};
   study.variants = {""};
   study.ratio = measured_ratio(study.cells);
@@ -301,9 +325,7 @@ const Knob* find_knob(const Cell& cell, const std::string& name) {
 }
 
 std::string series_of(const Cell& cell, const std::string& knob) {
-  std::string rest = cell.label;
-  if (rest.rfind(cell.family, 0) == 0) rest.erase(0, cell.family.size());
-  return family_name(cell.family) + (knob.empty() ? rest : without(rest, knob));
+  return knob.empty() ? cell.label : without(cell.label, knob);
 }
 
 std::string discretization_reference(const Study& study) {
@@ -315,7 +337,19 @@ std::string discretization_reference(const Study& study) {
   return kinds.size() == 1 ? *kinds.begin() : "the references";
 }
 
+namespace {
+
+/// Whether a run's ledger says that no contact had friction.
+bool ran_without_friction(const Cell& cell) {
+  const json& ledger = array_at(cell.record, "ledger");
+  return std::any_of(ledger.begin(), ledger.end(),
+                     [](const json& row) { return at(row, "effect") == "friction" && at(row, "on") == false; });
+}
+
+}  // namespace
+
 bool is_frictionless(const Study& study) {
+  if (!study.cells.empty() && std::all_of(study.cells.begin(), study.cells.end(), ran_without_friction)) return true;
   std::map<std::string, bool> touches;  // by contact
   for (const auto& point : array_at(study.picture, "contact")) {
     const std::string state = text_at(point, "state");

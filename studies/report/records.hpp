@@ -21,11 +21,11 @@ struct Knob {
 /// One cell of a study: a method with its options, on one variant of the scene.
 struct Cell {
   nlohmann::json record;  ///< the line; without its steps, film and interface but where attach_curves() adds them
-  std::string label;      ///< method and options, as recorded or made up from them, without Study::shared
+  std::string label;      ///< method, in words, and options, without Study::shared
   std::string family;     ///< key of the method: penalty, uzawa_al, monolithic_al, ...
   std::string status;
   bool converged = false;
-  std::string scene;    ///< the values of `vary`; empty where nothing is varied
+  std::string scene;    ///< the values of `vary`, "friction = 0.3"; empty where nothing is varied
   int refine = 0;       ///< mesh level
   std::string variant;  ///< scene and, where there are several, mesh level
   std::vector<Knob> knobs;
@@ -71,14 +71,15 @@ std::vector<std::string> knob_names(const Study& study);
 
 const Knob* find_knob(const Cell& cell, const std::string& name);
 
-/// Label without the part that says `knob`, and with the method's name in words: what is constant along a curve.
+/// Label without the part that says `knob`: what is constant along a curve.
 std::string series_of(const Cell& cell, const std::string& knob);
 
 /// What the discretisation errors are against: "the closed form", "the finer mesh", "the given values", or, where the
 /// study has several of them or names none, "the references".
 std::string discretization_reference(const Study& study);
 
-/// Whether no contact has friction: all that touches is "closed", and no measure speaks of slip.
+/// Whether no contact has friction: the ledgers say so or, in records without them, all that touches is "closed", and
+/// no measure speaks of slip.
 bool is_frictionless(const Study& study);
 
 /// Whether a method-blind measure is of Coulomb's law.

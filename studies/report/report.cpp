@@ -8,6 +8,7 @@
 #include "studies/io/atomic_file.hpp"
 #include "studies/io/input_fault.hpp"
 #include "studies/report/about.hpp"
+#include "studies/report/chart_parts.hpp"
 #include "studies/report/charts.hpp"
 #include "studies/report/embedded.hpp"
 #include "studies/report/figure_files.hpp"
@@ -73,7 +74,9 @@ std::optional<Figure> first_chart(const Study& study) {
   figure->choices.clear();
   figure->panels.erase(figure->panels.begin() + 1, figure->panels.end());
   figure->panels.front().title.clear();
-  figure->panels.front().spec["height"] = 200;
+  constexpr double height = 200;
+  figure->panels.front().spec["height"] = height;
+  tag_lines(figure->rows, "work", height, "setting");
   figure->id = "first";
   figure->title = "What accuracy costs";
   figure->text = "Error of the worst response. Lower left is better.";

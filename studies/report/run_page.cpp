@@ -23,7 +23,7 @@ std::string how_it_ended(const Cell& cell) {
   std::string out =
       fmt::format("{}, {}: {} with {}", family_name(cell.family), counted(static_cast<long>(steps), "step"),
                   cell.status, work_in_words(cell, Of::sensitivities));
-  if (cell.sensitivity_seconds > 0) out += fmt::format(" in {} s", number(cell.sensitivity_seconds, 2));
+  if (cell.sensitivity_seconds > 0) out += " in " + seconds_in_words(cell.sensitivity_seconds);
   const std::string message = text_at(cell.record, "message");
   return out + (message.empty() ? "" : ": " + message) + ".";
 }
@@ -144,13 +144,12 @@ std::string ledger_table(const Cell& cell) {
 
 std::string first_of_run(const Study& run, Figures& figures) {
   const std::string scene = figures.show(draw_overview(run.picture)), histories = figures.show(response_histories(run));
-  std::string out = scene + histories;
-  if (!out.empty()) out = "<div class=\"first\">" + out + "</div>\n";
-  out += "<p class=\"reason\">" + escape(how_it_ended(run.cells.front())) + "</p>\n";
+  std::string out = scene + "<p class=\"reason\">" + escape_sentence(how_it_ended(run.cells.front())) + "</p>\n";
   for (const auto& warning : warning_sentences(run)) out += "<p class=\"warning\">" + escape(warning) + "</p>\n";
   if (run.picture.is_null())
     out += "<p class=\"note\">The bodies and tractions were not recorded; <code>run --report</code> does.</p>\n";
-  return out + last_values(run.cells.front());
+  out += last_values(run.cells.front());
+  return "<div class=\"first\"><div>" + out + "</div>\n" + histories + "</div>\n";
 }
 
 std::vector<Section> sections_of_run(const Study& run, Figures& figures) {

@@ -13,150 +13,182 @@ using nlohmann::json;
 
 namespace {
 
-/// Height, and the places across in the charts against work and against seconds, in logarithms.
-using Place = std::array<double, 3>;
-
-Place place_of(const json& row) {
-  const auto logarithm = [&](const char* field) { return std::log10(row[field].get<double>()); };
-  return {logarithm("shown"), logarithm("work"), logarithm("seconds")};
-}
-
-/// What is shown at once, as a key.
-std::string choice_of(const json& row) { return row.value("quantity", "") + '\n' + row.value("scene", ""); }
-
-/// A stretch across a chart, as shares of its width.
-struct Span {
-  double from, to;
-  bool overlaps(const Span& other) const { return from < other.to && other.from < to; }
+/// Pixels of a chart, from its lower left corner.
+struct Place {
+  double x, y;
 };
 
-enum class Side { right, left };
-
-/// Words beside the points of the charts that are shown at once, and which of them fit.
-class Words {
- public:
-  void add(const json& row) {
-    const Place at = place_of(row);
-    for (std::size_t i = 0; i < at.size(); ++i)
-      if (std::isfinite(at[i])) {
-        least_[i] = std::min(least_[i], at[i]);
-        most_[i] = std::max(most_[i], at[i]);
-      }
-    if (row.value("zero", false)) ground_ = at[0];
+struct Box {
+  double left, right, low, high;
+  bool overlaps(const Box& other) const {
+    return left < other.right && other.left < right && low < other.high && other.low < high;
   }
-
-  /// To be called when all points are known: the axes show at least a decade, and "exactly 0" stands at the left.
-  void begin() {
-    for (std::size_t i = 0; i < least_.size(); ++i)
-      if (const double lacks = 1 - (most_[i] - least_[i]); lacks > 0) {
-        least_[i] -= lacks / 2;
-        most_[i] += lacks / 2;
-      }
-    const Span words = {-margin, -margin + width_of(9)};
-    if (std::isfinite(ground_)) taken_.push_back({(ground_ - least_[0]) / (most_[0] - least_[0]), {words, words}});
-  }
-
-  /// Whether two points lie apart, in every chart, by a short word.
-  bool apart(const json& a, const json& b) const {
-    const Place one = shares_of(a), other = shares_of(b);
-    const auto far = [&](std::size_t i, double room) {
-      return !std::isfinite(one[i]) || !std::isfinite(other[i]) || std::abs(one[i] - other[i]) > room;
+  /// Whether a part of the line from a to b lies inside.
+  bool is_crossed_by(const Place& a, const Place& b) const {
+    double from = 0, to = 1;
+    const auto cut = [&](double start, double way, double least, double most) {
+      if (way == 0) return start > least && start < most;
+      const auto [in, out] = std::minmax({(least - start) / way, (most - start) / way});
+      from = std::max(from, in);
+      to = std::min(to, out);
+      return true;
     };
-    return far(0, line) || (far(1, width_of(3)) && far(2, width_of(3)));
-  }
-
-  /// Writes the text on one side of its point, where it has room in every chart.
-  bool write(json& row, const std::string& text) {
-    if (text.empty()) return false;
-    return write(row, text, Side::right) || write(row, text, Side::left);
-  }
-
- private:
-  struct Word {
-    double height;
-    std::array<Span, 2> across;  ///< in the charts against work and against seconds
-  };
-  static constexpr double line = 0.08;    ///< of the height of the lowest chart
-  static constexpr double margin = 0.04;  ///< beside the outermost points
-
-  /// As a share of a chart's width.
-  static double width_of(std::size_t letters) { return 0.03 + 0.013 * static_cast<double>(letters); }
-
-  Place shares_of(const json& row) const {
-    Place at = place_of(row);
-    for (std::size_t i = 0; i < at.size(); ++i) at[i] = (at[i] - least_[i]) / (most_[i] - least_[i]);
-    return at;
-  }
-
-  bool write(json& row, const std::string& text, Side side) {
-    const Place at = shares_of(row);
-    Word word{at[0], {}};
-    for (std::size_t i = 0; i < word.across.size(); ++i) {
-      const double x = at[i + 1], width = width_of(text.size());
-      if (!std::isfinite(x)) continue;  // not drawn, and an empty span is in nobody's way
-      word.across[i] = side == Side::right ? Span{x, x + width} : Span{x - width, x};
-      if (word.across[i].from < -margin || word.across[i].to > 1 + margin) return false;
-    }
-    const bool covered = std::any_of(taken_.begin(), taken_.end(), [&](const Word& other) {
-      return std::abs(word.height - other.height) < line &&
-             (word.across[0].overlaps(other.across[0]) || word.across[1].overlaps(other.across[1]));
-    });
-    if (covered) return false;
-    row["tag"] = text;
-    row["tag_left"] = side == Side::left;
-    taken_.push_back(word);
-    return true;
-  }
-
-  Place least_ = filled(std::numeric_limits<double>::infinity()),
-        most_ = filled(-std::numeric_limits<double>::infinity());
-  double ground_ = std::numeric_limits<double>::quiet_NaN();  ///< height of the exact zeros
-  std::vector<Word> taken_;
-
-  static Place filled(double value) {
-    Place place;
-    place.fill(value);
-    return place;
+    return cut(a.x, b.x - a.x, left, right) && cut(a.y, b.y - a.y, low, high) && from < to;
   }
 };
+
+/// The names of sides are those of chart_parts.hpp.
+struct Side {
+  const char* name;
+  bool left, below;
+};
+constexpr std::array<Side, 4> sides = {
+    {{"right", false, false}, {"left", true, false}, {"right below", false, true}, {"left below", true, true}}};
+
+constexpr double width = 480;   ///< of a chart beside another one
+constexpr double padding = 18;  ///< between the outermost points and the border
+constexpr double font = 11, half_marker = 5, aside = 8;
 
 /// The points of a line, in order.
 using Line = std::vector<json*>;
 
-/// Names a line at its end, else at its beginning, else in its middle; with the option's value where there is room.
-void name(const Line& line, bool moves, const std::string& text_field, Words& words) {
-  json &first = *line.front(), &last = *line.back(), &middle = *line[line.size() / 2];
-  const auto named = [&](const json& row, bool with_value) {
-    const std::string series = row.value("series", ""), value = row.value(text_field, "");
-    return with_value && moves && !value.empty() ? series + ", " + value : series;
-  };
-  words.write(last, named(last, true)) || words.write(first, named(first, true)) ||
-      words.write(last, named(last, false)) || words.write(first, named(first, false)) ||
-      words.write(middle, named(middle, false));
+/// A chart with its markers and curves, and words beside them that cover nothing.
+class Chart {
+ public:
+  Chart(std::string across, double height) : across_(std::move(across)), height_(height) {}
+
+  /// To be called for all points before anything else: they span the axes.
+  void span(const json& row) {
+    const Place at = logarithms(row);
+    least_ = {std::min(least_.x, at.x), std::min(least_.y, at.y)};
+    most_ = {std::max(most_.x, at.x), std::max(most_.y, at.y)};
+  }
+
+  /// The axes show at least a decade.
+  void begin() {
+    for (double Place::*along : {&Place::x, &Place::y})
+      if (const double lacks = 1 - (most_.*along - least_.*along); lacks > 0) {
+        least_.*along -= lacks / 2;
+        most_.*along += lacks / 2;
+      }
+  }
+
+  void mark(const json& row) {
+    const Place at = place_of(row);
+    taken_.push_back({at.x - half_marker, at.x + half_marker, at.y - half_marker, at.y + half_marker});
+    // The words beside the line of exact zeros, which stand at its left end.
+    if (row.value("zero", false)) taken_.push_back({0, 6 + width_of("exactly 0"), at.y, at.y + 4 + font});
+  }
+
+  void join(const Line& line) {
+    for (std::size_t i = 1; i < line.size(); ++i) curves_.push_back({place_of(*line[i - 1]), place_of(*line[i])});
+  }
+
+  /// Whether two points lie apart by a short word.
+  bool apart(const json& a, const json& b) const {
+    const Place one = place_of(a), other = place_of(b);
+    return std::abs(one.x - other.x) > width_of("1e-8") || std::abs(one.y - other.y) > font + 4;
+  }
+
+  /// Writes the text beside its point, where it has room.
+  bool write(json& row, const std::string& text) {
+    if (text.empty()) return false;
+    for (const Side& side : sides) {
+      const Box word = box_of(place_of(row), text, side);
+      if (!is_free(word)) continue;
+      row[tag_field(across_)] = text;
+      row[tag_field(across_) + "_at"] = side.name;
+      taken_.push_back(word);
+      return true;
+    }
+    return false;
+  }
+
+  bool names(const json& row) const { return row.contains(tag_field(across_)); }
+
+ private:
+  Place logarithms(const json& row) const {
+    return {std::log10(row[across_].get<double>()), std::log10(row["shown"].get<double>())};
+  }
+  Place place_of(const json& row) const {
+    const Place at = logarithms(row);
+    return {padding + (width - 2 * padding) * (at.x - least_.x) / (most_.x - least_.x),
+            padding + (height_ - 2 * padding) * (at.y - least_.y) / (most_.y - least_.y)};
+  }
+  static double width_of(const std::string& text) {
+    constexpr double of_wide_fonts = 1.15;  // over Helvetica
+    return of_wide_fonts * text_width(text, font);
+  }
+  static Box box_of(const Place& at, const std::string& text, const Side& side) {
+    const double from = side.left ? at.x - aside - width_of(text) : at.x + aside;
+    const double low = side.below ? at.y - 6 - font : at.y + 6;
+    return {from, from + width_of(text), low, low + font};
+  }
+  bool is_free(const Box& word) const {
+    return word.left > 0 && word.right < width && word.low > 0 && word.high < height_ &&
+           std::none_of(taken_.begin(), taken_.end(), [&](const Box& other) { return word.overlaps(other); }) &&
+           std::none_of(curves_.begin(), curves_.end(),
+                        [&](const auto& piece) { return word.is_crossed_by(piece[0], piece[1]); });
+  }
+
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  std::string across_;
+  double height_;
+  Place least_{infinity, infinity}, most_{-infinity, -infinity};
+  std::vector<Box> taken_;
+  std::vector<std::array<Place, 2>> curves_;
+};
+
+/// Names a line at its end, else at its beginning, with the option's value where there is room; else at any point.
+void name(const Line& line, const std::string& text_field, Chart& chart) {
+  const bool moves = chart.apart(*line.front(), *line.back());
+  const std::string series = line.front()->value("series", "");
+  for (json* end : {line.back(), line.front()})
+    if (const std::string value = end->value(text_field, ""); moves && !value.empty())
+      if (chart.write(*end, series + ", " + value)) return;
+  if (chart.write(*line.back(), series)) return;
+  for (json* row : line)
+    if (chart.write(*row, series)) return;
+}
+
+/// Says the option's value at the ends of a line that has its name at one of them.
+void say_values(const Line& line, const std::string& text_field, Chart& chart) {
+  if (!chart.apart(*line.front(), *line.back())) return;
+  const bool named = std::any_of(line.begin(), line.end(), [&](const json* row) { return chart.names(*row); });
+  for (json* end : {line.back(), line.front()})
+    if (named && !chart.names(*end)) chart.write(*end, end->value(text_field, ""));
+}
+
+void tag(const std::vector<json*>& rows, const std::string& across, double height, const std::string& text_field) {
+  Chart chart(across, height);
+  std::map<std::string, Line> lines;
+  for (json* row : rows) {
+    chart.span(*row);
+    if (!row->value("failed", false)) lines[row->value("line", "")].push_back(row);
+  }
+  chart.begin();
+  for (const json* row : rows) chart.mark(*row);
+  for (auto& [key, line] : lines) {
+    std::stable_sort(line.begin(), line.end(),
+                     [](const json* a, const json* b) { return (*a)["order"] < (*b)["order"]; });
+    chart.join(line);
+  }
+  for (const auto& [key, line] : lines) name(line, text_field, chart);
+  for (const auto& [key, line] : lines) say_values(line, text_field, chart);
 }
 
 }  // namespace
 
-void tag_lines(json& rows, const std::string& text_field) {
-  std::map<std::string, Words> charts;
-  std::map<std::string, std::map<std::string, Line>> lines;  // by what is shown at once
+std::string tag_field(const std::string& across) { return "tag_" + across; }
+
+void tag_lines(json& rows, const std::string& across, double height, const std::string& text_field) {
+  std::map<std::pair<std::string, std::string>, std::vector<json*>> shown_at_once;  // by quantity and scene
   for (auto& row : rows) {
-    if (row.value("failed", false)) continue;
-    charts[choice_of(row)].add(row);
-    lines[choice_of(row)][row.value("line", "")].push_back(&row);
+    row.erase(tag_field(across));
+    row.erase(tag_field(across) + "_at");
+    if (row[across] > 0) shown_at_once[{row.value("quantity", ""), row.value("scene", "")}].push_back(&row);
   }
-  for (auto& [choice, words] : charts) {
-    words.begin();
-    for (auto& [key, line] : lines[choice]) {
-      std::stable_sort(line.begin(), line.end(),
-                       [](const json* a, const json* b) { return (*a)["order"] < (*b)["order"]; });
-      name(line, words.apart(*line.front(), *line.back()), text_field, words);
-    }
-    for (auto& [key, line] : lines[choice])
-      if (words.apart(*line.front(), *line.back()))
-        for (json* end : {line.back(), line.front()})
-          if (!end->contains("tag")) words.write(*end, end->value(text_field, ""));
-  }
+  for (const auto& [choice, shown] : shown_at_once) tag(shown, across, height, text_field);
 }
 
 }  // namespace stickslip::report

@@ -6,7 +6,6 @@
 #include <tuple>
 
 #include "studies/report/chart_parts.hpp"
-#include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
 
 namespace stickslip::report {
@@ -83,7 +82,6 @@ std::optional<Figure> tractions(const Study& study) {
   add_first(series, study, shown);
   const json& analytic = at(study.description, "analytic");
   const json& curves_of = object_at(analytic, "curves");
-  const std::string closed_name = in_plain_words(text_at(analytic, "name"));
 
   // Past this many points only the cells shown at first are kept: the page has to stay light.
   constexpr std::size_t most_points = 20000;
@@ -135,7 +133,7 @@ std::optional<Figure> tractions(const Study& study) {
   if (figure.rows.empty()) return std::nullopt;
   const bool far_left_out = keep_near_the_contact(figure.rows);
 
-  const std::string closed = "closed form" + (closed_name.empty() ? "" : " (" + closed_name + ")");
+  const std::string closed = "closed form";
   json closed_rows = json::array();  // first, so that the runs are drawn over them
   for (const auto& [contact, curve] : curves_of.items()) {
     const auto s = numbers_at(curve, at(curve, "x").is_array() ? "x" : "s");
@@ -164,7 +162,7 @@ std::optional<Figure> tractions(const Study& study) {
   if (far_left_out) figure.text += " Open points far from what touches are left out.";
   if (!differences.empty())
     figure.text += fmt::format(
-        " The last panel is the distance, point by point, from the most accurate run ({}), relative to its largest "
+        " The last panel is the distance, point by point, from {}, a run of the most accurate, relative to its largest "
         "traction: there the methods come apart where the curves above lie on each other. Shown at first are the most "
         "accurate run of each method and the one furthest off.",
         in_words(*reference));
@@ -181,6 +179,7 @@ std::optional<Figure> tractions(const Study& study) {
     spec["transform"] = only_if("datum.panel == '" + panel + "'");
     figure.panels.push_back({title, spec, "s", "shown", false, logarithmic, panel, false});
   }
+  if (figure.panels.empty()) return std::nullopt;  // nothing touches, and nothing should
   offer(figure, "Contact", "contact");
   offer_cells(figure, shown);
   return figure;

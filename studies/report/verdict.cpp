@@ -17,13 +17,18 @@
 namespace stickslip::report {
 namespace {
 
-constexpr double rounding = 1e-12;    ///< what sixteen digits leave: no mesh errs by so little
-constexpr double much_faster = 1.25;  ///< seconds of runs this short vary by some 20 %
+constexpr double rounding = 1e-12;               ///< what sixteen digits leave: no mesh errs by so little
+constexpr double same = 1 + 1e-9;                ///< of works: counts are whole, and what differs, differs by more
+constexpr double digits_of_given_values = 1e-9;  ///< below it they are the reference's, not the mesh's
+constexpr double much_faster = 1.25;             ///< seconds of runs this short vary by some 20 %
 
 /// An accuracy that is asked for.
 struct Level {
-  std::string title;
   double error = 0;
+  std::string whose = {};  ///< "mesh, steps: " where these err by so much
+
+  std::string title() const { return percent(error); }
+  std::string html() const { return escape(whose) + "<span>" + escape(title()) + "</span>"; }
 };
 
 /// Responses or derivatives, by which errors they are judged, and to which accuracies.
@@ -70,10 +75,6 @@ std::vector<Row> rows_of(const Study& study) {
   return !knob.empty() && by_series.size() > 1 && by_series.size() <= most ? by_series : by_method;
 }
 
-std::string percent(double error) {
-  return error >= 1e-3 && error < 1 ? number(100 * error, 2) + " %" : number(error, 2);
-}
-
 std::optional<Measure> measure_of(const Study& study, Of of) {
   Measure measure{of, true, {}};
   const auto runs = runs_of(study);
@@ -87,9 +88,10 @@ std::optional<Measure> measure_of(const Study& study, Of of) {
     if (error.is_number()) asked.push_back(error.get<double>());
   if (asked.empty()) asked = {1e-2, 1e-4, 1e-6};
   std::sort(asked.rbegin(), asked.rend());
-  for (const double error : asked) measure.levels.push_back({percent(error), error});
-  if (const auto own = own_error(study, of); measure.on_same_mesh && own && *own > rounding)
-    measure.levels.push_back({"mesh: " + percent(*own), *own});
+  for (const double error : asked) measure.levels.push_back({error});
+  const double digits = discretization_reference(study) == "the given values" ? digits_of_given_values : rounding;
+  if (const auto own = own_error(study, of); measure.on_same_mesh && own && *own > digits)
+    measure.levels.push_back({*own, fmt::format("{}: ", fmt::join(what_else_errs(study), ", "))});
   return measure;
 }
 
@@ -111,26 +113,48 @@ std::string unbroken(const std::string& text) {
   return out;
 }
 
-/// A run, and how many others of its method do the same for the same work.
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream words(text);
+  return {std::istream_iterator<std::string>(words), {}};
+}
+
+/// "scale=1, 10 or 100" of "scale=1", "scale=10" and "scale=100": of settings that differ in one option, what the first
+/// says is not said again. Of more than three the first two, and how many others there are.
+std::string alternatives(const std::vector<std::string>& settings) {
+  constexpr std::size_t most = 3;
+  const std::size_t told = settings.size() > most ? most - 1 : settings.size();
+  const auto first = words_of(settings.front());
+  const auto value = [&](const std::string& setting) {  // "" where more than the value of the last option differs
+    const auto words = words_of(setting);
+    const std::string option = first.back().substr(0, first.back().find('=') + 1);
+    const bool alike = !option.empty() && words.size() == first.size() && words.back().starts_with(option) &&
+                       std::equal(words.begin(), words.end() - 1, first.begin());
+    return alike ? words.back().substr(option.size()) : "";
+  };
+  const bool alike =
+      std::none_of(settings.begin(), settings.end(), [&](auto& setting) { return value(setting).empty(); });
+  std::string out = settings.front();
+  for (std::size_t i = 1; i < told; ++i)
+    out += (i + 1 < settings.size() ? ", " : " or ") + (alike ? value(settings[i]) : settings[i]);
+  return told < settings.size() ? out + " or " + counted(static_cast<long>(settings.size() - told), "other") : out;
+}
+
+/// A run, and others of its method that do the same for the same work.
 struct Choice {
   const Cell* run = nullptr;  ///< nullptr: none
-  int equals = 0;
+  std::vector<const Cell*> equals = {};
   std::string row = {};  ///< its name
 
   std::string setting() const {
-    const std::string own = setting_of(*run, row);
-    return equals == 0 ? own : own + " or " + counted(equals, "other");
+    std::vector<std::string> settings = {setting_of(*run, row)};
+    for (const Cell* equal : equals) settings.push_back(setting_of(*equal, row));
+    return alternatives(settings);
   }
   std::string name() const { return row + (setting() == "default" ? "" : " (" + setting() + ")"); }
 };
 
-std::string seconds_in_words(double seconds) {
-  return seconds < 0.1 ? number(1e3 * seconds, 2) + " ms" : number(seconds, 2) + " s";
-}
-
 /// The run of a row that reaches an accuracy with least work; of equals the default setting, else the first.
 Choice cheapest(const Row& row, const Measure& measure, double level) {
-  constexpr double same = 1 + 1e-9;  // counts are whole: what differs, differs by more
   Choice best;
   best.row = row.name;
   for (const Cell* cell : row.runs) {
@@ -138,10 +162,10 @@ Choice cheapest(const Row& row, const Measure& measure, double level) {
     if (!error || *error > level) continue;
     const double work = measure.work(*cell), least = best.run ? measure.work(*best.run) : INFINITY;
     if (work * same < least) {
-      best = {cell, 0, row.name};
+      best = {cell, {}, row.name};
     } else if (work <= least * same) {
-      ++best.equals;
-      if (at(cell->record, "default") == true) best.run = cell;
+      best.equals.push_back(cell);
+      if (at(cell->record, "default") == true) std::swap(best.run, best.equals.back());
     }
   }
   return best;
@@ -181,20 +205,32 @@ bool is_fastest(const Column& column, const Measure& measure, const Cell& cell) 
          });
 }
 
-std::string entry(const Row& row, const Measure& measure, const Column& column, const Choice& choice) {
+/// The least error of a row's runs.
+std::optional<double> nearest_of(const Row& row, const Measure& measure) {
+  std::optional<double> nearest;
+  for (const Cell* cell : row.runs)
+    if (const auto error = measure.error(*cell)) nearest = std::min(nearest.value_or(*error), *error);
+  return nearest;
+}
+
+/// `within`: the heads of the column, which narrow screens show beside each entry.
+std::string entry(const Row& row, const Measure& measure, const Column& column, const Choice& choice,
+                  const std::string& within) {
+  const auto cell = [&](const std::string& kind, const std::string& content) {
+    return fmt::format("<td data-within=\"{}\"{}>{}</td>", within, kind.empty() ? "" : " class=\"" + kind + "\"",
+                       content);
+  };
   const Cell* run = choice.run;
   if (!run) {
-    std::optional<double> nearest;
-    for (const Cell* cell : row.runs)
-      if (const auto error = measure.error(*cell)) nearest = std::min(nearest.value_or(*error), *error);
-    return "<td class=\"missed\">" + (nearest ? "best " + percent(*nearest) : std::string("no run")) + "</td>";
+    const auto nearest = nearest_of(row, measure);
+    return cell("missed", nearest ? "best " + percent(*nearest) : "no run");
   }
   const bool least = is_least(column, measure, *run), fastest = is_fastest(column, measure, *run);
   std::string cost = "<span>work " + number(measure.work(*run), 2) + (least ? " &#9733;" : "") + "</span>";
   if (measure.seconds(*run) > 0)
     cost += " <span>&middot; " + escape(seconds_in_words(measure.seconds(*run))) + "</span>";
-  return fmt::format("<td{}>{}<br><small>{}{}</small></td>", least ? " class=\"least\"" : "",
-                     unbroken(choice.setting()), cost, fastest ? "<br>fastest" : "");
+  return cell(least ? "least" : "",
+              fmt::format("{}<br><small>{}{}</small>", unbroken(choice.setting()), cost, fastest ? "<br>fastest" : ""));
 }
 
 /// "a and b"; of more than three "a, b and 4 others".
@@ -228,7 +264,7 @@ std::string taken(const Choice& choice, const Measure& measure, bool weighed) {
   return weighed ? counts + " (work " + number(measure.work(*choice.run), 3) + ")" : counts;
 }
 
-/// Those who are the cheapest with what they take: once where that is the same for all.
+/// Methods with what they take: once where that is the same for all.
 std::string winners_in_words(const std::vector<const Choice*>& winners, const Measure& measure, bool weighed) {
   const std::string first = taken(*winners.front(), measure, weighed);
   const bool alike = std::all_of(winners.begin(), winners.end(),
@@ -238,6 +274,16 @@ std::string winners_in_words(const std::vector<const Choice*>& winners, const Me
     names.push_back("<b>" + escape_sentence(choice->name()) + "</b>" +
                     (alike ? "" : " with " + taken(*choice, measure, weighed)));
   return enumerated(names) + (alike ? ": " + first : "");
+}
+
+/// Those of least work and, set off, those near it. pre: sorted by work.
+std::string cheapest_in_words(const std::vector<const Choice*>& winners, const Measure& measure, bool weighed) {
+  const auto first_near = std::find_if(winners.begin(), winners.end(), [&](const Choice* choice) {
+    return measure.work(*choice->run) > same * measure.work(*winners.front()->run);
+  });
+  const std::vector<const Choice*> least(winners.begin(), first_near), near(first_near, winners.end());
+  const std::string out = winners_in_words(least, measure, weighed);
+  return near.empty() ? out : out + ", and within 5 % of that by " + winners_in_words(near, measure, weighed);
 }
 
 /// Of more than three the dearest alone.
@@ -260,7 +306,17 @@ std::string what_others_take(const std::vector<const Choice*>& others, const Mea
   return out;
 }
 
-/// Who is the cheapest at the first accuracy that any method reaches, and what the others need.
+/// "Penalty does not get there (best 2.4 %)" of rows that no choice stands for; "" where there is none.
+std::string who_misses(const std::vector<Row>& rows, const Measure& measure, const Column& column) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (const auto nearest = nearest_of(rows[i], measure); !column.runs[i].run)
+      names.push_back(escape_sentence(rows[i].name + (nearest ? " (best " + percent(*nearest) + ")" : " (no run)")));
+  if (names.empty()) return "";
+  return " " + enumerated(names) + (names.size() == 1 ? " does" : " do") + " not get there.";
+}
+
+/// Who is the cheapest at the first accuracy that any method reaches, what the others need, and who misses it.
 std::string reason(const std::vector<Row>& rows, const Measure& measure) {
   for (const auto& level : measure.levels) {
     const Column column = column_of(rows, measure, level.error);
@@ -268,17 +324,19 @@ std::string reason(const std::vector<Row>& rows, const Measure& measure) {
     std::vector<const Choice*> winners, others;
     for (const Choice& choice : column.runs)
       if (choice.run) (is_least(column, measure, *choice.run) ? winners : others).push_back(&choice);
+    std::stable_sort(winners.begin(), winners.end(),
+                     [&](const Choice* a, const Choice* b) { return measure.work(*a->run) < measure.work(*b->run); });
     const auto told = few_of(others, measure);
     const bool weighed = counts_leave_open(winners, told, measure.of);
-    std::string out = "To " + level.title + " the " + measure.noun() + " is cheapest by " +
-                      winners_in_words(winners, measure, weighed) +
+    std::string out = "To " + level.title() + " the " + measure.noun() + " is cheapest by " +
+                      cheapest_in_words(winners, measure, weighed) +
                       what_others_take(told, measure, told.size() < others.size(), weighed);
     for (const Choice& choice : column.runs)
       if (choice.run && is_fastest(column, measure, *choice.run))
         out += fmt::format("; by the clock {} was faster ({} for {})", escape_sentence(choice.name()),
                            escape(seconds_in_words(measure.seconds(*choice.run))),
                            escape(seconds_in_words(measure.seconds(*column.least))));
-    return out + ".";
+    return out + "." + who_misses(rows, measure, column);
   }
   return "";
 }
@@ -297,9 +355,11 @@ Verdict verdict(const Study& study) {
     groups +=
         fmt::format("<th scope=\"colgroup\" colspan=\"{}\">{} within</th>", measure.levels.size(), measure.noun());
     for (const auto& level : measure.levels) {
-      heads += "<th scope=\"col\">" + escape(level.title) + "</th>";
+      heads += "<th scope=\"col\">" + level.html() + "</th>";
       const Column column = column_of(rows, measure, level.error);
-      for (std::size_t i = 0; i < rows.size(); ++i) entries[i] += entry(rows[i], measure, column, column.runs[i]);
+      const std::string within = escape(measure.noun() + " within " + level.whose + level.title());
+      for (std::size_t i = 0; i < rows.size(); ++i)
+        entries[i] += entry(rows[i], measure, column, column.runs[i], within);
     }
     sentence += (sentence.empty() ? "" : " ") + reason(rows, measure);
   }
@@ -310,8 +370,8 @@ Verdict verdict(const Study& study) {
       measures.front().on_same_mesh ? "exact contact on the same mesh" : discretization_reference(study);
   const std::string table = fmt::format(
       "<div class=\"wide\" role=\"region\" tabindex=\"0\" aria-label=\"Verdict\"><table class=\"verdict\">"
-      "<caption>The cheapest setting of each method within an accuracy of {}{}; &#9733; least "
-      "work</caption>\n<thead><tr><th rowspan=\"2\">method</th>{}</tr>"
+      "<caption>The cheapest setting of each method within an accuracy of {}{}; &#9733; within "
+      "5 % of the least work</caption>\n<thead><tr><th rowspan=\"2\">method</th>{}</tr>"
       "<tr>{}</tr></thead><tbody>\n{}</tbody></table></div>\n",
       escape(against), study.main_variant.empty() ? "" : escape(" (" + study.main_variant + ")"), groups, heads, body);
   return {"<p class=\"reason\">" + sentence + "</p>\n", table};

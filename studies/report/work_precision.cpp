@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "studies/report/chart_parts.hpp"
+#include "studies/report/headline.hpp"
 #include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
 
@@ -43,7 +44,7 @@ std::string why_it_may_be_folded(const Study& study, Against against, Of of) {
   const auto near =
       std::count_if(errors.begin(), errors.end(), [&](double e) { return std::abs(e - middle) <= 0.1 * middle; });
   return most(near)
-             ? fmt::format("{} of {} runs are off by {}, whatever their method", near, errors.size(), number(middle, 2))
+             ? fmt::format("{} of {} runs are off by {}, whatever their method", near, errors.size(), percent(middle))
              : "";
 }
 
@@ -85,7 +86,6 @@ std::optional<Figure> work_precision(const Study& study, Against against, Of of)
   }
   if (figure.rows.empty()) return std::nullopt;
   show_zeros(figure.rows, "error");
-  tag_lines(figure.rows, "setting");
   figure.series = series.list;
 
   const std::string what = derivative ? "sensitivities" : "responses";
@@ -93,8 +93,7 @@ std::optional<Figure> work_precision(const Study& study, Against against, Of of)
   for (const auto& family : study.families)
     if (const std::string knob = running_knob(study, family); !knob.empty())
       along += (along.empty() ? "" : ", ") + family_name(family) + " along " + knob;
-  const std::string joined =
-      along.empty() ? "" : "A curve joins the runs of one method: " + along + "; its ends carry the option's value.";
+  const std::string joined = along.empty() ? "" : "A curve joins the runs of one method: " + along + ".";
   std::string y_title = derivative ? "relative error of the sensitivity" : "relative error of the response";
   if (against == Against::same_mesh) {
     figure.id = "enforcement-" + what;
@@ -137,9 +136,10 @@ std::optional<Figure> work_precision(const Study& study, Against against, Of of)
   const auto panel = [&](const std::string& field, const std::string& title, bool folded) {
     const auto positive = [&](const json& r) { return r[field].get<double>() > 0; };
     if (std::none_of(figure.rows.begin(), figure.rows.end(), positive)) return;
-    json spec = curves(figure.title + ", against " + title, channel(field, title, true), y, tips);
+    tag_lines(figure.rows, field, chart_height, "setting");
+    json spec = curves(figure.title + ", against " + title, channel(field, title, true), y, tips, tag_field(field));
     spec["transform"] = only_if("datum." + field + " > 0");
-    figure.panels.push_back({"against " + title, spec, field, "shown", true, true, "", folded});
+    figure.panels.push_back({"against " + title, spec, field, "shown", true, true, "", folded, tag_field(field)});
   };
   panel("work", "work (factorisations)", false);
   panel("seconds", "seconds", false);

@@ -144,8 +144,17 @@ TEST_F(ReportCharts, FilmCountsStatesAtEveryStep) {
   const auto plate = report::film_of_states(study());
   ASSERT_TRUE(plate);
   EXPECT_THAT(plate->table.header, ElementsAre("method", "contact", "time", "stick", "slip", "open"));
-  EXPECT_THAT(plate->table.rows[0], ElementsAre("penalty stiffness=1000", "sole", "0.5", "2", "0", "1"));
-  EXPECT_THAT(plate->table.rows[1], ElementsAre("penalty stiffness=1000", "sole", "1", "1", "1", "1"));
+  EXPECT_THAT(plate->table.rows[0], ElementsAre("Penalty stiffness=1000", "sole", "0.5", "2", "0", "1"));
+  EXPECT_THAT(plate->table.rows[1], ElementsAre("Penalty stiffness=1000", "sole", "1", "1", "1", "1"));
+}
+
+TEST_F(ReportCharts, FilmHasRoomForItsTimes) {
+  auto cells = three_methods();
+  for (auto& c : cells) c["film"] = {{"times", {0.0222, 1}}, {"contacts", {{"sole", {"okk", "sko"}}}}};
+  record(description(), cells);
+  const std::string svg = report::film_of_states(study())->drawing.inline_svg(), head = "<text x=\"";
+  const auto text = svg.rfind(head, svg.find(">0.0222<"));  // which ends there
+  EXPECT_GE(std::stod(svg.substr(text + head.size())), report::text_width("0.0222", 10));
 }
 
 TEST_F(ReportCharts, FilmShowsOnceWhatAllRunsAgreeOn) {
@@ -250,6 +259,20 @@ TEST_F(ReportCharts, EveryFigureIsAFileInFourFormats) {
 }
 
 /// The places in the table at the end of a PDF are those of its objects: else a reader has to repair it.
+TEST(ReportDrawing, APageHasItsPartsForNarrowScreens) {
+  report::Drawing drawing(100, 50, "two rooms", "");
+  drawing.text(1, 1, "a word");
+  const std::string whole = drawing.inline_svg();
+  EXPECT_THAT(whole, Not(HasSubstr("<use")));
+  drawing.part(0, 0, 60, 50);
+  drawing.part(60, 0, 40, 50);
+  const std::string svg = drawing.inline_svg();
+  EXPECT_THAT(svg, testing::AllOf(HasSubstr("<g id=\"two-rooms-all\">"), HasSubstr("viewBox=\"60 0 40 50\""),
+                                  HasSubstr("<use href=\"#two-rooms-all\"/>")));
+  EXPECT_EQ(svg.find("a word"), svg.rfind("a word"));  // drawn once, shown in each part
+  EXPECT_THAT(drawing.svg_file(), Not(HasSubstr("<use")));
+}
+
 TEST(ReportDrawing, PgfHasItsTextsAsLatexSetsThem) {
   report::Drawing drawing(200, 100, "title", "description");
   drawing.text(20, 40, "50 % of {a_b}", {report::Anchor::end, 12, "#D55E00"});
@@ -277,8 +300,26 @@ TEST(ReportAxis, DoesNotMagnifyRounding) {
   EXPECT_LE(rounding.ticks().front(), 3);
   EXPECT_GE(rounding.ticks().back(), 7);
   EXPECT_GT(change.ticks().front(), 5.2);
+  const report::Axis seventh_digit(5.234286, 5.234287, false, 0, 100);  // a page has six
+  EXPECT_LE(seventh_digit.ticks().front(), 3);
   const report::Axis nothing(0, 0, false, 0, 100);
   EXPECT_EQ(nothing.ticks().front(), -1);
+}
+
+TEST(ReportAxis, OfWhatIsCountedHasWholeTicks) {
+  const report::Axis levels(0, 2, false, 0, 100);
+  EXPECT_THAT(levels.ticks(1), ElementsAre(0, 1, 2));
+}
+
+TEST_F(ReportCharts, LabelsOfTicksDiffer) {
+  auto cells = three_methods();
+  for (auto& c : cells)
+    c["steps"] = {{{"time", 0.5}, {"responses", {{"press", 5.234}}}},
+                  {{"time", 1}, {"responses", {{"press", 5.2345}}}}};
+  record(description(), cells);
+  const auto figure = report::response_histories(study());
+  const std::string svg = report::draw_plot(*figure, figure->panels.front())->inline_svg();
+  EXPECT_THAT(svg, testing::AllOf(HasSubstr(">5.2342<"), HasSubstr(">5.2344<")));
 }
 
 TEST(ReportAxis, HasNoRoomBelowABound) {

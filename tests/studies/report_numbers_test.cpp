@@ -33,6 +33,14 @@ using testing::Not;
 
 class ReportNumbers : public recorded::StudyOnDisk {};
 
+/// On which side of their points the words of the chart against work stand.
+std::map<std::string, std::string> sides_of_words(const report::Figure& figure) {
+  std::map<std::string, std::string> out;
+  for (const auto& row : figure.rows)
+    if (row.contains("tag_work")) out[row["tag_work"]] = row["tag_work_at"];
+  return out;
+}
+
 TEST(ReportText, WritesNumbersInOneStyle) {
   const std::vector<std::pair<double, const char*>> shown = {
       {0, "0"},         {1e7, "1e7"},           {10000000000.0, "1e10"}, {1234.5, "1234"}, {9999.7, "1e4"},
@@ -114,7 +122,7 @@ TEST_F(ReportNumbers, HeadlineSaysWhatTheDistanceFromAReferenceIs) {
     record(told, cells);
     return all_of(report::headline(study()));
   };
-  EXPECT_THAT(said({{"analytic", "hertz_line"}}), HasSubstr("0.01 in its worst response: that is mesh and steps, and"));
+  EXPECT_THAT(said({{"analytic", "hertz_line"}}), HasSubstr("1 % in its worst response: that is mesh and steps, and"));
   EXPECT_THAT(said({{"overkill", {{"refine", 1}}}}), HasSubstr("worst response: that is the mesh, and"));
   EXPECT_THAT(said({{"values", {{"press", 1}}}}), HasSubstr("that is mesh, steps or the references themselves, and"));
   for (auto& c : cells) c["errors"]["discretization"]["response:press"] = 4e-16;
@@ -127,7 +135,7 @@ TEST_F(ReportNumbers, HeadlineTakesTheMeshsErrorOfTheRunThatEnforcesContactBest)
   auto cells = three_methods();
   cells[0]["errors"]["discretization"]["response:press"] = 1e-5;
   record(description(), cells);
-  EXPECT_THAT(all_of(report::headline(study())), HasSubstr("is off by 0.01 in its worst response"));
+  EXPECT_THAT(all_of(report::headline(study())), HasSubstr("is off by 1 % in its worst response"));
   EXPECT_EQ(report::own_error(study(), Of::responses), 0.01);
 }
 
@@ -217,9 +225,14 @@ TEST_F(ReportNumbers, GivesEachMethodAMarkerOfItsOwn) {
   record(description(), cells);
   const auto figure = report::work_precision(study(), Against::same_mesh, Of::responses);
   std::set<std::string> shapes;
-  for (const auto& series : figure->series) shapes.insert(series.shape);
+  std::set<std::vector<int>> dashes;  // of one method
+  for (const auto& series : figure->series) {
+    shapes.insert(series.shape);
+    if (series.name.starts_with("Uzawa")) dashes.insert(series.dash);
+  }
   EXPECT_EQ(figure->series.size(), 6u);
   EXPECT_EQ(shapes.size(), 6u);  // in grey the marker is all that tells
+  EXPECT_EQ(dashes.size(), 4u);  // but where curves run beside one another
 }
 
 TEST_F(ReportNumbers, KeepsErrorsAndCostsInTablesOfTheirOwn) {
@@ -290,7 +303,7 @@ TEST_F(ReportNumbers, HeadlineSaysWhichMethodDoesNotReachTheAccuracy) {
 
 TEST_F(ReportNumbers, HeadlineTakesTheStrictestDecadeThatWasReached) {
   record(description(), {cell("penalty", {{"stiffness", 10}}, 3e-3, 5), cell("uzawa_al", json::object(), 0.2, 5)});
-  EXPECT_THAT(all_of(report::headline(study())), HasSubstr("within 0.01 of"));
+  EXPECT_THAT(all_of(report::headline(study())), HasSubstr("within 1 % of"));
 }
 
 TEST_F(ReportNumbers, HeadlineSeesRoundingLiftThePenaltysError) {
@@ -328,14 +341,25 @@ TEST_F(ReportNumbers, NamesALineAtItsOtherEndWhereAnotherNameStands) {
       cells.push_back(cell("uzawa_al", {{"scale", scale}, {"tolerance", tolerance}}, tolerance, factorizations));
     }
   record(description(), cells);
-  std::map<std::string, bool> left;
-  const auto figure = report::work_precision(study(), Against::same_mesh, Of::responses);
-  for (const auto& row : figure->rows)
-    if (row.contains("tag")) left[row["tag"]] = row["tag_left"];
-  EXPECT_TRUE(left.count("Uzawa AL scale=1, 1e-4"));
-  EXPECT_FALSE(left.count("Uzawa AL scale=10, 1e-4"));
-  ASSERT_TRUE(left.count("Uzawa AL scale=10, 1e-8"));
-  EXPECT_TRUE(left.at("Uzawa AL scale=10, 1e-8"));
+  const auto side = sides_of_words(*report::work_precision(study(), Against::same_mesh, Of::responses));
+  EXPECT_TRUE(side.count("Uzawa AL scale=1, 1e-4"));
+  EXPECT_FALSE(side.count("Uzawa AL scale=10, 1e-4"));
+  ASSERT_TRUE(side.count("Uzawa AL scale=10, 1e-8"));
+  EXPECT_THAT(side.at("Uzawa AL scale=10, 1e-8"), testing::StartsWith("left"));
+}
+
+/// On its right stand the markers of another curve.
+TEST_F(ReportNumbers, NamesNoLineAcrossMarkersOfAnother) {
+  std::vector<json> cells = {cell("uzawa_al", json::object(), 1e-4, 100)};
+  for (const int stiffness : {1, 2, 3}) cells.push_back(cell("penalty", {{"stiffness", stiffness}}, 1e-4, 105));
+  for (const std::size_t i : {1u, 2u, 3u}) {
+    cells[i]["cost"]["counts"]["factorizations"] = 100 + 20 * i;
+    cells[i]["errors"]["enforcement"]["response:press"] = 1e-4 * (1 + 0.1 * static_cast<double>(i));
+  }
+  record(description(), cells);
+  const auto side = sides_of_words(*report::work_precision(study(), Against::same_mesh, Of::responses));
+  ASSERT_TRUE(side.count("Uzawa AL"));
+  EXPECT_NE(side.at("Uzawa AL"), "right");
 }
 
 TEST_F(ReportNumbers, WithoutFrictionHasNoMeasuresOfIt) {
@@ -453,8 +477,16 @@ TEST_F(ReportNumbers, ShowsFirstTheSceneWhereMostRunsConverged) {
   more[0]["status"] = "cycle";
   cells.insert(cells.end(), more.begin(), more.end());
   record(description(), cells);
-  EXPECT_EQ(study().main_variant, "/contacts/sole/friction = 0.1");
+  EXPECT_EQ(study().main_variant, "friction = 0.1");
   EXPECT_THAT(page(), HasSubstr("Which setting works where"));
+}
+
+TEST_F(ReportNumbers, NamesWhatVariesByAsMuchOfItsPlaceAsTellsItApart) {
+  auto cells = three_methods();
+  for (auto& c : cells)
+    c["vary"] = {{"/contacts/sole/friction", 0.1}, {"/contacts/heel/friction", 0.2}, {"/bodies/a/size/0", 3}};
+  record(description(), cells);
+  EXPECT_EQ(study().main_variant, "size/0 = 3, heel/friction = 0.2, sole/friction = 0.1");
 }
 
 TEST_F(ReportNumbers, JoinsMeshLevelsWhereThereAreSeveral) {
@@ -481,7 +513,7 @@ TEST_F(ReportNumbers, DrawsTractionsWithPressurePositiveAndTheClosedForm) {
   record(study_json, three_methods());
   const auto figure = report::tractions(study());
   ASSERT_TRUE(figure);
-  EXPECT_EQ(figure->series.front().name, "closed form (hertz line)");
+  EXPECT_EQ(figure->series.front().name, "closed form");
   for (const auto& row : figure->rows)
     if (row["panel"] == "pressure") {
       EXPECT_GE(row["value"], 0);
@@ -507,8 +539,8 @@ TEST_F(ReportNumbers, ShowsTheHistoryOfTheHardestStep) {
   const auto figure = report::convergence_histories(study());
   std::map<std::string, int> iterations;
   for (const auto& row : figure->rows) ++iterations[row["label"]];
-  EXPECT_EQ(iterations.at("penalty stiffness=1000"), 5);
-  EXPECT_EQ(iterations.at("penalty stiffness=1e5"), 3);
+  EXPECT_EQ(iterations.at("Penalty stiffness=1000"), 5);
+  EXPECT_EQ(iterations.at("Penalty stiffness=1e5"), 3);
 }
 
 }  // namespace

@@ -30,6 +30,15 @@ TEST(ReportPicture, StatesByHowMuchSmallDisplacementsAreEnlarged) {
   EXPECT_THAT(report::draw_picture(small)->text, HasSubstr("displacements 500 times enlarged"));
 }
 
+/// Enlarged, bodies that touch would part.
+TEST(ReportPicture, DrawsBodiesThatTouchOneAnotherAtTrueScale) {
+  json small = picture();
+  for (auto& u : small["displacement"]) u = {0, u[1].get<double>() / 1000};
+  EXPECT_THAT(report::draw_overview(small)->text, HasSubstr("times enlarged"));
+  small["obstacles"] = json::array();
+  EXPECT_THAT(report::draw_overview(small)->text, HasSubstr("true scale"));
+}
+
 TEST(ReportPicture, DrawsContactPointsAtTheirEnlargedPlaces) {
   json small = picture();
   for (auto& u : small["displacement"]) u = {0, 1e-4};

@@ -61,6 +61,13 @@ TEST_F(ReportOfARun, OfAFrictionlessSceneDoesNotSayThatItSlips) {
                           Not(HasSubstr(">slips<")), Not(HasSubstr("tangential traction q"))));
 }
 
+/// At the last step of this scene nothing touches.
+TEST_F(ReportOfARun, OfAFrictionlessSceneThatEndsOpenSpeaksOfNoSlipAndDrawsNoTractions) {
+  const std::string html = page_of("indentation");
+  EXPECT_THAT(html, AllOf(HasSubstr("id=\"derivative-histories\""), Not(HasSubstr("begins to slip")),
+                          Not(HasSubstr("tangential")), Not(HasSubstr("id=\"tractions\""))));
+}
+
 TEST_F(ReportOfARun, WithoutAPictureSaysHowToGetOne) {
   const std::string html = page_of("slider", false);
   EXPECT_THAT(html, AllOf(HasSubstr("run --report"), HasSubstr("id=\"response-histories\""), HasSubstr("mu")));

@@ -95,6 +95,14 @@ TEST_F(Report, CarriesEachTextOfAChartOnce) {
   }
 }
 
+/// Without scripts and on paper there are no controls.
+TEST_F(Report, SaysInWordsWhatAChartShowsFirst) {
+  auto cells = three_methods();
+  for (auto& c : cells) c["errors"]["enforcement"]["response:pull"] = 1e-15;
+  record(description(), cells);
+  EXPECT_THAT(page(), HasSubstr("<p class=\"chosen\">Quantity: worst response</p>"));
+}
+
 TEST_F(Report, EscapesHostileNames) {
   record(description(), three_methods(), picture());
   const auto count_scripts = [](const std::string& html) {
@@ -167,7 +175,7 @@ TEST_F(Report, KeepsFailedRunsAsRowsWithTheirStatus) {
   cells[4]["status"] = "cap";
   record(description(), cells, picture());
   const std::string html = without_scripts(page());
-  EXPECT_THAT(html, HasSubstr("<tr class=\"failed\"><td>penalty stiffness=1e9</td><td>not finite</td>"));
+  EXPECT_THAT(html, HasSubstr("<tr class=\"failed\"><td>Penalty stiffness=1e9</td><td>not finite</td>"));
   EXPECT_THAT(html, HasSubstr("step 2 of 10"));
   EXPECT_THAT(html, HasSubstr("2 of 7 runs did not converge (1 cap, 1 not_finite)"));
 
