@@ -63,6 +63,41 @@ std::vector<ContactState> step_branches(const ContactInput<T>& input, const Vect
   return branches;
 }
 
+/// What a point's state follows from, tractions.
+struct ContactTrial {
+  double pressure = 0, tangential = 0, bound = 0;
+  template <class T>
+  ContactState state(const ContactInput<T>& input, int p, const Vector<T>& compact) const {
+    const auto& point = input.model.points[p];
+    if (-pressure > value(input.rho[p].normal) * tie_at(input, p, compact)) return ContactState::open;
+    if (bound > 0 && tangential <= bound * (1 + tie_band)) return ContactState::stick;
+    return point.tangents > 0 ? input.slots.friction[point.contact].piece(pressure) : ContactState::slip;
+  }
+};
+
+/// That of a point after a step in a branch that solved for its traction: of a closed point the traction says its
+/// state, for its gap is what the curvature of surfaces left; of an open one its gap. (Where geometry is linear both
+/// say the same but for rounding.)
+template <class T>
+ContactTrial trial_after(const ContactInput<T>& input, int p, const Vector<T>& multiplier, ContactState branch,
+                         const ContactField<T>& field) {
+  const auto& point = input.model.points[p];
+  const auto& rho = input.rho[p];
+  ContactTrial trial;
+  trial.pressure = -value(multiplier[point.multiplier]);
+  if (branch == ContactState::open) trial.pressure -= value(rho.normal) * value(field.gap[p]);
+  double squares = 0;
+  for (int a = 0; a < point.tangents; ++a) {
+    double z = value(multiplier[point.multiplier + 1 + a]);
+    if (branch != ContactState::stick)
+      z += value(rho.tangential) * value(field.slip[tangential_offset(input.model, p) + a]);
+    squares += z * z;
+  }
+  trial.tangential = std::sqrt(squares);
+  if (point.tangents > 0) trial.bound = input.slots.friction[point.contact].bound(trial.pressure);
+  return trial;
+}
+
 /// Branches with all open points closed, and sticking where there is friction.
 template <class T>
 std::vector<ContactState> presume_contact(const ContactInput<T>& input, std::vector<ContactState> branches) {

@@ -20,7 +20,8 @@ struct Account {
   RunScales scales;
   Counters counters;
   Seconds seconds;
-  Trace* trace = nullptr;  ///< not owned; gathers every iterate where it is there
+  Trace* trace = nullptr;   ///< not owned; gathers every iterate where it is there
+  bool sequential = false;  ///< what found the last equilibrium that Newton's method alone did not (sequential.hpp)
 };
 
 /// Springs between the contact nodes and a place, which join the equilibrium with their forces.
@@ -39,6 +40,20 @@ struct Anchor {
 /// Whether lambda stays as it is given, or is solved for.
 enum class Multipliers { given, unknown };
 
+/// Given multipliers as tractions that are solved for, point by point: of a stiff point an iterate of the traction
+/// follows from the step, and not from the gap, which any curvature throws off by many tractions. With
+///
+///   t = P_mu(lambda + rho g~),   g~ = g - (lambda - given) / stiffness,   A (t - lambda) = 0
+///
+/// lambda = P_mu(given + stiffness g) at the solution, whatever rho is.
+template <class T>
+struct Compliance {
+  Vector<T> given;  ///< lambda that stays
+  Vector<T> share;  ///< rho over the stiffness of the method, each component; 1: no traction is solved for
+  /// What stands for lambda in the trial lambda + rho g~ without the gap.
+  Vector<T> seen(const Vector<T>& lambda) const { return lambda + share.cwiseProduct(given - lambda); }
+};
+
 /// One equilibrium that is to be found. It refers to what its caller holds.
 template <class T>
 struct EquilibriumTask {
@@ -52,7 +67,12 @@ struct EquilibriumTask {
   double forcing = 0;
   /// Displacement of the state that is left, all dofs; nullptr: what supports prescribe stays what it is.
   const Vector<T>* from = nullptr;
+  /// Of given multipliers whose tractions are solved for; nullptr: none are.
+  const Compliance<T>* compliance = nullptr;
+  /// Whether lambda is an unknown of the engine's systems.
   bool solves_for_multipliers() const { return multipliers == Multipliers::unknown; }
+  /// Whether an iterate has tractions that differ from those of its displacements.
+  bool has_multiplier_rows() const { return solves_for_multipliers() || compliance; }
 };
 
 /// Displacement in engine dofs, and lambda.

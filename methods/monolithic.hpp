@@ -10,6 +10,7 @@
 #pragma once
 
 #include "methods/increment.hpp"
+#include "methods/sequential.hpp"
 
 namespace stickslip {
 
@@ -33,7 +34,8 @@ Increment<T> solve_increment(const MonolithicAL& method, Run<T, E>& run, const S
   const EquilibriumTask<T> task{input, Multipliers::unknown,    start.anchor, start.resumed(previous),
                                 0,     &start.from.displacement};
   auto u = run.engine.begin(time, start.from.displacement, previous.history.bodies);
-  auto equilibrium = newton(run.engine, task, {std::move(u), start.from.contact.traction}, options, run.account);
+  auto equilibrium =
+      find_equilibrium<T>(run.engine, task, {std::move(u), start.from.contact.traction}, options, run.account);
   account_for(increment, equilibrium, 0);
   increment.state = settle(run, input, std::move(equilibrium.at), std::move(equilibrium.field));
   return increment;

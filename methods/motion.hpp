@@ -205,10 +205,11 @@ Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& prev
 
 }  // namespace detail
 
-/// Solves one increment from `previous`, to `time`; `factor`: adaption of rho so far.
+/// Solves one increment from `previous`, to `time`; `factor`: adaption of rho so far. `may_move`: whether the motion
+/// stands in where the method alone finds nothing.
 template <class M, class T, class E>
 Increment<T> find_increment(const M& method, Run<T, E>& run, const State<T>& previous,
-                            const std::vector<double>& factor, double time) {
+                            const std::vector<double>& factor, double time, bool may_move = true) {
   const RunScales before = run.account.scales;
   auto direct = solve_increment(method, run, previous, factor, time, Start<T>{previous, {}});
   const bool solved = direct.usable();
@@ -217,7 +218,7 @@ Increment<T> find_increment(const M& method, Run<T, E>& run, const State<T>& pre
       direct.status == Status::infeasible &&
       (!prevents_penetration(method) || !prescribed_penetration(run.model, run.slots, direct.state).empty());
   const bool final = prescribed || (solved && (!several || direct.cut_off));
-  if (final || run.model.points.empty() || !is_globalised(method)) return direct;
+  if (final || run.model.points.empty() || !is_globalised(method) || (!solved && !may_move)) return direct;
   if (!solved && unbalanced_body(run.model, run.slots, time) != balanced) {
     direct.status = Status::no_equilibrium;
     return direct;

@@ -12,7 +12,8 @@
 ///   methods/line_search.hpp       how far a step is gone along
 ///   methods/predictor.hpp         where it begins, of bodies that are not linear
 ///
-/// What solves the problems in which it cycles is methods/motion.hpp. [AC91], [HSW08]; theory: core/README.md.
+/// What solves the problems in which it cycles is methods/sequential.hpp, where bodies or geometry are not linear, and
+/// methods/motion.hpp. [AC91], [HSW08]; theory: core/README.md.
 #pragma once
 
 #include <optional>
@@ -129,14 +130,12 @@ Equilibrium<T> newton(E& engine, const EquilibriumTask<T>& task, Unknowns<T> unk
     {
       const Stopwatch time(account.seconds.backsolve);
       if (branches != evaluated) evaluate.take_rows_in(branches, unknowns, at);
-      step = engine.solve({-at.rows_u, task.solves_for_multipliers() ? Matrix<T>(-at.rows_l) : Matrix<T>()});
-      account.counters.backsolves += engine.solves();
+      step = tangent.step(at.rows_u, at.rows_l);
     }
     if (!step.u.allFinite() || !step.l.allFinite())
       return finish({Status::singular, "the tangent is singular: its solution is not finite"});
     ++account.counters.newton;
     const Stopwatch time(account.seconds.assembly);
-    detail::multiply_by_rho(input, step.l);
     step_length = search_line(evaluate, step, used, options, unknowns, at);
   }
 }

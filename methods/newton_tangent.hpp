@@ -1,6 +1,8 @@
 /// The tangent of a Newton step: assembled in given branches, then factorised, or taken as an update of the last
-/// factor.
+/// factor; and the step.
 #pragma once
+
+#include <Eigen/LU>
 
 #include "core/model/shared_forces.hpp"
 #include "methods/assumed_branches.hpp"
@@ -28,6 +30,78 @@ void yield_decided(const ContactInput<T>& input, const std::vector<char>& decide
   }
 }
 
+/// Calls f(index in the tangent's columns, index in compact displacements). pre: the tangent is of present geometry.
+template <class T, class F>
+void for_each_column(const Model& model, std::size_t p, const PointTangent<T>& tangent, F&& f) {
+  const int D = model.dimension;
+  const auto& places = tangent.places;
+  for (int n = 0; n < std::max(1, static_cast<int>(places.size())); ++n)
+    for (int i = 0; i < D; ++i) f(n * D + i, (places.empty() ? model.points[p].places[0] : places[n]) * D + i);
+}
+
+/// Turns l, the multipliers over rho that systems are solved for, into multipliers.
+template <class T>
+void multiply_by_rho(const ContactInput<T>& input, Matrix<T>& l) {
+  for (std::size_t p = 0; l.size() > 0 && p < input.model.points.size(); ++p)
+    for (int c = 0; c < input.model.points[p].components(); ++c)
+      l(input.model.points[p].multiplier + c, 0) *= c == 0 ? input.rho[p].normal : input.rho[p].tangential;
+}
+
+/// Of tractions that are solved for point by point (Compliance): a point's own unknowns, eliminated.
+template <class T>
+class OwnTractions {
+ public:
+  /// `tangents`: in lambda as contact points see it; they become those in the displacements alone.
+  void eliminate(const EquilibriumTask<T>& task, std::vector<PointTangent<T>>& tangents) {
+    points_.clear();
+    for (std::size_t p = 0; p < tangents.size(); ++p) {
+      auto& tangent = tangents[p];
+      const auto& rho = task.contact.rho[p];
+      const T area = task.contact.slots.geometry[p].area;
+      for (Eigen::Index c = 0; c < tangent.row_l.cols(); ++c) {
+        const T share = task.compliance->share[task.contact.model.points[p].multiplier + c];
+        const T own = area * (c == 0 ? rho.normal : rho.tangential);
+        tangent.row_l(c, c) += own;
+        tangent.row_l.col(c) *= T(1) - share;
+        tangent.force_l.col(c) *= T(1) - share;
+        tangent.row_l(c, c) -= own;
+      }
+      points_.push_back(tangent);
+      const Matrix<T> inverse = tangent.row_l.inverse();
+      points_.back().row_w = inverse * tangent.row_w;
+      points_.back().row_l = inverse;
+      tangent.force_w -= tangent.force_l * points_.back().row_w;
+    }
+  }
+  /// What the points' rows add to those of the displacements (compact).
+  Vector<T> carried(const Model& model, const Vector<T>& rows_l) const {
+    Vector<T> rows = Vector<T>::Constant(static_cast<Eigen::Index>(model.contact_nodes.size()) * model.dimension, T(0));
+    for (std::size_t p = 0; p < points_.size(); ++p) {
+      const auto& point = points_[p];
+      const Vector<T> force =
+          point.force_l * (point.row_l * rows_l.segment(model.points[p].multiplier, point.row_l.rows()));
+      for_each_column(model, p, point, [&](int own, int row) { rows[row] -= force[own]; });
+    }
+    return rows;
+  }
+  /// The points' unknowns after a step of the displacements (compact).
+  Matrix<T> recover(const Model& model, const Vector<T>& rows_l, const Vector<T>& motion) const {
+    Matrix<T> l(model.multiplier_count, 1);
+    for (std::size_t p = 0; p < points_.size(); ++p) {
+      const auto& point = points_[p];
+      Vector<T> w(point.row_w.cols());
+      for_each_column(model, p, point, [&](int own, int row) { w[own] = motion[row]; });
+      const auto C = point.row_l.rows();
+      l.block(model.points[p].multiplier, 0, C, 1) =
+          -(point.row_l * rows_l.segment(model.points[p].multiplier, C) + point.row_w * w);
+    }
+    return l;
+  }
+
+ private:
+  std::vector<PointTangent<T>> points_;  ///< row_w, row_l: multiplied by the inverse of row_l, and that inverse
+};
+
 }  // namespace detail
 
 template <class T, class E>
@@ -47,6 +121,11 @@ class NewtonTangent {
       const Vector<T> moved = engine_.all(unknowns.u);
       engine_.linearise({moved, task_.contact.previous.bodies, task_.contact.time});
     }
+    face(field);
+  }
+  /// The same of the contact points alone.
+  void face(const ContactField<T>& field) {
+    const auto& [model, slots] = std::tie(task_.contact.model, task_.contact.slots);
     facing_ = field.facing;
     if (model.effects.current_geometry && task_.solves_for_multipliers())
       decided_ = decided_elsewhere(model, slots, &field);
@@ -56,13 +135,17 @@ class NewtonTangent {
   /// body that nothing holds but the contact it is about to make, they are presumed closed, in `branches` too: those
   /// that should not be are in tension then, and open. False where the tangent stays singular.
   bool factorise(const Unknowns<T>& unknowns, std::vector<ContactState>& branches);
+  /// The same in these branches alone.
+  bool factorise_in(const std::vector<ContactState>& branches, const Unknowns<T>& unknowns);
+  /// The step that takes rows of residuals to zero: the motion, and that of lambda where it has rows. Not finite where
+  /// the tangent is singular after all.
+  BlockVector<T> step(const Vector<T>& rows_u, const Vector<T>& rows_l);
   /// Of the points, as they were factorised last.
   const std::vector<PointTangent<T>>& tangents() const { return tangents_; }
   /// Constraints repeat one another: they share the force.
   bool redundant() const { return redundant_; }
 
  private:
-  bool factorise_in(const std::vector<ContactState>& branches, const Unknowns<T>& unknowns);
   std::vector<PointTangent<T>> point_tangents(const std::vector<ContactState>& branches, const Unknowns<T>& unknowns);
 
   E& engine_;
@@ -71,6 +154,7 @@ class NewtonTangent {
   std::vector<char> decided_;
   std::vector<Facing> facing_;  ///< of the place
   std::vector<PointTangent<T>> tangents_;
+  detail::OwnTractions<T> own_;  ///< where tractions are solved for point by point
   bool redundant_ = false;
   int presumptions_ = 3;  ///< left
 };
@@ -91,9 +175,30 @@ std::vector<PointTangent<T>> NewtonTangent<T, E>::point_tangents(const std::vect
   const auto& input = task_.contact;
   std::vector<PointTangent<T>> tangents;
   const Vector<T> compact = engine_.compact(unknowns.u);
+  const Vector<T> seen = task_.compliance ? task_.compliance->seen(unknowns.multiplier) : Vector<T>();
   for (int p = 0; p < static_cast<int>(input.model.points.size()); ++p)
-    tangents.push_back(point_tangent<T>(input, p, compact, unknowns.multiplier, branches[p], facing_));
+    tangents.push_back(
+        point_tangent<T>(input, p, compact, task_.compliance ? seen : unknowns.multiplier, branches[p], facing_));
+  if (task_.compliance) own_.eliminate(task_, tangents);
   return tangents;
+}
+
+template <class T, class E>
+BlockVector<T> NewtonTangent<T, E>::step(const Vector<T>& rows_u, const Vector<T>& rows_l) {
+  BlockVector<T> step;
+  if (task_.compliance) {
+    const Model& model = task_.contact.model;
+    Vector<T> rows = rows_u;
+    add_compact(model, into_frames(model, task_.contact.slots.frames, Layout::compact, own_.carried(model, rows_l)),
+                rows);
+    step = engine_.solve({-rows, Matrix<T>()});
+    step.l = own_.recover(model, rows_l, engine_.compact(step.u.col(0)));
+  } else {
+    step = engine_.solve({-rows_u, task_.solves_for_multipliers() ? Matrix<T>(-rows_l) : Matrix<T>()});
+  }
+  account_.counters.backsolves += engine_.solves();
+  detail::multiply_by_rho(task_.contact, step.l);
+  return step;
 }
 
 template <class T, class E>

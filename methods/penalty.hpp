@@ -10,7 +10,7 @@
 #pragma once
 
 #include "methods/increment.hpp"
-#include "methods/softened.hpp"
+#include "methods/sequential.hpp"
 
 namespace stickslip {
 
@@ -127,7 +127,7 @@ Increment<T> solve_increment(const Penalty& method, Run<T, E>& run, const State<
                                 0,     &start.from.displacement};
   auto u = run.engine.begin(time, start.from.displacement, previous.history.bodies);
   const auto equilibrium =
-      newton_softened<T>(run.engine, task, {std::move(u), stored_traction(run.model, previous)}, options, run.account);
+      find_equilibrium<T>(run.engine, task, {std::move(u), stored_traction(run.model, previous)}, options, run.account);
   account_for(increment, equilibrium, 0);
   increment.state = settle(run, input, equilibrium.at, equilibrium.field);
   if (!is_converged(equilibrium.status) || start.is_step()) return increment;

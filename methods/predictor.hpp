@@ -47,14 +47,6 @@ void follow_obstacles(const ContactInput<T>& input, std::span<const ContactState
     if (last[p] != ContactState::open && moves(input.model, input.model.points[p])) branches[p] = last[p];
 }
 
-/// Turns l, the multipliers over rho that the engine solves for, into multipliers.
-template <class T>
-void multiply_by_rho(const ContactInput<T>& input, Matrix<T>& l) {
-  for (std::size_t p = 0; l.size() > 0 && p < input.model.points.size(); ++p)
-    for (int c = 0; c < input.model.points[p].components(); ++c)
-      l(input.model.points[p].multiplier + c, 0) *= c == 0 ? input.rho[p].normal : input.rho[p].tangential;
-}
-
 }  // namespace detail
 
 /// Moves the unknowns of an equilibrium there; false, and nothing is changed, where nothing moves or the place is out
@@ -86,10 +78,8 @@ bool predict(E& engine, const EquilibriumTask<T>& task, Evaluator<T, E>& evaluat
   rows = at.rows_u + into_frames(model, slots.frames, Layout::all, std::move(rows));
   for (Eigen::Index row = 0; row < rows.size(); ++row)
     if (!engine.is_free(row)) rows[row] = T(0);
-  auto step = engine.solve({-rows, task.solves_for_multipliers() ? Matrix<T>(-at.rows_l) : Matrix<T>()});
-  account.counters.backsolves += engine.solves();
+  const auto step = tangent.step(rows, at.rows_l);
   ++account.counters.newton;
-  detail::multiply_by_rho(task.contact, step.l);
   Unknowns<T> moved{unknowns.u + step.u.col(0), unknowns.multiplier};
   if (step.l.size() > 0) moved.multiplier += step.l.col(0);
   if (!moved.u.allFinite() || !evaluate(moved).residuals.finite()) return false;

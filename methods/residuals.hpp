@@ -181,6 +181,11 @@ class Evaluator {
     for (int node : model.contact_nodes) placed = std::max(placed, values(slots.points.col(node)).norm());
     return {moved, moved + placed, prescribed_};
   }
+  ContactField<T> field_at(const ContactInput<T>& input, const Vector<T>& compact, const Vector<T>& multiplier,
+                           const std::vector<ContactState>* branches) const {
+    if (task_.compliance) return evaluate_contact<T>(input, compact, task_.compliance->seen(multiplier), branches);
+    return evaluate_contact<T>(input, compact, multiplier, branches);
+  }
   Vector<T> contact_field_forces(const Vector<T>& compact, const ContactField<T>& field) const;
   void count() { account_.counters.contact_evaluations += static_cast<long>(task_.contact.model.points.size()); }
 
@@ -267,7 +272,7 @@ detail::Evaluation<T> Evaluator<T, E>::operator()(const Unknowns<T>& unknowns) {
     facing = detail::facings(input, compact, kept_);
     input.facing = &facing;
   }
-  at.field = evaluate_contact<T>(input, compact, unknowns.multiplier, nullptr);
+  at.field = field_at(input, compact, unknowns.multiplier, nullptr);
   count();
   ForceScale force{at.scales.force, 0};
   at.rows_u = engine_.residual(unknowns.u, contact_field_forces(compact, at.field), force);
@@ -278,7 +283,7 @@ detail::Evaluation<T> Evaluator<T, E>::operator()(const Unknowns<T>& unknowns) {
     if (!engine_.is_free(row)) at.rows_u[row] = T(0);
   at.residuals.equilibrium = detail::ratio(largest_nodal_norm(at.rows_u, model.dimension), at.scales.force);
   detail::set_floors(sizes, at.scales, force.rounding, reach, at.residuals);
-  if (!task_.solves_for_multipliers()) return at;
+  if (!task_.has_multiplier_rows()) return at;
   at.rows_l = multiplier_residual(model, input.slots, at.field.traction, unknowns.multiplier);
   detail::measure_multipliers(input, unknowns.multiplier, sizes, reach.moved, at);
   return at;
@@ -290,11 +295,11 @@ void Evaluator<T, E>::take_rows_in(const std::vector<ContactState>& branches, co
   ContactInput<T> input = task_.contact;
   input.facing = &at.field.facing;
   const Vector<T> compact = engine_.compact(unknowns.u);
-  const auto field = evaluate_contact<T>(input, compact, unknowns.multiplier, &branches);
+  const auto field = field_at(input, compact, unknowns.multiplier, &branches);
   count();
   ForceScale unused;
   at.rows_u = engine_.residual(unknowns.u, contact_field_forces(compact, field), unused);
-  if (task_.solves_for_multipliers())
+  if (task_.has_multiplier_rows())
     at.rows_l = multiplier_residual(input.model, input.slots, field.traction, unknowns.multiplier);
 }
 

@@ -48,13 +48,17 @@ std::optional<double> find_jump(const M& method, Run<T, E>& run, const State<T>&
     auto half = find_increment(method, run, before, factor, middle);
     solved = half.usable();
     if (!solved) break;
+    const bool near = moved(before, half.state) < much * moved(before, after);
     auto rest = find_increment(method, run, half.state, factor, end);
-    solved = rest.usable();
+    solved = rest.usable() || near;  // (what still stands near the start jumps later, found or not)
     if (!solved) break;
-    const bool first = moved(before, half.state) >= moved(half.state, rest.state);
+    const bool first = rest.usable() && moved(before, half.state) >= moved(half.state, rest.state);
     (first ? end : start) = middle;
-    after = first ? half.state : std::move(rest.state);
-    if (!first) before = std::move(half.state);
+    if (first)
+      after = std::move(half.state);
+    else
+      before = std::move(half.state);
+    if (!first && rest.usable()) after = std::move(rest.state);
   }
   run.account.scales = scales;
   run.account.trace = trace;
@@ -85,6 +89,8 @@ bool is_sudden(const Model& model, const std::vector<Increment<T>>& increments, 
 template <class T, class E, class M>
 bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double target, bool may_cut) {
   constexpr double smallest = 1.0 / 1024, regrowth = 1.5;
+  constexpr double patient =
+      0.2;  // of the step: bodies that are not linear take less of it before they take the motion
   const std::size_t start_count = trajectory.increments.size();
   const double start = start_count ? trajectory.increments.back().time : 0;
   double reached = start, step = target - start;
@@ -96,7 +102,8 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
     const auto& increments = trajectory.increments;
     const State<T>& previous = increments.empty() ? trajectory.initial : increments.back().state;
     const auto factor = increments.empty() ? std::vector<double>{} : increments.back().rho_factor;
-    auto increment = find_increment(method, run, previous, factor, next);
+    const bool may_move = run.model.effects.linear_bulk || !may_cut || step < patient * (target - start);
+    auto increment = find_increment(method, run, previous, factor, next, may_move);
     increment.time = next;
     increment.requested = last;
     increment.cutbacks = cutbacks;

@@ -21,7 +21,7 @@
 #pragma once
 
 #include "methods/augmentation.hpp"
-#include "methods/softened.hpp"
+#include "methods/sequential.hpp"
 
 namespace stickslip {
 
@@ -191,7 +191,7 @@ class AugmentationLoop {
     const EquilibriumTask<T> task{input,    Multipliers::given,   start_.anchor,
                                   resumed_, rough_ ? forcing : 0, first ? &start_.from.displacement : nullptr};
     auto equilibrium =
-        newton_softened(run_.engine, task, unknowns_, inner_options(method_, progress_.contraction()), run_.account);
+        find_equilibrium(run_.engine, task, unknowns_, inner_options(method_, progress_.contraction()), run_.account);
     account_for(increment_, equilibrium, ++increment_.augmentations);
     ++run_.account.counters.augmentations;
     if (equilibrium.status == Status::cycle && !is_globalised(method_)) increment_.message += frozen_advice;

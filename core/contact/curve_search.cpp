@@ -9,6 +9,11 @@
 namespace stickslip {
 namespace {
 
+/// How far past the free end of a curve a point still faces it, of the length of the last patch. Two sides that end
+/// together do so only as well as their overlap lets them: of two blocks pressed to 0.7 of their height, the stiffness
+/// of a penalty, or the first augmentation, moves the last node off its master and back for ever. Here it may.
+constexpr double past_end_of_curve = 0.01;
+
 auto place_in(const Eigen::Matrix2Xd& places) {
   return [&places](int vertex) -> Vec<double, 2> { return places.col(vertex); };
 }
@@ -103,7 +108,7 @@ Vec<double, 2> CurveSearch::tangent_at_end(int patch, int end) const {
 Facing CurveSearch::at_end(Facing at, const Vec<double, 2>& x) const {
   const Patch& patch = patches_[at.patch];
   const int end = at.xi > 1 ? 1 : 0, other = end == 1 ? patch.next : patch.previous;
-  if (other == Patch::none) return (end == 1 ? at.xi - 1 : -at.xi) > past_free_end ? Facing{} : at;
+  if (other == Patch::none) return (end == 1 ? at.xi - 1 : -at.xi) > past_end_of_curve ? Facing{} : at;
   const Vec<double, 2> along = tangent_at_end(at.patch, end) + tangent_at_end(other, 1 - end);
   const double side = (x - vertex(at.patch, end)).dot(along);
   if (end == 1 ? side <= 0 : side >= 0) return at;

@@ -20,6 +20,8 @@ class CondensedEngine {
   bool is_free(Eigen::Index row) const { return free_[row]; }
   /// `hold`: stiffness against motion of each contact node, the same in all directions, force per length; empty: none.
   void linearise(const BodyMotion<T>&) {}  ///< (the bodies' tangent is constant)
+  void hold_bodies(const BodyMotion<T>&, const Vector<T>&) {}
+  void release_bodies() {}
   bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
   /// In place of factorise() where few points changed since (model/tangent_update.hpp); until the next factorise() all
   /// solves are with these tangents. False, and nothing changed, where it does not pay or can't be.

@@ -133,6 +133,28 @@ void SparseEngine<T>::linearise(const BodyMotion<T>& at) {
 }
 
 template <class T>
+Vector<T> SparseEngine<T>::body_rows(const Vector<T>& moved) const {
+  return into_frames(model_, slots_.frames, Layout::all,
+                     bulk_forces(model_, slots_, moved, bulk_flow(model_, slots_, moved, before_)));
+}
+
+template <class T>
+void SparseEngine<T>::hold_bodies(const BodyMotion<T>& at, const Vector<T>& u) {
+  if (model_.effects.linear_bulk) return;
+  linearise(at);
+  HeldBodies held{into_frames(model_, slots_.frames, Layout::all, at.displacement), body_rows(at.displacement)};
+  if (!model_.followers.empty())
+    held.rows -=
+        into_frames(model_, slots_.frames, Layout::all, follower_forces(model_, slots_, time_, at.displacement));
+  Vector<T> prescribed = u - held.u;
+  for (int dof : model_.free_dofs) prescribed[dof] = T(0);
+  if (values(prescribed).cwiseAbs().maxCoeff() > 0)
+    held.rows +=
+        into_frames(model_, slots_.frames, Layout::all, tangent_times(model_, slots_, at, all(prescribed), false));
+  held_bodies_ = std::move(held);
+}
+
+template <class T>
 Vector<T> SparseEngine<T>::begin(double time, const Vector<T>& displacement, const Vector<T>& before) {
   before_ = before;
   time_ = time;
@@ -145,14 +167,17 @@ Vector<T> SparseEngine<T>::begin(double time, const Vector<T>& displacement, con
 template <class T>
 Vector<T> SparseEngine<T>::residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const {
   const Vector<T> moved = all(u);
-  Vector<T> rows = into_frames(model_, slots_.frames, Layout::all,
-                               bulk_forces(model_, slots_, moved, bulk_flow(model_, slots_, moved, before_)));
+  Vector<T> rows;
+  if (held_bodies_)
+    rows = held_bodies_->rows + apply_stiffness(u - held_bodies_->u).col(0);
+  else
+    rows = body_rows(moved);
   const int D = model_.dimension;
   scale.force = std::max(
       {scale.force, largest_nodal_norm(rows, D), largest_nodal_norm(external_, D), largest_nodal_norm(contact, D)});
   scale.rounding = unit_roundoff * stiffness_ * largest_nodal_norm(u, D);
   rows -= external_;
-  if (!model_.followers.empty()) {
+  if (!model_.followers.empty() && !held_bodies_) {
     const Vector<T> follower =
         into_frames(model_, slots_.frames, Layout::all, follower_forces(model_, slots_, time_, moved));
     scale.force = std::max(scale.force, largest_nodal_norm(follower, D));

@@ -32,6 +32,10 @@ class SparseEngine {
   bool is_free(Eigen::Index row) const { return model_.free_index[row] >= 0; }
   /// Takes the bodies' tangent at a motion, for all that follows. pre: it depends on that.
   void linearise(const BodyMotion<T>& at);
+  /// Takes the bodies for linear, in residuals too, until release_bodies(): as linearise(at), with the forces at that
+  /// motion. `u`: engine displacement that has the prescribed values. (Where their tangent is constant they are so.)
+  void hold_bodies(const BodyMotion<T>& at, const Vector<T>& u);
+  void release_bodies() { held_bodies_.reset(); }
   /// `hold`: stiffness against motion of each contact node, the same in all directions, force per length; empty: none.
   bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
   /// In place of factorise() where few points changed since (model/tangent_update.hpp); until the next factorise() all
@@ -86,6 +90,13 @@ class SparseEngine {
     double time;
   };
   std::optional<Linearised> linearised_;
+  /// Bodies that are linear for a while: their forces, less the loads that follow them, at a displacement of the free
+  /// dofs.
+  struct HeldBodies {
+    Vector<T> u, rows;
+  };
+  std::optional<HeldBodies> held_bodies_;
+  Vector<T> body_rows(const Vector<T>& moved) const;
   void assemble(const RowLists& lists, const BodyMotion<T>* at);
   std::vector<std::vector<int>> point_map_;  ///< per point: entry of each (row, column) pair of its rows, -1 if fixed
   std::vector<T> bulk_, values_;

@@ -20,7 +20,7 @@ the other one. That is an error, as is any step for which none is found.
 
 Curves: straight facets, a point belonging to the facet on its side of the bisectors through the facet's ends, beyond
 which the facet's line goes on; Catmull-Rom; uniform cubic B-spline. A ghost node 2 y1 - y2 stands beyond a free end.
-A point more than 1e-6 of a facet past a free end has no contact.
+A point more than a hundredth of a facet past a free end has no contact.
 
 `press_fit` solves two concentric rings with an interference as a boundary value problem along the radius.
 """
@@ -31,7 +31,7 @@ import scipy.linalg
 
 from contact_reference import STEP, Body, at_pointer, perturbed, plain, table_at, time_grid, weights_of
 
-PAST_THE_END = 1e-6
+PAST_THE_END = 0.01
 
 
 # --- bodies ----------------------------------------------------------------------------------------------------------

@@ -1,0 +1,314 @@
+/// Equilibria of bodies that are not linear, as a sequence of contact problems of linear ones.
+///
+/// Newton's method alone changes the bodies' tangent and the branches of the points at once. While the branches are
+/// wrong the bodies are far from where they will be (metal that a die presses flat for one iterate flows all through),
+/// and their tangent there tells nothing. Where it does not end soon, bodies and points take turns:
+///
+///   1. The bodies are linear about the last iterate u_k, with the forces and the tangent that they have there.
+///   2. The branches of their contact problem are found by pivoting; its solution is u_{k+1}.
+///   3. Once the branches stay what they are, each such step is one of Newton's.
+///
+/// Beside that two things keep curved surfaces from misleading it. The branch of a closed point follows from its
+/// traction alone, for its gap is what the curvature left. And where multipliers are given, the tractions of points are
+/// solved for one by one (Compliance): a step that slides by s over a radius R changes the gap by s^2/2R, which a stiff
+/// point would answer with many times its traction. The last solve is Newton's method on the task as it was given.
+///
+/// Pivoting: J. J. Judice, F. M. Pires, Comput. Oper. Res. 21 (1994) 587-596. Tractions as unknowns of the iteration
+/// alone: D. Magisano, L. Leonetti, G. Garcea, Comput. Methods Appl. Mech. Engrg. 313 (2017) 829-850.
+#pragma once
+
+#include <set>
+
+#include "methods/newton.hpp"
+
+namespace stickslip {
+
+namespace detail {
+
+/// Which points change their branches at once: all that should, while their number falls. Where it has not fallen for
+/// three steps, those alone that are the furthest from where they belong; and once that repeats, the last of them
+/// alone, which ends for every P-matrix (Murty's rule) but hangs on the order of the points.
+class Pivoting {
+ public:
+  /// The branches to go on with, where those of the solution in `taken` are `wanted`. `by`: how far each point is off.
+  std::vector<ContactState> advance(const std::vector<ContactState>& taken, const std::vector<ContactState>& wanted,
+                                    const std::vector<double>& by) {
+    constexpr double as_far = 1 - 1e-6;  // what is symmetric changes together
+    int wrong = 0;
+    std::size_t last = 0;
+    double furthest = 0;
+    for (std::size_t p = 0; p < taken.size(); ++p)
+      if (taken[p] != wanted[p]) {
+        ++wrong;
+        last = p;
+        furthest = std::max(furthest, by[p]);
+      }
+    left_ = wrong < fewest_ ? patience : left_ - 1;
+    fewest_ = std::min(fewest_, wrong);
+    if (!is_careful()) return wanted;
+    std::vector<ContactState> next = taken;
+    for (std::size_t p = 0; p < taken.size(); ++p)
+      if (taken[p] != wanted[p] && (one_by_one_ ? p == last : by[p] >= as_far * furthest)) next[p] = wanted[p];
+    if (met_.insert(next).second) return next;
+    repeats_ = one_by_one_;
+    one_by_one_ = true;
+    met_.clear();
+    return next;
+  }
+  /// Whether not all points change that should.
+  bool is_careful() const { return left_ < 0; }
+  /// Whether nothing ends it.
+  bool repeats() const { return repeats_; }
+
+ private:
+  static constexpr int patience = 3;
+  int fewest_ = std::numeric_limits<int>::max(), left_ = patience;
+  bool one_by_one_ = false, repeats_ = false;
+  std::set<std::vector<ContactState>> met_;
+};
+
+/// The steps of one equilibrium.
+template <class T, class E>
+class Sequence {
+ public:
+  Sequence(E& engine, const EquilibriumTask<T>& task, Unknowns<T> start, const NewtonOptions& options, Account& account)
+      : engine_(engine),
+        task_(task),
+        options_(options),
+        account_(account),
+        evaluate_(engine, task, account),
+        tangent_(engine, task, account),
+        unknowns_(std::move(start)) {}
+
+  /// Whether the equilibrium is found, but for what the tolerance of a task that gives multipliers asks for.
+  bool find() {
+    constexpr int most_unsettled = 8;
+    const int most = std::min(40, options_.max_iterations);
+    Vector<T> about = unknowns_.u;
+    if (task_.from) about = into_frames(task_.contact.model, task_.contact.slots.frames, Layout::all, *task_.from);
+    const auto closed = [](ContactState s) { return s != ContactState::open; };
+    if (std::any_of(task_.resumed.begin(), task_.resumed.end(), closed))
+      branches_.assign(task_.resumed.begin(), task_.resumed.end());
+    for (int step = 0; step < most; ++step) {
+      const auto before = branches_;
+      if (!solve_linear(about) || unsettled_ > most_unsettled) return false;
+      auto at = evaluate_(unknowns_);
+      for (int halvings = 0; !at.residuals.finite() && halvings < 6; ++halvings) {
+        unknowns_.u -= T(0.5) * (unknowns_.u - about);
+        for (int dof = 0; dof < static_cast<int>(unknowns_.u.size()); ++dof)
+          if (!engine_.is_free(dof)) unknowns_.u[dof] = prescribed_[dof];
+        at = evaluate_(unknowns_);
+      }
+      history_.push_back(record(at, {}, before == branches_ ? 0 : 1, 1));
+      if (!at.residuals.finite()) return false;
+      const double residual = at.residuals.largest();
+      const bool falls = history_.size() < 2 || 2 * residual < history_[history_.size() - 2].residual;
+      const bool near = at.residuals.within(std::sqrt(options_.tolerance));
+      const bool solved = at.residuals.within_rounding(options_.tolerance);
+      if (before == branches_ && (solved || (near && !falls))) return true;
+      about = unknowns_.u;
+    }
+    return false;
+  }
+  Unknowns<T>& unknowns() { return unknowns_; }
+  std::vector<IterationRecord>& history() { return history_; }
+  int iterations() const { return iterations_; }
+
+ private:
+  /// Solves the contact problem of bodies that are linear about a displacement; `branches_`, where there are any, come
+  /// first. False where it has no solution.
+  bool solve_linear(const Vector<T>& about) {
+    const Vector<T> moved = engine_.all(about);
+    {
+      const Stopwatch time(account_.seconds.assembly);
+      engine_.hold_bodies({moved, task_.contact.previous.bodies, task_.contact.time}, unknowns_.u);
+    }
+    prescribed_ = unknowns_.u;
+    const bool solved = pivot();
+    engine_.release_bodies();
+    return solved;
+  }
+
+  /// False where no branches give a tangent that is regular. Where they repeat, none are right (friction may have no
+  /// solution, or several): the next problem begins with the last.
+  bool pivot() {
+    constexpr int most = 100;
+    Pivoting pivoting;
+    ContactField<T> directed;
+    auto at = evaluate_(unknowns_);
+    auto wanted = branches_.empty() ? branches_in(at.field, unknowns_, directed) : branches_;
+    auto branches = wanted;
+    for (int i = 0; i < most; ++i) {
+      tangent_.face(at.field);
+      if (!pivoting.is_careful() || !tangent_.factorise_in(branches, unknowns_)) {
+        branches = wanted;  // (what changed alone may have held a body)
+        if (!tangent_.factorise(unknowns_, branches)) return false;
+      }
+      if (branches != at.field.state) evaluate_.take_rows_in(branches, unknowns_, at);
+      const auto step = tangent_.step(at.rows_u, at.rows_l);
+      if (!step.u.allFinite() || !step.l.allFinite()) return false;
+      ++account_.counters.newton;
+      ++iterations_;
+      directed = at.field;
+      directed.state = branches;
+      const auto faced = at.field.facing;
+      const double length = search_line(evaluate_, step, branches, options_, unknowns_, at);
+      branches_ = branches;
+      wanted = branches_in(at.field, unknowns_, directed);
+      bool crossed = false;  // a closed point came to another patch
+      for (std::size_t p = 0; p < faced.size(); ++p)
+        crossed |= branches[p] != ContactState::open && faced[p].patch != at.field.facing[p].patch;
+      if (wanted == branches && !crossed && length == 1) return true;
+      branches = pivoting.advance(branches_, wanted, distances_to(wanted, at.field));
+      if (pivoting.repeats()) break;
+    }
+    ++unsettled_;
+    return true;
+  }
+
+  /// The branches of the points at an iterate that comes of a step in those of `directed`.
+  std::vector<ContactState> branches_in(ContactField<T> field, const Unknowns<T>& at, const ContactField<T>& directed) {
+    const Vector<T> compact = engine_.compact(at.u);
+    if (!directed.state.empty() && task_.has_multiplier_rows())
+      for (std::size_t p = 0; p < field.state.size(); ++p) {
+        const auto trial = trial_after(task_.contact, static_cast<int>(p), at.multiplier, directed.state[p], field);
+        field.state[p] = trial.state(task_.contact, static_cast<int>(p), compact);
+      }
+    return step_branches(task_.contact, compact, field, at.multiplier, directed);
+  }
+
+  /// How far points are from where `wanted` begins, of those that are not in `branches_` there: tractions.
+  std::vector<double> distances_to(const std::vector<ContactState>& wanted, const ContactField<T>& field) {
+    std::vector<double> distances;
+    for (std::size_t p = 0; p < wanted.size(); ++p) {
+      const auto from = task_.has_multiplier_rows() ? branches_[p] : ContactState::open;  // (gaps count)
+      const auto trial = trial_after(task_.contact, static_cast<int>(p), unknowns_.multiplier, from, field);
+      const bool opens = branches_[p] == ContactState::open || wanted[p] == ContactState::open;
+      distances.push_back(std::abs(opens ? trial.pressure : trial.tangential - trial.bound));
+    }
+    return distances;
+  }
+
+  E& engine_;
+  const EquilibriumTask<T>& task_;
+  const NewtonOptions& options_;
+  Account& account_;
+  Evaluator<T, E> evaluate_;
+  NewtonTangent<T, E> tangent_;
+  Unknowns<T> unknowns_;
+  Vector<T> prescribed_;                ///< displacement that has what supports prescribe
+  std::vector<ContactState> branches_;  ///< of the last linear problem; empty: not known yet
+  std::vector<IterationRecord> history_;
+  int iterations_ = 0, unsettled_ = 0;  ///< in all; linear problems whose branches repeated
+};
+
+/// rho no larger than the local stiffness of the bodies, so that one point weighs as much as another.
+template <class T>
+RegularisationField<T> softened(const ContactInput<T>& input) {
+  RegularisationField<T> rho = input.rho;
+  for (std::size_t p = 0; p < rho.size(); ++p) {
+    const T local = input.slots.stiffness[p] / input.slots.geometry[p].area;
+    for (T* each : {&rho[p].normal, &rho[p].tangential})
+      if (value(local) < value(*each)) *each = local;
+  }
+  return rho;
+}
+
+/// Tractions that are solved for with a rho of their own.
+template <class T>
+Compliance<T> compliance_of(const ContactInput<T>& input, const Vector<T>& given, const RegularisationField<T>& rho) {
+  Compliance<T> compliance{given, Vector<T>(given.size())};
+  for (std::size_t p = 0; p < rho.size(); ++p) {
+    const auto& point = input.model.points[p];
+    compliance.share[point.multiplier] = rho[p].normal / input.rho[p].normal;
+    for (int a = 0; a < point.tangents; ++a)
+      compliance.share[point.multiplier + 1 + a] = rho[p].tangential / input.rho[p].tangential;
+  }
+  return compliance;
+}
+
+/// Adds what was tried before to an equilibrium.
+template <class T>
+void add_before(std::vector<IterationRecord> history, int iterations, Equilibrium<T>& equilibrium) {
+  equilibrium.history.insert(equilibrium.history.begin(), history.begin(), history.end());
+  equilibrium.iterations += iterations;
+}
+
+/// The equilibrium by a sequence of linear problems, and then by Newton's method from there; nothing where the sequence
+/// finds none. `spent`: iterations, also then.
+template <class T, class E>
+std::optional<Equilibrium<T>> solve_in_sequence(E& engine, const EquilibriumTask<T>& task, const Unknowns<T>& start,
+                                                const NewtonOptions& options, Account& account, int& spent) {
+  const auto& input = task.contact;
+  const bool compliant = !task.solves_for_multipliers() && input.model.effects.current_geometry;
+  const auto rho = compliant || task.solves_for_multipliers() ? softened(input) : input.rho;
+  const auto compliance = compliant ? compliance_of(input, start.multiplier, rho) : Compliance<T>{};
+  const ContactInput<T> seen{input.model, input.slots, rho, input.previous, input.cone, input.time};
+  const EquilibriumTask<T> turns{
+      seen, task.multipliers, task.anchor, task.resumed, 0, task.from, compliant ? &compliance : nullptr};
+  Sequence<T, E> sequence(engine, turns, start, options, account);
+  const bool found = sequence.find();
+  spent = sequence.iterations();
+  if (!found) return std::nullopt;
+  const EquilibriumTask<T> last{input, task.multipliers, task.anchor, {}, task.forcing};
+  Unknowns<T> at = std::move(sequence.unknowns());
+  if (!task.solves_for_multipliers()) at.multiplier = start.multiplier;
+  auto equilibrium = newton(engine, last, std::move(at), options, account);
+  add_before(std::move(sequence.history()), 0, equilibrium);
+  return equilibrium;
+}
+
+}  // namespace detail
+
+/// Solves one equilibrium from the start values: by Newton's method; where bodies or geometry are not linear and it
+/// does not end in 15 iterations, in sequence; and by Newton's method for as long as it may take where that finds none.
+/// The run remembers which of the two found its last one, and begins with that.
+template <class T, class E>
+Equilibrium<T> find_equilibrium(E& engine, const EquilibriumTask<T>& task, Unknowns<T> start,
+                                const NewtonOptions& options, Account& account) {
+  constexpr int soon = 15;
+  const auto& effects = task.contact.model.effects;
+  const bool linear = (effects.linear_bulk && !effects.current_geometry) || task.contact.model.points.empty();
+  if (linear || options.max_iterations <= soon) return newton(engine, task, std::move(start), options, account);
+  const RunScales before = account.scales;
+  std::vector<IterationRecord> history;
+  int iterations = 0;
+  const auto in_sequence = [&]() -> std::optional<Equilibrium<T>> {
+    int spent = 0;
+    auto found = detail::solve_in_sequence(engine, task, start, options, account, spent);
+    if (found && is_converged(found->status)) {
+      detail::add_before(history, iterations + spent, *found);
+      return found;
+    }
+    iterations += spent + (found ? found->iterations : 0);
+    account.scales = before;
+    return std::nullopt;
+  };
+  if (account.sequential)
+    if (auto found = in_sequence()) return std::move(*found);
+  NewtonOptions brief = options;
+  if (!account.sequential) brief.max_iterations = soon;
+  auto direct = newton(engine, task, start, brief, account);
+  if (is_converged(direct.status) || account.sequential) {
+    account.sequential &= !is_converged(direct.status);
+    detail::add_before(history, iterations, direct);
+    return direct;
+  }
+  account.scales = before;
+  history = std::move(direct.history);
+  iterations += direct.iterations;
+  if (auto found = in_sequence()) {
+    account.sequential = true;
+    return std::move(*found);
+  }
+  if (direct.status != Status::cap) {
+    direct.history = std::move(history);
+    direct.iterations = iterations;
+    return direct;
+  }
+  auto last = newton(engine, task, std::move(start), options, account);
+  detail::add_before(std::move(history), iterations, last);
+  return last;
+}
+
+}  // namespace stickslip
