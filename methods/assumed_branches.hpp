@@ -7,6 +7,41 @@ namespace stickslip {
 
 namespace detail {
 
+/// What a point's state follows from, tractions.
+struct ContactTrial {
+  double pressure = 0, tangential = 0, bound = 0;
+  template <class T>
+  ContactState state(const ContactInput<T>& input, int p, const Vector<T>& compact) const {
+    const auto& point = input.model.points[p];
+    const double tie = value(input.rho[p].normal) * tie_at(input, p, compact);
+    const auto state = classify(Traction<double, 1>{-pressure, Vec<double, 1>(tangential)}, bound, tie);
+    return is_slipping(state) && point.tangents > 0 ? input.slots.friction[point.contact].piece(pressure) : state;
+  }
+};
+
+/// That of a point after a step in a branch that solved for its traction: of a closed point the traction says its
+/// state, for its gap is what the curvature of surfaces left; of an open one its gap. (Where geometry is linear both
+/// say the same but for rounding.)
+template <class T>
+ContactTrial trial_after(const ContactInput<T>& input, int p, const Vector<T>& multiplier, ContactState branch,
+                         const ContactField<T>& field) {
+  const auto& point = input.model.points[p];
+  const auto& rho = input.rho[p];
+  ContactTrial trial;
+  trial.pressure = -value(multiplier[point.multiplier]);
+  if (branch == ContactState::open) trial.pressure -= value(rho.normal) * value(field.gap[p]);
+  double squares = 0;
+  for (int a = 0; a < point.tangents; ++a) {
+    double z = value(multiplier[point.multiplier + 1 + a]);
+    if (branch != ContactState::stick)
+      z += value(rho.tangential) * value(field.slip[tangential_offset(input.model, p) + a]);
+    squares += z * z;
+  }
+  trial.tangential = std::sqrt(squares);
+  if (point.tangents > 0) trial.bound = input.slots.friction[point.contact].bound(trial.pressure);
+  return trial;
+}
+
 /// Gives points that start on their cone, up to 1e-8, the branch of the last increment: one that slipped then starts
 /// there, off it by what that increment's tolerance left, and rounding must not decide where the path begins. If it
 /// slips on, the front of slip need not be found anew; if it turns back, the first step takes it inside its cone.
@@ -16,15 +51,10 @@ void resume_on_cone(const ContactInput<T>& input, const Vector<T>& multiplier, s
   for (int p = 0; p < static_cast<int>(input.model.points.size()); ++p) {
     const auto& point = input.model.points[p];
     if (field.state[p] == ContactState::open || point.tangents == 0) continue;
-    double trial = 0;
-    for (int a = 0; a < point.tangents; ++a) {
-      const double slip = value(field.slip[tangential_offset(input.model, p) + a]);
-      const double z = value(multiplier[point.multiplier + 1 + a]) + value(input.rho[p].tangential) * slip;
-      trial += z * z;
-    }
+    const double trial = trial_after(input, p, multiplier, ContactState::slip, field).tangential;
     const auto& law = input.slots.friction[point.contact];
     const double pressure = -value(field.traction[point.multiplier]), bound = law.bound(pressure);
-    if (bound > 0 && std::abs(std::sqrt(trial) - bound) <= 1e-8 * bound)
+    if (bound > 0 && std::abs(trial - bound) <= 1e-8 * bound)
       field.state[p] = is_slipping(last[p]) ? law.piece(pressure) : ContactState::stick;
   }
 }
@@ -61,41 +91,6 @@ std::vector<ContactState> step_branches(const ContactInput<T>& input, const Vect
     if (apex || reversed) branches[p] = ContactState::stick;
   }
   return branches;
-}
-
-/// What a point's state follows from, tractions.
-struct ContactTrial {
-  double pressure = 0, tangential = 0, bound = 0;
-  template <class T>
-  ContactState state(const ContactInput<T>& input, int p, const Vector<T>& compact) const {
-    const auto& point = input.model.points[p];
-    if (-pressure > value(input.rho[p].normal) * tie_at(input, p, compact)) return ContactState::open;
-    if (bound > 0 && tangential <= bound * (1 + tie_band)) return ContactState::stick;
-    return point.tangents > 0 ? input.slots.friction[point.contact].piece(pressure) : ContactState::slip;
-  }
-};
-
-/// That of a point after a step in a branch that solved for its traction: of a closed point the traction says its
-/// state, for its gap is what the curvature of surfaces left; of an open one its gap. (Where geometry is linear both
-/// say the same but for rounding.)
-template <class T>
-ContactTrial trial_after(const ContactInput<T>& input, int p, const Vector<T>& multiplier, ContactState branch,
-                         const ContactField<T>& field) {
-  const auto& point = input.model.points[p];
-  const auto& rho = input.rho[p];
-  ContactTrial trial;
-  trial.pressure = -value(multiplier[point.multiplier]);
-  if (branch == ContactState::open) trial.pressure -= value(rho.normal) * value(field.gap[p]);
-  double squares = 0;
-  for (int a = 0; a < point.tangents; ++a) {
-    double z = value(multiplier[point.multiplier + 1 + a]);
-    if (branch != ContactState::stick)
-      z += value(rho.tangential) * value(field.slip[tangential_offset(input.model, p) + a]);
-    squares += z * z;
-  }
-  trial.tangential = std::sqrt(squares);
-  if (point.tangents > 0) trial.bound = input.slots.friction[point.contact].bound(trial.pressure);
-  return trial;
 }
 
 /// Branches with all open points closed, and sticking where there is friction.

@@ -21,7 +21,7 @@ struct Account {
   Counters counters;
   Seconds seconds;
   Trace* trace = nullptr;   ///< not owned; gathers every iterate where it is there
-  bool sequential = false;  ///< what found the last equilibrium that Newton's method alone did not (sequential.hpp)
+  bool sequential = false;  ///< whether equilibria are first sought in sequence (methods/sequential.hpp)
 };
 
 /// Springs between the contact nodes and a place, which join the equilibrium with their forces.

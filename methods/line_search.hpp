@@ -31,10 +31,7 @@ double search_line(Evaluator<T, E>& evaluate, const BlockVector<T>& step, const 
       at = std::move(trial);
     }
     if (!finite) continue;
-    bool crossed = false;  // a closed point came to another patch
-    for (std::size_t p = 0; p < faced.size(); ++p)
-      crossed |= at.field.state[p] != ContactState::open && faced[p].patch != at.field.facing[p].patch;
-    const bool new_branch = length == whole && (at.field.state != used || crossed);
+    const bool new_branch = length == whole && (at.field.state != used || detail::count_crossings(at.field, faced) > 0);
     if (!options.line_search || merit < 0.9 * before || new_branch) break;
     if (at.residuals.within_rounding(options.tolerance)) break;
   }

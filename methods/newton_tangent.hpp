@@ -30,13 +30,31 @@ void yield_decided(const ContactInput<T>& input, const std::vector<char>& decide
   }
 }
 
-/// Calls f(index in the tangent's columns, index in compact displacements). pre: the tangent is of present geometry.
+/// Calls f(column of the point's tangent, compact displacement, its weight there).
 template <class T, class F>
-void for_each_column(const Model& model, std::size_t p, const PointTangent<T>& tangent, F&& f) {
+void for_each_column(const Model& model, const Slots<T>& slots, std::size_t p, const PointTangent<T>& tangent, F&& f) {
   const int D = model.dimension;
-  const auto& places = tangent.places;
-  for (int n = 0; n < std::max(1, static_cast<int>(places.size())); ++n)
-    for (int i = 0; i < D; ++i) f(n * D + i, (places.empty() ? model.points[p].places[0] : places[n]) * D + i);
+  const bool along_curve = !tangent.places.empty();
+  const auto& places = along_curve ? tangent.places : model.points[p].places;
+  for (int n = 0; n < static_cast<int>(places.size()); ++n)
+    for (int i = 0; i < D; ++i)
+      f((along_curve ? n * D : 0) + i, places[n] * D + i, along_curve ? T(1) : slots.geometry[p].weights[n]);
+}
+
+/// What the columns of a point's tangent take from compact displacements.
+template <class T>
+Vector<T> gather(const Model& model, const Slots<T>& slots, std::size_t p, const PointTangent<T>& tangent,
+                 const Vector<T>& compact) {
+  Vector<T> own = Vector<T>::Constant(tangent.force_w.cols(), T(0));
+  for_each_column(model, slots, p, tangent, [&](int c, int row, const T& weight) { own[c] += weight * compact[row]; });
+  return own;
+}
+
+/// Adds what a point does to its columns to compact rows.
+template <class T>
+void scatter(const Model& model, const Slots<T>& slots, std::size_t p, const PointTangent<T>& tangent,
+             const Vector<T>& own, Vector<T>& compact) {
+  for_each_column(model, slots, p, tangent, [&](int c, int row, const T& weight) { compact[row] += weight * own[c]; });
 }
 
 /// Turns l, the multipliers over rho that systems are solved for, into multipliers.
@@ -74,26 +92,24 @@ class OwnTractions {
     }
   }
   /// What the points' rows add to those of the displacements (compact).
-  Vector<T> carried(const Model& model, const Vector<T>& rows_l) const {
+  Vector<T> carried(const Model& model, const Slots<T>& slots, const Vector<T>& rows_l) const {
     Vector<T> rows = Vector<T>::Constant(static_cast<Eigen::Index>(model.contact_nodes.size()) * model.dimension, T(0));
     for (std::size_t p = 0; p < points_.size(); ++p) {
       const auto& point = points_[p];
       const Vector<T> force =
-          point.force_l * (point.row_l * rows_l.segment(model.points[p].multiplier, point.row_l.rows()));
-      for_each_column(model, p, point, [&](int own, int row) { rows[row] -= force[own]; });
+          -(point.force_l * (point.row_l * rows_l.segment(model.points[p].multiplier, point.row_l.rows())));
+      scatter(model, slots, p, point, force, rows);
     }
     return rows;
   }
   /// The points' unknowns after a step of the displacements (compact).
-  Matrix<T> recover(const Model& model, const Vector<T>& rows_l, const Vector<T>& motion) const {
+  Matrix<T> recover(const Model& model, const Slots<T>& slots, const Vector<T>& rows_l, const Vector<T>& motion) const {
     Matrix<T> l(model.multiplier_count, 1);
     for (std::size_t p = 0; p < points_.size(); ++p) {
       const auto& point = points_[p];
-      Vector<T> w(point.row_w.cols());
-      for_each_column(model, p, point, [&](int own, int row) { w[own] = motion[row]; });
       const auto C = point.row_l.rows();
-      l.block(model.points[p].multiplier, 0, C, 1) =
-          -(point.row_l * rows_l.segment(model.points[p].multiplier, C) + point.row_w * w);
+      l.block(model.points[p].multiplier, 0, C, 1) = -(point.row_l * rows_l.segment(model.points[p].multiplier, C) +
+                                                       point.row_w * gather(model, slots, p, point, motion));
     }
     return l;
   }
@@ -187,12 +203,11 @@ template <class T, class E>
 BlockVector<T> NewtonTangent<T, E>::step(const Vector<T>& rows_u, const Vector<T>& rows_l) {
   BlockVector<T> step;
   if (task_.compliance) {
-    const Model& model = task_.contact.model;
+    const auto& [model, slots] = std::tie(task_.contact.model, task_.contact.slots);
     Vector<T> rows = rows_u;
-    add_compact(model, into_frames(model, task_.contact.slots.frames, Layout::compact, own_.carried(model, rows_l)),
-                rows);
+    add_compact(model, into_frames(model, slots.frames, Layout::compact, own_.carried(model, slots, rows_l)), rows);
     step = engine_.solve({-rows, Matrix<T>()});
-    step.l = own_.recover(model, rows_l, engine_.compact(step.u.col(0)));
+    step.l = own_.recover(model, slots, rows_l, engine_.compact(step.u.col(0)));
   } else {
     step = engine_.solve({-rows_u, task_.solves_for_multipliers() ? Matrix<T>(-rows_l) : Matrix<T>()});
   }

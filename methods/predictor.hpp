@@ -16,18 +16,12 @@ namespace detail {
 
 /// Adds what a motion of the contact nodes (compact) makes of contact forces (compact) and multiplier rows.
 template <class T>
-void add_tangent_times(const Model& model, const std::vector<PointTangent<T>>& tangents, const Vector<T>& motion,
-                       Vector<T>& forces, Vector<T>& rows) {
-  const int D = model.dimension;
+void add_tangent_times(const Model& model, const Slots<T>& slots, const std::vector<PointTangent<T>>& tangents,
+                       const Vector<T>& motion, Vector<T>& forces, Vector<T>& rows) {
   for (std::size_t p = 0; p < tangents.size(); ++p) {
     const auto& tangent = tangents[p];
-    const auto places = tangent.places.empty() ? std::vector<int>{model.points[p].places[0]} : tangent.places;
-    Vector<T> u(static_cast<Eigen::Index>(places.size()) * D);
-    for (std::size_t n = 0; n < places.size(); ++n)
-      u.segment(static_cast<Eigen::Index>(n) * D, D) = motion.segment(places[n] * D, D);
-    const Vector<T> f = tangent.force_w * u;
-    for (std::size_t n = 0; n < places.size(); ++n)
-      forces.segment(places[n] * D, D) += f.segment(static_cast<Eigen::Index>(n) * D, D);
+    const Vector<T> u = gather(model, slots, p, tangent, motion);
+    scatter(model, slots, p, tangent, Vector<T>(tangent.force_w * u), forces);
     if (rows.size() > 0) rows.segment(model.points[p].multiplier, tangent.row_w.rows()) += tangent.row_w * u;
   }
 }
@@ -71,7 +65,7 @@ bool predict(E& engine, const EquilibriumTask<T>& task, Evaluator<T, E>& evaluat
   evaluate.take_rows_in(branches, start, at);
   const Vector<T> motion = engine.all(prescribed);
   Vector<T> forces = Vector<T>::Constant(static_cast<Eigen::Index>(model.contact_nodes.size()) * model.dimension, T(0));
-  detail::add_tangent_times(model, tangent.tangents(), Vector<T>(engine.compact(prescribed)), forces, at.rows_l);
+  detail::add_tangent_times(model, slots, tangent.tangents(), Vector<T>(engine.compact(prescribed)), forces, at.rows_l);
   const BodyMotion<T> at_start{*task.from, task.contact.previous.bodies, task.contact.time};
   Vector<T> rows = tangent_times(model, slots, at_start, motion, false);
   add_compact(model, forces, rows);

@@ -32,6 +32,15 @@ struct Residuals {
   }
 };
 
+/// How many closed points face another patch of their curves than in `last`.
+template <class T>
+int count_crossings(const ContactField<T>& field, const std::vector<Facing>& last) {
+  int crossed = 0;
+  for (std::size_t p = 0; p < last.size(); ++p)
+    crossed += field.state[p] != ContactState::open && last[p].patch != field.facing[p].patch;
+  return crossed;
+}
+
 /// One point of the Newton path, evaluated.
 template <class T>
 struct Evaluation {

@@ -155,10 +155,7 @@ class Sequence {
       const double length = search_line(evaluate_, step, branches, options_, unknowns_, at);
       branches_ = branches;
       wanted = branches_in(at.field, unknowns_, directed);
-      bool crossed = false;  // a closed point came to another patch
-      for (std::size_t p = 0; p < faced.size(); ++p)
-        crossed |= branches[p] != ContactState::open && faced[p].patch != at.field.facing[p].patch;
-      if (wanted == branches && !crossed && length == 1) return true;
+      if (wanted == branches && count_crossings(at.field, faced) == 0 && length == 1) return true;
       branches = pivoting.advance(branches_, wanted, distances_to(wanted, at.field));
       if (pivoting.repeats()) break;
     }
@@ -227,18 +224,11 @@ Compliance<T> compliance_of(const ContactInput<T>& input, const Vector<T>& given
   return compliance;
 }
 
-/// Adds what was tried before to an equilibrium.
-template <class T>
-void add_before(std::vector<IterationRecord> history, int iterations, Equilibrium<T>& equilibrium) {
-  equilibrium.history.insert(equilibrium.history.begin(), history.begin(), history.end());
-  equilibrium.iterations += iterations;
-}
-
-/// The equilibrium by a sequence of linear problems, and then by Newton's method from there; nothing where the sequence
-/// finds none. `spent`: iterations, also then.
+/// The equilibrium by a sequence of linear problems, and then by Newton's method from there; status cycle where the
+/// sequence finds none.
 template <class T, class E>
-std::optional<Equilibrium<T>> solve_in_sequence(E& engine, const EquilibriumTask<T>& task, const Unknowns<T>& start,
-                                                const NewtonOptions& options, Account& account, int& spent) {
+Equilibrium<T> solve_in_sequence(E& engine, const EquilibriumTask<T>& task, const Unknowns<T>& start,
+                                 const NewtonOptions& options, Account& account) {
   const auto& input = task.contact;
   const bool compliant = !task.solves_for_multipliers() && input.model.effects.current_geometry;
   const auto rho = compliant || task.solves_for_multipliers() ? softened(input) : input.rho;
@@ -247,14 +237,16 @@ std::optional<Equilibrium<T>> solve_in_sequence(E& engine, const EquilibriumTask
   const EquilibriumTask<T> turns{
       seen, task.multipliers, task.anchor, task.resumed, 0, task.from, compliant ? &compliance : nullptr};
   Sequence<T, E> sequence(engine, turns, start, options, account);
-  const bool found = sequence.find();
-  spent = sequence.iterations();
-  if (!found) return std::nullopt;
-  const EquilibriumTask<T> last{input, task.multipliers, task.anchor, {}, task.forcing};
-  Unknowns<T> at = std::move(sequence.unknowns());
-  if (!task.solves_for_multipliers()) at.multiplier = start.multiplier;
-  auto equilibrium = newton(engine, last, std::move(at), options, account);
-  add_before(std::move(sequence.history()), 0, equilibrium);
+  Equilibrium<T> equilibrium;
+  equilibrium.status = Status::cycle;
+  if (sequence.find()) {
+    const EquilibriumTask<T> last{input, task.multipliers, task.anchor, {}, task.forcing};
+    Unknowns<T> at = std::move(sequence.unknowns());
+    if (!task.solves_for_multipliers()) at.multiplier = start.multiplier;
+    equilibrium = newton(engine, last, std::move(at), options, account);
+  }
+  equilibrium.history.insert(equilibrium.history.begin(), sequence.history().begin(), sequence.history().end());
+  equilibrium.iterations += sequence.iterations();
   return equilibrium;
 }
 
@@ -262,7 +254,7 @@ std::optional<Equilibrium<T>> solve_in_sequence(E& engine, const EquilibriumTask
 
 /// Solves one equilibrium from the start values: by Newton's method; where bodies or geometry are not linear and it
 /// does not end in 15 iterations, in sequence; and by Newton's method for as long as it may take where that finds none.
-/// The run remembers which of the two found its last one, and begins with that.
+/// A run in which the sequence found an equilibrium begins the next with it, until it fails.
 template <class T, class E>
 Equilibrium<T> find_equilibrium(E& engine, const EquilibriumTask<T>& task, Unknowns<T> start,
                                 const NewtonOptions& options, Account& account) {
@@ -271,44 +263,20 @@ Equilibrium<T> find_equilibrium(E& engine, const EquilibriumTask<T>& task, Unkno
   const bool linear = (effects.linear_bulk && !effects.current_geometry) || task.contact.model.points.empty();
   if (linear || options.max_iterations <= soon) return newton(engine, task, std::move(start), options, account);
   const RunScales before = account.scales;
-  std::vector<IterationRecord> history;
-  int iterations = 0;
-  const auto in_sequence = [&]() -> std::optional<Equilibrium<T>> {
-    int spent = 0;
-    auto found = detail::solve_in_sequence(engine, task, start, options, account, spent);
-    if (found && is_converged(found->status)) {
-      detail::add_before(history, iterations + spent, *found);
-      return found;
-    }
-    iterations += spent + (found ? found->iterations : 0);
-    account.scales = before;
-    return std::nullopt;
+  Equilibrium<T> found;
+  const auto take = [&](Equilibrium<T> next) {  // with what was tried before it
+    next.history.insert(next.history.begin(), found.history.begin(), found.history.end());
+    next.iterations += found.iterations;
+    found = std::move(next);
+    if (!is_converged(found.status)) account.scales = before;
+    return is_converged(found.status);
   };
-  if (account.sequential)
-    if (auto found = in_sequence()) return std::move(*found);
   NewtonOptions brief = options;
-  if (!account.sequential) brief.max_iterations = soon;
-  auto direct = newton(engine, task, start, brief, account);
-  if (is_converged(direct.status) || account.sequential) {
-    account.sequential &= !is_converged(direct.status);
-    detail::add_before(history, iterations, direct);
-    return direct;
-  }
-  account.scales = before;
-  history = std::move(direct.history);
-  iterations += direct.iterations;
-  if (auto found = in_sequence()) {
-    account.sequential = true;
-    return std::move(*found);
-  }
-  if (direct.status != Status::cap) {
-    direct.history = std::move(history);
-    direct.iterations = iterations;
-    return direct;
-  }
-  auto last = newton(engine, task, std::move(start), options, account);
-  detail::add_before(std::move(history), iterations, last);
-  return last;
+  brief.max_iterations = soon;
+  if (!account.sequential && take(newton(engine, task, start, brief, account))) return found;
+  account.sequential = take(detail::solve_in_sequence(engine, task, start, options, account));
+  if (!account.sequential) take(newton(engine, task, std::move(start), options, account));
+  return found;
 }
 
 }  // namespace stickslip

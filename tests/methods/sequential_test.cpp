@@ -108,7 +108,7 @@ TEST(Pivoting, HardlyHangsOnTheOrderOfThePoints) {
     };
     others += count(problem) != count(turned);
   }
-  EXPECT_LE(others, 3);  // (Murty's rule alone: 8)
+  EXPECT_LE(others, 3);  // (0; where the last point alone changes, Murty's rule, 15)
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "methods/regularisation.hpp"
 #include "tests/studies/cases.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/perturbed.hpp"
@@ -33,10 +34,7 @@ std::vector<json> methods_of(const fs::path& file) {
   const json uzawa = {{"uzawa_al", {{"tolerance", 1e-12}, {"max_augmentations", 2000}}}};
   const json solutions = document.value("solutions", json::object());
   std::vector<json> methods{uzawa};
-  // Forces that bend thin bodies are 1e-8 of the penalty times a coordinate, which rounds: 2e-9 of them in tubes, 4e-8
-  // in bending, where steps are also cut elsewhere as the punch turns back.
-  const bool thin = file.stem() == "bending" || file.stem() == "tubes";
-  if (solutions.empty() && !thin) methods.push_back({{"penalty", json::object()}});
+  if (solutions.empty()) methods.push_back({{"penalty", json::object()}});
   if (solutions.contains("penalty")) methods.push_back(solutions["penalty"]["method"]);
   for (const json& scale : cases::scales_of(document_of(file)))
     methods.push_back({{"monolithic_al", {{"scale", scale}}}});
@@ -50,7 +48,20 @@ CaseResult run(const Input& input, const Perturbation& by) {
   return run_case(problem, input.method, {input.linear_algebra, input.backend, {}, {}}, condensation);
 }
 
-void expect_same_answers(const CaseResult& a, const CaseResult& reference, const std::string& what) {
+/// Force that rounding leaves of a penalty where it is large against what bends a thin body: penalty times coordinate,
+/// each 1e-16 off; ten of these terms meet. 0 of other methods and bodies, which 1e-9 covers.
+double rounding_of_force(const CaseResult& result, const Method& method, const std::string& scene) {
+  const auto* penalty = std::get_if<Penalty>(&method);
+  if (!penalty || (scene != "bending" && scene != "tubes")) return 0;
+  const auto& slots = result.problem->slots;
+  const auto rho = initial_regularisation(slots, *penalty);
+  double stiffest = 0;
+  for (std::size_t p = 0; p < rho.size(); ++p) stiffest = larger(stiffest, slots.geometry[p].area * rho[p].normal);
+  return 10 * unit_roundoff * stiffest * largest_entry(slots.points);
+}
+
+/// `rounding`: of forces, beside same_answer.
+void expect_same_answers(const CaseResult& a, const CaseResult& reference, double rounding, const std::string& what) {
   EXPECT_TRUE(is_converged(a.status())) << what << ": " << a.message();
   EXPECT_EQ(a.trajectory.counters.cutbacks, reference.trajectory.counters.cutbacks) << what;
   ASSERT_EQ(a.steps.size(), reference.steps.size()) << what;
@@ -63,7 +74,7 @@ void expect_same_answers(const CaseResult& a, const CaseResult& reference, const
     for (const auto& step : reference.steps) size = larger(size, std::abs(step.responses[row]));
     if (size <= 1e-12 * largest) size = largest;
     for (std::size_t n = 0; n < reference.steps.size(); ++n)
-      EXPECT_NEAR(a.steps[n].responses[row], reference.steps[n].responses[row], same_answer * size)
+      EXPECT_NEAR(a.steps[n].responses[row], reference.steps[n].responses[row], same_answer * size + rounding)
           << what << " step " << n << " " << responses[i].name;
   }
 }
@@ -80,9 +91,11 @@ void expect_rounding_does_not_matter(const fs::path& file) {
     const auto reference = run(input, {});
     EXPECT_TRUE(is_converged(reference.status())) << method.dump() << ": " << reference.message();
     if (!is_converged(reference.status())) continue;
-    expect_same_answers(run(input, {1e-15, false, 1}), reference, method.dump() + " moved");
-    expect_same_answers(run(input, {0, true, 1}), reference, method.dump() + " numbered backwards");
-    expect_same_answers(run(input, {1e-15, true, 2}), reference, method.dump() + " moved and numbered backwards");
+    const double force = rounding_of_force(reference, input.method, file.stem().string());
+    expect_same_answers(run(input, {1e-15, false, 1}), reference, force, method.dump() + " moved");
+    expect_same_answers(run(input, {0, true, 1}), reference, force, method.dump() + " numbered backwards");
+    expect_same_answers(run(input, {1e-15, true, 2}), reference, force,
+                        method.dump() + " moved and numbered backwards");
   }
 }
 
