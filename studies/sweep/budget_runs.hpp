@@ -26,8 +26,8 @@
 #include <vector>
 
 #include "studies/run/case.hpp"
+#include "studies/sweep/cell_inputs.hpp"
 #include "studies/sweep/references.hpp"
-#include "studies/sweep/study_reader.hpp"
 
 namespace stickslip {
 

@@ -9,8 +9,8 @@
 
 #include "studies/run/case.hpp"
 #include "studies/sweep/budget_runs.hpp"
+#include "studies/sweep/cell_inputs.hpp"
 #include "studies/sweep/references.hpp"
-#include "studies/sweep/study_reader.hpp"
 
 namespace stickslip {
 

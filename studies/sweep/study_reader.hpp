@@ -1,15 +1,12 @@
-/// Study files (JSON): one scene, methods with the options to sweep, numbers to vary, mesh levels; expanded to cells,
-/// of which each is one complete scene. The format is described in docs/study.md.
+/// Study files (JSON): one scene, methods with the options to sweep, numbers to vary, mesh levels. The format is
+/// described in docs/study.md.
 #pragma once
 
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "methods/options.hpp"
-#include "studies/input/scene_reader.hpp"
 #include "studies/io/json_document.hpp"
 
 namespace stickslip {
@@ -53,38 +50,7 @@ struct Study {
   int budget_copies = 0;            ///< perturbed copies of each run of the error budget; 0: there is none
 };
 
-/// One run of a study.
-struct CellInput {
-  JsonDocument document;  ///< complete scene; read_scene() of it, with the method's name, has no faults
-  Method method;
-  std::string label;                           ///< "penalty stiffness=100 newton.tolerance=1e-08"
-  nlohmann::json knobs;                        ///< swept options: {"stiffness": 100, "newton.tolerance": 1e-08}
-  std::map<std::string, nlohmann::json> vary;  ///< by pointer
-  int refine = 0;
-  std::string canonical;  ///< canonical_text() of the input; nothing of references, errors or timing
-  std::string id;         ///< cell_id() of it
-};
-
 /// Reads a study, and its scene, which is looked for beside it. None where there is a fault in either.
 std::optional<Study> read_study(const std::string& file, Diagnostics&);
-
-/// The cells, all valid: mesh level by level, then each combination of `vary`, then the methods with each combination
-/// of their options, the last varying fastest. Inputs that are the same come once, and a note says how many
-/// were left out. Empty where there is a fault.
-std::vector<CellInput> expand(const Study&, const std::string& program_version, Diagnostics&, MeshFiles&);
-
-/// A fault of a cell's scene as one of the study, where the study gives the value: with the pointer that it has there.
-Diagnostic in_study(const Study&, Diagnostic fault);
-
-/// The cell with the method of a reference instead of its own, on its own mesh or a finer one: what its enforcement or
-/// its discretisation error is measured against. pre: the reference is a method, or overkill.
-CellInput reference_cell(const CellInput&, const Reference&, const std::string& program_version, MeshFiles&);
-
-/// 16 hexadecimal digits that name the result of this input by this version of the program.
-std::string cell_id(const std::string& canonical, const std::string& program_version);
-
-/// Makes the scene's meshes finer: twice as many cells each way a level. Only generators can; an imported mesh is a
-/// fault (at `origin`) for levels above 0, and then nothing changes.
-bool refine_meshes(JsonDocument& scene, int level, const Place& origin, Diagnostics&);
 
 }  // namespace stickslip

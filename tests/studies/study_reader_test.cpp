@@ -9,6 +9,8 @@
 #include <set>
 #include <string>
 
+#include "studies/sweep/cell_inputs.hpp"
+
 namespace stickslip {
 namespace {
 

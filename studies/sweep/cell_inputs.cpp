@@ -1,0 +1,188 @@
+#include "studies/sweep/cell_inputs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+
+/// Calls f with one value of each sweep in turn, the last sweep's fastest.
+template <class F>
+void for_each_combination(const std::vector<Knob>& sweeps, F&& f) {
+  std::vector<const PlacedValue*> chosen(sweeps.size());
+  auto choose = [&](auto&& self, std::size_t i) -> void {
+    if (i == sweeps.size()) return f(chosen);
+    for (const PlacedValue& value : sweeps[i].values) {
+      chosen[i] = &value;
+      self(self, i + 1);
+    }
+  };
+  choose(choose, 0);
+}
+
+/// "/newton/tolerance" as "newton.tolerance".
+std::string option_name(const std::string& pointer) {
+  std::string name = pointer.substr(1);
+  std::replace(name.begin(), name.end(), '/', '.');
+  return name;
+}
+
+/// Puts a method with its options into the cell. The faults that follow are left to complete().
+void set_method(CellInput& cell, const MethodSweep& method, const std::vector<const PlacedValue*>& chosen) {
+  const std::string base = child_pointer("/method", method.method);
+  cell.document.set("/method", {{method.method, json::object()}}, method.place);
+  cell.label = method.method;
+  cell.knobs = json::object();
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const Knob& option = method.options[i];
+    const auto& [value, place] = *chosen[i];
+    // an option within an object, as /scale/absolute, needs the object
+    for (auto slash = option.pointer.find('/', 1); slash != std::string::npos;
+         slash = option.pointer.find('/', slash + 1))
+      if (const std::string outer = base + option.pointer.substr(0, slash); !value_at(cell.document.root(), outer))
+        cell.document.set(outer, json::object(), place);
+    cell.document.set(base + option.pointer, value, place);
+    const std::string name = option_name(option.pointer);
+    cell.label += " " + name + "=" + (value.is_string() ? value.get<std::string>() : shown(value));
+    if (option.values.size() > 1) cell.knobs[name] = value;
+  }
+}
+
+/// Puts the method of a reference into the cell, and its mesh level; false where an imported mesh has no finer one.
+bool set_reference(CellInput& cell, const Reference& reference, Diagnostics& diagnostics) {
+  std::vector<const PlacedValue*> chosen;
+  for (const Knob& option : reference.method.options) chosen.push_back(&option.values.front());
+  set_method(cell, reference.method, chosen);
+  return refine_meshes(cell.document, reference.refine, reference.method.place, diagnostics);
+}
+
+/// Reads the cell's document and fills in what follows from it; false where it is at fault.
+bool complete(CellInput& cell, const std::string& method, const std::string& program_version, Diagnostics& diagnostics,
+              MeshFiles& mesh_files) {
+  // Each of a study's methods drops the parameters that belong to another one; notes on that would be one a cell.
+  Diagnostics own;
+  auto input = read_scene(cell.document, method, own, mesh_files);
+  for (const Diagnostic& error : own.errors()) diagnostics.error(error);
+  if (!input) return false;
+  cell.method = input->method;
+  cell.canonical = canonical_text(*input);
+  cell.id = cell_id(cell.canonical, program_version);
+  return true;
+}
+
+}  // namespace
+
+std::string cell_id(const std::string& canonical, const std::string& program_version) {
+  return fingerprint(canonical + "\n" + program_version);
+}
+
+bool refine_meshes(JsonDocument& scene, int level, const Place& origin, Diagnostics& diagnostics) {
+  auto finer = [&](json& count) {
+    if (!count.is_number()) return;
+    const double cells = count.get<double>() * (1 << level);
+    constexpr double most = 1e15;  // beyond, the scene's reader has something to say; here only overflow matters
+    if (cells == std::floor(cells) && std::abs(cells) < most)
+      count = static_cast<long long>(cells);
+    else
+      count = cells;
+  };
+  JsonDocument result = scene;
+  bool possible = true;
+  const json bodies = level > 0 ? scene.root().value("bodies", json::object()) : json::object();
+  for (const auto& [name, body] : bodies.items()) {
+    const json* mesh = value_at(body, "/mesh");
+    if (!mesh || !mesh->is_object()) continue;
+    const std::string pointer = child_pointer("/bodies", name) + "/mesh";
+    if (mesh->contains("gmsh")) {
+      diagnostics.error(
+          {origin, pointer, "refines " + pointer + ", an imported mesh, which cannot be; allowed: level 0"});
+      possible = false;
+    }
+    for (const auto& [kind, generator] : mesh->items()) {
+      if (!generator.is_object() || !generator.contains("cells")) continue;
+      json cells = generator["cells"];
+      if (cells.is_array())
+        for (json& count : cells) finer(count);
+      else
+        finer(cells);
+      result.set(child_pointer(pointer, kind) + "/cells", std::move(cells), origin);
+    }
+  }
+  if (possible) scene = std::move(result);
+  return possible;
+}
+
+Diagnostic in_study(const Study& study, Diagnostic fault) {
+  if (fault.place.source != study.document.file()) return fault;
+  fault.pointer = fault.place.pointer;  // a value may be deeper in the cell's scene than in the list that it comes from
+  while (!fault.pointer.empty() && !value_at(study.document.root(), fault.pointer))
+    fault.pointer.erase(fault.pointer.rfind('/'));
+  return fault;
+}
+
+std::vector<CellInput> expand(const Study& study, const std::string& program_version, Diagnostics& all_faults,
+                              MeshFiles& mesh_files) {
+  Diagnostics diagnostics;
+  std::vector<CellInput> cells;
+  std::set<std::string> ids;
+  std::size_t again = 0;
+  for (const auto& [level, level_place] : study.refine) {
+    CellInput refined;
+    refined.document = study.scene;
+    refined.refine = level.get<int>();
+    if (!refine_meshes(refined.document, refined.refine, level_place, diagnostics)) continue;
+    for_each_combination(study.vary, [&](const std::vector<const PlacedValue*>& varied) {
+      CellInput scene = refined;
+      for (std::size_t i = 0; i < varied.size(); ++i) {
+        scene.document.set(study.vary[i].pointer, varied[i]->value, varied[i]->place);
+        scene.vary[study.vary[i].pointer] = varied[i]->value;
+      }
+      for (const MethodSweep& method : study.methods)
+        for_each_combination(method.options, [&](const std::vector<const PlacedValue*>& chosen) {
+          CellInput cell = scene;
+          set_method(cell, method, chosen);
+          if (!complete(cell, method.method, program_version, diagnostics, mesh_files)) return;
+          if (ids.insert(cell.id).second)
+            cells.push_back(std::move(cell));
+          else
+            ++again;
+        });
+    });
+  }
+  // a reference with faulty options would be found only when it is run
+  if (!cells.empty())
+    for (const Reference& reference : study.references)
+      if (reference.kind == Reference::Kind::method || reference.kind == Reference::Kind::overkill) {
+        // of the finest mesh, which a finer one may be too large for
+        CellInput cell = *std::max_element(cells.begin(), cells.end(),
+                                           [](const auto& a, const auto& b) { return a.refine < b.refine; });
+        if (set_reference(cell, reference, diagnostics))
+          complete(cell, reference.method.method, program_version, diagnostics, mesh_files);
+      }
+  for (const Diagnostic& fault : diagnostics.errors()) all_faults.error(in_study(study, fault));
+  if (again > 0)
+    all_faults.note(
+        {{study.document.file()},
+         "",
+         fmt::format("{} of the {} cells that its lists make {} another and {} "
+                     "left out (the same method and options, or a mesh that has no levels)",
+                     again, again + cells.size(), again == 1 ? "equals" : "equal", again == 1 ? "is" : "are")});
+  if (diagnostics.has_errors()) cells.clear();
+  return cells;
+}
+
+CellInput reference_cell(const CellInput& cell, const Reference& reference, const std::string& program_version,
+                         MeshFiles& mesh_files) {
+  CellInput other = cell;
+  Diagnostics none;
+  set_reference(other, reference, none);
+  complete(other, reference.method.method, program_version, none, mesh_files);
+  return other;
+}
+
+}  // namespace stickslip

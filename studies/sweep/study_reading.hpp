@@ -1,0 +1,28 @@
+/// The parts of the study reader. `scene` is the document of the scene that the study names.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "studies/input/method_options.hpp"
+#include "studies/io/json_node.hpp"
+#include "studies/sweep/study_reader.hpp"
+
+namespace stickslip {
+
+inline constexpr int finest_level = 10;  ///< of meshes: a thousand times the cells each way
+
+/// The one method of an object, with the values of its options. None where it is at fault.
+std::optional<MethodSweep> read_method_sweep(const JsonNode&, OptionLists);
+
+/// The methods of a study; where it lists none, the one of its scene.
+std::vector<MethodSweep> read_methods(const JsonNode& study, const JsonNode& scene);
+std::vector<Knob> read_vary(const JsonNode&, const nlohmann::json& scene);
+std::vector<PlacedValue> read_levels(const JsonNode&);
+std::vector<Reference> read_references(const JsonNode&, const nlohmann::json& scene);
+/// Patterns of the errors that are asked for.
+std::vector<std::string> read_errors(const JsonNode&, const nlohmann::json& scene);
+
+}  // namespace stickslip
