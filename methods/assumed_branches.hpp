@@ -21,20 +21,23 @@ struct ContactTrial {
 
 /// That of a point after a step in a branch that solved for its traction: of a closed point the traction says its
 /// state, for its gap is what the curvature of surfaces left; of an open one its gap. (Where geometry is linear both
-/// say the same but for rounding.)
+/// say the same but for rounding.) `seen`: the multipliers that stand beside gap and slip, which differ from those that
+/// were solved for where these are tractions of points with given multipliers (Compliance).
 template <class T>
-ContactTrial trial_after(const ContactInput<T>& input, int p, const Vector<T>& multiplier, ContactState branch,
-                         const ContactField<T>& field) {
+ContactTrial trial_after(const ContactInput<T>& input, int p, const Vector<T>& multiplier, const Vector<T>& seen,
+                         ContactState branch, const ContactField<T>& field) {
   const auto& point = input.model.points[p];
   const auto& rho = input.rho[p];
   ContactTrial trial;
   trial.pressure = -value(multiplier[point.multiplier]);
-  if (branch == ContactState::open) trial.pressure -= value(rho.normal) * value(field.gap[p]);
+  if (branch == ContactState::open)
+    trial.pressure = -(value(seen[point.multiplier]) + value(rho.normal) * value(field.gap[p]));
   double squares = 0;
   for (int a = 0; a < point.tangents; ++a) {
-    double z = value(multiplier[point.multiplier + 1 + a]);
+    const int k = point.multiplier + 1 + a;
+    double z = value(multiplier[k]);
     if (branch != ContactState::stick)
-      z += value(rho.tangential) * value(field.slip[tangential_offset(input.model, p) + a]);
+      z = value(seen[k]) + value(rho.tangential) * value(field.slip[tangential_offset(input.model, p) + a]);
     squares += z * z;
   }
   trial.tangential = std::sqrt(squares);
@@ -51,7 +54,7 @@ void resume_on_cone(const ContactInput<T>& input, const Vector<T>& multiplier, s
   for (int p = 0; p < static_cast<int>(input.model.points.size()); ++p) {
     const auto& point = input.model.points[p];
     if (field.state[p] == ContactState::open || point.tangents == 0) continue;
-    const double trial = trial_after(input, p, multiplier, ContactState::slip, field).tangential;
+    const double trial = trial_after(input, p, multiplier, multiplier, ContactState::slip, field).tangential;
     const auto& law = input.slots.friction[point.contact];
     const double pressure = -value(field.traction[point.multiplier]), bound = law.bound(pressure);
     if (bound > 0 && std::abs(trial - bound) <= 1e-8 * bound)

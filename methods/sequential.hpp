@@ -165,21 +165,26 @@ class Sequence {
 
   /// The branches of the points at an iterate that comes of a step in those of `directed`.
   std::vector<ContactState> branches_in(ContactField<T> field, const Unknowns<T>& at, const ContactField<T>& directed) {
-    const Vector<T> compact = engine_.compact(at.u);
+    const Vector<T> compact = engine_.compact(at.u), seen = seen_by_points(at.multiplier);
     if (!directed.state.empty() && task_.has_multiplier_rows())
       for (std::size_t p = 0; p < field.state.size(); ++p) {
-        const auto trial = trial_after(task_.contact, static_cast<int>(p), at.multiplier, directed.state[p], field);
+        const auto trial =
+            trial_after(task_.contact, static_cast<int>(p), at.multiplier, seen, directed.state[p], field);
         field.state[p] = trial.state(task_.contact, static_cast<int>(p), compact);
       }
-    return step_branches(task_.contact, compact, field, at.multiplier, directed);
+    return step_branches(task_.contact, compact, field, seen, directed);
+  }
+  Vector<T> seen_by_points(const Vector<T>& multiplier) const {
+    return task_.compliance ? task_.compliance->seen(multiplier) : multiplier;
   }
 
   /// How far points are from where `wanted` begins, of those that are not in `branches_` there: tractions.
   std::vector<double> distances_to(const std::vector<ContactState>& wanted, const ContactField<T>& field) {
     std::vector<double> distances;
+    const Vector<T> seen = seen_by_points(unknowns_.multiplier);
     for (std::size_t p = 0; p < wanted.size(); ++p) {
       const auto from = task_.has_multiplier_rows() ? branches_[p] : ContactState::open;  // (gaps count)
-      const auto trial = trial_after(task_.contact, static_cast<int>(p), unknowns_.multiplier, from, field);
+      const auto trial = trial_after(task_.contact, static_cast<int>(p), unknowns_.multiplier, seen, from, field);
       const bool opens = branches_[p] == ContactState::open || wanted[p] == ContactState::open;
       distances.push_back(std::abs(opens ? trial.pressure : trial.tangential - trial.bound));
     }

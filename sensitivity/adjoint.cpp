@@ -11,8 +11,8 @@
 namespace stickslip {
 namespace {
 
-/// The slots of a scene on a tape. Nodal coordinates are variables of their own, so that thousands of shape parameters
-/// share one transposed extension.
+/// The slots of a scene on a tape, as functions of the numbers that are parameters. Nodal coordinates of bodies that
+/// these shape are variables of their own, so that thousands of shape parameters share one transposed extension.
 struct Recording {
   Tape tape;
   Numbers<Reverse> numbers;
@@ -21,12 +21,22 @@ struct Recording {
   Slots<Reverse> slots;
 
   explicit Recording(const Model& model) {
-    for (double x : model.scene.numbers) numbers.at_slot.push_back(Reverse::leaf(x, tape));
+    numbers = model.scene.as<Reverse>();
+    for (const auto& parameter : model.scene.parameters)
+      for (const auto& [slot, weight] : parameter.slots)
+        if (numbers.at_slot[slot].at < 0) numbers.at_slot[slot] = Reverse::leaf(numbers.at_slot[slot].v, tape);
     Numbers<Reverse> unshaped = numbers;
     for (const auto& velocity : model.velocities) unshaped.at_slot[velocity.slot] = 0;
     made = initial_points(model, unshaped);
     points = made;
-    for (Eigen::Index i = 0; i < points.size(); ++i) points.data()[i] = Reverse::leaf(made.data()[i].v, tape);
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+      auto of_body = points.middleCols(model.bodies[b].first_node, model.bodies[b].mesh.node_count);
+      const auto is_of_body = [&](const auto& velocity) { return velocity.body == static_cast<int>(b); };
+      bool shaped = std::any_of(model.velocities.begin(), model.velocities.end(), is_of_body);
+      for (const auto& x : of_body.reshaped()) shaped |= x.at >= 0;
+      if (!shaped) continue;
+      for (auto& x : of_body.reshaped()) x = Reverse::leaf(x.v, tape);
+    }
     points_end = tape.size();
     slots = make_slots(model, numbers, points);
   }
@@ -34,12 +44,13 @@ struct Recording {
   /// Derivatives by all numbers of the scene out of those by the slots.
   Vector<double> by_numbers(const Model& model, std::vector<double>& by) const {
     tape.pull_back(by, points_end);
-    const Matrix<double> of_points = points.unaryExpr([&](const Reverse& x) { return by[x.at]; });
+    const auto derivative = [&](const Reverse& x) { return x.at >= 0 ? by[x.at] : 0; };
+    const Matrix<double> of_points = points.unaryExpr(derivative);
     for (Eigen::Index i = 0; i < made.size(); ++i)
       if (made.data()[i].at >= 0) by[made.data()[i].at] += of_points.data()[i];
     tape.pull_back(by, 0);
     Vector<double> out(numbers.at_slot.size());
-    for (std::size_t i = 0; i < numbers.at_slot.size(); ++i) out[i] = by[numbers.at_slot[i].at];
+    for (std::size_t i = 0; i < numbers.at_slot.size(); ++i) out[i] = derivative(numbers.at_slot[i]);
     const ShapeExtension* extension = nullptr;
     Matrix<double> of_given;  // by the motion of given nodes along each axis, for velocities that share the extension
     for (const auto& velocity : model.velocities) {
@@ -66,6 +77,25 @@ DerivativeStorage storage_of(const Recording& recording, const std::vector<Backw
     storage.adjoints += static_cast<long>(objective.by.capacity() * sizeof(double));
   }
   return storage;
+}
+
+/// Elements with a dof that is prescribed.
+ElementLists elements_at_supports(const Model& model) {
+  ElementLists lists(model.bodies.size());
+  for (std::size_t b = 0; b < lists.size(); ++b)
+    for (int e = 0; e < model.bodies[b].mesh.element_count(); ++e) {
+      const auto nodes = detail::element_nodes(model.bodies[b], e);
+      if (std::any_of(nodes.begin(), nodes.end(), [&](int node) { return has_prescribed(model, node); }))
+        lists[b].push_back(e);
+    }
+  return lists;
+}
+
+/// Whether an objective is of an energy.
+bool reads_energies(const Scene& scene) {
+  return std::any_of(scene.objectives.begin(), scene.objectives.end(), [&](const Objective& objective) {
+    return scene.responses[objective.response].kind == Response::Kind::strain_energy;
+  });
 }
 
 /// Moves the derivatives by the history that the run began with to the slots that it is a function of.
@@ -166,7 +196,15 @@ Gradients adjoint(const Model& model, const Slots<double>& slots, const Method& 
   long waiting = 0;
   auto backward = [&](const auto& m, auto& engine) {
     using E = std::decay_t<decltype(engine)>;
-    AdjointProblem<E> problem{model, slots, engine, tape, recording.slots, tape.size(), objectives, {}};
+    AdjointProblem<E> problem{model,
+                              slots,
+                              engine,
+                              tape,
+                              recording.slots,
+                              tape.size(),
+                              objectives,
+                              elements_at_supports(model),
+                              reads_energies(scene)};
     done = run(m, problem, consistent ? *consistent : trajectory);
     tape.rewind(problem.slots_end);
     waiting = problem.waiting_bytes;

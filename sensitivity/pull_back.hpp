@@ -13,6 +13,8 @@
 /// Path-dependent adjoint: [MTV94]
 #pragma once
 
+#include <utility>
+
 #include "core/algebra/reverse.hpp"
 #include "core/model/objective.hpp"
 #include "methods/method.hpp"
@@ -49,6 +51,12 @@ struct WorkLeft {
 WorkLeft pull_back_bodies(const Model& model, const Slots<Reverse>& slots, Tape& tape, const WorkPairs& pairs,
                           std::vector<double>& by);
 
+/// Whether the motion of a node is prescribed along some direction.
+inline bool has_prescribed(const Model& model, int node) {
+  const auto first = model.free_index.begin() + static_cast<std::ptrdiff_t>(node) * model.dimension;
+  return std::any_of(first, first + model.dimension, [](int index) { return index < 0; });
+}
+
 /// What an equilibrium leaves to be done inside the bodies.
 struct Inside {
   Vector<double> motion;          ///< u, all dofs in the axes
@@ -77,7 +85,9 @@ struct AdjointProblem {
   const Slots<Reverse>& recorded;
   int slots_end = 0;  ///< on the tape
   std::vector<Backward>& objectives;
-  long waiting_bytes = 0;  ///< largest, of what waited inside the bodies
+  ElementLists at_supports;  ///< elements with a dof that is prescribed: reactions are forces of these
+  bool energies = false;     ///< an objective reads the bodies' forces everywhere
+  long waiting_bytes = 0;    ///< largest, of what waited inside the bodies
   Counters counters;
   Status status = Status::singular;  ///< why a scheme gave up
   std::string message;
@@ -124,7 +134,7 @@ class RecordedEquilibrium {
   void seed_contact(int objective, const BlockVector<double>& solution);
   void clear_held(Matrix<double>& rows);
   std::vector<double>& by(int objective) { return problem_.objectives[objective].by; }
-  Vector<double> gather(int objective, const Vector<Reverse>& at);
+  Vector<double> gather(int objective, const Vector<Reverse>& leaves);
   static void seed(std::vector<double>& by, const Vector<Reverse>& at, const Vector<double>& derivative) {
     for (Eigen::Index i = 0; i < at.size(); ++i)
       if (at[i].at >= 0) by[at[i].at] += derivative[i];
@@ -135,9 +145,11 @@ class RecordedEquilibrium {
   Vector<double> scale_;  ///< rho of each multiplier component
   bool unknown_, valid_ = false, redundant_ = false;
   int outcome_start_ = 0;  ///< on the tape: behind it, functions of the variables below
-  Vector<Reverse> prescribed_, displacement_, internal_, multiplier_;
-  Vector<Reverse> memory_;    ///< what bodies remember of the increment
-  History<Reverse> history_;  ///< that the increment starts from
+  Vector<Reverse> prescribed_, displacement_, multiplier_;
+  std::vector<std::pair<int, int>> read_forces_;  ///< bodies' forces that are variables: dof, entry of the tape
+  Vector<double> forces_;                         ///< of the bodies, where they are read
+  Vector<Reverse> memory_;                        ///< what bodies remember of the increment
+  History<Reverse> history_;                      ///< that the increment starts from
   State<Reverse> state_;
   Vector<Reverse> rows_, multiplier_rows_;  ///< residual, in the frames of the nodes
   std::vector<Reverse> shares_;             ///< of this increment in each objective
@@ -167,7 +179,7 @@ RecordedEquilibrium<E>::RecordedEquilibrium(AdjointProblem<E>& problem, const St
   record(previous, rho, cone, time, objectives);
   Vector<double> forces;
   if (!model.framed.empty()) {
-    forces = values(internal_);
+    forces = forces_;
     add_compact(model, values(contact_forces(model, problem.recorded, state_.contact)), forces);
   }
   for (auto& objective : problem.objectives) {
@@ -196,7 +208,16 @@ void RecordedEquilibrium<E>::record(const State<double>& previous, const Regular
   outcome_start_ = tape.size();
   displacement_ = leaves(at_.displacement, tape);
   const Vector<double> memory = bulk_flow(model, problem_.slots, at_.displacement, previous.history.bodies);
-  internal_ = leaves(bulk_forces(model, problem_.slots, at_.displacement, memory), tape);
+  // (what reads forces by more than their derivative does so at supports, but for energies)
+  forces_ =
+      bulk_forces(model, problem_.slots, at_.displacement, memory, problem_.energies ? nullptr : &problem_.at_supports);
+  Vector<Reverse> internal = forces_.unaryExpr([](double x) { return Reverse(x); });
+  const int D = model.dimension;
+  for (int node = 0; node < model.node_count; ++node)
+    for (int dof = node * D; (problem_.energies || has_prescribed(model, node)) && dof < (node + 1) * D; ++dof) {
+      internal[dof] = Reverse::leaf(forces_[dof], tape);
+      read_forces_.emplace_back(dof, internal[dof].at);
+    }
   memory_ = leaves(memory, tape);
   multiplier_ = leaves(at_.multiplier, tape);
   for_each_part([&](const Vector<double>& values, Vector<Reverse>& part) { part = leaves(values, tape); },
@@ -210,18 +231,18 @@ void RecordedEquilibrium<E>::record(const State<double>& previous, const Regular
   take_rays(input, multiplier_, at_.contact.ray, state_.contact);
   state_.history = next_history(input, state_.contact, multiplier_);
   state_.history.bodies = memory_;
-  const Vector<Reverse> balance = nodal_balance(model, slots, state_, internal_, time);
+  const Vector<Reverse> balance = nodal_balance(model, slots, state_, internal, time);
   // (the engine has the tangent of pressures that follow the bodies; rows know what else they depend on)
   rows_ = balance;
   if (!model.followers.empty()) {
     const Vector<Reverse> still = at_.displacement.unaryExpr([](double x) { return Reverse(x); });
-    rows_ = internal_ - external_forces(model, slots, time, still);
+    rows_ = internal - external_forces(model, slots, time, still);
     add_compact(model, contact_forces(model, slots, state_.contact), rows_);
   }
   rows_ = into_frames(model, slots.frames, Layout::all, std::move(rows_));
   if (unknown_) multiplier_rows_ = multiplier_residual(model, slots, state_.contact.traction, multiplier_);
   if (!objectives) return;
-  const NodalForces<Reverse> forces{internal_, support_forces(model, slots, balance)};
+  const NodalForces<Reverse> forces{internal, support_forces(model, slots, balance)};
   for (const auto& objective : model.scene.objectives)
     shares_.push_back(contributes(objective, time, model.times.back())
                           ? contribution(objective, evaluate_response(model, slots, objective.response, state_, forces),
@@ -229,9 +250,11 @@ void RecordedEquilibrium<E>::record(const State<double>& previous, const Regular
                           : Reverse());
 }
 
+/// Derivatives by variables that stand one behind the other on the tape.
 template <class E>
-Vector<double> RecordedEquilibrium<E>::gather(int objective, const Vector<Reverse>& at) {
-  return at.unaryExpr([&](const Reverse& x) { return by(objective)[x.at]; });
+Vector<double> RecordedEquilibrium<E>::gather(int objective, const Vector<Reverse>& leaves) {
+  if (leaves.size() == 0) return {};
+  return Eigen::Map<const Vector<double>>(by(objective).data() + leaves[0].at, leaves.size());
 }
 
 template <class E>
@@ -253,8 +276,8 @@ void RecordedEquilibrium<E>::seed_traction(int objective, const Vector<double>& 
 template <class E>
 Vector<double> RecordedEquilibrium<E>::pull_back(int objective) {
   problem_.tape.pull_back(by(objective), outcome_start_);
-  const Vector<double> weight = gather(objective, internal_);
-  for (const auto& x : internal_) by(objective)[x.at] = 0;
+  Vector<double> weight = Vector<double>::Zero(problem_.model.dof_count());
+  for (const auto& [dof, entry] : read_forces_) weight[dof] = std::exchange(by(objective)[entry], 0);
   return weight;
 }
 
@@ -297,7 +320,7 @@ void RecordedEquilibrium<E>::seed_contact(int objective, const BlockVector<doubl
                                              problem_.engine.compact(Vector<double>(solution.u.col(0))));
   for (std::size_t n = 0; n < model.contact_nodes.size(); ++n)
     for (int i = 0; i < D; ++i)
-      if (const int dof = model.contact_nodes[n] * D + i; model.free_index[dof] >= 0)
+      if (const int dof = model.contact_nodes[n] * D + i; model.free_index[dof] >= 0 && rows_[dof].at >= 0)
         by(objective)[rows_[dof].at] += compact[n * D + i];
   if (unknown_) seed(by(objective), multiplier_rows_, solution.l.col(0));
   pull_back(objective);

@@ -14,6 +14,15 @@ auto plain_law(const L& law) {
   return std::make_pair(law.with(plain), recorded);
 }
 
+/// Calls f(law) with each part of the law's numbers behind the first, where there are any.
+template <class L, class F>
+void for_each_further_part(const L& law, F&& f) {
+  if constexpr (requires { law.part_count(); }) {
+    L of_part = law;
+    for (of_part.part = 1; of_part.part < law.part_count(); ++of_part.part) f(of_part);
+  }
+}
+
 /// The columns of pairs, one an increment.
 Eigen::Index increments_in(const WorkPairs& pairs) { return pairs.motions.cols(); }
 
@@ -32,6 +41,10 @@ void pull_back_continuum(const L& law, const Model& model, const Slots<Reverse>&
   const Reverse& thickness = slots.depths[b].thickness;
   std::vector<StateOfElement<Shape::nodes>> states(increments_in(pairs));
   if (!Remembers<L> && pairs.weights.size() == 0) return;
+  const auto is_on_tape = [](const Reverse& x) { return x.at >= 0; };
+  const Wanted wanted{is_on_tape(slots.points(0, body.first_node)) || is_on_tape(thickness),
+                      std::any_of(numbers.begin(), numbers.end(), is_on_tape)};
+  if (!Remembers<L> && !wanted.geometry && !wanted.law) return;
   for (int e = 0; e < body.mesh.element_count(); ++e) {
     const auto nodes = detail::element_nodes(body, e);
     Mat<double, 2, Shape::nodes> X;
@@ -49,7 +62,7 @@ void pull_back_continuum(const L& law, const Model& model, const Slots<Reverse>&
         state.memory = remembered(pairs.memory, body, e, n);
       }
     }
-    const auto work = element_work<Shape, kinematics>(plain, X, thickness.v, states);
+    const auto work = element_work<Shape, kinematics>(plain, X, thickness.v, states, wanted);
     const auto add = [&](const Reverse& input, double derivative) {
       if (input.at >= 0) by[input.at] += derivative;
     };
@@ -57,6 +70,11 @@ void pull_back_continuum(const L& law, const Model& model, const Slots<Reverse>&
       for (int i = 0; i < 2; ++i) add(slots.points(i, nodes[a]), work.coordinates(i, a));
     add(thickness, work.depth);
     for (std::size_t k = 0; k < numbers.size(); ++k) add(numbers[k], work.law[k]);
+    for_each_further_part(law, [&](const L& of_part) {
+      const auto [part, its_numbers] = plain_law(of_part);
+      const auto by_part = element_work<Shape, kinematics>(part, X, thickness.v, states, {false, true}).law;
+      for (std::size_t k = 0; k < by_part.size(); ++k) add(its_numbers[k], by_part[k]);
+    });
     for (std::size_t n = 0; n < work.before.size(); ++n) {
       const auto column = static_cast<Eigen::Index>(n);
       left.before.col(column).segment(body.first_memory + e * body.memory, body.memory) += work.before[n];

@@ -10,23 +10,6 @@ namespace stickslip {
 
 namespace detail {
 
-/// Elements with a dof that is prescribed.
-inline ElementLists elements_at_supports(const Model& model) {
-  const int D = model.dimension;
-  ElementLists lists(model.bodies.size());
-  for (std::size_t b = 0; b < lists.size(); ++b)
-    for (int e = 0; e < model.bodies[b].mesh.element_count(); ++e) {
-      const auto nodes = element_nodes(model.bodies[b], e);
-      const auto is_held = [&](int node) {
-        for (int i = 0; i < D; ++i)
-          if (model.free_index[node * D + i] < 0) return true;
-        return false;
-      };
-      if (std::any_of(nodes.begin(), nodes.end(), is_held)) lists[b].push_back(e);
-    }
-  return lists;
-}
-
 /// a of the waiting equilibria over all dofs in the axes, zero where motion is prescribed.
 template <class E>
 Matrix<double> weights_inside(AdjointProblem<E>& problem, const std::vector<Inside>& waiting) {
@@ -49,8 +32,7 @@ Matrix<double> weights_inside(AdjointProblem<E>& problem, const std::vector<Insi
 
 /// Moves weights `a` (all dofs, in the axes) inside the bodies to loads, frames and prescribed motion.
 template <class E>
-void pull_back_loads(AdjointProblem<E>& problem, const Inside& of, const Vector<double>& a,
-                     const ElementLists& at_supports, std::vector<double>& by) {
+void pull_back_loads(AdjointProblem<E>& problem, const Inside& of, const Vector<double>& a, std::vector<double>& by) {
   const Model& model = problem.model;
   const auto& slots = problem.recorded;
   Tape& tape = problem.tape;
@@ -77,7 +59,7 @@ void pull_back_loads(AdjointProblem<E>& problem, const Inside& of, const Vector<
     if (!touches[dof / model.dimension]) seed(rows[dof], weight[dof]);
   Vector<double> held =
       into_frames(model, problem.slots.frames, Layout::all,
-                  tangent_times(model, problem.slots, {of.motion, of.before, of.time}, a, true, &at_supports));
+                  tangent_times(model, problem.slots, {of.motion, of.before, of.time}, a, true, &problem.at_supports));
   for (int dof : model.free_dofs) held[dof] = 0;
   held = out_of_frames(model, problem.slots.frames, Layout::all, std::move(held));
   for (Eigen::Index i = 0; i < held.size(); ++i) seed(prescribed[i], held[i]);
@@ -89,7 +71,6 @@ void pull_back_loads(AdjointProblem<E>& problem, const Inside& of, const Vector<
 /// Does what waits inside the bodies. What these remember adds to the derivatives by history.
 template <class E>
 void pull_back_inside(AdjointProblem<E>& problem) {
-  const auto at_supports = detail::elements_at_supports(problem.model);
   long waiting = 0;
   for (const auto& objective : problem.objectives)
     for (const auto& of : objective.inside)
@@ -104,7 +85,7 @@ void pull_back_inside(AdjointProblem<E>& problem) {
     pairs.before.resize(problem.model.memory_count, pairs.weights.cols());
     for (std::size_t n = 0; n < waiting.size(); ++n) {
       const auto k = static_cast<Eigen::Index>(n);
-      detail::pull_back_loads(problem, waiting[n], pairs.weights.col(k), at_supports, objective.by);
+      detail::pull_back_loads(problem, waiting[n], pairs.weights.col(k), objective.by);
       pairs.weights.col(k) += waiting[n].weights;
       pairs.motions.col(k) = waiting[n].motion;
       pairs.before.col(k) = waiting[n].before;

@@ -1,8 +1,12 @@
 #include "core/contact/curve.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
+
+#include "core/contact/search.hpp"
 
 namespace stickslip {
 
@@ -30,6 +34,33 @@ std::vector<Patch> make_patches(const std::vector<std::vector<int>>& facets, Smo
     after.vertices[0] = before.vertices[1];
   }
   return patches;
+}
+
+OwnVertex own_vertex(const std::vector<Patch>& patches, const Eigen::Matrix2Xd& places, int vertex,
+                     const Vec<double, 2>& outward, double mesh_size) {
+  const auto cross = [](const Vec<double, 2>& a, const Vec<double, 2>& b) { return a[0] * b[1] - a[1] * b[0]; };
+  const Vec<double, 2> x = places.col(vertex), inward = -outward.normalized();
+  double through = std::numeric_limits<double>::infinity();
+  for (const auto& patch : patches) {
+    if (patch.vertices[1] == vertex || patch.vertices[2] == vertex) continue;
+    const Vec<double, 2> a = places.col(patch.vertices[1]) - x, b = places.col(patch.vertices[2]) - x;
+    const double side_a = cross(inward, a), side_b = cross(inward, b);
+    if (side_a * side_b > 0 || side_a == side_b) continue;
+    const double depth = (a + side_a / (side_a - side_b) * (b - a)).dot(inward);
+    if (depth > 0) through = std::min(through, depth);
+  }
+  OwnVertex own{vertex, std::max(mesh_size, through), std::vector<char>(patches.size(), 0)};
+  if (!std::isfinite(through)) return own;  // the side is not closed
+  const Vec<double, 2> out = x + through * inward;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const Vec<double, 2> a = places.col(patches[p].vertices[1]), tau = places.col(patches[p].vertices[2]) - a;
+    const auto distance = [&](const Vec<double, 2>& from) {
+      return (from - a - std::clamp((from - a).dot(tau) / tau.squaredNorm(), 0.0, 1.0) * tau).norm();
+    };
+    const bool behind = cross(x - a, tau) < -at_facet_end * tau.squaredNorm();
+    own.wall[p] = behind && std::min(distance(x), distance(out)) < 2 * through + tau.norm();
+  }
+  return own;
 }
 
 }  // namespace stickslip

@@ -31,6 +31,25 @@ struct Patch {
   bool goes_on_after() const { return vertices[3] != none; }
 };
 
+/// A point that is a vertex of the curve that it faces, a side in contact with itself. It faces patches behind it on
+/// the curve alone, so that one of two places that meet is the slave; none that it shapes itself; and none of its own
+/// wall.
+struct OwnVertex {
+  int vertex = Patch::none;
+  double reach = 0;             ///< it is further inside of nothing
+  std::vector<char> wall = {};  ///< per patch: whether it is of the point's own wall
+
+  bool may_face(const std::vector<Patch>& patches, int p) const {
+    const auto& vertices = patches[p].vertices;
+    return vertices[1] > vertex && !wall[p] && std::find(vertices.begin(), vertices.end(), vertex) == vertices.end();
+  }
+  bool may_face_some(const std::vector<Patch>& patches) const {
+    for (int p = 0; p < static_cast<int>(patches.size()); ++p)
+      if (may_face(patches, p)) return true;
+    return false;
+  }
+};
+
 /// Place on a curve.
 struct Facing {
   int patch = Patch::none;  ///< none: nothing of the curve is faced
@@ -147,6 +166,13 @@ auto foot_weights(const Patch& patch, const std::array<T, 4>& n, bool rigid) {
     if (patch.vertices[i] != Patch::none) weights[++k] = -n[i];
   return weights;
 }
+
+/// What a vertex of a side that touches itself may face. Its own wall, which it never faces, are the patches that it is
+/// behind of at the start, no further from it, or from where a ray through the solid comes out, than twice the way of
+/// that ray.
+/// `places`: of the start; `outward`: normal of the side there; `mesh_size`: of the side there.
+OwnVertex own_vertex(const std::vector<Patch>& patches, const Eigen::Matrix2Xd& places, int vertex,
+                     const Vec<double, 2>& outward, double mesh_size);
 
 /// Patches from facets (vertex pairs, solid on their left). `places`: of the vertices at the start, by number. Facets
 /// that turn by more than `corner` degrees keep their corner.

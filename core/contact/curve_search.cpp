@@ -34,6 +34,7 @@ CurveSearch::CurveSearch(const std::vector<Patch>& patches, const Eigen::Matrix2
   }
   const Vec<double, 2> size = high - low;
   if (!places.allFinite() || !size.allFinite() || !(length > 0)) return;  // of a trial out of bounds: no cells
+  size_ = size.norm();
   // cells about as large as the facets, and no more than four times as many
   corner_ = low;
   cell_ = std::max({length, std::sqrt(size[0] * size[1] / (4.0 * count)), size.maxCoeff() / (4.0 * count)});
@@ -54,9 +55,26 @@ CurveSearch::CurveSearch(const std::vector<Patch>& patches, const Eigen::Matrix2
   for (int p = 0; p < count; ++p) for_each_cell(p, [&](int cell) { in_cell_[next[cell]++] = p; });
 }
 
-void CurveSearch::try_facet(int patch, const Vec<double, 2>& x, const Vec<double, 2>& outward, Nearest& best) const {
+bool CurveSearch::counts(int patch, const Sought& sought) const {
+  const Vec<double, 2> a = vertex(patch, 0), tau = vertex(patch, 1) - a, &outward = sought.outward;
+  const double along = outward[0] * tau[1] - outward[1] * tau[0];  // of the normals, times the facet's length
+  if (along > 0 || !sought.own) return !(along > 0);
+  constexpr double least_against = 0.5;  // cosine: the sides of a corner never touch each other
+  if (along > -least_against * outward.norm() * tau.norm() || !sought.own->may_face(patches_, patch)) return false;
+  const Vec<double, 2> off = sought.x - a;
+  const double gap = (off[0] * tau[1] - off[1] * tau[0]) / tau.norm();
+  constexpr double beside = 0.5;  // facets: what it is inside of is where it is
+  const double xi = off.dot(tau) / tau.squaredNorm();
+  if (gap >= 0) return true;
+  constexpr int next_to = 8;
+  const int count = static_cast<int>(patches_.size()), apart = std::abs(patch - sought.last);
+  const bool was_in_front = sought.last != Patch::none && std::min(apart, count - apart) <= next_to;
+  const double reach = (was_in_front ? 1 : 0.25) * sought.own->reach;
+  return gap >= -reach && xi >= -beside && xi <= 1 + beside;
+}
+
+void CurveSearch::try_facet(int patch, const Vec<double, 2>& x, Nearest& best) const {
   const Vec<double, 2> a = vertex(patch, 0), tau = vertex(patch, 1) - a;
-  if (outward[0] * tau[1] - outward[1] * tau[0] > 0) return;  // looks the same way
   const double xi = (x - a).dot(tau) / tau.squaredNorm();
   const double distance = (x - a - std::clamp(xi, 0.0, 1.0) * tau).norm();
   const double band = at_facet_end * tau.norm();
@@ -69,7 +87,8 @@ void CurveSearch::try_facet(int patch, const Vec<double, 2>& x, const Vec<double
   best = {patch, xi, distance};
 }
 
-CurveSearch::Nearest CurveSearch::nearest_facet(const Vec<double, 2>& x, const Vec<double, 2>& outward) const {
+CurveSearch::Nearest CurveSearch::nearest_facet(const Sought& sought) const {
+  const Vec<double, 2>& x = sought.x;
   Nearest best;
   if (start_.empty() || !x.allFinite()) return best;
   std::array<int, 2> at;
@@ -78,7 +97,8 @@ CurveSearch::Nearest CurveSearch::nearest_facet(const Vec<double, 2>& x, const V
   const auto try_cell = [&](int i, int j) {
     if (i < 0 || j < 0 || i >= cells_[0] || j >= cells_[1]) return;
     const int cell = j * cells_[0] + i;
-    for (int k = start_[cell]; k < start_[cell + 1]; ++k) try_facet(in_cell_[k], x, outward, best);
+    for (int k = start_[cell]; k < start_[cell + 1]; ++k)
+      if (counts(in_cell_[k], sought)) try_facet(in_cell_[k], x, best);
   };
   const int most = std::max(cells_[0], cells_[1]);
   for (int ring = 0; ring <= most; ++ring) {
@@ -104,11 +124,14 @@ Vec<double, 2> CurveSearch::tangent_at_end(int patch, int end) const {
   return detail::on_patch<double>(patches_[patch], w.slope, place_in(places_)).normalized();
 }
 
-/// The place faced by a point whose foot is beyond the end of a patch at a corner, or at a free end.
-Facing CurveSearch::at_end(Facing at, const Vec<double, 2>& x) const {
+/// The place faced by a point whose foot is beyond the end of a patch at a corner, or where what counts of the curve
+/// ends.
+Facing CurveSearch::at_end(Facing at, const Sought& sought) const {
+  const Vec<double, 2>& x = sought.x;
   const Patch& patch = patches_[at.patch];
   const int end = at.xi > 1 ? 1 : 0, other = end == 1 ? patch.next : patch.previous;
-  if (other == Patch::none) return (end == 1 ? at.xi - 1 : -at.xi) > past_end_of_curve ? Facing{} : at;
+  if (other == Patch::none || !counts(other, sought))
+    return (end == 1 ? at.xi - 1 : -at.xi) > past_end_of_curve ? Facing{} : at;
   const Vec<double, 2> along = tangent_at_end(at.patch, end) + tangent_at_end(other, 1 - end);
   const double side = (x - vertex(at.patch, end)).dot(along);
   if (end == 1 ? side <= 0 : side >= 0) return at;
@@ -145,8 +168,9 @@ Facing CurveSearch::slide(Facing at, const Vec<double, 2>& x, int hops) const {
   return {};
 }
 
-Facing CurveSearch::faced(const Vec<double, 2>& x, const Vec<double, 2>& outward) const {
-  const Nearest nearest = nearest_facet(x, outward);
+Facing CurveSearch::faced(const Sought& sought) const {
+  const Vec<double, 2>& x = sought.x;
+  const Nearest nearest = nearest_facet(sought);
   if (nearest.patch == Patch::none) return {};
   Facing at{nearest.patch, nearest.xi};
   if (patches_[at.patch].smoothing != Smoothing::none) {
@@ -156,26 +180,40 @@ Facing CurveSearch::faced(const Vec<double, 2>& x, const Vec<double, 2>& outward
   }
   const Patch& patch = patches_[at.patch];
   const bool ends = (at.xi < 0 && !patch.goes_on_before()) || (at.xi > 1 && !patch.goes_on_after());
-  return ends ? at_end(at, x) : at;
+  return ends ? at_end(at, sought) : at;
 }
 
 Facing CurveSearch::stay(int patch, const Vec<double, 2>& x) const { return slide({patch, 0.5}, x, 0); }
 
 Facing CurveSearch::facing(const Vec<double, 2>& x, const Vec<double, 2>& outward) const {
-  Facing at = faced(x, outward);
+  Facing at = faced({x, outward});
   const auto is_inside = [&](const Facing& facing) {
     return foot_on_patch<double>(patches_[facing.patch], facing.xi, x, place_in(places_)).gap < 0;
   };
   if (at.patch != Patch::none && outward != Vec<double, 2>::Zero() && is_inside(at)) {
-    const Facing nearest = faced(x, Vec<double, 2>::Zero());  // of a face beyond the solid that x is outside of
+    const Facing nearest = faced({x, Vec<double, 2>::Zero()});  // of a face beyond the solid that x is outside of
     if (nearest.patch != Patch::none && !is_inside(nearest)) at = {};
   }
-  if (at.patch != Patch::none && std::abs(at.xi - 1) < at_facet_end && patches_[at.patch].next != Patch::none) {
-    const Facing next = slide({patches_[at.patch].next, 0.0}, x, 0);  // so that rounding does not tell the two apart
-    if (next.patch != Patch::none && std::abs(next.xi) < at_facet_end) at = next;
-  }
-  if (at.patch == Patch::none) at.distance = nearest_facet(x, Vec<double, 2>::Zero()).distance;
+  at = in_second_patch(at, {x, outward});
+  if (at.patch == Patch::none) at.distance = nearest_facet({x, Vec<double, 2>::Zero()}).distance;
   return at;
+}
+
+Facing CurveSearch::facing_itself(const Vec<double, 2>& x, const Vec<double, 2>& outward, const OwnVertex& own,
+                                  int last) const {
+  const Sought sought{x, outward, &own, last};
+  const Facing at = in_second_patch(faced(sought), sought);  // (may have slid from a patch that counts)
+  if (at.patch != Patch::none && counts(at.patch, sought)) return at;
+  return {Patch::none, 0, size_};
+}
+
+/// Where two patches that count meet, the place on the second, so that rounding does not tell the two apart.
+Facing CurveSearch::in_second_patch(Facing at, const Sought& sought) const {
+  if (at.patch == Patch::none || std::abs(at.xi - 1) >= at_facet_end) return at;
+  const int second = patches_[at.patch].next;
+  if (second == Patch::none || !counts(second, sought)) return at;
+  const Facing next = slide({second, 0.0}, sought.x, 0);
+  return next.patch != Patch::none && std::abs(next.xi) < at_facet_end ? next : at;
 }
 
 }  // namespace stickslip

@@ -19,6 +19,10 @@ class CurveSearch {
   /// solid by the nearest patch of all is not inside of it by another. Where two patches meet it is the second's.
   /// Where places are not finite, as in a trial that is rejected, nothing is faced, at no finite distance.
   Facing facing(const Vec<double, 2>& x, const Vec<double, 2>& outward) const;
+  /// Of a vertex of this very curve: patches count whose normal is against `outward` by more than 120 degrees. It is
+  /// inside of what it is beside of, up to its reach; of what is not next to `last`, the patch that it faced in the
+  /// last state, up to a quarter of that. Where it faces nothing, the distance is the size of the curve.
+  Facing facing_itself(const Vec<double, 2>& x, const Vec<double, 2>& outward, const OwnVertex& own, int last) const;
   /// The foot of x on one patch, beyond its ends too.
   Facing stay(int patch, const Vec<double, 2>& x) const;
 
@@ -27,18 +31,27 @@ class CurveSearch {
     int patch = Patch::none;
     double xi = 0, distance = std::numeric_limits<double>::infinity();
   };
+  /// What is sought: the place nearest to x, of patches that look against `outward`; `own`: where there is one, those
+  /// alone that it may face.
+  struct Sought {
+    Vec<double, 2> x, outward;
+    const OwnVertex* own = nullptr;
+    int last = Patch::none;
+  };
   Vec<double, 2> vertex(int patch, int end) const { return places_.col(patches_[patch].vertices[1 + end]); }
-  Nearest nearest_facet(const Vec<double, 2>& x, const Vec<double, 2>& outward) const;
-  void try_facet(int patch, const Vec<double, 2>& x, const Vec<double, 2>& outward, Nearest& best) const;
+  Nearest nearest_facet(const Sought& sought) const;
+  bool counts(int patch, const Sought& sought) const;
+  void try_facet(int patch, const Vec<double, 2>& x, Nearest& best) const;
   Facing slide(Facing from, const Vec<double, 2>& x, int hops) const;
   Vec<double, 2> tangent_at_end(int patch, int end) const;
-  Facing at_end(Facing at, const Vec<double, 2>& x) const;
-  Facing faced(const Vec<double, 2>& x, const Vec<double, 2>& outward) const;
+  Facing at_end(Facing at, const Sought& sought) const;
+  Facing faced(const Sought& sought) const;
+  Facing in_second_patch(Facing at, const Sought& sought) const;
 
   const std::vector<Patch>& patches_;
   const Eigen::Matrix2Xd& places_;
-  Vec<double, 2> corner_;  ///< of the grid
-  double cell_ = 1;
+  Vec<double, 2> corner_;                                             ///< of the grid
+  double cell_ = 1, size_ = std::numeric_limits<double>::infinity();  ///< of a cell; of the whole curve
   std::array<int, 2> cells_{{1, 1}};
   std::vector<int> start_, in_cell_;  ///< patches of each cell, one list after another
 };

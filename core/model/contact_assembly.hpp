@@ -18,10 +18,10 @@ History<T> initial_history(const Model& model, const Slots<T>& slots) {
   if (model.slides_along_curves()) history.patch.assign(model.points.size(), Patch::none);
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
+    if (point.curve >= 0 && !history.patch.empty()) history.patch[p] = point.facing.patch;
     if (point.foot < 0) continue;
     if (point.curve >= 0) {
       if (point.facing.patch == Patch::none) continue;
-      history.patch[p] = point.facing.patch;
       history.foot[point.foot] = detail::foot_of_start(model, point, slots).xi;
       continue;
     }

@@ -106,32 +106,48 @@ std::optional<std::vector<double>> weights_at(ElementShape shape, const Points<d
   return weights;
 }
 
-/// Finds where a response with `at` is taken. Throws ModelError where no element holds the point.
+/// The nodes of the first element of a body that holds x, with their weights; empty where none does.
+std::vector<std::pair<int, double>> find_in_body(const BodyMesh& body, const Points<double>& points,
+                                                 const Eigen::VectorXd& x) {
+  const int count = nodes_of(body.mesh.shape);
+  for (int e = 0; e < body.mesh.element_count(); ++e) {
+    std::vector<int> nodes(count);
+    for (int a = 0; a < count; ++a) nodes[a] = body.first_node + body.mesh.connectivity[e * count + a];
+    Eigen::VectorXd low = Eigen::VectorXd::Constant(x.size(), INFINITY), high = -low;
+    for (const int node : nodes) {
+      low = low.cwiseMin(points.col(node));
+      high = high.cwiseMax(points.col(node));
+    }
+    const double slack = 1e-6 * (high - low).norm();
+    if ((x.array() < low.array() - slack).any() || (x.array() > high.array() + slack).any()) continue;
+    const auto weights = weights_at(body.mesh.shape, points, nodes, x);
+    if (!weights) continue;
+    std::vector<std::pair<int, double>> weighted;
+    for (std::size_t a = 0; a < nodes.size(); ++a) weighted.emplace_back(nodes[a], (*weights)[a]);
+    return weighted;
+  }
+  return {};
+}
+
+/// Finds where a response with `at` is taken, in the body that it names, or the first that holds the point. Throws
+/// ModelError where no element holds it.
 ResponsePlace locate_response(const Model& model, const Points<double>& points, const Response& response) {
   ResponsePlace place;
   if (response.at.empty()) return place;
   Eigen::VectorXd x(model.dimension);
   for (int i = 0; i < model.dimension; ++i) x[i] = response.at[i].value;
   if (response.kind == Response::Kind::displacement) {
-    for (const auto& body : model.bodies) {
-      const int n = nodes_of(body.mesh.shape);
-      for (int e = 0; e < body.mesh.element_count(); ++e) {
-        std::vector<int> nodes(n);
-        Eigen::VectorXd low = Eigen::VectorXd::Constant(model.dimension, INFINITY), high = -low;
-        for (int a = 0; a < n; ++a) {
-          nodes[a] = body.first_node + body.mesh.connectivity[e * n + a];
-          low = low.cwiseMin(points.col(nodes[a]));
-          high = high.cwiseMax(points.col(nodes[a]));
-        }
-        const double slack = 1e-6 * (high - low).norm();
-        if ((x.array() < low.array() - slack).any() || (x.array() > high.array() + slack).any()) continue;
-        if (const auto weights = weights_at(body.mesh.shape, points, nodes, x)) {
-          for (int a = 0; a < n; ++a) place.nodes.emplace_back(nodes[a], (*weights)[a]);
-          return place;
-        }
-      }
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+      if (!response.on.empty() && model.scene.bodies[b].name != response.on) continue;
+      auto nodes = find_in_body(model.bodies[b], points, x);
+      if (nodes.empty()) continue;
+      place.bodies.push_back(static_cast<int>(b));
+      if (place.nodes.empty()) place.nodes = std::move(nodes);
     }
-    throw ModelError("no element holds the point of `at`", "/responses/" + response.name);
+    const std::string of_body = response.on.empty() ? "" : " of " + response.on;
+    if (place.nodes.empty())
+      throw ModelError("no element" + of_body + " holds the point of `at`", "/responses/" + response.name);
+    return place;
   }
   double nearest = INFINITY;
   for (std::size_t p = 0; p < model.points.size(); ++p) {

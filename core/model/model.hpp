@@ -54,6 +54,7 @@ struct ContactPoint {
   int obstacle = -1;             ///< index in Scene::obstacles, -1 for a deformable master
   int curve = -1;                ///< index in Model::curves; -1: it faces none
   Facing facing = {};            ///< the place of the curve that it faces at the start
+  OwnVertex own = {};            ///< of the curve, where its slave is its master
   int foot = -1;                 ///< offset of its foot's place in History::foot; -1: it has none
   std::vector<int> nodes;        ///< slave, then master nodes (facet: its two; vertex: itself, then the far ends of the
                                  ///< facets at whose very end the projection lies; curve: of the patch of the start)
@@ -124,6 +125,7 @@ struct Follower {
 struct ResponsePlace {
   std::vector<std::pair<int, double>> nodes;
   int contact_point = -1;
+  std::vector<int> bodies = {};  ///< that hold the point; the nodes are of the first
 };
 
 /// Elements of each body.

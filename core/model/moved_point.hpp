@@ -171,7 +171,8 @@ std::vector<Facing> facings(const ContactInput<T>& input, const Vector<T>& compa
             place_of(b, point.facet_places[f].second) - place_of(a, point.facet_places[f].first);
         outward += Vec<double, 2>(along[1], -along[0]);
       }
-      found[p] = search.facing(x, outward);
+      found[p] = point.own.vertex == Patch::none ? search.facing(x, outward)
+                                                 : search.facing_itself(x, outward, point.own, input.previous.patch[p]);
     }
   }
   return found;

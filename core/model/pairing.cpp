@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "core/contact/curve_search.hpp"
 #include "core/contact/search.hpp"
@@ -142,6 +143,57 @@ void pair_nodes(Model& model, const Points<double>& points, const Pairing& pairi
   }
 }
 
+/// The facets of a side that touches itself, one behind the other; which place is its first hangs on no numbering: of
+/// a loop the furthest from its middle, of these the one furthest to the left, and below; longer loops come first.
+std::vector<std::vector<int>> in_order(const std::vector<std::vector<int>>& facets, const Points<double>& points) {
+  std::map<int, int> starting;
+  std::set<int> ends;
+  for (std::size_t f = 0; f < facets.size(); ++f) {
+    starting[facets[f][0]] = static_cast<int>(f);
+    ends.insert(facets[f][1]);
+  }
+  struct Chain {
+    double length = 0;
+    std::vector<int> facets;
+  };
+  std::vector<Chain> chains;
+  std::vector<char> taken(facets.size(), 0);
+  const auto follow = [&](int f) {
+    Chain chain;
+    for (auto next = starting.find(facets[f][0]); next != starting.end() && !taken[next->second];
+         next = starting.find(facets[chain.facets.back()][1])) {
+      taken[next->second] = 1;
+      chain.facets.push_back(next->second);
+      chain.length += (points.col(facets[next->second][1]) - points.col(facets[next->second][0])).norm();
+    }
+    chains.push_back(std::move(chain));
+  };
+  for (std::size_t f = 0; f < facets.size(); ++f)
+    if (ends.count(facets[f][0]) == 0) follow(static_cast<int>(f));
+  for (std::size_t f = 0; f < facets.size(); ++f) {
+    if (taken[f]) continue;
+    follow(static_cast<int>(f));
+    auto& loop = chains.back().facets;
+    const auto place = [&](int facet) -> Vec<double, 2> { return points.col(facets[facet][0]).head<2>(); };
+    Vec<double, 2> middle = Vec<double, 2>::Zero();
+    for (int facet : loop) middle += place(facet) / static_cast<double>(loop.size());
+    const double same = 1e-9 * chains.back().length;
+    const auto comes_first = [&](int a, int b) {
+      const double apart = (place(a) - middle).norm() - (place(b) - middle).norm();
+      if (std::abs(apart) > same) return apart > 0;
+      if (std::abs(place(a)[0] - place(b)[0]) > same) return place(a)[0] < place(b)[0];
+      return place(a)[1] < place(b)[1];
+    };
+    std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end(), comes_first), loop.end());
+  }
+  std::stable_sort(chains.begin(), chains.end(),
+                   [](const Chain& a, const Chain& b) { return a.length > b.length * (1 + 1e-9); });
+  std::vector<std::vector<int>> ordered;
+  for (const auto& chain : chains)
+    for (int f : chain.facets) ordered.push_back(facets[f]);
+  return ordered;
+}
+
 /// The curve that a contact's master is, with the places of its vertices.
 std::pair<MasterCurve, Eigen::Matrix2Xd> make_curve(const Model& model, const Points<double>& points,
                                                     const Pairing& pairing) {
@@ -156,6 +208,7 @@ std::pair<MasterCurve, Eigen::Matrix2Xd> make_curve(const Model& model, const Po
     places = vertices_of(polyline, model.scene.as<double>());
     facets = facets_of(polyline);
   } else {
+    if (contact.is_of_itself()) facets = in_order(facets, points);
     std::map<int, int> number;
     for (auto& facet : facets)
       for (int& node : facet) {
@@ -177,6 +230,7 @@ void pair_along_curve(Model& model, const Points<double>& points, const Pairing&
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
   auto [curve, places] = make_curve(model, points, pairing);
   const CurveSearch search(curve.patches, places);
+  const bool of_itself = model.scene.contacts[pairing.index].is_of_itself();
   for (int node : pairing.slave.nodes) {
     if (is_quadratic(shape) && model.is_on_axis(points, node)) continue;  // it has no tributary area
     ContactPoint point = slave_point(model, points, pairing, node);
@@ -184,7 +238,16 @@ void pair_along_curve(Model& model, const Points<double>& points, const Pairing&
     const Vec<double, 2> outward = has_side ? slave_normal(point.area_facets, points) : Vec<double, 2>::Zero().eval();
     point.master = ContactPoint::Master::curve;
     point.curve = static_cast<int>(model.curves.size());
-    point.facing = search.facing(points.col(node).head<2>(), outward);
+    const Vec<double, 2> x = points.col(node).head<2>();
+    if (of_itself) {
+      const auto found = std::find(curve.nodes.begin(), curve.nodes.end(), node);
+      point.own =
+          own_vertex(curve.patches, places, static_cast<int>(found - curve.nodes.begin()), outward, point.mesh_size);
+      if (!point.own.may_face_some(curve.patches)) continue;
+      point.facing = search.facing_itself(x, outward, point.own, Patch::none);
+    } else {
+      point.facing = search.facing(x, outward);
+    }
     const bool faces = point.facing.patch != Patch::none;
     if (!faces && !model.scene.finite_strain) continue;
     point.shares_normal = !model.scene.finite_strain && pairing.obstacle < 0 && has_side;
@@ -244,13 +307,15 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
   }
   const bool has_facets =
       pairing.obstacle < 0 || std::holds_alternative<Polyline>(model.scene.obstacles[pairing.obstacle].shape);
-  const bool along_curve = model.scene.finite_strain || contact.smoothing != Smoothing::none || !contact.group.empty();
+  const bool along_curve = model.scene.finite_strain || contact.smoothing != Smoothing::none ||
+                           !contact.group.empty() || contact.is_of_itself();
   if (has_facets && along_curve && !contact.segment) return pair_along_curve(model, points, pairing);
   if (!contact.segment) return pair_nodes(model, points, pairing);
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
   const bool quadratic_master = pairing.obstacle < 0 && is_quadratic(model.bodies[pairing.master.body].mesh.shape);
   if (is_quadratic(shape) || quadratic_master)
     throw ModelError("segment integration needs linear elements on both sides", where);
+  if (contact.is_of_itself()) throw ModelError("segment integration is between two sides", where);
   if (model.dimension == 3 || pairing.slave.facets.empty() || !is_continuum(shape))
     throw ModelError("segment integration needs a slave side of facets of a solid body", where);
   if (pairing.obstacle >= 0 && std::holds_alternative<Polyline>(model.scene.obstacles[pairing.obstacle].shape))

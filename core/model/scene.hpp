@@ -163,13 +163,15 @@ struct Obstacle {
 struct Contact {
   std::string name;
   std::string slave;                            ///< side expression of a deformable body
-  std::string master;                           ///< obstacle name, or side expression of a deformable body
+  std::string master;                           ///< obstacle name, or side expression of a deformable body; the slave's
+                                                ///< own: the side touches itself
   std::optional<FrictionLaw<Number>> friction;  ///< none: frictionless, no tangential unknowns or code path
   Number offset = 0.0;                          ///< added to the geometric gap
   bool segment = false;                         ///< segment-integrated gap and slip in place of node-to-segment
   Smoothing smoothing = Smoothing::none;        ///< of a master of facets
   double corner = 30;                           ///< degrees that facets turn by at most where they are smoothed
   std::string group = {};                       ///< of a pair of "between": the name that stands for all pairs
+  bool is_of_itself() const { return slave == master; }
 };
 
 /// Prescribed displacement n.u along a direction, free across it.

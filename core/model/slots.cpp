@@ -34,7 +34,7 @@ double yield_margin(const Model& model, const Slots<double>& slots, const BodyMo
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     const auto& body = model.bodies[b];
     if (body.memory == 0) continue;
-    const auto take = [&](double excess) { least = std::min(least, std::abs(excess)); };
+    const auto take = [&](double margin) { least = std::min(least, margin); };
     const auto continuum = [&]<class Shape, Kinematics kinematics, class L>(const L& law) {
       if constexpr (Remembers<L>)
         for (int e = 0; e < body.mesh.element_count(); ++e) {
@@ -44,7 +44,7 @@ double yield_margin(const Model& model, const Slots<double>& slots, const BodyMo
           for_each_strain_in<double, Shape, kinematics>(
               law.is_finite, detail::gather_coordinates<double, Shape>(slots.points, nodes.data()), 1.0, local,
               [&](const auto& H, double) {
-                take(law.template excess<stress_dimension(kinematics)>(H, before.template take<L::memory>()));
+                take(law.template margin<stress_dimension(kinematics)>(H, before.template take<L::memory>()));
               });
         }
     };
@@ -52,7 +52,7 @@ double yield_margin(const Model& model, const Slots<double>& slots, const BodyMo
       if constexpr (Remembers<L>)
         for (int e = 0; e < body.mesh.element_count(); ++e) {
           const auto nodes = detail::element_nodes(body, e);
-          take(law.template excess<D>(detail::two_places<double, D>(slots.points, nodes),
+          take(law.template margin<D>(detail::two_places<double, D>(slots.points, nodes),
                                       detail::two_node_stretch<double, D>(nodes, &at.displacement),
                                       detail::memory_of_element<L>(body, e, at.before).template take<L::memory>()));
         }

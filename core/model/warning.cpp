@@ -20,6 +20,8 @@ std::string_view name_of(WarningCode code) {
       return "single_node";
     case WarningCode::held_on_facet:
       return "held_on_facet";
+    case WarningCode::shared_place:
+      return "shared_place";
     case WarningCode::branch_ends:
       return "branch_ends";
     case WarningCode::non_unique:

@@ -17,6 +17,7 @@ enum class WarningCode {
   locking,         ///< value: spurious pressure / stress, both root mean squares over the body
   single_node,     ///< value: share of the force that one node carries
   held_on_facet,   ///< value: how far a point is beyond the end of its facet, in facets
+  shared_place,    ///< value: number of bodies that hold the place of a response
   branch_ends,     ///< value: time at which the solution jumps
   non_unique       ///< value: number of solutions that are known, 1: there may be more, 0 where they are a continuum
 };

@@ -3,9 +3,9 @@
 ///
 ///   W = sum_n sum_q A_n : P(H_n) V_q,   A_n = B_q a_n,   H_n = B_q u_n
 ///
-/// The stress P is differentiated forward, along A_n and by the law's numbers; (dP/dH : A) is what multiplies dH, since
-/// a stress that has an energy has a symmetric tangent. B_q and the volume V_q are differentiated forward by the
-/// coordinates, whatever the kinematics.
+/// The stress P is differentiated forward, along A_n and by the law's numbers; Q = dP/dH : A is what multiplies dH,
+/// since a stress that has an energy has a symmetric tangent. Of all increments together follow the derivatives by B_q
+/// and the volume V_q, and from them those by the coordinates (core/solids/gradient_work.hpp).
 ///
 /// Of a law that remembers, P is that after the flow from the memory before, and the memory h after it joins the work
 /// with a weight b: W = sum_n sum_q (A_n : P V_q + b_n . h). It is differentiated by motion and memory too.
@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/solids/elements.hpp"
+#include "core/solids/gradient_work.hpp"
 
 namespace stickslip {
 
@@ -26,7 +27,13 @@ struct StateOfElement {
   Vector<double> memory;         ///< b, laid out likewise
 };
 
-/// Derivatives of the work.
+/// By what the work is differentiated.
+struct Wanted {
+  bool geometry = true;  ///< coordinates and depth
+  bool law = true;
+};
+
+/// Derivatives of the work; zero where they are not wanted.
 template <int nodes, std::size_t numbers>
 struct ElementWork {
   Mat<double, 2, nodes> coordinates = Mat<double, 2, nodes>::Zero();
@@ -38,41 +45,35 @@ struct ElementWork {
 
 namespace detail {
 
-/// What an element's gradient is without its derivatives.
-template <class T, class Shape, Kinematics kinematics>
-Gradient<double, Shape, kinematics> values(const Gradient<T, Shape, kinematics>& gradient) {
-  Gradient<double, Shape, kinematics> out;
-  const auto plain = [](const T& x) { return value(x); };
-  out.dN = gradient.dN.unaryExpr(plain);
-  out.volume = value(gradient.volume);
-  out.hoop = gradient.hoop.unaryExpr(plain);
-  out.exchange = gradient.exchange.unaryExpr(plain);
-  return out;
-}
-
 /// The stress of one point, and the derivative of its work over its volume, A : P, by H.
 template <int rows>
 struct PointWork {
   Mat<double, rows> stress, by_gradient;
 };
 
-/// Of a law with a symmetric tangent. `probed`: the law with its numbers seeded behind the first direction; `by_law`
-/// gets what they make of the work.
-template <int rows, class Law, std::size_t count>
-PointWork<rows> point_work(const Law& probed, const Mat<double, rows>& H, const Mat<double, rows>& A, double volume,
+/// Of a law with a symmetric tangent. `by_law` gets what the `seeds` first numbers of the law make of the work.
+template <int rows, std::size_t seeds, class Law, std::size_t count>
+PointWork<rows> point_work(const Law& law, const Mat<double, rows>& H, const Mat<double, rows>& A, double volume,
                            std::array<double, count>& by_law) {
-  using Probe = Dual<1 + static_cast<int>(count)>;
+  using Probe = Dual<1 + static_cast<int>(seeds)>;
   Mat<Probe, rows> seeded;
   for (int k = 0; k < rows * rows; ++k) {
     seeded.data()[k] = Probe(H.data()[k]);
     seeded.data()[k].d[0] = A.data()[k];
   }
-  const Mat<Probe, rows> P = probed.template stress<Probe, rows>(seeded);
+  Mat<Probe, rows> P;
+  if constexpr (seeds > 0) {
+    std::array<Probe, count> numbers;
+    for (std::size_t m = 0; m < count; ++m) numbers[m] = Probe::seed(law.numbers()[m], 1 + static_cast<int>(m));
+    P = law.with(numbers).template stress<Probe, rows>(seeded);
+  } else {
+    P = law.template stress<Probe, rows>(seeded);
+  }
   PointWork<rows> work;
   for (int k = 0; k < rows * rows; ++k) {
     work.stress.data()[k] = P.data()[k].v;
     work.by_gradient.data()[k] = P.data()[k].d[0];
-    for (std::size_t m = 0; m < count; ++m) by_law[m] += volume * A.data()[k] * P.data()[k].d[1 + m];
+    for (std::size_t m = 0; m < seeds; ++m) by_law[m] += volume * A.data()[k] * P.data()[k].d[1 + m];
   }
   return work;
 }
@@ -106,6 +107,20 @@ PointWork<rows> point_work(const Law& law, const Mat<double, rows>& H, const Mat
   for (int m = 0; m < memory; ++m) by_before[m] = sum.d[components + m];
   for (std::size_t m = 0; m < count; ++m) by_law[m] += volume * sum.d[components + memory + static_cast<int>(m)];
   return work;
+}
+
+/// Adds the derivatives of one point's work by its gradient, over the volume but that by the volume itself.
+template <int nodes, int rows, class By>
+void add_by_gradient(const StateOfElement<nodes>& state, const Mat<double, rows>& A, const PointWork<rows>& work,
+                     By& by) {
+  const auto& [P, Q] = work;
+  by.volume += A.cwiseProduct(P).sum();
+  by.dN += P.template topLeftCorner<2, 2>().transpose().lazyProduct(state.weight) +
+           Q.template topLeftCorner<2, 2>().transpose().lazyProduct(state.motion);
+  if constexpr (decltype(by.hoop)::RowsAtCompileTime > 0)
+    by.hoop += P(2, 2) * state.weight.row(0).transpose() + Q(2, 2) * state.motion.row(0).transpose();
+  if constexpr (decltype(by.exchange)::ColsAtCompileTime > 0)
+    by.exchange += P.trace() * state.weight + Q.trace() * state.motion;
 }
 
 /// The derivatives of the work of an element with mean dilatation at finite strain: the Dual of the whole element.
@@ -154,64 +169,56 @@ auto averaged_work(const Law& law, const Mat<double, 2, Shape::nodes>& coordinat
 /// The derivatives of the work of one element. `law`: in double; `depth`: thickness of a plane body.
 template <class Shape, Kinematics kinematics, class Law>
 auto element_work(const Law& law, const Mat<double, 2, Shape::nodes>& coordinates, double depth,
-                  const std::vector<StateOfElement<Shape::nodes>>& states) {
+                  const std::vector<StateOfElement<Shape::nodes>>& states, Wanted wanted = {}) {
   if constexpr (detail::averages<Law, kinematics>())
     if (law.is_finite) return detail::averaged_work<Shape, kinematics>(law, coordinates, depth, states);
-  constexpr int n = Shape::nodes, rows = stress_dimension(kinematics);
+  constexpr int n = Shape::nodes, rows = stress_dimension(kinematics), points = points_of<Shape>(kinematics);
   constexpr std::size_t count = std::tuple_size_v<decltype(law.numbers())>;
-  using Geometry = Dual<2 * n + 1>;
-  using Probe = Dual<1 + static_cast<int>(count)>;
-  Mat<Geometry, 2, n> X;
-  for (int k = 0; k < 2 * n; ++k) X.data()[k] = Geometry::seed(coordinates.data()[k], k);
-  std::array<Probe, count> numbers;
-  for (std::size_t k = 0; k < count; ++k) numbers[k] = Probe::seed(law.numbers()[k], 1 + static_cast<int>(k));
-  const auto probed = law.with(numbers);
   ElementWork<n, count> out;
   if constexpr (requires { Law::memory; })
     for (const auto& state : states) {
       out.motion.emplace_back(Mat<double, 2, n>::Zero());
       out.before.emplace_back(state.before.size());
     }
-  Eigen::Index remembered = 0;  // of the points before
-  typename Geometry::Gradient by_geometry = Geometry::Gradient::Zero();
-  for_each_gradient<Geometry, Shape, kinematics>(X, Geometry::seed(depth, 2 * n), [&](const auto& gradient) {
-    const auto plain = detail::values(gradient);
-    std::array<Mat<double, rows>, 2 * n> by_gradient;  // derivative by B_pq,ia, over the volume
-    by_gradient.fill(Mat<double, rows>::Zero());
-    double density = 0;
+  std::array<Gradient<double, Shape, kinematics>, points> gradients;
+  std::array<detail::ByGradient<Shape, kinematics>, points> by;
+  int q = 0;
+  for_each_gradient<double, Shape, kinematics>(coordinates, depth, [&](const auto& gradient) {
+    gradients[q] = gradient;
+    auto& of_point = by[q];
     for (std::size_t s = 0; s < states.size(); ++s) {
       const auto& state = states[s];
-      const Mat<double, rows> H = plain.of(state.motion), A = plain.of(state.weight);
+      const Mat<double, rows> H = gradient.of(state.motion), A = gradient.of(state.weight);
       detail::PointWork<rows> work;
       if constexpr (requires { Law::memory; }) {
         using Memory = Vec<double, Law::memory>;
-        const Memory b = state.memory.template segment<Law::memory>(remembered) / plain.volume;
+        const Eigen::Index remembered = q * Law::memory;
+        const Memory b = state.memory.template segment<Law::memory>(remembered) / gradient.volume;
         Memory by_before;
-        work = detail::point_work<rows>(law, H, A, plain.volume, out.law,
+        work = detail::point_work<rows>(law, H, A, gradient.volume, out.law,
                                         Memory(state.before.template segment<Law::memory>(remembered)), b, by_before);
-        out.before[s].template segment<Law::memory>(remembered) = plain.volume * by_before;
+        out.before[s].template segment<Law::memory>(remembered) = gradient.volume * by_before;
         for (int a = 0; a < n; ++a)
           for (int i = 0; i < 2; ++i)
-            plain.for_each(i, a, [&](int p, int q, double x) {
-              out.motion[s](i, a) += plain.volume * work.by_gradient(p, q) * x;
+            gradient.for_each(i, a, [&](int p, int r, double x) {
+              out.motion[s](i, a) += gradient.volume * work.by_gradient(p, r) * x;
             });
+      } else if (wanted.law) {
+        work = detail::point_work<rows, count>(law, H, A, gradient.volume, out.law);
       } else {
-        work = detail::point_work<rows>(probed, H, A, plain.volume, out.law);
+        work = detail::point_work<rows, 0>(law, H, A, gradient.volume, out.law);
       }
-      for (int k = 0; k < rows * rows; ++k) density += A.data()[k] * work.stress.data()[k];
-      for (int ia = 0; ia < 2 * n; ++ia)
-        by_gradient[ia] += state.weight.data()[ia] * work.stress + state.motion.data()[ia] * work.by_gradient;
+      if (wanted.geometry) detail::add_by_gradient(state, A, work, of_point);
     }
-    if constexpr (requires { Law::memory; }) remembered += Law::memory;
-    by_geometry += density * gradient.volume.d;
-    for (int a = 0; a < n; ++a)
-      for (int i = 0; i < 2; ++i)
-        gradient.for_each(i, a, [&](int p, int q, const Geometry& b) {
-          by_geometry += plain.volume * by_gradient[2 * a + i](p, q) * b.d;
-        });
+    of_point.dN *= gradient.volume;
+    of_point.hoop *= gradient.volume;
+    of_point.exchange *= gradient.volume;
+    ++q;
   });
-  for (int k = 0; k < 2 * n; ++k) out.coordinates.data()[k] = by_geometry[k];
-  out.depth = by_geometry[2 * n];
+  if (!wanted.geometry) return out;
+  if constexpr (has_mean_dilatation(kinematics)) detail::pull_back_exchange(gradients, by);
+  for (q = 0; q < points; ++q)
+    out.depth += detail::pull_back_gradient<Shape, kinematics>(gradients[q], by[q], out.coordinates) / depth;
   return out;
 }
 

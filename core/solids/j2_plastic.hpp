@@ -1,27 +1,29 @@
-/// J2 (von Mises) plasticity with linear isotropic hardening, at small strain and, multiplicative, at finite strain.
+/// J2 (von Mises) plasticity with isotropic hardening, at small strain and, multiplicative, at finite strain.
 ///
 ///   e      elastic strain:  sym(H) - e_p;  at finite strain ln(F C_p^-1 F^T) / 2,  F = I + H
 ///   tau    lame tr(e) I + 2 G e;  stress tau, at finite strain P = tau F^-T
-///   q      sqrt(3/2) |dev tau| <= yield + hardening a,  a the equivalent plastic strain
+///   q      sqrt(3/2) |dev tau| <= bound(a),  a the equivalent plastic strain (core/solids/hardening.hpp)
 ///   flow   where the bound would be passed:  e -> e - d n,  a -> a + d,  n = 3/2 dev tau / q,  q on the bound again
 ///
 /// The radial return. At finite strain the exponential map makes it the same in logarithms, C_p^-1 = F^-1 exp(2 e)
-/// F^-T. In the plane and of revolution, d = (q - bound) / (3 G + hardening); in plane stress, p = (tau_00 + tau_11)/2
-/// and the shear shrink apart, and d is the zero of one function (core/algebra/implicit.hpp).
+/// F^-T. In the plane and of revolution, d = (q - bound) / (3 G + slope of the bound); in plane stress, p = (tau_00 +
+/// tau_11)/2 and the shear shrink apart, and d is the zero of one function (core/algebra/implicit.hpp).
 ///
 /// It remembers four numbers a point: 00, 11 and 01 of e_p, or of C_p^-1 - I, and a. The component across the plane
-/// follows, for flow keeps the volume. Differentiable but where a point is about to flow, or to stop. Sources: [SH98]
-/// 3.3, 3.4; exponential map and logarithmic strain: [S92].
+/// follows, for flow keeps the volume. Differentiable but where a point is about to flow, or to stop, or ends at a
+/// corner of a table. Sources: [SH98] 3.3, 3.4; exponential map and logarithmic strain: [S92].
 #pragma once
 
 #include "core/algebra/implicit.hpp"
+#include "core/solids/hardening.hpp"
 #include "core/solids/linear_elastic.hpp"
 #include "core/solids/logarithmic.hpp"
 
 namespace stickslip {
 
 struct J2Plastic {
-  Number E, nu, yield, hardening;
+  Number E, nu, yield, hardening;        ///< `hardening`: behind the last row of the table, where there is one
+  std::vector<HardeningRow> table = {};  ///< strains increase from above 0, stresses do not fall below `yield`
 };
 
 namespace detail {
@@ -31,12 +33,12 @@ template <class T>
 struct PlaneStressReturn {
   T p, square;         ///< of the trial: (tau_00 + tau_11)/2; ((tau_00 - tau_11)/2)^2 + tau_01^2
   T stiffness, shear;  ///< K = E / (2 (1 - nu)), G
-  T bound, hardening;  ///< before the flow
+  T bound, slope;      ///< before the flow
 
   template <class X>
   X excess(const X& d) const {
     using std::sqrt;
-    const X grown = X(bound) + X(hardening) * d, m = d / grown;
+    const X grown = X(bound) + X(slope) * d, m = d / grown;
     const X mean = X(p) / (X(1) + X(stiffness) * m), across = X(1) + X(3) * X(shear) * m;
     return sqrt(mean * mean + X(3) * X(square) / (across * across)) - grown;
   }
@@ -51,15 +53,36 @@ struct J2Law {
   template <class U>
   using Memory = Vec<U, memory>;
 
-  T lame, shear, yield, hardening;
+  T lame, shear;
+  Hardening<T> hardening;
   Space space = Space::plane_strain;
   bool is_finite = false;
+  int part = 0;  ///< which of its numbers numbers() and with() are about
 
-  /// The numbers that it consists of, and the law with others.
-  std::array<T, 4> numbers() const { return {lame, shear, yield, hardening}; }
+  /// The numbers that it consists of, and the law with others. A table has further parts, two rows each.
+  int part_count() const { return 1 + (static_cast<int>(hardening.rows.size()) + 1) / 2; }
+  std::array<T, 4> numbers() const {
+    if (part == 0) return {lame, shear, hardening.yield, hardening.slope};
+    std::array<T, 4> numbers{T(0), T(0), T(0), T(0)};
+    for (std::size_t k = 0; k < 2 && first_row() + k < hardening.rows.size(); ++k) {
+      numbers[2 * k] = hardening.rows[first_row() + k].strain;
+      numbers[2 * k + 1] = hardening.rows[first_row() + k].stress;
+    }
+    return numbers;
+  }
   template <class U>
   J2Law<U> with(const std::array<U, 4>& numbers) const {
-    return {numbers[0], numbers[1], numbers[2], numbers[3], space, is_finite};
+    J2Law<U> law{U(value(lame)), U(value(shear)), {U(value(hardening.yield)), U(value(hardening.slope))},
+                 space,          is_finite,       part};
+    for (const auto& [strain, stress] : hardening.rows)
+      law.hardening.rows.push_back({U(value(strain)), U(value(stress))});
+    if (part == 0) {
+      std::tie(law.lame, law.shear, law.hardening.yield, law.hardening.slope) = std::tuple_cat(numbers);
+    } else {
+      for (std::size_t k = 0; k < 2 && first_row() + k < hardening.rows.size(); ++k)
+        law.hardening.rows[first_row() + k] = {numbers[2 * k], numbers[2 * k + 1]};
+    }
+    return law;
   }
 
   /// What it is at the start.
@@ -95,13 +118,16 @@ struct J2Law {
     return after;
   }
 
-  /// How far the trial from a memory is beyond the bound, over that; negative within it.
+  /// How far a motion is from where the law has no derivative: its trial from the bound, over that, and a from a corner
+  /// of a table, over that corner's.
   template <int D>
-  double excess(const Mat<double, D>& H, const Memory<double>& before) const {
+  double margin(const Mat<double, D>& H, const Memory<double>& before) const {
     const Strain<double> tau = hooke(elastic_strain<double, D>(H, before));
     const double across = space == Space::plane_stress ? 0 : tau[3], a = tau[0] - tau[1], b = tau[1] - across,
                  c = across - tau[0];
-    return std::sqrt((a * a + b * b + c * c) / 2 + 3 * tau[2] * tau[2]) / (yield + hardening * before[3]) - 1;
+    const double q = std::sqrt((a * a + b * b + c * c) / 2 + 3 * tau[2] * tau[2]);
+    return std::min(std::abs(q / hardening.bound(before[3]) - 1),
+                    hardening.distance_to_corner(flow<double, D>(H, before)[3]));
   }
 
   /// Equivalent plastic strain at a memory.
@@ -196,6 +222,8 @@ struct J2Law {
     return tau;
   }
 
+  std::size_t first_row() const { return 2 * static_cast<std::size_t>(part - 1); }
+
   /// Whether q passes the bound by more than rounding.
   template <class U>
   static bool passes(const U& q, const U& bound) {
@@ -212,11 +240,11 @@ struct J2Law {
     for (int k : {0, 1, 3}) deviator[k] -= third;
     const U squares = deviator[0] * deviator[0] + deviator[1] * deviator[1] + deviator[3] * deviator[3] +
                       U(2) * deviator[2] * deviator[2];
-    const U bound = U(yield) + U(hardening) * hardened;
     if (!(value(squares) > 0)) return flown;
     const U q = U(shear) * sqrt(U(6) * squares);
-    if (!passes(q, bound)) return flown;
-    const U d = (q - bound) / U(T(3) * shear + hardening);
+    if (!passes(q, hardening.bound(hardened))) return flown;
+    const auto flow_on = [&](const U& bound, const T& slope) -> U { return (q - bound) / U(T(3) * shear + slope); };
+    const U d = hardening.grow(hardened, flow_on).d;
     flown = U(3) * U(shear) * d / q * deviator;
     flown[4] = d;
     return flown;
@@ -229,15 +257,18 @@ struct J2Law {
     const Strain<U> tau = hooke(trial);
     const U p = (tau[0] + tau[1]) / U(2), apart = (tau[0] - tau[1]) / U(2);
     const U stiffness = U(T(shear * (T(3) * lame + T(2) * shear) / (lame + T(2) * shear)));
-    const detail::PlaneStressReturn<U> back{p,        apart * apart + tau[2] * tau[2],    stiffness,
-                                            U(shear), U(yield) + U(hardening) * hardened, U(hardening)};
-    const double q = std::sqrt(value(p) * value(p) + 3 * value(back.square));
-    if (!passes(q, value(back.bound))) return flown;
-    const detail::PlaneStressReturn<double> plain{value(p),          value(back.square), value(stiffness),
-                                                  value(back.shear), value(back.bound),  value(back.hardening)};
-    const U d = solve_implicit<U>(back, root_of(plain));
-    const U m = d / (back.bound + back.hardening * d);
-    const U mean = m * p / (U(1) + stiffness * m) / U(2), shares = U(1.5) * m / (U(1) + U(3) * back.shear * m);
+    const U square = apart * apart + tau[2] * tau[2];
+    const double q = std::sqrt(value(p) * value(p) + 3 * value(square));
+    if (!passes(q, value(hardening.bound(hardened)))) return flown;
+    const auto flow_on = [&](const U& bound, const T& slope) -> U {
+      const detail::PlaneStressReturn<U> back{p, square, stiffness, U(shear), bound, U(slope)};
+      const detail::PlaneStressReturn<double> plain{value(p),     value(square), value(stiffness),
+                                                    value(shear), value(bound),  value(slope)};
+      return solve_implicit<U>(back, root_of(plain));
+    };
+    const auto [d, bound, slope] = hardening.grow(hardened, flow_on);
+    const U m = d / (bound + U(slope) * d);
+    const U mean = m * p / (U(1) + stiffness * m) / U(2), shares = U(1.5) * m / (U(1) + U(3) * U(shear) * m);
     flown[0] = mean + shares * apart;
     flown[1] = mean - shares * apart;
     flown[2] = shares * tau[2];
@@ -250,7 +281,8 @@ struct J2Law {
 template <class T>
 J2Law<T> law_of(const J2Plastic& material, Space space, bool finite_strain, const Numbers<T>& numbers) {
   const LinearElasticLaw<T> elastic(numbers(material.E), numbers(material.nu), Space::plane_strain);
-  return {elastic.lame, elastic.shear, numbers(material.yield), numbers(material.hardening), space, finite_strain};
+  return {elastic.lame, elastic.shear, hardening_of(material.yield, material.hardening, material.table, numbers), space,
+          finite_strain};
 }
 
 }  // namespace stickslip

@@ -1,13 +1,13 @@
 /// The list of materials: what a scene may name, and the law that each becomes in a scalar T.
 ///
 /// A law of a continuum has a file of its own: its description for the scene, law_of() and the law, which says what it
-/// is made for (is_finite, is_made_for), which numbers it consists of (numbers, with) and gives stress, stress across
-/// the plane and energy of a displacement gradient. What it lacks does not compile. A law of two nodes (bars, springs)
-/// gives force, stiffness and energy of their relative displacement.
+/// is made for (is_finite, is_made_for), which numbers it consists of (numbers, with; of more than one part: part,
+/// part_count) and gives stress, stress across the plane and energy of a displacement gradient. What it lacks does not
+/// compile. A law of two nodes (bars, springs) gives force, stiffness and energy of their relative displacement.
 ///
-/// A law that remembers says how many numbers a point (memory), how a motion changes them (flow), how far beyond its
-/// bound a motion would go without (excess), the plastic strain in them, and the law that it is at the start (at_rest);
-/// stress, force and energy are then those at a memory. At the start all numbers are zero.
+/// A law that remembers says how many numbers a point (memory), how a motion changes them (flow), how far a motion is
+/// from where that has no derivative (margin), the plastic strain in them, and the law that it is at the start
+/// (at_rest); stress, force and energy are then those at a memory. At the start all numbers are zero.
 #pragma once
 
 #include <concepts>
@@ -58,7 +58,7 @@ concept TwoNodeLawWith = requires(const L& law, const Mat<double, 2>& X, const V
 template <class L>
 concept Flows = requires(const L& law, const Mat<double, 2>& H, const Vec<double, memory_of<L>()>& memory) {
   { law.template flow<double, 2>(H, memory) } -> std::same_as<Vec<double, memory_of<L>()>>;
-  { law.template excess<2>(H, memory) } -> std::same_as<double>;
+  { law.template margin<2>(H, memory) } -> std::same_as<double>;
   { L::plastic_strain(memory) } -> std::convertible_to<double>;
   { law.at_rest().template stress<double, 2>(H) } -> std::same_as<Mat<double, 2>>;
 };
@@ -66,7 +66,7 @@ template <class L>
 concept TwoNodesFlow = requires(const L& law, const Mat<double, 2>& X, const Vec<double, 2>& d,
                                 const Vec<double, memory_of<L>()>& memory) {
   { law.template flow<2>(X, d, memory) } -> std::same_as<Vec<double, memory_of<L>()>>;
-  { law.template excess<2>(X, d, memory) } -> std::same_as<double>;
+  { law.template margin<2>(X, d, memory) } -> std::same_as<double>;
   { L::plastic_strain(memory) } -> std::convertible_to<double>;
 };
 

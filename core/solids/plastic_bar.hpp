@@ -1,11 +1,11 @@
-/// Two-node bar of an elastoplastic material with linear isotropic hardening.
+/// Two-node bar of an elastoplastic material with isotropic hardening.
 ///
 ///   force   N = EA (e - e_p),  e the strain (core/solids/bar.hpp), e_p the plastic one
-///   bound   |N| <= A (yield + hardening a),  a the equivalent plastic strain
-///   flow    e_p -> e_p + d sign N,  a -> a + d,  d = (|N| - bound) / (EA + A hardening) where the bound would be
-///   passed
+///   bound   |N| <= A bound(a),  a the equivalent plastic strain (core/solids/hardening.hpp)
+///   flow    e_p -> e_p + d sign N,  a -> a + d,  d = (|N| - A bound) / (EA + A slope) where the bound would be passed
 ///
-/// It remembers e_p and a. Differentiable but where a bar is about to flow, or to stop. Source: [SH98] 1.4.
+/// It remembers e_p and a. Differentiable but where a bar is about to flow, or to stop, or ends at a corner of a table.
+/// Source: [SH98] 1.4.
 #pragma once
 
 #include "core/solids/bar.hpp"
@@ -19,7 +19,7 @@ struct PlasticBarLaw {
   using Memory = Vec<T, memory>;
 
   BarLaw<T> elastic;
-  T yield, hardening;
+  Hardening<T> hardening;
 
   bool is_linear() const { return false; }
   /// What it is at the start.
@@ -28,15 +28,16 @@ struct PlasticBarLaw {
   /// The memory that a relative displacement d leaves of the one before. `coordinates`: D x 2.
   template <int D>
   Memory flow(const Mat<T, D, 2>& coordinates, const Vec<T, D>& d, const Memory& before) const {
-    return flow_of(elastic.template strain<D>(coordinates, d), before);
+    return flow_of(elastic.template strain<D>(coordinates, d), before).memory;
   }
 
-  /// How far the trial from a memory is beyond the bound, over that; negative within it.
+  /// How far a motion is from where the law has no derivative (see J2Law).
   template <int D>
-  double excess(const Mat<double, D, 2>& coordinates, const Vec<double, D>& d,
+  double margin(const Mat<double, D, 2>& coordinates, const Vec<double, D>& d,
                 const Vec<double, memory>& before) const {
-    const double force = elastic.axial * (elastic.template strain<D>(coordinates, d) - before[0]);
-    return std::abs(force) / (elastic.area * (yield + hardening * before[1])) - 1;
+    const double strain = elastic.template strain<D>(coordinates, d), force = elastic.axial * (strain - before[0]);
+    return std::min(std::abs(std::abs(force) / (elastic.area * hardening.bound(before[1])) - 1),
+                    hardening.distance_to_corner(flow_of(strain, before).memory[1]));
   }
 
   /// Equivalent plastic strain at a memory.
@@ -53,12 +54,12 @@ struct PlasticBarLaw {
   template <int D>
   Mat<T, D> stiffness(const Mat<T, D, 2>& coordinates, const Vec<T, D>& d, const Memory& before) const {
     const T strain = elastic.template strain<D>(coordinates, d);
-    const Memory after = flow_of(strain, before);
+    const auto [after, slope] = flow_of(strain, before);
     const Vec<T, D> direction = elastic.template direction<D>(coordinates, d);
     const T length = norm((coordinates.col(1) - coordinates.col(0)).eval());
     const T modulus = value(after[1]) == value(before[1])
                           ? elastic.axial
-                          : T(elastic.axial * elastic.area * hardening / (elastic.axial + elastic.area * hardening));
+                          : T(elastic.axial * elastic.area * slope / (elastic.axial + elastic.area * slope));
     Mat<T, D> k;
     for (int i = 0; i < D; ++i)
       for (int j = 0; j < D; ++j) {
@@ -75,19 +76,27 @@ struct PlasticBarLaw {
   }
 
  private:
-  Memory flow_of(const T& strain, const Memory& before) const {
-    const T force = elastic.axial * (strain - before[0]), bound = elastic.area * (yield + hardening * before[1]);
+  /// What a flow leaves, and the slope of the bound where it ends.
+  struct Flow {
+    Memory memory;
+    T slope;
+  };
+  Flow flow_of(const T& strain, const Memory& before) const {
+    const T force = elastic.axial * (strain - before[0]), bound = elastic.area * hardening.bound(before[1]);
     const bool pulled = value(force) > 0;
-    const T excess = (pulled ? force : T(-force)) - bound;
-    if (!(value(excess) > 64 * unit_roundoff * value(bound))) return before;
-    const T d = excess / (elastic.axial + elastic.area * hardening);
-    return {before[0] + (pulled ? d : T(-d)), before[1] + d};
+    const T size = pulled ? force : T(-force);
+    if (!(value(size) - value(bound) > 64 * unit_roundoff * value(bound))) return {before, T(0)};
+    const auto flow_on = [&](const T& of_area, const T& slope) -> T {
+      return (size - elastic.area * of_area) / (elastic.axial + elastic.area * slope);
+    };
+    const auto growth = hardening.grow(before[1], flow_on);
+    return {{before[0] + (pulled ? growth.d : T(-growth.d)), before[1] + growth.d}, growth.slope};
   }
 };
 
 template <class T>
 PlasticBarLaw<T> bar_of(const J2Plastic& material, const BarLaw<T>& elastic, const Numbers<T>& numbers) {
-  return {elastic, numbers(material.yield), numbers(material.hardening)};
+  return {elastic, hardening_of(material.yield, material.hardening, material.table, numbers)};
 }
 
 }  // namespace stickslip

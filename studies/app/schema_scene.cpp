@@ -79,16 +79,17 @@ const char* const scene = R"json({
     "type": "object", "examples": [{"sole": {"slave": "block.bottom", "master": "floor", "friction": 0.3}}],
     "additionalProperties": {
       "type": "object", "oneOf": [{"required": ["slave", "master"]}, {"required": ["between"]}],
+      "if": {"properties": {"self": {"const": true}}, "required": ["self"]},
+      "else": {"properties": {"between": {"anyOf": [{"enum": ["all"]}, {"type": "array", "minItems": 2}]}}},
       "additionalProperties": false, "properties": {
         "between": {
           "description": "in place of slave and master: solid bodies, each against each, along all of their boundaries",
           "title": "all, or list of bodies", "examples": [["a", "b", "c"]],
-          "anyOf": [{"enum": ["all"]}, {"type": "array", "minItems": 2, "items": {"type": "string"}}]},
-        "self": {"description": "of between: whether a body may touch itself, which this version does not have",
-          "enum": [false], "default": false},
+          "anyOf": [{"enum": ["all"]}, {"type": "array", "minItems": 1, "items": {"type": "string"}}]},
+        "self": {"description": "of between: whether each body may touch itself too", "type": "boolean", "default": false},
         "slave": {"description": "the side whose nodes are kept out of the master", "$ref": "#/$defs/side",
           "examples": ["block.bottom"]},
-        "master": {"description": "what the slave may not enter: SIDE or an obstacle", "type": "string",
+        "master": {"description": "what the slave may not enter: SIDE or an obstacle; the slave's own SIDE: it touches itself", "type": "string",
           "examples": ["floor"]},
         "friction": {
           "description": "Coulomb's coefficient mu, or another law; left out: frictionless, without tangential unknowns",

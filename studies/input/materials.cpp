@@ -18,10 +18,51 @@ std::optional<Material> read_neo_hookean(const JsonNode& node, SceneReading& rea
   return material;
 }
 
+/// [[plastic strain, stress], ...]; a first row at strain 0 is the yield stress.
+void read_hardening_table(const JsonNode& node, J2Plastic& material, bool yields, SceneReading& reading) {
+  const auto rows = node.elements();
+  if (rows.empty()) return node.must_be("a number >= 0, or a table [[plastic strain, stress], ...]");
+  HardeningRow last{0.0, material.yield};
+  for (const JsonNode& row : rows) {
+    const auto pair = row.array(2, "a pair [plastic strain, stress]");
+    if (!pair) return;
+    const auto &strain = (*pair)[0], &stress = (*pair)[1];
+    const bool at_start = &row == &rows.front() && strain.value().is_number() && strain.value() == 0;
+    if (at_start) {
+      reading.constants[strain.pointer()] = "the start of the table, 0";
+      last.stress = reading.number(stress, positive);
+      if (yields) {
+        if (last.stress.value != material.yield.value)
+          stress.must_be(shown(material.yield.value) + R"(, as "yield" is)");
+        reading.equal[last.stress.slot] = material.yield.slot;
+        reading.equal[material.yield.slot] = last.stress.slot;
+      }
+      material.yield = last.stress;
+      continue;
+    }
+    const HardeningRow next{reading.number(strain, positive), reading.number(stress, positive)};
+    if (next.strain.value <= last.strain.value)
+      strain.must_be("more than " + shown(last.strain.value) + ", the plastic strain of the row before");
+    if (next.stress.value < last.stress.value)
+      stress.must_be("at least " + shown(last.stress.value) + ", the stress before it: metal does not soften here");
+    material.table.push_back(last = next);
+  }
+  if (!yields && material.table.size() == rows.size())
+    node.error(R"(lacks the stress at which flow begins: give a first row [0, stress], or "yield")");
+}
+
 std::optional<Material> read_j2(const JsonNode& node, SceneReading& reading) {
-  if (!node.is_object({{"E", "nu", "yield", "hardening"}})) return std::nullopt;
-  return J2Plastic{reading.required(node, "E", positive), reading.required(node, "nu", poisson_ratio),
-                   reading.required(node, "yield", positive), reading.required(node, "hardening", not_negative)};
+  if (!node.is_object({{"E", "nu", "hardening"}, {"yield"}})) return std::nullopt;
+  J2Plastic material{reading.required(node, "E", positive), reading.required(node, "nu", poisson_ratio), 0.0, 0.0};
+  const auto yield = node.find("yield"), hardening = node.find("hardening");
+  if (yield) material.yield = reading.number(*yield, positive);
+  if (hardening && hardening->value().is_array())
+    read_hardening_table(*hardening, material, yield.has_value(), reading);
+  else if (hardening)
+    material.hardening = reading.number(*hardening, not_negative);
+  if (!yield && hardening && !hardening->value().is_array())
+    node.error(R"(the key "yield" is missing: the stress at which it begins to flow)");
+  return material;
 }
 
 std::optional<Material> read_spring(const JsonNode& node, SceneReading& reading) {
@@ -42,8 +83,8 @@ std::optional<Material> read_spring(const JsonNode& node, SceneReading& reading)
   for (int i = 0; i < d; ++i)
     for (int j = 0; j < i; ++j) {
       const int below = spring.stiffness[i][j].slot, above = spring.stiffness[j][i].slot;
-      reading.symmetric[below] = above;
-      reading.symmetric[above] = below;
+      reading.equal[below] = above;
+      reading.equal[above] = below;
       if (values(i, j) != values(j, i)) {
         (*rows)[i].elements()[j].must_be(shown(values(j, i)) + ", so that the stiffness is symmetric");
         return std::nullopt;
@@ -75,16 +116,19 @@ constexpr const char* neo_hookean_schema = R"json({
       "enum": ["quadratic", "log"], "default": "quadratic"}}})json";
 
 constexpr const char* j2_schema = R"json({
-  "description": "elastoplastic, of all but points: J2 (von Mises) with linear isotropic hardening", "type": "object",
+  "description": "elastoplastic, of all but points: J2 (von Mises) with isotropic hardening", "type": "object",
   "examples": [{"E": 1000, "nu": 0.3, "yield": 10, "hardening": 100}],
-  "required": ["E", "nu", "yield", "hardening"], "additionalProperties": false, "properties": {
+  "required": ["E", "nu", "hardening"], "if": {"properties": {"hardening": {"type": "number"}}},
+  "then": {"required": ["yield"]}, "additionalProperties": false, "properties": {
     "E": {"description": "Young's modulus (force per area)", "$ref": "#/$defs/positive", "examples": [1000]},
     "nu": {"description": "Poisson's ratio", "title": "number > -1 and < 0.5", "type": "number",
       "exclusiveMinimum": -1, "exclusiveMaximum": 0.5, "examples": [0.3]},
-    "yield": {"description": "stress at which it begins to flow (force per area)", "$ref": "#/$defs/positive",
-      "examples": [10]},
-    "hardening": {"description": "rise of that stress with the equivalent plastic strain; 0: perfect plasticity (force per area)",
-      "title": "number >= 0", "type": "number", "minimum": 0, "examples": [100]}}})json";
+    "yield": {"description": "stress at which it begins to flow (force per area); may be left out where a table of hardening begins at 0",
+      "$ref": "#/$defs/positive", "examples": [10]},
+    "hardening": {"description": "rise of that stress with the equivalent plastic strain, 0: perfect plasticity (force per area); or a table [[plastic strain, stress], ...], straight between its rows and constant behind the last",
+      "title": "number >= 0, or [[plastic strain, stress], ...]", "examples": [100, [[0, 10], [0.02, 14], [0.1, 18]]],
+      "anyOf": [{"type": "number", "minimum": 0}, {"type": "array", "minItems": 1, "items": {"type": "array",
+        "minItems": 2, "maxItems": 2, "items": {"type": "number", "minimum": 0}}}]}}})json";
 
 constexpr const char* spring_schema = R"json({
   "description": "of a point: the spring to its anchor", "type": "object",

@@ -47,7 +47,8 @@ std::optional<NamedSide> touching_side(const JsonNode& node, SceneReading& readi
   return side;
 }
 
-void check_master(const JsonNode& node, const std::optional<NamedSide>& slave, SceneReading& reading) {
+/// `of_itself`: it is the slave too.
+void check_master(const JsonNode& node, const std::optional<NamedSide>& slave, bool of_itself, SceneReading& reading) {
   if (reading.dimension() == 3) {
     node.error("is " + shown(node.value()) +
                "; in the space solid the master must be an obstacle: " + listed(reading.obstacle_names));
@@ -56,12 +57,11 @@ void check_master(const JsonNode& node, const std::optional<NamedSide>& slave, S
   const auto master = touching_side(node, reading);
   if (!master) return;
   if (master->side.facets.empty()) node.error("is " + shown(node.value()) + ", single nodes; a master needs facets");
-  if (!slave || slave->body != master->body) return;
+  if (!slave || slave->body != master->body || of_itself) return;
   const std::set<int> nodes(slave->side.nodes.begin(), slave->side.nodes.end());
   if (std::any_of(master->side.nodes.begin(), master->side.nodes.end(), [&](int n) { return nodes.count(n) > 0; }))
     node.error("is " + shown(node.value()) +
-               ", which shares nodes with the slave: a contact of a side with itself is " +
-               "not available in this version");
+               ", which shares nodes with the slave; a side that touches itself is both, the same expression");
 }
 
 /// A law of friction: a number, or an object that says which law it is.
@@ -116,8 +116,9 @@ double facet_length(const std::string& body, const Side& boundary, const SceneRe
   return length;
 }
 
-/// The bodies that {"between": ...} names; empty where it is at fault.
-std::vector<std::string> bodies_between(const JsonNode& node, const SceneReading& reading) {
+/// The bodies that {"between": ...} names; empty where it is at fault. `self`: one is enough.
+std::vector<std::string> bodies_between(const JsonNode& node, bool self, const SceneReading& reading) {
+  const std::size_t least = self ? 1 : 2;
   const auto is_solid = [&](const std::string& name) {
     const auto mesh = reading.meshes.find(name);
     return mesh != reading.meshes.end() && is_continuum(mesh->second.shape);
@@ -125,11 +126,14 @@ std::vector<std::string> bodies_between(const JsonNode& node, const SceneReading
   if (node.value() == "all") {
     std::vector<std::string> all = reading.body_names;
     std::erase_if(all, [&](const std::string& name) { return !is_solid(name); });
-    if (all.size() < 2) node.error(R"(is "all", and the scene has less than two solid bodies)");
-    return all.size() < 2 ? std::vector<std::string>() : all;
+    if (all.size() < least)
+      node.error(self ? R"(is "all", and the scene has no solid body)"
+                      : R"(is "all", and the scene has less than two solid bodies)");
+    return all.size() < least ? std::vector<std::string>() : all;
   }
-  if (!node.value().is_array() || node.value().size() < 2) {
-    node.must_be("\"all\" or an array of two bodies or more: " + listed(reading.body_names));
+  if (!node.value().is_array() || node.value().size() < least) {
+    node.must_be((self ? "\"all\" or an array of bodies: " : "\"all\" or an array of two bodies or more: ") +
+                 listed(reading.body_names));
     return {};
   }
   std::vector<std::string> names;
@@ -143,8 +147,7 @@ std::vector<std::string> bodies_between(const JsonNode& node, const SceneReading
       element.error("is " + in_quotes(*name) + ": there is no such body;" + suggestion(*name, reading.body_names) +
                     " allowed: " + listed(reading.body_names));
     else if (!is_new)
-      element.error("is " + in_quotes(*name) +
-                    " once more; that a body touches itself is not available in this version");
+      element.error("is " + in_quotes(*name) + R"( once more; a body touches itself where "self" is true)");
     else if (reading.meshes.count(*name) && !is_solid(*name))
       element.error("is " + in_quotes(*name) +
                     ", which has no boundary of facets: solid bodies alone may be named here");
@@ -155,20 +158,20 @@ std::vector<std::string> bodies_between(const JsonNode& node, const SceneReading
 }
 
 /// One contact for each pair of bodies, along their whole boundaries. The slave is the body of the shorter facets, or
-/// of two alike the one named first.
-void read_pairs(const Contact& common, const JsonNode& between, SceneReading& reading) {
+/// of two alike the one named first. `self`: each also touches itself.
+void read_pairs(const Contact& common, const JsonNode& between, bool self, SceneReading& reading) {
   if (reading.dimension() == 3) {
     between.error_at_key("bodies touch one another in a plane space alone; in the space solid masters are obstacles");
     return;
   }
   constexpr double alike = 1e-9;
   std::vector<std::pair<std::string, double>> bodies;
-  for (const std::string& body : bodies_between(between, reading)) {
+  for (const std::string& body : bodies_between(between, self, reading)) {
     const Side boundary = evaluate_side(reading.meshes.at(body), "boundary");
     bodies.emplace_back(body, facet_length(body, boundary, reading));
   }
   for (std::size_t a = 0; a < bodies.size(); ++a)
-    for (std::size_t b = a + 1; b < bodies.size(); ++b) {
+    for (std::size_t b = self ? a : a + 1; b < bodies.size(); ++b) {
       const bool second = bodies[b].second < bodies[a].second * (1 - alike);
       const std::string &slave = bodies[second ? b : a].first, &master = bodies[second ? a : b].first;
       Contact pair = common;
@@ -204,7 +207,7 @@ void read_contact(const std::string& name, const JsonNode& node, SceneReading& r
     const auto text = master->text();
     if (text && !is_in(reading.obstacle_names, *text)) {
       if (text->find('.') != std::string::npos || is_in(reading.body_names, *text))
-        check_master(*master, slave_side, reading);
+        check_master(*master, slave_side, *text == contact.slave, reading);
       else
         master->error("is " + in_quotes(*text) + ", which is neither an obstacle nor a side BODY.SIDE;" +
                       suggestion(*text, reading.obstacle_names) + " obstacles: " + listed(reading.obstacle_names));
@@ -215,13 +218,14 @@ void read_contact(const std::string& name, const JsonNode& node, SceneReading& r
   contact.offset = reading.optional(node, "offset", 0, any_number);
   if (const auto surface = node.find("surface")) read_surface(*surface, contact, reading);
   if (between) {
-    if (const auto self = node.find("self"); self && self->boolean().value_or(false))
-      self->error("is true: that a body touches itself is not available in this version; allowed: false");
-    return read_pairs(contact, *between, reading);
+    const auto self = node.find("self");
+    return read_pairs(contact, *between, self && self->boolean().value_or(false), reading);
   }
   if (const auto discretization = node.find("discretization")) {
     contact.segment = discretization->choice({"node", "segment"}) == "segment";
     if (contact.segment) reading.only_at_small_strain(*discretization);
+    if (contact.segment && contact.is_of_itself())
+      discretization->error(R"(is "segment", which is between two sides; of a side that touches itself: "node")");
     if (contact.segment && contact.smoothing != Smoothing::none)
       discretization->error(R"(is "segment", which integrates along straight facets; with a smooth surface: "node")");
     const bool solid = !slave_side || (is_continuum(slave_side->mesh->shape) && !slave_side->side.facets.empty());

@@ -138,23 +138,22 @@ struct Reader {
         if (const auto value = weight.number(not_zero)) add(weight, pointer, *value, parameter);
       }
     }
-    check_symmetry(node, parameter);
+    check_equals(node, parameter);
     if (!parameter.slots.empty()) reading.scene.parameters.push_back(std::move(parameter));
   }
 
-  /// A parameter may not leave a symmetric matrix unsymmetric.
-  void check_symmetry(const JsonNode& node, const Parameter& parameter) const {
+  /// A parameter may not part numbers that must be equal.
+  void check_equals(const JsonNode& node, const Parameter& parameter) const {
     auto weight_of = [&](int slot) {
       double weight = 0;
       for (const auto& [each, w] : parameter.slots) weight += each == slot ? w : 0;
       return weight;
     };
     for (const auto& [slot, weight] : parameter.slots) {
-      const auto partner = reading.symmetric.find(slot);
-      if (partner == reading.symmetric.end() || weight_of(partner->second) == weight_of(slot)) continue;
-      return node.error("changes one of two equal numbers of a symmetric matrix; " +
-                        reading.scene.pointers[partner->second] + " must have the weight of " +
-                        reading.scene.pointers[slot]);
+      const auto partner = reading.equal.find(slot);
+      if (partner == reading.equal.end() || weight_of(partner->second) == weight_of(slot)) continue;
+      return node.error("changes one of two numbers that must stay equal; " + reading.scene.pointers[partner->second] +
+                        " must have the weight of " + reading.scene.pointers[slot]);
     }
   }
 };

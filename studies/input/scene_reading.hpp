@@ -34,7 +34,7 @@ struct SceneReading {
   Scene scene;
   std::map<std::string, int> slots;              ///< by JSON pointer
   std::map<std::string, std::string> constants;  ///< pointers of numbers that cannot be a parameter, and why
-  std::map<int, int> symmetric;                  ///< slots of a symmetric matrix that must change together
+  std::map<int, int> equal;                      ///< slots of two numbers that must change together
   std::vector<std::string> body_names, obstacle_names, contact_names;  ///< valid or not: all that the file has
   double nodes = 0;                    ///< of all bodies so far, as estimated before they are made
   std::map<std::string, Mesh> meshes;  ///< by body; none where the body's mesh is at fault

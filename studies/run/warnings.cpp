@@ -218,6 +218,19 @@ void add_single_nodes(const CaseResult& result, std::vector<Warning>& warnings) 
   }
 }
 
+void add_shared_places(const CaseResult& result, std::vector<Warning>& warnings) {
+  const auto& model = result.problem->model;
+  for (std::size_t i = 0; i < model.response_places.size(); ++i) {
+    const auto& bodies = model.response_places[i].bodies;
+    if (bodies.size() < 2) continue;
+    const std::string &name = model.scene.responses[i].name, &taken = model.scene.bodies[bodies[0]].name,
+                      &other = model.scene.bodies[bodies[1]].name;
+    warnings.push_back({WarningCode::shared_place, taken, static_cast<double>(bodies.size()),
+                        fmt::format(R"(name the body, "on": "{}" or "on": "{}")", taken, other),
+                        fmt::format("the response {} is of {}, but {} holds its point too", name, taken, other)});
+  }
+}
+
 void add_loose_bodies(const CaseResult& result, std::vector<Warning>& warnings) {
   if (const Body* const loose = loose_body(result.problem->model))
     warnings.push_back({WarningCode::non_unique, loose->name, 0, "add a support or a contact",
@@ -315,6 +328,7 @@ std::vector<Warning> warnings_of(const CaseResult& result) {
   add_cut_steps(result, warnings);
   add_locking(result, warnings);
   add_single_nodes(result, warnings);
+  add_shared_places(result, warnings);
   add_loose_bodies(result, warnings);
   add_other_solutions(result, warnings);
   return warnings;

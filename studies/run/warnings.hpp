@@ -16,10 +16,11 @@ namespace stickslip {
 ///   large_strain, large_rotation   above 5 % or 5 degrees in an element
 ///   large_sliding  slip of a closed point along a master that is deformable or curved, above half a slave element
 ///   idle_friction  none of the points of a contact with friction has slipped in any step
-///   held_on_facet  closed points that are beyond the end of their facet, at a vertex of which neither has an
-///   equilibrium cut_steps      with friction: steps that were taken in smaller ones, which is another discrete path
+///   held_on_facet  closed points beyond the end of their facet, at a vertex of which neither has an equilibrium
+///   cut_steps      with friction: steps that were taken in smaller ones, which is another discrete path
 ///   locking        Q4 or T3, nu near 1/2: pressures that differ within and between elements as no smooth field does
 ///   single_node    a side of several nodes one of which carries nearly all of the contact's force
+///   shared_place   a response at a point that several bodies hold, and that names none of them
 ///   non_unique     a body that nothing holds and no load moves; increments with several solutions, or tangents of
 ///                  problems of which some have several
 ///   branch_ends    where solutions were counted: the one that leads on from the last increment ceases to be

@@ -69,6 +69,46 @@ TEST(Plasticity, OfABarOnAWallHasTheForceOfTheClosedForm) {
   }
 }
 
+TEST(Plasticity, OfABarFollowsAHardeningTable) {
+  // force over strain is straight between corners at a + stress / E; the run ends between the last two
+  Scene scene = bar_on_a_wall();
+  scene.legs = {{1, 13}};  // (none of which ends at a corner)
+  scene.parameters.clear();
+  scene.bodies[0].material = J2Plastic{
+      1000.0,
+      0.3,
+      parameter(scene, "sy", 10),
+      0.0,
+      {{parameter(scene, "a1", 0.002), parameter(scene, "s1", 12)}, {0.006, parameter(scene, "s2", 13)}, {0.05, 15.0}}};
+  const double E = 1000, strains[] = {0.01, 0.002 + 0.012, 0.006 + 0.013, 0.05 + 0.015}, forces[] = {10, 12, 13, 15};
+  for (const Method& method : scenes::exact_methods()) {
+    const auto s = run(scene, method);
+    ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
+    for (std::size_t n = 0; n < s.trajectory.increments.size(); ++n) {
+      const double strain = 0.035 * s.trajectory.increments[n].time - 0.005;
+      int k = 0;
+      while (strain > strains[k]) ++k;
+      double force = larger(0.0, E * strain), by_yield = 0, by_first = 0, by_second = 0, by_strain = 0;
+      if (k > 0) {  // a share x of the way between corners, whose places on both axes move with the rows
+        const double across = strains[k] - strains[k - 1], slope = (forces[k] - forces[k - 1]) / across;
+        const double x = (strain - strains[k - 1]) / across;
+        force = forces[k - 1] + slope * (strain - strains[k - 1]);
+        const double lower = (1 - x) * (1 - slope / E), upper = x * (1 - slope / E);
+        by_yield = k == 1 ? lower : 0;
+        by_first = k == 1 ? upper : k == 2 ? lower : 0;
+        by_second = k == 2 ? upper : k == 3 ? lower : 0;
+        by_strain = k == 1 ? -x * slope : k == 2 ? -(1 - x) * slope : 0;
+      }
+      EXPECT_NEAR(s.value("force", n), force, 1e-9 * 13) << name_of(method) << " at " << strain;
+      const auto& gradient = s.gradients.of[n];
+      EXPECT_NEAR(gradient(0, 0), by_yield, 1e-9) << name_of(method) << " at " << strain;
+      EXPECT_NEAR(gradient(0, 1), by_strain, 1e-9 * E) << name_of(method) << " at " << strain;
+      EXPECT_NEAR(gradient(0, 2), by_first, 1e-9) << name_of(method) << " at " << strain;
+      EXPECT_NEAR(gradient(0, 3), by_second, 1e-9) << name_of(method) << " at " << strain;
+    }
+  }
+}
+
 // --- A16 (2): a thick cylinder widened until it is plastic up to a radius --------------------------------------------
 
 TEST(Plasticity, OfAThickCylinderReachesTheRadiusOfTheClosedForm) {
@@ -109,6 +149,7 @@ struct Setting {
   Space space;
   bool finite;
   const char* element;
+  bool table = false;  ///< of hardening
 };
 
 /// A soft metal block (its ring, of revolution) pressed onto a disk that is rough, drawn along it, and lifted a bit: it
@@ -126,6 +167,10 @@ Scene pressed(const Setting& setting) {
   const J2Plastic material{parameter(s, "E", 100), parameter(s, "nu", 0.3), parameter(s, "yield", 2.3),
                            parameter(s, "hardening", 12)};
   s.bodies = {{"block", box, material, setting.element, 1.0}};
+  if (setting.table) {
+    auto& table = std::get<J2Plastic>(s.bodies[0].material).table;
+    table = {{parameter(s, "a1", 0.004), parameter(s, "s1", 2.36)}, {0.015, 2.41}, {0.03, parameter(s, "s3", 2.45)}};
+  }
   s.obstacles = {{"disk", Circle{{left + 1.07, -1.5}, parameter(s, "R", 1.5)}}};
   s.contacts = {scenes::contact("sole", "block.bottom", "disk")};
   s.contacts[0].friction = parameter(s, "mu", 0.3);
@@ -151,14 +196,14 @@ TEST_P(PlasticBlocks, FlowAndHaveTheDerivativesOfTheWholeRun) {
   for (const Method& method : finite_schemes()) scenes::expect_derivatives_in_both_modes(scene, method);
 }
 
-INSTANTIATE_TEST_SUITE_P(Settings, PlasticBlocks,
-                         testing::Values(Setting{Space::plane_strain, false, "Q4_mean_dilatation"},
-                                         Setting{Space::plane_strain, false, "T6"},
-                                         Setting{Space::plane_stress, false, "Q4"},
-                                         Setting{Space::axisymmetric, false, "Q4_mean_dilatation"},
-                                         Setting{Space::plane_strain, true, "Q4"},
-                                         Setting{Space::plane_strain, true, "Q4_mean_dilatation"},
-                                         Setting{Space::axisymmetric, true, "T3"}));
+INSTANTIATE_TEST_SUITE_P(
+    Settings, PlasticBlocks,
+    testing::Values(Setting{Space::plane_strain, false, "Q4_mean_dilatation"},
+                    Setting{Space::plane_strain, false, "T6"}, Setting{Space::plane_stress, false, "Q4"},
+                    Setting{Space::axisymmetric, false, "Q4_mean_dilatation"}, Setting{Space::plane_strain, true, "Q4"},
+                    Setting{Space::plane_strain, true, "Q4_mean_dilatation"}, Setting{Space::axisymmetric, true, "T3"},
+                    Setting{Space::plane_stress, false, "Q8", true},
+                    Setting{Space::plane_strain, true, "Q4_mean_dilatation", true}));
 
 /// A truss of two bars, elastoplastic, pushed down on a stop that is rough.
 Scene truss(bool finite) {

@@ -110,7 +110,7 @@ TEST(Warnings, AreObjectsOfAClosedSetInEveryResult) {
   std::set<std::string_view> names;
   for (int code = 0; code <= static_cast<int>(WarningCode::non_unique); ++code)
     names.insert(name_of(static_cast<WarningCode>(code)));
-  EXPECT_EQ(names.size(), 10u);
+  EXPECT_EQ(names.size(), 11u);
   EXPECT_EQ(names.count(""), 0u);
 }
 
@@ -194,6 +194,22 @@ TEST(Warnings, SayNothingOfASingleNodeThatIsMeant) {
   EXPECT_THAT(warnings_of(cases::run(cases::load(std::string(STICKSLIP_SOURCE_DIR) + "/studies/scenes/slider.json"),
                                      {{"monolithic_al", json::object()}}, "slider.json")),
               IsEmpty());
+}
+
+TEST(Warnings, NameAResponseWhosePlaceTwoBodiesHold) {
+  json scene = blocks(0.002, 0.02, 0.1);
+  const auto at = [](const char* body) {
+    json place = {{"at", {4, 1}}, {"component", "x"}};
+    if (body) place["on"] = body;
+    return json{{"displacement", place}};
+  };
+  scene["responses"] = {{"lower", at("lower")}, {"upper", at("upper")}};
+  EXPECT_THAT(warnings(scene), IsEmpty());
+  const auto result = cases::run(scene, {{"monolithic_al", json::object()}}, "blocks.json");
+  const auto& moved = result.steps.back().responses;  // the upper block slides
+  EXPECT_GT(moved[1] - moved[0], 0.005);
+  scene["responses"]["either"] = at(nullptr);
+  EXPECT_THAT(warnings(scene), ElementsAre(is(WarningCode::shared_place, "lower", "upper holds its point too")));
 }
 
 TEST(Warnings, NameABodyThatMayBeAnywhere) {

@@ -67,7 +67,8 @@ TEST(ElementWork, HasTheDerivativesOfTheComplexStep) {
   }
 }
 
-/// Inputs: coordinates, thickness, the law's numbers, the motion, and what is remembered of the last increment.
+/// Inputs: coordinates, thickness, the law's numbers (of its part), the motion, and what is remembered of the last
+/// increment.
 template <class Shape, Kinematics kinematics>
 void expect_derivatives_of_flow(const J2Law<double>& law) {
   constexpr int n = Shape::nodes, memory = points_of<Shape>(kinematics) * J2Law<double>::memory;
@@ -77,7 +78,8 @@ void expect_derivatives_of_flow(const J2Law<double>& law) {
   for (int m = 3; m < memory; m += 4) state.before[m] = std::abs(state.before[m]);
   const Mat<double, 2, n> X = some_element<Shape>();
   Vector<double> inputs(4 * n + 5 + memory);
-  inputs << X.reshaped(), 0.7, law.lame, law.shear, law.yield, law.hardening, state.motion.reshaped(), state.before;
+  const auto numbers = law.numbers();
+  inputs << X.reshaped(), 0.7, numbers[0], numbers[1], numbers[2], numbers[3], state.motion.reshaped(), state.before;
   const auto work = [&](const auto& x) {
     using T = typename std::decay_t<decltype(x)>::Scalar;
     const Mat<T, 2, n> coordinates = x.head(2 * n).reshaped(2, n), u = x.segment(2 * n + 5, 2 * n).reshaped(2, n);
@@ -100,13 +102,28 @@ void expect_derivatives_of_flow(const J2Law<double>& law) {
 
 TEST(ElementWork, HasThoseOfAFlowAndOfWhatItRemembers) {
   for (bool finite : {false, true}) {
-    const J2Law<double> metal{3.0, 2.0, 0.05, 0.3, Space::plane_strain, finite};
+    const J2Law<double> metal{3.0, 2.0, {0.05, 0.3}, Space::plane_strain, finite};
     expect_derivatives_of_flow<Quad4, Kinematics::plane>(metal);
     expect_derivatives_of_flow<Tri6, Kinematics::revolution>(metal);
     expect_derivatives_of_flow<Quad4, Kinematics::plane_mean_dilatation>(metal);
     expect_derivatives_of_flow<Quad4, Kinematics::revolution_mean_dilatation>(metal);
   }
-  expect_derivatives_of_flow<Quad8, Kinematics::plane>(J2Law<double>{3.0, 2.0, 0.05, 0.3, Space::plane_stress, false});
+  expect_derivatives_of_flow<Quad8, Kinematics::plane>(
+      J2Law<double>{3.0, 2.0, {0.05, 0.3}, Space::plane_stress, false});
+}
+
+TEST(ElementWork, HasThoseOfEachRowOfAHardeningTable) {
+  const Hardening<double> table{0.05, 0.0, {{0.004, 0.06}, {0.01, 0.065}, {0.02, 0.067}}};
+  for (int part = 0; part < 3; ++part) {  // yield; rows 1 and 2; row 3
+    for (bool finite : {false, true}) {
+      const J2Law<double> metal{3.0, 2.0, table, Space::plane_strain, finite, part};
+      EXPECT_EQ(metal.part_count(), 3);
+      expect_derivatives_of_flow<Tri6, Kinematics::plane>(metal);
+      expect_derivatives_of_flow<Quad4, Kinematics::revolution_mean_dilatation>(metal);
+    }
+    expect_derivatives_of_flow<Quad8, Kinematics::plane>(
+        J2Law<double>{3.0, 2.0, table, Space::plane_stress, false, part});
+  }
 }
 
 }  // namespace

@@ -14,10 +14,25 @@ namespace {
 constexpr double E = 200, nu = 0.3, G = E / 2.6, yield = 1.5, hardening = 9;
 using Memory = Vec<double, 4>;
 
+using Table = std::vector<HardeningRow>;
+
 template <class T = double>
-J2Law<T> law(Space space, bool finite) {
+J2Law<T> law(Space space, bool finite, const Table& table = {}) {
   Numbers<T> none;
-  return law_of<T>(J2Plastic{E, nu, yield, hardening}, space, finite, none);
+  return law_of<T>(J2Plastic{E, nu, yield, table.empty() ? hardening : 0.0, table}, space, finite, none);
+}
+
+/// Rows that the gradients below pass.
+const Table rows{{0.002, 1.52}, {0.006, 1.6}, {0.011, 1.61}};
+
+/// The stress at a plastic strain, between rows from the last backwards.
+double stress_in_table(double strain) {
+  for (int k = 2; k >= 0; --k) {
+    const double from = k == 0 ? 0 : rows[k - 1].strain.value, low = k == 0 ? yield : rows[k - 1].stress.value;
+    if (strain >= rows[2].strain.value) return rows[2].stress.value;
+    if (strain >= from) return low + (rows[k].stress.value - low) * (strain - from) / (rows[k].strain.value - from);
+  }
+  return yield;
 }
 
 /// q of a stress with zz: sqrt(3 J2).
@@ -55,6 +70,48 @@ TEST(J2Plastic, EndsOnItsBoundAndKeepsTheVolume) {
   }
 }
 
+TEST(J2Plastic, EndsOnItsTable) {
+  for (const Space space : {Space::plane_strain, Space::plane_stress}) {
+    const auto metal = law(space, false, rows);
+    int pieces = 0;
+    double last = 0;
+    for (double size : {0.1, 0.5, 0.7, 0.9, 1.1, 1.5}) {
+      const Mat<double, 2> H = size * gradient(2);
+      const Memory memory = metal.flow<double, 2>(H, Memory::Zero());
+      const auto s = metal.stress<double, 2>(H, memory);
+      const double q = mises(s(0, 0), s(1, 1), metal.stress_across(H, memory), s(0, 1));
+      if (memory[3] > 0) {
+        EXPECT_NEAR(q, stress_in_table(memory[3]), 1e-13 * q) << size;
+      }
+      for (const auto& row : rows) pieces += last < row.strain.value && memory[3] >= row.strain.value;
+      last = memory[3];
+    }
+    EXPECT_EQ(pieces, 3) << "all corners were passed";
+  }
+  // along a straight path of deviators one large increment is a thousand small ones
+  const auto metal = law(Space::plane_strain, false, rows);
+  Mat<double, 2> H;
+  H << 0.022, 0.004, -0.002, -0.022;
+  const Memory once = metal.flow<double, 2>(H, Memory::Zero());
+  Memory many = Memory::Zero();
+  for (int k = 1; k <= 1000; ++k) many = metal.flow<double, 2>(H * (k / 1000.0), many);
+  EXPECT_GT(once[3], rows[2].strain.value);
+  EXPECT_LE(largest_entry(once - many), 1e-13 * once[3] * 1000);  // a rounding each
+}
+
+TEST(J2Plastic, TellsHowFarItIsFromACorner) {
+  const auto metal = law(Space::plane_stress, false, rows);
+  Mat<double, 2> H = Mat<double, 2>::Zero();
+  double low = 0, high = 0.04;  // a shear that ends at the second row
+  for (int k = 0; k < 200; ++k) {
+    H(0, 1) = (low + high) / 2;
+    (metal.flow<double, 2>(H, Memory::Zero())[3] < rows[1].strain.value ? low : high) = H(0, 1);
+  }
+  EXPECT_LE(metal.margin<2>(H, Memory::Zero()), 1e-13);
+  H(0, 1) *= 1.01;
+  EXPECT_GT(metal.margin<2>(H, Memory::Zero()), 1e-3);
+}
+
 TEST(J2Plastic, OfPlaneStressIsThatOfRevolutionWithNoStressAcross) {
   // the strain across is sought by halving until the radial return of three stresses leaves none across
   const auto plane = law(Space::plane_stress, false), solid = law(Space::axisymmetric, false);
@@ -87,7 +144,8 @@ Vector<T> outcome(const J2Law<T>& metal, const Vector<T>& in) {
   return out;
 }
 
-TEST(J2Plastic, HasTheDerivativesOfTheComplexStepAndASymmetricTangent) {
+/// `table`: rows of the law's hardening, empty where it is linear.
+void expect_derivatives_of_complex_step(const Table& table) {
   using Complex = std::complex<double>;
   constexpr int n = 8;
   for (const Space space : {Space::plane_strain, Space::plane_stress})
@@ -97,17 +155,22 @@ TEST(J2Plastic, HasTheDerivativesOfTheComplexStepAndASymmetricTangent) {
       in << gradient(2).reshaped(), 0.002, -0.001, 0.003, 0.004;
       Vector<Dual<n>> seeded(n);
       for (int k = 0; k < n; ++k) seeded[k] = Dual<n>::seed(in[k], k);
-      const auto out = outcome<Dual<n>, 2>(law<Dual<n>>(space, finite), seeded);
+      const auto out = outcome<Dual<n>, 2>(law<Dual<n>>(space, finite, table), seeded);
       EXPECT_GT(value(out[7]), 0.0041);
       for (int k = 0; k < n; ++k) {
         Vector<Complex> shifted = in.cast<Complex>();
         shifted[k] += Complex(0, 1e-30);
-        const auto exact = outcome<Complex, 2>(law<Complex>(space, finite), shifted);
+        const auto exact = outcome<Complex, 2>(law<Complex>(space, finite, table), shifted);
         for (int i = 0; i < n; ++i) EXPECT_NEAR(out[i].d[k], exact[i].imag() / 1e-30, 1e-12 * E) << i << k;
       }
       for (int i = 0; i < 4; ++i)
         for (int k = 0; k < i; ++k) EXPECT_NEAR(out[i].d[k], out[k].d[i], 1e-12 * E) << i << k;
     }
+}
+
+TEST(J2Plastic, HasTheDerivativesOfTheComplexStepAndASymmetricTangent) {
+  expect_derivatives_of_complex_step({});
+  expect_derivatives_of_complex_step({{0.005, 1.52}, {0.03, 2.1}});
 }
 
 TEST(J2Plastic, OfFiniteStrainTurnsWithARotationAndKeepsTheVolume) {

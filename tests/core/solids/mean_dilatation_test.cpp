@@ -29,7 +29,7 @@ template <class F>
 void for_each_law(F&& f) {
   f(NeoHookeanLaw<double>(3.0, 2.0, NeoHookean::Volumetric::quadratic), Vector<double>());
   f(NeoHookeanLaw<double>(3.0, 2.0, NeoHookean::Volumetric::log), Vector<double>());
-  f(J2Law<double>{3.0, 2.0, 100.0, 1.0, Space::plane_strain, true},
+  f(J2Law<double>{3.0, 2.0, {100.0, 1.0}, Space::plane_strain, true},
     Vector<double>(0.02 * derivatives::arbitrary(16, 5).cwiseAbs()));
 }
 

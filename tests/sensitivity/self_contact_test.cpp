@@ -1,0 +1,135 @@
+/// A side that touches itself: which places may touch, the same numbers as of two sides that are named, and the
+/// derivatives of every scheme.
+#include <gtest/gtest.h>
+
+#include "core/contact/curve_search.hpp"
+#include "tests/support/blocks.hpp"
+#include "tests/support/finite_strain.hpp"
+
+namespace stickslip {
+namespace {
+
+using scenes::finite_methods;
+using scenes::finite_schemes;
+using scenes::parameter;
+using scenes::response;
+using scenes::run;
+using scenes::table;
+using Kind = Response::Kind;
+
+// --- what may be faced -----------------------------------------------------------------------------------------------
+
+/// A wall 1 thick, folded to a U that opens to the right: arms 4 long, 1.5 apart. Corners, counter-clockwise.
+const std::vector<Vec<double, 2>> folded{{4, 1}, {0, 1}, {0, 2.5}, {4, 2.5}, {4, 3.5}, {-1, 3.5}, {-1, 0}, {4, 0}};
+
+struct Fold {
+  std::vector<Patch> patches;
+  Eigen::Matrix2Xd places;
+  /// `pieces`: facets of each straight part.
+  Fold(int pieces, Smoothing smoothing) {
+    const int corners = static_cast<int>(folded.size()), count = corners * pieces;
+    places.resize(2, count);
+    std::vector<std::vector<int>> facets;
+    for (int c = 0; c < corners; ++c)
+      for (int k = 0; k < pieces; ++k) {
+        const double share = static_cast<double>(k) / pieces;
+        places.col(c * pieces + k) = (1 - share) * folded[c] + share * folded[(c + 1) % corners];
+        facets.push_back({c * pieces + k, (c * pieces + k + 1) % count});
+      }
+    patches = make_patches(facets, smoothing, 30, places);
+  }
+};
+
+TEST(SelfContact, FacesTheOtherArmAndNotThroughTheWall) {
+  for (const Smoothing smoothing : {Smoothing::none, Smoothing::catmull_rom, Smoothing::b_spline}) {
+    constexpr int pieces = 8;
+    const Fold fold(pieces, smoothing);
+    const CurveSearch search(fold.patches, fold.places);
+    const auto faced = [&](int vertex, const Vec<double, 2>& outward, const Vec<double, 2>& shift,
+                           int last = Patch::none) {
+      const OwnVertex own = own_vertex(fold.patches, fold.places, vertex, outward, 0.5);
+      return search.facing_itself(fold.places.col(vertex) + shift, outward, own, last);
+    };
+    for (int k = 1; k < pieces; ++k) {
+      // from the lower arm up: across the slit, however far it is and a bit inside; not once it is deep inside
+      const Facing across = faced(k, {0, 1}, {0, 0});
+      ASSERT_NE(across.patch, Patch::none) << k;
+      const auto place = [&](int vertex) -> Vec<double, 2> { return fold.places.col(vertex); };
+      const Vec<double, 2> foot = place_on<double>(fold.patches[across.patch], across.xi, place);
+      EXPECT_NEAR(foot[1], 2.5, 1e-12);
+      EXPECT_NEAR(foot[0], fold.places(0, k), 1e-9);
+      EXPECT_EQ(faced(k, {0, 1}, {0, 1.7}).patch, across.patch) << "0.2 inside";
+      EXPECT_EQ(faced(k, {0, 1}, {0, 2.4}, across.patch).patch, across.patch) << "0.9 inside, from in front";
+      EXPECT_EQ(faced(k, {0, 1}, {0, 2.4}).patch, Patch::none) << "0.9 inside of what it did not face";
+      EXPECT_EQ(faced(k, {0, 1}, {0, 2.6}, across.patch).patch, Patch::none) << "through all of the other wall";
+      // the other way round it is the slave
+      EXPECT_EQ(faced(2 * pieces + k, {0, -1}, {0, 0}).patch, Patch::none);
+      // outer sides face nothing: what is behind them is the wall
+      for (const int side : {4, 5, 6}) {
+        const Vec<double, 2> along = folded[(side + 1) % 8] - folded[side];
+        const Facing none = faced(side * pieces + k, {along[1], -along[0]}, {0, 0});
+        EXPECT_EQ(none.patch, Patch::none) << side;
+        EXPECT_NEAR(none.distance, std::hypot(5, 3.5), 1e-12) << "the size of the curve";
+      }
+    }
+  }
+}
+
+// --- a ring that is open, and closes ---------------------------------------------------------------------------------
+
+/// A rubber C: its start is held, pressure from all around closes it, with friction where the ends meet, and a force
+/// shears the end along. Contact of its boundary with itself, or of two sides.
+Scene clasp(bool itself, bool smooth = false) {
+  Scene s;
+  s.finite_strain = true;
+  s.legs = {{0.1, 8}, {1, 4}, {2, 3}};  // (it closes soon)
+  RingMesh ring;
+  ring.center = {0.0, 0.0};
+  ring.inner = parameter(s, "inner", 1);
+  ring.outer = 1.5;
+  ring.from_angle = 20.0;
+  ring.to_angle = 340.0;
+  ring.cells = {3, 16};
+  s.bodies = {{"clasp", ring, NeoHookean{parameter(s, "E", 100), 0.3}, "Q4", 1.0}};
+  s.contacts = {itself ? scenes::contact("ends", "clasp.boundary", "clasp.boundary")
+                       : scenes::contact("ends", "clasp.end", "clasp.start")};
+  s.contacts[0].friction = parameter(s, "mu", 0.2);
+  if (smooth) s.contacts[0].smoothing = Smoothing::b_spline;
+  s.supports = {scenes::support("clasp.start", {{'x', table({{0, 0.0}})}, {'y', table({{0, 0.0}})}})};
+  Load around;
+  around.on = "clasp.outer";
+  around.kind = Load::Kind::pressure;
+  around.vector = {parameter(s, "p", 2)};
+  around.history = table({{0, 0.0}, {1, 1.0}});
+  Load along = scenes::traction("clasp.end", {parameter(s, "shear", 0.6), 0.0});
+  along.history = table({{0, 0.0}, {1, 0.0}, {2, 1.0}});
+  s.loads = {around, along};
+  s.responses = {response("press", Kind::contact_force, "ends", "normal"),
+                 response("drag", Kind::contact_force, "ends", "x"),
+                 response("end", Kind::displacement, "clasp.end", "x"), response("energy", Kind::strain_energy, "")};
+  return s;
+}
+
+TEST(SelfContact, OfABoundaryIsThatOfTheTwoSidesThatMeet) {
+  for (const Method& method : finite_methods()) {
+    if (std::holds_alternative<Penalty>(method)) continue;  // (its stiffness is of other sides)
+    const auto named = run(clasp(false), method), itself = run(clasp(true), method);
+    ASSERT_TRUE(is_converged(named.trajectory.status)) << name_of(method) << named.trajectory.message;
+    ASSERT_TRUE(is_converged(itself.trajectory.status)) << name_of(method) << itself.trajectory.message;
+    ASSERT_EQ(named.trajectory.increments.size(), itself.trajectory.increments.size());
+    EXPECT_GT(named.value("press"), 0.1) << "the ends meet";
+    EXPECT_GT(std::abs(named.value("drag")), 0.1 * named.value("press")) << "and rub";
+    for (std::size_t n = 0; n < named.trajectory.increments.size(); ++n)
+      for (const auto& r : named.model.scene.responses)
+        EXPECT_NEAR(itself.value(r.name, n), named.value(r.name, n), 1e-9 * std::abs(named.value(r.name)))
+            << name_of(method) << r.name << n;
+  }
+}
+
+TEST(SelfContact, HasTheDerivativesOfTheWholeRun) {
+  for (const Method& method : finite_schemes()) scenes::expect_derivatives_in_both_modes(clasp(true), method);
+  scenes::expect_derivatives_in_both_modes(clasp(true, true), MonolithicAL{});
+}
+
+}  // namespace
+}  // namespace stickslip
