@@ -79,6 +79,12 @@ DerivativeStorage storage_of(const Recording& recording, const std::vector<Backw
   return storage;
 }
 
+/// Whether the motion of a node is prescribed along some direction.
+bool has_prescribed(const Model& model, int node) {
+  const auto first = model.free_index.begin() + static_cast<std::ptrdiff_t>(node) * model.dimension;
+  return std::any_of(first, first + model.dimension, [](int index) { return index < 0; });
+}
+
 /// Elements with a dof that is prescribed.
 ElementLists elements_at_supports(const Model& model) {
   ElementLists lists(model.bodies.size());
@@ -96,6 +102,15 @@ bool reads_energies(const Scene& scene) {
   return std::any_of(scene.objectives.begin(), scene.objectives.end(), [&](const Objective& objective) {
     return scene.responses[objective.response].kind == Response::Kind::strain_energy;
   });
+}
+
+/// Dofs of which the bodies' forces are read. `energies`: by the energy of all.
+std::vector<int> dofs_read(const Model& model, bool energies) {
+  std::vector<int> dofs;
+  for (int node = 0; node < model.node_count; ++node)
+    for (int i = 0; (energies || has_prescribed(model, node)) && i < model.dimension; ++i)
+      dofs.push_back(node * model.dimension + i);
+  return dofs;
 }
 
 /// Moves the derivatives by the history that the run began with to the slots that it is a function of.
@@ -191,20 +206,16 @@ Gradients adjoint(const Model& model, const Slots<double>& slots, const Method& 
   Recording recording(model);
   Tape& tape = recording.tape;
   std::vector<Backward> objectives(scene.objectives.size());
+  const bool energies = reads_energies(scene);
   for (auto& objective : objectives) objective.by.resize(tape.size(), 0);
   bool done = false;
   long waiting = 0;
   auto backward = [&](const auto& m, auto& engine) {
     using E = std::decay_t<decltype(engine)>;
-    AdjointProblem<E> problem{model,
-                              slots,
-                              engine,
-                              tape,
-                              recording.slots,
-                              tape.size(),
-                              objectives,
-                              elements_at_supports(model),
-                              reads_energies(scene)};
+    AdjointProblem<E> problem{model, slots, engine, tape, recording.slots, tape.size(), objectives};
+    problem.at_supports = elements_at_supports(model);
+    problem.energies = energies;
+    problem.read_forces = dofs_read(model, energies);
     done = run(m, problem, consistent ? *consistent : trajectory);
     tape.rewind(problem.slots_end);
     waiting = problem.waiting_bytes;

@@ -51,12 +51,6 @@ struct WorkLeft {
 WorkLeft pull_back_bodies(const Model& model, const Slots<Reverse>& slots, Tape& tape, const WorkPairs& pairs,
                           std::vector<double>& by);
 
-/// Whether the motion of a node is prescribed along some direction.
-inline bool has_prescribed(const Model& model, int node) {
-  const auto first = model.free_index.begin() + static_cast<std::ptrdiff_t>(node) * model.dimension;
-  return std::any_of(first, first + model.dimension, [](int index) { return index < 0; });
-}
-
 /// What an equilibrium leaves to be done inside the bodies.
 struct Inside {
   Vector<double> motion;          ///< u, all dofs in the axes
@@ -85,9 +79,10 @@ struct AdjointProblem {
   const Slots<Reverse>& recorded;
   int slots_end = 0;  ///< on the tape
   std::vector<Backward>& objectives;
-  ElementLists at_supports;  ///< elements with a dof that is prescribed: reactions are forces of these
-  bool energies = false;     ///< an objective reads the bodies' forces everywhere
-  long waiting_bytes = 0;    ///< largest, of what waited inside the bodies
+  ElementLists at_supports;      ///< elements with a dof that is prescribed: reactions are forces of these
+  bool energies = false;         ///< an objective reads the bodies' forces everywhere
+  std::vector<int> read_forces;  ///< dofs of which the bodies' forces are read: of nodes at supports, or all
+  long waiting_bytes = 0;        ///< largest, of what waited inside the bodies
   Counters counters;
   Status status = Status::singular;  ///< why a scheme gave up
   std::string message;
@@ -146,10 +141,10 @@ class RecordedEquilibrium {
   bool unknown_, valid_ = false, redundant_ = false;
   int outcome_start_ = 0;  ///< on the tape: behind it, functions of the variables below
   Vector<Reverse> prescribed_, displacement_, multiplier_;
-  std::vector<std::pair<int, int>> read_forces_;  ///< bodies' forces that are variables: dof, entry of the tape
-  Vector<double> forces_;                         ///< of the bodies, where they are read
-  Vector<Reverse> memory_;                        ///< what bodies remember of the increment
-  History<Reverse> history_;                      ///< that the increment starts from
+  int first_read_ = 0;        ///< entry of the first of AdjointProblem::read_forces
+  Vector<double> forces_;     ///< of the bodies, where they are read
+  Vector<Reverse> memory_;    ///< what bodies remember of the increment
+  History<Reverse> history_;  ///< that the increment starts from
   State<Reverse> state_;
   Vector<Reverse> rows_, multiplier_rows_;  ///< residual, in the frames of the nodes
   std::vector<Reverse> shares_;             ///< of this increment in each objective
@@ -212,12 +207,8 @@ void RecordedEquilibrium<E>::record(const State<double>& previous, const Regular
   forces_ =
       bulk_forces(model, problem_.slots, at_.displacement, memory, problem_.energies ? nullptr : &problem_.at_supports);
   Vector<Reverse> internal = forces_.unaryExpr([](double x) { return Reverse(x); });
-  const int D = model.dimension;
-  for (int node = 0; node < model.node_count; ++node)
-    for (int dof = node * D; (problem_.energies || has_prescribed(model, node)) && dof < (node + 1) * D; ++dof) {
-      internal[dof] = Reverse::leaf(forces_[dof], tape);
-      read_forces_.emplace_back(dof, internal[dof].at);
-    }
+  first_read_ = tape.size();
+  for (int dof : problem_.read_forces) internal[dof] = Reverse::leaf(forces_[dof], tape);
   memory_ = leaves(memory, tape);
   multiplier_ = leaves(at_.multiplier, tape);
   for_each_part([&](const Vector<double>& values, Vector<Reverse>& part) { part = leaves(values, tape); },
@@ -277,7 +268,8 @@ template <class E>
 Vector<double> RecordedEquilibrium<E>::pull_back(int objective) {
   problem_.tape.pull_back(by(objective), outcome_start_);
   Vector<double> weight = Vector<double>::Zero(problem_.model.dof_count());
-  for (const auto& [dof, entry] : read_forces_) weight[dof] = std::exchange(by(objective)[entry], 0);
+  int entry = first_read_;
+  for (int dof : problem_.read_forces) weight[dof] = std::exchange(by(objective)[entry++], 0);
   return weight;
 }
 

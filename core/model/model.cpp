@@ -110,10 +110,12 @@ std::optional<std::vector<double>> weights_at(ElementShape shape, const Points<d
 std::vector<std::pair<int, double>> find_in_body(const BodyMesh& body, const Points<double>& points,
                                                  const Eigen::VectorXd& x) {
   const int count = nodes_of(body.mesh.shape);
+  std::vector<int> nodes(count);
+  Eigen::VectorXd low(x.size()), high(x.size());
   for (int e = 0; e < body.mesh.element_count(); ++e) {
-    std::vector<int> nodes(count);
     for (int a = 0; a < count; ++a) nodes[a] = body.first_node + body.mesh.connectivity[e * count + a];
-    Eigen::VectorXd low = Eigen::VectorXd::Constant(x.size(), INFINITY), high = -low;
+    low.setConstant(INFINITY);
+    high.setConstant(-INFINITY);
     for (const int node : nodes) {
       low = low.cwiseMin(points.col(node));
       high = high.cwiseMax(points.col(node));
