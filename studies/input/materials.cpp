@@ -1,6 +1,7 @@
 #include "studies/input/materials.hpp"
 
 #include <Eigen/Cholesky>
+#include <cmath>
 
 namespace stickslip {
 namespace {
@@ -30,14 +31,14 @@ void read_hardening_table(const JsonNode& node, J2Plastic& material, bool yields
     const bool at_start = &row == &rows.front() && strain.value().is_number() && strain.value() == 0;
     if (at_start) {
       reading.constants[strain.pointer()] = "the start of the table, 0";
-      last.stress = reading.number(stress, positive);
-      if (yields) {
-        if (last.stress.value != material.yield.value)
+      if (!yields) {
+        material.yield = last.stress = reading.number(stress, positive);
+      } else {
+        reading.constants[stress.pointer()] = R"(the yield stress once more; "yield" may be a parameter)";
+        const auto given = stress.number(positive);
+        if (given && std::isfinite(material.yield.value) && *given != material.yield.value)
           stress.must_be(shown(material.yield.value) + R"(, as "yield" is)");
-        reading.equal[last.stress.slot] = material.yield.slot;
-        reading.equal[material.yield.slot] = last.stress.slot;
       }
-      material.yield = last.stress;
       continue;
     }
     const HardeningRow next{reading.number(strain, positive), reading.number(stress, positive)};
