@@ -6,6 +6,48 @@ namespace stickslip::report {
 
 using nlohmann::json;
 
+namespace {
+
+/// The step of a cell whose iterations are shown, the one that took most, or of a run that failed the last; none where
+/// none was recorded.
+std::optional<std::size_t> hardest_step(const Cell& cell) {
+  const json& steps = array_at(cell.record, "steps");
+  std::optional<std::size_t> hardest;
+  std::size_t most = 0;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const std::size_t length = array_at(steps[i], "history").size();
+    if (length == 0 || (length < most && cell.converged)) continue;
+    most = length;
+    hardest = i;
+  }
+  return hardest;
+}
+
+/// The iterations of one step of a cell. `turn`: which of them are marked.
+void add_iterations(json& rows, const Cell& cell, std::size_t step, std::size_t turn) {
+  const json& history = cell.record["steps"][step]["history"];
+  // Long curves stay readable where they mark few points, and other ones than their neighbours.
+  const std::size_t stride = std::max<std::size_t>(history.size() / 15, 1);
+  for (std::size_t i = 0; i < history.size(); ++i) {
+    const json& record = history[i];
+    const json& residual = at(record, "residual");
+    if (!residual.is_number()) continue;
+    json r = row_of(cell);
+    r["failed"] = false;  // the residuals of a failed run are a curve like any other; its name tells the status
+    r["series"] = r["line"] = in_words(cell);
+    r["of_cell"] = "yes";
+    r["error"] = residual;
+    r["step"] = step + 1;
+    r["iteration"] = r["order"] = i + 1;
+    r["unmarked"] = (i + turn) % stride != 0;
+    r["changed"] = number_at(record, "changed");
+    r["augmentation"] = number_at(record, "augmentation");
+    rows.push_back(r);
+  }
+}
+
+}  // namespace
+
 std::optional<Figure> convergence_histories(const Study& study) {
   Figure figure;
   SeriesList series(study);
@@ -21,37 +63,11 @@ std::optional<Figure> convergence_histories(const Study& study) {
   add_first(series, study, shown);
   for (const auto& cell : study.cells) {
     if (cell.variant != study.main_variant) continue;
-    const json& steps = array_at(cell.record, "steps");
-    std::size_t hardest = steps.size(), most = 0;
-    for (std::size_t i = 0; i < steps.size(); ++i) {
-      const std::size_t length = array_at(steps[i], "history").size();
-      if (length > 0 && (length >= most || !cell.converged)) {
-        most = length;
-        hardest = i;
-      }
-    }
-    if (hardest == steps.size()) continue;
-    const json& history = steps[hardest]["history"];
+    const auto step = hardest_step(cell);
+    if (!step) continue;
     const std::string name = in_words(cell);
     series.add(name, cell.family);
-    // Long curves stay readable where they mark few points, and other ones than their neighbours.
-    const std::size_t stride = std::max<std::size_t>(history.size() / 15, 1), turn = 2 * series.place(name);
-    for (std::size_t i = 0; i < history.size(); ++i) {
-      const json& record = history[i];
-      const json& residual = at(record, "residual");
-      if (!residual.is_number()) continue;
-      json r = row_of(cell);
-      r["failed"] = false;  // the residuals of a failed run are a curve like any other; its name tells the status
-      r["series"] = r["line"] = name;
-      r["of_cell"] = "yes";
-      r["error"] = residual;
-      r["step"] = hardest + 1;
-      r["iteration"] = r["order"] = i + 1;
-      r["unmarked"] = (i + turn) % stride != 0;
-      r["changed"] = number_at(record, "changed");
-      r["augmentation"] = number_at(record, "augmentation");
-      figure.rows.push_back(r);
-    }
+    add_iterations(figure.rows, cell, *step, 2 * series.place(name));
   }
   if (figure.rows.empty()) return std::nullopt;
   show_zeros(figure.rows, "error");

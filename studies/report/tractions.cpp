@@ -62,110 +62,127 @@ bool keep_near_the_contact(json& rows) {
   return any;
 }
 
-}  // namespace
-
-std::optional<Figure> tractions(const Study& study) {
-  // The most accurate cell of the variant is what the others are compared with, point by point.
+/// The most accurate cell of the variant: what the others are compared with, point by point.
+const Cell* most_accurate(const Study& study) {
   const Cell* reference = nullptr;
   for (const auto& family : study.families)
     if (const Cell* best = best_cell(study, family))
       if (!reference ||
           worst(best->enforcement, "response:").value_or(1) <= worst(reference->enforcement, "response:").value_or(1))
         reference = best;
-  if (!reference) return std::nullopt;
+  return reference;
+}
 
-  Figure figure;
-  SeriesList series(study);
-  figure.id = "tractions";
-  figure.title = "Tractions along the interface, last step";
-  const auto shown = telling_cells(study, Furthest::added);
-  add_first(series, study, shown);
-  const json& analytic = at(study.description, "analytic");
-  const json& curves_of = object_at(analytic, "curves");
-
-  // Past this many points only the cells shown at first are kept: the page has to stay light.
+/// Whether the page would be too heavy with the curves of all cells: then it has those that are shown at first.
+bool has_too_many_points(const Study& study) {
   constexpr std::size_t most_points = 20000;
   std::size_t points = 0;
   for (const auto& cell : study.cells)
     if (cell.variant == study.main_variant)
       for (const auto& [name, face] : object_at(cell.record, "interface").items())
         points += numbers_at(face, "normal").size();
+  return points > most_points;
+}
 
+/// Tractions at the points of one contact.
+struct Tractions {
+  std::vector<double> normal, tangential;
+  explicit Tractions(const json& face)
+      : normal(numbers_at(face, "normal")), tangential(numbers_at(face, "tangential")) {}
+};
+
+/// How far point i is from the reference, relative to its largest tractions; none where that says nothing.
+std::optional<double> difference(const Tractions& of, const Tractions& reference, std::size_t i) {
+  const double scale_p = largest(reference.normal), scale_q = largest(reference.tangential);
+  if (reference.normal.size() != of.normal.size() || !(scale_p > 0)) return std::nullopt;
+  if (of.normal[i] == 0 && reference.normal[i] == 0) return std::nullopt;
+  double difference = std::abs(of.normal[i] - reference.normal[i]) / scale_p;
+  if (of.tangential.size() == of.normal.size() && reference.tangential.size() == of.normal.size() && scale_q > 0)
+    difference = std::max(difference, std::abs(of.tangential[i] - reference.tangential[i]) / scale_q);
+  return difference;
+}
+
+/// The rows of one contact of a cell. `along_x`: its closed form goes along x. `turn`: which points are marked.
+void add_face(json& rows, json base, const json& face, const json& reference, bool along_x, std::size_t turn) {
+  const Tractions of(face), twin(reference);
+  const auto s = numbers_at(face, along_x ? "x" : "arc");
+  const json& states = array_at(face, "state");
+  // Curves that coincide stay readable when each marks other points.
+  const std::size_t stride = std::max<std::size_t>(of.normal.size() / 12, 1);
+  for (std::size_t i = 0; i < of.normal.size(); ++i) {
+    base["unmarked"] = (i + turn) % stride != 0;
+    const std::string state = i < states.size() ? plain(states[i]) : "";
+    base["state"] = state;
+    add_traction(rows, base, "pressure", s[i], -of.normal[i]);
+    if (i < of.tangential.size()) add_traction(rows, base, "tangential traction", s[i], of.tangential[i]);
+    if (reference.is_null()) continue;
+    if (const auto far = difference(of, twin, i)) add_traction(rows, base, "difference", s[i], *far);
+  }
+}
+
+/// Whether a contact's closed form goes along x, and not along the arc.
+bool goes_along_x(const json& curves_of, const std::string& contact) {
+  return at(at(curves_of, contact), "x").is_array();
+}
+
+/// The rows of all runs.
+json rows_of_runs(const Study& study, const Cell& reference, const std::vector<std::string>& shown,
+                  SeriesList& series) {
+  const json& curves_of = object_at(at(study.description, "analytic"), "curves");
+  const bool shown_alone = has_too_many_points(study);
+  json rows = json::array();
   for (const auto& cell : study.cells) {
     if (cell.variant != study.main_variant) continue;
-    const bool chosen = std::find(shown.begin(), shown.end(), cell.label) != shown.end();
-    if (points > most_points && !chosen) continue;
+    if (shown_alone && std::find(shown.begin(), shown.end(), cell.label) == shown.end()) continue;
     const std::string name = in_words(cell);
     for (const auto& [contact, face] : object_at(cell.record, "interface").items()) {
-      const auto arc = numbers_at(face, "arc"), x = numbers_at(face, "x");
-      const auto normal = numbers_at(face, "normal"), tangential = numbers_at(face, "tangential");
-      const json& twin = at(at(reference->record, "interface"), contact);
-      const auto normal_of_reference = numbers_at(twin, "normal");
-      const auto tangential_of_reference = numbers_at(twin, "tangential");
-      const auto& s = at(at(curves_of, contact), "x").is_array() ? x : arc;
-      if (normal.size() < 2 || s.size() != normal.size()) continue;
-      const json& states = array_at(face, "state");
+      const bool along_x = goes_along_x(curves_of, contact);
+      const std::size_t points = numbers_at(face, "normal").size();
+      if (points < 2 || numbers_at(face, along_x ? "x" : "arc").size() != points) continue;
       json base = row_of(cell);
       base["failed"] = false;  // a curve like any other; its name tells the status
       base["series"] = base["line"] = name;
       base["of_cell"] = "yes";
       base["contact"] = contact;
       series.add(name, cell.family);
-      const double scale_p = largest(normal_of_reference), scale_q = largest(tangential_of_reference);
-      // Curves that coincide stay readable when each marks other points.
-      const std::size_t stride = std::max<std::size_t>(normal.size() / 12, 1), turn = 3 * series.place(name);
-      for (std::size_t i = 0; i < normal.size(); ++i) {
-        base["unmarked"] = (i + turn) % stride != 0;
-        const std::string state = i < states.size() ? plain(states[i]) : "";
-        base["state"] = state;
-        add_traction(figure.rows, base, "pressure", s[i], -normal[i]);
-        if (i < tangential.size()) add_traction(figure.rows, base, "tangential traction", s[i], tangential[i]);
-        if (normal_of_reference.size() == normal.size() && scale_p > 0 && &cell != reference &&
-            (normal[i] != 0 || normal_of_reference[i] != 0)) {
-          double difference = std::abs(normal[i] - normal_of_reference[i]) / scale_p;
-          if (tangential.size() == normal.size() && tangential_of_reference.size() == normal.size() && scale_q > 0)
-            difference = std::max(difference, std::abs(tangential[i] - tangential_of_reference[i]) / scale_q);
-          add_traction(figure.rows, base, "difference", s[i], difference);
-        }
-      }
+      const json& twin = &cell == &reference ? json() : at(at(reference.record, "interface"), contact);
+      add_face(rows, base, face, twin, along_x, 3 * series.place(name));
     }
   }
-  if (figure.rows.empty()) return std::nullopt;
-  const bool far_left_out = keep_near_the_contact(figure.rows);
+  return rows;
+}
 
-  const std::string closed = "closed form";
-  json closed_rows = json::array();  // first, so that the runs are drawn over them
-  for (const auto& [contact, curve] : curves_of.items()) {
+const std::string closed_form = "closed form";
+
+/// The rows of the closed forms that a study names.
+json rows_of_closed_forms(const Study& study) {
+  json rows = json::array();
+  for (const auto& [contact, curve] : object_at(at(study.description, "analytic"), "curves").items()) {
     const auto s = numbers_at(curve, at(curve, "x").is_array() ? "x" : "s");
-    const auto normal = numbers_at(curve, "normal"), tangential = numbers_at(curve, "tangential");
-    json base = {{"label", closed}, {"series", closed}, {"line", closed},    {"family", ""},
-                 {"failed", false}, {"unmarked", true}, {"contact", contact}};
+    const Tractions of(curve);
+    const json base = {{"label", closed_form}, {"series", closed_form}, {"line", closed_form}, {"family", ""},
+                       {"failed", false},      {"unmarked", true},      {"contact", contact}};
     for (std::size_t i = 0; i < s.size(); ++i) {
-      if (i < normal.size()) add_traction(closed_rows, base, "pressure", s[i], -normal[i]);
-      if (i < tangential.size()) add_traction(closed_rows, base, "tangential traction", s[i], tangential[i]);
+      if (i < of.normal.size()) add_traction(rows, base, "pressure", s[i], -of.normal[i]);
+      if (i < of.tangential.size()) add_traction(rows, base, "tangential traction", s[i], of.tangential[i]);
     }
   }
-  figure.rows.insert(figure.rows.begin(), closed_rows.begin(), closed_rows.end());
-  figure.series = series.list;
-  if (!closed_rows.empty()) figure.series.insert(figure.series.begin(), {closed, "$ink", "circle", {1, 0}, 10});
+  return rows;
+}
 
+/// Gives rows the value that is drawn, and puts the differences last; true where there are any.
+bool sort_for_panels(json& rows) {
   json differences = json::array(), others = json::array();
-  for (auto& r : figure.rows) (r["panel"] == "difference" ? differences : others).push_back(r);
+  for (auto& r : rows) (r["panel"] == "difference" ? differences : others).push_back(r);
   show_zeros(differences, "value");
-  for (auto& r : others) {
-    r["shown"] = r["value"];
-  }
-  figure.rows = others;
-  for (auto& r : differences) figure.rows.push_back(r);
+  for (auto& r : others) r["shown"] = r["value"];
+  rows = std::move(others);
+  for (auto& r : differences) rows.push_back(r);
+  return !differences.empty();
+}
 
-  figure.text = "Pressure is positive in compression.";
-  if (far_left_out) figure.text += " Open points far from what touches are left out.";
-  if (!differences.empty())
-    figure.text += fmt::format(
-        " The last panel is the distance, point by point, from {}, a run of the most accurate, relative to its largest "
-        "traction: there the methods come apart where the curves above lie on each other. Shown at first are the most "
-        "accurate run of each method and the one furthest off.",
-        in_words(*reference));
+/// One panel a kind of traction that is not zero everywhere, and one of the differences.
+void add_panels(Figure& figure) {
   const json tips = tooltip({{"series", "run"}, {"s", "position"}, {"value", "value"}, {"state", "state"}});
   for (const auto& [panel, title, logarithmic] :
        {std::tuple{std::string("pressure"), "pressure p", false},
@@ -179,6 +196,36 @@ std::optional<Figure> tractions(const Study& study) {
     spec["transform"] = only_if("datum.panel == '" + panel + "'");
     figure.panels.push_back({title, spec, "s", "shown", false, logarithmic, panel, false});
   }
+}
+
+}  // namespace
+
+std::optional<Figure> tractions(const Study& study) {
+  const Cell* reference = most_accurate(study);
+  if (!reference) return std::nullopt;
+  Figure figure;
+  SeriesList series(study);
+  figure.id = "tractions";
+  figure.title = "Tractions along the interface, last step";
+  const auto shown = telling_cells(study, Furthest::added);
+  add_first(series, study, shown);
+  figure.rows = rows_of_runs(study, *reference, shown, series);
+  if (figure.rows.empty()) return std::nullopt;
+  const bool far_left_out = keep_near_the_contact(figure.rows);
+  const json closed = rows_of_closed_forms(study);
+  figure.rows.insert(figure.rows.begin(), closed.begin(), closed.end());  // first, so that runs are drawn over them
+  figure.series = series.list;
+  if (!closed.empty()) figure.series.insert(figure.series.begin(), {closed_form, "$ink", "circle", {1, 0}, 10});
+  const bool differ = sort_for_panels(figure.rows);
+  figure.text = "Pressure is positive in compression.";
+  if (far_left_out) figure.text += " Open points far from what touches are left out.";
+  if (differ)
+    figure.text += fmt::format(
+        " The last panel is the distance, point by point, from {}, a run of the most accurate, relative to its largest "
+        "traction: there the methods come apart where the curves above lie on each other. Shown at first are the most "
+        "accurate run of each method and the one furthest off.",
+        in_words(*reference));
+  add_panels(figure);
   if (figure.panels.empty()) return std::nullopt;  // nothing touches, and nothing should
   offer(figure, "Contact", "contact");
   offer_cells(figure, shown);

@@ -48,67 +48,73 @@ std::string why_it_may_be_folded(const Study& study, Against against, Of of) {
              : "";
 }
 
-}  // namespace
+/// What a curve is of.
+struct Subject {
+  Against against;
+  bool derivative, frictionless;
+  bool is_of_state() const { return against == Against::coulomb; }
+  std::vector<std::string> prefixes() const {
+    if (is_of_state()) return {""};
+    return derivative ? std::vector<std::string>{"sensitivity:"} : std::vector<std::string>{"response:", "field:"};
+  }
+  std::string worst_name() const {
+    return is_of_state() ? "worst of all" : derivative ? "worst sensitivity" : "worst response";
+  }
+};
 
-std::optional<Figure> work_precision(const Study& study, Against against, Of of) {
-  const bool derivative = of == Of::sensitivities;
-  std::vector<std::string> prefixes =
-      derivative ? std::vector<std::string>{"sensitivity:"} : std::vector<std::string>{"response:", "field:"};
-  if (against == Against::coulomb) prefixes = {""};
-  const std::string worst_name = against == Against::coulomb ? "worst of all"
-                                 : derivative                ? "worst sensitivity"
-                                                             : "worst response";
-  const bool frictionless = is_frictionless(study);
-  Figure figure;
-  SeriesList series(study);
+json rows_of(const Study& study, const Subject& subject, SeriesList& series) {
+  json rows = json::array();
   for (const auto& cell : study.cells) {
     const std::string knob = running_knob(study, cell.family);
     const std::string name = series_of(cell, knob);
-    const double backsolves = cell.count("backsolves") + (derivative ? cell.count("sensitivity_backsolves") : 0);
-    const double work = derivative ? cell.sensitivity_work : cell.work;
-    const double seconds = derivative ? cell.sensitivity_seconds : cell.seconds;
-    for (const auto& [quantity, error] : quantities(errors_of(cell, against), prefixes, worst_name)) {
-      if (against == Against::coulomb && frictionless && is_of_friction(quantity)) continue;
+    const bool derivative = subject.derivative;
+    for (const auto& [quantity, error] :
+         quantities(errors_of(cell, subject.against), subject.prefixes(), subject.worst_name())) {
+      if (subject.is_of_state() && subject.frictionless && is_of_friction(quantity)) continue;
       json r = row_of(cell);
       r["series"] = r["line"] = name;
       r["scene"] = cell.variant;
-      r["quantity"] = against == Against::coulomb ? in_plain_words(quantity) : quantity;
+      r["quantity"] = subject.is_of_state() ? in_plain_words(quantity) : quantity;
       r["error"] = error;
-      r["work"] = work;
-      r["backsolves"] = backsolves;
-      r["seconds"] = seconds;
+      r["work"] = derivative ? cell.sensitivity_work : cell.work;
+      r["backsolves"] = cell.count("backsolves") + (derivative ? cell.count("sensitivity_backsolves") : 0);
+      r["seconds"] = derivative ? cell.sensitivity_seconds : cell.seconds;
       const Knob* value = find_knob(cell, knob);
       r["order"] = value && value->value ? *value->value : 0;
       if (value) r["setting"] = value->text;
-      figure.rows.push_back(r);
+      rows.push_back(r);
       series.add(name, cell.family);
     }
   }
-  if (figure.rows.empty()) return std::nullopt;
-  show_zeros(figure.rows, "error");
-  figure.series = series.list;
+  return rows;
+}
 
-  const std::string what = derivative ? "sensitivities" : "responses";
+/// What the runs of one method that a curve joins differ in; empty where none is joined.
+std::string what_is_joined(const Study& study) {
   std::string along;
   for (const auto& family : study.families)
     if (const std::string knob = running_knob(study, family); !knob.empty())
       along += (along.empty() ? "" : ", ") + family_name(family) + " along " + knob;
-  const std::string joined = along.empty() ? "" : "A curve joins the runs of one method: " + along + ".";
-  std::string y_title = derivative ? "relative error of the sensitivity" : "relative error of the response";
-  if (against == Against::same_mesh) {
+  return along.empty() ? "" : "A curve joins the runs of one method: " + along + ".";
+}
+
+/// Name, title and text.
+void describe(const Study& study, const Subject& subject, Figure& figure) {
+  const std::string what = subject.derivative ? "sensitivities" : "responses", joined = what_is_joined(study);
+  if (subject.against == Against::same_mesh) {
     figure.id = "enforcement-" + what;
-    figure.title = derivative ? "Sensitivities: what enforcing contact exactly costs"
-                              : "Responses: what enforcing contact exactly costs";
+    figure.title = subject.derivative ? "Sensitivities: what enforcing contact exactly costs"
+                                      : "Responses: what enforcing contact exactly costs";
     figure.text =
         "Enforcement error: the distance from the reference solution on the same mesh, so what is seen is "
         "the method alone. Lower left is better. " +
         joined +
         " A method that is the reference itself "
         "stands on the line of exact zeros. ";
-  } else if (against == Against::discretization) {
+  } else if (subject.against == Against::discretization) {
     const std::string reference = discretization_reference(study);
     figure.id = "discretization-" + what;
-    figure.title = (derivative ? "Sensitivities: error against " : "Responses: error against ") + reference;
+    figure.title = (subject.derivative ? "Sensitivities: error against " : "Responses: error against ") + reference;
     figure.text =
         "Discretisation error: the distance from " + reference +
         ", mesh, steps and method together. Where curves lie on one level, mesh and steps decide and a stricter method "
@@ -116,16 +122,21 @@ std::optional<Figure> work_precision(const Study& study, Against against, Of of)
         joined + " ";
   } else {
     figure.id = "kkt";
-    figure.title = frictionless ? "How well equilibrium and the contact conditions are met"
-                                : "How well equilibrium and Coulomb's law are met";
+    figure.title = subject.frictionless ? "How well equilibrium and the contact conditions are met"
+                                        : "How well equilibrium and Coulomb's law are met";
     figure.text =
         "Computed from the final state alone by code that does not know which method ran; every measure is "
         "dimensionless. " +
         joined + " ";
-    y_title = "measure";
   }
-  figure.text += derivative ? "Costs are those of the solution and its derivatives together." : "";
-  figure.folded = against == Against::coulomb ? "of the final states" : why_it_may_be_folded(study, against, of);
+  if (subject.derivative) figure.text += "Costs are those of the solution and its derivatives together.";
+}
+
+/// One panel a measure of cost, where some run has it.
+void add_panels(const Subject& subject, Figure& figure) {
+  const std::string y_title = subject.is_of_state() ? "measure"
+                              : subject.derivative  ? "relative error of the sensitivity"
+                                                    : "relative error of the response";
   const json y = channel("shown", y_title, true);
   const json tips = tooltip({{"label", "method"},
                              {"error", "error"},
@@ -144,8 +155,23 @@ std::optional<Figure> work_precision(const Study& study, Against against, Of of)
   panel("work", "work (factorisations)", false);
   panel("seconds", "seconds", false);
   panel("backsolves", "back-solves", true);
+}
+
+}  // namespace
+
+std::optional<Figure> work_precision(const Study& study, Against against, Of of) {
+  const Subject subject{against, of == Of::sensitivities, is_frictionless(study)};
+  Figure figure;
+  SeriesList series(study);
+  figure.rows = rows_of(study, subject, series);
+  if (figure.rows.empty()) return std::nullopt;
+  show_zeros(figure.rows, "error");
+  figure.series = series.list;
+  describe(study, subject, figure);
+  figure.folded = subject.is_of_state() ? "of the final states" : why_it_may_be_folded(study, against, of);
+  add_panels(subject, figure);
   if (figure.panels.empty()) return std::nullopt;
-  offer(figure, "Quantity", "quantity", worst_name);
+  offer(figure, "Quantity", "quantity", subject.worst_name());
   offer(figure, "Scene", "scene", study.main_variant);
   return figure;
 }
