@@ -59,7 +59,7 @@ class BranchSearch {
 
   /// Leaves the derivative with the branches that it confirms in the block, and them in `at`.
   bool run() {
-    if (weak_.empty()) return differentiate_alone(method_, problem_, previous_, increment_);
+    if (weak_.empty()) return follow_branches();
     const auto found = at_.contact;
     if (by_flipping()) return true;
     if (!unsettled_) {
@@ -83,9 +83,21 @@ class BranchSearch {
     double by = 0;
   };
 
+  /// Differentiates with the branches in `at`. The bodies' pseudo-load does not depend on them: one serves all choices.
+  bool follow_branches() {
+    if (load_.empty()) {
+      load_.push_back(pseudo_load(problem_, at_.displacement, increment_.time));
+      reduce(problem_, load_);
+    }
+    problem_.prepared = load_[0];
+    const bool done = differentiate_alone(method_, problem_, previous_, increment_);
+    problem_.prepared.reset();  // (a tangent without a factor leaves it there)
+    return done;
+  }
+
   std::optional<Standing> differentiate() {
     problem_.status = Status::singular;
-    if (!differentiate_alone(method_, problem_, previous_, increment_)) {
+    if (!follow_branches()) {
       unsettled_ |= problem_.status == Status::cap;
       return std::nullopt;
     }
@@ -165,7 +177,7 @@ class BranchSearch {
     constexpr double most = 1e3;  // 1e-7 of the derivatives: a point is weak up to 1e-8, as its derivative then is
     if (!(least_ <= most)) return false;
     at_.contact = best_;
-    return differentiate_alone(method_, problem_, previous_, increment_);
+    return follow_branches();
   }
 
   const M& method_;
@@ -180,7 +192,8 @@ class BranchSearch {
   double least_ = std::numeric_limits<double>::infinity();  ///< least_, best_: of the choices tried, the one
                                                             ///< that was contradicted least
   ContactField<double> best_;
-  bool unsettled_ = false;  ///< a scheme's passes did not settle: all that it takes, for each choice again
+  std::vector<PseudoLoad> load_;  ///< of the bodies, once it is asked for
+  bool unsettled_ = false;        ///< a scheme's passes did not settle: all that it takes, for each choice again
 };
 
 /// Differentiates one increment along one direction; its branches at ties become those that are confirmed. False where

@@ -7,14 +7,6 @@
 
 namespace stickslip {
 
-template Vector<Direction> bulk_forces(const Model&, const Slots<Direction>&, const Vector<Direction>&,
-                                       const Vector<Direction>&, const ElementLists*);
-template Vector<Direction> bulk_flow(const Model&, const Slots<Direction>&, const Vector<Direction>&,
-                                     const Vector<Direction>&);
-template Direction bulk_energy(const Model&, const Slots<Direction>&, const Vector<Direction>&,
-                               const Vector<Direction>&);
-template Slots<Direction> make_slots(const Model&, const Numbers<Direction>&);
-
 namespace {
 
 /// Derivatives of an increment with those of responses that can tie replaced by what they are on one side, where that

@@ -13,14 +13,7 @@ namespace stickslip {
 inline constexpr int directions = 4;
 using Direction = Dual<directions>;
 
-// Compiled once, in differentiate.cpp.
-extern template Vector<Direction> bulk_forces(const Model&, const Slots<Direction>&, const Vector<Direction>&,
-                                              const Vector<Direction>&, const ElementLists*);
-extern template Vector<Direction> bulk_flow(const Model&, const Slots<Direction>&, const Vector<Direction>&,
-                                            const Vector<Direction>&);
-extern template Direction bulk_energy(const Model&, const Slots<Direction>&, const Vector<Direction>&,
-                                      const Vector<Direction>&);
-extern template Slots<Direction> make_slots(const Model&, const Numbers<Direction>&);
+STICKSLIP_SLOTS(extern, Direction);  // compiled in directions.cpp
 
 /// Numbers of the scene with up to `directions` parameters seeded, each in a direction of its own.
 inline Numbers<Direction> seeded(const Scene& scene, const std::vector<int>& parameters) {
@@ -30,10 +23,23 @@ inline Numbers<Direction> seeded(const Scene& scene, const std::vector<int>& par
   return numbers;
 }
 
+/// Elements whose forces parameters touch, body by body: by material, thickness, shape or prescribed motion. A
+/// pseudo-load has no others. All elements, where nodes have frames, whose derivatives turn the forces themselves, and
+/// of a body that remembers.
+ElementLists touched_elements(const Model& model, const Slots<Direction>& slots);
+
 /// Slots and running state of up to `directions` parameters.
 struct ParameterBlock {
   Slots<Direction> slots;
   State<Direction> previous, current;
+  ElementLists touched;
+
+  /// At the initial state.
+  ParameterBlock(const Model& model, Slots<Direction> of)
+      : slots(std::move(of)),
+        previous(initial_state<Direction>(model, slots)),
+        current(previous),
+        touched(touched_elements(model, slots)) {}
 };
 
 /// Blocks of all the scene's parameters, at the initial state.
@@ -43,9 +49,7 @@ inline std::vector<ParameterBlock> parameter_blocks(const Model& model) {
   for (int first = 0; first < parameters; first += directions) {
     std::vector<int> of_block;
     for (int j = first; j < std::min(parameters, first + directions); ++j) of_block.push_back(j);
-    auto slots = make_slots<Direction>(model, seeded(model.scene, of_block));
-    const auto initial = initial_state<Direction>(model, slots);
-    blocks.push_back({std::move(slots), initial, initial});
+    blocks.emplace_back(model, make_slots<Direction>(model, seeded(model.scene, of_block)));
   }
   return blocks;
 }
@@ -113,7 +117,7 @@ PseudoLoad pseudo_load(const Differentiation<E>& problem, const Vector<double>& 
     for (Eigen::Index i = 0; i < u.size(); ++i) u[i].d = prescribed[i].d;
     const Vector<Direction> memory = bulk_flow(model, block.slots, u, block.previous.history.bodies);
     const Vector<Direction> balance =
-        bulk_forces(model, block.slots, u, memory) - external_forces(model, block.slots, time, u);
+        bulk_forces(model, block.slots, u, memory, &block.touched) - external_forces(model, block.slots, time, u);
     rows.push_back(into_frames(model, block.slots.frames, Layout::all, balance));
     load.displacement.push_back(std::move(u));
   }

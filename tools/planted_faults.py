@@ -165,9 +165,9 @@ FAULTS = [
      "now_.done |= <<<within_ >= patience_at_ties>>>;", "false"),
     ("jumps that are never told", "methods/solve.hpp", "moved(before, after) < <<<much * all>>>)", "2 * all"),
     # linear algebra
-    ("bodies condensed with a millionth of their shift", "core/model/condensation.cpp",
+    ("bodies condensed with a millionth of their shift", "core/model/condensation_impl.hpp",
      "schur_.diagonal() -= <<<shift_.template cast<T>()>>>;", "(T(1 - 1e-6) * shift_.template cast<T>()).eval()"),
-    ("inside of bodies expanded without its loads", "core/model/condensation.cpp",
+    ("inside of bodies expanded without its loads", "core/model/condensation_impl.hpp",
      "<<<contact_rows(rows) - reduced>>>;", "Matrix<T>(T(0) * reduced)"),
     ("trailing block of a factor in another order", "core/algebra/backend_cholmod.cpp",
      "complement(order[i], order[j]) = complement(order[j], order[i]) = <<<product(i, j)>>>;",

@@ -23,11 +23,15 @@ Mat<T, 2, Shape::nodes> gather_displacements(const Vector<T>& u, const int* node
   return local;
 }
 
-/// Nodes of element e in the numbering of the model.
-inline std::vector<int> element_nodes(const BodyMesh& body, int e) {
+/// Nodes of element e in the numbering of the model; in place, for a loop that allocates once.
+inline void set_element_nodes(const BodyMesh& body, int e, std::vector<int>& nodes) {
   const int n = nodes_of(body.mesh.shape);
-  std::vector<int> nodes(n);
+  nodes.resize(n);
   for (int a = 0; a < n; ++a) nodes[a] = body.first_node + body.mesh.connectivity[e * n + a];
+}
+inline std::vector<int> element_nodes(const BodyMesh& body, int e) {
+  std::vector<int> nodes;
+  set_element_nodes(body, e, nodes);
   return nodes;
 }
 
@@ -197,8 +201,9 @@ Vector<T> bulk_flow(const Model& model, const Slots<T>& slots, const Vector<T>& 
   return after;
 }
 
-template <class T, class F>
-void for_each_plastic_strain(const Model& model, const Slots<T>& slots, int b, const Vector<T>& memory, F&& f) {
+template <class T>
+void for_each_plastic_strain(const Model& model, const Slots<T>& slots, int b, const Vector<T>& memory,
+                             const std::type_identity_t<std::function<void(const T& a, const T& volume)>>& f) {
   const auto& body = model.bodies[b];
   if (body.memory == 0) return;
   const auto continuum = [&]<class Shape, Kinematics kinematics, class L>(const L&) {
@@ -223,22 +228,23 @@ void for_each_plastic_strain(const Model& model, const Slots<T>& slots, int b, c
   detail::with_law<T>(model, slots, b, continuum, two_nodes);
 }
 
-template <class T, class Sink>
+template <class T>
 void for_each_element_tangent(const Model& model, const Slots<T>& slots, int b, const std::vector<int>* only,
-                              Sink&& sink, const BodyMotion<T>* at) {
+                              const std::type_identity_t<ElementSink<T>>& sink, const BodyMotion<T>* at) {
   constexpr bool solves = std::is_same_v<T, double> || std::is_same_v<T, std::complex<double>>;
   const auto& body = model.bodies[b];
   const Vector<T>* const u = at ? &at->displacement : nullptr;
   const int count = only ? static_cast<int>(only->size()) : body.mesh.element_count();
   const auto element = [&](int k) { return only ? (*only)[k] : k; };
+  std::vector<int> nodes;
   const auto continuum = [&]<class Shape, Kinematics kinematics, class L>(const L& law) {
     for (int k = 0; k < count; ++k) {
-      const auto nodes = detail::element_nodes(body, element(k));
+      detail::set_element_nodes(body, element(k), nodes);
       Mat<T, 2, Shape::nodes> local = Mat<T, 2, Shape::nodes>::Constant(T(0));
       if (u) local = detail::gather_displacements<T, Shape>(*u, nodes.data());
       const auto X = detail::gather_coordinates<T, Shape>(slots.points, nodes.data());
       const T& thickness = slots.depths[b].thickness;
-      if constexpr (Remembers<L>) {
+      if constexpr (requires { law.at_rest(); }) {
         if constexpr (solves)
           if (at) {
             const auto before = detail::memory_of_element<L>(body, element(k), at->before);
@@ -253,7 +259,7 @@ void for_each_element_tangent(const Model& model, const Slots<T>& slots, int b, 
   };
   const auto two_nodes = [&]<int D, class L>(const L& law) {
     for (int k = 0; k < count; ++k) {
-      const auto nodes = detail::element_nodes(body, element(k));
+      detail::set_element_nodes(body, element(k), nodes);
       const auto X = detail::two_places<T, D>(slots.points, nodes);
       const auto d = detail::two_node_stretch<T, D>(nodes, u);
       Mat<T, D> block;
@@ -283,7 +289,7 @@ Vector<T> bulk_tangent_times(const Model& model, const Slots<T>& slots, const Bo
         product[nodes[r / D] * D + r % D] += K(r, c) * vector[nodes[c / D] * D + c % D];
   };
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
-    for_each_element_tangent(model, slots, b, only ? &(*only)[b] : nullptr, add, &at);
+    for_each_element_tangent(model, slots, b, only ? &(*only)[b] : nullptr, std::ref(add), &at);
   return product;
 }
 

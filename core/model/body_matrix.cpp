@@ -56,27 +56,6 @@ int locate(const Pattern& pattern, int row, int column) {
   return static_cast<int>(std::lower_bound(first, last, row) - pattern.row.begin());
 }
 
-template <class T>
-std::vector<T> assemble_bodies(const Model& model, const Slots<T>& slots, const RowLists& lists, const Pattern& pattern,
-                               const BodyMotion<T>* at) {
-  std::vector<T> values(pattern.nonzeros(), T(0));
-  int list = 0;
-  for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    for_each_framed_tangent<T>(model, slots, static_cast<int>(b), at, [&](const auto&, const auto& K) {
-      const int* rows = lists.row.data() + lists.start[list];
-      const int count = lists.start[list + 1] - lists.start[list];
-      for (int c = 0; c < count; ++c)
-        for (int r = 0; r < count; ++r)
-          if (rows[r] >= 0 && rows[c] >= 0) values[locate(pattern, rows[r], rows[c])] += K(r, c);
-      ++list;
-    });
-  return values;
-}
-
-template std::vector<double> assemble_bodies(const Model&, const Slots<double>&, const RowLists&, const Pattern&,
-                                             const BodyMotion<double>*);
-template std::vector<std::complex<double>> assemble_bodies(const Model&, const Slots<std::complex<double>>&,
-                                                           const RowLists&, const Pattern&,
-                                                           const BodyMotion<std::complex<double>>*);
+STICKSLIP_TANGENTS(, double);
 
 }  // namespace stickslip

@@ -33,15 +33,41 @@ std::vector<T> assemble_bodies(const Model& model, const Slots<T>& slots, const 
                                const BodyMotion<T>* at = nullptr);
 
 /// for_each_element_tangent of a body, in the frames of the nodes.
-template <class T, class Sink>
-void for_each_framed_tangent(const Model& model, const Slots<T>& slots, int b, const BodyMotion<T>* at, Sink&& sink) {
-  const auto framed = [&](const auto& nodes, const auto& K) {
-    if (model.framed.empty())
-      sink(nodes, K);
-    else
-      sink(nodes, into_frames(model, slots.frames, nodes, Matrix<T>(K)));
+template <class T>
+void for_each_framed_tangent(const Model& model, const Slots<T>& slots, int b, const BodyMotion<T>* at,
+                             const ElementSink<T>& sink) {
+  if (model.framed.empty()) return for_each_element_tangent(model, slots, b, nullptr, sink, at);
+  const auto framed = [&](const std::vector<int>& nodes, const auto& K) {
+    sink(nodes, into_frames(model, slots.frames, nodes, Matrix<T>(K)));
   };
-  for_each_element_tangent(model, slots, b, nullptr, framed, at);
+  for_each_element_tangent(model, slots, b, nullptr, std::ref(framed), at);
 }
+
+template <class T>
+std::vector<T> assemble_bodies(const Model& model, const Slots<T>& slots, const RowLists& lists, const Pattern& pattern,
+                               const BodyMotion<T>* at) {
+  std::vector<T> values(pattern.nonzeros(), T(0));
+  int list = 0;
+  const auto add = [&](const auto&, const auto& K) {
+    const int* rows = lists.row.data() + lists.start[list];
+    const int count = lists.start[list + 1] - lists.start[list];
+    for (int c = 0; c < count; ++c)
+      for (int r = 0; r < count; ++r)
+        if (rows[r] >= 0 && rows[c] >= 0) values[locate(pattern, rows[r], rows[c])] += K(r, c);
+    ++list;
+  };
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    for_each_framed_tangent<T>(model, slots, static_cast<int>(b), at, std::ref(add));
+  return values;
+}
+
+/// Of a scalar that is solved in: as STICKSLIP_SLOTS.
+#define STICKSLIP_TANGENTS(EXTERN, T)                                                                                 \
+  EXTERN template Vector<T> bulk_tangent_times(const Model&, const Slots<T>&, const BodyMotion<T>&, const Vector<T>&, \
+                                               const ElementLists*);                                                  \
+  EXTERN template std::vector<T> assemble_bodies(const Model&, const Slots<T>&, const RowLists&, const Pattern&,      \
+                                                 const BodyMotion<T>*)
+
+STICKSLIP_TANGENTS(extern, double);
 
 }  // namespace stickslip

@@ -55,6 +55,5 @@ class Condensation {
 };
 
 extern template class Condensation<double>;
-extern template class Condensation<std::complex<double>>;
 
 }  // namespace stickslip

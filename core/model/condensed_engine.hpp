@@ -75,6 +75,5 @@ class CondensedEngine {
 };
 
 extern template class CondensedEngine<double>;
-extern template class CondensedEngine<std::complex<double>>;
 
 }  // namespace stickslip

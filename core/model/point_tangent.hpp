@@ -154,4 +154,7 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
   });
 }
 
+extern template PointTangent<double> point_tangent(const ContactInput<double>&, int, const Vector<double>&,
+                                                   const Vector<double>&, ContactState, const std::vector<Facing>&);
+
 }  // namespace stickslip

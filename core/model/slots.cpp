@@ -62,32 +62,6 @@ double yield_margin(const Model& model, const Slots<double>& slots, const BodyMo
   return least;
 }
 
-template Vector<double> bulk_forces(const Model&, const Slots<double>&, const Vector<double>&, const Vector<double>&,
-                                    const ElementLists*);
-template Vector<double> bulk_flow(const Model&, const Slots<double>&, const Vector<double>&, const Vector<double>&);
-template Vector<double> load_vector(const Model&, const Load&, const Slots<double>&);
-template Points<double> initial_points(const Model&, const Numbers<double>&);
-template Slots<double> make_slots(const Model&, const Numbers<double>&, Points<double>);
-template Slots<double> make_slots(const Model&, const Numbers<double>&);
-template Vector<std::complex<double>> bulk_forces(const Model&, const Slots<std::complex<double>>&,
-                                                  const Vector<std::complex<double>>&,
-                                                  const Vector<std::complex<double>>&, const ElementLists*);
-template Vector<std::complex<double>> bulk_flow(const Model&, const Slots<std::complex<double>>&,
-                                                const Vector<std::complex<double>>&,
-                                                const Vector<std::complex<double>>&);
-template Vector<std::complex<double>> load_vector(const Model&, const Load&, const Slots<std::complex<double>>&);
-template Points<std::complex<double>> initial_points(const Model&, const Numbers<std::complex<double>>&);
-template Slots<std::complex<double>> make_slots(const Model&, const Numbers<std::complex<double>>&,
-                                                Points<std::complex<double>>);
-template Slots<std::complex<double>> make_slots(const Model&, const Numbers<std::complex<double>>&);
-
-template Vector<double> bulk_tangent_times(const Model&, const Slots<double>&, const BodyMotion<double>&,
-                                           const Vector<double>&, const ElementLists*);
-template double bulk_energy(const Model&, const Slots<double>&, const Vector<double>&, const Vector<double>&);
-template Vector<std::complex<double>> bulk_tangent_times(const Model&, const Slots<std::complex<double>>&,
-                                                         const BodyMotion<std::complex<double>>&,
-                                                         const Vector<std::complex<double>>&, const ElementLists*);
-template std::complex<double> bulk_energy(const Model&, const Slots<std::complex<double>>&,
-                                          const Vector<std::complex<double>>&, const Vector<std::complex<double>>&);
+STICKSLIP_SLOTS(, double);
 
 }  // namespace stickslip

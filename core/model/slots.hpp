@@ -3,6 +3,8 @@
 /// oracle.
 #pragma once
 
+#include <functional>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -235,12 +237,17 @@ Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>
 template <class T>
 Vector<T> load_vector(const Model& model, const Load& load, const Slots<T>& slots);
 
-/// Calls sink(nodes, K) for each element of body b (or those listed in `only`): node list and tangent, node-major.
-/// `at`: a motion, whose flow the tangent takes in (pre: T is a scalar that is solved in, double or complex); nullptr:
-/// of the start, as for bodies whose tangent is constant.
-template <class T, class Sink>
+/// Takes the nodes of an element and its tangent, node-major. (No template parameter: the elements of all shapes and
+/// laws are compiled once a scalar, not once a caller.)
+template <class T>
+using ElementSink = std::function<void(const std::vector<int>& nodes, const Eigen::Ref<const Matrix<T>>& K)>;
+
+/// Calls sink(nodes, K) for each element of body b, or those listed in `only`. `at`: a motion, whose flow the tangent
+/// takes in (pre: T is a scalar that is solved in, double or complex); nullptr: of the start, as for bodies whose
+/// tangent is constant.
+template <class T>
 void for_each_element_tangent(const Model& model, const Slots<T>& slots, int b, const std::vector<int>* only,
-                              Sink&& sink, const BodyMotion<T>* at = nullptr);
+                              const std::type_identity_t<ElementSink<T>>& sink, const BodyMotion<T>* at = nullptr);
 
 /// The bodies' tangent at a motion times a vector, all dofs. `only`: as of bulk_forces.
 template <class T>
@@ -257,8 +264,9 @@ double yield_margin(const Model& model, const Slots<double>& slots, const BodyMo
 
 /// Calls f(a, volume) at each point of body b with its equivalent plastic strain and volume (of a bar, length times
 /// cross-section); nothing where it does not flow. `memory`: what bodies remember.
-template <class T, class F>
-void for_each_plastic_strain(const Model& model, const Slots<T>& slots, int b, const Vector<T>& memory, F&& f);
+template <class T>
+void for_each_plastic_strain(const Model& model, const Slots<T>& slots, int b, const Vector<T>& memory,
+                             const std::type_identity_t<std::function<void(const T& a, const T& volume)>>& f);
 
 /// Elements that displacements invert, body by body; none where the bodies' strains are small.
 ElementLists inverted_elements(const Model& model, const Slots<double>& slots, const Vector<double>& u);
@@ -280,36 +288,22 @@ Slots<T> make_slots(const Model& model, const Numbers<T>& numbers);
 
 namespace stickslip {
 
-// Compiled once, in slots.cpp: of what each source would compile again, these took the most time.
-extern template Vector<double> bulk_forces(const Model&, const Slots<double>&, const Vector<double>&,
-                                           const Vector<double>&, const ElementLists*);
-extern template Vector<double> bulk_flow(const Model&, const Slots<double>&, const Vector<double>&,
-                                         const Vector<double>&);
-extern template Vector<double> load_vector(const Model&, const Load&, const Slots<double>&);
-extern template Points<double> initial_points(const Model&, const Numbers<double>&);
-extern template Slots<double> make_slots(const Model&, const Numbers<double>&, Points<double>);
-extern template Slots<double> make_slots(const Model&, const Numbers<double>&);
-extern template Vector<std::complex<double>> bulk_forces(const Model&, const Slots<std::complex<double>>&,
-                                                         const Vector<std::complex<double>>&,
-                                                         const Vector<std::complex<double>>&, const ElementLists*);
-extern template Vector<std::complex<double>> bulk_flow(const Model&, const Slots<std::complex<double>>&,
-                                                       const Vector<std::complex<double>>&,
-                                                       const Vector<std::complex<double>>&);
-extern template Vector<std::complex<double>> load_vector(const Model&, const Load&, const Slots<std::complex<double>>&);
-extern template Points<std::complex<double>> initial_points(const Model&, const Numbers<std::complex<double>>&);
-extern template Slots<std::complex<double>> make_slots(const Model&, const Numbers<std::complex<double>>&,
-                                                       Points<std::complex<double>>);
-extern template Slots<std::complex<double>> make_slots(const Model&, const Numbers<std::complex<double>>&);
+/// The templates that take most time to compile, in a scalar: STICKSLIP_SLOTS(extern, T) in a header,
+/// STICKSLIP_SLOTS(, T) in one source.
+#define STICKSLIP_SLOTS(EXTERN, T)                                                                           \
+  EXTERN template Vector<T> bulk_forces(const Model&, const Slots<T>&, const Vector<T>&, const Vector<T>&,   \
+                                        const ElementLists*);                                                \
+  EXTERN template Vector<T> bulk_flow(const Model&, const Slots<T>&, const Vector<T>&, const Vector<T>&);    \
+  EXTERN template T bulk_energy(const Model&, const Slots<T>&, const Vector<T>&, const Vector<T>&);          \
+  EXTERN template void for_each_plastic_strain(const Model&, const Slots<T>&, int, const Vector<T>&,         \
+                                               const std::function<void(const T&, const T&)>&);              \
+  EXTERN template void for_each_element_tangent(const Model&, const Slots<T>&, int, const std::vector<int>*, \
+                                                const ElementSink<T>&, const BodyMotion<T>*);                \
+  EXTERN template Vector<T> load_vector(const Model&, const Load&, const Slots<T>&);                         \
+  EXTERN template Points<T> initial_points(const Model&, const Numbers<T>&);                                 \
+  EXTERN template Slots<T> make_slots(const Model&, const Numbers<T>&, Points<T>);                           \
+  EXTERN template Slots<T> make_slots(const Model&, const Numbers<T>&)
 
-extern template Vector<double> bulk_tangent_times(const Model&, const Slots<double>&, const BodyMotion<double>&,
-                                                  const Vector<double>&, const ElementLists*);
-extern template double bulk_energy(const Model&, const Slots<double>&, const Vector<double>&, const Vector<double>&);
-extern template Vector<std::complex<double>> bulk_tangent_times(const Model&, const Slots<std::complex<double>>&,
-                                                                const BodyMotion<std::complex<double>>&,
-                                                                const Vector<std::complex<double>>&,
-                                                                const ElementLists*);
-extern template std::complex<double> bulk_energy(const Model&, const Slots<std::complex<double>>&,
-                                                 const Vector<std::complex<double>>&,
-                                                 const Vector<std::complex<double>>&);
+STICKSLIP_SLOTS(extern, double);
 
 }  // namespace stickslip

@@ -12,6 +12,12 @@ std::vector<Matrix<T>> nodal_stiffness(const Model& model, const Slots<T>& slots
   std::vector<int> place(model.node_count, -1);
   for (std::size_t i = 0; i < model.contact_nodes.size(); ++i) place[model.contact_nodes[i]] = static_cast<int>(i);
   std::vector<Matrix<T>> blocks(model.contact_nodes.size(), Matrix<T>::Constant(D, D, T(0)));
+  const auto add = [&](const std::vector<int>& nodes, const auto& K) {
+    for (std::size_t a = 0; a < nodes.size(); ++a)
+      if (place[nodes[a]] >= 0)
+        for (int i = 0; i < D; ++i)
+          for (int j = 0; j < D; ++j) blocks[place[nodes[a]]](i, j) += K(a * D + i, a * D + j);
+  };
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     std::vector<int> touching;
     for (int e = 0; e < model.bodies[b].mesh.element_count(); ++e)
@@ -20,12 +26,7 @@ std::vector<Matrix<T>> nodal_stiffness(const Model& model, const Slots<T>& slots
           touching.push_back(e);
           break;
         }
-    for_each_element_tangent(model, slots, static_cast<int>(b), &touching, [&](const auto& nodes, const auto& K) {
-      for (std::size_t a = 0; a < nodes.size(); ++a)
-        if (place[nodes[a]] >= 0)
-          for (int i = 0; i < D; ++i)
-            for (int j = 0; j < D; ++j) blocks[place[nodes[a]]](i, j) += K(a * D + i, a * D + j);
-    });
+    for_each_element_tangent(model, slots, static_cast<int>(b), &touching, std::ref(add));
   }
   return blocks;
 }

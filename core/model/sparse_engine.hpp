@@ -109,6 +109,5 @@ class SparseEngine {
 };
 
 extern template class SparseEngine<double>;
-extern template class SparseEngine<std::complex<double>>;
 
 }  // namespace stickslip

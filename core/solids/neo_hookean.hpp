@@ -40,6 +40,9 @@ struct NeoHookeanLaw {
     return {numbers[0], numbers[1], volumetric};
   }
 
+  /// What it is at the start.
+  LinearElasticLaw<T> at_rest() const { return {lame, shear}; }
+
   /// First Piola-Kirchhoff stress of a displacement gradient H (2 x 2, or 3 x 3 with nothing but H_22 out of the
   /// plane), in the scalar of H: U is T, or a Dual built on T.
   template <class U, int D>

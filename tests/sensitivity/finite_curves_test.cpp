@@ -6,6 +6,7 @@
 
 #include "core/model/point_tangent.hpp"
 #include "tests/support/blocks.hpp"
+#include "tests/support/compiled_slots.hpp"
 #include "tests/support/finite_strain.hpp"
 
 namespace stickslip {

@@ -5,6 +5,7 @@
 #include "core/model/response.hpp"
 #include "methods/solve.hpp"
 #include "tests/support/carried_complex.hpp"
+#include "tests/support/compiled_slots.hpp"
 
 namespace stickslip::oracle {
 

@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "tests/support/compiled_slots.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/scenes.hpp"

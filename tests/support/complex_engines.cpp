@@ -1,0 +1,13 @@
+/// The engines in the oracle's scalar.
+#include "core/model/condensation_impl.hpp"
+#include "core/model/condensed_engine_impl.hpp"
+#include "core/model/sparse_engine_impl.hpp"
+#include "tests/support/compiled_slots.hpp"
+
+namespace stickslip {
+
+template class Condensation<std::complex<double>>;
+template class CondensedEngine<std::complex<double>>;
+template class SparseEngine<std::complex<double>>;
+
+}  // namespace stickslip

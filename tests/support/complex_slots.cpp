@@ -1,0 +1,8 @@
+#include "tests/support/compiled_slots.hpp"
+
+namespace stickslip {
+
+STICKSLIP_SLOTS(, std::complex<double>);
+STICKSLIP_TANGENTS(, std::complex<double>);
+
+}  // namespace stickslip

@@ -1,0 +1,7 @@
+#include "tests/support/compiled_slots.hpp"
+
+namespace stickslip {
+
+STICKSLIP_SLOTS(, Dual<1>);
+
+}  // namespace stickslip
