@@ -60,6 +60,28 @@ void compare_errors(const json& before, const json& after, const std::string& ki
   }
 }
 
+/// Parts of the errors, where both cells have budgets; but for rounding, which copies of the run measure anew. What the
+/// copies make of a part is within its band.
+void compare_budgets(const json& before, const json& after, const ComparisonBands& bands,
+                     std::vector<Change>& changes) {
+  const auto quantities = [](const json& row) {
+    return row.value("error_budget", json::object()).value("quantities", json::object());
+  };
+  const json budgets = quantities(before), others = quantities(after);
+  for (const auto& [name, budget] : budgets.items()) {
+    if (!others.contains(name)) continue;
+    const json parts = budget.value("parts", json::object()), new_parts = others[name].value("parts", json::object());
+    for (const char* part : {"iteration", "enforcement", "step", "mesh"}) {
+      const json a = parts.value(part, json::object()), b = new_parts.value(part, json::object());
+      ComparisonBands noisy = bands;
+      for (const auto& of : {a, b})
+        if (const json noise = of.value("noise", json()); noise.is_number()) noisy.rounding += noise.get<double>();
+      compare_errors({{name, a.value("value", json())}}, {{name, b.value("value", json())}},
+                     std::string("budget ") + part, noisy, changes);
+    }
+  }
+}
+
 /// What a cell computed: responses and sensitivities of the last step, objectives and their gradients.
 std::map<std::string, json> values_of(const json& row) {
   std::map<std::string, json> values;
@@ -119,6 +141,7 @@ CellComparison compare_cells(const json& before, const json& after, const Sizes&
   compare_counts(part(before, "cost", "counts"), part(after, "cost", "counts"), changes);
   for (const char* kind : {"enforcement", "discretization", "kkt"})
     compare_errors(part(before, "errors", kind), part(after, "errors", kind), kind, bands, changes);
+  compare_budgets(before, after, bands, changes);
   compare_values(before, after, sizes, bands.rounding, changes);
   std::stable_sort(changes.begin(), changes.end(), [](const auto& a, const auto& b) { return a.size > b.size; });
   cell.seconds_before = part(before, "cost", "seconds").value("total", 0.0);

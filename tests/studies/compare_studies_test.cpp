@@ -71,6 +71,27 @@ TEST(CompareStudies, TakesFewerIterationsAsABetterChange) {
   EXPECT_EQ(cells.front().changes.size(), 1u);
 }
 
+TEST(CompareStudies, HoldsThePartsOfErrorBudgetsWithinTheirNoise) {
+  const auto with_budget = [](double step, double noise, double rounding) {
+    RowsById rows = before;
+    json parts;
+    for (const char* name : {"iteration", "enforcement", "mesh"}) parts[name] = {{"value", 0.01}, {"noise", 0}};
+    parts["step"] = {{"value", step}, {"noise", noise}};
+    parts["rounding"] = {{"value", rounding}, {"noise", rounding}};
+    rows["1"]["error_budget"] = {{"quantities", {{"response:press", {{"parts", parts}}}}}};
+    return rows;
+  };
+  const auto old_rows = with_budget(-1e-3, 1e-6, 1e-15);
+  const auto grown = compare_rows(old_rows, with_budget(-2e-3, 1e-6, 1e-15), {});
+  EXPECT_TRUE(any_worse(grown));
+  ASSERT_EQ(grown.front().changes.size(), 1u);
+  EXPECT_EQ(grown.front().changes.front().quantity, "budget step response:press");
+  EXPECT_FALSE(any_worse(compare_rows(old_rows, with_budget(-0.5e-3, 1e-6, 1e-15), {})));
+  const RowsById others[] = {with_budget(-1.1e-3, 1e-4, 1e-15), with_budget(-1e-3, 1e-6, 1e-9), before};
+  for (const auto& other : others)  // noise; copies measure rounding anew; no budget was asked for
+    EXPECT_TRUE(compare_rows(old_rows, other, {}).front().changes.empty());
+}
+
 TEST(CompareStudies, PassesOverRoundingAndSmallShares) {
   EXPECT_TRUE(compare_rows(before, after("uzawa_al", "/errors/enforcement/response:press", 9e-12), {})[0]
                   .changes.front()
