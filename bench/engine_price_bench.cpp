@@ -36,7 +36,7 @@ void engine_price(benchmark::State& state, const Method& method, bool friction, 
   if (!friction || !derivatives) scene.parameters.clear();
   const Model model = make_model(scene);
   const auto slots = make_slots<double>(model, scene.as<double>());
-  const EnginePrice price = predict_price(model, method);
+  const EnginePrice price = predict_price(model, method, bodies_factor(model));
   double sparse = 0, condensed = 0;
   for (auto _ : state) {
     sparse += seconds_by(model, slots, method, Kind::sparse);

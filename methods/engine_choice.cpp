@@ -12,15 +12,16 @@ ConeRadius cone_radius(const Method& method) {
   return std::visit([](const auto& m) { return cone_radius(m); }, method);
 }
 
-EnginePrice predict_price(const Model& model, const Method& method) {
+EnginePrice predict_price(const Model& model, const Method& method, const FactorSize& factor) {
   const bool unknown = has_unknown_multipliers(method);
-  return predict_price(model, unknown, detail::symmetry_of(model, unknown, cone_radius(method)));
+  return predict_price(model, unknown, detail::symmetry_of(model, unknown, cone_radius(method)), factor);
 }
 
-bool condenses(const Model& model, const Method& method, LinearAlgebra::Engine engine) {
+bool condenses(const Model& model, const Method& method, LinearAlgebra::Engine engine,
+               const std::optional<FactorSize>& factor) {
   if (!model.effects.linear_bulk) return false;
   if (engine != LinearAlgebra::Engine::automatic) return engine == LinearAlgebra::Engine::condensed;
-  return prefers_condensed(model, predict_price(model, method));
+  return prefers_condensed(model, predict_price(model, method, factor ? *factor : bodies_factor(model)));
 }
 
 }  // namespace stickslip

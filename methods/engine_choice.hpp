@@ -11,11 +11,13 @@ bool has_unknown_multipliers(const Method& method);
 
 ConeRadius cone_radius(const Method& method);
 
-/// Price of a run by each engine.
-EnginePrice predict_price(const Model& model, const Method& method);
+/// Price of a run by each engine. `factor`: of the bodies (bodies_factor).
+EnginePrice predict_price(const Model& model, const Method& method, const FactorSize& factor);
 
-/// Whether a run condenses the bodies: where it is asked to, else where that is cheaper.
-bool condenses(const Model& model, const Method& method, LinearAlgebra::Engine engine);
+/// Whether a run condenses the bodies: where it is asked to, else where that is cheaper. `factor`: of the bodies; they
+/// are analysed where it is needed and not given.
+bool condenses(const Model& model, const Method& method, LinearAlgebra::Engine engine,
+               const std::optional<FactorSize>& factor = std::nullopt);
 
 /// Builds the engine a run asks for.
 template <class T>
@@ -23,13 +25,17 @@ void make_engine(const Model& model, const Slots<T>& slots, const Method& method
                  Workspace<T>& workspace) {
   const bool unknown_multipliers = has_unknown_multipliers(method);
   const ConeRadius cone = cone_radius(method);
-  auto& condensation = workspace.condensation;
-  if (condenses(model, method, options.linear_algebra.engine)) {
-    if (!condensation) condensation = std::make_shared<Condensation<T>>(model, slots, options.backend);
-    if (condensation->valid()) {
-      workspace.engine.emplace(std::in_place_type<CondensedEngine<T>>, model, slots, unknown_multipliers, cone,
-                               condensation);
-      return;
+  const auto engine = options.linear_algebra.engine;
+  if (model.effects.linear_bulk && engine != LinearAlgebra::Engine::sparse) {
+    auto bodies = workspace.condensation;
+    if (!bodies) bodies = std::make_shared<Condensation<T>>(model, options.backend);
+    if (condenses(model, method, engine, bodies->factor_size())) {
+      if (!std::exchange(workspace.condensation, bodies)) bodies->factorise(slots);
+      if (bodies->valid()) {
+        workspace.engine.emplace(std::in_place_type<CondensedEngine<T>>, model, slots, unknown_multipliers, cone,
+                                 bodies);
+        return;
+      }
     }
   }
   workspace.engine.emplace(std::in_place_type<SparseEngine<T>>, model, slots, unknown_multipliers, cone,

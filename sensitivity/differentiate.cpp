@@ -25,12 +25,11 @@ Matrix<double> with_ties(const Model& model, const std::vector<ParameterBlock>& 
     }
     for (std::size_t b = 0; b < blocks.size(); ++b) {
       const Direction on_side = evaluate_response(model, blocks[b].slots, i, at[b], {}, side);
-      const auto first = static_cast<Eigen::Index>(b) * directions;
       Direction::Gradient motion = Direction::Gradient::Zero();
       for (const auto& u : at[b].displacement) motion = motion.max(u.d.abs());
-      for (Eigen::Index j = first; j < std::min(first + directions, of.cols()); ++j) {
-        const double apart = std::abs(on_side.d[j - first] - of(i, j));
-        if (apart > rounding * per_length * motion[j - first]) of(i, j) = on_side.d[j - first];
+      for (std::size_t d = 0; d < blocks[b].parameters.size(); ++d) {
+        double& derivative = of(i, blocks[b].parameters[d]);
+        if (std::abs(on_side.d[d] - derivative) > rounding * per_length * motion[d]) derivative = on_side.d[d];
       }
     }
   }
@@ -78,7 +77,7 @@ long solve_bytes(const std::vector<Unexpanded>& increments) {
   long bytes = 0;
   for (const auto& [load, increment] : increments) {
     for (const auto& displacement : load.displacement) bytes += bytes_of(displacement);
-    for (const auto* of : {&load.rows, &load.reduced, &increment}) bytes += bytes_of(*of);
+    for (const auto* of : {&load.reduced.kept, &load.reduced.others, &increment}) bytes += bytes_of(*of);
   }
   return bytes;
 }

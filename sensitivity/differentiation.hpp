@@ -28,15 +28,21 @@ inline Numbers<Direction> seeded(const Scene& scene, const std::vector<int>& par
 /// of a body that remembers.
 ElementLists touched_elements(const Model& model, const Slots<Direction>& slots);
 
+/// Parameters in groups of up to `directions`, by their place in the scene: those that touch material, thickness or
+/// shape of bodies first, so that few sweeps visit elements.
+std::vector<std::vector<int>> parameter_groups(const Model& model);
+
 /// Slots and running state of up to `directions` parameters.
 struct ParameterBlock {
+  std::vector<int> parameters;  ///< by direction
   Slots<Direction> slots;
   State<Direction> previous, current;
   ElementLists touched;
 
   /// At the initial state.
-  ParameterBlock(const Model& model, Slots<Direction> of)
-      : slots(std::move(of)),
+  ParameterBlock(const Model& model, std::vector<int> seeds, Slots<Direction> of)
+      : parameters(std::move(seeds)),
+        slots(std::move(of)),
         previous(initial_state<Direction>(model, slots)),
         current(previous),
         touched(touched_elements(model, slots)) {}
@@ -44,13 +50,9 @@ struct ParameterBlock {
 
 /// Blocks of all the scene's parameters, at the initial state.
 inline std::vector<ParameterBlock> parameter_blocks(const Model& model) {
-  const int parameters = static_cast<int>(model.scene.parameters.size());
   std::vector<ParameterBlock> blocks;
-  for (int first = 0; first < parameters; first += directions) {
-    std::vector<int> of_block;
-    for (int j = first; j < std::min(parameters, first + directions); ++j) of_block.push_back(j);
-    blocks.emplace_back(model, make_slots<Direction>(model, seeded(model.scene, of_block)));
-  }
+  for (const auto& group : parameter_groups(model))
+    blocks.emplace_back(model, group, make_slots<Direction>(model, seeded(model.scene, group)));
   return blocks;
 }
 
@@ -58,7 +60,8 @@ inline std::vector<ParameterBlock> parameter_blocks(const Model& model) {
 /// it does not depend on the derivatives so far, but on those of what bodies remember.
 struct PseudoLoad {
   std::vector<Vector<Direction>> displacement;  ///< per block: with the derivative of prescribed motion
-  Matrix<double> rows, reduced;                 ///< a column a parameter: all dofs, and the engine's rows
+  Matrix<double> rows;                          ///< a column a parameter, all dofs; until it is reduced
+  Reduction<double> reduced;                    ///< to the engine's rows
 };
 
 /// Derivatives of an increment's displacements, to be expanded from the engine's dofs.
@@ -89,20 +92,21 @@ inline Vector<Direction> lift(const Vector<double>& v) {
   return v.unaryExpr([](double x) { return Direction(x); });
 }
 
-/// Columns of derivatives out of the blocks, and back. `pick` selects the dual vector of a block.
+/// Columns of derivatives, one a parameter, out of the blocks, and back. `pick` selects the dual vector of a block.
 template <class Pick>
 Matrix<double> gather(std::vector<ParameterBlock>& blocks, int parameters, Pick&& pick) {
   Matrix<double> out;
-  for (int j = 0; j < parameters; ++j) {
-    const Vector<Direction>& v = pick(blocks[j / directions], j / directions);
-    if (j == 0) out.resize(v.size(), parameters);
-    for (Eigen::Index i = 0; i < v.size(); ++i) out(i, j) = v[i].d[j % directions];
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const Vector<Direction>& v = pick(blocks[b], static_cast<int>(b));
+    if (b == 0) out.resize(v.size(), parameters);
+    for (std::size_t d = 0; d < blocks[b].parameters.size(); ++d)
+      for (Eigen::Index i = 0; i < v.size(); ++i) out(i, blocks[b].parameters[d]) = v[i].d[d];
   }
   return out;
 }
-inline void add_derivatives(Vector<Direction>& v, const Matrix<double>& columns, int block) {
-  for (int d = 0; d < directions && block * directions + d < columns.cols(); ++d)
-    for (Eigen::Index i = 0; i < v.size(); ++i) v[i].d[d] += columns(i, block * directions + d);
+inline void add_derivatives(Vector<Direction>& v, const Matrix<double>& columns, const ParameterBlock& block) {
+  for (std::size_t d = 0; d < block.parameters.size(); ++d)
+    for (Eigen::Index i = 0; i < v.size(); ++i) v[i].d[d] += columns(i, block.parameters[d]);
 }
 
 /// The pseudo-load of the bodies at displacements of all dofs, not yet reduced.
@@ -112,13 +116,13 @@ PseudoLoad pseudo_load(const Differentiation<E>& problem, const Vector<double>& 
   PseudoLoad load;
   std::vector<Vector<Direction>> rows;
   for (auto& block : problem.blocks) {
-    Vector<Direction> u = lift(displacement), prescribed = u;
-    prescribe(model, block.slots, time, prescribed);
-    for (Eigen::Index i = 0; i < u.size(); ++i) u[i].d = prescribed[i].d;
+    Vector<Direction> u = lift(displacement);
+    prescribe(model, block.slots, time, u);
+    for (Eigen::Index i = 0; i < u.size(); ++i) u[i].v = displacement[i];
     const Vector<Direction> memory = bulk_flow(model, block.slots, u, block.previous.history.bodies);
-    const Vector<Direction> balance =
-        bulk_forces(model, block.slots, u, memory, &block.touched) - external_forces(model, block.slots, time, u);
-    rows.push_back(into_frames(model, block.slots.frames, Layout::all, balance));
+    Vector<Direction> balance = bulk_forces(model, block.slots, u, memory, &block.touched);
+    balance -= external_forces(model, block.slots, time, u);
+    rows.push_back(into_frames(model, block.slots.frames, Layout::all, std::move(balance)));
     load.displacement.push_back(std::move(u));
   }
   load.rows = gather(
@@ -132,8 +136,11 @@ void reduce(Differentiation<E>& problem, std::vector<PseudoLoad>& loads) {
   const int parameters = problem.parameters, count = static_cast<int>(loads.size());
   Matrix<double> rows(problem.model.dof_count(), count * parameters);
   for (int n = 0; n < count; ++n) rows.middleCols(n * parameters, parameters) = loads[n].rows;
-  const Matrix<double> reduced = problem.engine.reduce(rows);
-  for (int n = 0; n < count; ++n) loads[n].reduced = reduced.middleCols(n * parameters, parameters);
+  const Reduction<double> reduced = problem.engine.reduce(rows);
+  for (int n = 0; n < count; ++n) {
+    loads[n].rows.resize(0, 0);
+    loads[n].reduced = reduced.columns(n * parameters, parameters);
+  }
 }
 
 /// Displacements of all dofs with their derivatives at supports and contact nodes; elsewhere without, which saves the
@@ -148,7 +155,7 @@ std::vector<Vector<Direction>> at_contact(Differentiation<E>& problem, Unexpande
     all.col(j) = column;
   }
   auto displacements = std::move(increment.load.displacement);
-  for (std::size_t b = 0; b < displacements.size(); ++b) add_derivatives(displacements[b], all, static_cast<int>(b));
+  for (std::size_t b = 0; b < displacements.size(); ++b) add_derivatives(displacements[b], all, problem.blocks[b]);
   return displacements;
 }
 
@@ -163,13 +170,12 @@ std::vector<std::vector<Vector<Direction>>> expand(Differentiation<E>& problem, 
     return all;
   };
   const Matrix<double> all = problem.engine.expand(join([](auto& of) -> auto& { return of.increment; }),
-                                                   join([](auto& of) { return Matrix<double>(-of.load.rows); }),
-                                                   join([](auto& of) { return Matrix<double>(-of.load.reduced); }));
+                                                   -join([](auto& of) -> auto& { return of.load.reduced.others; }));
   std::vector<std::vector<Vector<Direction>>> displacements;
   for (int n = 0; n < count; ++n) {
     displacements.push_back(std::move(increments[n].load.displacement));
     for (std::size_t b = 0; b < displacements[n].size(); ++b)
-      add_derivatives(displacements[n][b], all.middleCols(n * parameters, parameters), static_cast<int>(b));
+      add_derivatives(displacements[n][b], all.middleCols(n * parameters, parameters), problem.blocks[b]);
   }
   return displacements;
 }

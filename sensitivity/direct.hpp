@@ -53,7 +53,7 @@ class LinearisedEquilibrium {
         problem_.parameters, [&](auto& block, int) -> auto& { return block.previous.history.placement; });
     return largest(compact_).cwiseMax(largest(then));
   }
-  Vector<double> load() const { return largest(load_.reduced); }
+  Vector<double> load() const { return largest(load_.reduced.kept); }
 
  private:
   static constexpr int refinements = 2;
@@ -162,8 +162,8 @@ void LinearisedEquilibrium<E>::improve(const Rows& rows, std::vector<Vector<Dire
       for (int c = 0; c < model.points[p].components(); ++c)
         multiplier.row(model.points[p].multiplier + c) *= c == 0 ? rho_[p].normal : rho_[p].tangential;
   for (int b = 0; b < static_cast<int>(compact.size()); ++b) {
-    add_derivatives(compact[b], moved, b);
-    if (unknown_) add_derivatives(lambda[b], multiplier, b);
+    add_derivatives(compact[b], moved, problem_.blocks[b]);
+    if (unknown_) add_derivatives(lambda[b], multiplier, problem_.blocks[b]);
   }
 }
 
@@ -191,7 +191,7 @@ typename LinearisedEquilibrium<E>::Rows LinearisedEquilibrium<E>::evaluate(
         problem_.blocks, problem_.parameters, [&](auto&, int b) -> auto& { return of[b]; });
   };
   const Matrix<double> contact = columns(forces);
-  rows.u = load_.reduced + problem_.engine.scatter(contact);
+  rows.u = load_.reduced.kept + problem_.engine.scatter(contact);
   if (unknown_) rows.l = columns(multiplier_rows);
   if ((!unknown_ && !unproven_) || increment_.size() == 0) return rows;
   const Matrix<double> internal = problem_.engine.apply_stiffness(increment_);

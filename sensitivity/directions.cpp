@@ -1,9 +1,62 @@
 /// The slots and bodies in the scalar of direct differentiation, and which elements it touches.
+#include <numeric>
+
 #include "sensitivity/differentiation.hpp"
 
 namespace stickslip {
 
 STICKSLIP_SLOTS(, Direction);
+
+namespace {
+
+/// Whether numbers of a law carry derivatives, where it tells.
+const auto has_no_derivative = []<class L>(const L& law) {
+  if constexpr (!Remembers<L> && requires { law.numbers(); }) return detail::is_constant(law.numbers());
+  return false;
+};
+
+/// The parameters, of those given, that touch elements; all of them, where a law does not tell.
+std::vector<int> touching_elements(const Model& model, const std::vector<int>& parameters) {
+  const auto numbers = seeded(model.scene, parameters);
+  const auto slots = make_body_slots(model, numbers, initial_points(model, numbers));
+  Direction::Gradient by = Direction::Gradient::Zero();  // sizes of derivatives
+  const auto join = [&](const Direction& x) { by += x.d.abs(); };
+  std::for_each(slots.points.data(), slots.points.data() + slots.points.size(), join);
+  for (const auto& depth : slots.depths) join(depth.thickness);
+  const auto join_numbers = [&]<class L>(const L& law) {
+    if constexpr (requires { law.numbers(); })
+      for (const auto& x : law.numbers()) join(x);
+    else
+      by += 1;
+  };
+  for (const auto& law : slots.laws) std::visit(join_numbers, law);
+  std::vector<int> touching;
+  for (std::size_t d = 0; d < parameters.size(); ++d)
+    if (by[d] != 0) touching.push_back(parameters[d]);
+  return touching;
+}
+
+}  // namespace
+
+std::vector<std::vector<int>> parameter_groups(const Model& model) {
+  const int parameters = static_cast<int>(model.scene.parameters.size());
+  std::vector<std::vector<int>> groups;
+  std::vector<int> order(parameters);
+  std::iota(order.begin(), order.end(), 0);
+  const auto divide = [&] {
+    groups.clear();
+    for (int first = 0; first < parameters; first += directions)
+      groups.emplace_back(order.begin() + first, order.begin() + std::min(parameters, first + directions));
+  };
+  divide();
+  if (groups.size() < 2) return groups;
+  std::vector<char> touches(parameters, false);
+  for (const auto& group : groups)
+    for (int j : touching_elements(model, group)) touches[j] = true;
+  std::stable_partition(order.begin(), order.end(), [&](int j) { return touches[j]; });
+  divide();
+  return groups;
+}
 
 ElementLists touched_elements(const Model& model, const Slots<Direction>& slots) {
   const int D = model.dimension;
@@ -11,10 +64,6 @@ ElementLists touched_elements(const Model& model, const Slots<Direction>& slots)
   for (const auto& constraint : model.constraints) touched[constraint.dof / D] = true;
   for (int node = 0; node < model.node_count; ++node)
     for (int i = 0; i < D; ++i) touched[node] |= !is_constant(slots.points(i, node));
-  const auto has_no_derivative = []<class L>(const L& law) {
-    if constexpr (!Remembers<L> && requires { law.numbers(); }) return detail::is_constant(law.numbers());
-    return false;
-  };
   ElementLists lists(model.bodies.size());
   std::vector<int> nodes;
   for (std::size_t b = 0; b < lists.size(); ++b) {

@@ -99,7 +99,7 @@ struct SideRun {
   SideRun(const M& m, const Model& of, const Slots<double>& s, E& e, const Trajectory<double>& t,
           Slots<Direction> seeded_slots, double size)
       : method(m), model(of), slots(s), engine(e), trajectory(t), parameter(size), scales(traction_scales(of, s, t)) {
-    blocks.emplace_back(model, std::move(seeded_slots));
+    blocks.emplace_back(model, std::vector<int>{0}, std::move(seeded_slots));
   }
 
   /// Increments first .. last - 1; `on_increment(n, increment)` after each, with the derivative in blocks[0].current

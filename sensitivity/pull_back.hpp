@@ -57,9 +57,9 @@ struct Inside {
   Vector<double> before;          ///< what bodies remember of the last increment
   Vector<double> by_before = {};  ///< derivative by that, of what they remember of this one
   double time = 0;
-  Vector<double> forces;         ///< of bodies and contact, all dofs; empty where no node has a frame of its own
-  Vector<double> weights;        ///< a of what the objective reads of the bodies' forces, all dofs in the axes
-  Matrix<double> u, c, reduced;  ///< engine increment that -c belongs to; c over all dofs, in the frames, and reduced
+  Vector<double> forces;     ///< of bodies and contact, all dofs; empty where no node has a frame of its own
+  Vector<double> weights;    ///< a of what the objective reads of the bodies' forces, all dofs in the axes
+  Matrix<double> u, others;  ///< engine increment that -c belongs to, and what the reduction left of c for it
 };
 
 /// One objective on its way back.
@@ -186,7 +186,6 @@ RecordedEquilibrium<E>::RecordedEquilibrium(AdjointProblem<E>& problem, const St
                        time,
                        forces,
                        Vector<double>::Zero(model.dof_count()),
-                       {},
                        {},
                        {}});
   }
@@ -337,7 +336,8 @@ void RecordedEquilibrium<E>::balance(int objective) {
     return gather(objective, multiplier_).cwiseProduct(scale_);
   };
   const auto largest = [](const Matrix<double>& m) { return m.size() ? m.cwiseAbs().maxCoeff() : 0.0; };
-  const Matrix<double> c = in_frames(), reduced = problem_.engine.reduce(c);
+  const Reduction<double> load = problem_.engine.reduce(in_frames());
+  const Matrix<double>& reduced = load.kept;
   clear_free(objective);
   Matrix<double> rows = reduced, rows_l = of_multiplier(), u = Matrix<double>::Zero(reduced.rows(), 1);
   clear_held(rows);
@@ -357,8 +357,7 @@ void RecordedEquilibrium<E>::balance(int objective) {
   clear_free(objective);
   const auto add = [](Matrix<double>& sum, const Matrix<double>& x) { sum = sum.size() ? Matrix<double>(sum + x) : x; };
   add(inside.u, u);
-  add(inside.c, c);
-  add(inside.reduced, reduced);
+  add(inside.others, load.others);
 }
 
 template <class E>

@@ -20,7 +20,7 @@ Matrix<double> weights_inside(AdjointProblem<E>& problem, const std::vector<Insi
     for (Eigen::Index n = 0; n < count; ++n) all.col(n) = waiting[n].*part;
     return all;
   };
-  Matrix<double> all = problem.engine.expand(join(&Inside::u), -join(&Inside::c), -join(&Inside::reduced));
+  Matrix<double> all = problem.engine.expand(join(&Inside::u), -join(&Inside::others));
   for (Eigen::Index n = 0; n < count; ++n) {
     Vector<double> a = into_frames(model, problem.slots.frames, Layout::all, Vector<double>(all.col(n)));
     for (Eigen::Index dof = 0; dof < a.size(); ++dof)
@@ -74,8 +74,8 @@ void pull_back_inside(AdjointProblem<E>& problem) {
   long waiting = 0;
   for (const auto& objective : problem.objectives)
     for (const auto& of : objective.inside)
-      waiting += bytes_of(of.motion) + bytes_of(of.forces) + bytes_of(of.weights) + bytes_of(of.u) + bytes_of(of.c) +
-                 bytes_of(of.reduced);
+      waiting +=
+          bytes_of(of.motion) + bytes_of(of.forces) + bytes_of(of.weights) + bytes_of(of.u) + bytes_of(of.others);
   problem.waiting_bytes = std::max(problem.waiting_bytes, waiting);
   for (auto& objective : problem.objectives) {
     auto& waiting = objective.inside;

@@ -44,10 +44,15 @@ class CholmodFactor {
   /// analysis fails otherwise.
   CholmodFactor(std::shared_ptr<const Pattern> pattern, int kept);
   Factorisation factorise(const double* values);
+  FactorSize size() const;  ///< by the analysis
   /// Of a factor, which is not made; throws as the constructor does.
   static FactorSize predict(std::shared_ptr<const Pattern> pattern, int kept);
   /// L_kk L_kk^T of the kept rows. pre: the last factorise() was done.
   Matrix<double> schur_complement() const;
+  /// y of L y = P b, which is `others`, and L_kk y_k. pre: the last factorise() was done.
+  Reduction<double> reduce(const Matrix<double>& b);
+  /// x_o of L^T P x = y, x_k being `kept`, whatever y_k is. pre: the last factorise() was done.
+  Matrix<double> expand(const Matrix<double>& kept, Matrix<double> y);
   void solve(const Matrix<double>& b, Matrix<double>& x, bool transposed);
   std::string name() const;
   long factor_nonzeros() const;

@@ -9,11 +9,38 @@
 #include <new>
 #include <stdexcept>
 
+// OpenMP's, where CHOLMOD was built with it, null elsewhere.
+extern "C" {
+__attribute__((weak)) int omp_get_max_active_levels();
+__attribute__((weak)) void omp_set_max_active_levels(int);
+}
+
 namespace stickslip {
+namespace {
+
+/// While it lives, OpenMP takes one thread. CHOLMOD asks for four in its supernodes, whatever the machine has, to add
+/// up what takes microseconds: on 2 cores a factorisation of 20 000 unknowns took 74 ms of CPU with them, 20 without.
+class OneThread {
+ public:
+  OneThread() {
+    if (omp_set_max_active_levels) omp_set_max_active_levels(0);
+  }
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
+  ~OneThread() {
+    if (omp_set_max_active_levels) omp_set_max_active_levels(before_);
+  }
+
+ private:
+  int before_ = omp_get_max_active_levels ? omp_get_max_active_levels() : 0;
+};
+
+}  // namespace
 
 struct CholmodFactor::Data {
   std::shared_ptr<const Pattern> pattern;
   int kept = 0;               ///< rows at the end that are eliminated last
+  FactorSize size;            ///< by the analysis
   std::vector<int> diagonal;  ///< place of entry (j, j), -1 where the pattern has none
   cholmod_common common;
   cholmod_factor* factor = nullptr;
@@ -82,6 +109,55 @@ struct CholmodFactor::Data {
       factor = cholmod_analyze_p(&a, order.data(), nullptr, 0, &common);
     }
     check("analyse");
+    size = {common.fl, common.lnz};
+  }
+
+  /// Replaces b by x of L x = b (cholmod_super_lsolve) or L^T x = b (cholmod_super_ltsolve), rows in the order of
+  /// elimination.
+  template <class Triangle>
+  void solve_triangle(Triangle&& solve, Matrix<double>& b) {
+    cholmod_dense columns = view(b);
+    const bool done = cholmod_ensure_dense(&e, columns.ncol, factor->maxesize, columns.ncol, CHOLMOD_REAL, &common) &&
+                      solve(factor, &columns, e, &common);
+    if (!done) throw std::bad_alloc();  // the factor is good, so nothing else can go wrong
+  }
+
+  static cholmod_dense view(const Matrix<double>& b) {
+    cholmod_dense rhs{};
+    rhs.nrow = rhs.d = static_cast<std::size_t>(b.rows());
+    rhs.ncol = static_cast<std::size_t>(b.cols());
+    rhs.nzmax = rhs.nrow * rhs.ncol;
+    rhs.x = const_cast<double*>(b.data());  // CHOLMOD has no const; it writes where it solves in place
+    rhs.xtype = CHOLMOD_REAL;
+    rhs.dtype = CHOLMOD_DOUBLE;
+    return rhs;
+  }
+
+  /// Calls f(first column, their number, the rows of each as kept ones, L of these rows and columns) for all columns of
+  /// L that belong to kept rows, supernode by supernode. No kept row has an eliminated one after it in its tree, but
+  /// one tree may stand before another: each body has its own. The upper triangle of L means nothing.
+  template <class F>
+  void for_each_kept_block(F&& f) const {
+    using Block = Eigen::Map<const Matrix<double>, 0, Eigen::OuterStride<>>;
+    const auto* x_of = static_cast<const double*>(factor->x);
+    const auto* super = static_cast<const int*>(factor->super);
+    const auto* pi = static_cast<const int*>(factor->pi);
+    const auto* px = static_cast<const int*>(factor->px);
+    const auto* rows = static_cast<const int*>(factor->s);
+    const auto* permutation = static_cast<const int*>(factor->Perm);
+    const int eliminated = pattern->size - kept;
+    std::vector<int> places;
+    for (std::size_t s = 0; s < factor->nsuper; ++s) {
+      int first = super[s];
+      while (first < super[s + 1] && permutation[first] < eliminated) ++first;
+      if (first == super[s + 1]) continue;
+      const int local = first - super[s], count = pi[s + 1] - pi[s];
+      places.clear();
+      for (int i = local; i < count; ++i) places.push_back(permutation[rows[pi[s] + i]] - eliminated);
+      f(first, super[s + 1] - first, places,
+        Block(x_of + px[s] + static_cast<std::ptrdiff_t>(local) * (count + 1), count - local, super[s + 1] - first,
+              Eigen::OuterStride<>(count)));
+    }
   }
 
   /// Smallest l_kk^2 / a_kk: a pivot over the diagonal entry it came from, which no diagonal scaling changes.
@@ -122,8 +198,10 @@ FactorSize CholmodFactor::predict(std::shared_ptr<const Pattern> pattern, int ke
   Data data(std::move(pattern), kept);
   data.common.supernodal = CHOLMOD_SIMPLICIAL;  // supernodes are not needed to count
   data.analyse();
-  return {data.common.fl, data.common.lnz};
+  return data.size;
 }
+
+FactorSize CholmodFactor::size() const { return data_->size; }
 
 Factorisation CholmodFactor::factorise(const double* values) {
   using Outcome = Factorisation::Outcome;
@@ -134,6 +212,7 @@ Factorisation CholmodFactor::factorise(const double* values) {
     return {Outcome::not_positive_definite,
             "diagonal entry of row " + std::to_string(no_diagonal - d.diagonal.begin()) + " is not positive"};
   cholmod_sparse a = d.matrix(values);
+  const OneThread alone;
   cholmod_factorize(&a, d.factor, &d.common);
   d.check("factorise");
   if (d.factor->minor < d.factor->n)
@@ -145,13 +224,7 @@ Factorisation CholmodFactor::factorise(const double* values) {
 
 void CholmodFactor::solve(const Matrix<double>& b, Matrix<double>& x, bool /*transposed: symmetric*/) {
   Data& d = *data_;
-  cholmod_dense rhs{};
-  rhs.nrow = rhs.d = static_cast<std::size_t>(b.rows());
-  rhs.ncol = static_cast<std::size_t>(b.cols());
-  rhs.nzmax = rhs.nrow * rhs.ncol;
-  rhs.x = const_cast<double*>(b.data());
-  rhs.xtype = CHOLMOD_REAL;
-  rhs.dtype = CHOLMOD_DOUBLE;
+  cholmod_dense rhs = Data::view(b);
   if (!cholmod_solve2(CHOLMOD_A, d.factor, &rhs, nullptr, &d.x, nullptr, &d.y, &d.e, &d.common))
     throw std::bad_alloc();  // the factor is good, so nothing else can go wrong
   x = Eigen::Map<const Matrix<double>>(static_cast<const double*>(d.x->x), b.rows(), b.cols());
@@ -159,34 +232,51 @@ void CholmodFactor::solve(const Matrix<double>& b, Matrix<double>& x, bool /*tra
 
 Matrix<double> CholmodFactor::schur_complement() const {
   const Data& d = *data_;
-  const auto* x_of = static_cast<const double*>(d.factor->x);
-  const auto* super = static_cast<const int*>(d.factor->super);
-  const auto* pi = static_cast<const int*>(d.factor->pi);
-  const auto* px = static_cast<const int*>(d.factor->px);
-  const auto* rows = static_cast<const int*>(d.factor->s);
-  const auto* permutation = static_cast<const int*>(d.factor->Perm);
-  // No kept row has an eliminated one after it in its tree, but one tree may stand before another: each body has its
-  // own.
-  const int first = d.pattern->size - d.kept;
-  std::vector<int> place(d.pattern->size, -1), order;  // of the kept rows among themselves, as they are eliminated
-  for (int k = 0; k < d.pattern->size; ++k)
-    if (permutation[k] >= first) {
-      place[k] = static_cast<int>(order.size());
-      order.push_back(permutation[k] - first);
-    }
+  Matrix<double> complement = Matrix<double>::Zero(d.kept, d.kept);
   Matrix<double> L = Matrix<double>::Zero(d.kept, d.kept);
-  for (std::size_t s = 0; s < d.factor->nsuper; ++s)
-    for (int k = super[s]; k < super[s + 1]; ++k) {
-      if (place[k] < 0) continue;
-      const int local = k - super[s], count = pi[s + 1] - pi[s];
-      const double* column = x_of + px[s] + static_cast<std::ptrdiff_t>(local) * count;
-      for (int i = local; i < count; ++i) L(place[rows[pi[s] + i]], place[k]) = column[i];
-    }
-  Matrix<double> product = Matrix<double>::Zero(d.kept, d.kept), complement(d.kept, d.kept);
-  product.selfadjointView<Eigen::Lower>().rankUpdate(L);
-  for (int j = 0; j < d.kept; ++j)
-    for (int i = j; i < d.kept; ++i) complement(order[i], order[j]) = complement(order[j], order[i]) = product(i, j);
+  Eigen::Index column = 0;
+  d.for_each_kept_block([&](int, int columns, const std::vector<int>& rows, const auto& block) {
+    for (int k = 0; k < columns; ++k, ++column)
+      for (std::size_t i = k; i < rows.size(); ++i) L(rows[i], column) = block(i, k);
+  });
+  complement.selfadjointView<Eigen::Lower>().rankUpdate(L);
+  complement.triangularView<Eigen::StrictlyUpper>() = complement.transpose();
   return complement;
+}
+
+Reduction<double> CholmodFactor::reduce(const Matrix<double>& b) {
+  Data& d = *data_;
+  const Eigen::Map<const Eigen::VectorXi> order(static_cast<const int*>(d.factor->Perm), b.rows());
+  Reduction<double> reduced{Matrix<double>::Zero(d.kept, b.cols()), b(order, Eigen::all)};
+  d.solve_triangle(cholmod_super_lsolve, reduced.others);
+  d.for_each_kept_block([&](int first, int columns, const std::vector<int>& rows, const auto& block) {
+    const auto y = reduced.others.middleRows(first, columns);
+    const Eigen::Index below = block.rows() - columns;
+    Matrix<double> product(block.rows(), b.cols());
+    product.topRows(columns) = block.topRows(columns).template triangularView<Eigen::Lower>() * y;
+    product.bottomRows(below) = block.bottomRows(below) * y;
+    reduced.kept(rows, Eigen::all) += product;
+  });
+  return reduced;
+}
+
+Matrix<double> CholmodFactor::expand(const Matrix<double>& kept, Matrix<double> y) {
+  Data& d = *data_;
+  d.for_each_kept_block([&](int first, int columns, const std::vector<int>& rows, const auto& block) {
+    const Matrix<double> x = kept(rows, Eigen::all);
+    const Eigen::Index below = block.rows() - columns;
+    auto to = y.middleRows(first, columns);  // L_kk^T x_k
+    to = block.topRows(columns).template triangularView<Eigen::Lower>().transpose() * x.topRows(columns);
+    to += block.bottomRows(below).transpose() * x.bottomRows(below);
+  });
+  d.solve_triangle(cholmod_super_ltsolve, y);
+  const auto* permutation = static_cast<const int*>(d.factor->Perm);
+  const int eliminated = d.pattern->size - d.kept;
+  Matrix<double> x(eliminated, y.cols());
+  for (int c = 0; c < y.cols(); ++c)
+    for (int k = 0; k < y.rows(); ++k)
+      if (permutation[k] < eliminated) x(permutation[k], c) = y(k, c);
+  return x;
 }
 
 std::string CholmodFactor::name() const {

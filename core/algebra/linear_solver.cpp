@@ -48,6 +48,19 @@ struct LinearSolver<T>::Implementation {
   std::string message;
   double backward_error = 0;
   int determinant_sign = 1;
+  Matrix<T> schur;  ///< of the last factor, where that does not show it; empty until it is asked for
+
+  /// Calls `f` with the last factor where it solves by halves; returns whether it does.
+  template <class F>
+  bool by_halves(F&& f) {
+    return std::visit(
+        [&](auto& factor) {
+          constexpr bool has_halves = requires { factor.schur_complement(); };
+          if constexpr (has_halves) f(factor);
+          return has_halves;
+        },
+        *last);
+  }
 
   Matrix<T> backsolve(const Matrix<T>& b, bool transposed) {
     Matrix<T> x;
@@ -125,6 +138,7 @@ bool LinearSolver<T>::factorise(const T* values) {
   if (!s.pattern) throw std::logic_error("LinearSolver: factorise before analyse");
   s.usable = false;
   s.backward_error = 0;
+  s.schur.resize(0, 0);
   s.matrix.take(values);
   s.message = s.matrix.not_finite();
   if (!s.message.empty()) return false;
@@ -178,10 +192,9 @@ template <class T>
 Matrix<T> LinearSolver<T>::schur_complement() {
   Implementation& s = *implementation_;
   if (!s.usable) throw std::logic_error("LinearSolver: Schur complement without a factorisation");
-#ifdef STICKSLIP_WITH_CHOLMOD
-  if constexpr (std::is_same_v<T, double>)
-    if (const auto* cholesky = std::get_if<CholmodFactor>(s.last)) return cholesky->schur_complement();
-#endif
+  Matrix<T> shown;
+  if (s.by_halves([&](auto& factor) { shown = factor.schur_complement(); })) return shown;
+  if (s.schur.size() > 0) return s.schur;
   constexpr int columns_at_a_time = 64;
   const int eliminated = s.pattern->size - s.kept;
   Matrix<T> inverse(s.kept, s.kept);
@@ -191,7 +204,35 @@ Matrix<T> LinearSolver<T>::schur_complement() {
     unit.block(eliminated + first, 0, count, count).setIdentity();
     inverse.middleCols(first, count) = solve(unit).bottomRows(s.kept);
   }
-  return inverse.partialPivLu().inverse();
+  return s.schur = inverse.partialPivLu().inverse();
+}
+
+template <class T>
+Reduction<T> LinearSolver<T>::reduce(const Matrix<T>& right_hand_sides) {
+  Implementation& s = *implementation_;
+  if (!s.usable) throw std::logic_error("LinearSolver: reduction without a factorisation");
+  Reduction<T> reduction;
+  if (s.by_halves([&](auto& factor) { reduction = factor.reduce(right_hand_sides); })) {
+    s.counters.half_solves += static_cast<long>(right_hand_sides.cols());
+    return reduction;
+  }
+  reduction.kept = schur_complement() * solve(right_hand_sides).bottomRows(s.kept);  // S x_k of A x = b
+  reduction.others = right_hand_sides;
+  reduction.others.bottomRows(s.kept) -= reduction.kept;  // leaves A_ko A_oo^-1 b_o
+  return reduction;
+}
+
+template <class T>
+Matrix<T> LinearSolver<T>::expand(const Matrix<T>& kept, Matrix<T> others) {
+  Implementation& s = *implementation_;
+  if (!s.usable) throw std::logic_error("LinearSolver: expansion without a factorisation");
+  Matrix<T> x;
+  if (s.by_halves([&](auto& factor) { x = factor.expand(kept, std::move(others)); })) {
+    s.counters.half_solves += static_cast<long>(kept.cols());
+    return x;
+  }
+  others.bottomRows(s.kept) += schur_complement() * kept;
+  return solve(others).topRows(s.pattern->size - s.kept);
 }
 
 template <class T>
@@ -226,6 +267,19 @@ std::string LinearSolver<T>::name() const {
 template <class T>
 const std::string& LinearSolver<T>::message() const {
   return implementation_->message;
+}
+
+template <class T>
+FactorSize LinearSolver<T>::factor_size() const {
+  const Implementation& s = *implementation_;
+  return std::visit(
+      [&](const auto& factor) {
+        if constexpr (requires { factor.size(); })
+          return factor.size();
+        else
+          return predict_factor(s.pattern, s.kept);
+      },
+      *s.first);
 }
 
 template <class T>

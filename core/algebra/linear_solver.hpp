@@ -32,8 +32,26 @@ enum class Backend { automatic, cholmod, umfpack, mumps, eigen };
 struct SolverCounters {
   long analyses = 0;
   long factorizations = 0;
-  long backsolves = 0;  ///< right-hand sides, not calls
-  long fallbacks = 0;   ///< factorisations repeated by another kind because the first failed
+  long backsolves = 0;   ///< right-hand sides, not calls
+  long half_solves = 0;  ///< right-hand sides reduced and expanded; where either is a whole solve, not counted here
+  long fallbacks = 0;    ///< factorisations repeated by another kind because the first failed
+};
+
+/// Right-hand sides b whose rows o, those that are not kept, are eliminated.
+template <class T>
+struct Reduction {
+  Matrix<T> kept;    ///< b_k - A_ko A_oo^-1 b_o
+  Matrix<T> others;  ///< what the second half of a solve takes of b_o, in the backend's order
+
+  Reduction columns(Eigen::Index first, Eigen::Index count) const {
+    return {kept.middleCols(first, count), others.middleCols(first, std::min(count, others.cols()))};
+  }
+};
+
+/// What a factor will be, known before there is one.
+struct FactorSize {
+  double flops = 0;    ///< additions and multiplications
+  double entries = 0;  ///< that are not zero
 };
 
 /// T is double or std::complex<double>; the complex one (the oracle's) is always Eigen's SparseLU.
@@ -64,6 +82,14 @@ class LinearSolver {
   /// factorise() returned true.
   Matrix<T> schur_complement();
 
+  /// A solve in two halves, x_k known between them: b reduced to the kept rows, and x_o of A_oo x_o + A_ok x_k = b_o,
+  /// `others` being of the reduction. A Cholesky factor that has the kept rows last (CHOLMOD) goes forwards and then
+  /// backwards; of another factor each half is a whole solve. Halves are not refined: the triangular solves of a
+  /// Cholesky factor are stable whatever the scales of the unknowns [Hig02, 10.1]. pre: the last factorise() returned
+  /// true.
+  Reduction<T> reduce(const Matrix<T>& right_hand_sides);
+  Matrix<T> expand(const Matrix<T>& kept, Matrix<T> others);
+
   /// Sign of the determinant of the last factor, +1 or -1 (complex: of the real part of its phase).
   int determinant_sign() const;
 
@@ -77,19 +103,16 @@ class LinearSolver {
   const SolverCounters& counters() const;
   std::string name() const;            ///< e.g. "MUMPS 5.5.1 LU, PORD"; empty before analyse()
   const std::string& message() const;  ///< why the last factorise() failed
-  long factor_nonzeros() const;        ///< entries of the last factor; 0 where the backend does not tell
-  long factor_bytes() const;           ///< that the backend keeps of it, indices included
+  /// Size of the factor by the analysis; of a backend that does not tell, predict_factor(). pre: analyse().
+  FactorSize factor_size() const;
+  long factor_nonzeros() const;  ///< entries of the last factor; 0 where the backend does not tell
+  long factor_bytes() const;     ///< that the backend keeps of it, indices included
 
  private:
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// What a factor will be, known before there is one.
-struct FactorSize {
-  double flops = 0;    ///< additions and multiplications
-  double entries = 0;  ///< that are not zero
-};
 /// Of the Cholesky factor of a pattern, its last `kept` rows eliminated last, by CHOLMOD's symbolic analysis; without
 /// CHOLMOD as if it were of a square of cells in the plane.
 FactorSize predict_factor(std::shared_ptr<const Pattern> pattern, int kept);

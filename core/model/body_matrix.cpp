@@ -50,6 +50,25 @@ std::shared_ptr<Pattern> make_pattern(int size, const RowLists& lists) {
   return pattern;
 }
 
+ContactLast with_contact_last(const Model& model) {
+  const int D = model.dimension;
+  ContactLast rows;
+  std::vector<char> touches(model.node_count, false);
+  for (int node : model.contact_nodes) {
+    touches[node] = true;
+    for (int d = 0; d < D; ++d) rows.contact.push_back(node * D + d);
+  }
+  for (int dof : model.free_dofs)
+    if (!touches[dof / D]) rows.interior.push_back(dof);
+  std::vector<int> row(model.dof_count(), -1);
+  int next = 0;
+  for (const auto* dofs : {&rows.interior, &rows.contact})
+    for (int dof : *dofs) row[dof] = next++;
+  rows.lists = element_rows(model, row);
+  rows.pattern = make_pattern(next, rows.lists);
+  return rows;
+}
+
 int locate(const Pattern& pattern, int row, int column) {
   const auto first = pattern.row.begin() + pattern.column_start[column];
   const auto last = pattern.row.begin() + pattern.column_start[column + 1];

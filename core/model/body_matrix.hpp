@@ -23,6 +23,15 @@ RowLists element_rows(const Model& model, const std::vector<int>& row_of_dof);
 /// Pattern of a sum of such blocks; every diagonal entry is stored.
 std::shared_ptr<Pattern> make_pattern(int size, const RowLists& lists);
 
+/// The bodies' matrix with the contact dofs, prescribed ones among them, behind the other free ones.
+struct ContactLast {
+  std::vector<int> interior;  ///< free dofs outside the contact, as rows follow one another
+  std::vector<int> contact;   ///< dofs of the contact, likewise
+  RowLists lists;
+  std::shared_ptr<Pattern> pattern;
+};
+ContactLast with_contact_last(const Model& model);
+
 /// Entry of (row, column) in the pattern. pre: it exists.
 int locate(const Pattern& pattern, int row, int column);
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/algebra/linear_solver.hpp"
-#include "core/model/frames.hpp"
+#include "core/model/body_matrix.hpp"
 #include "core/model/result.hpp"
 
 namespace stickslip {
@@ -19,39 +19,44 @@ namespace stickslip {
 ///       [ K_ci  K_cc + D ],   D = diag K_cc
 ///
 /// with the contact dofs eliminated last: M is positive definite wherever K_ii is, also for a body that nothing but
-/// contact holds, and the Schur complement of M is S + D. The same factor reduces and expands: of M [x_i; x_c] =
-/// [r_i; f], x_c = (S + D)^-1 (f - K_ci K_ii^-1 r_i).
+/// contact holds, and the Schur complement of M is S + D. The same factor reduces, on its way forwards, and expands, on
+/// its way back; neither meets D.
 template <class T>
 class Condensation {
  public:
-  Condensation(const Model& model, const Slots<T>& slots, Backend backend);
-  /// Whether K_ii is regular; if not, `message` says why, and nothing else may be asked.
+  /// Orders and analyses the matrix.
+  Condensation(const Model& model, Backend backend);
+  /// And factorises it.
+  Condensation(const Model& model, const Slots<T>& slots, Backend backend) : Condensation(model, backend) {
+    factorise(slots);
+  }
+  /// Size of the factor, as far as the backend tells; none of bodies that have nothing inside.
+  FactorSize factor_size() const { return rows_.interior.empty() ? FactorSize{} : solver_.factor_size(); }
+  /// Makes S. False, as valid() then is, where K_ii is singular: `message` says why, and nothing else may be asked.
+  bool factorise(const Slots<T>& slots);
   bool valid() const { return valid_; }
   const Matrix<T>& schur() const { return schur_; }
-  /// Rows over all dofs -> rows of the contact dofs: r_c - K_ci K_ii^-1 r_i.
-  Matrix<T> reduce(const Matrix<T>& rows);
+  /// Rows over all dofs -> rows of the contact dofs, r_c - K_ci K_ii^-1 r_i, and what expand() takes of them.
+  Reduction<T> reduce(const Matrix<T>& rows);
   /// Increments u over all dofs, zero where they are prescribed outside the contact: u_c = `compact` and
-  /// K_ii u_i + K_ic u_c = r_i. `reduced`: of the same rows.
-  Matrix<T> expand(const Matrix<T>& compact, const Matrix<T>& rows, const Matrix<T>& reduced);
+  /// K_ii u_i + K_ic u_c = r_i, `others` being of the rows' reduction.
+  Matrix<T> expand(const Matrix<T>& compact, Matrix<T> others);
   const std::string& message() const { return solver_.message(); }
   std::string name() const { return solver_.name(); }
   long factor_bytes() const { return solver_.factor_bytes(); }
-  /// Right-hand sides solved with the factor so far.
-  long backsolves() const { return solver_.counters().backsolves; }
+  /// Right-hand sides solved with the factor so far; one that is reduced or expanded alone counts half.
+  double backsolves() const {
+    return static_cast<double>(solver_.counters().backsolves) +
+           0.5 * static_cast<double>(solver_.counters().half_solves);
+  }
   Counters counters;  ///< what S has cost
 
  private:
-  Matrix<T> contact_rows(const Matrix<T>& rows) const;
-  /// [r_i; last] -> M^-1 of it.
-  Matrix<T> solve(const Matrix<T>& rows, const Matrix<T>& last);
-
   const Model& model_;
-  std::vector<int> interior_;  ///< free dofs outside the contact
-  int contacts_ = 0;           ///< dofs of the contact
+  ContactLast rows_;  ///< its lists are dropped once there is a factor
   Matrix<T> schur_;
-  Vector<double> shift_;  ///< D
   LinearSolver<T> solver_;
-  bool valid_ = true;
+  bool valid_ = false;
 };
 
 extern template class Condensation<double>;

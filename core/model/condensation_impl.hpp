@@ -19,90 +19,84 @@ Vector<double> shift_of(const Pattern& pattern, const std::vector<T>& values, in
   return shift.unaryExpr([&](double k) { return k > 0 ? k : largest > 0 ? largest : 1.0; });
 }
 
+/// Rows of a matrix that stand at `dofs`, and back. (Eigen's own views copy the list.)
+template <class From, class To>
+void take_rows(const From& rows, const std::vector<int>& dofs, To&& out) {
+  for (Eigen::Index c = 0; c < out.cols(); ++c)
+    for (std::size_t k = 0; k < dofs.size(); ++k) out(static_cast<Eigen::Index>(k), c) = rows(dofs[k], c);
+}
+template <class From, class To>
+void put_rows(const From& rows, const std::vector<int>& dofs, To& all) {
+  for (Eigen::Index c = 0; c < rows.cols(); ++c)
+    for (std::size_t k = 0; k < dofs.size(); ++k) all(dofs[k], c) = rows(static_cast<Eigen::Index>(k), c);
+}
+
 }  // namespace detail
 
 template <class T>
-Condensation<T>::Condensation(const Model& model, const Slots<T>& slots, Backend backend)
-    : model_(model), contacts_(static_cast<int>(model.contact_nodes.size()) * model.dimension), solver_(backend) {
-  const int D = model.dimension;
-  std::vector<int> row(model.dof_count(), -1);
-  for (std::size_t i = 0; i < model.contact_nodes.size(); ++i)
-    for (int d = 0; d < D; ++d) row[model.contact_nodes[i] * D + d] = static_cast<int>(i) * D + d;
-  for (int dof : model.free_dofs)
-    if (row[dof] < 0) interior_.push_back(dof);
-  const int interior = static_cast<int>(interior_.size());
-  for (int& place : row)
-    if (place >= 0) place += interior;
-  for (int i = 0; i < interior; ++i) row[interior_[i]] = i;
+Condensation<T>::Condensation(const Model& model, Backend backend)
+    : model_(model), rows_(with_contact_last(model)), solver_(backend) {
+  if (!rows_.interior.empty())
+    solver_.analyse(rows_.pattern, Symmetry::positive_definite, static_cast<int>(rows_.contact.size()));
+  counters.analyses = solver_.counters().analyses;
+}
 
-  const auto lists = element_rows(model, row);
-  const auto pattern = make_pattern(interior + contacts_, lists);
-  auto values = assemble_bodies<T>(model, slots, lists, *pattern);
+template <class T>
+bool Condensation<T>::factorise(const Slots<T>& slots) {
+  const Pattern& pattern = *rows_.pattern;
+  const int interior = static_cast<int>(rows_.interior.size()), contacts = static_cast<int>(rows_.contact.size());
+  auto values = assemble_bodies<T>(model_, slots, rows_.lists, pattern);
+  rows_.lists = {};
   if (interior == 0) {
-    schur_ = Matrix<T>::Zero(contacts_, contacts_);
-    for (int j = 0; j < contacts_; ++j)
-      for (int e = pattern->column_start[j]; e < pattern->column_start[j + 1]; ++e)
-        schur_(pattern->row[e], j) = values[e];
-    return;
+    schur_ = Matrix<T>::Zero(contacts, contacts);
+    for (int j = 0; j < contacts; ++j)
+      for (int e = pattern.column_start[j]; e < pattern.column_start[j + 1]; ++e) schur_(pattern.row[e], j) = values[e];
+    return valid_ = true;
   }
-  shift_ = detail::shift_of(*pattern, values, interior);
-  for (int k = 0; k < contacts_; ++k) values[locate(*pattern, interior + k, interior + k)] += shift_[k];
-  solver_.analyse(pattern, Symmetry::positive_definite, contacts_);
+  const Vector<double> shift = detail::shift_of(pattern, values, interior);
+  for (int k = 0; k < contacts; ++k) values[locate(pattern, interior + k, interior + k)] += shift[k];
   valid_ = solver_.factorise(values.data());
   if (valid_) schur_ = solver_.schur_complement();
   counters.analyses = solver_.counters().analyses;
   counters.factorizations = solver_.counters().factorizations;
   counters.backsolves = solver_.counters().backsolves;
-  if (!valid_) return;
-  schur_.diagonal() -= shift_.template cast<T>();
+  if (!valid_) return false;
+  schur_.diagonal() -= shift.template cast<T>();
   schur_ = (T(0.5) * (schur_ + schur_.transpose())).eval();
+  return true;
 }
 
 template <class T>
-Matrix<T> Condensation<T>::contact_rows(const Matrix<T>& rows) const {
-  const int D = model_.dimension;
-  Matrix<T> compact(contacts_, rows.cols());
-  for (std::size_t n = 0; n < model_.contact_nodes.size(); ++n)
-    compact.middleRows(n * D, D) = rows.middleRows(model_.contact_nodes[n] * D, D);
-  return compact;
-}
-
-template <class T>
-Matrix<T> Condensation<T>::solve(const Matrix<T>& rows, const Matrix<T>& last) {
-  const auto interior = static_cast<Eigen::Index>(interior_.size());
-  Matrix<T> b(interior + contacts_, rows.cols());
-  for (Eigen::Index i = 0; i < interior; ++i) b.row(i) = rows.row(interior_[i]);
-  b.bottomRows(contacts_) = last;
-  return solver_.solve(b);
-}
-
-template <class T>
-Matrix<T> Condensation<T>::reduce(const Matrix<T>& rows) {
-  Matrix<T> reduced = contact_rows(rows);
+Reduction<T> Condensation<T>::reduce(const Matrix<T>& rows) {
+  const auto interior = static_cast<Eigen::Index>(rows_.interior.size());
+  const auto contacts = static_cast<Eigen::Index>(rows_.contact.size());
   std::vector<Eigen::Index> inside;  // columns with something to reduce: many a parameter does not touch the bodies
   for (Eigen::Index c = 0; c < rows.cols(); ++c)
-    if (std::any_of(interior_.begin(), interior_.end(), [&](int dof) { return rows(dof, c) != T(0); }))
+    if (std::any_of(rows_.interior.begin(), rows_.interior.end(), [&](int dof) { return rows(dof, c) != T(0); }))
       inside.push_back(c);
+  Reduction<T> solved;
+  if (!inside.empty()) {
+    Matrix<T> b(interior + contacts, inside.size());
+    const auto picked = rows(Eigen::all, inside);
+    detail::take_rows(picked, rows_.interior, b.topRows(interior));
+    detail::take_rows(picked, rows_.contact, b.bottomRows(contacts));
+    solved = solver_.reduce(b);
+    if (b.cols() == rows.cols()) return solved;
+  }
+  Reduction<T> reduced{Matrix<T>(contacts, rows.cols()),
+                       Matrix<T>::Zero(interior > 0 ? interior + contacts : 0, rows.cols())};
+  detail::take_rows(rows, rows_.contact, reduced.kept);
   if (inside.empty()) return reduced;
-  Matrix<T> picked(rows.rows(), inside.size());
-  for (std::size_t k = 0; k < inside.size(); ++k) picked.col(k) = rows.col(inside[k]);
-  const Matrix<T> x = solve(picked, Matrix<T>::Zero(contacts_, picked.cols())).bottomRows(contacts_);
-  const Matrix<T> moved = schur_ * x + shift_.template cast<T>().asDiagonal() * x;
-  for (std::size_t k = 0; k < inside.size(); ++k) reduced.col(inside[k]) += moved.col(k);
+  reduced.kept(Eigen::all, inside) = solved.kept;
+  reduced.others(Eigen::all, inside) = solved.others;
   return reduced;
 }
 
 template <class T>
-Matrix<T> Condensation<T>::expand(const Matrix<T>& compact, const Matrix<T>& rows, const Matrix<T>& reduced) {
-  const int D = model_.dimension;
+Matrix<T> Condensation<T>::expand(const Matrix<T>& compact, Matrix<T> others) {
   Matrix<T> all = Matrix<T>::Zero(model_.dof_count(), compact.cols());
-  for (std::size_t n = 0; n < model_.contact_nodes.size(); ++n)
-    all.middleRows(model_.contact_nodes[n] * D, D) = compact.middleRows(n * D, D);
-  if (interior_.empty()) return all;
-  const Matrix<T> last =
-      schur_ * compact + shift_.template cast<T>().asDiagonal() * compact + contact_rows(rows) - reduced;
-  const Matrix<T> x = solve(rows, last);
-  for (std::size_t i = 0; i < interior_.size(); ++i) all.row(interior_[i]) = x.row(i);
+  detail::put_rows(compact, rows_.contact, all);
+  if (!rows_.interior.empty()) detail::put_rows(solver_.expand(compact, std::move(others)), rows_.interior, all);
   return all;
 }
 

@@ -35,9 +35,9 @@ class CondensedEngine {
   Matrix<T> apply_stiffness(const Matrix<T>& u, bool /*transposed*/ = false) const {
     return condensation_->schur() * u;  // (symmetric)
   }
-  Matrix<T> reduce(const Matrix<T>& rows) { return condensation_->reduce(rows); }
-  Matrix<T> expand(const Matrix<T>& u, const Matrix<T>& rows, const Matrix<T>& reduced) {
-    return out_of_frames(model_, slots_.frames, Layout::all, condensation_->expand(u, rows, reduced));
+  Reduction<T> reduce(const Matrix<T>& rows) { return condensation_->reduce(rows); }
+  Matrix<T> expand(const Matrix<T>& u, Matrix<T> others) {
+    return out_of_frames(model_, slots_.frames, Layout::all, condensation_->expand(u, std::move(others)));
   }
   Matrix<T> scatter(const Matrix<T>& compact) const { return compact; }
   double condition_estimate() const { return valid_ ? factor_.condition_estimate() : 0; }
@@ -59,8 +59,8 @@ class CondensedEngine {
   std::vector<char> free_;
   std::vector<int> free_list_, free_place_;
   Vector<T> rest_;               ///< all dofs: prescribed values outside the contact, zero elsewhere
-  Matrix<T> rest_rows_;          ///< f_ext - K rest, all dofs
-  Vector<T> load_;               ///< reduced load on the contact dofs
+  Vector<T> load_;               ///< f_ext - K rest, reduced to the contact dofs
+  Matrix<T> others_;             ///< of that reduction
   double largest_external_ = 0;  ///< nodal force of the loads
   Symmetry symmetry_;
   std::vector<int> active_;  ///< multiplier rows in the factor: those of points that are not open

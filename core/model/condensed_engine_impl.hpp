@@ -35,16 +35,16 @@ Vector<T> CondensedEngine<T>::begin(double time, const Vector<T>& displacement, 
   const Vector<T> moved = out_of_frames(model_, slots_.frames, Layout::all, rest_);
   const Vector<T> external = dead_forces(model_, slots_, time);
   largest_external_ = largest_nodal_norm(external, model_.dimension);
-  rest_rows_ =
-      into_frames(model_, slots_.frames, Layout::all, Vector<T>(external - bulk_forces(model_, slots_, moved, {})));
-  load_ = condensation_->reduce(rest_rows_);
+  auto reduced = condensation_->reduce(
+      into_frames(model_, slots_.frames, Layout::all, Vector<T>(external - bulk_forces(model_, slots_, moved, {}))));
+  load_ = reduced.kept;
+  others_ = std::move(reduced.others);
   return to_compact(model_, u);
 }
 
 template <class T>
 Vector<T> CondensedEngine<T>::all(const Vector<T>& u) {
-  return out_of_frames(model_, slots_.frames, Layout::all,
-                       Vector<T>(rest_ + condensation_->expand(u, rest_rows_, load_).col(0)));
+  return out_of_frames(model_, slots_.frames, Layout::all, Vector<T>(rest_ + condensation_->expand(u, others_).col(0)));
 }
 
 template <class T>

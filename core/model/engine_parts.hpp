@@ -28,7 +28,7 @@ struct EngineHoldings {
   long matrix = 0;                              ///< last tangent, with its pattern
   long factor = 0;                              ///< of that
   long matrix_entries = 0, factor_entries = 0;  ///< of these, stored
-  long body_solves = 0;                         ///< right-hand sides solved with the bodies' factor since it was made
+  double body_solves = 0;                       ///< right-hand sides solved with the bodies' factor since it was made
   bool unsymmetric = false;                     ///< the tangents are
 };
 
@@ -41,18 +41,23 @@ struct ForceScale {
 /// Largest Euclidean norm of the nodal vectors (D consecutive entries) of the primal parts; NaN where one is.
 template <class T>
 double largest_nodal_norm(const Vector<T>& v, int D) {
-  double largest = 0;
+  double most = 0, extreme = 0;  // largest sum of squares; largest norm whose squares overflow or vanish
   for (Eigen::Index n = 0; n + D <= v.size(); n += D) {
     double squares = 0;
-    for (int i = 0; i < D; ++i) squares += value(v[n + i]) * value(v[n + i]);
-    double norm = std::sqrt(squares);
-    if (!(squares > 1e-280 && squares < 1e280)) {  // squares that overflow or vanish though the numbers do not
-      norm = 0;
-      for (int i = 0; i < D; ++i) norm = std::hypot(norm, value(v[n + i]));
+    bool is_zero = true;
+    for (int i = 0; i < D; ++i) {
+      squares += value(v[n + i]) * value(v[n + i]);
+      is_zero &= value(v[n + i]) == 0;
     }
-    largest = larger(largest, norm);
+    if (squares > 1e-280 && squares < 1e280) {
+      most = std::max(most, squares);
+    } else if (!is_zero) {
+      double norm = 0;
+      for (int i = 0; i < D; ++i) norm = std::hypot(norm, value(v[n + i]));
+      extreme = larger(extreme, norm);
+    }
   }
-  return largest;
+  return larger(extreme, std::sqrt(most));
 }
 
 namespace detail {

@@ -17,8 +17,8 @@ struct EnginePrice {
 FactorSize bodies_factor(const Model& model);
 
 /// Price of all increments of a scene and their derivatives. `unknown_multipliers`: those are unknowns of the tangents;
-/// `symmetry`: of the tangents. The bodies' factor is analysed for it (predict_factor).
-EnginePrice predict_price(const Model& model, bool unknown_multipliers, Symmetry symmetry);
+/// `symmetry`: of the tangents; `factor`: of the bodies.
+EnginePrice predict_price(const Model& model, bool unknown_multipliers, Symmetry symmetry, const FactorSize& factor);
 
 /// Whether the bodies are to be condensed. Below 200 unknowns they are, whatever the price: there the calls cost more
 /// than the operations.

@@ -139,8 +139,9 @@ Slots<T> make_slots(const Model& model, const Numbers<T>& numbers) {
   return make_slots(model, numbers, initial_points(model, numbers));
 }
 
+/// Slots of the bodies alone, without contact and loads.
 template <class T>
-Slots<T> make_slots(const Model& model, const Numbers<T>& numbers, Points<T> points) {
+Slots<T> make_body_slots(const Model& model, const Numbers<T>& numbers, Points<T> points) {
   Slots<T> slots;
   slots.numbers = numbers;
   slots.points = std::move(points);
@@ -151,6 +152,12 @@ Slots<T> make_slots(const Model& model, const Numbers<T>& numbers, Points<T> poi
     slots.depths.push_back(
         {model.scene.space == Space::axisymmetric, plane ? numbers(model.scene.bodies[b].thickness) : T(1)});
   }
+  return slots;
+}
+
+template <class T>
+Slots<T> make_slots(const Model& model, const Numbers<T>& numbers, Points<T> points) {
+  Slots<T> slots = make_body_slots(model, numbers, std::move(points));
   for (const auto& contact : model.scene.contacts)
     slots.friction.push_back(contact.friction ? contact.friction->template as<T>(numbers) : FrictionLaw<T>());
   for (const auto& point : model.points) slots.geometry.push_back(detail::initial_geometry(model, point, slots));

@@ -49,10 +49,11 @@ class SparseEngine {
   int solves() const { return update_.empty() ? 1 : 2; }
   /// The bodies' stiffness times engine increments (engine rows), or its transpose.
   Matrix<T> apply_stiffness(const Matrix<T>& u, bool transposed = false) const;
-  /// Rows over all dofs, in the frames -> engine rows.
-  Matrix<T> reduce(const Matrix<T>& rows) { return rows; }
-  /// The increment over all dofs, in the axes, that belongs to an engine increment and to such rows.
-  Matrix<T> expand(const Matrix<T>& u, const Matrix<T>& /*rows*/, const Matrix<T>& /*reduced*/) {
+  /// Rows over all dofs, in the frames -> engine rows, `kept`.
+  Reduction<T> reduce(const Matrix<T>& rows) { return {rows, Matrix<T>(0, rows.cols())}; }
+  /// The increment over all dofs, in the axes, that belongs to an engine increment and to the rows that were reduced,
+  /// of whose reduction `others` is.
+  Matrix<T> expand(const Matrix<T>& u, const Matrix<T>& /*others*/) {
     return out_of_frames(model_, slots_.frames, Layout::all, u);
   }
   Matrix<T> scatter(const Matrix<T>& compact) const;  ///< compact rows -> engine rows

@@ -225,7 +225,7 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
   CaseResult result;
   result.problem = problem;
   result.method = method;
-  const long solved_before = condensation ? condensation->backsolves() : 0;
+  const double solved_before = condensation ? condensation->backsolves() : 0;
   const bool shared = condensation != nullptr;
   Workspace<double> workspace{condensation, {}};
   Derivatives derivatives(problem->model, problem->slots, result.method, workspace);
@@ -240,7 +240,8 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
   result.engine = holdings(workspace);
   if (condensation && !shared) result.condensing = condensation->counters;
   if (result.engine.body_solves > 0)
-    result.body_solves = result.engine.body_solves - (shared ? solved_before : result.condensing.backsolves);
+    result.body_solves =
+        result.engine.body_solves - (shared ? solved_before : static_cast<double>(result.condensing.backsolves));
   const auto errors = check_accuracy(problem->model, problem->slots, method, result.trajectory);
   name_loose_body(problem->model, result.trajectory);
   if (has_tangent(result.trajectory)) {

@@ -48,11 +48,11 @@ struct CaseResult {
   Vector<double> objectives;  ///< their values
   double condition_estimate = 0;
   long nonzeros = 0;
-  EngineHoldings engine;             ///< at the end of the solution, before its derivatives
-  Counters condensing;               ///< of trajectory.counters, what made the condensation
-  long body_solves = 0;              ///< right-hand sides solved with the bodies' factor, of the solution
-  long sensitivity_body_solves = 0;  ///< and of its derivatives
-  double one_sided_seconds = 0;      ///< of gradients.seconds, for one_sided
+  EngineHoldings engine;  ///< at the end of the solution, before its derivatives
+  Counters condensing;    ///< of trajectory.counters, what made the condensation
+  /// Right-hand sides solved with the bodies' factor, one way or back counting half: of the solution, of derivatives.
+  double body_solves = 0, sensitivity_body_solves = 0;
+  double one_sided_seconds = 0;  ///< of gradients.seconds, for one_sided
   Status status() const;  ///< of the trajectory, or of the derivatives where only they failed; both by what came out
   std::string message() const;
 };

@@ -101,7 +101,7 @@ std::string explain(const Input& input, const Problem& problem) {
           : effects.linear_bulk
               ? "linear algebra: one sparse factorisation an iteration, the bodies' part assembled once\n"
               : "linear algebra: one sparse factorisation an iteration, the bodies' part assembled anew\n";
-  const EnginePrice price = predict_price(model, input.method);
+  const EnginePrice price = predict_price(model, input.method, bodies_factor(model));
   text += fmt::format("  predicted: {:.2g} Gflop condensed, {:.2g} Gflop sparse\n", 1e-9 * price.condensed,
                       1e-9 * price.sparse);
   text +=

@@ -125,10 +125,10 @@ void add_contact_rows(const CaseResult& result, const StateBytes& states, Ledger
 }
 
 /// Back-solves, factorisations and evaluations; of derivatives but for `without`.
-std::vector<Amount> derivative_counts(const Counters& all, const Counters& without = {}, long body_solves = 0) {
+std::vector<Amount> derivative_counts(const Counters& all, const Counters& without = {}, double body_solves = 0) {
   const auto rest = [](long a, long b) { return static_cast<double>(a - b); };
   return {{"backsolves", rest(all.sensitivity_backsolves, without.sensitivity_backsolves)},
-          {"body_backsolves", static_cast<double>(body_solves)},
+          {"body_backsolves", body_solves},
           {"factorizations", rest(all.factorizations, without.factorizations)},
           {"evaluations", rest(all.contact_evaluations, without.contact_evaluations)}};
 }

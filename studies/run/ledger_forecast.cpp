@@ -146,7 +146,9 @@ LedgerRow direct_row(const Input& input, const Problem& problem, const Size& n) 
   const bool ties = std::any_of(scene.responses.begin(), scene.responses.end(), can_tie);
   const double slots = static_cast<double>(slot_bytes<Direction>(problem.slots).all());
   const double state = dual * state_numbers(n) + sizeof(ContactState) * n.points + geometry_bytes<Direction>(n);
-  const double solve = blocks * dual * n.dofs + number * p * (n.dofs + 2 * engine_rows);
+  const double eliminated = n.condensed ? n.free - n.solved : 0;
+  const double inside = eliminated > 0 ? eliminated + n.contact_dofs : 0;  // of a reduction
+  const double solve = blocks * dual * n.dofs + number * p * (inside + 2 * engine_rows);
   return {"direct_sensitivity",
           on,
           {{"parameters", p}},

@@ -56,13 +56,19 @@ void check_memory(const Problem& problem, const Input& input) {
                    static_cast<double>(model.points.size()), 0, false};
   if (estimated_bytes(size) > limit)
     throw ModelError("the bodies need " + too_much(estimated_bytes(size), limit) + "; try fewer cells", "/bodies");
-  size.condensed = condenses(model, input.method, engine);
-  if (estimated_bytes(size) > limit)
+  size.condensed = true;  // or so: to find out takes an analysis, which is made where it matters
+  bool is_known = false;
+  const auto is_too_much = [&] {
+    if (estimated_bytes(size) > limit && !std::exchange(is_known, true))
+      size.condensed = condenses(model, input.method, engine);
+    return estimated_bytes(size) > limit;
+  };
+  if (is_too_much())
     throw ModelError("the bodies, condensed to " + shown(size.contact_dofs) + " contact dofs, need " +
                          too_much(estimated_bytes(size), limit) + R"(; try {"engine": "sparse"}, or fewer cells)",
                      engine == Engine::condensed ? "/linear_solver/engine" : "/linear_solver");
   size.steps = static_cast<double>(model.times.size());
-  if (estimated_bytes(size) > limit)
+  if (is_too_much())
     throw ModelError("its " + shown(size.steps) + " steps need " + too_much(estimated_bytes(size), limit) +
                          "; try fewer, or tables with fewer points",
                      "/time");

@@ -80,6 +80,35 @@ TEST(Derivatives, ThatFollowARunLoseNoMoreUnderAStiffPenalty) {
   }
 }
 
+// Parameters that touch elements are swept together, whatever the order they are named in; each has the derivative that
+// it has alone.
+TEST(Derivatives, OfManyParametersAreThoseOfEachAlone) {
+  Scene scene = scenes::greco_plate(6);  // mu, E, F, height
+  const auto named = scene.parameters;
+  for (const auto& parameter : named) scene.parameters.push_back(parameter);
+  EXPECT_EQ(parameter_groups(make_model(scene)), (std::vector<std::vector<int>>{{1, 3, 5, 7}, {0, 2, 4, 6}}));
+  Vector<double> responses;
+  const auto gradient_of = [&](const Scene& of) {
+    const Model model = make_model(of);
+    const auto slots = make_slots<double>(model, of.as<double>());
+    Workspace<double> workspace;
+    const auto trajectory = solve(model, slots, MonolithicAL{}, {}, workspace);
+    responses = evaluate_responses(model, slots, trajectory.increments[0].state, 1.0);
+    return differentiate(model, slots, MonolithicAL{}, trajectory, workspace).of[0];
+  };
+  const Matrix<double> all = gradient_of(scene);
+  constexpr double rounding = 1e-11;  // by condition numbers up to 1e4, of a response over the parameter
+  for (std::size_t j = 0; j < named.size(); ++j) {
+    scene.parameters = {named[j]};
+    const Matrix<double> alone = gradient_of(scene);
+    for (std::size_t copy : {j, j + named.size()})
+      for (Eigen::Index i = 0; i < alone.rows(); ++i)
+        EXPECT_NEAR(all(i, static_cast<Eigen::Index>(copy)), alone(i, 0),
+                    rounding * std::abs(responses[i]) / scene.parameters[0].value)
+            << named[j].name << " " << i;
+  }
+}
+
 TEST(Derivatives, OfSeveralIncrementsAtOnceAreThoseOfOneAtATime) {
   for (const Method& method : {Method(Penalty{}), Method(UzawaAL{}), Method(MonolithicAL{})}) {
     Scene scene = scenes::driven_block();

@@ -79,6 +79,51 @@ TEST(SchurComplement, IsThatOfDenseAlgebraByEveryBackend) {
       }
 }
 
+TEST(SchurComplement, StandsBetweenTheHalvesOfASolveByEveryBackend) {
+  constexpr double rounding = 1e-12;  // times a condition number of the sheets of some 1e3
+  for (Backend backend : {Backend::automatic, Backend::cholmod, Backend::mumps, Backend::umfpack, Backend::eigen})
+    for (double stiffer : {1.0, 1e9})
+      for (int side : {2, 5, 12}) {
+        if (!has_backend(backend)) continue;
+        const Sheets sheets(side, stiffer);
+        const int n = sheets.pattern->size, kept = sheets.kept, others = n - kept;
+        const Eigen::VectorXd scale = sheets.dense.diagonal().cwiseSqrt();  // each sheet in its own units
+        MatrixXd b(n, 3), x_kept(kept, 3);
+        for (int j = 0; j < 3; ++j) {
+          b.col(j) = scale.cwiseProduct(derivatives::arbitrary(n, 10 + j));
+          x_kept.col(j) = derivatives::arbitrary(kept, 20 + j).cwiseQuotient(scale.tail(kept));
+        }
+        LinearSolver<double> solver(backend);
+        solver.analyse(sheets.pattern, Symmetry::positive_definite, kept);
+        ASSERT_TRUE(solver.factorise(sheets.values.data())) << solver.message();
+        const auto reduction = solver.reduce(b);
+        const MatrixXd x = solver.expand(x_kept, reduction.others);
+        const Eigen::LDLT<MatrixXd> inside(sheets.dense.topLeftCorner(others, others));
+        const MatrixXd coupling = sheets.dense.topRightCorner(others, kept), load = b.topRows(others);
+        const MatrixXd reduced = b.bottomRows(kept) - coupling.transpose() * inside.solve(load);
+        const MatrixXd expanded = inside.solve(load - coupling * x_kept);
+        const MatrixXd unit = scale.head(others).asDiagonal(), kept_unit = scale.tail(kept).cwiseInverse().asDiagonal();
+        EXPECT_LT((kept_unit * (reduction.kept - reduced)).norm(), rounding * (kept_unit * reduced).norm())
+            << solver.name() << " " << side;
+        EXPECT_LT((unit * (x - expanded)).norm(), rounding * (unit * expanded).norm()) << solver.name() << " " << side;
+        const auto& counters = solver.counters();
+        EXPECT_EQ(counters.half_solves > 0, counters.backsolves == 0);
+        EXPECT_GE(counters.half_solves + counters.backsolves, 6);
+      }
+}
+
+TEST(SchurComplement, HasAFactorOfTheSizeThatIsPredicted) {
+  const Sheets sheets(12);
+  const FactorSize predicted = predict_factor(sheets.pattern, sheets.kept);
+  for (Backend backend : {Backend::automatic, Backend::cholmod, Backend::eigen}) {
+    if (!has_backend(backend)) continue;
+    LinearSolver<double> solver(backend);
+    solver.analyse(sheets.pattern, Symmetry::positive_definite, sheets.kept);
+    EXPECT_EQ(solver.factor_size().flops, predicted.flops);
+    EXPECT_EQ(solver.factor_size().entries, predicted.entries);
+  }
+}
+
 TEST(SchurComplement, LeavesTheSolutionsWhatTheyAre) {
   const Sheets sheets(9);
   LinearSolver<double> solver;

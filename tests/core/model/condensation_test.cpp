@@ -69,15 +69,16 @@ TEST(Condensation, ReducesRowsAndExpandsIncrements) {
     const EngineProblem problem(scene);
     const Whole whole(problem);
     const auto condensation = problem.condensation();
-    const MatrixXd rows = problem.rows(3), reduced = condensation->reduce(rows);
+    const MatrixXd rows = problem.rows(3);
+    const auto reduced = condensation->reduce(rows);
     const MatrixXd share =
         MatrixXd(whole.K(whole.contact, whole.interior)) * whole.inverse() * MatrixXd(rows(whole.interior, Eigen::all));
     const MatrixXd expected = MatrixXd(rows(whole.contact, Eigen::all)) - share;
-    EXPECT_LT((reduced - expected).norm(), condensed * (expected.norm() + share.norm()));
+    EXPECT_LT((reduced.kept - expected).norm(), condensed * (expected.norm() + share.norm()));
 
-    MatrixXd compact(reduced.rows(), 3);
+    MatrixXd compact(expected.rows(), 3);
     for (int j = 0; j < 3; ++j) compact.col(j) = derivatives::arbitrary(static_cast<int>(compact.rows()), 40 + j);
-    const MatrixXd u = condensation->expand(compact, rows, reduced);
+    const MatrixXd u = condensation->expand(compact, reduced.others);
     EXPECT_EQ(MatrixXd(u(whole.contact, Eigen::all)), compact);
     const MatrixXd inside = whole.inverse() * (MatrixXd(rows(whole.interior, Eigen::all)) -
                                                MatrixXd(whole.K(whole.interior, whole.contact)) * compact);

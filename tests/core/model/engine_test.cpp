@@ -52,9 +52,9 @@ TEST(Engines, SolveWithTheDerivativeOfTheResidual) {
         Counters counters;
         engine.begin(1.0, problem.u, {});
         ASSERT_TRUE(engine.factorise(problem.tangents(), counters)) << engine.message();
-        const Matrix<double> reduced = engine.reduce(r);
-        const auto step = engine.solve({reduced, l});
-        const Vector<double> du = engine.expand(step.u, r, reduced);
+        const auto reduced = engine.reduce(r);
+        const auto step = engine.solve({reduced.kept, l});
+        const Vector<double> du = engine.expand(step.u, reduced.others);
         auto rows = along(problem, du, step.l.size() ? Vector<double>(step.l) : Vector<double>(), unknown);
         for (const auto& constraint : problem.model.constraints) {
           EXPECT_EQ(du[constraint.dof], 0);
@@ -77,7 +77,7 @@ TEST(Engines, SolveSeveralColumnsAsTheySolveEach) {
     ASSERT_TRUE(engine.factorise(problem.tangents(), counters));
     const Matrix<double> r = problem.rows(3), l = derivatives::arbitrary(3 * problem.model.multiplier_count, 30)
                                                       .reshaped(problem.model.multiplier_count, 3);
-    const Matrix<double> reduced = engine.reduce(r);
+    const Matrix<double> reduced = engine.reduce(r).kept;
     const auto all = engine.solve({reduced, l});
     for (int j = 0; j < 3; ++j) {
       const auto one = engine.solve({reduced.col(j), l.col(j)});
@@ -130,7 +130,7 @@ TEST(Engines, ApplyTheStiffnessThatTheyCondense) {
     for (int i = 0; i < contacts; ++i)
       if (!condensed.is_free(i)) du.row(i).setZero();
     const Matrix<double> none = Matrix<double>::Zero(problem.model.dof_count(), 2);
-    const Matrix<double> full = sparse.apply_stiffness(condensed.expand(du, none, condensed.reduce(none)));
+    const Matrix<double> full = sparse.apply_stiffness(condensed.expand(du, condensed.reduce(none).others));
     const Matrix<double> small = condensed.apply_stiffness(du);
     const double largest = largest_entry(small);
     for (int i = 0; i < contacts; ++i)
@@ -139,7 +139,7 @@ TEST(Engines, ApplyTheStiffnessThatTheyCondense) {
         EXPECT_LE(largest_entry(full.row(dof) - small.row(i)), solved * largest);
       }
     // forces that the bulk has for the same displacements
-    const Vector<double> whole = condensed.expand(du.col(0), none.col(0), condensed.reduce(none.col(0)));
+    const Vector<double> whole = condensed.expand(du.col(0), condensed.reduce(none.col(0)).others);
     const Vector<double> forces = bulk_forces(problem.model, problem.slots, whole, {});
     for (int dof : problem.model.free_dofs) EXPECT_NEAR(full(dof, 0), forces[dof], solved * largest);
   }
@@ -150,11 +150,11 @@ TEST(Engines, ReduceRowsToTheWorkTheyDoOnContactMotions) {
   const EngineProblem problem(scenes::two_boxes(5, 7));
   auto condensed = problem.condensed(false);
   const Matrix<double> r = problem.rows(1), none = Matrix<double>::Zero(r.rows(), 1);
-  const Vector<double> reduced = condensed.reduce(r);
+  const Vector<double> reduced = condensed.reduce(r).kept;
   for (Eigen::Index i = 0; i < reduced.size(); ++i) {
     if (!condensed.is_free(i)) continue;
     const Vector<double> motion =
-        condensed.expand(Vector<double>::Unit(reduced.size(), i), none, condensed.reduce(none));
+        condensed.expand(Vector<double>::Unit(reduced.size(), i), condensed.reduce(none).others);
     EXPECT_NEAR(reduced[i], motion.dot(r.col(0)), solved * motion.norm() * r.norm());
   }
 }

@@ -11,7 +11,7 @@ namespace {
 TEST(FactorReuse, SavesTheFactorisationOfTheSameTangentAndNoOther) {
   EngineProblem problem(scenes::two_boxes(5, 7));
   auto check = [&](auto engine) {
-    const Matrix<double> r = engine.reduce(problem.rows(1)),
+    const Matrix<double> r = engine.reduce(problem.rows(1)).kept,
                          l = derivatives::arbitrary(problem.model.multiplier_count, 7);
     const auto tangents = problem.tangents();
     EngineProblem other = problem;
@@ -60,7 +60,7 @@ TEST(SingularTangents, AreForgottenOnceContactHoldsTheBody) {
     auto check = [&](auto engine) {
       Counters counters;
       ASSERT_TRUE(engine.factorise(stuck, counters)) << engine.message();
-      const Matrix<double> r = engine.reduce(problem.rows(1)),
+      const Matrix<double> r = engine.reduce(problem.rows(1)).kept,
                            l = Matrix<double>::Zero(problem.model.multiplier_count, 1);
       const auto before = engine.solve({r, l});
       engine.factorise(open, counters);

@@ -35,7 +35,7 @@ void for_each_engine(const EngineProblem& problem, Check&& check) {
 /// Two right-hand sides of an engine's rows.
 template <class E>
 BlockVector<double> right_hand_sides(E& engine, const EngineProblem& problem) {
-  return {engine.reduce(problem.rows(2)),
+  return {engine.reduce(problem.rows(2)).kept,
           derivatives::arbitrary(problem.model.multiplier_count, 7) * Matrix<double>::Ones(1, 2)};
 }
 
@@ -127,7 +127,7 @@ TEST(TangentUpdate, EndsWithTheNextFactorisation) {
   const EngineProblem problem = stuck(20);
   for_each_engine(problem, [&](auto make, bool) {
     auto engine = make();
-    const Matrix<double> r = engine.reduce(problem.rows(1)),
+    const Matrix<double> r = engine.reduce(problem.rows(1)).kept,
                          l = derivatives::arbitrary(problem.model.multiplier_count, 7);
     Counters counters;
     ASSERT_TRUE(engine.factorise(problem.tangents(), counters));
