@@ -14,6 +14,9 @@ namespace {
 /// of a penalty, or the first augmentation, moves the last node off its master and back for ever. Here it may.
 constexpr double past_end_of_curve = 0.01;
 
+/// Cosine of the least angle between the outward normals of what touches itself: the sides of a corner never do.
+constexpr double least_against = 0.5;
+
 auto place_in(const Eigen::Matrix2Xd& places) {
   return [&places](int vertex) -> Vec<double, 2> { return places.col(vertex); };
 }
@@ -22,55 +25,93 @@ auto place_in(const Eigen::Matrix2Xd& places) {
 
 CurveSearch::CurveSearch(const std::vector<Patch>& patches, const Eigen::Matrix2Xd& places)
     : patches_(patches), places_(places) {
+  if (!places.allFinite()) return;  // of a trial out of bounds
   const int count = static_cast<int>(patches.size());
-  Vec<double, 2> low = vertex(0, 0), high = low;
-  double length = 0;
-  for (int p = 0; p < count; ++p) {
-    for (int end : {0, 1}) {
-      low = low.cwiseMin(vertex(p, end));
-      high = high.cwiseMax(vertex(p, end));
-    }
-    length += (vertex(p, 1) - vertex(p, 0)).norm() / count;
+  boxes_.reserve(count);
+  add_boxes(0, count);
+  size_ = (boxes_[0].high - boxes_[0].low).norm();
+  double longest = 0;
+  for (int p = 0; p < count; ++p) longest = std::max(longest, (vertex(p, 1) - vertex(p, 0)).norm());
+  band_ = at_facet_end * longest;
+  if (!std::isfinite(size_) || !(longest > 0)) boxes_.clear();
+}
+
+void CurveSearch::add_boxes(int first, int last) {
+  constexpr int leaf = 4;
+  const std::size_t at = boxes_.size();
+  boxes_.push_back({{}, {}, {}, {}, first, last});
+  if (last - first <= leaf) return bound(boxes_[at]);
+  const int middle = (first + last) / 2;
+  add_boxes(first, middle);
+  const auto right = static_cast<int>(boxes_.size());
+  add_boxes(middle, last);
+  const Box &a = boxes_[at + 1], &b = boxes_[right];
+  boxes_[at] = {a.low.cwiseMin(b.low),
+                a.high.cwiseMax(b.high),
+                a.normal_low.cwiseMin(b.normal_low),
+                a.normal_high.cwiseMax(b.normal_high),
+                first,
+                last,
+                right};
+}
+
+void CurveSearch::bound(Box& box) const {
+  box.low = box.high = vertex(box.first, 0);
+  box.normal_low.setConstant(1);
+  box.normal_high.setConstant(-1);
+  for (int p = box.first; p < box.last; ++p) {
+    const Vec<double, 2> a = vertex(p, 0), b = vertex(p, 1), tau = (b - a).normalized();
+    box.low = box.low.cwiseMin(a).cwiseMin(b);
+    box.high = box.high.cwiseMax(a).cwiseMax(b);
+    const bool has_normal = tau.squaredNorm() > 0;  // of a facet without length any will do
+    box.normal_low = box.normal_low.cwiseMin(has_normal ? Vec<double, 2>(tau[1], -tau[0]) : Vec<double, 2>(-1, -1));
+    box.normal_high = box.normal_high.cwiseMax(has_normal ? Vec<double, 2>(tau[1], -tau[0]) : Vec<double, 2>(1, 1));
   }
-  const Vec<double, 2> size = high - low;
-  if (!places.allFinite() || !size.allFinite() || !(length > 0)) return;  // of a trial out of bounds: no cells
-  size_ = size.norm();
-  // cells about as large as the facets, and no more than four times as many
-  corner_ = low;
-  cell_ = std::max({length, std::sqrt(size[0] * size[1] / (4.0 * count)), size.maxCoeff() / (4.0 * count)});
-  for (int i = 0; i < 2; ++i) cells_[i] = 1 + static_cast<int>(size[i] / cell_);
-  const auto cell_of = [&](double x, int i) {
-    return std::clamp(static_cast<int>((x - corner_[i]) / cell_), 0, cells_[i] - 1);
-  };
-  const auto for_each_cell = [&](int p, auto&& f) {
-    const Vec<double, 2> a = vertex(p, 0), b = vertex(p, 1);
-    for (int j = cell_of(std::min(a[1], b[1]), 1); j <= cell_of(std::max(a[1], b[1]), 1); ++j)
-      for (int i = cell_of(std::min(a[0], b[0]), 0); i <= cell_of(std::max(a[0], b[0]), 0); ++i) f(j * cells_[0] + i);
-  };
-  start_.assign(static_cast<std::size_t>(cells_[0]) * cells_[1] + 1, 0);
-  for (int p = 0; p < count; ++p) for_each_cell(p, [&](int cell) { ++start_[cell + 1]; });
-  for (std::size_t c = 1; c < start_.size(); ++c) start_[c] += start_[c - 1];
-  in_cell_.resize(start_.back());
-  auto next = start_;
-  for (int p = 0; p < count; ++p) for_each_cell(p, [&](int cell) { in_cell_[next[cell]++] = p; });
+}
+
+double CurveSearch::distance(const Box& box, const Vec<double, 2>& x) const {
+  return (box.low - x).cwiseMax(x - box.high).cwiseMax(0.0).norm();
+}
+
+/// False where no facet of a box counts by its normal or, of the curve of x itself, because x is too far behind it.
+bool CurveSearch::may_count(const Box& box, const Sought& sought) const {
+  constexpr double rounding = 1e-12;
+  const Vec<double, 2>& outward = sought.outward;
+  const Vec<double, 2> least =
+      (outward.array() * box.normal_low.array()).min(outward.array() * box.normal_high.array());
+  if (least.sum() > (rounding - (sought.own ? least_against : 0)) * outward.norm()) return false;
+  if (!sought.own) return true;
+  double most = 0;  // that the gap can be
+  for (int i = 0; i < 2; ++i) {
+    const double near = sought.x[i] - box.low[i], far = sought.x[i] - box.high[i];
+    most += std::max(
+        {near * box.normal_low[i], near * box.normal_high[i], far * box.normal_low[i], far * box.normal_high[i]});
+  }
+  return most >= -reach(box.first, box.last, sought) - rounding * size_;
+}
+
+/// How far x may be inside of some of the patches first to last - 1 of its own curve: a quarter as far as of those next
+/// to the one that it faced.
+double CurveSearch::reach(int first, int last, const Sought& sought) const {
+  constexpr int next_to = 8;
+  const int count = static_cast<int>(patches_.size());
+  bool was_in_front = false;
+  for (const int turn : {-count, 0, count})
+    was_in_front |= first <= sought.last + turn + next_to && last > sought.last + turn - next_to;
+  return (sought.last != Patch::none && was_in_front ? 1 : 0.25) * sought.own->reach;
 }
 
 bool CurveSearch::counts(int patch, const Sought& sought) const {
   const Vec<double, 2> a = vertex(patch, 0), tau = vertex(patch, 1) - a, &outward = sought.outward;
   const double along = outward[0] * tau[1] - outward[1] * tau[0];  // of the normals, times the facet's length
   if (along > 0 || !sought.own) return !(along > 0);
-  constexpr double least_against = 0.5;  // cosine: the sides of a corner never touch each other
   if (along > -least_against * outward.norm() * tau.norm() || !sought.own->may_face(patches_, patch)) return false;
   const Vec<double, 2> off = sought.x - a;
   const double gap = (off[0] * tau[1] - off[1] * tau[0]) / tau.norm();
   constexpr double beside = 0.5;  // facets: what it is inside of is where it is
   const double xi = off.dot(tau) / tau.squaredNorm();
   if (gap >= 0) return true;
-  constexpr int next_to = 8;
-  const int count = static_cast<int>(patches_.size()), apart = std::abs(patch - sought.last);
-  const bool was_in_front = sought.last != Patch::none && std::min(apart, count - apart) <= next_to;
-  const double reach = (was_in_front ? 1 : 0.25) * sought.own->reach;
-  return gap >= -reach && xi >= -beside && xi <= 1 + beside;
+  return gap >= -reach(patch, patch + 1, sought) && xi >= -beside && xi <= 1 + beside;
 }
 
 void CurveSearch::try_facet(int patch, const Vec<double, 2>& x, Nearest& best) const {
@@ -90,32 +131,20 @@ void CurveSearch::try_facet(int patch, const Vec<double, 2>& x, Nearest& best) c
 CurveSearch::Nearest CurveSearch::nearest_facet(const Sought& sought) const {
   const Vec<double, 2>& x = sought.x;
   Nearest best;
-  if (start_.empty() || !x.allFinite()) return best;
-  std::array<int, 2> at;
-  for (int i = 0; i < 2; ++i)
-    at[i] = static_cast<int>(std::clamp((x[i] - corner_[i]) / cell_, 0.0, static_cast<double>(cells_[i] - 1)));
-  const auto try_cell = [&](int i, int j) {
-    if (i < 0 || j < 0 || i >= cells_[0] || j >= cells_[1]) return;
-    const int cell = j * cells_[0] + i;
-    for (int k = start_[cell]; k < start_[cell + 1]; ++k)
-      if (counts(in_cell_[k], sought)) try_facet(in_cell_[k], x, best);
-  };
-  const int most = std::max(cells_[0], cells_[1]);
-  for (int ring = 0; ring <= most; ++ring) {
-    for (int i = at[0] - ring; i <= at[0] + ring; ++i)
-      for (int j : {at[1] - ring, at[1] + ring}) {
-        try_cell(i, j);
-        if (ring == 0) break;
-      }
-    for (int j = at[1] - ring + 1; j < at[1] + ring; ++j)
-      for (int i : {at[0] - ring, at[0] + ring}) try_cell(i, j);
-    double beyond = std::numeric_limits<double>::infinity();  // nothing that is left is nearer
-    for (int i = 0; i < 2; ++i) {
-      if (at[i] - ring > 0) beyond = std::min(beyond, x[i] - (corner_[i] + (at[i] - ring) * cell_));
-      if (at[i] + ring + 1 < cells_[i]) beyond = std::min(beyond, corner_[i] + (at[i] + ring + 1) * cell_ - x[i]);
+  if (boxes_.empty() || !x.allFinite()) return best;
+  const auto visit = [&](const auto& self, int at) -> void {
+    const Box& box = boxes_[at];
+    if (distance(box, x) > best.distance + band_ || !may_count(box, sought)) return;
+    if (box.right == 0) {
+      for (int p = box.first; p < box.last; ++p)
+        if (counts(p, sought)) try_facet(p, x, best);
+      return;
     }
-    if (best.distance < beyond) break;
-  }
+    const bool left_first = distance(boxes_[at + 1], x) <= distance(boxes_[box.right], x);
+    self(self, left_first ? at + 1 : box.right);
+    self(self, left_first ? box.right : at + 1);
+  };
+  visit(visit, 0);
   return best;
 }
 

@@ -1,4 +1,8 @@
-/// Which place of a master curve a point faces: the nearest, found among few facets by a grid over the plane.
+/// Which place of a master curve a point faces: the nearest, found by a tree of boxes over the curve.
+///
+/// A box holds a stretch of the curve and the normals of its facets, so that what is too far away, or looks the wrong
+/// way, is passed over as a whole: the search takes about log n facets also of a side that may touch itself, where the
+/// nearest n are its own.
 ///
 /// At a corner the curve is two straight lines that end in their bisector, so that the gap is continuous there and has
 /// no states of its own: beyond a convex corner a point has the gap of the line on its side of the bisector.
@@ -38,7 +42,18 @@ class CurveSearch {
     const OwnVertex* own = nullptr;
     int last = Patch::none;
   };
+  /// Patches first to last - 1: bounds of their ends and of their unit normals. Its left child, where it has any,
+  /// follows it; `right`: where the other is, 0 for none.
+  struct Box {
+    Vec<double, 2> low, high, normal_low, normal_high;
+    int first, last, right = 0;
+  };
   Vec<double, 2> vertex(int patch, int end) const { return places_.col(patches_[patch].vertices[1 + end]); }
+  void add_boxes(int first, int last);
+  void bound(Box& box) const;
+  double distance(const Box& box, const Vec<double, 2>& x) const;
+  bool may_count(const Box& box, const Sought& sought) const;
+  double reach(int first, int last, const Sought& sought) const;
   Nearest nearest_facet(const Sought& sought) const;
   bool counts(int patch, const Sought& sought) const;
   void try_facet(int patch, const Vec<double, 2>& x, Nearest& best) const;
@@ -50,10 +65,9 @@ class CurveSearch {
 
   const std::vector<Patch>& patches_;
   const Eigen::Matrix2Xd& places_;
-  Vec<double, 2> corner_;                                             ///< of the grid
-  double cell_ = 1, size_ = std::numeric_limits<double>::infinity();  ///< of a cell; of the whole curve
-  std::array<int, 2> cells_{{1, 1}};
-  std::vector<int> start_, in_cell_;  ///< patches of each cell, one list after another
+  std::vector<Box> boxes_;  ///< the whole curve first; none where places are not finite
+  double band_ = 0;         ///< length within which two facets are as near as one another
+  double size_ = std::numeric_limits<double>::infinity();  ///< of the whole curve
 };
 
 }  // namespace stickslip
