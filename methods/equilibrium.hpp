@@ -54,6 +54,17 @@ struct Compliance {
   Vector<T> seen(const Vector<T>& lambda) const { return lambda + share.cwiseProduct(given - lambda); }
 };
 
+/// Where a step of a path ends (methods/path.hpp): at an arc length from the state that is left,
+///
+///   |u - u'|^2 / length^2 + (t - t')^2 / span^2 = 1        |u|: root mean square over the nodes that are free
+struct Arc {
+  const Vector<double>& left;  ///< u', all dofs
+  double time = 0;             ///< t'
+  double length = 0, span = 0;
+  double nodes = 0;
+  bool begins = false;  ///< whether the start values are u' and t'
+};
+
 /// One equilibrium that is to be found. It refers to what its caller holds.
 template <class T>
 struct EquilibriumTask {
@@ -69,16 +80,25 @@ struct EquilibriumTask {
   const Vector<T>* from = nullptr;
   /// Of given multipliers whose tractions are solved for; nullptr: none are.
   const Compliance<T>* compliance = nullptr;
+  /// Of a step whose time is unknown; nullptr: it is given.
+  const Arc* arc = nullptr;
   /// Whether lambda is an unknown of the engine's systems.
   bool solves_for_multipliers() const { return multipliers == Multipliers::unknown; }
   /// Whether an iterate has tractions that differ from those of its displacements.
   bool has_multiplier_rows() const { return solves_for_multipliers() || compliance; }
 };
 
-/// Displacement in engine dofs, and lambda.
+/// Displacement in engine dofs, and lambda; along a path the time too.
 template <class T>
 struct Unknowns {
   Vector<T> u, multiplier;
+  double time = 0;
+};
+
+/// A step of Newton's method: of the engine's unknowns, and along a path of the time.
+template <class T>
+struct NewtonStep : BlockVector<T> {
+  double time = 0;
 };
 
 template <class T>

@@ -11,7 +11,7 @@ namespace stickslip {
 /// that slide over other surfaces go no further than a facet at once: beyond, the tangent knows nothing.
 /// `used`: states of the last tangent.
 template <class T, class E>
-double search_line(Evaluator<T, E>& evaluate, const BlockVector<T>& step, const std::vector<ContactState>& used,
+double search_line(Evaluator<T, E>& evaluate, const NewtonStep<T>& step, const std::vector<ContactState>& used,
                    const NewtonOptions& options, Unknowns<T>& unknowns, detail::Evaluation<T>& at) {
   const double whole = evaluate.good_share(step.u), shortest_step = whole / 64;
   const double before = at.residuals.largest();
@@ -19,7 +19,7 @@ double search_line(Evaluator<T, E>& evaluate, const BlockVector<T>& step, const 
   const Unknowns<T> start = unknowns;
   const std::vector<Facing> faced = at.field.facing;
   for (double length = whole; length >= shortest_step; length /= 2) {
-    Unknowns<T> moved{start.u + T(length) * step.u.col(0), start.multiplier};
+    Unknowns<T> moved{start.u + T(length) * step.u.col(0), start.multiplier, start.time + length * step.time};
     if (step.l.size() > 0) moved.multiplier += T(length) * step.l.col(0);
     auto trial = evaluate(moved);
     const bool finite = trial.residuals.finite();

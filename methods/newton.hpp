@@ -103,6 +103,7 @@ Equilibrium<T> newton(E& engine, const EquilibriumTask<T>& task, Unknowns<T> unk
     result.rough = end.rough;
     result.iterations = static_cast<int>(result.history.size()) - 1 + predictions;
     if (is_converged(end.status)) account.scales = at.scales;
+    if (task.arc) engine.move_loads(unknowns.time);  // (a trial may have been of another)
     result.at = std::move(unknowns);
     result.field = std::move(at.field);
     return std::move(result);
@@ -126,13 +127,14 @@ Equilibrium<T> newton(E& engine, const EquilibriumTask<T>& task, Unknowns<T> unk
     result.reversed |= input.model.effects.linear_bulk && engine.reversed();
     directed = at.field;
     directed.state = branches;
-    BlockVector<T> step;
+    NewtonStep<T> step;
     {
       const Stopwatch time(account.seconds.backsolve);
       if (branches != evaluated) evaluate.take_rows_in(branches, unknowns, at);
-      step = tangent.step(at.rows_u, at.rows_l);
+      step =
+          task.arc ? tangent.step_along(*task.arc, unknowns, at.rows_u, at.rows_l) : tangent.step(at.rows_u, at.rows_l);
     }
-    if (!step.u.allFinite() || !step.l.allFinite())
+    if (!step.u.allFinite() || !step.l.allFinite() || !std::isfinite(step.time))
       return finish({Status::singular, "the tangent is singular: its solution is not finite"});
     ++account.counters.newton;
     const Stopwatch time(account.seconds.assembly);

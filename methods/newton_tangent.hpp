@@ -135,7 +135,7 @@ class NewtonTangent {
     if (!model.effects.linear_bulk) {
       const Stopwatch time(account_.seconds.assembly);
       const Vector<T> moved = engine_.all(unknowns.u);
-      engine_.linearise({moved, task_.contact.previous.bodies, task_.contact.time});
+      engine_.linearise({moved, task_.contact.previous.bodies, task_.arc ? unknowns.time : task_.contact.time});
     }
     face(field);
   }
@@ -155,7 +155,10 @@ class NewtonTangent {
   bool factorise_in(const std::vector<ContactState>& branches, const Unknowns<T>& unknowns);
   /// The step that takes rows of residuals to zero: the motion, and that of lambda where it has rows. Not finite where
   /// the tangent is singular after all.
-  BlockVector<T> step(const Vector<T>& rows_u, const Vector<T>& rows_l);
+  NewtonStep<T> step(const Vector<T>& rows_u, const Vector<T>& rows_l);
+  /// The same along a path, from a place on it or near it: with the time's, on the arc.
+  NewtonStep<T> step_along(const Arc& arc, const Unknowns<T>& unknowns, const Vector<T>& rows_u,
+                           const Vector<T>& rows_l);
   /// Of the points, as they were factorised last.
   const std::vector<PointTangent<T>>& tangents() const { return tangents_; }
   /// Constraints repeat one another: they share the force.
@@ -200,19 +203,41 @@ std::vector<PointTangent<T>> NewtonTangent<T, E>::point_tangents(const std::vect
 }
 
 template <class T, class E>
-BlockVector<T> NewtonTangent<T, E>::step(const Vector<T>& rows_u, const Vector<T>& rows_l) {
-  BlockVector<T> step;
+NewtonStep<T> NewtonTangent<T, E>::step(const Vector<T>& rows_u, const Vector<T>& rows_l) {
+  NewtonStep<T> step;
   if (task_.compliance) {
     const auto& [model, slots] = std::tie(task_.contact.model, task_.contact.slots);
     Vector<T> rows = rows_u;
     add_compact(model, into_frames(model, slots.frames, Layout::compact, own_.carried(model, slots, rows_l)), rows);
-    step = engine_.solve({-rows, Matrix<T>()});
+    step = {engine_.solve({-rows, Matrix<T>()})};
     step.l = own_.recover(model, slots, rows_l, engine_.compact(step.u.col(0)));
   } else {
-    step = engine_.solve({-rows_u, task_.solves_for_multipliers() ? Matrix<T>(-rows_l) : Matrix<T>()});
+    step = {engine_.solve({-rows_u, task_.solves_for_multipliers() ? Matrix<T>(-rows_l) : Matrix<T>()})};
   }
   account_.counters.backsolves += engine_.solves();
   detail::multiply_by_rho(task_.contact, step.l);
+  return step;
+}
+
+/// With K x = -R and K y = df_ext/dt a step is x + y dt, and dt is what takes it to the arc: of two places on that the
+/// one in the direction of the iterate, at the very beginning of a path that in the direction of the load; the nearest
+/// to the arc where the line misses it.
+template <class T, class E>
+NewtonStep<T> NewtonTangent<T, E>::step_along(const Arc& arc, const Unknowns<T>& unknowns, const Vector<T>& rows_u,
+                                              const Vector<T>& rows_l) {
+  NewtonStep<T> step = this->step(rows_u, rows_l);
+  const auto along = this->step(-engine_.load_rate(unknowns.u), Vector<T>::Constant(rows_l.size(), T(0)));
+  const Vector<double> moved = values(engine_.all(unknowns.u)) - arc.left,
+                       start = moved + values(engine_.increment(step.u.col(0), 0)),
+                       y = values(engine_.increment(along.u.col(0), 1));
+  const double passed = unknowns.time - arc.time, of_motion = 1 / (arc.nodes * arc.length * arc.length),
+               of_time = 1 / (arc.span * arc.span);
+  const double a = of_motion * y.squaredNorm() + of_time, b = of_motion * y.dot(start) + of_time * passed,
+               c = of_motion * start.squaredNorm() + of_time * passed * passed - 1;
+  const double ahead = of_motion * y.dot(moved) + of_time * passed;
+  step.time = (std::copysign(std::sqrt(std::max(b * b - a * c, 0.0)), ahead) - b) / a;
+  step.u += T(step.time) * along.u;
+  if (step.l.size() > 0) step.l += T(step.time) * along.l;
   return step;
 }
 

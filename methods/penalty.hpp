@@ -123,11 +123,11 @@ Increment<T> solve_increment(const Penalty& method, Run<T, E>& run, const State<
   const ContactInput<T> input{run.model, run.slots, rho, previous.history, cone_radius(method), time};
   NewtonOptions options = method.newton;
   options.tolerance = start.tolerance(options.tolerance);
-  const EquilibriumTask<T> task{input, Multipliers::given,      start.anchor, start.resumed(previous),
-                                0,     &start.from.displacement};
+  const EquilibriumTask<T> task{input, Multipliers::given,       start.anchor, start.resumed(previous),
+                                0,     &start.from.displacement, nullptr,      start.arc};
   auto u = run.engine.begin(time, start.from.displacement, previous.history.bodies);
-  const auto equilibrium =
-      find_equilibrium<T>(run.engine, task, {std::move(u), stored_traction(run.model, previous)}, options, run.account);
+  const auto equilibrium = find_equilibrium<T>(
+      run.engine, task, {std::move(u), stored_traction(run.model, previous), time}, options, run.account);
   account_for(increment, equilibrium, 0);
   increment.state = settle(run, input, equilibrium.at, equilibrium.field);
   if (!is_converged(equilibrium.status) || start.is_step()) return increment;

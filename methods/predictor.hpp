@@ -43,13 +43,33 @@ void follow_obstacles(const ContactInput<T>& input, std::span<const ContactState
 
 }  // namespace detail
 
+/// Takes the first step of a path, along the load: where it begins the residual vanishes.
+template <class T, class E>
+bool begin_path(E& engine, const EquilibriumTask<T>& task, Evaluator<T, E>& evaluate, NewtonTangent<T, E>& tangent,
+                Account& account, Unknowns<T>& unknowns) {
+  auto at = evaluate(unknowns);
+  auto branches = detail::step_branches(task.contact, engine.compact(unknowns.u), at.field, unknowns.multiplier, {});
+  tangent.move_to(unknowns, at.field);
+  if (!tangent.factorise(unknowns, branches)) return false;
+  evaluate.take_rows_in(branches, unknowns, at);
+  const auto step = tangent.step_along(*task.arc, unknowns, at.rows_u, at.rows_l);
+  ++account.counters.newton;
+  Unknowns<T> moved{unknowns.u + step.u.col(0), unknowns.multiplier, unknowns.time + step.time};
+  if (step.l.size() > 0) moved.multiplier += step.l.col(0);
+  if (!moved.u.allFinite() || !evaluate(moved).residuals.finite()) return false;
+  unknowns = std::move(moved);
+  return true;
+}
+
 /// Moves the unknowns of an equilibrium there; false, and nothing is changed, where nothing moves or the place is out
 /// of bounds.
 template <class T, class E>
 bool predict(E& engine, const EquilibriumTask<T>& task, Evaluator<T, E>& evaluate, NewtonTangent<T, E>& tangent,
              Account& account, Unknowns<T>& unknowns) {
   const auto& [model, slots] = std::tie(task.contact.model, task.contact.slots);
-  if (model.effects.linear_bulk || !task.from) return false;
+  if (!task.from) return false;
+  if (task.arc) return task.arc->begins && begin_path(engine, task, evaluate, tangent, account, unknowns);
+  if (model.effects.linear_bulk) return false;
   Unknowns<T> start{into_frames(model, slots.frames, Layout::all, *task.from), unknowns.multiplier};
   const Vector<T> prescribed = unknowns.u - start.u;
   const auto& points = model.points;

@@ -275,6 +275,7 @@ detail::Evaluation<T> Evaluator<T, E>::operator()(const Unknowns<T>& unknowns) {
   const Model& model = input.model;
   detail::Evaluation<T> at;
   at.scales = account_.scales;
+  if (task_.arc) engine_.move_loads(unknowns.time);
   const Vector<T> compact = engine_.compact(unknowns.u);
   std::vector<Facing> facing;
   if (model.slides_along_curves()) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/model/engine.hpp"
+#include "core/model/state.hpp"
 #include "methods/options.hpp"
 #include "methods/trace.hpp"
 
@@ -16,10 +17,21 @@ namespace stickslip {
 struct RunOptions {
   LinearAlgebra linear_algebra;
   Backend backend = Backend::automatic;
-  std::vector<double> replay;     ///< ends of the increments to repeat, without cutting; empty: the model's own steps
-  std::function<void()> on_step;  ///< called after each requested step; may be empty
-  Trace* trace = nullptr;         ///< not owned; gathers every iterate where it is there
+  std::vector<double> replay;  ///< ends of the increments to repeat, without cutting; empty: the model's own steps
+  std::vector<Vector<double>> guide;  ///< displacements, all dofs, that increments repeated along a path begin with
+  std::function<void()> on_step;      ///< called after each requested step; may be empty
+  Trace* trace = nullptr;             ///< not owned; gathers every iterate where it is there
 };
+
+/// Options that repeat the increments of a run. Those of a path begin where they ended: under a load alone a step past
+/// a limit point would go back to where it came from.
+inline RunOptions repeating(RunOptions options, const Model& model, const Trajectory<double>& trajectory) {
+  options.replay = trajectory.step_table();
+  options.guide.clear();
+  for (const auto& increment : trajectory.increments)
+    if (model.scene.arc_length) options.guide.push_back(increment.state.displacement);
+  return options;
+}
 
 /// What a run allocates and leaves for its sensitivities: owned by the caller, the only mutable thing beside them.
 /// `condensation` may be handed on to another run on the same slots (a sweep over methods): it is reused if it is

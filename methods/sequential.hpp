@@ -266,7 +266,8 @@ Equilibrium<T> find_equilibrium(E& engine, const EquilibriumTask<T>& task, Unkno
   constexpr int soon = 15;
   const auto& effects = task.contact.model.effects;
   const bool linear = (effects.linear_bulk && !effects.current_geometry) || task.contact.model.points.empty();
-  if (linear || options.max_iterations <= soon) return newton(engine, task, std::move(start), options, account);
+  if (linear || task.arc || options.max_iterations <= soon)
+    return newton(engine, task, std::move(start), options, account);
   const RunScales before = account.scales;
   Equilibrium<T> found;
   const auto take = [&](Equilibrium<T> next) {  // with what was tried before it

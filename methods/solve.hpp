@@ -8,6 +8,7 @@
 #include "methods/diagnosis.hpp"
 #include "methods/engine_choice.hpp"
 #include "methods/motion.hpp"
+#include "methods/path.hpp"
 
 namespace stickslip {
 
@@ -176,12 +177,21 @@ void march(const M& method, const Model& model, const Slots<T>& slots, E& engine
   run.several = may_have_several(run);
   run.account.trace = options.trace;
   trajectory.initial = initial_state<T>(model, slots);
-  const auto& times = options.replay.empty() ? model.times : options.replay;
-  for (double time : times) {
+  const bool repeats = !options.replay.empty();
+  const auto& times = repeats ? options.replay : model.times;
+  std::optional<Path<T, E, M>> path;
+  if (model.scene.arc_length) path.emplace(method, run, trajectory);
+  const auto ended = [&](std::size_t n) { return path && !repeats ? path->ended() : n == times.size(); };
+  const auto step = [&](std::size_t n) {
+    if (!path) return advance(method, run, trajectory, times[n], !repeats);
+    return repeats ? path->repeat(times[n], options.guide) : path->advance();
+  };
+  bool reached = true;
+  for (std::size_t n = 0; reached && !ended(n); ++n) {
     const std::size_t before = trajectory.increments.size();
-    const bool reached = advance(method, run, trajectory, time, options.replay.empty());
-    for (std::size_t n = before; n < trajectory.increments.size(); ++n) {  // the first that is not plainly converged
-      const auto& increment = trajectory.increments[n];
+    reached = step(n);
+    for (std::size_t k = before; k < trajectory.increments.size(); ++k) {  // the first that is not plainly converged
+      const auto& increment = trajectory.increments[k];
       if (increment.status == Status::converged || (trajectory.status != Status::converged && reached)) continue;
       trajectory.status = increment.status;
       trajectory.message = increment.message;
@@ -194,9 +204,8 @@ void march(const M& method, const Model& model, const Slots<T>& slots, E& engine
       }
       trajectory.seconds.total -= aside;
     }
-    if (!reached) break;
   }
-  if (!options.replay.empty())
+  if (repeats && !path)
     for (auto& increment : trajectory.increments)
       increment.requested = std::binary_search(model.times.begin(), model.times.end(), increment.time);
   trajectory.counters += run.account.counters;

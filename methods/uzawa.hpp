@@ -165,8 +165,8 @@ class AugmentationLoop {
     increment_.rho_factor = std::move(rho_factor);
     // (a loop that is differentiated as it was cut off begins with the last increment's lambda, as its derivative does)
     const State<T>& with_lambda = truncated_ && !start.is_step() ? previous : start.from;
-    unknowns_ = {run.engine.begin(time, start.from.displacement, previous.history.bodies),
-                 with_lambda.contact.traction};
+    unknowns_ = {run.engine.begin(time, start.from.displacement, previous.history.bodies), with_lambda.contact.traction,
+                 time};
   }
 
   Increment<T> solve() {
@@ -188,8 +188,14 @@ class AugmentationLoop {
     rough_ &= increment_.augmentations + 1 < limit_;
     const bool first = increment_.augmentations == 0;
     run_.account.scales = before_;
-    const EquilibriumTask<T> task{input,    Multipliers::given,   start_.anchor,
-                                  resumed_, rough_ ? forcing : 0, first ? &start_.from.displacement : nullptr};
+    const EquilibriumTask<T> task{input,
+                                  Multipliers::given,
+                                  start_.anchor,
+                                  resumed_,
+                                  rough_ ? forcing : 0,
+                                  first ? &start_.from.displacement : nullptr,
+                                  nullptr,
+                                  start_.arc};
     auto equilibrium =
         find_equilibrium(run_.engine, task, unknowns_, inner_options(method_, progress_.contraction()), run_.account);
     account_for(increment_, equilibrium, ++increment_.augmentations);
@@ -233,6 +239,7 @@ class AugmentationLoop {
     const auto cones = [&](Vector<T> x) { return into_cones(run_.model, run_.slots, std::move(x)); };
     const Vector<T>& traction = equilibrium.field.traction;
     unknowns_.u = equilibrium.at.u;
+    unknowns_.time = equilibrium.at.time;
     unknowns_.multiplier = raised || now_.done ? traction
                                                : accelerator_.next(unknowns_.multiplier, traction, progress_.settled(),
                                                                    progress_.contraction(), cones);

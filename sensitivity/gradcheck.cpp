@@ -213,8 +213,7 @@ GradientCheck check_gradients(const Model& model, const Method& given, const Run
   check.message = trajectory.message;
   const auto computed = computed_derivatives(model, slots, method, trajectory, workspace, check);
   if (computed.empty()) return check;
-  RunOptions replay = options;
-  replay.replay = trajectory.step_table();
+  const RunOptions replay = repeating(options, model, trajectory);
   const Path base = run(model, numbers, method, replay);
 
   const Matrix<double> largest_value = base.values.cwiseAbs().rowwise().maxCoeff();

@@ -14,6 +14,9 @@ class CondensedEngine {
                   std::shared_ptr<Condensation<T>> condensation);
 
   Vector<T> begin(double time, const Vector<T>& displacement, const Vector<T>& before);
+  void move_loads(double time);
+  Vector<T> load_rate(const Vector<T>& u);
+  Vector<T> increment(const Vector<T>& u, double time);
   Vector<T> compact(const Vector<T>& u) const { return out_of_frames(model_, slots_.frames, Layout::compact, u); }
   Vector<T> all(const Vector<T>& u);
   Vector<T> residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const;
@@ -61,6 +64,8 @@ class CondensedEngine {
   Vector<T> rest_;               ///< all dofs: prescribed values outside the contact, zero elsewhere
   Vector<T> load_;               ///< f_ext - K rest, reduced to the contact dofs
   Matrix<T> others_;             ///< of that reduction
+  double time_ = 0;              ///< of the loads
+  Reduction<T> load_rate_;       ///< of what they change by in a unit of time, once it was asked for
   double largest_external_ = 0;  ///< nodal force of the loads
   Symmetry symmetry_;
   std::vector<int> active_;  ///< multiplier rows in the factor: those of points that are not open

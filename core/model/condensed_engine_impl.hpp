@@ -25,6 +25,7 @@ CondensedEngine<T>::CondensedEngine(const Model& model, const Slots<T>& slots, b
 
 template <class T>
 Vector<T> CondensedEngine<T>::begin(double time, const Vector<T>& displacement, const Vector<T>& /*before*/) {
+  time_ = time;
   Vector<T> u = displacement;
   prescribe(model_, slots_, time, u);
   u = into_frames(model_, slots_.frames, Layout::all, std::move(u));
@@ -40,6 +41,30 @@ Vector<T> CondensedEngine<T>::begin(double time, const Vector<T>& displacement, 
   load_ = reduced.kept;
   others_ = std::move(reduced.others);
   return to_compact(model_, u);
+}
+
+template <class T>
+Vector<T> CondensedEngine<T>::load_rate(const Vector<T>& /*u*/) {
+  if (load_rate_.kept.size() == 0) {
+    const double end = model_.times.back();
+    const Vector<T> change = dead_forces(model_, slots_, end) - dead_forces(model_, slots_, 0);
+    load_rate_ = condensation_->reduce(into_frames(model_, slots_.frames, Layout::all, Vector<T>(change / T(end))));
+  }
+  return load_rate_.kept.col(0);
+}
+
+template <class T>
+Vector<T> CondensedEngine<T>::increment(const Vector<T>& u, double time) {
+  load_rate({});
+  return expand(u, T(time) * load_rate_.others).col(0);
+}
+
+template <class T>
+void CondensedEngine<T>::move_loads(double time) {
+  load_ += T(time - time_) * load_rate({});
+  if (others_.size() > 0) others_ += T(time - time_) * load_rate_.others;
+  time_ = time;
+  largest_external_ = largest_nodal_norm(dead_forces(model_, slots_, time), model_.dimension);
 }
 
 template <class T>

@@ -78,6 +78,17 @@ Vector<T> support_forces(const Model& model, const Slots<T>& slots, const Vector
   return out_of_frames(model, slots.frames, Layout::all, std::move(held));
 }
 
+/// Length of a step along a path where the scene gives none: that share of the diagonal of all nodes' box.
+template <class T>
+double path_length(const Model& model, const Slots<T>& slots) {
+  constexpr double tenth = 0.1;
+  const ArcLength& arc = *model.scene.arc_length;
+  if (arc.length > 0) return arc.length;
+  const Points<double> places = slots.points.unaryExpr([](const T& x) { return value(x); });
+  const double diagonal = (places.rowwise().maxCoeff() - places.rowwise().minCoeff()).norm();
+  return tenth * diagonal / model.scene.legs.front().steps;
+}
+
 /// Compact displacements of the contact nodes out of all.
 template <class T>
 Vector<T> to_compact(const Model& model, const Vector<T>& all) {

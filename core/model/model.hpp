@@ -160,6 +160,8 @@ struct Model {
   Model& operator=(Model&&) noexcept;
   ~Model();
 
+  /// Steps that a run asks for, or may take along a path.
+  long most_steps() const { return scene.arc_length ? scene.arc_length->max : static_cast<long>(times.size()); }
   int dof_count() const { return dimension * node_count; }
   /// Whether points face other places of their curves as they move.
   bool slides_along_curves() const { return effects.current_geometry && !curves.empty(); }

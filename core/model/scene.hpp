@@ -30,7 +30,8 @@ namespace stickslip {
 /// t = 0, in force from the first step on (times are not parameters, values are).
 struct Table {
   std::vector<std::pair<double, Number>> points;
-  int repeat = 1;  ///< how often the points are run through, one time right after the other
+  int repeat = 1;        ///< how often the points are run through, one time right after the other
+  bool goes_on = false;  ///< straight on before its first and behind its last point: of two points
   double start() const { return points.front().first; }
   double period() const { return points.back().first - points.front().first; }
   /// When point i is reached for the n-th time, n = 0, 1, ...
@@ -59,6 +60,10 @@ inline double time_in_period(const Table& table, double t) {
 template <class T>
 T evaluate(const Table& table, double at, const Numbers<T>& numbers) {
   const auto& p = table.points;
+  if (table.goes_on) {
+    const double s = (at - p.front().first) / (p.back().first - p.front().first);
+    return numbers(p.front().second) * T(1 - s) + numbers(p.back().second) * T(s);
+  }
   const double t = time_in_period(table, at);
   if (t <= p.front().first) return numbers(p.front().second);
   for (std::size_t i = 1; i < p.size(); ++i)
@@ -263,6 +268,14 @@ struct Parameter {
   double value = 0;     ///< of the first slot
 };
 
+/// The time of a step is found, not given: steps go along the path of equilibria (methods/path.hpp), on which the time
+/// of the load that it drives may fall. All else is held.
+struct ArcLength {
+  int load = 0;       ///< index in Scene::loads; its history goes on
+  double length = 0;  ///< that the bodies move by in a step where the load stands still; 0: path_length() says
+  int max = 0;        ///< steps at most
+};
+
 /// [t_end, steps] each; the first leg starts at t = 0.
 struct Leg {
   double end = 1;
@@ -279,6 +292,7 @@ struct Scene {
   std::vector<Support> supports;
   std::vector<Load> loads;
   std::vector<Leg> legs;
+  std::optional<ArcLength> arc_length;  ///< of the one leg that there is then
   std::vector<Response> responses;
   std::vector<ShapeMotion> shapes;
   std::vector<Objective> objectives;

@@ -23,6 +23,12 @@ class SparseEngine {
 
   /// All dofs, prescribed values at `time` set. `before`: what bodies remember of the last increment.
   Vector<T> begin(double time, const Vector<T>& displacement, const Vector<T>& before);
+  /// Takes the loads of another time; of what is prescribed that of begin() stays.
+  void move_loads(double time);
+  /// What the loads change by in a unit of time, engine rows. pre: they are linear in it.
+  Vector<T> load_rate(const Vector<T>& u) const;
+  /// The increment over all dofs, in the axes, that belongs to one of the engine and of the loads' time.
+  Vector<T> increment(const Vector<T>& u, double /*time*/) const { return all(u); }
   Vector<T> compact(const Vector<T>& u) const {
     return out_of_frames(model_, slots_.frames, Layout::compact, to_compact(model_, u));
   }

@@ -147,6 +147,21 @@ Vector<T> SparseEngine<T>::begin(double time, const Vector<T>& displacement, con
 }
 
 template <class T>
+void SparseEngine<T>::move_loads(double time) {
+  time_ = time;
+  external_ = into_frames(model_, slots_.frames, Layout::all, dead_forces(model_, slots_, time));
+}
+
+template <class T>
+Vector<T> SparseEngine<T>::load_rate(const Vector<T>& u) const {
+  const double end = model_.times.back();
+  const Vector<T> moved = all(u);
+  const Vector<T> change =
+      external_forces(model_, slots_, time_ + end, moved) - external_forces(model_, slots_, time_, moved);
+  return into_frames(model_, slots_.frames, Layout::all, Vector<T>(change / T(end)));
+}
+
+template <class T>
 Vector<T> SparseEngine<T>::residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const {
   const Vector<T> moved = all(u);
   Vector<T> rows;

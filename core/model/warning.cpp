@@ -24,6 +24,8 @@ std::string_view name_of(WarningCode code) {
       return "shared_place";
     case WarningCode::branch_ends:
       return "branch_ends";
+    case WarningCode::path_goes_on:
+      return "path_goes_on";
     case WarningCode::non_unique:
       return "non_unique";
   }

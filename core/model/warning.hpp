@@ -19,6 +19,7 @@ enum class WarningCode {
   held_on_facet,   ///< value: how far a point is beyond the end of its facet, in facets
   shared_place,    ///< value: number of bodies that hold the place of a response
   branch_ends,     ///< value: time at which the solution jumps
+  path_goes_on,    ///< value: share of the load at which the last step of a path ends
   non_unique       ///< value: number of solutions that are known, 1: there may be more, 0 where they are a continuum
 };
 std::string_view name_of(WarningCode);

@@ -180,8 +180,7 @@ int run_command(const RunArguments& arguments) {
     ++pending;
     if (arguments.json || std::chrono::steady_clock::now() - start < std::chrono::seconds(2)) return;
     if (!progress)
-      progress.emplace(std::cerr, progress_style_of_stderr(), "steps",
-                       static_cast<long>(loaded->problem->model.times.size()));
+      progress.emplace(std::cerr, progress_style_of_stderr(), "steps", loaded->problem->model.most_steps());
     progress->advance(std::exchange(pending, 0));
   };
   Trace trace;

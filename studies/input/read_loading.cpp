@@ -151,6 +151,68 @@ void read_legs(const JsonNode& node, SceneReading& reading) {
   }
 }
 
+/// The first entry of the scene that changes in time beside a load; "" where none does.
+std::string other_change(const Scene& scene, int load) {
+  const auto changes = [](const auto& moved) {
+    bool any = false;
+    const auto take = [&](const Table& table) { any |= table.points.size() > 1; };
+    for (const auto& [axis, table] : moved.move) take(table);
+    if (moved.rotate) take(moved.rotate->angle);
+    if constexpr (requires { moved.inclined; })
+      if (moved.inclined) take(moved.inclined->value);
+    return any;
+  };
+  for (std::size_t s = 0; s < scene.supports.size(); ++s)
+    if (changes(scene.supports[s])) return "/supports/" + std::to_string(s);
+  for (const auto& obstacle : scene.obstacles)
+    if (changes(obstacle)) return "/obstacles/" + obstacle.name;
+  for (std::size_t l = 0; l < scene.loads.size(); ++l)
+    if (static_cast<int>(l) != load && scene.loads[l].history && scene.loads[l].history->points.size() > 1)
+      return "/loads/" + std::to_string(l) + "/history";
+  return "";
+}
+
+/// "control": "arc_length", or {"arc_length": {"load": i, "length": l, "max": n}}. pre: the leg was read.
+void read_control(const JsonNode& node, SceneReading& reading) {
+  Scene& scene = reading.scene;
+  const Leg& leg = scene.legs.back();
+  ArcLength arc;
+  arc.max = 10 * leg.steps;
+  const int loads = static_cast<int>(scene.loads.size());
+  if (node.value().is_object()) {
+    if (!node.is_object({{"arc_length"}, {}})) return;
+    const auto options = node.find("arc_length");
+    if (!options || !options->is_object({{}, {"load", "length", "max"}})) return;
+    if (const auto load = options->find("load")) {
+      arc.load = reading.count(*load, 0).value_or(0);
+      if (arc.load >= loads)
+        return load->must_be("the index of one of the scene's loads, counted from 0; there are " +
+                             std::to_string(loads));
+    } else if (loads != 1) {
+      return options->error(R"(the key "load" is missing: the index of the load that is found, counted from 0)");
+    }
+    if (const auto length = options->find("length")) arc.length = reading.setting(*length, positive).value_or(0);
+    if (const auto max = options->find("max")) arc.max = reading.count(*max, 1).value_or(1);
+  } else if (!node.choice({"arc_length"})) {
+    return;
+  } else if (loads != 1) {
+    return node.error(R"(is "arc_length", which finds the factor of one load, and the scene has )" +
+                      std::to_string(loads) + R"(; write {"arc_length": {"load": i}})");
+  }
+  if (reading.diagnostics.has_error_in("/loads")) return;
+  if (const std::string other = other_change(scene, arc.load); !other.empty())
+    return node.error("finds the times of its steps, and " + other +
+                      " changes in time: along a path only the load may; give it one value");
+  auto& history = scene.loads[arc.load].history;
+  if (!history) history = Table{{{0.0, Number(0.0)}, {leg.end, Number(1.0)}}};
+  if (history->points.size() != 2 || history->repeat != 1 || history->points[0].first != 0 ||
+      history->points[1].first != leg.end || history->points[0].second.value != 0)
+    return node.error("needs a load that grows from 0 in proportion to the time: leave /loads/" +
+                      std::to_string(arc.load) + "/history out, or make it [[0, 0], [" + shown(leg.end) + ", 1]]");
+  history->goes_on = true;
+  scene.arc_length = arc;
+}
+
 }  // namespace
 
 void read_supports(const JsonNode& node, SceneReading& reading) {
@@ -167,15 +229,18 @@ void read_loads(const JsonNode& node, SceneReading& reading) {
 void read_time(const JsonNode& node, SceneReading& reading) {
   if (!node.value().is_object()) return node.must_be(R"({"end": t, "steps": n} or {"legs": [[t_end, steps], ...]})");
   if (const auto legs = node.find("legs")) {
-    node.is_object({{"legs"}, {}, {"control"}});
+    node.is_object({{"legs"}, {"control"}});
+    if (const auto control = node.find("control"))
+      control->error_at_key(R"("control" stands beside "legs"; a path has one leg: "end" and "steps")");
     return read_legs(*legs, reading);
   }
-  node.is_object({{"end", "steps"}, {"legs"}, {"control"}});
+  node.is_object({{"end", "steps"}, {"legs", "control"}});
   const auto end = node.find("end"), steps = node.find("steps");
   Leg leg;
   if (end) leg.end = reading.time(*end, positive).value_or(1);
   if (steps) leg.steps = reading.count(*steps, 1).value_or(1);
   reading.scene.legs.push_back(leg);
+  if (const auto control = node.find("control")) read_control(*control, reading);
 }
 
 }  // namespace stickslip

@@ -160,7 +160,10 @@ void read_response(const std::string& name, const JsonNode& outer, SceneReading&
 void read_instant(const JsonNode& node, Objective& objective, SceneReading& reading) {
   objective.at = reading.time(node, positive);
   const auto& legs = reading.scene.legs;
-  if (objective.at && !legs.empty() && *objective.at > legs.back().end)
+  if (objective.at && reading.scene.arc_length && *objective.at != legs.back().end)
+    node.must_be("the end of the run, " + shown(legs.back().end) +
+                 R"(: along a path the times of other steps are found (/time/control))");
+  else if (objective.at && !legs.empty() && *objective.at > legs.back().end)
     node.error("is " + shown(node.value()) + ", after the end of the run at " + shown(legs.back().end));
 }
 

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/model/loading.hpp"
 #include "methods/engine_choice.hpp"
 #include "studies/input/method_options.hpp"
 #include "studies/io/printing.hpp"
@@ -90,6 +91,10 @@ std::string explain(const Input& input, const Problem& problem) {
   text += "contacts (node to segment):\n" + contact_lines(model);
   text += fmt::format("driving: {}, {}, {} to t = {}\n", count(scene.supports, "support"), count(scene.loads, "load"),
                       count(model.times, "step"), model.times.empty() ? 0 : model.times.back());
+  if (scene.arc_length)
+    text +=
+        fmt::format("  along the path by arc length: the factor of load {} is found, in at most {} steps of {:.3g}\n",
+                    scene.arc_length->load, scene.arc_length->max, path_length(model, problem.slots));
   const bool monolithic = std::holds_alternative<MonolithicAL>(input.method);
   text += fmt::format("unknowns: {} displacements", model.free_dofs.size());
   text +=

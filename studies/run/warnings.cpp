@@ -271,6 +271,17 @@ void add_other_solutions(const CaseResult& result, std::vector<Warning>& warning
                      uncounted, result.trajectory.increments.size())});
 }
 
+/// A path that used its steps up before it came to the full load.
+void add_path_that_goes_on(const CaseResult& result, std::vector<Warning>& warnings) {
+  const auto& model = result.problem->model;
+  if (!model.scene.arc_length || result.steps.empty()) return;
+  const double share = result.steps.back().increment->time / model.times.back();
+  if (share == 1) return;
+  warnings.push_back(
+      {WarningCode::path_goes_on, "", share, "allow more steps (max), or longer ones (length)",
+       fmt::format("the path goes on: after {} steps the load is {:.3g} of the full one", result.steps.size(), share)});
+}
+
 }  // namespace
 
 const Body* loose_body(const Model& model) {
@@ -331,6 +342,7 @@ std::vector<Warning> warnings_of(const CaseResult& result) {
   add_shared_places(result, warnings);
   add_loose_bodies(result, warnings);
   add_other_solutions(result, warnings);
+  add_path_that_goes_on(result, warnings);
   return warnings;
 }
 

@@ -23,6 +23,7 @@ namespace stickslip {
 ///   shared_place   a response at a point that several bodies hold, and that names none of them
 ///   non_unique     a body that nothing holds and no load moves; increments with several solutions, or tangents of
 ///                  problems of which some have several
+///   path_goes_on   a path by arc length used its steps up before it came to the full load
 ///   branch_ends    where solutions were counted: the one that leads on from the last increment ceases to be
 /// Empty where nothing of it is found, and where nothing converged.
 std::vector<Warning> warnings_of(const CaseResult& result);

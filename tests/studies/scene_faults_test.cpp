@@ -358,8 +358,16 @@ std::vector<Broken> broken_loading() {
       {"legs_back_in_time", b, times, R"({"legs": [[1, 2], [@1, 2]]})", "/time/legs/1/0",
        "later than the end of the leg before, 1"},
       {"legs_and_end", b, times, R"({"legs": [[1, 2]], @"end": 2})", "/time/end", "unknown key"},
-      {"arc_length", b, times, R"({"end": 1, "steps": 1, @"control": "arc_length"})", "/time/control",
-       "is not available in this version"},
+      {"path_beside_a_motion", b, times, R"({"end": 1, "steps": 1, "control": @"arc_length"})", "/time/control",
+       "/supports/0 changes in time: along a path only the load may"},
+      {"path_of_legs", b, times, R"({"legs": [[1, 2]], @"control": "arc_length"})", "/time/control",
+       R"(stands beside "legs")"},
+      {"path_of_no_load", b, times, R"({"end": 1, "steps": 1, "control": {"arc_length": {"load": @1}}})",
+       "/time/control/arc_length/load", "there are 1"},
+      {"path_without_length", b, times, R"({"end": 1, "steps": 1, "control": {"arc_length": {"length": @0}}})",
+       "/time/control/arc_length/length", "must be a number > 0"},
+      {"path_of_another_kind", b, times, R"({"end": 1, "steps": 1, "control": @"arclength"})", "/time/control",
+       "allowed: arc_length"},
   };
 }
 

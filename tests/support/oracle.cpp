@@ -12,14 +12,19 @@ namespace stickslip::oracle {
 using Complex = std::complex<double>;
 
 Matrix<double> complex_step(const Model& model, const Method& method, const std::vector<double>& step_table, int j) {
+  RunOptions replay;
+  replay.replay = step_table;
+  return complex_step(model, method, replay, j);
+}
+
+Matrix<double> complex_step(const Model& model, const Method& method, const RunOptions& replay, int j) {
   constexpr double h = 1e-30;
   auto numbers = model.scene.as<Complex>();
   for (const auto& [slot, weight] : model.scene.parameters[j].slots) numbers.at_slot[slot] += Complex(0, h * weight);
   const auto slots = make_slots<Complex>(model, numbers);
-  RunOptions options;
+  RunOptions options = replay;
   options.linear_algebra.engine = LinearAlgebra::Engine::sparse;
   options.backend = Backend::eigen;
-  options.replay = step_table;
   Workspace<Complex> workspace;
   const auto trajectory = solve_in<Complex>(model, slots, method, options, workspace);
   Matrix<double> out(model.scene.responses.size(), trajectory.increments.size());

@@ -9,7 +9,9 @@
 namespace stickslip::oracle {
 
 /// Derivatives of all responses with respect to parameter j at every increment of a replayed run: responses x
-/// increments.
+/// increments. `replay`: what is repeated, and where it begins.
+Matrix<double> complex_step(const Model& model, const Method& method, const RunOptions& replay, int j);
+/// The same of increments that begin where the last one ended.
 Matrix<double> complex_step(const Model& model, const Method& method, const std::vector<double>& step_table, int j);
 
 }  // namespace stickslip::oracle
