@@ -230,6 +230,51 @@ TEST(Path, FollowsABarOfMetalThatFlows) {
   }
 }
 
+/// Half of a thin rubber arch whose crown is loaded: its path snaps through. The load at each crown's place is the
+/// force of a support that pushes the crown there.
+Scene arch() {
+  Scene s;
+  s.finite_strain = true;
+  s.legs = {{1, 10}};
+  s.bodies = {{"arch", RingMesh{{0.0, 0.0}, 9.8, 10.0, 70.0, 90.0, {1, 8}}, NeoHookean{1000.0, 0.3}, "Q8"}};
+  s.supports = {scenes::support("arch.start", {{'x', table({{0, 0.0}})}, {'y', table({{0, 0.0}})}}),
+                scenes::support("arch.end", {{'x', table({{0, 0.0}})}})};
+  s.responses = {response("down", Kind::displacement, "arch.end & arch.outer", "y")};
+  return s;
+}
+
+TEST(Path, OfAnArchIsWhatASupportFinds) {
+  constexpr double load = 3;
+  Scene pushed = arch();
+  pushed.arc_length = ArcLength{0, 0.05, 80};
+  pushed.loads = {scenes::force("arch.end & arch.outer", {0.0, -load})};
+  pushed.loads[0].history = table({{0, 0.0}, {1, 1.0}});
+  pushed.loads[0].history->goes_on = true;
+  const auto path = run(pushed, MonolithicAL{});
+  ASSERT_TRUE(is_converged(path.trajectory.status)) << path.trajectory.message;
+  const auto& points = path.trajectory.increments;
+  double before = 0;
+  int turns = 0;
+  for (std::size_t n = 1; n < points.size(); ++n) {
+    const double step = points[n].time - points[n - 1].time;
+    turns += step * before < 0;
+    before = step;
+  }
+  EXPECT_EQ(turns, 2);  // a highest load, and a lowest
+  EXPECT_EQ(points.back().time, 1);
+  std::vector<std::pair<double, Number>> way = {{0, 0.0}};
+  for (std::size_t n = 0; n < points.size(); ++n)
+    way.emplace_back(static_cast<double>(n + 1), path.value("down", static_cast<int>(n)));
+  Scene held = arch();
+  held.legs = {{static_cast<double>(points.size()), static_cast<int>(points.size())}};
+  held.supports.push_back(scenes::support("arch.end & arch.outer", {{'y', table(way)}}));
+  held.responses = {response("force", Kind::reaction, "arch.end & arch.outer", "y")};
+  const auto found = run(held, MonolithicAL{});
+  ASSERT_TRUE(is_converged(found.trajectory.status)) << found.trajectory.message;
+  for (std::size_t n = 0; n < points.size(); ++n)
+    EXPECT_NEAR(found.value("force", static_cast<int>(n)), -load * points[n].time, 1e-7 * load) << n;
+}
+
 /// In other units, and where the length is that of the scene's size by default.
 TEST(Path, IsTheSameInOtherUnits) {
   Scene scene = truss(2.5, {}, 0);
