@@ -1,6 +1,6 @@
 #include "methods/method.hpp"
 
-#include "methods/solve.hpp"
+#include "methods/solve_again.hpp"
 
 namespace stickslip {
 
@@ -18,6 +18,16 @@ Trajectory<double> solve(const Model& model, const Slots<double>& slots, const M
 void solve(const Model& model, const Slots<double>& slots, const Method& method, const RunOptions& options,
            Workspace<double>& workspace, Trajectory<double>& trajectory) {
   solve_in<double>(model, slots, method, options, workspace, trajectory);
+}
+
+Stretch<double> solve_again(const Model& model, const Slots<double>& slots, const Method& method,
+                            const Trajectory<double>& trajectory, std::size_t n, Workspace<double>& workspace,
+                            Counters& counters) {
+  return std::visit(
+      [&](const auto& m, auto& engine) {
+        return detail::solve_again(m, model, slots, engine, *workspace.checkpoints, trajectory, n, counters);
+      },
+      method, *workspace.engine);
 }
 
 }  // namespace stickslip

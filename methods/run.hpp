@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -21,6 +22,11 @@ struct RunOptions {
   std::vector<Vector<double>> guide;  ///< displacements, all dofs, that increments repeated along a path begin with
   std::function<void()> on_step;      ///< called after each requested step; may be empty
   Trace* trace = nullptr;             ///< not owned; gathers every iterate where it is there
+  /// Bytes for displacements and for what bodies remember, of all states; beyond them some are let go, and solved again
+  /// where an adjoint asks for them (methods/checkpoints.hpp).
+  double state_memory = std::numeric_limits<double>::infinity();
+  /// Then every so many steps a state stays nevertheless; 0: the last alone, which always does.
+  int output_every = 0;
 };
 
 /// Options that repeat the increments of a run. Those of a path begin where they ended: under a load alone a step past
@@ -33,6 +39,9 @@ inline RunOptions repeating(RunOptions options, const Model& model, const Trajec
   return options;
 }
 
+template <class T>
+class Checkpoints;
+
 /// What a run allocates and leaves for its sensitivities: owned by the caller, the only mutable thing beside them.
 /// `condensation` may be handed on to another run on the same slots (a sweep over methods): it is reused if it is
 /// there.
@@ -40,6 +49,7 @@ template <class T>
 struct Workspace {
   std::shared_ptr<Condensation<T>> condensation;
   std::optional<Engine<T>> engine;
+  std::shared_ptr<Checkpoints<T>> checkpoints = nullptr;  ///< where states were let go
 };
 
 }  // namespace stickslip

@@ -5,6 +5,7 @@
 
 #include <stdexcept>
 
+#include "methods/checkpoints.hpp"
 #include "methods/diagnosis.hpp"
 #include "methods/engine_choice.hpp"
 #include "methods/motion.hpp"
@@ -69,21 +70,19 @@ std::optional<double> find_jump(const M& method, Run<T, E>& run, const State<T>&
   return end;
 }
 
+/// Pace of bodies that are not linear.
+template <class T>
+double pace_of(const Model& model, const State<T>& from, const State<T>& to, double duration) {
+  if (model.effects.linear_bulk) return 0;
+  return largest_nodal_norm(Vector<T>(to.displacement - from.displacement), model.dimension) / duration;
+}
+
 /// Whether bodies that are not linear move at four times the pace of the increment before, or more: as beyond a limit
 /// point, if it is a jump.
 template <class T>
-bool is_sudden(const Model& model, const std::vector<Increment<T>>& increments, const State<T>& initial,
-               const State<T>& reached, double time) {
+bool is_sudden(const std::vector<Increment<T>>& before, double pace) {
   constexpr double sudden = 4;
-  if (model.effects.linear_bulk || increments.empty()) return false;
-  const std::size_t last = increments.size() - 1;
-  const State<T>& before = last == 0 ? initial : increments[last - 1].state;
-  const double start = last == 0 ? 0 : increments[last - 1].time, middle = increments[last].time;
-  const auto pace = [&](const State<T>& from, const State<T>& to, double duration) {
-    return largest_nodal_norm(Vector<T>(to.displacement - from.displacement), model.dimension) / duration;
-  };
-  return pace(increments[last].state, reached, time - middle) >
-         sudden * pace(before, increments[last].state, middle - start);
+  return !before.empty() && pace > sudden * before.back().pace;
 }
 
 /// Advances the trajectory to `target`; false where it gave up (the failed increment is then the last).
@@ -117,8 +116,9 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
       count_solutions(method, run, previous, next, increment);
       const bool folded = increment.reversed || !increment.others.empty() ||
                           (!trajectory.increments.empty() && !trajectory.increments.back().others.empty());
-      const bool sudden = is_sudden(run.model, increments, trajectory.initial, increment.state, next);
-      if ((increment.counted && folded) || sudden)
+      increment.pace =
+          pace_of(run.model, previous, increment.state, next - (increments.empty() ? 0 : increments.back().time));
+      if ((increment.counted && folded) || is_sudden(increments, increment.pace))
         increment.jump = find_jump(method, run, previous, factor, reached, next, increment.state);
       trajectory.increments.push_back(std::move(increment));
       if (last) return true;
@@ -179,6 +179,10 @@ void march(const M& method, const Model& model, const Slots<T>& slots, E& engine
   trajectory.initial = initial_state<T>(model, slots);
   const bool repeats = !options.replay.empty();
   const auto& times = repeats ? options.replay : model.times;
+  workspace.checkpoints.reset();
+  if (const auto plan = plan_checkpoints(model, options))
+    workspace.checkpoints = std::make_shared<Checkpoints<T>>(*plan, times, !repeats);
+  if (workspace.checkpoints) workspace.checkpoints->pass(run, trajectory);
   std::optional<Path<T, E, M>> path;
   if (model.scene.arc_length) path.emplace(method, run, trajectory);
   const auto ended = [&](std::size_t n) { return path && !repeats ? path->ended() : n == times.size(); };
@@ -204,6 +208,7 @@ void march(const M& method, const Model& model, const Slots<T>& slots, E& engine
       }
       trajectory.seconds.total -= aside;
     }
+    if (reached && workspace.checkpoints) workspace.checkpoints->pass(run, trajectory);
   }
   if (repeats && !path)
     for (auto& increment : trajectory.increments)

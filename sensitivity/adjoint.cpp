@@ -131,15 +131,18 @@ void pull_back_initial_history(AdjointProblem<E>& problem) {
   }
 }
 
+/// `taken`: the branches at ties; empty where there are none.
 template <class E, class M>
-bool run(const M& method, AdjointProblem<E>& problem, const Trajectory<double>& trajectory) {
+bool run(const M& method, AdjointProblem<E>& problem, WholeStates& states, const std::vector<TakenBranches>& taken) {
   const Model& model = problem.model;
   for (auto& objective : problem.objectives)
-    objective.history = no_derivative(trajectory.initial.history, model.multiplier_count);
-  const auto& increments = trajectory.increments;
-  for (std::size_t n = increments.size(); n-- > 0;) {
-    const auto& previous = n == 0 ? trajectory.initial : increments[n - 1].state;
-    if (!pull_back_increment(method, problem, previous, increments[n])) return false;
+    objective.history = no_derivative(states.before(0).history, model.multiplier_count);
+  for (std::size_t n = states.count(); n-- > 0;) {
+    const auto& increment = states.increment(n);
+    const auto& previous = states.before(n);
+    std::optional<Increment<double>> with_branches;
+    if (!taken.empty()) taken[n].give(with_branches.emplace(increment));
+    if (!pull_back_increment(method, problem, previous, with_branches ? *with_branches : increment)) return false;
     const std::size_t together = model.effects.plasticity ? 1 : columns_together;  // history needs what is inside
     if (problem.objectives.front().inside.size() >= together) pull_back_inside(problem);
   }
@@ -151,16 +154,12 @@ bool run(const M& method, AdjointProblem<E>& problem, const Trajectory<double>& 
 }  // namespace
 
 Vector<double> objective_values(const Model& model, const Slots<double>& slots, const Trajectory<double>& trajectory) {
-  const auto& objectives = model.scene.objectives;
-  Vector<double> values = Vector<double>::Zero(objectives.size());
-  if (objectives.empty()) return values;
-  for (const auto& increment : trajectory.increments) {
-    if (!increment.requested) continue;
-    const auto responses = evaluate_responses(model, slots, increment.state, increment.time);
-    for (std::size_t j = 0; j < objectives.size(); ++j)
-      if (contributes(objectives[j], increment.time, model.times.back()))
-        values[j] += contribution(objectives[j], responses[objectives[j].response], increment.time, slots.numbers);
-  }
+  Vector<double> values = Vector<double>::Zero(model.scene.objectives.size());
+  if (values.size() == 0) return values;
+  for (const auto& increment : trajectory.increments)
+    if (increment.requested)
+      add_contributions(model, slots.numbers, increment.time,
+                        evaluate_responses(model, slots, increment.state, increment.time), values);
   return values;
 }
 
@@ -197,10 +196,12 @@ Gradients adjoint(const Model& model, const Slots<double>& slots, const Method& 
   const auto& scene = model.scene;
   if (scene.objectives.empty() || scene.parameters.empty()) return gradients;
   const Stopwatch time(gradients.seconds);
-  std::optional<Trajectory<double>> consistent;
+  WholeStates states(model, slots, method, trajectory, workspace);
+  std::vector<TakenBranches> taken;
   {
     const Stopwatch searching(gradients.search_seconds);
-    consistent = consistent_at_ties(model, slots, method, trajectory, workspace, gradients.search);
+    if (auto found = consistent_at_ties(model, slots, method, trajectory, states, workspace, gradients.search))
+      taken = std::move(*found);
   }
   gradients.counters += gradients.search;
   Recording recording(model);
@@ -216,7 +217,7 @@ Gradients adjoint(const Model& model, const Slots<double>& slots, const Method& 
     problem.at_supports = elements_at_supports(model);
     problem.energies = energies;
     problem.read_forces = dofs_read(model, energies);
-    done = run(m, problem, consistent ? *consistent : trajectory);
+    done = run(m, problem, states, taken);
     tape.rewind(problem.slots_end);
     waiting = problem.waiting_bytes;
     gradients.counters += problem.counters;
@@ -224,9 +225,13 @@ Gradients adjoint(const Model& model, const Slots<double>& slots, const Method& 
     if (!done) gradients.status = problem.status;
   };
   std::visit(backward, method, *workspace.engine);
+  gradients.counters += states.take_counters();
+  gradients.repeated = states.repeated();
   if (!done) return gradients;
   for (auto& objective : objectives) objective.by.resize(tape.size());
   gradients.storage = storage_of(recording, objectives, waiting);
+  gradients.storage.states = states.bytes();
+  if (workspace.checkpoints) gradients.storage.adjoints += workspace.checkpoints->bytes();
   gradients.of_objectives = Matrix<double>::Zero(objectives.size(), scene.parameters.size());
   for (std::size_t i = 0; i < objectives.size(); ++i) {
     const Vector<double> by = recording.by_numbers(model, objectives[i].by);

@@ -234,7 +234,11 @@ Gradients Derivatives::finish(const Trajectory<double>& trajectory) {
     std::optional<Trajectory<double>> consistent;
     {
       const Stopwatch searching(now.gradients.search_seconds);
-      consistent = consistent_at_ties(now.model, now.slots, now.method, trajectory, now.workspace, search);
+      WholeStates states(now.model, now.slots, now.method, trajectory, now.workspace);
+      const auto taken =
+          consistent_at_ties(now.model, now.slots, now.method, trajectory, states, now.workspace, search);
+      if (taken) consistent = trajectory;
+      for (std::size_t n = 0; taken && n < taken->size(); ++n) (*taken)[n].give(consistent->increments[n]);
     }
     now.advance(consistent ? *consistent : trajectory, trajectory.increments.size(), false);
     now.gradients.search = search;

@@ -23,10 +23,11 @@ struct SchemeRecord {
 /// Memory that derivatives took, in bytes, each kind at its most.
 struct DerivativeStorage {
   long slots = 0;     ///< of dual numbers, or of reverse ones
-  long states = 0;    ///< direct: those of the increments solved together
+  long states = 0;    ///< direct: those of the increments solved together; adjoint: of those solved again together
   long loads = 0;     ///< direct: their pseudo-loads, and the solutions
   long tape = 0;      ///< adjoint
-  long adjoints = 0;  ///< adjoint: derivatives by the tape's entries, and the bodies' pairs of all increments
+  long adjoints = 0;  ///< adjoint: derivatives by the tape's entries, the bodies' pairs that wait, and of checkpoints
+                      ///< what they keep of a factor
 };
 
 struct Gradients {
@@ -41,7 +42,8 @@ struct Gradients {
   std::vector<SchemeRecord> records;  ///< per increment; empty but for Uzawa
   Matrix<double> last_displacement;   ///< of the last increment: all dofs x parameters; empty where the scheme failed
   Counters counters;
-  Counters search;  ///< of these, what it took to find the branches of ties (sensitivity/one_sided.hpp)
+  Counters search;    ///< of these, what it took to find the branches of ties (sensitivity/one_sided.hpp)
+  long repeated = 0;  ///< increments that were solved again (sensitivity/whole_states.hpp)
   double seconds = 0;
   double search_seconds = 0;  ///< of these, for `search`
   DerivativeStorage storage;

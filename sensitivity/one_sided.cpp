@@ -90,15 +90,15 @@ struct SideRun {
   const Model& model;
   const Slots<double>& slots;
   E& engine;
-  const Trajectory<double>& trajectory;
+  WholeStates& states;
   double parameter;            ///< Along::parameter
   std::vector<double> scales;  ///< Along::largest_so_far
   std::vector<ParameterBlock> blocks;
   Counters counters;
 
-  SideRun(const M& m, const Model& of, const Slots<double>& s, E& e, const Trajectory<double>& t,
+  SideRun(const M& m, const Model& of, const Slots<double>& s, E& e, const Trajectory<double>& t, WholeStates& whole,
           Slots<Direction> seeded_slots, double size)
-      : method(m), model(of), slots(s), engine(e), trajectory(t), parameter(size), scales(traction_scales(of, s, t)) {
+      : method(m), model(of), slots(s), engine(e), states(whole), parameter(size), scales(traction_scales(of, s, t)) {
     blocks.emplace_back(model, std::vector<int>{0}, std::move(seeded_slots));
   }
 
@@ -109,8 +109,8 @@ struct SideRun {
     Differentiation<E> problem{model, slots, engine, blocks, 1, {}};
     bool found = true;
     for (std::size_t n = first; n < last && found; ++n) {
-      Increment<double> increment = trajectory.increments[n];
-      const State<double>& previous = n == 0 ? trajectory.initial : trajectory.increments[n - 1].state;
+      Increment<double> increment = states.increment(n);
+      const State<double>& previous = states.before(n);
       found = differentiate_side(method, problem, previous, increment, {side, parameter, scales[n]}, held);
       if (!found) break;
       on_increment(n, increment);
@@ -140,13 +140,13 @@ using Pairings = std::array<SidedPairing, 2>;
 /// with ties.
 template <class M, class E>
 void run_sides(const M& method, E& engine, const Model& model, const Slots<double>& slots,
-               const Trajectory<double>& trajectory, std::size_t first, int parameter, const Pairings& pairings,
-               OneSided& sides) {
+               const Trajectory<double>& trajectory, WholeStates& states, std::size_t first, int parameter,
+               const Pairings& pairings, OneSided& sides) {
   const auto& responses = model.scene.responses;
   const std::size_t count = trajectory.increments.size();
   const bool geometric = pairings[0].kink || pairings[1].kink;
   if (geometric) first = 0;
-  SideRun start(method, model, slots, engine, trajectory,
+  SideRun start(method, model, slots, engine, trajectory, states,
                 make_slots<Direction>(model, seeded(model.scene, {parameter})),
                 std::abs(model.scene.parameters[parameter].value));
   const auto engaged = geometric ? engaged_points(model, slots, trajectory) : std::vector<char>();
@@ -227,30 +227,43 @@ std::optional<OneSided> one_sided_derivatives(const Model& model, const Slots<do
   OneSided sides;
   sides.backward.assign(trajectory.increments.size(), unknown);
   sides.forward = sides.backward;
+  WholeStates states(model, slots, method, trajectory, workspace);
   auto both = [&](const auto& m, auto& engine) {
-    for (int j = 0; j < parameters; ++j) run_sides(m, engine, model, slots, trajectory, first, j, pairings[j], sides);
+    for (int j = 0; j < parameters; ++j)
+      run_sides(m, engine, model, slots, trajectory, states, first, j, pairings[j], sides);
   };
   std::visit([&](const auto& m) { std::visit([&](auto& engine) { both(m, engine); }, *workspace.engine); }, method);
   return sides;
 }
 
-std::optional<Trajectory<double>> consistent_at_ties(const Model& model, const Slots<double>& slots,
-                                                     const Method& method, const Trajectory<double>& trajectory,
-                                                     Workspace<double>& workspace, Counters& counters) {
+void TakenBranches::give(Increment<double>& increment) const {
+  increment.state.contact = contact;
+  for (std::size_t k = 0; k < sweeps.size(); ++k) increment.augmented[k].state.contact = sweeps[k];
+}
+
+std::optional<std::vector<TakenBranches>> consistent_at_ties(const Model& model, const Slots<double>& slots,
+                                                             const Method& method, const Trajectory<double>& trajectory,
+                                                             WholeStates& states, Workspace<double>& workspace,
+                                                             Counters& counters) {
   const std::size_t first = first_tie(model, slots, method, trajectory);
   if (first == trajectory.increments.size()) return std::nullopt;
-  Trajectory<double> consistent = trajectory;
+  std::vector<TakenBranches> taken;
+  for (const auto& increment : trajectory.increments) {
+    taken.push_back({increment.state.contact, {}});
+    for (const auto& sweep : increment.augmented) taken.back().sweeps.push_back(sweep.state.contact);
+  }
   auto search = [&](const auto& m, auto& engine) {
-    SideRun run(m, model, slots, engine, trajectory, make_slots<Direction>(model, all_growing(model.scene)), 1);
+    SideRun run(m, model, slots, engine, trajectory, states, make_slots<Direction>(model, all_growing(model.scene)), 1);
     const auto take = [&](std::size_t n, Increment<double>& increment) {
-      consistent.increments[n].state.contact = increment.state.contact;
-      consistent.increments[n].augmented = std::move(increment.augmented);
+      taken[n].contact = std::move(increment.state.contact);
+      for (std::size_t k = 0; k < increment.augmented.size(); ++k)
+        taken[n].sweeps[k] = std::move(increment.augmented[k].state.contact);
     };
     run.run(0, trajectory.increments.size(), 1, take, true);
     counters += run.counters;
   };
   std::visit([&](const auto& m) { std::visit([&](auto& engine) { search(m, engine); }, *workspace.engine); }, method);
-  return consistent;
+  return taken;
 }
 
 }  // namespace stickslip

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "sensitivity/differentiate.hpp"
+#include "sensitivity/whole_states.hpp"
 
 namespace stickslip {
 
@@ -54,10 +55,18 @@ std::optional<OneSided> one_sided_derivatives(const Model& model, const Slots<do
 bool has_ties(const Model& model, const Slots<double>& slots, const Method& method, const Increment<double>& increment,
               double largest);
 
-/// The trajectory with the branches of its ties chosen along one direction of all parameters; none where it has no
-/// ties. Adds what that took to `counters`.
-std::optional<Trajectory<double>> consistent_at_ties(const Model& model, const Slots<double>& slots,
-                                                     const Method& method, const Trajectory<double>& trajectory,
-                                                     Workspace<double>& workspace, Counters& counters);
+/// An increment's contact with the branches of its ties chosen, and that after each augmentation.
+struct TakenBranches {
+  ContactField<double> contact;
+  std::vector<ContactField<double>> sweeps;
+  void give(Increment<double>& increment) const;
+};
+
+/// The branches of all increments' ties chosen along one direction of all parameters; none where there are no ties.
+/// `states`: of the trajectory. Adds what that took to `counters`.
+std::optional<std::vector<TakenBranches>> consistent_at_ties(const Model& model, const Slots<double>& slots,
+                                                             const Method& method, const Trajectory<double>& trajectory,
+                                                             WholeStates& states, Workspace<double>& workspace,
+                                                             Counters& counters);
 
 }  // namespace stickslip

@@ -52,6 +52,12 @@ class CondensedEngine {
   long nonzeros() const { return static_cast<long>(unknowns()) * unknowns(); }
   EngineHoldings holdings() const;
 
+  /// The tangents of the factor, which may be used again or updated.
+  using Carried = FactorRecipe<T>;
+  Carried carried() const { return {valid_, factorised_, held_, update_}; }
+  /// Goes back to it, by a factorisation where there was a factor: what is solved from there has the same bits again.
+  void carry(const Carried& carried, Counters& counters);
+
  private:
   std::vector<int> point_rows(const ContactPoint& point) const;
 

@@ -157,6 +157,13 @@ bool CondensedEngine<T>::update(const std::vector<PointTangent<T>>& tangents, Co
 }
 
 template <class T>
+void CondensedEngine<T>::carry(const Carried& carried, Counters& counters) {
+  valid_ = false;
+  if (carried.valid) factorise(carried.tangents, counters, carried.hold);
+  update_ = carried.update;
+}
+
+template <class T>
 bool CondensedEngine<T>::reversed() const {
   const int expected = active_.size() % 2 == 1 ? -1 : 1;  // each multiplier turns the sign
   return (factor_.determinant_sign() != expected) != update_.turns_sign();

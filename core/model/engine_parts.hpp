@@ -32,6 +32,20 @@ struct EngineHoldings {
   bool unsymmetric = false;                     ///< the tangents are
 };
 
+/// A factor as what it is made of: matrix and library being the same, it comes out the same to the last bit.
+template <class T>
+struct FactorRecipe {
+  bool valid = false;
+  std::vector<PointTangent<T>> tangents;
+  Vector<double> hold;
+  TangentUpdate update;  ///< of that factor; its columns are solutions, which are kept
+  long bytes() const {
+    Eigen::Index numbers = 0;
+    for (const auto& t : tangents) numbers += t.force_w.size() + t.force_l.size() + t.row_w.size() + t.row_l.size();
+    return static_cast<long>(numbers * sizeof(T) + tangents.size() * sizeof(PointTangent<T>)) + update.bytes();
+  }
+};
+
 /// Scales that a residual is measured against.
 struct ForceScale {
   double force = 0;     ///< largest nodal force of any kind

@@ -18,4 +18,13 @@ T contribution(const Objective& objective, const T& response, double time, const
   return distance * distance;
 }
 
+/// Adds what the step that ends at `time` contributes to each objective, out of the values of all responses.
+inline void add_contributions(const Model& model, const Numbers<double>& numbers, double time,
+                              const Vector<double>& responses, Vector<double>& sums) {
+  const auto& objectives = model.scene.objectives;
+  for (std::size_t j = 0; j < objectives.size(); ++j)
+    if (contributes(objectives[j], time, model.times.back()))
+      sums[j] += contribution(objectives[j], responses[objectives[j].response], time, numbers);
+}
+
 }  // namespace stickslip

@@ -70,7 +70,20 @@ class SparseEngine {
   long nonzeros() const { return pattern_->nonzeros(); }
   EngineHoldings holdings() const;
 
+  /// What solves hang on beside what they are given: the pattern's places, and the tangents of a factor that may be
+  /// used again or updated. (That of bodies whose tangent changes is not.)
+  struct Carried {
+    std::vector<std::vector<int>> places;
+    FactorRecipe<T> factor;
+    long bytes() const { return factor.bytes(); }
+  };
+  Carried carried() const { return {places_, model_.effects.linear_bulk ? recipe() : FactorRecipe<T>{}}; }
+  /// Goes back to it, by a factorisation where there was a factor: what is solved from there has the same bits again.
+  void carry(const Carried& carried, Counters& counters);
+
  private:
+  FactorRecipe<T> recipe() const { return {valid_, factorised_, held_, update_}; }
+
   const Model& model_;
   const Slots<T>& slots_;
   bool unknown_multipliers_;

@@ -236,6 +236,14 @@ bool SparseEngine<T>::update(const std::vector<PointTangent<T>>& tangents, Count
 }
 
 template <class T>
+void SparseEngine<T>::carry(const Carried& carried, Counters& counters) {
+  if (carried.places != places_) lay_out(carried.places);
+  valid_ = false;
+  if (carried.factor.valid) factorise(carried.factor.tangents, counters, carried.factor.hold);
+  update_ = carried.factor.update;
+}
+
+template <class T>
 bool SparseEngine<T>::reversed() const {
   const bool odd = unknown_multipliers_ && model_.multiplier_count % 2 == 1;  // each multiplier turns the sign
   return (solver_.determinant_sign() != (odd ? -1 : 1)) != update_.turns_sign();

@@ -91,6 +91,7 @@ struct Increment {
   State<T> state;
   std::vector<double> rho_factor;  ///< adaption of the regularisation, per contact point
   int newton = 0, augmentations = 0, cutbacks = 0;
+  double pace = 0;         ///< largest motion of a node over the time it took; of bodies that are not linear
   double contraction = 0;  ///< Uzawa: last measured ratio of multiplier updates; 0 if not measured
   std::vector<IterationRecord> history;
   std::vector<AugmentedState<T>> augmented;

@@ -31,6 +31,13 @@ void drop_absent_rows(TangentUpdate::Change& change) {
 
 }  // namespace
 
+long TangentUpdate::bytes() const {
+  Eigen::Index numbers = 0;
+  for (const auto& column : columns_)
+    numbers += column.block.size() + column.u.size() + column.v.size() + column.z.size();
+  return static_cast<long>(numbers * sizeof(double));
+}
+
 bool TangentUpdate::take(std::vector<Change> changes, Eigen::Index size, Counters& counters, const Product& solve) {
   std::vector<Column> columns;
   std::vector<std::size_t> fresh;

@@ -33,6 +33,7 @@ class TangentUpdate {
     inverse_ = {};
   }
   bool empty() const { return columns_.empty(); }
+  long bytes() const;  ///< of the columns
   /// Whether det C is negative.
   bool turns_sign() const { return !empty() && inverse_.determinant() < 0; }
 
