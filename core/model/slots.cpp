@@ -8,7 +8,7 @@ ElementLists inverted_elements(const Model& model, const Slots<double>& slots, c
   ElementLists inverted(model.bodies.size());
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     const auto& body = model.bodies[b];
-    const auto continuum = [&]<class Shape, Kinematics kinematics>(const auto& law) {
+    const auto continuum = [&]<class Shape, Kinematics kinematics, class L>(const L& law) {
       constexpr int rows = stress_dimension(kinematics);
       for (int e = 0; law.is_finite && e < body.mesh.element_count(); ++e) {
         const auto nodes = detail::element_nodes(body, e);
@@ -20,6 +20,7 @@ ElementLists inverted_elements(const Model& model, const Slots<double>& slots, c
               const Mat<double, rows> F = Mat<double, rows>::Identity() + H;
               positive &= F.template topLeftCorner<2, 2>().determinant() > 0;
               if constexpr (rows == 3) positive &= F(2, 2) > 0;  // (where both are negative their product is not)
+              if constexpr (rows == 2 && !Remembers<L>) positive &= law.stretch_across(H) > 0;
             });
         if (!positive) inverted[b].push_back(e);
       }

@@ -7,7 +7,9 @@
 ///
 /// The radial return. At finite strain the exponential map makes it the same in logarithms, C_p^-1 = F^-1 exp(2 e)
 /// F^-T. In the plane and of revolution, d = (q - bound) / (3 G + slope of the bound); in plane stress, p = (tau_00 +
-/// tau_11)/2 and the shear shrink apart, and d is the zero of one function (core/algebra/implicit.hpp).
+/// tau_11)/2 and the shear shrink apart, and d is the zero of one function (core/algebra/implicit.hpp). No stress
+/// across means e_22 = -lame / (lame + 2 G) (e_00 + e_11), at finite strain too, whose thickness follows: no unknown is
+/// added.
 ///
 /// It remembers four numbers a point: 00, 11 and 01 of e_p, or of C_p^-1 - I, and a. The component across the plane
 /// follows, for flow keeps the volume. Differentiable but where a point is about to flow, or to stop, or ends at a
@@ -87,8 +89,7 @@ struct J2Law {
 
   /// What it is at the start.
   LinearElasticLaw<T> at_rest() const {
-    const bool thins = space == Space::plane_stress;
-    return {thins ? T(T(2) * lame * shear / (lame + T(2) * shear)) : lame, shear};
+    return {space == Space::plane_stress ? lame_of_plane_stress(lame, shear) : lame, shear};
   }
 
   /// The memory that a displacement gradient H leaves of the one before. (Of an inverted element: the same.)
@@ -156,8 +157,16 @@ struct J2Law {
     return sigma;
   }
 
+  /// Stretch across the plane.
+  double stretch_across(const Mat<double, 2>& H, const Memory<double>& memory) const {
+    if (space != Space::plane_stress) return 1;
+    const double e = elastic_strain<double, 2>(H, memory)[3];
+    return is_finite ? std::exp(e) * std::sqrt(1 + growth_of_plastic_area(memory)) : 1 + e - memory[0] - memory[1];
+  }
+
   /// Cauchy's stress across the plane.
   double stress_across(const Mat<double, 2>& H, const Memory<double>& memory) const {
+    if (space == Space::plane_stress) return 0;
     const double J = is_finite ? (1 + H(0, 0)) * (1 + H(1, 1)) - H(0, 1) * H(1, 0) : 1;
     return hooke(elastic_strain<double, 2>(H, memory))[3] / J;
   }
@@ -203,15 +212,26 @@ struct J2Law {
       e[0] = H(0, 0) - memory[0];
       e[1] = H(1, 1) - memory[1];
       e[2] = (H(0, 1) + H(1, 0)) / U(2) - memory[2];
-      e[3] = space == Space::plane_stress ? -U(lame) / U(lame + T(2) * shear) * (e[0] + e[1])
-                                          : across + memory[0] + memory[1];
+      e[3] = space == Space::plane_stress ? elastic_across(e) : U(across + memory[0] + memory[1]);
       return e;
     }
     const PlaneTensor<U> twice = log_of_one_plus<U>(stretch<U, D>(H, memory.template head<3>()));
     for (int k = 0; k < 3; ++k) e[k] = twice[k] / U(2);
-    // det C_p^-1 = 1
-    e[3] = log1p(across) - log1p(U(memory[0] + memory[1] + memory[0] * memory[1] - memory[2] * memory[2])) / U(2);
+    e[3] = space == Space::plane_stress ? elastic_across(e)
+                                        : U(log1p(across) - log1p(growth_of_plastic_area(memory)) / U(2));
     return e;
+  }
+
+  /// The strain across that leaves no stress there.
+  template <class U>
+  U elastic_across(const Strain<U>& e) const {
+    return -U(lame) / U(lame + T(2) * shear) * (e[0] + e[1]);
+  }
+
+  /// det C_p^-1 - 1 in the plane; in space it is 0.
+  template <class U>
+  static U growth_of_plastic_area(const Memory<U>& memory) {
+    return memory[0] + memory[1] + memory[0] * memory[1] - memory[2] * memory[2];
   }
 
   template <class U>

@@ -18,6 +18,12 @@ struct LinearElastic {
   Number E, nu;
 };
 
+/// Lame's first constant in plane stress, where the thickness adapts.
+template <class T>
+T lame_of_plane_stress(const T& lame, const T& shear) {
+  return T(2) * lame * shear / (lame + T(2) * shear);
+}
+
 template <class T>
 struct LinearElasticLaw {
   static constexpr bool is_finite = false;
@@ -30,7 +36,7 @@ struct LinearElasticLaw {
   LinearElasticLaw(const T& E, const T& nu, Space in) : space(in) {
     lame = E * nu / ((T(1) + nu) * (T(1) - T(2) * nu));
     shear = E / (T(2) * (T(1) + nu));
-    if (space == Space::plane_stress) lame = T(2) * lame * shear / (lame + T(2) * shear);
+    if (space == Space::plane_stress) lame = lame_of_plane_stress(lame, shear);
   }
 
   /// The numbers that it consists of, and the law with others.
@@ -54,6 +60,11 @@ struct LinearElasticLaw {
         if (i == j) sigma(i, j) += trace * U(lame);
       }
     return sigma;
+  }
+
+  /// Stretch across the plane.
+  double stretch_across(const Mat<double, 2>& H) const {
+    return space == Space::plane_stress ? 1 - value(lame) / (2 * value(shear)) * H.trace() : 1;
   }
 
   /// Stress across the plane.

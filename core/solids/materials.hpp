@@ -2,8 +2,9 @@
 ///
 /// A law of a continuum has a file of its own: its description for the scene, law_of() and the law, which says what it
 /// is made for (is_finite, is_made_for), which numbers it consists of (numbers, with; of more than one part: part,
-/// part_count) and gives stress, stress across the plane and energy of a displacement gradient. What it lacks does not
-/// compile. A law of two nodes (bars, springs) gives force, stiffness and energy of their relative displacement.
+/// part_count) and gives stress, stretch and stress across the plane, and energy of a displacement gradient. What it
+/// lacks does not compile. A law of two nodes (bars, springs) gives force, stiffness and energy of their relative
+/// displacement.
 ///
 /// A law that remembers says how many numbers a point (memory), how a motion changes them (flow), how far a motion is
 /// from where that has no derivative (margin), the plastic strain in them, and the law that it is at the start
@@ -44,6 +45,7 @@ concept ContinuumLawWith = requires(const L& law, const Mat<double, 2>& H, const
   { L::is_made_for(Kinematics::plane, true) } -> std::same_as<bool>;
   { law.with(law.numbers()) } -> std::same_as<L>;
   { law.template stress<double, 2>(H, memory...) } -> std::same_as<Mat<double, 2>>;
+  { law.stretch_across(H, memory...) } -> std::same_as<double>;
   { law.stress_across(H, memory...) } -> std::same_as<double>;
   { law.template energy<double, 2>(H, memory...) } -> std::same_as<double>;
 };

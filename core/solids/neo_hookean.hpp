@@ -1,4 +1,4 @@
-/// Compressible neo-Hookean material at finite strain, in plane strain and of revolution.
+/// Compressible neo-Hookean material at finite strain, in the plane and of revolution.
 ///
 ///   W = G ((tr C - 3)/2 - ln J) + U(J),   U = lame/2 (J - 1)^2 (quadratic) or lame/2 (ln J)^2 (log)
 ///   P = dW/dF = G (F - F^-T) + J U'(J) F^-T,   F = I + H,   C = F^T F,   J = det F
@@ -9,11 +9,22 @@
 /// F^-T is the cofactor matrix over J, and J F - cof F = j F + (F - cof F). Of revolution the hoop stretch F_22 = 1 + h
 /// stands beside the plane, whose j and J these then are: the volume is J F_22. An element with J <= 0 or F_22 <= 0 is
 /// inverted: its stress is not a number, so that no residual passes it. Differentiable where neither is. Source: [W06].
+///
+/// In plane stress F_22 is the stretch of the thickness that leaves P_22 = 0,
+///
+///   G (F_22^2 - 1) + V U'(V) = 0,  V = J F_22,   hence   P = G (F - F_22^2 F^-T) in the plane
+///
+/// which is quadratic in F_22 where U is, and with U of the logarithm has one unknown, ln F_22
+/// (core/algebra/implicit.hpp). For nu >= 0 there is one root. Below, the larger one is the stable one, and where there
+/// is none the element counts as inverted.
 #pragma once
 
 #include <limits>
+#include <optional>
 
+#include "core/algebra/implicit.hpp"
 #include "core/solids/linear_elastic.hpp"
+#include "core/solids/logarithmic.hpp"
 
 namespace stickslip {
 
@@ -23,6 +34,23 @@ struct NeoHookean {
   Volumetric volumetric = Volumetric::quadratic;
 };
 
+namespace detail {
+
+/// Plane stress of the logarithmic law: x = |ln F_22|, whose sign is given; the stress across, over the shear modulus
+/// and against the sign, falls to zero.
+template <class T>
+struct LogarithmicThickness {
+  double sign;
+  T ratio, area;  ///< lame / G; ln J
+
+  template <class X>
+  X excess(const X& x) const {
+    return X(-sign) * exp_minus_one<X>(X(2 * sign) * x) - X(ratio) * (x + X(sign) * X(area));
+  }
+};
+
+}  // namespace detail
+
 template <class T>
 struct NeoHookeanLaw {
   static constexpr bool is_finite = true;
@@ -30,18 +58,22 @@ struct NeoHookeanLaw {
 
   T lame, shear;
   NeoHookean::Volumetric volumetric = NeoHookean::Volumetric::quadratic;
+  Space space = Space::plane_strain;
 
-  NeoHookeanLaw(const T& lambda, const T& G, NeoHookean::Volumetric kind) : lame(lambda), shear(G), volumetric(kind) {}
+  NeoHookeanLaw(const T& lambda, const T& G, NeoHookean::Volumetric kind, Space in = Space::plane_strain)
+      : lame(lambda), shear(G), volumetric(kind), space(in) {}
 
   /// The numbers that it consists of, and the law with others.
   std::array<T, 2> numbers() const { return {lame, shear}; }
   template <class U>
   NeoHookeanLaw<U> with(const std::array<U, 2>& numbers) const {
-    return {numbers[0], numbers[1], volumetric};
+    return {numbers[0], numbers[1], volumetric, space};
   }
 
   /// What it is at the start.
-  LinearElasticLaw<T> at_rest() const { return {lame, shear}; }
+  LinearElasticLaw<T> at_rest() const {
+    return {space == Space::plane_stress ? lame_of_plane_stress(lame, shear) : lame, shear};
+  }
 
   /// First Piola-Kirchhoff stress of a displacement gradient H (2 x 2, or 3 x 3 with nothing but H_22 out of the
   /// plane), in the scalar of H: U is T, or a Dual built on T.
@@ -52,14 +84,20 @@ struct NeoHookeanLaw {
     bool inverted = !(value(J) > 0);
     if constexpr (D == 3) inverted |= !(value(H(2, 2)) > -1);
     if (inverted) return Mat<U, D>::Constant(U(std::numeric_limits<double>::quiet_NaN()));
-    const bool quadratic = volumetric == NeoHookean::Volumetric::quadratic;
     const U shear_over_J = U(shear) / J, F00 = U(1) + H(0, 0), F11 = U(1) + H(1, 1), apart = H(0, 0) - H(1, 1),
             sheared = H(0, 1) + H(1, 0);
+    const bool quadratic = volumetric == NeoHookean::Volumetric::quadratic;
     U across;  // J_3 U'(J_3) / J, J_3 the volume
-    if constexpr (D == 2)
-      across = quadratic ? U(U(lame) * j) : U(U(lame) * log1p(j) / J);
-    else
+    if constexpr (D == 2) {
+      if (space == Space::plane_stress) {
+        const U h = thickening(j);
+        across = -shear_over_J * h * (U(2) + h);
+      } else {
+        across = quadratic ? U(U(lame) * j) : U(U(lame) * log1p(j) / J);
+      }
+    } else {
       across = quadratic ? U(U(lame) * growth(H) * (U(1) + H(2, 2))) : U(U(lame) * log1p(growth(H)) / J);
+    }
     Mat<U, D> P;
     if constexpr (D == 3) {
       const U h = H(2, 2), F22 = U(1) + h;
@@ -73,8 +111,15 @@ struct NeoHookeanLaw {
     return P;
   }
 
+  /// Stretch across the plane; not a number where plane stress has none.
+  template <class U>
+  U stretch_across(const Mat<U, 2>& H) const {
+    return space == Space::plane_stress ? U(U(1) + thickening(plane_growth(H))) : U(1);
+  }
+
   /// Cauchy's stress across the plane, U'(J).
   double stress_across(const Mat<double, 2>& H) const {
+    if (space == Space::plane_stress) return 0;
     const double j = plane_growth(H);
     return volumetric == NeoHookean::Volumetric::quadratic ? value(lame) * j : value(lame) * std::log1p(j) / (1 + j);
   }
@@ -83,12 +128,16 @@ struct NeoHookeanLaw {
   template <class U, int D>
   U energy(const Mat<U, D>& H) const {
     using std::log1p, stickslip::log1p;
-    const U j = growth(H), logarithm = log1p(j);
-    U squares{};
+    U j = growth(H), squares{};
     for (int k = 0; k < D * D; ++k) squares += H.data()[k] * H.data()[k];
     U half = H(0, 0) + H(1, 1) + squares / U(2);  // (tr C - 3)/2
     if constexpr (D == 3) half += H(2, 2);
-    const U change = volumetric == NeoHookean::Volumetric::quadratic ? j : logarithm;
+    if (D == 2 && space == Space::plane_stress) {
+      const U h = thickening(j);
+      half += h + h * h / U(2);
+      j += h + j * h;
+    }
+    const U logarithm = log1p(j), change = volumetric == NeoHookean::Volumetric::quadratic ? j : logarithm;
     return U(shear) * (half - logarithm) + U(lame) / U(2) * change * change;
   }
 
@@ -97,6 +146,30 @@ struct NeoHookeanLaw {
   template <class U, int D>
   static U plane_growth(const Mat<U, D>& H) {
     return H(0, 0) + H(1, 1) + (H(0, 0) * H(1, 1) - H(0, 1) * H(1, 0));
+  }
+  /// F_22 - 1 of plane stress, where the plane grows by j; not a number where there is none.
+  template <class U>
+  U thickening(const U& j) const {
+    using std::sqrt;
+    const U none(std::numeric_limits<double>::quiet_NaN());
+    if (volumetric == NeoHookean::Volumetric::log) return logarithmic_thickening(j).value_or(none);
+    // a h^2 + b h + c = 0
+    const U J = U(1) + j, stiff = U(lame) * J, a = U(shear) + stiff * J, b = U(2) * a - stiff, c = stiff * j;
+    const U square = stiff * stiff + U(4) * U(shear) * a;  // b^2 - 4 a c
+    if (!(value(square) > 0)) return none;
+    const U root = sqrt(square);
+    return value(b) > 0 ? U(-U(2) * c / (b + root)) : U((root - b) / (U(2) * a));
+  }
+  template <class U>
+  std::optional<U> logarithmic_thickening(const U& j) const {
+    using std::log1p, stickslip::log1p;
+    const U area = log1p(j), ratio = U(lame) / U(shear);
+    const double r = value(ratio), c = value(area);
+    // r < 0: the stress across is least at exp(2 ln F_22) = -r/2, and must be negative there
+    if (!std::isfinite(c) || (r < 0 && !(-r / 2 - 1 + r * (std::log(-r / 2) / 2 + c) < 0))) return std::nullopt;
+    const double sign = r * c > 0 ? -1 : 1;
+    const double x = root_of(detail::LogarithmicThickness<double>{sign, r, c});
+    return exp_minus_one<U>(U(sign) * solve_implicit<U>(detail::LogarithmicThickness<U>{sign, ratio, area}, x));
   }
   /// The volume's.
   template <class U, int D>
@@ -108,9 +181,9 @@ struct NeoHookeanLaw {
 };
 
 template <class T>
-NeoHookeanLaw<T> law_of(const NeoHookean& material, Space, bool /*finite_strain*/, const Numbers<T>& numbers) {
+NeoHookeanLaw<T> law_of(const NeoHookean& material, Space space, bool /*finite_strain*/, const Numbers<T>& numbers) {
   const LinearElasticLaw<T> small(numbers(material.E), numbers(material.nu), Space::plane_strain);
-  return {small.lame, small.shear, material.volumetric};
+  return {small.lame, small.shear, material.volumetric, space};
 }
 
 }  // namespace stickslip
