@@ -36,7 +36,8 @@ struct CheckpointPlan {
   std::size_t repeated() const;  ///< steps that are solved again
 };
 
-/// None where there is room for the states of all steps. Made of counts alone, hence the same on every machine.
+/// None where there is room for the states of all steps, or all are to stay. Made of counts alone, hence the same on
+/// every machine.
 std::optional<CheckpointPlan> plan_checkpoints(const Model& model, const RunOptions& options);
 std::optional<CheckpointPlan> plan_checkpoints(std::size_t steps, double room);
 

@@ -218,7 +218,9 @@ const char* const scene = R"json({
   "sensitivity": {"description": "how derivatives are taken", "type": "object", "examples": [{"mode": "adjoint"}],
     "additionalProperties": false, "properties": {
       "mode": {"description": "direct: of all responses and objectives; adjoint: of the objectives alone",
-        "enum": ["direct", "adjoint"], "default": "direct"}}}
+        "enum": ["direct", "adjoint"], "default": "direct"},
+      "memory": {"description": "adjoint: megabytes for the displacements, and for what bodies remember, of all steps; beyond them states are let go, and solved again on the way back",
+        "type": "number", "exclusiveMinimum": 0, "default": 512, "examples": [100]}}}
 })json";
 
 }  // namespace stickslip::schema_texts

@@ -77,9 +77,14 @@ void note_idle_obstacles(const JsonNode& node, SceneReading& reading) {
   }
 }
 
-void read_sensitivity(const JsonNode& node, SceneReading& reading) {
-  const auto mode = node.is_object({{}, {"mode"}}) ? node.find("mode") : std::nullopt;
-  if (!mode || mode->choice({"direct", "adjoint"}) != "adjoint") return;
+void read_sensitivity(const JsonNode& node, SceneReading& reading, Input& input) {
+  if (!node.is_object({{}, {"mode", "memory"}})) return;
+  const auto mode = node.find("mode"), memory = node.find("memory");
+  const auto megabytes = memory ? memory->number(positive) : std::nullopt;
+  if (megabytes) input.state_memory = *megabytes * megabyte;
+  const auto chosen = mode ? mode->choice({"direct", "adjoint"}) : std::optional<std::string>("direct");
+  if (memory && chosen == "direct") memory->error_at_key(R"(belongs to "mode": "adjoint")");
+  if (chosen != "adjoint") return;
   reading.scene.sensitivity_mode = SensitivityMode::adjoint;
   if (reading.scene.objectives.empty() && !reading.diagnostics.has_error_in("/objectives"))
     mode->error(R"(is "adjoint", which differentiates the objectives, and the scene has none; add "objectives", )"
@@ -143,7 +148,7 @@ std::optional<Input> read_scene(const JsonDocument& given, const std::optional<s
   part("objectives", read_objectives);
   if (const auto node = root.find("linear_solver")) read_linear_solver(*node, reading.scene, input);
   if (const auto node = root.find("output")) read_output(*node, input.output);
-  part("sensitivity", read_sensitivity);
+  if (const auto node = root.find("sensitivity")) read_sensitivity(*node, reading, input);
 
   const auto method_node = root.find("method");
   if (!method_node && known) root.error(R"(the key "method" is missing; allowed: )" + listed(method_names()));

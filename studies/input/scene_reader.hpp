@@ -22,6 +22,10 @@ struct OutputOptions {
   int every = 1;  ///< every: each n-th increment, and the last
 };
 
+/// Bytes for the states of a run that an adjoint follows: half a gigabyte, a thousand states of some 60 000
+/// displacements. A number and no share of the machine's memory, so that every machine counts the same.
+inline constexpr double megabyte = 1024 * 1024, default_state_memory = 512 * megabyte;
+
 /// A mesh file as read, with the fingerprint of its text.
 struct MeshFile {
   ImportResult content;
@@ -37,6 +41,7 @@ struct Input {
   LinearAlgebra linear_algebra;
   Backend backend = Backend::automatic;
   OutputOptions output;
+  double state_memory = default_state_memory;  ///< RunOptions::state_memory of an adjoint
   /// The scene as it is simulated: overrides carried out, the method that runs, parameters without those dropped.
   nlohmann::json document;
   std::string file;

@@ -66,7 +66,7 @@ double estimated_bytes(const ProblemSize& size) {
   // columns of the bodies' answer to each contact dof, and the dense system with its factor
   if (size.condensed) bytes += 8 * size.contact_dofs * (n + 3 * size.contact_dofs);
   // what a step leaves: displacements, contact points, iterations, its part of the result (11 kB of a single point)
-  return bytes + size.steps * (8 * n + 150 * size.contact_points + 11'000);
+  return bytes + (size.steps - size.thin_steps) * 8 * n + size.steps * (150 * size.contact_points + 11'000);
 }
 
 double memory_limit() {

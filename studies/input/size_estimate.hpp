@@ -14,6 +14,7 @@ struct ProblemSize {
   double contact_points = 0;
   double steps = 0;
   bool condensed = false;  ///< bodies condensed to the contact dofs
+  double thin_steps = 0;   ///< of these, whose displacements are let go
 };
 
 /// Nodes of a mesh that a generator makes, within a few per cent; of an imported one those it has.

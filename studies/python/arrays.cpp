@@ -53,11 +53,17 @@ py::dict elements(const py::object& owner, const RunResult& run) {
   return out;
 }
 
+/// None of a step whose state an adjoint let go.
 py::list displacements(const py::object& owner, const RunResult& run) {
   const auto& model = run.simulation.problem->model;
   py::list out;
-  for (const auto& step : run.result.steps)
-    out.append(view(owner, step.increment->state.displacement.data(), {model.node_count, model.dimension}));
+  for (const auto& step : run.result.steps) {
+    const auto& state = step.increment->state;
+    if (is_whole(state))
+      out.append(view(owner, state.displacement.data(), {model.node_count, model.dimension}));
+    else
+      out.append(py::none());
+  }
   return out;
 }
 

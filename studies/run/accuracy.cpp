@@ -122,38 +122,45 @@ Finding worst(const Model& model, const Slots<double>& slots, const Regularisati
 
 }  // namespace
 
-Accuracy assess(const Model& model, const Slots<double>& slots, const Method& method,
-                const Trajectory<double>& trajectory) {
-  const auto initial = std::visit([&](const auto& m) { return initial_regularisation(slots, m); }, method);
-  const auto tolerance = std::visit([](const auto& m) { return tolerances(m); }, method);
-  Accuracy accuracy;
-  const auto layer = [&](const Increment<double>& increment) {
-    const auto rho = adapted(initial, increment.rho_factor);
-    return std::visit([&](const auto& m) { return layer_of(m, rho); }, method);
-  };
-  visit_defects(model, slots, trajectory, layer,
-                [&](std::size_t n, const KktDefects& defects, const std::vector<PointDefects>& points) {
-                  accuracy.errors.push_back(relative(defects));
-                  const auto rho = adapted(initial, trajectory.increments[n].rho_factor);
-                  const auto allowed = allowance(model, slots, tolerance, rho, defects.scales);
-                  const auto found = worst(model, slots, rho, defects, points, allowed, n + 1);
-                  accuracy.faults.emplace_back();
-                  if (found.excess == 0) return;
-                  const bool penalty = std::holds_alternative<Penalty>(method);
-                  const std::string why =
-                      allowed.drowned ? "forces of the stiffest body, as far as it moves, round by more than is "
-                                        "accepted; hold it by supports, make it an obstacle, or try a smaller "
-                                      : "which neither the method nor rounding explains; try a smaller ";
-                  accuracy.faults.back() = "the method-blind error \"" + std::string(found.component) + "\" is " +
-                                           short_number(found.value) + " at " + found.where + ", " + why +
-                                           (penalty ? "stiffness" : "scale");
-                });
-  return accuracy;
+AccuracyReader::AccuracyReader(const Model& model, const Slots<double>& slots, const Method& method)
+    : model_(model),
+      slots_(slots),
+      method_(method),
+      initial_(std::visit([&](const auto& m) { return initial_regularisation(slots, m); }, method)),
+      defects_(model, slots) {}
+
+void AccuracyReader::read(const State<double>& before, const Increment<double>& increment) {
+  const auto rho = adapted(initial_, increment.rho_factor);
+  const ElasticLayer layer = std::visit([&](const auto& m) { return layer_of(m, rho); }, method_);
+  defects_.read(before, increment, &layer);
+  const KktDefects& defects = defects_.defects();
+  accuracy_.errors.push_back(relative(defects));
+  const auto tolerance = std::visit([](const auto& m) { return tolerances(m); }, method_);
+  const auto allowed = allowance(model_, slots_, tolerance, rho, defects.scales);
+  const auto found = worst(model_, slots_, rho, defects, defects_.with_layer(), allowed, accuracy_.errors.size());
+  accuracy_.faults.emplace_back();
+  if (found.excess == 0) return;
+  const bool penalty = std::holds_alternative<Penalty>(method_);
+  const std::string why = allowed.drowned ? "forces of the stiffest body, as far as it moves, round by more than is "
+                                            "accepted; hold it by supports, make it an obstacle, or try a smaller "
+                                          : "which neither the method nor rounding explains; try a smaller ";
+  accuracy_.faults.back() = "the method-blind error \"" + std::string(found.component) + "\" is " +
+                            short_number(found.value) + " at " + found.where + ", " + why +
+                            (penalty ? "stiffness" : "scale");
 }
 
-std::vector<KktError> check_accuracy(const Model& model, const Slots<double>& slots, const Method& method,
-                                     Trajectory<double>& trajectory) {
-  auto accuracy = assess(model, slots, method, trajectory);
+Accuracy assess(const Model& model, const Slots<double>& slots, const Method& method,
+                const Trajectory<double>& trajectory) {
+  AccuracyReader reader(model, slots, method);
+  const State<double>* before = &trajectory.initial;
+  for (const auto& increment : trajectory.increments) {
+    reader.read(*before, increment);
+    before = &increment.state;
+  }
+  return reader.accuracy();
+}
+
+void mark_inaccurate(const Accuracy& accuracy, Trajectory<double>& trajectory) {
   const Increment<double>* failed = nullptr;  // within the present step
   for (std::size_t n = 0; n < trajectory.increments.size(); ++n) {
     auto& increment = trajectory.increments[n];
@@ -172,6 +179,12 @@ std::vector<KktError> check_accuracy(const Model& model, const Slots<double>& sl
     }
     if (increment.requested) failed = nullptr;
   }
+}
+
+std::vector<KktError> check_accuracy(const Model& model, const Slots<double>& slots, const Method& method,
+                                     Trajectory<double>& trajectory) {
+  auto accuracy = assess(model, slots, method, trajectory);
+  mark_inaccurate(accuracy, trajectory);
   return std::move(accuracy.errors);
 }
 

@@ -28,12 +28,31 @@ struct Accuracy {
   std::vector<std::string> faults;  ///< per increment: empty, or what is off, where, by how much, and what to try
 };
 
+/// Assesses the increments of a run one after the other.
+class AccuracyReader {
+ public:
+  AccuracyReader(const Model& model, const Slots<double>& slots, const Method& method);
+  /// `before`: the state before the increment, of which contact alone is read.
+  void read(const State<double>& before, const Increment<double>& increment);
+  const Accuracy& accuracy() const { return accuracy_; }
+
+ private:
+  const Model& model_;
+  const Slots<double>& slots_;
+  const Method& method_;
+  RegularisationField<double> initial_;
+  DefectReader defects_;
+  Accuracy accuracy_;
+};
+
 /// Assesses a trajectory of the method on the model.
 Accuracy assess(const Model& model, const Slots<double>& slots, const Method& method,
                 const Trajectory<double>& trajectory);
 
 /// Gives increments that say they converged, but did not, the status `inaccurate` (`not_finite` where an error is no
-/// number), and the trajectory that of the first of them. Returns the errors, as kkt_errors() does.
+/// number), and the trajectory that of the first of them.
+void mark_inaccurate(const Accuracy& accuracy, Trajectory<double>& trajectory);
+/// The same, assessed. Returns the errors, as kkt_errors() does.
 std::vector<KktError> check_accuracy(const Model& model, const Slots<double>& slots, const Method& method,
                                      Trajectory<double>& trajectory);
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/model/response.hpp"
+#include "core/model/objective.hpp"
 #include "methods/engine_choice.hpp"
 #include "studies/io/json_document.hpp"
-#include "studies/run/accuracy.hpp"
+#include "studies/run/step_reader.hpp"
 #include "studies/run/warnings.hpp"
 
 namespace stickslip {
@@ -35,15 +35,7 @@ void take_sides(const CaseResult& result, std::size_t n, StepResult& step) {
       if (step.has_kink(scene, result.method, i, j)) step.differentiable = false;
 }
 
-/// Whether bodies move in an increment; where they rest, what is on its bound stays there.
-bool flows_on(const State<double>& from, const State<double>& to) {
-  constexpr double rest = 1e-12;  // of the displacement: rounding
-  return (to.displacement - from.displacement).cwiseAbs().maxCoeff() > rest * to.displacement.cwiseAbs().maxCoeff();
-}
-
-/// `errors`: per increment.
-std::vector<StepResult> gather_steps(const CaseResult& result, const std::vector<KktError>& errors) {
-  const auto& [model, slots, unused] = *result.problem;
+std::vector<StepResult> gather_steps(const CaseResult& result, const StepReader& reader) {
   std::vector<StepResult> steps;
   StepResult step;
   for (std::size_t n = 0; n < result.trajectory.increments.size(); ++n) {
@@ -53,12 +45,11 @@ std::vector<StepResult> gather_steps(const CaseResult& result, const std::vector
     step.history.insert(step.history.end(), increment.history.begin(), increment.history.end());
     if (!increment.requested) continue;
     step.increment = &increment;
-    step.kkt = errors[n];
-    step.margins = margins(model, slots, increment.state);
-    const auto& previous = n == 0 ? result.trajectory.initial : result.trajectory.increments[n - 1].state;
-    if (model.effects.plasticity && flows_on(previous, increment.state))
-      step.margins.yield = yield_margin(model, slots, {increment.state.displacement, previous.history.bodies});
-    step.responses = evaluate_responses(model, slots, increment.state, increment.time);
+    step.kkt = reader.accuracy().errors[n];
+    const auto& read = *reader.steps()[n];
+    step.margins = read.margins;
+    step.responses = read.responses;
+    step.bodies = read.bodies;
     if (n < result.gradients.of.size()) step.sensitivities = result.gradients.of[n];
     if (n < result.gradients.records.size()) step.scheme = result.gradients.records[n];
     take_sides(result, n, step);
@@ -66,6 +57,14 @@ std::vector<StepResult> gather_steps(const CaseResult& result, const std::vector
     step = {};
   }
   return steps;
+}
+
+Vector<double> objectives_of(const CaseResult& result) {
+  const Model& model = result.problem->model;
+  Vector<double> values = Vector<double>::Zero(model.scene.objectives.size());
+  for (const auto& step : result.steps)
+    add_contributions(model, result.problem->slots.numbers, step.increment->time, step.responses, values);
+  return values;
 }
 
 /// Says of a run that failed with a loose body why it has no answer.
@@ -229,8 +228,11 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
   const bool shared = condensation != nullptr;
   Workspace<double> workspace{condensation, {}};
   Derivatives derivatives(problem->model, problem->slots, result.method, workspace);
+  StepReader reader(*problem, result.method);
   RunOptions followed = options;
+  if (!is_adjoint(problem->model)) followed.state_memory = std::numeric_limits<double>::infinity();
   followed.on_step = [&] {
+    reader.follow(result.trajectory, workspace.checkpoints != nullptr);
     if (!is_adjoint(problem->model)) derivatives.follow(result.trajectory);
     if (options.on_step) options.on_step();
   };
@@ -242,7 +244,7 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
   if (result.engine.body_solves > 0)
     result.body_solves =
         result.engine.body_solves - (shared ? solved_before : static_cast<double>(result.condensing.backsolves));
-  const auto errors = check_accuracy(problem->model, problem->slots, method, result.trajectory);
+  mark_inaccurate(reader.accuracy(), result.trajectory);
   name_loose_body(problem->model, result.trajectory);
   if (has_tangent(result.trajectory)) {
     if (result.trajectory.counters.newton > 0)  // otherwise nothing was factorised
@@ -251,8 +253,8 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
     differentiate_case(workspace, derivatives, result);
     result.sensitivity_body_solves = holdings(workspace).body_solves - result.engine.body_solves;
   }
-  result.steps = gather_steps(result, errors);
-  result.objectives = objective_values(problem->model, problem->slots, result.trajectory);
+  result.steps = gather_steps(result, reader);
+  result.objectives = objectives_of(result);
   refuse_overflow(result);
   return result;
 }

@@ -21,6 +21,12 @@ struct Problem {
   explicit Problem(const Scene& scene);
 };
 
+/// What warnings are told by of a body at a step.
+struct BodyMeasures {
+  double strain = 0, rotation = 0;  ///< largest component in an element; radians
+  double spurious_pressure = 0;     ///< spurious_pressure()
+};
+
 /// A step that the scene asked for, gathered from its sub-steps.
 struct StepResult {
   const Increment<double>* increment;  ///< the last of its sub-steps
@@ -29,6 +35,7 @@ struct StepResult {
   KktError kkt;
   Margins margins;
   Vector<double> responses;
+  std::vector<BodyMeasures> bodies;    ///< where its state may have been let go; else empty
   std::optional<SchemeRecord> scheme;  ///< of the increment; only where the scheme iterates
   Matrix<double> sensitivities;        ///< responses x parameters; empty where there are none
   bool differentiable = true;          ///< both one-sided derivatives agree

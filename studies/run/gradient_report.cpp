@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "studies/io/input_fault.hpp"
@@ -16,7 +17,9 @@ GradientCheck check_gradients(const Simulation& simulation, const std::string& n
   const auto& model = simulation.problem->model;
   if (model.scene.parameters.empty() || model.scene.responses.empty())
     throw InputFault(name + ": gradcheck needs parameters and responses");
-  return check_gradients(model, simulation.input.method, run_options(simulation.input), progress);
+  RunOptions options = run_options(simulation.input);
+  options.state_memory = std::numeric_limits<double>::infinity();  // (it reads the states of all steps)
+  return check_gradients(model, simulation.input.method, options, progress);
 }
 
 json check_json(const GradientCheck& check) {

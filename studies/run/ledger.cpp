@@ -147,11 +147,13 @@ void add_sensitivity_rows(const CaseResult& result, Ledger& ledger) {
   const double seconds = model.effects.sensitivity ? gradients.seconds - search : 0;
   const double slots = static_cast<double>(storage.slots), kept = derivative_bytes(gradients);
   const auto none = derivative_counts({});
+  auto adjoint_counts = adjoint ? counts : none;
+  adjoint_counts.push_back({"repeated_increments", static_cast<double>(gradients.repeated)});
   ledger.push_back({"direct_sensitivity",
                     model.effects.sensitivity && !adjoint,
                     {{"parameters", static_cast<double>(gradients.last_displacement.cols())}},
                     {{"slots", adjoint ? 0 : slots},
-                     {"states", static_cast<double>(storage.states)},
+                     {"states", adjoint ? 0 : static_cast<double>(storage.states)},
                      {"solves", static_cast<double>(storage.loads)},
                      {"sweeps", adjoint ? 0 : kept_sweeps(result.trajectory)},
                      {"derivatives", adjoint ? 0 : kept}},
@@ -161,11 +163,12 @@ void add_sensitivity_rows(const CaseResult& result, Ledger& ledger) {
                     model.effects.sensitivity && adjoint,
                     {{"objectives", adjoint ? static_cast<double>(gradients.of_objectives.rows()) : 0}},
                     {{"slots", adjoint ? slots : 0},
+                     {"states", adjoint ? static_cast<double>(storage.states) : 0},
                      {"tape", static_cast<double>(storage.tape)},
                      {"adjoints", static_cast<double>(storage.adjoints)},
                      {"sweeps", adjoint ? kept_sweeps(result.trajectory) : 0},
                      {"derivatives", adjoint ? kept : 0}},
-                    adjoint ? counts : none,
+                    adjoint_counts,
                     adjoint ? seconds : 0});
   ledger.push_back({"one_sided_search",
                     searches,

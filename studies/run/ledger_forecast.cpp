@@ -10,6 +10,7 @@
 #include "methods/engine_choice.hpp"
 #include "sensitivity/differentiation.hpp"
 #include "studies/run/ledger_parts.hpp"
+#include "studies/run/simulation.hpp"
 
 namespace stickslip {
 namespace {
@@ -25,6 +26,8 @@ struct Size {
   double feet, present;                     ///< of the slip history; points that keep a geometry in each state
   double remembered;                        ///< numbers of bodies that flow
   double states;                            ///< that the run keeps
+  double whole, together_again;             ///< of these with displacements; those that are solved again together
+  double repeated;                          ///< steps that are solved again
   double steps, parameters, blocks, responses, objectives;
   double together;  ///< increments that are differentiated at once
   bool condensed, unknown, unsymmetric, uzawa, truncated, follows;
@@ -46,7 +49,12 @@ Size size_of(const Input& input, const Model& model) {
   n.present = model.effects.current_geometry ? n.points : 0;
   n.contacts = model.effects.friction ? static_cast<double>(model.scene.contacts.size()) : 0;
   n.steps = static_cast<double>(model.times.size());
-  n.states = n.steps + 1;
+  n.states = n.whole = n.steps + 1;
+  if (const auto plan = plan_checkpoints(model, run_options(input))) {
+    n.whole = static_cast<double>(plan->whole()) + 1;
+    n.together_again = static_cast<double>(std::min(plan->stride, plan->steps) - 1);
+    n.repeated = static_cast<double>(plan->repeated());
+  }
   n.parameters = static_cast<double>(model.scene.parameters.size());
   n.blocks = std::ceil(n.parameters / directions);
   n.responses = static_cast<double>(model.scene.responses.size());
@@ -77,7 +85,7 @@ LedgerRow bodies_row(const Problem& problem, const Size& n, double tangent_entri
           {{"mesh", mesh_bytes(model)},
            {"slots", static_cast<double>(slot_bytes(problem.slots).bodies)},
            {"matrix", number * tangent_entries},
-           {"states", number * n.dofs * n.states}},
+           {"states", number * n.dofs * n.whole}},
           {{"elements", element_count(model)}},
           not_apart};
 }
@@ -110,7 +118,7 @@ void add_contact_rows(const Problem& problem, const Size& n, const Amount& facto
   ledger.push_back({"plasticity",
                     effects.plasticity,
                     {},
-                    {{"history", number * model.memory_count * n.states}},
+                    {{"history", number * model.memory_count * n.whole}},
                     {{"numbers", static_cast<double>(model.memory_count)}},
                     not_apart});
 }
@@ -166,15 +174,24 @@ LedgerRow adjoint_row(const Input& input, const Problem& problem, const Size& n)
   const bool on = n.parameters > 0 && model.scene.sensitivity_mode == SensitivityMode::adjoint;
   const double objectives = on ? n.objectives : 0;
   const bool any = objectives > 0;
+  const double state =
+      number * state_numbers(n) + sizeof(ContactState) * n.points + geometry_bytes<double>(n);  // of the solution
+  const double again = any ? n.together_again : 0;
+  // weights of masters that deform are some more, of each point along a curve
+  const double within = again == 0 ? exactly : n.truncated ? not_known : n.present > 0 ? 2 : exactly;
+  auto counts = derivative_counts(input.method, n, objectives, 1);
+  if (any && n.repeated > 0) counts[3] = {"evaluations", 0, not_known};  // (of the steps that are solved again too)
+  counts.push_back({"repeated_increments", any ? n.repeated : 0, any && n.repeated > 0 ? 2.0 : exactly});  // 2: ties
   return {"adjoint_sensitivity",
           on,
           {{"objectives", objectives}},
           {{"slots", any ? static_cast<double>(slot_bytes<Reverse>(problem.slots).all()) : 0},
+           {"states", again * state, within},
            {"tape", 0, any ? not_known : exactly},
            {"adjoints", 0, any ? not_known : exactly},
            {"sweeps", 0, any && n.truncated ? not_known : exactly},
            {"derivatives", number * objectives * n.parameters}},
-          derivative_counts(input.method, n, objectives, 1),
+          std::move(counts),
           on ? not_apart : 0};
 }
 

@@ -78,14 +78,6 @@ double share(double x, double scale) {
   return std::isfinite(scale) ? detail::ratio(x, scale) : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Slip of the points since they came inside their cones.
-struct Creep {
-  std::vector<Eigen::VectorXd> of;
-  explicit Creep(const Model& model) {
-    for (const auto& point : model.points) of.push_back(Eigen::VectorXd::Zero(point.tangents));
-  }
-};
-
 PointDefects defects_of(const Model& model, const Slots<double>& slots, const State<double>& previous,
                         const State<double>& state, const KktScales& scales, const ElasticLayer& layer, int p,
                         Eigen::VectorXd& creep) {
@@ -116,10 +108,10 @@ PointDefects defects_of(const Model& model, const Slots<double>& slots, const St
 
 std::vector<PointDefects> point_defects(const Model& model, const Slots<double>& slots, const State<double>& previous,
                                         const State<double>& state, const KktScales& scales, const ElasticLayer& layer,
-                                        Creep& creep) {
+                                        std::vector<Eigen::VectorXd>& creep) {
   std::vector<PointDefects> defects;
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p)
-    defects.push_back(defects_of(model, slots, previous, state, scales, layer, p, creep.of[p]));
+    defects.push_back(defects_of(model, slots, previous, state, scales, layer, p, creep[p]));
   return defects;
 }
 
@@ -142,25 +134,33 @@ double KktError::largest() const {
   return worst;
 }
 
+DefectReader::DefectReader(const Model& model, const Slots<double>& slots) : model_(model), slots_(slots) {
+  plain_.scales.stiffness = largest_stiffness(model, slots);
+  for (const auto& point : model.points) creep_.emplace_back(Eigen::VectorXd::Zero(point.tangents));
+  creep_with_layer_ = creep_;
+}
+
+void DefectReader::read(const State<double>& before, const Increment<double>& increment, const ElasticLayer* layer) {
+  enlarge(model_, slots_, increment.state, increment.time, plain_.scales);
+  Vector<double> balance = nodal_balance(model_, slots_, increment.state, increment.time);
+  balance -= support_forces(model_, slots_, balance);
+  std::tie(plain_.imbalance, plain_.node) = largest_at(balance, model_.dimension);
+  plain_.points = point_defects(model_, slots_, before, increment.state, plain_.scales, {}, creep_);
+  with_layer_ = layer ? point_defects(model_, slots_, before, increment.state, plain_.scales, *layer, creep_with_layer_)
+                      : plain_.points;
+}
+
 void visit_defects(const Model& model, const Slots<double>& slots, const Trajectory<double>& trajectory,
                    const std::function<ElasticLayer(const Increment<double>&)>& layer,
                    const std::function<void(std::size_t, const KktDefects&, const std::vector<PointDefects>&)>& f) {
-  KktDefects plain;
-  plain.scales.stiffness = largest_stiffness(model, slots);
-  Creep creep(model), creep_with_layer(model);
-  const State<double>* previous = &trajectory.initial;
+  DefectReader reader(model, slots);
+  const State<double>* before = &trajectory.initial;
   for (std::size_t n = 0; n < trajectory.increments.size(); ++n) {
     const auto& increment = trajectory.increments[n];
-    enlarge(model, slots, increment.state, increment.time, plain.scales);
-    Vector<double> balance = nodal_balance(model, slots, increment.state, increment.time);
-    balance -= support_forces(model, slots, balance);
-    std::tie(plain.imbalance, plain.node) = largest_at(balance, model.dimension);
-    plain.points = point_defects(model, slots, *previous, increment.state, plain.scales, {}, creep);
     const ElasticLayer given = layer ? layer(increment) : ElasticLayer{};
-    f(n, plain,
-      layer ? point_defects(model, slots, *previous, increment.state, plain.scales, given, creep_with_layer)
-            : plain.points);
-    previous = &increment.state;
+    reader.read(*before, increment, layer ? &given : nullptr);
+    f(n, reader.defects(), reader.with_layer());
+    before = &increment.state;
   }
 }
 

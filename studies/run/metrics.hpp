@@ -61,6 +61,25 @@ struct ElasticLayer {
   double band = 0;
 };
 
+/// Measures the increments of a run one after the other; the scales grow on the way, and the creep is summed.
+class DefectReader {
+ public:
+  DefectReader(const Model& model, const Slots<double>& slots);
+  /// pre: the state before is that of the increment that was read last, or the initial one; only contact is read of it.
+  /// `layer`: none where that is nullptr.
+  void read(const State<double>& before, const Increment<double>& increment, const ElasticLayer* layer);
+  const KktDefects& defects() const { return plain_; }                         ///< of the states as they are
+  const std::vector<PointDefects>& with_layer() const { return with_layer_; }  ///< against contact with the layer
+
+ private:
+  using Creep = std::vector<Eigen::VectorXd>;  ///< slip of the points since they came inside their cones
+  const Model& model_;
+  const Slots<double>& slots_;
+  KktDefects plain_;
+  std::vector<PointDefects> with_layer_;
+  Creep creep_, creep_with_layer_;
+};
+
 /// Calls f(n, of the states as they are, against contact with the layer) for the increments in order.
 void visit_defects(
     const Model& model, const Slots<double>& slots, const Trajectory<double>& trajectory,

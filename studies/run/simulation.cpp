@@ -1,5 +1,6 @@
 #include "studies/run/simulation.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "methods/engine_choice.hpp"
@@ -68,13 +69,20 @@ void check_memory(const Problem& problem, const Input& input) {
                          too_much(estimated_bytes(size), limit) + R"(; try {"engine": "sparse"}, or fewer cells)",
                      engine == Engine::condensed ? "/linear_solver/engine" : "/linear_solver");
   size.steps = static_cast<double>(model.times.size());
+  if (const auto plan = plan_checkpoints(model, run_options(input)))
+    size.thin_steps = std::max(0.0, size.steps - static_cast<double>(plan->whole() + plan->stride - 1));
   if (is_too_much())
     throw ModelError("its " + shown(size.steps) + " steps need " + too_much(estimated_bytes(size), limit) +
                          "; try fewer, or tables with fewer points",
                      "/time");
 }
 
-RunOptions run_options(const Input& input) { return {input.linear_algebra, input.backend, {}, {}}; }
+RunOptions run_options(const Input& input) {
+  RunOptions options{input.linear_algebra, input.backend, {}, {}};
+  if (input.scene.sensitivity_mode == SensitivityMode::adjoint) options.state_memory = input.state_memory;
+  options.output_every = fields_every(input.output);
+  return options;
+}
 
 CaseResult simulate(const Simulation& simulation, const std::function<void()>& on_step, Trace* trace) {
   auto options = run_options(simulation.input);

@@ -17,13 +17,9 @@ constexpr double degree = M_PI / 180;
 /// Poisson's ratio from which locking is looked for, and spurious pressure that is told.
 constexpr double nearly_incompressible = 0.45, most_spurious = 0.2;
 
-struct Deformation {
-  double strain = 0, rotation = 0;  ///< largest component; radians
-};
-
 /// Largest strain and rotation in the elements of a body.
-Deformation deformation_of(const Problem& problem, const State<double>& state, std::size_t b) {
-  Deformation largest;
+BodyMeasures deformation_of(const Problem& problem, const State<double>& state, std::size_t b) {
+  BodyMeasures largest;
   for_each_strain(problem, state, b, [&](int, const auto& H, double, const double*) {
     largest.strain = std::max(largest.strain, (H + H.transpose()).cwiseAbs().maxCoeff() / 2);
     largest.rotation = std::max(largest.rotation, std::abs(H(1, 0) - H(0, 1)) / 2);
@@ -36,9 +32,9 @@ void add_deformations(const CaseResult& result, std::vector<Warning>& warnings) 
   constexpr double most_strain = 0.05, most_rotation = 5 * degree;
   const auto& model = result.problem->model;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    Deformation largest;
+    BodyMeasures largest;
     for (const auto& step : result.steps) {
-      const auto now = deformation_of(*result.problem, step.increment->state, b);
+      const auto now = step.bodies.empty() ? deformation_of(*result.problem, step.increment->state, b) : step.bodies[b];
       largest = {std::max(largest.strain, now.strain), std::max(largest.rotation, now.rotation)};
     }
     const std::string& name = model.scene.bodies[b].name;
@@ -157,14 +153,21 @@ std::optional<Moduli> moduli_of(const Law<double>& law) {
   return std::nullopt;
 }
 
+/// Whether locking is looked for in a body.
+bool is_watched_for_locking(const Problem& problem, std::size_t b) {
+  const auto moduli = moduli_of(problem.slots.laws[b]);
+  return moduli && may_lock(problem, b) && (moduli->flows || moduli->nu() >= nearly_incompressible);
+}
+
 void add_locking(const CaseResult& result, std::vector<Warning>& warnings) {
   const auto& problem = *result.problem;
   for (std::size_t b = 0; b < problem.model.bodies.size(); ++b) {
+    if (!is_watched_for_locking(problem, b)) continue;
     const auto moduli = moduli_of(problem.slots.laws[b]);
-    if (!moduli || !may_lock(problem, b) || (!moduli->flows && moduli->nu() < nearly_incompressible)) continue;
     double largest = 0;
     for (const auto& step : result.steps)
-      largest = larger(largest, spurious_pressure(problem, step.increment->state, b));
+      largest = larger(largest, step.bodies.empty() ? spurious_pressure(problem, step.increment->state, b)
+                                                    : step.bodies[b].spurious_pressure);
     if (!(largest > most_spurious)) continue;
     const std::string& name = problem.model.scene.bodies[b].name;
     const bool quads = problem.model.bodies[b].mesh.shape == ElementShape::quad4;
@@ -328,6 +331,13 @@ double spurious_pressure(const Problem& problem, const State<double>& state, std
     all += v * (xx * xx + yy * yy + zz * zz + 2 * xy * xy);
   });
   return all > 0 ? std::sqrt(spurious / all) : 0;
+}
+
+BodyMeasures measures_of_body(const Problem& problem, const State<double>& state, std::size_t b) {
+  BodyMeasures measures;
+  if (!problem.model.scene.finite_strain) measures = deformation_of(problem, state, b);
+  if (is_watched_for_locking(problem, b)) measures.spurious_pressure = spurious_pressure(problem, state, b);
+  return measures;
 }
 
 std::vector<Warning> warnings_of(const CaseResult& result) {

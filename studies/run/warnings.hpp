@@ -28,6 +28,8 @@ namespace stickslip {
 /// Empty where nothing of it is found, and where nothing converged.
 std::vector<Warning> warnings_of(const CaseResult& result);
 
+BodyMeasures measures_of_body(const Problem& problem, const State<double>& state, std::size_t body);
+
 /// [{"code", "where", "value", "remedy", "text"}].
 nlohmann::json warnings_json(const CaseResult& result);
 

@@ -10,6 +10,7 @@
 #include "studies/io/provenance.hpp"
 #include "studies/run/film.hpp"
 #include "studies/run/ledger.hpp"
+#include "studies/run/simulation.hpp"
 #include "studies/run/warnings.hpp"
 #include "studies/sweep/attempt.hpp"
 #include "studies/sweep/study.hpp"
@@ -19,8 +20,6 @@ namespace stickslip {
 namespace {
 
 using nlohmann::json;
-
-RunOptions options_of(const Input& input) { return {input.linear_algebra, input.backend, {}, {}}; }
 
 Regularisation& regularisation_of(Penalty& method) { return method.stiffness; }
 Regularisation& regularisation_of(UzawaAL& method) { return method.scale; }
@@ -110,7 +109,7 @@ void CellRunner::enter(const CellInput& cell) {
   variant_.problem = problem_of(input);
   {
     const Stopwatch time(variant_.setup_seconds);
-    variant_.condensation = condense(*variant_.problem, options_of(input));
+    variant_.condensation = condense(*variant_.problem, run_options(input));
   }
   run_references(cell);
   variant_.key = variant_key(cell);
@@ -135,7 +134,7 @@ void CellRunner::run_references(const CellInput& cell) {
       const auto fine = input_of(reference_cell(cell, reference, program_version(), meshes_), meshes_);
       std::shared_ptr<Condensation<double>> own;
       ++runs_;
-      const auto result = run_case(problem_of(fine), fine.method, options_of(fine), own);
+      const auto result = run_case(problem_of(fine), fine.method, run_options(fine), own);
       if (is_converged(result.status())) values = values_of(result);
     });
     if (breakdown) note(reference, *breakdown);
@@ -145,7 +144,7 @@ void CellRunner::run_references(const CellInput& cell) {
 CaseResult CellRunner::run(const CellInput& cell) {
   const auto input = input_of(cell, meshes_);
   ++runs_;
-  return run_case(problem_of(input), input.method, options_of(input), variant_.condensation);
+  return run_case(problem_of(input), input.method, run_options(input), variant_.condensation);
 }
 
 CaseResult CellRunner::showcase(std::size_t cell) {

@@ -114,6 +114,8 @@ TEST(Checkpoints, KeepTheStatesThatAreWritten) {
   const Let few(scenes::two_boxes(6, 9), MonolithicAL{}, options, 1);
   for (const std::size_t step : {5, 10, 12}) EXPECT_TRUE(is_whole(few.trajectory.increments[step - 1].state)) << step;
   EXPECT_FALSE(is_whole(few.trajectory.increments[5].state));
+  options.output_every = 1;
+  EXPECT_EQ(Let(scenes::two_boxes(6, 9), MonolithicAL{}, options, 1).workspace.checkpoints, nullptr);
 }
 
 }  // namespace

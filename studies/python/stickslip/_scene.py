@@ -109,8 +109,14 @@ class Result:
         return list(self._contacts)
 
     def displacement(self, step: int = -1) -> np.ndarray:
-        """Displacement of the nodes at the end of a step, (nodes, dimension). IndexError where there is no such."""
-        return self._displacements[step]
+        """Displacement of the nodes at the end of a step, (nodes, dimension).
+
+        IndexError where there is no such step, ValueError where its state was let go (`sensitivity/memory`).
+        """
+        displacement = self._displacements[step]
+        if displacement is None:
+            raise ValueError('its state was let go: raise "memory" of "sensitivity", or ask "output" for its fields')
+        return displacement
 
     def displacement_derivative(self, parameter: str) -> np.ndarray:
         """Derivative of the displacement of the last step by a parameter, (nodes, dimension).
