@@ -118,7 +118,8 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
                           (!trajectory.increments.empty() && !trajectory.increments.back().others.empty());
       increment.pace =
           pace_of(run.model, previous, increment.state, next - (increments.empty() ? 0 : increments.back().time));
-      if ((increment.counted && folded) || is_sudden(increments, increment.pace))
+      const bool sudden = is_sudden(increments, increment.pace);
+      if ((increment.counted && folded) || sudden)
         increment.jump = find_jump(method, run, previous, factor, reached, next, increment.state);
       trajectory.increments.push_back(std::move(increment));
       if (last) return true;

@@ -268,6 +268,8 @@ FAULTS = [
      "bulk_energy(model, slots, state.displacement, <<<state.history.bodies>>>);",
      "Vector<T>::Constant(state.history.bodies.size(), T(0)).eval()"),
     ("a jump that is not looked for", "methods/solve.hpp", "(increment.counted && folded) || <<<sudden>>>)", "false"),
+    ("states solved again without the factor of the run", "methods/checkpoints.hpp",
+     "starts_.push_back({step, run.account, <<<run.engine.carried()>>>});", "decltype(run.engine.carried()){}"),
     ("adjoint without the derivative of a volume", "core/solids/gradient_work.hpp",
      "coordinates += <<<of_volume>>> * gradient.dN", "0.0"),
     ("von Mises without its shear", "studies/run/fields.cpp", "0.5 * normal + <<<3>>> * (s[3]", "0"),

@@ -220,7 +220,7 @@ const char* const scene = R"json({
       "mode": {"description": "direct: of all responses and objectives; adjoint: of the objectives alone",
         "enum": ["direct", "adjoint"], "default": "direct"},
       "memory": {"description": "adjoint: megabytes for the displacements, and for what bodies remember, of all steps; beyond them states are let go, and solved again on the way back",
-        "type": "number", "exclusiveMinimum": 0, "default": 512, "examples": [100]}}}
+        "$ref": "#/$defs/positive", "default": 512, "examples": [100]}}}
 })json";
 
 }  // namespace stickslip::schema_texts
