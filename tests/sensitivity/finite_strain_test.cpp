@@ -139,6 +139,49 @@ TEST(Truss, UnderAForceBeyondItsLimitPointJumpsAndSaysWhen) {
   for (const auto& increment : run(truss(0.9), MonolithicAL{}).trajectory.increments) EXPECT_FALSE(increment.jump);
 }
 
+/// The half truss under a force on its end, of twice that the whole one, above a floor at w = 1.2.
+Scene loaded_truss(double whole) {
+  Scene scene = truss(0.0);
+  scene.parameters.clear();
+  scene.obstacles[0] = plane("floor", {0.0, -0.2}, {0, 1});
+  scene.contacts[0].master = "floor";
+  scene.loads = {scenes::force("bar.end", {0.0, parameter(scene, "load", -whole / 2)})};
+  scene.loads[0].history = table({{0, 0.0}, {1, 1.0}});
+  scene.legs = {{1, 20}};
+  return scene;
+}
+
+TEST(Truss, UnderAForceBelowItsLimitPointStandsAndJustAboveItLiesOnTheFloor) {  // C26
+  for (const auto& method : finite_methods()) {
+    const auto below = run(loaded_truss(3.79), method), above = run(loaded_truss(3.8), method);
+    ASSERT_TRUE(is_converged(below.trajectory.status)) << name_of(method) << below.trajectory.message;
+    ASSERT_TRUE(is_converged(above.trajectory.status)) << name_of(method) << above.trajectory.message;
+    EXPECT_LT(-below.value("w"), 0.4226497308) << name_of(method);
+    EXPECT_NEAR(truss_force(-below.value("w")), 3.79 / 2, 1e-9) << name_of(method);
+    EXPECT_FALSE(below.trajectory.increments.back().jump) << name_of(method);
+    EXPECT_TRUE(above.trajectory.increments.back().jump) << name_of(method);
+    // (a penalty sinks in, by dP/dw of its overlap)
+    const double sunk = std::abs(above.value("w") + 1.2);
+    EXPECT_LE(sunk, std::holds_alternative<Penalty>(method) ? 1e-4 : 1e-9) << name_of(method);
+    EXPECT_NEAR(above.value("press"), 5.6915558 / 2, 1e-7 + 10 * sunk) << name_of(method);
+  }
+}
+
+TEST(Truss, JustBelowItsLimitPointHasTheSlopeOfTheClosedForm) {  // C27
+  const double whole = 3.7919801295 * (1 - 1e-6), scale = 1e4 / std::pow(101, 1.5) / 2;
+  for (const auto& method : finite_methods()) {
+    const auto s = run(loaded_truss(whole), method);
+    ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
+    const double w = -s.value("w"), slope = -scale * (1 - 3 * (1 - w) * (1 - w));  // dP/dw, which nearly vanishes
+    EXPECT_LT(slope, 0.01 * scale);
+    EXPECT_NEAR(truss_force(w), whole / 2, 1e-11) << name_of(method);
+    EXPECT_NEAR(s.derivative("w", "load"), 1 / slope, 1e-6 / slope) << name_of(method);  // w is right to 1e-11 / slope
+    const auto moved = [&](double share) { return run(loaded_truss(whole * (1 + share)), method).value("w"); };
+    const double h = 1e-8, difference = (moved(-h) - moved(h)) / (h * whole);  // by -load, of half the force
+    EXPECT_NEAR(s.derivative("w", "load"), difference, 0.01 * difference) << name_of(method);
+  }
+}
+
 // --- a point that a spring leads around a disk: large sliding on a normal that turns
 // ----------------------------------
 
