@@ -111,6 +111,39 @@ TEST(ShippedScenes, OfABallOnAFineMeshYieldsAtJohnsonsDepthAndForce) {  // A16
   EXPECT_NEAR(press[first], 1.75283526, 0.1 * 1.75283526);  // R = 10, E = 1000, nu = 0.3, yield 10
 }
 
+TEST(ShippedScenes, OfABallInASoftMetalReachesTheMeanPressureOfFullPlasticity) {  // A16: 2.7 to 3.1 of the yield stress
+  const double E = 1000, nu = 0.3, Y = 0.5, R = 10, modulus = E / (1 - nu * nu), cell = 2.4 / 192;
+  json scene = cases::load(scenes / "indentation.json");
+  auto& metal = scene["bodies"]["metal"];
+  metal["mesh"]["box"] = {{"min", {0, -2.4}}, {"max", {2.4, 0}}, {"cells", {192, 40}}, {"grade", {{"top", 20}}}};
+  metal["material"]["j2_plastic"]["yield"] = Y;
+  metal["material"]["j2_plastic"]["hardening"] = 0;
+  scene["obstacles"]["ball"]["move"]["y"] = {{0, 0}, {1, -0.012}};
+  scene["time"] = {{"end", 1}, {"steps", 12}};
+  scene["parameters"] = json::object();
+  scene.erase("output");
+  const auto result = cases::run(scene, {{"monolithic_al", json::object()}}, scenes / "indentation.json");
+  ASSERT_TRUE(is_converged(result.status())) << result.message();
+  const auto press = history(result, "press"), radius = history(result, "radius");
+  double sum = 0, first = 0;
+  int count = 0;
+  for (std::size_t n = 0; n < press.size(); ++n) {
+    const auto& states = result.steps[n].increment->state.contact.state;
+    const auto open = std::count(states.begin(), states.end(), ContactState::open);
+    const double a = (static_cast<double>(std::ssize(states) - open) - 0.5) * cell;  // between two nodes
+    if (modulus * a < 60 * Y * R) continue;
+    const auto mean = [&](double up_to) { return press[n] / (std::numbers::pi * up_to * up_to); };
+    EXPECT_GE(mean(a - cell / 2), 2.7 * Y) << n;
+    EXPECT_LE(mean(a + cell / 2), 3.1 * Y) << n;
+    sum += mean(a);
+    if (count++ == 0) first = mean(radius[n]);
+    EXPECT_NEAR(mean(radius[n]), first, 0.02 * first) << n;  // (of no node's radius) 0.6 %, while that doubles
+  }
+  ASSERT_GE(count, 8);
+  EXPECT_GE(sum / count, 2.7 * Y);  // 2.75
+  EXPECT_LE(sum / count, 3.1 * Y);
+}
+
 TEST(ShippedScenes, OfATurnedRingHasTheTorqueOfFrictionWithATenthOfTheRippleOfFacets) {  // A14
   const auto ripple = [](const std::string& surface) {
     json scene = cases::load(scenes / "turned_rings.json");
