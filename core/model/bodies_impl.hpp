@@ -229,6 +229,40 @@ void for_each_plastic_strain(const Model& model, const Slots<T>& slots, int b, c
 }
 
 template <class T>
+std::vector<ThicknessStretch<T>> edge_stretches(const Model& model, const Slots<T>& slots, int b,
+                                                const ElementEdge& edge, const Vector<T>& u) {
+  using Probe = Dual<4, T>;
+  std::vector<ThicknessStretch<T>> stretches;
+  const auto continuum = [&]<class Shape, Kinematics kinematics, class L>(const L& law) {
+    if constexpr (kinematics == Kinematics::plane && L::is_made_for(kinematics, true) && !Remembers<L>) {
+      const auto nodes = detail::element_nodes(model.bodies[b], edge.element);
+      const auto X = detail::gather_coordinates<T, Shape>(slots.points, nodes.data());
+      const auto local = detail::gather_displacements<T, Shape>(u, nodes.data());
+      const auto from = natural_corner<Shape>(edge.corner), to = natural_corner<Shape>(edge.corner + 1);
+      for (const auto& point : detail::edge_quadrature(Shape::nodes > Shape::corners ? 3 : 2, false)) {
+        const double s = point.value[1] + point.value[2] / 2;  // share of the way along the edge
+        const Vec<double, 2> at = (1 - s) * from + s * to;
+        const Gradient<T, Shape, kinematics> gradient(Shape::at(at[0], at[1], 0), X);
+        const Mat<T, 2> H = gradient.of(local);
+        Mat<Probe, 2> seeded;
+        for (int p = 0; p < 2; ++p)
+          for (int q = 0; q < 2; ++q) seeded(p, q) = Probe::seed(H(p, q), detail::component(p, q));
+        const Probe stretch = law.stretch_across(seeded);
+        Vector<T> by_motion = Vector<T>::Constant(2 * Shape::nodes, T(0));
+        for (int a = 0; a < Shape::nodes; ++a)
+          for (int i = 0; i < 2; ++i)
+            gradient.for_each(i, a, [&](int p, int q, const T& x) {
+              by_motion[2 * a + i] += stretch.d[detail::component(p, q)] * x;
+            });
+        stretches.push_back({stretch.v, by_motion});
+      }
+    }
+  };
+  detail::with_law<T>(model, slots, b, continuum, []<int>(const auto&) {});
+  return stretches;
+}
+
+template <class T>
 void for_each_element_tangent(const Model& model, const Slots<T>& slots, int b, const std::vector<int>* only,
                               const std::type_identity_t<ElementSink<T>>& sink, const BodyMotion<T>* at) {
   constexpr bool solves = std::is_same_v<T, double> || std::is_same_v<T, std::complex<double>>;

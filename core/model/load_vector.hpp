@@ -86,14 +86,17 @@ void add_body_force(const Model& model, const Load& load, const Slots<T>& slots,
   }
 }
 
-/// Forces of a pressure on an edge at its nodes' places, 2 x nodes. `loaded`: nodes that it acts on.
-template <class T>
+/// Forces of a pressure on an edge at its nodes' places, 2 x nodes. `loaded`: nodes that it acts on. `pressure_at`: by
+/// point of the edge's quadrature.
+template <class T, class Pressure>
 Points<T> pressure_on(const Points<T>& places, const std::vector<char>& loaded, const Depth<T>& depth,
-                      const T& pressure) {
+                      Pressure&& pressure_at) {
   std::vector<int> edge(loaded.size());
   for (std::size_t a = 0; a < edge.size(); ++a) edge[a] = static_cast<int>(a);
   Points<T> forces = Points<T>::Constant(2, places.cols(), T(0));
+  int point = 0;
   for_each_edge_point(places, edge, depth, [&](const auto& values, const auto& tau, const T&) {
+    const T pressure = pressure_at(point++);
     for (std::size_t a = 0; a < edge.size(); ++a) {
       if (!loaded[a]) continue;
       forces(0, a) += T(values[a]) * (-tau[1] * pressure);
@@ -103,19 +106,62 @@ Points<T> pressure_on(const Points<T>& places, const std::vector<char>& loaded, 
   return forces;
 }
 
-/// Calls f(nodes, loaded, depth, pressure) for each edge that a pressure follows at a time.
+/// An edge that a pressure follows. It acts on the present length times the thickness of the start; in plane stress the
+/// stretch of the thickness multiplies it, point by point.
+template <class T>
+struct FollowedEdge {
+  const std::vector<int>& nodes;
+  std::vector<char> loaded;
+  int body;
+  T pressure;
+  const ElementEdge* behind;                      ///< nullptr: its thickness stays
+  std::vector<ThicknessStretch<T>> stretch = {};  ///< by point; empty where it stays
+
+  T pressure_at(int point) const { return stretch.empty() ? pressure : T(pressure * stretch[point].value); }
+};
+
+/// Calls f(edge) for each edge that a pressure follows at a time, at displacements of all dofs.
 template <class T, class F>
-void for_each_followed_edge(const Model& model, const Slots<T>& slots, double t, F&& f) {
+void for_each_followed_edge(const Model& model, const Slots<T>& slots, double t, const Vector<T>& u, F&& f) {
   for (const auto& follower : model.followers) {
     const Load& load = model.scene.loads[follower.load];
     const T factor = load.history ? evaluate(*load.history, t, slots.numbers) : T(1);
     const T pressure = factor * slots.numbers(load.vector[0]);
-    for (const auto& edge : follower.side.edges) {
-      std::vector<char> loaded;
-      for (int node : edge) loaded.push_back(is_of(follower.side, node));
-      f(edge, loaded, slots.depths[follower.side.body], pressure);
+    for (std::size_t k = 0; k < follower.side.edges.size(); ++k) {
+      const ElementEdge* const behind = follower.behind.empty() ? nullptr : &follower.behind[k];
+      FollowedEdge<T> edge{follower.side.edges[k], {}, follower.side.body, pressure, behind};
+      for (int node : edge.nodes) edge.loaded.push_back(is_of(follower.side, node));
+      if (behind) edge.stretch = edge_stretches(model, slots, edge.body, *behind, u);
+      f(edge);
     }
   }
+}
+
+/// Present places of the nodes of an edge, in a scalar that is made of theirs.
+template <class U, class T, class Make>
+Points<U> present_places(const Slots<T>& slots, const std::vector<int>& nodes, const Vector<T>& u, Make&& make) {
+  Points<U> places(2, nodes.size());
+  for (std::size_t a = 0; a < nodes.size(); ++a)
+    for (int i = 0; i < 2; ++i) places(i, a) = make(slots.points(i, nodes[a]) + u[nodes[a] * 2 + i], 2 * a + i);
+  return places;
+}
+
+/// What a stretch of the thickness adds to the derivatives of an edge's forces: by displacements of the element behind.
+template <class T, class Sink>
+void add_thickness_tangent(const Model& model, const Slots<T>& slots, const FollowedEdge<T>& edge, const Points<T>& at,
+                           Sink&& sink) {
+  const auto& body = model.bodies[edge.body];
+  const auto nodes = element_nodes(body, edge.behind->element);
+  Matrix<T> K = Matrix<T>::Constant(2 * nodes.size(), 2 * nodes.size(), T(0));
+  for (int q = 0; q < static_cast<int>(edge.stretch.size()); ++q) {
+    const auto force = pressure_on(at, edge.loaded, slots.depths[edge.body],
+                                   [&](int point) { return point == q ? edge.pressure : T(0); });
+    for (std::size_t a = 0; a < edge.nodes.size(); ++a) {
+      const auto local = std::find(nodes.begin(), nodes.end(), edge.nodes[a]) - nodes.begin();
+      for (int i = 0; i < 2; ++i) K.row(2 * local + i) += force(i, a) * edge.stretch[q].by_motion.transpose();
+    }
+  }
+  sink(nodes, K);
 }
 
 }  // namespace detail
@@ -124,38 +170,39 @@ void for_each_followed_edge(const Model& model, const Slots<T>& slots, double t,
 template <class T>
 Vector<T> follower_forces(const Model& model, const Slots<T>& slots, double t, const Vector<T>& u) {
   Vector<T> forces = Vector<T>::Constant(model.dof_count(), T(0));
-  detail::for_each_followed_edge(model, slots, t,
-                                 [&](const auto& nodes, const auto& loaded, const auto& depth, const T& pressure) {
-                                   Points<T> places(2, nodes.size());
-                                   for (std::size_t a = 0; a < nodes.size(); ++a)
-                                     for (int i = 0; i < 2; ++i)
-                                       places(i, a) = slots.points(i, nodes[a]) + u[nodes[a] * 2 + i];
-                                   const Points<T> force = detail::pressure_on(places, loaded, depth, pressure);
-                                   for (std::size_t a = 0; a < nodes.size(); ++a)
-                                     for (int i = 0; i < 2; ++i) forces[nodes[a] * 2 + i] += force(i, a);
-                                 });
+  detail::for_each_followed_edge(model, slots, t, u, [&](const detail::FollowedEdge<T>& edge) {
+    const auto places = detail::present_places<T>(slots, edge.nodes, u, [](const T& x, std::size_t) { return x; });
+    const Points<T> force = detail::pressure_on(places, edge.loaded, slots.depths[edge.body],
+                                                [&](int point) { return edge.pressure_at(point); });
+    for (std::size_t a = 0; a < edge.nodes.size(); ++a)
+      for (int i = 0; i < 2; ++i) forces[edge.nodes[a] * 2 + i] += force(i, a);
+  });
   return forces;
 }
 
-/// Calls sink(nodes, K) for each edge that a pressure follows: derivatives of its forces by displacements, node-major.
+/// Calls sink(nodes, K) for each edge that a pressure follows: derivatives of its forces by displacements, node-major;
+/// in plane stress once more with what the thickness makes of them.
 template <class T, class Sink>
 void for_each_follower_tangent(const Model& model, const Slots<T>& slots, const BodyMotion<T>& at, Sink&& sink) {
   constexpr int most = 6;  // dofs of an edge
   using Probe = Dual<most, T>;
-  detail::for_each_followed_edge(
-      model, slots, at.time, [&](const auto& nodes, const auto& loaded, const auto& depth, const T& pressure) {
-        const int n = static_cast<int>(nodes.size());
-        Points<Probe> places(2, n);
-        for (int a = 0; a < n; ++a)
-          for (int i = 0; i < 2; ++i)
-            places(i, a) = Probe::seed(slots.points(i, nodes[a]) + at.displacement[nodes[a] * 2 + i], 2 * a + i);
-        const auto force =
-            detail::pressure_on<Probe>(places, loaded, {depth.of_revolution, Probe(depth.thickness)}, Probe(pressure));
-        Matrix<T> K(2 * n, 2 * n);
-        for (int r = 0; r < 2 * n; ++r)
-          for (int c = 0; c < 2 * n; ++c) K(r, c) = force(r % 2, r / 2).d[c];
-        sink(nodes, K);
-      });
+  detail::for_each_followed_edge(model, slots, at.time, at.displacement, [&](const detail::FollowedEdge<T>& edge) {
+    const int n = static_cast<int>(edge.nodes.size());
+    const auto places =
+        detail::present_places<Probe>(slots, edge.nodes, at.displacement,
+                                      [](const T& x, std::size_t k) { return Probe::seed(x, static_cast<int>(k)); });
+    const auto& depth = slots.depths[edge.body];
+    const auto force = detail::pressure_on<Probe>(places, edge.loaded, {depth.of_revolution, Probe(depth.thickness)},
+                                                  [&](int point) { return Probe(edge.pressure_at(point)); });
+    Matrix<T> K(2 * n, 2 * n);
+    for (int r = 0; r < 2 * n; ++r)
+      for (int c = 0; c < 2 * n; ++c) K(r, c) = force(r % 2, r / 2).d[c];
+    sink(edge.nodes, K);
+    if (!edge.stretch.empty()) {
+      const Points<T> now = places.unaryExpr([](const Probe& x) { return x.v; });
+      detail::add_thickness_tangent(model, slots, edge, now, sink);
+    }
+  });
 }
 
 template <class T>

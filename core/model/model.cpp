@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -234,6 +235,30 @@ void place_memory(Model& model, const Material& material, BodyMesh& body) {
   model.memory_count += body.memory * body.mesh.element_count();
 }
 
+/// The elements behind edges of a body, in the order of the edges.
+std::vector<ElementEdge> elements_behind(const BodyMesh& body, const std::vector<std::vector<int>>& edges) {
+  const int n = nodes_of(body.mesh.shape), corners = corners_of(body.mesh.shape);
+  std::map<std::pair<int, int>, ElementEdge> by_ends;
+  for (int e = 0; e < body.mesh.element_count(); ++e)
+    for (int c = 0; c < corners; ++c) {
+      const auto node = [&](int corner) { return body.first_node + body.mesh.connectivity[e * n + corner % corners]; };
+      by_ends[{node(c), node(c + 1)}] = {e, c};
+    }
+  std::vector<ElementEdge> behind;
+  for (const auto& edge : edges) behind.push_back(by_ends.at({edge[0], edge[1]}));
+  return behind;
+}
+
+Follower follower(const Model& model, int load) {
+  Follower follower{load, model.side(model.scene.loads[load].on)};
+  if (model.scene.space != Space::plane_stress) return follower;
+  const auto& body = model.scene.bodies[follower.side.body];
+  if (const auto fault = pressure_fault(model.scene, body); !fault.empty())
+    throw ModelError(fault, "/loads/" + std::to_string(load) + "/on");
+  follower.behind = elements_behind(model.bodies[follower.side.body], follower.side.edges);
+  return follower;
+}
+
 /// Gives the feet of points with friction their places behind the slips, in the slip history.
 void place_feet(Model& model) {
   for (auto& point : model.points) {
@@ -276,6 +301,12 @@ std::string space_fault(Space space, const Body& body) {
   if (space == Space::plane_stress && has_mean_dilatation(body.element))
     return "Q4_mean_dilatation is for plane_strain and axisymmetric: in plane stress the thickness gives way";
   return "";
+}
+
+std::string pressure_fault(const Scene& scene, const Body& body) {
+  if (scene.space != Space::plane_stress || !scene.finite_strain || !std::holds_alternative<J2Plastic>(body.material))
+    return "";
+  return "flows, and in plane stress at finite strain a pressure on what flows is not known; use traction";
 }
 
 std::string radius_fault(Space space, const Points<double>& points, const BodyMesh& body) {
@@ -342,7 +373,7 @@ Model make_model(const Scene& scene, Seconds& spent) {
     model.response_places.push_back(locate_response(model, points, response));
   model.at_reactions = elements_at_reactions(model);
   for (int l = 0; scene.finite_strain && l < static_cast<int>(scene.loads.size()); ++l)
-    if (scene.loads[l].kind == Load::Kind::pressure) model.followers.push_back({l, model.side(scene.loads[l].on)});
+    if (scene.loads[l].kind == Load::Kind::pressure) model.followers.push_back(follower(model, l));
   model.times = step_ends(scene);
   model.effects.sensitivity = !scene.parameters.empty();
   model.effects.plasticity = model.memory_count > 0;

@@ -114,10 +114,16 @@ struct SideSet {
   std::vector<std::vector<int>> edges;  ///< Side::edges
 };
 
+/// The element behind an edge, in its body, and its corner at which the edge starts.
+struct ElementEdge {
+  int element = 0, corner = 0;
+};
+
 /// A pressure that follows the side that it acts on, as at finite strain.
 struct Follower {
   int load = 0;  ///< index in Scene::loads
   SideSet side = {};
+  std::vector<ElementEdge> behind = {};  ///< per edge of the side, whose thickness changes; empty where none does
 };
 
 /// Where a response is taken that names a point: nodes and weights of the element that holds it (fixed: the point is
@@ -178,6 +184,8 @@ struct Model {
 
 /// What is wrong with a body in this space, apart from its mesh; "" if nothing.
 std::string space_fault(Space space, const Body& body);
+/// What is wrong with a pressure on a body, completing "BODY ..."; "" if nothing.
+std::string pressure_fault(const Scene& scene, const Body& body);
 /// What is wrong with where its nodes lie in this space; "" if nothing. `points`: of the whole model.
 std::string radius_fault(Space space, const Points<double>& points, const BodyMesh& body);
 

@@ -262,6 +262,19 @@ T bulk_energy(const Model& model, const Slots<T>& slots, const Vector<T>& u, con
 /// trials of a motion. Infinity where no body flows.
 double yield_margin(const Model& model, const Slots<double>& slots, const BodyMotion<double>& at);
 
+/// Stretch of the thickness of plane stress at finite strain, and its derivatives by the displacements of the nodes of
+/// an element, node-major.
+template <class T>
+struct ThicknessStretch {
+  T value;
+  Vector<T> by_motion;
+};
+
+/// The stretches at the points of the quadrature of an edge of body b. pre: its law remembers nothing.
+template <class T>
+std::vector<ThicknessStretch<T>> edge_stretches(const Model& model, const Slots<T>& slots, int b,
+                                                const ElementEdge& edge, const Vector<T>& u);
+
 /// Calls f(a, volume) at each point of body b with its equivalent plastic strain and volume (of a bar, length times
 /// cross-section); nothing where it does not flow. `memory`: what bodies remember.
 template <class T>
@@ -299,6 +312,8 @@ namespace stickslip {
                                                const std::function<void(const T&, const T&)>&);              \
   EXTERN template void for_each_element_tangent(const Model&, const Slots<T>&, int, const std::vector<int>*, \
                                                 const ElementSink<T>&, const BodyMotion<T>*);                \
+  EXTERN template std::vector<ThicknessStretch<T>> edge_stretches(const Model&, const Slots<T>&, int,        \
+                                                                  const ElementEdge&, const Vector<T>&);     \
   EXTERN template Vector<T> load_vector(const Model&, const Load&, const Slots<T>&);                         \
   EXTERN template Points<T> initial_points(const Model&, const Numbers<T>&);                                 \
   EXTERN template Slots<T> make_slots(const Model&, const Numbers<T>&, Points<T>);                           \

@@ -131,6 +131,14 @@ struct Quad8 {
   static std::array<Point, 9> quadrature_of_revolution() { return quadrature(); }
 };
 
+/// Natural coordinates of a corner, counted on beyond the last from the first.
+template <class Shape>
+Vec<double, 2> natural_corner(int corner) {
+  const int k = corner % Shape::corners;
+  if (Shape::corners == 3) return {k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0};
+  return {k == 1 || k == 2 ? 1.0 : -1.0, k >= 2 ? 1.0 : -1.0};
+}
+
 /// Calls f(Shape{}) with the continuum shape of a mesh; not at all for points and bars.
 template <class F>
 void with_shape(ElementShape shape, F&& f) {

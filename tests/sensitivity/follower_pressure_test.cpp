@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "tests/support/blocks.hpp"
+#include "tests/support/compiled_slots.hpp"
 #include "tests/support/finite_strain.hpp"
 
 namespace stickslip {
@@ -88,8 +89,11 @@ Scene blown(Space space, const std::string& element) {
 }
 
 TEST(FollowerPressure, HasTheDerivativesOfTheComplexStepInBothModes) {
-  for (const auto& [space, element] :
-       {std::pair(Space::plane_strain, "Q4"), {Space::plane_strain, "T6"}, {Space::axisymmetric, "Q4"}})
+  for (const auto& [space, element] : {std::pair(Space::plane_strain, "Q4"),
+                                       {Space::plane_strain, "T6"},
+                                       {Space::axisymmetric, "Q4"},
+                                       {Space::plane_stress, "Q4"},
+                                       {Space::plane_stress, "Q8"}})
     for (const Method& method : finite_schemes()) {
       const Scene scene = blown(space, element);
       const auto s = run(scene, method);
@@ -100,8 +104,7 @@ TEST(FollowerPressure, HasTheDerivativesOfTheComplexStepInBothModes) {
     }
 }
 
-TEST(FollowerPressure, TurnsWithTheBody) {
-  const Scene scene = blown(Space::plane_strain, "Q4");
+void expect_turning(const Scene& scene) {
   const Model model = make_model(scene);
   const auto slots = make_slots<double>(model, scene.as<double>());
   Vector<double> u(model.dof_count());
@@ -116,6 +119,33 @@ TEST(FollowerPressure, TurnsWithTheBody) {
   for (int n = 0; n < model.node_count; ++n)
     EXPECT_LE((found.segment<2>(2 * n) - turned * still.segment<2>(2 * n)).norm(), 1e-13 * largest_entry(still)) << n;
   EXPECT_GT(largest_entry(still), 0.1);
+}
+
+TEST(FollowerPressure, TurnsWithTheBody) {
+  expect_turning(blown(Space::plane_strain, "Q4"));
+  expect_turning(blown(Space::plane_stress, "T6"));
+}
+
+TEST(FollowerPressure, HasTheTangentOfItsForcesWhereTheThicknessChanges) {
+  for (const char* element : {"T3", "Q4", "T6", "Q8"}) {
+    const Model model = make_model(blown(Space::plane_stress, element));
+    const auto slots = make_slots<double>(model, model.scene.as<double>());
+    const auto of_complex = make_slots<std::complex<double>>(model, model.scene.as<std::complex<double>>());
+    Vector<double> u(model.dof_count());
+    for (Eigen::Index i = 0; i < u.size(); ++i) u[i] = 0.05 * std::sin(1.3 * static_cast<double>(i));
+    Matrix<double> K = Matrix<double>::Zero(u.size(), u.size());
+    for_each_follower_tangent(model, slots, {u, {}, 1.0}, [&](const std::vector<int>& nodes, const Matrix<double>& k) {
+      for (Eigen::Index r = 0; r < k.rows(); ++r)
+        for (Eigen::Index c = 0; c < k.cols(); ++c) K(nodes[r / 2] * 2 + r % 2, nodes[c / 2] * 2 + c % 2) += k(r, c);
+    });
+    for (Eigen::Index j = 0; j < u.size(); ++j) {
+      Vector<std::complex<double>> moved = u.cast<std::complex<double>>();
+      moved[j] += std::complex<double>(0, 1e-30);
+      const auto exact = follower_forces(model, of_complex, 1.0, moved);
+      for (Eigen::Index i = 0; i < u.size(); ++i)
+        EXPECT_NEAR(K(i, j), exact[i].imag() / 1e-30, 1e-13 * largest_entry(K)) << element << i << j;
+    }
+  }
 }
 
 }  // namespace

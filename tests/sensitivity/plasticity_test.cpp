@@ -202,7 +202,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Setting{Space::plane_strain, false, "T6"}, Setting{Space::plane_stress, false, "Q4"},
                     Setting{Space::axisymmetric, false, "Q4_mean_dilatation"}, Setting{Space::plane_strain, true, "Q4"},
                     Setting{Space::plane_strain, true, "Q4_mean_dilatation"}, Setting{Space::axisymmetric, true, "T3"},
-                    Setting{Space::plane_stress, false, "Q8", true},
+                    Setting{Space::plane_stress, false, "Q8", true}, Setting{Space::plane_stress, true, "Q4"},
+                    Setting{Space::plane_stress, true, "T6", true},
                     Setting{Space::plane_strain, true, "Q4_mean_dilatation", true}));
 
 /// A truss of two bars, elastoplastic, pushed down on a stop that is rough.
