@@ -51,8 +51,9 @@ class CholmodFactor {
   Matrix<double> schur_complement() const;
   /// y of L y = P b, which is `others`, and L_kk y_k. pre: the last factorise() was done.
   Reduction<double> reduce(const Matrix<double>& b);
-  /// x_o of L^T P x = y, x_k being `kept`, whatever y_k is. pre: the last factorise() was done.
-  Matrix<double> expand(const Matrix<double>& kept, Matrix<double> y);
+  /// x_o of L^T P x = y, x_k being `kept`, whatever y_k is; with `wanted`, the others may be zero. pre: the last
+  /// factorise() was done.
+  Matrix<double> expand(const Matrix<double>& kept, Matrix<double> y, const std::vector<int>* wanted);
   void solve(const Matrix<double>& b, Matrix<double>& x, bool transposed);
   std::string name() const;
   long factor_nonzeros() const;

@@ -160,6 +160,54 @@ struct CholmodFactor::Data {
     }
   }
 
+  /// Supernodes on the way from some rows (as in the pattern) up to the roots of the elimination tree.
+  std::vector<char> ancestors_of(const std::vector<int>& wanted) const {
+    const auto* super = static_cast<const int*>(factor->super);
+    const auto* pi = static_cast<const int*>(factor->pi);
+    const auto* rows = static_cast<const int*>(factor->s);
+    const auto* permutation = static_cast<const int*>(factor->Perm);
+    std::vector<char> is_wanted(pattern->size, false), marked(factor->nsuper, false);
+    for (int row : wanted) is_wanted[row] = true;
+    std::vector<int> supernode_of(pattern->size);
+    for (std::size_t s = 0; s < factor->nsuper; ++s)
+      for (int k = super[s]; k < super[s + 1]; ++k) {
+        supernode_of[k] = static_cast<int>(s);
+        if (is_wanted[permutation[k]]) marked[s] = true;
+      }
+    for (std::size_t s = 0; s < factor->nsuper; ++s) {  // (a parent stands behind its children)
+      const int parent = pi[s] + super[s + 1] - super[s];
+      if (marked[s] && parent < pi[s + 1]) marked[supernode_of[rows[parent]]] = true;
+    }
+    return marked;
+  }
+
+  /// Replaces y by x of L^T x = y, rows in the order of elimination, in the supernodes that some rows (as in the
+  /// pattern) hang on; elsewhere by zero.
+  void solve_back(const std::vector<int>& wanted, Matrix<double>& y) const {
+    using Block = Eigen::Map<const Matrix<double>, 0, Eigen::OuterStride<>>;
+    const auto* x_of = static_cast<const double*>(factor->x);
+    const auto* super = static_cast<const int*>(factor->super);
+    const auto* pi = static_cast<const int*>(factor->pi);
+    const auto* px = static_cast<const int*>(factor->px);
+    const auto* rows = static_cast<const int*>(factor->s);
+    const auto marked = ancestors_of(wanted);
+    Matrix<double> known;
+    for (std::size_t s = factor->nsuper; s-- > 0;) {
+      const int own = super[s + 1] - super[s], count = pi[s + 1] - pi[s], below = count - own;
+      const Block L(x_of + px[s], count, own, Eigen::OuterStride<>(count));
+      auto x = y.middleRows(super[s], own);
+      if (!marked[s]) {
+        x.setZero();
+        continue;
+      }
+      known.resize(below, y.cols());
+      for (Eigen::Index c = 0; c < y.cols(); ++c)
+        for (int i = 0; i < below; ++i) known(i, c) = y(rows[pi[s] + own + i], c);
+      x.noalias() -= L.bottomRows(below).transpose() * known;
+      L.topRows(own).template triangularView<Eigen::Lower>().transpose().solveInPlace(x);
+    }
+  }
+
   /// Smallest l_kk^2 / a_kk: a pivot over the diagonal entry it came from, which no diagonal scaling changes.
   double smallest_pivot(const double* values) const {
     const auto* x_of = static_cast<const double*>(factor->x);
@@ -260,7 +308,7 @@ Reduction<double> CholmodFactor::reduce(const Matrix<double>& b) {
   return reduced;
 }
 
-Matrix<double> CholmodFactor::expand(const Matrix<double>& kept, Matrix<double> y) {
+Matrix<double> CholmodFactor::expand(const Matrix<double>& kept, Matrix<double> y, const std::vector<int>* wanted) {
   Data& d = *data_;
   d.for_each_kept_block([&](int first, int columns, const std::vector<int>& rows, const auto& block) {
     const Matrix<double> x = kept(rows, Eigen::all);
@@ -269,7 +317,10 @@ Matrix<double> CholmodFactor::expand(const Matrix<double>& kept, Matrix<double> 
     to = block.topRows(columns).template triangularView<Eigen::Lower>().transpose() * x.topRows(columns);
     to += block.bottomRows(below).transpose() * x.bottomRows(below);
   });
-  d.solve_triangle(cholmod_super_ltsolve, y);
+  if (wanted)
+    d.solve_back(*wanted, y);
+  else
+    d.solve_triangle(cholmod_super_ltsolve, y);
   const auto* permutation = static_cast<const int*>(d.factor->Perm);
   const int eliminated = d.pattern->size - d.kept;
   Matrix<double> x(eliminated, y.cols());

@@ -223,11 +223,11 @@ Reduction<T> LinearSolver<T>::reduce(const Matrix<T>& right_hand_sides) {
 }
 
 template <class T>
-Matrix<T> LinearSolver<T>::expand(const Matrix<T>& kept, Matrix<T> others) {
+Matrix<T> LinearSolver<T>::expand(const Matrix<T>& kept, Matrix<T> others, const std::vector<int>* wanted) {
   Implementation& s = *implementation_;
   if (!s.usable) throw std::logic_error("LinearSolver: expansion without a factorisation");
   Matrix<T> x;
-  if (s.by_halves([&](auto& factor) { x = factor.expand(kept, std::move(others)); })) {
+  if (s.by_halves([&](auto& factor) { x = factor.expand(kept, std::move(others), wanted); })) {
     s.counters.half_solves += static_cast<long>(kept.cols());
     return x;
   }

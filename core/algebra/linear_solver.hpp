@@ -87,8 +87,10 @@ class LinearSolver {
   /// backwards; of another factor each half is a whole solve. Halves are not refined: the triangular solves of a
   /// Cholesky factor are stable whatever the scales of the unknowns [Hig02, 10.1]. pre: the last factorise() returned
   /// true.
+  /// `wanted`: rows of x_o that are read, where not all are: the way back then leads through their ancestors in the
+  /// elimination tree alone, and the others may be zero.
   Reduction<T> reduce(const Matrix<T>& right_hand_sides);
-  Matrix<T> expand(const Matrix<T>& kept, Matrix<T> others);
+  Matrix<T> expand(const Matrix<T>& kept, Matrix<T> others, const std::vector<int>* wanted = nullptr);
 
   /// Sign of the determinant of the last factor, +1 or -1 (complex: of the real part of its phase).
   int determinant_sign() const;

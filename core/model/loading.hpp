@@ -13,7 +13,8 @@ Vector<T> dead_forces(const Model& model, const Slots<T>& slots, double t) {
   for (std::size_t l = 0; l < slots.loads.size(); ++l) {
     const auto& history = model.scene.loads[l].history;
     const T factor = history ? evaluate(*history, t, slots.numbers) : T(1);
-    for (int dof = 0; dof < model.dof_count(); ++dof) forces[dof] += factor * slots.loads[l][dof];
+    for (int dof = 0; dof < model.dof_count(); ++dof)
+      if (!vanishes(slots.loads[l][dof])) forces[dof] += factor * slots.loads[l][dof];
   }
   return forces;
 }
