@@ -19,7 +19,7 @@ EnginePrice predict_price(const Model& model, const Method& method, const Factor
 
 bool condenses(const Model& model, const Method& method, LinearAlgebra::Engine engine,
                const std::optional<FactorSize>& factor) {
-  if (!model.effects.linear_bulk) return false;
+  if (!can_condense(model)) return false;
   if (engine != LinearAlgebra::Engine::automatic) return engine == LinearAlgebra::Engine::condensed;
   return prefers_condensed(model, predict_price(model, method, factor ? *factor : bodies_factor(model)));
 }

@@ -14,24 +14,26 @@ ConeRadius cone_radius(const Method& method);
 /// Price of a run by each engine. `factor`: of the bodies (bodies_factor).
 EnginePrice predict_price(const Model& model, const Method& method, const FactorSize& factor);
 
-/// Whether a run condenses the bodies: where it is asked to, else where that is cheaper. `factor`: of the bodies; they
-/// are analysed where it is needed and not given.
+/// Whether a run condenses the bodies, or those of a mixed scene that it can: where it is asked to, else where that is
+/// cheaper. `factor`: of the bodies; they are analysed where it is needed and not given.
 bool condenses(const Model& model, const Method& method, LinearAlgebra::Engine engine,
                const std::optional<FactorSize>& factor = std::nullopt);
 
-/// Builds the engine a run asks for.
+/// Builds the engine a run asks for: dense on the contact dofs where all bodies are condensed, else sparse.
 template <class T>
 void make_engine(const Model& model, const Slots<T>& slots, const Method& method, const RunOptions& options,
                  Workspace<T>& workspace) {
   const bool unknown_multipliers = has_unknown_multipliers(method);
   const ConeRadius cone = cone_radius(method);
   const auto engine = options.linear_algebra.engine;
-  if (model.effects.linear_bulk && engine != LinearAlgebra::Engine::sparse) {
+  std::shared_ptr<Condensation<T>> condensed;  // bodies among others
+  if (can_condense(model) && engine != LinearAlgebra::Engine::sparse) {
     auto bodies = workspace.condensation;
     if (!bodies) bodies = std::make_shared<Condensation<T>>(model, options.backend);
     if (condenses(model, method, engine, bodies->factor_size())) {
       if (!std::exchange(workspace.condensation, bodies)) bodies->factorise(slots);
-      if (bodies->valid()) {
+      if (bodies->valid() && !model.effects.linear_bulk) condensed = bodies;
+      if (bodies->valid() && model.effects.linear_bulk) {
         workspace.engine.emplace(std::in_place_type<CondensedEngine<T>>, model, slots, unknown_multipliers, cone,
                                  bodies);
         return;
@@ -39,7 +41,7 @@ void make_engine(const Model& model, const Slots<T>& slots, const Method& method
     }
   }
   workspace.engine.emplace(std::in_place_type<SparseEngine<T>>, model, slots, unknown_multipliers, cone,
-                           options.backend);
+                           options.backend, std::move(condensed));
 }
 
 }  // namespace stickslip

@@ -134,7 +134,7 @@ class NewtonTangent {
     const auto& [model, slots] = std::tie(task_.contact.model, task_.contact.slots);
     if (!model.effects.linear_bulk) {
       const Stopwatch time(account_.seconds.assembly);
-      const Vector<T> moved = engine_.all(unknowns.u);
+      const Vector<T> moved = engine_.spread(unknowns.u);
       engine_.linearise({moved, task_.contact.previous.bodies, task_.arc ? unknowns.time : task_.contact.time});
     }
     face(field);

@@ -118,7 +118,7 @@ class Sequence {
   /// Solves the contact problem of bodies that are linear about a displacement; `branches_`, where there are any, come
   /// first. False where it has no solution.
   bool solve_linear(const Vector<T>& about) {
-    const Vector<T> moved = engine_.all(about);
+    const Vector<T> moved = engine_.spread(about);
     {
       const Stopwatch time(account_.seconds.assembly);
       engine_.hold_bodies({moved, task_.contact.previous.bodies, task_.contact.time}, unknowns_.u);

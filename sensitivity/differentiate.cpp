@@ -44,22 +44,26 @@ constexpr bool keeps_tangents(const M&) {
 }
 bool keeps_tangents(const UzawaAL& method) { return method.sensitivity == UzawaAL::Sensitivity::iterated; }
 
-/// Whether a response reads displacements of nodes that are in no contact.
-bool reads_inside(const Model& model) {
-  const auto is_inside = [&](int node) {
-    return !std::binary_search(model.contact_nodes.begin(), model.contact_nodes.end(), node);
-  };
+/// Dofs outside the contact whose displacements responses read, ascending; nothing where all are read.
+std::optional<std::vector<int>> dofs_read_inside(const Model& model) {
+  std::vector<char> read(model.node_count, false);
   for (std::size_t i = 0; i < model.scene.responses.size(); ++i) {
     const Response& response = model.scene.responses[i];
-    if (response.kind == Response::Kind::reaction || response.kind == Response::Kind::strain_energy) return true;
+    if (response.kind == Response::Kind::strain_energy) return std::nullopt;
     if (response.kind != Response::Kind::displacement) continue;
     const auto& place = model.response_places[i].nodes;
-    if (std::any_of(place.begin(), place.end(), [&](const auto& node) { return is_inside(node.first); })) return true;
-    if (!place.empty()) continue;
-    const auto nodes = model.side(response.on).nodes;
-    if (std::any_of(nodes.begin(), nodes.end(), is_inside)) return true;
+    for (const auto& [node, weight] : place) read[node] = true;
+    if (place.empty())
+      for (int node : model.side(response.on).nodes) read[node] = true;
   }
-  return false;
+  for (std::size_t b = 0; b < model.at_reactions.size(); ++b)
+    for (int e : model.at_reactions[b])
+      for (int node : detail::element_nodes(model.bodies[b], e)) read[node] = true;
+  for (int node : model.contact_nodes) read[node] = false;
+  std::vector<int> dofs;
+  for (int node = 0; node < model.node_count; ++node)
+    for (int i = 0; read[node] && i < model.dimension; ++i) dofs.push_back(node * model.dimension + i);
+  return dofs;
 }
 
 /// Whether a factorisation of the engine costs as much as many solves.
@@ -96,7 +100,7 @@ struct Derivatives::Progress {
   const Slots<double>& slots;
   const Method& method;
   Workspace<double>& workspace;
-  const bool inside = reads_inside(model) || model.effects.plasticity;
+  const std::optional<std::vector<int>> read_inside = dofs_read_inside(model);
   Gradients gradients = {};
   std::vector<ParameterBlock> blocks = {};
   std::size_t done = 0;    ///< increments
@@ -181,10 +185,17 @@ struct Derivatives::Progress {
   std::vector<std::vector<Vector<Direction>>> displacements_of(Differentiation<E>& problem,
                                                                std::vector<Unexpanded> increments, bool is_last) {
     std::vector<std::vector<Vector<Direction>>> displacements;
-    if (!inside) {
-      const std::size_t unread = increments.size() - (is_last ? 1 : 0);
-      for (std::size_t k = 0; k < unread; ++k) displacements.push_back(at_contact(problem, std::move(increments[k])));
-      increments.erase(increments.begin(), increments.begin() + static_cast<std::ptrdiff_t>(unread));
+    if (read_inside) {
+      std::vector<Unexpanded> last;
+      if (is_last) {
+        last.push_back(std::move(increments.back()));
+        increments.pop_back();
+      }
+      if (read_inside->empty())
+        for (auto& increment : increments) displacements.push_back(without_inside(problem, std::move(increment)));
+      else
+        displacements = expand(problem, std::move(increments), &*read_inside);
+      increments = std::move(last);
     }
     for (auto& expanded : expand(problem, std::move(increments))) displacements.push_back(std::move(expanded));
     return displacements;

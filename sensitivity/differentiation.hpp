@@ -104,7 +104,8 @@ Matrix<double> gather(std::vector<ParameterBlock>& blocks, int parameters, Pick&
   }
   return out;
 }
-inline void add_derivatives(Vector<Direction>& v, const Matrix<double>& columns, const ParameterBlock& block) {
+inline void add_derivatives(Vector<Direction>& v, const Eigen::Ref<const Matrix<double>>& columns,
+                            const ParameterBlock& block) {
   for (std::size_t d = 0; d < block.parameters.size(); ++d)
     for (Eigen::Index i = 0; i < v.size(); ++i) v[i].d[d] += columns(i, block.parameters[d]);
 }
@@ -143,34 +144,33 @@ void reduce(Differentiation<E>& problem, std::vector<PseudoLoad>& loads) {
   }
 }
 
-/// Displacements of all dofs with their derivatives at supports and contact nodes; elsewhere without, which saves the
-/// solve.
+/// Displacements of all dofs with their derivatives, but for what is inside condensed bodies: there without, which
+/// saves the solve.
 template <class E>
-std::vector<Vector<Direction>> at_contact(Differentiation<E>& problem, Unexpanded increment) {
-  const Model& model = problem.model;
-  Matrix<double> all = Matrix<double>::Zero(model.dof_count(), problem.parameters);
-  for (int j = 0; j < problem.parameters; ++j) {
-    Vector<double> column = all.col(j);
-    add_compact<double>(model, problem.engine.compact(increment.increment.col(j)), column);
-    all.col(j) = column;
-  }
+std::vector<Vector<Direction>> without_inside(const Differentiation<E>& problem, Unexpanded increment) {
+  const Matrix<double> all = problem.engine.spread(increment.increment);
   auto displacements = std::move(increment.load.displacement);
   for (std::size_t b = 0; b < displacements.size(); ++b) add_derivatives(displacements[b], all, problem.blocks[b]);
   return displacements;
 }
 
-/// Displacements of all dofs with their derivatives, per increment and block, in one solve.
+/// Displacements of all dofs with their derivatives, per increment and block, in one solve. `wanted`: dofs that are
+/// read, where not all are (Condensation::expand).
 template <class E>
-std::vector<std::vector<Vector<Direction>>> expand(Differentiation<E>& problem, std::vector<Unexpanded> increments) {
+std::vector<std::vector<Vector<Direction>>> expand(Differentiation<E>& problem, std::vector<Unexpanded> increments,
+                                                   const std::vector<int>* wanted = nullptr) {
   const int parameters = problem.parameters, count = static_cast<int>(increments.size());
   if (count == 0) return {};
-  const auto join = [&](auto&& part) {
+  const auto join = [&](double sign, auto&& part) {
     Matrix<double> all(part(increments[0]).rows(), count * parameters);
-    for (int n = 0; n < count; ++n) all.middleCols(n * parameters, parameters) = part(increments[n]);
+    for (int n = 0; n < count; ++n) all.middleCols(n * parameters, parameters) = sign * part(increments[n]);
     return all;
   };
-  const Matrix<double> all = problem.engine.expand(join([](auto& of) -> auto& { return of.increment; }),
-                                                   -join([](auto& of) -> auto& { return of.load.reduced.others; }));
+  const Matrix<double> all = problem.engine.expand(join(
+                                                       1, [](auto& of) -> auto& { return of.increment; }),
+                                                   join(
+                                                       -1, [](auto& of) -> auto& { return of.load.reduced.others; }),
+                                                   wanted);
   std::vector<std::vector<Vector<Direction>>> displacements;
   for (int n = 0; n < count; ++n) {
     displacements.push_back(std::move(increments[n].load.displacement));

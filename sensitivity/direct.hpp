@@ -41,8 +41,7 @@ class LinearisedEquilibrium {
   /// turns out to be singular.
   bool solve(std::vector<Vector<Direction>>& lambda, std::vector<ContactField<Direction>>& fields);
 
-  /// Completes the state of every block from the last solve, but for the displacements, which are left unexpanded (of
-  /// bodies that remember they are expanded here too).
+  /// Completes the state of every block from the last solve, but for the displacements, which are left unexpanded.
   void settle(const std::vector<ContactField<Direction>>& fields, const std::vector<Vector<Direction>>& lambda);
 
   /// Largest derivatives, by parameter, of the contact displacements, then and now, and of the forces of bodies and
@@ -221,11 +220,11 @@ void LinearisedEquilibrium<E>::settle(const std::vector<ContactField<Direction>>
     block.current.history = next_history(input(static_cast<int>(b)), block.current.contact, lambda[b]);
   }
   if (problem_.model.effects.plasticity) {
-    const auto displacement = expand(problem_, {Unexpanded{load_, increment_}});
+    const auto displacement = without_inside(problem_, {load_, increment_});  // (what remembers is not condensed)
     for (std::size_t b = 0; b < problem_.blocks.size(); ++b) {
       auto& block = problem_.blocks[b];
       block.current.history.bodies =
-          bulk_flow(problem_.model, block.slots, displacement[0][b], block.previous.history.bodies);
+          bulk_flow(problem_.model, block.slots, displacement[b], block.previous.history.bodies);
     }
   }
   problem_.unexpanded = {std::move(load_), increment_};

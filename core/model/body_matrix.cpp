@@ -9,15 +9,25 @@ void RowLists::add(const std::vector<int>& rows) {
   start.push_back(static_cast<int>(row.size()));
 }
 
-RowLists element_rows(const Model& model, const std::vector<int>& row_of_dof) {
+bool is_among(const Model& model, std::size_t body, BodyKind kind) {
+  if (kind == BodyKind::all) return true;
+  // (at small strain a law that remembers nothing is linear)
+  const bool is_constant = !model.scene.finite_strain && model.bodies[body].memory == 0;
+  return is_constant == (kind == BodyKind::constant);
+}
+
+RowLists element_rows(const Model& model, const std::vector<int>& row_of_dof, BodyKind kind) {
   const int D = model.dimension;
   RowLists lists;
-  for (const auto& body : model.bodies)
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (!is_among(model, b, kind)) continue;
+    const auto& body = model.bodies[b];
     for (int e = 0; e < body.mesh.element_count(); ++e) {
       for (int node : detail::element_nodes(body, e))
         for (int i = 0; i < D; ++i) lists.row.push_back(row_of_dof[node * D + i]);
       lists.start.push_back(static_cast<int>(lists.row.size()));
     }
+  }
   return lists;
 }
 
@@ -53,18 +63,23 @@ std::shared_ptr<Pattern> make_pattern(int size, const RowLists& lists) {
 ContactLast with_contact_last(const Model& model) {
   const int D = model.dimension;
   ContactLast rows;
-  std::vector<char> touches(model.node_count, false);
+  enum Place : char { elsewhere, inside, in_contact };
+  std::vector<Place> place(model.node_count, elsewhere);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    if (is_among(model, b, BodyKind::constant))
+      std::fill_n(place.begin() + model.bodies[b].first_node, model.bodies[b].mesh.node_count, inside);
   for (int node : model.contact_nodes) {
-    touches[node] = true;
+    if (place[node] == elsewhere) continue;
+    place[node] = in_contact;
     for (int d = 0; d < D; ++d) rows.contact.push_back(node * D + d);
   }
   for (int dof : model.free_dofs)
-    if (!touches[dof / D]) rows.interior.push_back(dof);
+    if (place[dof / D] == inside) rows.interior.push_back(dof);
   std::vector<int> row(model.dof_count(), -1);
   int next = 0;
   for (const auto* dofs : {&rows.interior, &rows.contact})
     for (int dof : *dofs) row[dof] = next++;
-  rows.lists = element_rows(model, row);
+  rows.lists = element_rows(model, row, BodyKind::constant);
   rows.pattern = make_pattern(next, rows.lists);
   return rows;
 }

@@ -17,13 +17,18 @@ struct RowLists {
   int count() const { return static_cast<int>(start.size()) - 1; }
 };
 
+/// Bodies by their stiffness: all, those of which it is constant, and the others.
+enum class BodyKind { all, constant, changing };
+bool is_among(const Model& model, std::size_t body, BodyKind kind);
+
 /// One list for each element, body by body: where each of its dofs (node-major) stands in the matrix.
-RowLists element_rows(const Model& model, const std::vector<int>& row_of_dof);
+RowLists element_rows(const Model& model, const std::vector<int>& row_of_dof, BodyKind kind = BodyKind::all);
 
 /// Pattern of a sum of such blocks; every diagonal entry is stored.
 std::shared_ptr<Pattern> make_pattern(int size, const RowLists& lists);
 
-/// The bodies' matrix with the contact dofs, prescribed ones among them, behind the other free ones.
+/// The matrix of the bodies of constant stiffness, with their contact dofs, prescribed ones among them, behind the
+/// other free ones.
 struct ContactLast {
   std::vector<int> interior;  ///< free dofs outside the contact, as rows follow one another
   std::vector<int> contact;   ///< dofs of the contact, likewise
@@ -39,7 +44,7 @@ int locate(const Pattern& pattern, int row, int column);
 /// the start.
 template <class T>
 std::vector<T> assemble_bodies(const Model& model, const Slots<T>& slots, const RowLists& lists, const Pattern& pattern,
-                               const BodyMotion<T>* at = nullptr);
+                               const BodyMotion<T>* at = nullptr, BodyKind kind = BodyKind::all);
 
 /// for_each_element_tangent of a body, in the frames of the nodes.
 template <class T>
@@ -54,7 +59,7 @@ void for_each_framed_tangent(const Model& model, const Slots<T>& slots, int b, c
 
 template <class T>
 std::vector<T> assemble_bodies(const Model& model, const Slots<T>& slots, const RowLists& lists, const Pattern& pattern,
-                               const BodyMotion<T>* at) {
+                               const BodyMotion<T>* at, BodyKind kind) {
   std::vector<T> values(pattern.nonzeros(), T(0));
   int list = 0;
   const auto add = [&](const auto&, const auto& K) {
@@ -66,7 +71,7 @@ std::vector<T> assemble_bodies(const Model& model, const Slots<T>& slots, const 
     ++list;
   };
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    for_each_framed_tangent<T>(model, slots, static_cast<int>(b), at, std::ref(add));
+    if (is_among(model, b, kind)) for_each_framed_tangent<T>(model, slots, static_cast<int>(b), at, std::ref(add));
   return values;
 }
 
@@ -75,7 +80,7 @@ std::vector<T> assemble_bodies(const Model& model, const Slots<T>& slots, const 
   EXTERN template Vector<T> bulk_tangent_times(const Model&, const Slots<T>&, const BodyMotion<T>&, const Vector<T>&, \
                                                const ElementLists*);                                                  \
   EXTERN template std::vector<T> assemble_bodies(const Model&, const Slots<T>&, const RowLists&, const Pattern&,      \
-                                                 const BodyMotion<T>*)
+                                                 const BodyMotion<T>*, BodyKind)
 
 STICKSLIP_TANGENTS(extern, double);
 

@@ -10,8 +10,9 @@
 
 namespace stickslip {
 
-/// S = K_cc - K_ci K_ii^-1 K_ic, c the contact dofs (prescribed ones among them), i the other free dofs, all in the
-/// frames. Serves every method, sensitivity and cell of a sweep on the same numbers.
+/// S = K_cc - K_ci K_ii^-1 K_ic of the bodies of constant stiffness, c their contact dofs (prescribed ones among them),
+/// i their other free dofs, all in the frames. Serves every method, sensitivity and cell of a sweep on the same
+/// numbers.
 ///
 /// One factorisation does it, of
 ///
@@ -36,11 +37,15 @@ class Condensation {
   bool factorise(const Slots<T>& slots);
   bool valid() const { return valid_; }
   const Matrix<T>& schur() const { return schur_; }
-  /// Rows over all dofs -> rows of the contact dofs, r_c - K_ci K_ii^-1 r_i, and what expand() takes of them.
+  const std::vector<int>& contact() const { return rows_.contact; }    ///< dofs, as the rows of S follow one another
+  const std::vector<int>& interior() const { return rows_.interior; }  ///< dofs
+  /// Rows over all dofs -> rows of the contact dofs, r_c - K_ci K_ii^-1 r_i, and what expand() takes of them. Those of
+  /// other bodies are not read.
   Reduction<T> reduce(const Matrix<T>& rows);
-  /// Increments u over all dofs, zero where they are prescribed outside the contact: u_c = `compact` and
-  /// K_ii u_i + K_ic u_c = r_i, `others` being of the rows' reduction.
-  Matrix<T> expand(const Matrix<T>& compact, Matrix<T> others);
+  /// Increments u over all dofs, zero where they are prescribed outside the contact, and of other bodies: u_c =
+  /// `compact` and K_ii u_i + K_ic u_c = r_i, `others` being of the rows' reduction.
+  /// `wanted`: dofs that are read, ascending, where not all are; the others inside may then be zero.
+  Matrix<T> expand(const Matrix<T>& compact, Matrix<T> others, const std::vector<int>* wanted = nullptr);
   const std::string& message() const { return solver_.message(); }
   std::string name() const { return solver_.name(); }
   long factor_bytes() const { return solver_.factor_bytes(); }
@@ -58,6 +63,21 @@ class Condensation {
   LinearSolver<T> solver_;
   bool valid_ = false;
 };
+
+/// Loads of the condensed bodies, less the forces of what is prescribed outside the contact, reduced. `u`: what is
+/// prescribed, all dofs in the frames; `external`: in the axes; `rest` becomes what is prescribed outside the contact,
+/// zero elsewhere. `only`: elements of the condensed bodies; nullptr: all are.
+template <class T>
+Reduction<T> reduce_loads(Condensation<T>& condensation, const Model& model, const Slots<T>& slots, const Vector<T>& u,
+                          const Vector<T>& external, Vector<T>& rest, const ElementLists* only = nullptr) {
+  rest = Vector<T>::Constant(model.dof_count(), T(0));
+  for (const auto& constraint : model.constraints) rest[constraint.dof] = u[constraint.dof];
+  for (int node : model.contact_nodes)
+    for (int i = 0; i < model.dimension; ++i) rest[node * model.dimension + i] = T(0);
+  const Vector<T> moved = out_of_frames(model, slots.frames, Layout::all, rest);
+  return condensation.reduce(
+      into_frames(model, slots.frames, Layout::all, Vector<T>(external - bulk_forces(model, slots, moved, {}, only))));
+}
 
 extern template class Condensation<double>;
 

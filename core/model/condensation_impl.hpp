@@ -45,7 +45,7 @@ template <class T>
 bool Condensation<T>::factorise(const Slots<T>& slots) {
   const Pattern& pattern = *rows_.pattern;
   const int interior = static_cast<int>(rows_.interior.size()), contacts = static_cast<int>(rows_.contact.size());
-  auto values = assemble_bodies<T>(model_, slots, rows_.lists, pattern);
+  auto values = assemble_bodies<T>(model_, slots, rows_.lists, pattern, nullptr, BodyKind::constant);
   rows_.lists = {};
   if (interior == 0) {
     schur_ = Matrix<T>::Zero(contacts, contacts);
@@ -77,9 +77,11 @@ Reduction<T> Condensation<T>::reduce(const Matrix<T>& rows) {
   Reduction<T> solved;
   if (!inside.empty()) {
     Matrix<T> b(interior + contacts, inside.size());
-    const auto picked = rows(Eigen::all, inside);
-    detail::take_rows(picked, rows_.interior, b.topRows(interior));
-    detail::take_rows(picked, rows_.contact, b.bottomRows(contacts));
+    for (std::size_t k = 0; k < inside.size(); ++k) {
+      const auto column = static_cast<Eigen::Index>(k);
+      detail::take_rows(rows.col(inside[k]), rows_.interior, b.block(0, column, interior, 1));
+      detail::take_rows(rows.col(inside[k]), rows_.contact, b.block(interior, column, contacts, 1));
+    }
     solved = solver_.reduce(b);
     if (b.cols() == rows.cols()) return solved;
   }
@@ -93,10 +95,15 @@ Reduction<T> Condensation<T>::reduce(const Matrix<T>& rows) {
 }
 
 template <class T>
-Matrix<T> Condensation<T>::expand(const Matrix<T>& compact, Matrix<T> others) {
+Matrix<T> Condensation<T>::expand(const Matrix<T>& compact, Matrix<T> others, const std::vector<int>* wanted) {
   Matrix<T> all = Matrix<T>::Zero(model_.dof_count(), compact.cols());
   detail::put_rows(compact, rows_.contact, all);
-  if (!rows_.interior.empty()) detail::put_rows(solver_.expand(compact, std::move(others)), rows_.interior, all);
+  if (rows_.interior.empty()) return all;
+  std::vector<int> inside;
+  for (std::size_t k = 0; wanted && k < rows_.interior.size(); ++k)
+    if (std::binary_search(wanted->begin(), wanted->end(), rows_.interior[k])) inside.push_back(static_cast<int>(k));
+  const Matrix<T> expanded = solver_.expand(compact, std::move(others), wanted ? &inside : nullptr);
+  detail::put_rows(expanded, rows_.interior, all);
   return all;
 }
 

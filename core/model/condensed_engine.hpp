@@ -19,12 +19,16 @@ class CondensedEngine {
   Vector<T> increment(const Vector<T>& u, double time);
   Vector<T> compact(const Vector<T>& u) const { return out_of_frames(model_, slots_.frames, Layout::compact, u); }
   Vector<T> all(const Vector<T>& u);
+  /// Engine displacements or increments over all dofs, in the axes, inside condensed bodies zero.
+  Matrix<T> spread(const Matrix<T>& u) const;
   Vector<T> residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const;
   bool is_free(Eigen::Index row) const { return free_[row]; }
   /// `hold`: stiffness against motion of each contact node, the same in all directions, force per length; empty: none.
   void linearise(const BodyMotion<T>&) {}  ///< (the bodies' tangent is constant)
   void hold_bodies(const BodyMotion<T>&, const Vector<T>&) {}
   void release_bodies() {}
+  /// The bodies' tangent times a motion, all dofs in the axes, that is zero inside.
+  Vector<T> tangent_times(const BodyMotion<T>&, const Vector<T>& motion) const;
   bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
   /// In place of factorise() where few points changed since (model/tangent_update.hpp); until the next factorise() all
   /// solves are with these tangents. False, and nothing changed, where it does not pay or can't be.
@@ -39,8 +43,8 @@ class CondensedEngine {
     return condensation_->schur() * u;  // (symmetric)
   }
   Reduction<T> reduce(const Matrix<T>& rows) { return condensation_->reduce(rows); }
-  Matrix<T> expand(const Matrix<T>& u, Matrix<T> others) {
-    return out_of_frames(model_, slots_.frames, Layout::all, condensation_->expand(u, std::move(others)));
+  Matrix<T> expand(const Matrix<T>& u, Matrix<T> others, const std::vector<int>* wanted = nullptr) {
+    return out_of_frames(model_, slots_.frames, Layout::all, condensation_->expand(u, std::move(others), wanted));
   }
   Matrix<T> scatter(const Matrix<T>& compact) const { return compact; }
   double condition_estimate() const { return valid_ ? factor_.condition_estimate() : 0; }

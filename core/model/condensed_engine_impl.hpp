@@ -1,6 +1,7 @@
 /// Definitions of the templates in condensed_engine.hpp.
 #pragma once
 
+#include "core/model/condensation_impl.hpp"
 #include "core/model/condensed_engine.hpp"
 #include "core/model/loading.hpp"
 
@@ -29,15 +30,9 @@ Vector<T> CondensedEngine<T>::begin(double time, const Vector<T>& displacement, 
   Vector<T> u = displacement;
   prescribe(model_, slots_, time, u);
   u = into_frames(model_, slots_.frames, Layout::all, std::move(u));
-  rest_ = Vector<T>::Constant(model_.dof_count(), T(0));
-  for (const auto& constraint : model_.constraints) rest_[constraint.dof] = u[constraint.dof];
-  for (int node : model_.contact_nodes)
-    for (int i = 0; i < model_.dimension; ++i) rest_[node * model_.dimension + i] = T(0);
-  const Vector<T> moved = out_of_frames(model_, slots_.frames, Layout::all, rest_);
   const Vector<T> external = dead_forces(model_, slots_, time);
   largest_external_ = largest_nodal_norm(external, model_.dimension);
-  auto reduced = condensation_->reduce(
-      into_frames(model_, slots_.frames, Layout::all, Vector<T>(external - bulk_forces(model_, slots_, moved, {}))));
+  auto reduced = reduce_loads(*condensation_, model_, slots_, u, external, rest_);
   load_ = reduced.kept;
   others_ = std::move(reduced.others);
   return to_compact(model_, u);
@@ -73,10 +68,22 @@ Vector<T> CondensedEngine<T>::all(const Vector<T>& u) {
 }
 
 template <class T>
+Matrix<T> CondensedEngine<T>::spread(const Matrix<T>& u) const {
+  const Matrix<T> compact = out_of_frames(model_, slots_.frames, Layout::compact, u);
+  Matrix<T> all = Matrix<T>::Constant(model_.dof_count(), u.cols(), T(0));
+  detail::put_rows(compact, condensation_->contact(), all);
+  return all;
+}
+
+template <class T>
+Vector<T> CondensedEngine<T>::tangent_times(const BodyMotion<T>&, const Vector<T>& motion) const {
+  return spread(condensation_->schur() *
+                into_frames(model_, slots_.frames, Layout::compact, to_compact(model_, motion)));
+}
+
+template <class T>
 Vector<T> CondensedEngine<T>::residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const {
   const int D = model_.dimension;
-  // A body that supports carry along has S u and the load cancel: of tolerances of 1e-10 a ten-thousandth is rounding.
-  constexpr double cancelling = 1e-4;
   Vector<T> rows = condensation_->schur() * u;
   const double carried = std::max(largest_nodal_norm(rows, D), largest_nodal_norm(load_, D));
   double stiffest = 0;
@@ -84,7 +91,7 @@ Vector<T> CondensedEngine<T>::residual(const Vector<T>& u, const Vector<T>& cont
   scale.rounding = unit_roundoff * stiffest * largest_nodal_norm(u, D);
   rows -= load_;
   scale.force = std::max({scale.force, largest_external_, largest_nodal_norm(rows, D), largest_nodal_norm(contact, D),
-                          cancelling * carried});
+                          cancelling_forces * carried});
   rows += into_frames(model_, slots_.frames, Layout::compact, contact);
   return rows;
 }

@@ -52,6 +52,10 @@ struct ForceScale {
   double rounding = 0;  ///< what rounding alone may leave in a row
 };
 
+/// Share of the forces of a condensed body that residuals are measured by: of a body that supports carry along, S u and
+/// the load cancel, and of tolerances of 1e-10 a ten-thousandth is rounding.
+inline constexpr double cancelling_forces = 1e-4;
+
 /// Largest Euclidean norm of the nodal vectors (D consecutive entries) of the primal parts; NaN where one is.
 template <class T>
 double largest_nodal_norm(const Vector<T>& v, int D) {

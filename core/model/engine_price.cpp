@@ -1,8 +1,9 @@
 #include "core/model/engine_price.hpp"
 
 #include <cmath>
+#include <limits>
 
-#include "core/model/body_matrix.hpp"
+#include "core/model/sparse_engine.hpp"
 
 namespace stickslip {
 namespace {
@@ -15,6 +16,8 @@ struct Iterations {
 // finds stick and slip from nothing, 0.1 to 0.5 and 18 to 60 in one that follows it; without friction 1 and 2.
 constexpr Iterations first_with_friction{8, 40}, next_with_friction{0.5, 20};
 constexpr Iterations first_without{1.5, 3}, next_without{0.5, 3};
+// Of bodies whose stiffness changes every tangent is factorised: 4 to 6 an increment of a punch on metal, all methods.
+constexpr Iterations next_changing{5, 5};
 // Beside an operation of a sparse factorisation: one of a back-solve waits for memory, less so with many right-hand
 // sides; one of a dense factorisation runs on large blocks. Orders of magnitude.
 constexpr double of_solve = 3, of_block_solve = 1.2, of_dense = 1.0 / 3;
@@ -23,22 +26,60 @@ constexpr double of_solve = 3, of_block_solve = 1.2, of_dense = 1.0 / 3;
 constexpr double free_ordering = 0.8, lu = 2, setting_up = 0.5;
 constexpr int few_unknowns = 200;
 
+double kind_of(Symmetry symmetry) { return symmetry == Symmetry::general ? lu : 1; }
+
+/// Right-hand sides of the derivatives of an increment.
+double derivatives_of(const Scene& scene) {
+  const bool adjoint = scene.sensitivity_mode == SensitivityMode::adjoint;
+  return static_cast<double>(scene.parameters.empty() ? 0
+                             : adjoint                ? scene.objectives.size()
+                                                      : scene.parameters.size());
+}
+
+/// Factor of a tangent, ordered freely; of a scene that is condensed in part, or not at all.
+FactorSize tangent_factor(const Model& model, bool unknown_multipliers, const MixedRows* mixed) {
+  const auto displacements = (mixed ? mixed->dofs : model.free_dofs).size();
+  const int size = static_cast<int>(displacements) + (unknown_multipliers ? model.multiplier_count : 0);
+  if (size == 0) return {};
+  return predict_factor(make_pattern(size, tangent_rows(model, unknown_multipliers, mixed)), 0);
+}
+
+/// Where the tangent of some body changes from iteration to iteration, and every derivative has one of its own.
+EnginePrice price_of_changing(const Model& model, bool unknown_multipliers, Symmetry symmetry,
+                              const FactorSize& bodies) {
+  const double increments = static_cast<double>(model.times.size()), derivatives = derivatives_of(model.scene);
+  const double tangents = increments * (next_changing.tangents + (derivatives > 0 ? 1 : 0));
+  const double solves = increments * (next_changing.solves * of_solve + derivatives * of_block_solve);
+  const auto price_of = [&](const FactorSize& factor) {
+    return (setting_up + tangents * kind_of(symmetry)) * factor.flops + kind_of(symmetry) * 4 * factor.entries * solves;
+  };
+  EnginePrice price{price_of(tangent_factor(model, unknown_multipliers, nullptr)),
+                    std::numeric_limits<double>::infinity()};
+  if (!has_mixed_bodies(model)) return price;
+  const MixedRows mixed(model);
+  const double contact = static_cast<double>(mixed.contact.size());
+  price.condensed = (setting_up + 1) * bodies.flops + price_of(tangent_factor(model, unknown_multipliers, &mixed)) +
+                    increments * 4 * bodies.entries * (of_solve + derivatives * of_block_solve) +
+                    increments * next_changing.tangents * 2 * contact * contact * of_solve;
+  return price;
+}
+
 }  // namespace
+
+bool can_condense(const Model& model) { return model.effects.linear_bulk || has_mixed_bodies(model); }
 
 FactorSize bodies_factor(const Model& model) {
   const ContactLast rows = with_contact_last(model);
+  if (rows.pattern->size == 0) return {};
   return predict_factor(rows.pattern, static_cast<int>(rows.contact.size()));
 }
 
 EnginePrice predict_price(const Model& model, bool unknown_multipliers, Symmetry symmetry, const FactorSize& factor) {
-  const double sparse_kind = symmetry == Symmetry::general ? lu : 1;
+  if (!model.effects.linear_bulk) return price_of_changing(model, unknown_multipliers, symmetry, factor);
+  const double sparse_kind = kind_of(symmetry);
   const double dense_kind = symmetry == Symmetry::positive_definite ? 1 : lu;
   const double increments = static_cast<double>(model.times.size());
-  const auto& scene = model.scene;
-  const bool adjoint = scene.sensitivity_mode == SensitivityMode::adjoint;
-  const double derivatives = static_cast<double>(scene.parameters.empty() ? 0
-                                                 : adjoint                ? scene.objectives.size()
-                                                                          : scene.parameters.size());
+  const double derivatives = derivatives_of(model.scene);
   const bool friction = model.effects.friction;
   const Iterations first = friction ? first_with_friction : first_without;
   const Iterations next = friction ? next_with_friction : next_without;
@@ -60,7 +101,7 @@ EnginePrice predict_price(const Model& model, bool unknown_multipliers, Symmetry
 }
 
 bool prefers_condensed(const Model& model, const EnginePrice& price) {
-  return price.condensed < price.sparse || model.free_dofs.size() < few_unknowns;
+  return price.condensed < price.sparse || (model.effects.linear_bulk && model.free_dofs.size() < few_unknowns);
 }
 
 }  // namespace stickslip

@@ -10,18 +10,23 @@ namespace stickslip {
 /// Floating-point operations, those that are bound by memory or run on dense blocks weighed by how fast they are beside
 /// the operations of a sparse factorisation.
 struct EnginePrice {
-  double sparse = 0, condensed = 0;
+  double sparse = 0;
+  double condensed = 0;  ///< as far as bodies can be; infinite where none can
 };
 
-/// Factor of the bodies that condenses them, the contact dofs eliminated last; analysed, not made.
+/// Whether all bodies can be condensed, or some of them.
+bool can_condense(const Model& model);
+
+/// Factor of the bodies of constant stiffness that condenses them, the contact dofs eliminated last; analysed, not
+/// made.
 FactorSize bodies_factor(const Model& model);
 
 /// Price of all increments of a scene and their derivatives. `unknown_multipliers`: those are unknowns of the tangents;
 /// `symmetry`: of the tangents; `factor`: of the bodies.
 EnginePrice predict_price(const Model& model, bool unknown_multipliers, Symmetry symmetry, const FactorSize& factor);
 
-/// Whether the bodies are to be condensed. Below 200 unknowns they are, whatever the price: there the calls cost more
-/// than the operations.
+/// Whether the bodies are to be condensed. Below 200 unknowns they are, whatever the price, where all can be: there the
+/// calls cost more than the operations.
 bool prefers_condensed(const Model& model, const EnginePrice& price);
 
 }  // namespace stickslip

@@ -1,25 +1,30 @@
-/// The engine that has the bodies in full.
+/// The engine that has the bodies in full, but for those of constant stiffness among others, which it may condense.
 #pragma once
 
 #include <optional>
 
-#include "core/model/body_matrix.hpp"
-#include "core/model/engine_parts.hpp"
+#include "core/model/condensed_part.hpp"
 
 namespace stickslip {
 
 /// Rows of the tangent that each element, and after them each contact point, has entries in. A point's: its nodes'
-/// dofs, and its multipliers where these are unknown; -1: prescribed.
-RowLists tangent_rows(const Model& model, bool unknown_multipliers);
+/// dofs, and its multipliers where these are unknown; -1: prescribed. `mixed`: of a scene that is condensed in part;
+/// the blocks of its condensed bodies come before the points.
+RowLists tangent_rows(const Model& model, bool unknown_multipliers, const MixedRows* mixed = nullptr);
 
 /// The bodies in full: one sparse matrix over the free dofs and the multipliers, its pattern fixed for every contact
 /// state, the bodies' part assembled once where it is constant. Where points slide along curves the pattern holds the
 /// patches next to those that they face too, and is made anew when a point gets further.
+///
+/// Where some bodies are of constant stiffness and others are not, the former may be condensed: a dense block each on
+/// their contact dofs. Entries of dofs inside them mean nothing in its vectors.
 template <class T>
 class SparseEngine {
  public:
   /// `unknown_multipliers`: the monolithic method's layout, [free dofs; multipliers]. `cone`: of all its systems.
-  SparseEngine(const Model& model, const Slots<T>& slots, bool unknown_multipliers, ConeRadius cone, Backend backend);
+  /// `condensation`: of the bodies of constant stiffness among others (has_mixed_bodies); null: none is condensed.
+  SparseEngine(const Model& model, const Slots<T>& slots, bool unknown_multipliers, ConeRadius cone, Backend backend,
+               std::shared_ptr<Condensation<T>> condensation = nullptr);
 
   /// All dofs, prescribed values at `time` set. `before`: what bodies remember of the last increment.
   Vector<T> begin(double time, const Vector<T>& displacement, const Vector<T>& before);
@@ -32,16 +37,21 @@ class SparseEngine {
   Vector<T> compact(const Vector<T>& u) const {
     return out_of_frames(model_, slots_.frames, Layout::compact, to_compact(model_, u));
   }
-  Vector<T> all(const Vector<T>& u) const { return out_of_frames(model_, slots_.frames, Layout::all, u); }
+  Vector<T> all(const Vector<T>& u) const;
+  /// Engine displacements or increments over all dofs, in the axes, without those inside condensed bodies.
+  Matrix<T> spread(const Matrix<T>& u) const { return out_of_frames(model_, slots_.frames, Layout::all, u); }
   /// f_int - f_ext + contact.
   Vector<T> residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const;
-  bool is_free(Eigen::Index row) const { return model_.free_index[row] >= 0; }
+  bool is_free(Eigen::Index row) const { return row_of_dof()[row] >= 0; }
   /// Takes the bodies' tangent at a motion, for all that follows. pre: it depends on that.
   void linearise(const BodyMotion<T>& at);
   /// Takes the bodies for linear, in residuals too, until release_bodies(): as linearise(at), with the forces at that
   /// motion. `u`: engine displacement that has the prescribed values. (Where their tangent is constant they are so.)
   void hold_bodies(const BodyMotion<T>& at, const Vector<T>& u);
   void release_bodies() { held_bodies_.reset(); }
+  /// The tangent of what is inside and on the bodies at a motion times another, all dofs in the axes, as
+  /// model/loading.hpp has it; of condensed bodies, that of their contact dofs.
+  Vector<T> tangent_times(const BodyMotion<T>& at, const Vector<T>& motion) const;
   /// `hold`: stiffness against motion of each contact node, the same in all directions, force per length; empty: none.
   bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
   /// In place of factorise() where few points changed since (model/tangent_update.hpp); until the next factorise() all
@@ -56,15 +66,15 @@ class SparseEngine {
   /// The bodies' stiffness times engine increments (engine rows), or its transpose.
   Matrix<T> apply_stiffness(const Matrix<T>& u, bool transposed = false) const;
   /// Rows over all dofs, in the frames -> engine rows, `kept`.
-  Reduction<T> reduce(const Matrix<T>& rows) { return {rows, Matrix<T>(0, rows.cols())}; }
-  /// The increment over all dofs, in the axes, that belongs to an engine increment and to the rows that were reduced,
-  /// of whose reduction `others` is.
-  Matrix<T> expand(const Matrix<T>& u, const Matrix<T>& /*others*/) {
-    return out_of_frames(model_, slots_.frames, Layout::all, u);
+  Reduction<T> reduce(const Matrix<T>& rows) {
+    return part_ ? part_->reduce(rows) : Reduction<T>{rows, Matrix<T>(0, rows.cols())};
   }
+  /// The increment over all dofs, in the axes, that belongs to an engine increment and to the rows that were reduced,
+  /// of whose reduction `others` is. `wanted`: dofs that are read, ascending, where not all are.
+  Matrix<T> expand(const Matrix<T>& u, Matrix<T> others, const std::vector<int>* wanted = nullptr);
   Matrix<T> scatter(const Matrix<T>& compact) const;  ///< compact rows -> engine rows
   double condition_estimate() { return solver_.condition_estimate(); }
-  std::string name() const { return solver_.name().empty() ? "sparse" : "sparse, " + solver_.name(); }
+  std::string name() const;
   const std::string& message() const { return solver_.message(); }
   int unknowns() const { return size_; }
   long nonzeros() const { return pattern_->nonzeros(); }
@@ -87,6 +97,7 @@ class SparseEngine {
   const Model& model_;
   const Slots<T>& slots_;
   bool unknown_multipliers_;
+  std::optional<CondensedPart<T>> part_;
   Symmetry symmetry_;
   int size_;
   double time_ = 0;
@@ -99,6 +110,9 @@ class SparseEngine {
   std::vector<int> places_around(std::size_t p, const PointTangent<T>& tangent) const;
   /// Lays the pattern out anew where a tangent has places that it has not.
   void make_room(const std::vector<PointTangent<T>>& tangents);
+  /// Row of each dof, -1: none, and the dofs of the rows.
+  const std::vector<int>& row_of_dof() const { return part_ ? part_->rows().row_of_dof : model_.free_index; }
+  const std::vector<int>& dofs() const { return part_ ? part_->rows().dofs : model_.free_dofs; }
   /// Rows of a point's entries.
   std::vector<int> rows_of(std::size_t p, const std::vector<int>& places) const;
 

@@ -1,15 +1,16 @@
 /// Definitions of the templates in sparse_engine.hpp.
 #pragma once
 
-#include "core/model/loading.hpp"
+#include "core/model/condensed_part_impl.hpp"
 #include "core/model/sparse_engine.hpp"
 
 namespace stickslip {
 namespace detail {
 
-/// Rows of a point's nodes, node-major, then of its multipliers where they are unknowns.
-std::vector<int> rows_of_point(const Model& model, const std::vector<int>& nodes, const ContactPoint& point,
-                               bool unknown_multipliers);
+/// Rows of a point's nodes, node-major, then of its multipliers, of which `first_multiplier` is the first row of all;
+/// -1: they are not unknowns.
+std::vector<int> rows_of_point(const Model& model, const std::vector<int>& row_of_dof, const std::vector<int>& nodes,
+                               const ContactPoint& point, int first_multiplier);
 /// Entry of each (row, column) pair; -1: of a row that is not there.
 std::vector<int> entries_of(const Pattern& pattern, const std::vector<int>& rows);
 
@@ -17,17 +18,18 @@ std::vector<int> entries_of(const Pattern& pattern, const std::vector<int>& rows
 
 template <class T>
 SparseEngine<T>::SparseEngine(const Model& model, const Slots<T>& slots, bool unknown_multipliers, ConeRadius cone,
-                              Backend backend)
+                              Backend backend, std::shared_ptr<Condensation<T>> condensation)
     : model_(model),
       slots_(slots),
       unknown_multipliers_(unknown_multipliers),
       symmetry_(detail::symmetry_of(model, unknown_multipliers, cone)),
-      size_(static_cast<int>(model.free_dofs.size()) + (unknown_multipliers ? model.multiplier_count : 0)),
       solver_(backend) {
+  if (condensation) part_.emplace(model, slots, std::move(condensation));
+  size_ = static_cast<int>(dofs().size()) + (unknown_multipliers ? model.multiplier_count : 0);
   std::vector<std::vector<int>> places;
   for (const auto& point : model.points) places.push_back(point.places);
   lay_out(places);
-  for (int i = 0; i < static_cast<int>(model.free_dofs.size()); ++i)
+  for (int i = 0; i < static_cast<int>(dofs().size()); ++i)
     stiffness_ = std::max(stiffness_, value(bulk_[locate(*pattern_, i, i)]));
 }
 
@@ -35,12 +37,15 @@ template <class T>
 std::vector<int> SparseEngine<T>::rows_of(std::size_t p, const std::vector<int>& places) const {
   std::vector<int> nodes;
   for (int place : places) nodes.push_back(model_.contact_nodes[place]);
-  return detail::rows_of_point(model_, nodes, model_.points[p], unknown_multipliers_);
+  const int displacements = static_cast<int>(dofs().size());
+  return detail::rows_of_point(model_, row_of_dof(), nodes, model_.points[p],
+                               unknown_multipliers_ ? displacements : -1);
 }
 
 template <class T>
 void SparseEngine<T>::lay_out(const std::vector<std::vector<int>>& places) {
-  auto lists = element_rows(model_, model_.free_index);
+  auto lists = element_rows(model_, row_of_dof(), part_ ? BodyKind::changing : BodyKind::all);
+  if (part_) part_->rows().add_blocks(lists);
   for (std::size_t p = 0; p < places.size(); ++p) lists.add(rows_of(p, places[p]));
   pattern_ = make_pattern(size_, lists);
   point_map_.clear();
@@ -59,11 +64,12 @@ void SparseEngine<T>::lay_out(const std::vector<std::vector<int>>& places) {
 
 template <class T>
 void SparseEngine<T>::assemble(const RowLists& lists, const BodyMotion<T>* at) {
-  bulk_ = assemble_bodies<T>(model_, slots_, lists, *pattern_, at);
+  bulk_ = assemble_bodies<T>(model_, slots_, lists, *pattern_, at, part_ ? BodyKind::changing : BodyKind::all);
+  if (part_) part_->add_stiffness(*pattern_, bulk_);
   if (!at || model_.followers.empty()) return;
   for_each_follower_tangent(model_, slots_, *at, [&](const std::vector<int>& nodes, const Matrix<T>& K) {
     const Matrix<T> framed = into_frames(model_, slots_.frames, nodes, K);
-    const auto row_of = [&](Eigen::Index k) { return model_.free_index[nodes[k / 2] * 2 + k % 2]; };
+    const auto row_of = [&](Eigen::Index k) { return row_of_dof()[nodes[k / 2] * 2 + k % 2]; };
     for (Eigen::Index r = 0; r < K.rows(); ++r)
       for (Eigen::Index c = 0; c < K.cols(); ++c)
         if (row_of(r) >= 0 && row_of(c) >= 0) bulk_[locate(*pattern_, row_of(r), row_of(c))] -= framed(r, c);
@@ -116,8 +122,36 @@ void SparseEngine<T>::linearise(const BodyMotion<T>& at) {
 
 template <class T>
 Vector<T> SparseEngine<T>::body_rows(const Vector<T>& moved) const {
-  return into_frames(model_, slots_.frames, Layout::all,
-                     bulk_forces(model_, slots_, moved, bulk_flow(model_, slots_, moved, before_)));
+  Vector<T> rows = into_frames(model_, slots_.frames, Layout::all,
+                               bulk_forces(model_, slots_, moved, bulk_flow(model_, slots_, moved, before_),
+                                           part_ ? &part_->others() : nullptr));
+  if (part_) part_->add_balance(into_frames(model_, slots_.frames, Layout::all, moved), rows);
+  return rows;
+}
+
+template <class T>
+Vector<T> SparseEngine<T>::tangent_times(const BodyMotion<T>& at, const Vector<T>& motion) const {
+  if (!part_) return stickslip::tangent_times(model_, slots_, at, motion, false);
+  Vector<T> rows = into_frames(model_, slots_.frames, Layout::all,
+                               stickslip::tangent_times(model_, slots_, at, motion, false, &part_->others()));
+  part_->add_stiffness_times(into_frames(model_, slots_.frames, Layout::all, motion), rows);
+  return out_of_frames(model_, slots_.frames, Layout::all, std::move(rows));
+}
+
+template <class T>
+Vector<T> SparseEngine<T>::all(const Vector<T>& u) const {
+  if (!part_) return out_of_frames(model_, slots_.frames, Layout::all, u);
+  Matrix<T> expanded = u;
+  part_->expand_all(expanded);
+  return out_of_frames(model_, slots_.frames, Layout::all, Vector<T>(expanded));
+}
+
+template <class T>
+Matrix<T> SparseEngine<T>::expand(const Matrix<T>& u, Matrix<T> others, const std::vector<int>* wanted) {
+  if (!part_) return out_of_frames(model_, slots_.frames, Layout::all, u);
+  Matrix<T> expanded = u;
+  part_->expand(expanded, std::move(others), wanted);
+  return out_of_frames(model_, slots_.frames, Layout::all, std::move(expanded));
 }
 
 template <class T>
@@ -131,8 +165,7 @@ void SparseEngine<T>::hold_bodies(const BodyMotion<T>& at, const Vector<T>& u) {
   Vector<T> prescribed = u - held.u;
   for (int dof : model_.free_dofs) prescribed[dof] = T(0);
   if (values(prescribed).cwiseAbs().maxCoeff() > 0)
-    held.rows +=
-        into_frames(model_, slots_.frames, Layout::all, tangent_times(model_, slots_, at, all(prescribed), false));
+    held.rows += into_frames(model_, slots_.frames, Layout::all, tangent_times(at, Vector<T>(spread(prescribed))));
   held_bodies_ = std::move(held);
 }
 
@@ -140,10 +173,13 @@ template <class T>
 Vector<T> SparseEngine<T>::begin(double time, const Vector<T>& displacement, const Vector<T>& before) {
   before_ = before;
   time_ = time;
-  external_ = into_frames(model_, slots_.frames, Layout::all, dead_forces(model_, slots_, time));
   Vector<T> u = displacement;
   prescribe(model_, slots_, time, u);
-  return into_frames(model_, slots_.frames, Layout::all, std::move(u));
+  u = into_frames(model_, slots_.frames, Layout::all, std::move(u));
+  Vector<T> external = dead_forces(model_, slots_, time);
+  if (part_) part_->begin(u, external);
+  external_ = into_frames(model_, slots_.frames, Layout::all, std::move(external));
+  return u;
 }
 
 template <class T>
@@ -163,7 +199,7 @@ Vector<T> SparseEngine<T>::load_rate(const Vector<T>& u) const {
 
 template <class T>
 Vector<T> SparseEngine<T>::residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const {
-  const Vector<T> moved = all(u);
+  const Vector<T> moved = spread(u);
   Vector<T> rows;
   if (held_bodies_)
     rows = held_bodies_->rows + apply_stiffness(u - held_bodies_->u).col(0);
@@ -172,6 +208,7 @@ Vector<T> SparseEngine<T>::residual(const Vector<T>& u, const Vector<T>& contact
   const int D = model_.dimension;
   scale.force = std::max(
       {scale.force, largest_nodal_norm(rows, D), largest_nodal_norm(external_, D), largest_nodal_norm(contact, D)});
+  if (part_) scale.force = std::max(scale.force, part_->force_scale());
   scale.rounding = unit_roundoff * stiffness_ * largest_nodal_norm(u, D);
   rows -= external_;
   if (!model_.followers.empty() && !held_bodies_) {
@@ -195,7 +232,7 @@ bool SparseEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents, Co
   values_ = bulk_;
   for (Eigen::Index n = 0; n < hold.size(); ++n)
     for (int i = 0; i < model_.dimension; ++i)
-      if (const int row = model_.free_index[model_.contact_nodes[n] * model_.dimension + i]; row >= 0)
+      if (const int row = row_of_dof()[model_.contact_nodes[n] * model_.dimension + i]; row >= 0)
         values_[locate(*pattern_, row, row)] += T(hold[n]);
   for (std::size_t p = 0; p < tangents.size(); ++p) {
     const bool moves = !tangents[p].places.empty();
@@ -227,9 +264,7 @@ template <class T>
 bool SparseEngine<T>::update(const std::vector<PointTangent<T>>& tangents, Counters& counters,
                              const Vector<double>& hold) {
   if (!valid_ || !model_.effects.linear_bulk || !detail::same_values(hold, held_)) return false;
-  const auto rows = [&](std::size_t p) {
-    return detail::rows_of_point(model_, model_.points[p].nodes, model_.points[p], unknown_multipliers_);
-  };
+  const auto rows = [&](std::size_t p) { return rows_of(p, model_.points[p].places); };
   return detail::update_factor<T>(
       model_, slots_, factorised_, tangents, unknown_multipliers_, rows, size_, counters,
       [&](const Matrix<T>& b) { return solver_.solve(b); }, update_);
@@ -252,9 +287,9 @@ bool SparseEngine<T>::reversed() const {
 template <class T>
 BlockVector<T> SparseEngine<T>::solve(const BlockVector<T>& rows, Solving how) {
   const bool transposed = how == Solving::transposed;
-  const int free = static_cast<int>(model_.free_dofs.size());
+  const int free = static_cast<int>(dofs().size());
   Matrix<T> b(size_, rows.u.cols());
-  for (int i = 0; i < free; ++i) b.row(i) = rows.u.row(model_.free_dofs[i]);
+  for (int i = 0; i < free; ++i) b.row(i) = rows.u.row(dofs()[i]);
   if (unknown_multipliers_) b.bottomRows(model_.multiplier_count) = rows.l;
   const auto multiply = [&](const Matrix<T>& x) {
     Matrix<T> product = Matrix<T>::Zero(size_, x.cols());
@@ -266,7 +301,7 @@ BlockVector<T> SparseEngine<T>::solve(const BlockVector<T>& rows, Solving how) {
   const Matrix<T> x = detail::solve_updated<T>(
       update_, b, how, [&](const Matrix<T>& r) { return solver_.solve(r, transposed); }, multiply);
   BlockVector<T> out{Matrix<T>::Zero(model_.dof_count(), b.cols()), Matrix<T>::Zero(model_.multiplier_count, b.cols())};
-  for (int i = 0; i < free; ++i) out.u.row(model_.free_dofs[i]) = x.row(i);
+  for (int i = 0; i < free; ++i) out.u.row(dofs()[i]) = x.row(i);
   if (unknown_multipliers_) out.l = x.bottomRows(model_.multiplier_count);
   return out;
 }
@@ -274,10 +309,11 @@ BlockVector<T> SparseEngine<T>::solve(const BlockVector<T>& rows, Solving how) {
 template <class T>
 Matrix<T> SparseEngine<T>::apply_stiffness(const Matrix<T>& u, bool transposed) const {
   Matrix<T> rows = Matrix<T>::Zero(u.rows(), u.cols());
-  for (std::size_t j = 0; j < model_.free_dofs.size(); ++j)
+  const auto& dof_of = dofs();
+  for (std::size_t j = 0; j < dof_of.size(); ++j)
     for (int k = pattern_->column_start[j]; k < pattern_->column_start[j + 1]; ++k)
-      if (pattern_->row[k] < static_cast<int>(model_.free_dofs.size())) {
-        const int row = model_.free_dofs[pattern_->row[k]], column = model_.free_dofs[j];
+      if (pattern_->row[k] < static_cast<int>(dof_of.size())) {
+        const int row = dof_of[pattern_->row[k]], column = dof_of[j];
         rows.row(transposed ? column : row) += bulk_[k] * u.row(transposed ? row : column);
       }
   return rows;
@@ -303,7 +339,18 @@ EngineHoldings SparseEngine<T>::holdings() const {
   held.matrix_entries = static_cast<long>(pattern_->nonzeros());
   held.factor_entries = solver_.factor_nonzeros();
   held.unsymmetric = symmetry_ == Symmetry::general;
+  if (!part_) return held;
+  held.condensed = static_cast<long>(part_->condensation().schur().size() * sizeof(T));
+  held.bodies_factor = part_->condensation().factor_bytes();
+  held.body_solves = part_->condensation().backsolves();
   return held;
+}
+
+template <class T>
+std::string SparseEngine<T>::name() const {
+  std::string name = solver_.name().empty() ? "sparse" : "sparse, " + solver_.name();
+  if (part_) name += ", bodies of constant stiffness condensed on " + part_->condensation().name();
+  return name;
 }
 
 }  // namespace stickslip

@@ -72,6 +72,41 @@ std::string contact_lines(const Model& model) {
   return text.empty() ? "  none\n" : text;
 }
 
+/// Of a body.
+long contact_dofs(const Model& model, std::size_t body) {
+  const int first = model.bodies[body].first_node, end = first + model.bodies[body].mesh.node_count;
+  return model.dimension * std::count_if(model.contact_nodes.begin(), model.contact_nodes.end(),
+                                         [&](int node) { return node >= first && node < end; });
+}
+
+/// What becomes of each body where some are condensed and others are not.
+std::string mixed_lines(const Model& model) {
+  std::string text;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    text += fmt::format("  {}: ", model.scene.bodies[b].name);
+    if (is_among(model, b, BodyKind::constant))
+      text += fmt::format("condensed once to {} contact dofs, a dense block\n", contact_dofs(model, b));
+    else
+      text += "in full, its tangent assembled anew in each iteration\n";
+  }
+  return text;
+}
+
+/// Which engine runs, what it does with each body of a mixed scene, and the prices it was chosen by.
+std::string engine_lines(const Input& input, const Model& model) {
+  const bool condensed = condenses(model, input.method, input.linear_algebra.engine);
+  std::string text = "linear algebra: ";
+  text += !model.effects.linear_bulk ? "one sparse factorisation an iteration, the bodies' part assembled anew\n"
+          : condensed ? fmt::format("bodies condensed once to {} contact dofs, Newton on a dense system\n",
+                                    model.contact_nodes.size() * model.dimension)
+                      : "one sparse factorisation an iteration, the bodies' part assembled once\n";
+  if (condensed && !model.effects.linear_bulk) text += mixed_lines(model);
+  const EnginePrice price = predict_price(model, input.method, bodies_factor(model));
+  text += "  predicted: ";
+  if (can_condense(model)) text += fmt::format("{:.2g} Gflop condensed, ", 1e-9 * price.condensed);
+  return text + fmt::format("{:.2g} Gflop sparse\n", 1e-9 * price.sparse);
+}
+
 }  // namespace
 
 std::string explain(const Input& input, const Problem& problem) {
@@ -100,15 +135,7 @@ std::string explain(const Input& input, const Problem& problem) {
   text +=
       monolithic ? fmt::format(", {} multipliers\n", model.multiplier_count) : ", no multipliers among the unknowns\n";
   text += fmt::format("method: {}\n", to_json(input.method).dump());
-  text += condenses(model, input.method, input.linear_algebra.engine)
-              ? fmt::format("linear algebra: bodies condensed once to {} contact dofs, Newton on a dense system\n",
-                            model.contact_nodes.size() * model.dimension)
-          : effects.linear_bulk
-              ? "linear algebra: one sparse factorisation an iteration, the bodies' part assembled once\n"
-              : "linear algebra: one sparse factorisation an iteration, the bodies' part assembled anew\n";
-  const EnginePrice price = predict_price(model, input.method, bodies_factor(model));
-  text += fmt::format("  predicted: {:.2g} Gflop condensed, {:.2g} Gflop sparse\n", 1e-9 * price.condensed,
-                      1e-9 * price.sparse);
+  text += engine_lines(input, model);
   text +=
       "\nwhat each effect takes (~ about, > and more, ? hangs on the path):\n" + ledger_table(forecast(input, problem));
   text += "\nsimulated:\n";

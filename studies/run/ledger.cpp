@@ -16,7 +16,12 @@ namespace {
 
 constexpr double not_apart = std::numeric_limits<double>::quiet_NaN();
 
-bool is_condensed(const CaseResult& result) { return result.trajectory.engine.starts_with("condensed"); }
+Condensed condensed_in(const CaseResult& result) {
+  const std::string& engine = result.trajectory.engine;
+  return engine.starts_with("condensed")                 ? Condensed::all
+         : engine.find("condensed") != std::string::npos ? Condensed::part
+                                                         : Condensed::nothing;
+}
 
 StateBytes kept_states(const Trajectory<double>& trajectory) {
   StateBytes bytes = state_bytes(trajectory.initial);
@@ -87,9 +92,9 @@ LedgerRow bodies_row(const CaseResult& result, const StateBytes& states) {
 void add_contact_rows(const CaseResult& result, const StateBytes& states, Ledger& ledger) {
   const auto& [model, slots, unused] = *result.problem;
   const auto& trajectory = result.trajectory;
-  const bool dense = is_condensed(result);
+  const bool dense = condensed_in(result) == Condensed::all;
   const double rows = trajectory.reduced_unknowns;
-  const double multipliers = rows - solved_displacements(model, dense);
+  const double multipliers = rows - solved_displacements(model, condensed_in(result));
   const auto& contact = trajectory.initial.contact;
   const auto normal = static_cast<double>(contact.gap.size());
   const Masters masters = masters_of(model);
@@ -178,21 +183,26 @@ void add_sensitivity_rows(const CaseResult& result, Ledger& ledger) {
                     search});
 }
 
-/// Linear systems, by the engine that solved them.
+/// Linear systems, by the engine that solved them. Of a mixed scene the sparse engine did, and what is condensed is in
+/// the other row.
 LedgerRow engine_row(const CaseResult& result, bool condensed) {
   const auto& model = result.problem->model;
   const auto& trajectory = result.trajectory;
-  const bool on = is_condensed(result) == condensed;
+  const Condensed what = condensed_in(result);
+  const bool on = (what == Condensed::all) == condensed;
   const auto& engine = result.engine;
   const auto& counts = trajectory.counters;
   const auto of = [&](auto amount) { return on ? static_cast<double>(amount) : 0.0; };
   const double friction = spared_triangle(engine, condensed, trajectory.reduced_unknowns);
-  LedgerRow row{condensed ? "condensed_engine" : "sparse_engine", on, {}, {}, {}, 0};
+  const bool shown = on || (condensed && what == Condensed::part);
+  LedgerRow row{condensed ? "condensed_engine" : "sparse_engine", shown, {}, {}, {}, 0};
   if (condensed) {
+    const auto any = [&](double amount) { return shown ? amount : 0; };
     row.unknowns = {
-        {"eliminated", of(static_cast<double>(model.free_dofs.size()) - solved_displacements(model, true))}};
-    row.memory = {{"condensed", of(engine.condensed)}, {"bodies_factor", of(engine.bodies_factor)}};
-    row.counts = {{"body_backsolves", of(result.body_solves)}};
+        {"eliminated", any(static_cast<double>(model.free_dofs.size()) - solved_displacements(model, what))}};
+    row.memory = {{"condensed", any(static_cast<double>(engine.condensed))},
+                  {"bodies_factor", any(static_cast<double>(engine.bodies_factor))}};
+    row.counts = {{"body_backsolves", any(result.body_solves)}};
   }
   row.memory.insert(row.memory.end(), {{"matrix", of(engine.matrix)},
                                        {"factor", of(engine.factor) - (on ? friction : 0)},
@@ -250,8 +260,9 @@ double element_count(const Model& model) {
   return count;
 }
 
-double solved_displacements(const Model& model, bool condensed) {
-  if (!condensed) return static_cast<double>(model.free_dofs.size());
+double solved_displacements(const Model& model, Condensed condensed) {
+  if (condensed == Condensed::nothing) return static_cast<double>(model.free_dofs.size());
+  if (condensed == Condensed::part) return mixed_displacements(model);
   double free = 0;
   for (int node : model.contact_nodes)
     for (int i = 0; i < model.dimension; ++i) free += model.free_index[node * model.dimension + i] >= 0;

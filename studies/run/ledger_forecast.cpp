@@ -22,6 +22,7 @@ constexpr double number = sizeof(double);
 /// Counts that a forecast is made of.
 struct Size {
   double dofs, contact_dofs, free, solved;  ///< displacements; `solved`: in the systems of the engine
+  double condensed_dofs;                    ///< of the contact of condensed bodies
   double points, tangential, contacts;      ///< `contacts`: with a work of friction
   double feet, present;                     ///< of the slip history; points that keep a geometry in each state
   double remembered;                        ///< numbers of bodies that flow
@@ -30,18 +31,22 @@ struct Size {
   double repeated;                          ///< steps that are solved again
   double steps, parameters, blocks, responses, objectives;
   double together;  ///< increments that are differentiated at once
-  bool condensed, unknown, unsymmetric, uzawa, truncated, follows;
+  bool condensed, mixed, unknown, unsymmetric, uzawa, truncated, follows;
+  Condensed what() const { return condensed ? Condensed::all : mixed ? Condensed::part : Condensed::nothing; }
 };
 
 Size size_of(const Input& input, const Model& model) {
   Size n{};
-  n.condensed = condenses(model, input.method, input.linear_algebra.engine);
+  const bool condenses_some = condenses(model, input.method, input.linear_algebra.engine);
+  n.condensed = condenses_some && model.effects.linear_bulk;
+  n.mixed = condenses_some && !n.condensed;
   n.unknown = has_unknown_multipliers(input.method);
   n.unsymmetric = detail::symmetry_of(model, n.unknown, cone_radius(input.method)) == Symmetry::general;
   n.dofs = model.dof_count();
   n.contact_dofs = static_cast<double>(model.contact_nodes.size()) * model.dimension;
   n.free = static_cast<double>(model.free_dofs.size());
-  n.solved = solved_displacements(model, n.condensed);
+  n.solved = solved_displacements(model, n.what());
+  n.condensed_dofs = n.condensed ? n.contact_dofs : n.mixed ? static_cast<double>(MixedRows(model).contact.size()) : 0;
   n.points = static_cast<double>(model.points.size());
   n.tangential = model.multiplier_count - n.points;
   n.feet = model.foot_count;
@@ -138,7 +143,7 @@ std::vector<Amount> derivative_counts(const Method& method, const Size& n, doubl
   const double within = on == 0 ? exactly : uzawa || n.follows ? not_known : n.unknown ? 3 : exactly;
   const double known = on == 0 || within == not_known ? 0 : n.steps;
   return {{"backsolves", columns * known, within},
-          {"body_backsolves", 0, on > 0 && n.condensed ? not_known : exactly},
+          {"body_backsolves", 0, on > 0 && (n.condensed || n.mixed) ? not_known : exactly},
           {"factorizations", 0, on > 0 ? not_known : exactly},
           {"evaluations", evaluated * n.points * known, within}};
 }
@@ -154,8 +159,8 @@ LedgerRow direct_row(const Input& input, const Problem& problem, const Size& n) 
   const bool ties = std::any_of(scene.responses.begin(), scene.responses.end(), can_tie);
   const double slots = static_cast<double>(slot_bytes<Direction>(problem.slots).all());
   const double state = dual * state_numbers(n) + sizeof(ContactState) * n.points + geometry_bytes<Direction>(n);
-  const double eliminated = n.condensed ? n.free - n.solved : 0;
-  const double inside = eliminated > 0 ? eliminated + n.contact_dofs : 0;  // of a reduction
+  const double eliminated = n.free - n.solved;
+  const double inside = eliminated > 0 ? eliminated + n.condensed_dofs : 0;  // of a reduction
   const double solve = blocks * dual * n.dofs + number * p * (inside + 2 * engine_rows);
   return {"direct_sensitivity",
           on,
@@ -235,7 +240,10 @@ Factors condensed_factors(const Model& model, const Size& n) {
 
 Factors sparse_factors(const Model& model, const Size& n) {
   Factors out;
-  const auto lists = tangent_rows(model, n.unknown);
+  std::optional<MixedRows> mixed;
+  if (n.mixed) mixed.emplace(model);
+  const auto lists = tangent_rows(model, n.unknown, mixed ? &*mixed : nullptr);
+  if (mixed) out.bodies = {"bodies_factor", number * bodies_factor(model).entries, of_library(n.free)};
   const auto pattern = make_pattern(static_cast<int>(n.solved + multipliers(n)), lists);
   out.tangent_entries = pattern->nonzeros();
   for (int k = lists.count() - static_cast<int>(model.points.size()); k < lists.count(); ++k)
@@ -245,21 +253,22 @@ Factors sparse_factors(const Model& model, const Size& n) {
 }
 
 LedgerRow condensed_row(const Size& n, const Factors& factors) {
-  LedgerRow row{"condensed_engine", n.condensed, {{"eliminated", 0}}, {}, {}, n.condensed ? not_apart : 0};
+  const bool on = n.condensed || n.mixed;
+  LedgerRow row{"condensed_engine", on, {{"eliminated", 0}}, {}, {}, n.condensed ? not_apart : 0};
   const double unknown = n.condensed ? not_known : exactly;
   Amount matrix = n.condensed ? factors.tangent : Amount{}, factor = matrix, entries = matrix, stored = matrix;
   matrix.name = "matrix", factor.name = "factor", entries.name = "matrix_entries", stored.name = "factor_entries";
   entries.value = stored.value = matrix.value / number;
-  if (n.condensed) row.unknowns[0].value = n.free - n.solved;
-  row.memory = {{"condensed", n.condensed ? number * n.contact_dofs * n.contact_dofs : 0},
-                n.condensed ? factors.bodies : Amount{"bodies_factor"},
+  row.unknowns[0].value = n.free - n.solved;
+  row.memory = {{"condensed", number * n.condensed_dofs * n.condensed_dofs},
+                on ? factors.bodies : Amount{"bodies_factor"},
                 matrix,
                 factor,
                 {"iterations", 0, unknown}};
-  row.counts = {{"body_backsolves", 0, unknown},
+  row.counts = {{"body_backsolves", 0, on ? not_known : exactly},
                 entries,
                 stored,
-                {"analyses", factors.bodies.value > 0 ? 1.0 : 0.0},
+                {"analyses", n.condensed && factors.bodies.value > 0 ? 1.0 : 0.0},
                 {"factorizations", 0, unknown},
                 {"backsolves", 0, unknown},
                 {"iterations", 0, unknown},
@@ -280,7 +289,9 @@ LedgerRow sparse_row(const Size& n, const Factors& factors) {
           {{"matrix", number * factors.tangent_entries + sizeof(int) * integers}, factor, {"iterations", 0, unknown}},
           {{"matrix_entries", factors.tangent_entries},
            stored,
-           {"analyses", on ? 1.0 : 0.0},
+           {"analyses", !on       ? 0.0
+                        : n.mixed ? 2.0
+                                  : 1.0},
            {"factorizations", 0, unknown},
            {"backsolves", 0, unknown},
            {"iterations", 0, unknown},

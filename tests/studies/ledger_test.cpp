@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "studies/run/explain.hpp"
 #include "studies/run/ledger_forecast.hpp"
 #include "studies/run/simulation.hpp"
 #include "tests/studies/cases.hpp"
@@ -206,6 +207,68 @@ TEST(Ledger, SharesOutTheCountsOfTheRun) {
     EXPECT_EQ(amount(engine, "backsolves"), counts["backsolves"]);
     EXPECT_EQ(amount(engine, "iterations"), counts["newton"]);
   }
+}
+
+/// An elastic punch, drawn along a strip that flows.
+json punch_on_metal() {
+  return json::parse(R"({
+    "space": "plane_strain",
+    "bodies": {
+      "punch": {"mesh": {"box": {"min": [0.2, 1], "max": [1.8, 2], "cells": [8, 8]}},
+                "material": {"linear_elastic": {"E": 1000, "nu": 0.3}}},
+      "strip": {"mesh": {"box": {"min": [0, 0], "max": [2, 1], "cells": [10, 4]}},
+                "material": {"j2_plastic": {"E": 1500, "nu": 0.2, "yield": 4, "hardening": 100}}}
+    },
+    "contacts": {"sole": {"slave": "punch.bottom", "master": "strip.top", "friction": 0.3}},
+    "supports": [{"on": "strip.bottom", "move": {"x": 0, "y": 0}},
+                 {"on": "punch.top", "move": {"x": [[0, 0], [1, 0], [2, 0.004]], "y": [[0, 0], [1, -0.01]]}}],
+    "time": {"legs": [[1, 4], [2, 4]]},
+    "responses": {"press": {"contact_force": {"contact": "sole", "component": "normal"}}},
+    "parameters": {"E": "/bodies/punch/material/linear_elastic/E"}
+  })");
+}
+
+TEST(Ledger, OfAMixedSceneHasWhatIsCondensedBesideTheSparseEngine) {
+  for (const auto& method : methods)
+    for (const std::string engine : {"condensed", "sparse"}) {
+      const std::string where = method.dump() + " " + engine;
+      const Book book = book_of(punch_on_metal(), method, engine, "punch_on_metal");
+      ASSERT_TRUE(is_converged(book.result.status())) << where << book.result.message();
+      ASSERT_EQ(book.result.trajectory.counters.cutbacks, 0) << where;
+      expect_foretold(book, where);
+      expect_unknowns_to_add_up(book, where);
+      expect_nothing_of_what_is_off(book.kept, where);
+      const bool condensed = engine == "condensed";
+      const auto& part = row(book.kept, "condensed_engine");
+      EXPECT_EQ(part.on, condensed) << where;
+      EXPECT_TRUE(row(book.kept, "sparse_engine").on) << where;
+      // 9 x 9 nodes of the punch, of which the top row is held and the bottom row is in contact
+      EXPECT_EQ(amount(part.unknowns, "eliminated"), condensed ? 2 * 9 * 7 : 0) << where;
+      EXPECT_EQ(amount(part.memory, "condensed"), condensed ? sizeof(double) * 18 * 18 : 0) << where;
+      // a reduction and an expansion of each step, and derivatives: at the contact alone but for the last step
+      if (condensed) {
+        EXPECT_GE(amount(part.counts, "body_backsolves"), 8) << where;
+      }
+    }
+}
+
+TEST(Ledger, ExplainSaysWhatIsCondensedOfAMixedScene) {
+  const auto explained = [](const std::string& engine) {
+    json document = punch_on_metal();
+    document["method"] = penalty;
+    document["linear_solver"]["engine"] = engine;
+    const Input input = cases::read(document, folder / "punch_on_metal.json");
+    return explain(input, Problem(input.scene));
+  };
+  using testing::HasSubstr;
+  const std::string condensed = explained("condensed");
+  EXPECT_THAT(condensed, HasSubstr("  punch: condensed once to 18 contact dofs, a dense block\n"));
+  EXPECT_THAT(condensed, HasSubstr("  strip: in full, its tangent assembled anew in each iteration\n"));
+  EXPECT_THAT(condensed, HasSubstr(" Gflop condensed, "));
+  EXPECT_EQ(explained("auto"), condensed);  // which is cheaper
+  const std::string sparse = explained("sparse");
+  EXPECT_THAT(sparse, HasSubstr("the bodies' part assembled anew\n  predicted: "));
+  EXPECT_THAT(sparse, testing::Not(HasSubstr("dense block")));
 }
 
 TEST(Ledger, CountsWhatIsWritten) {

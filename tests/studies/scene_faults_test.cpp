@@ -82,7 +82,7 @@ std::vector<Broken> broken_finite() {
       {"finite_segments", f, R"("master": "floor"})", R"("master": "floor", @"discretization": "segment"})",
        "/contacts/sole/discretization", small},
       {"finite_condensed", f, R"("time")", R"("linear_solver": {"engine": @"condensed"}, "time")",
-       "/linear_solver/engine", "allowed where strains are finite or bodies flow: auto, sparse"},
+       "/linear_solver/engine", "allowed where strains are finite or all bodies flow: auto, sparse"},
   };
 }
 

@@ -167,6 +167,21 @@ Scene two_boxes(int slave, int master, const std::string& element, double mu) {
   return s;
 }
 
+Scene punched_metal(int cells, double mu, bool inclined) {
+  Scene s = two_boxes(cells, cells + 2, "", mu);
+  std::get<BoxMesh>(s.bodies[0].mesh).cells = {cells, cells};
+  s.bodies[1].material = J2Plastic{1500.0, 0.2, parameter(s, "yield", 4), parameter(s, "hardening", 100)};
+  s.bodies[1].element = "Q4_mean_dilatation";
+  if (inclined) {
+    s.parameters.erase(s.parameters.begin() + 2);  // down
+    s.loads = {traction("upper.left", {parameter(s, "pull", 0.3), 0.1})};
+    s.supports.back() = {
+        "upper.top", {}, {}, Inclined{{0.2, parameter(s, "slope", -0.98)}, table({{0, 0.0}, {1, 0.01}, {3, 0.012}})}};
+    s.supports.push_back({"upper.top & upper.left", {}, {}, Inclined{{1.0, 0.1}, table({{1, 0.0}, {3, 0.004}})}});
+  }
+  return s;
+}
+
 Scene pull_out(int cells, const std::vector<double>& path, int steps) {
   Scene s;
   const Number friction = parameter(s, "mu", 0.3), stiffness = parameter(s, "EA", 1000), pull = parameter(s, "P", -20);

@@ -44,6 +44,11 @@ Scene greco_plate(int n, double mu = 1);
 /// down by 0.01 and then moved sideways to and fro.
 Scene two_boxes(int slave, int master, const std::string& element = "Q4", double mu = 0.3);
 
+/// two_boxes with an elastic upper box of `cells` by `cells` on a lower one that flows: pressed until it does, then
+/// moved sideways to and fro. `inclined`: the upper box is driven along an inclined direction, its top free across it
+/// but for a corner, and pulled at its side.
+Scene punched_metal(int cells, double mu = 0.3, bool inclined = false);
+
 /// A4: a bar on a rough floor (EA = 1000, length 1, weight 100 per length) pulled at its start. `path`: the pull in
 /// units of P = 20 at t = 0, 1, 2, ...; `steps` to each leg.
 Scene pull_out(int cells, const std::vector<double>& path, int steps);
