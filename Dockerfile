@@ -1,13 +1,14 @@
 # stickslip on Debian 12: built in one stage as its Debian package, installed in another.
 #
 #   docker build -t stickslip .
-#   docker run --rm -v "$PWD:/work" stickslip run /usr/share/stickslip/scenes/slider.json -o slider
+#   docker run --rm --user "$(id -u):$(id -g)" -v "$PWD:/work" stickslip run /usr/share/stickslip/scenes/slider.json -o slider
 
 FROM debian:12 AS build
 SHELL ["/bin/bash", "-euo", "pipefail", "-c"]
 WORKDIR /src
 COPY tools tools
-RUN bash tools/install_dependencies.sh && apt-get install -y --no-install-recommends dpkg-dev file
+# git tells results the commit that they are of; dpkg-dev and file are what cpack needs.
+RUN bash tools/install_dependencies.sh && apt-get install -y --no-install-recommends git dpkg-dev file
 COPY . .
 RUN . tools/environment.sh \
   && cmake --preset release -DSTICKSLIP_BUILD_TESTS=OFF -DSTICKSLIP_BUILD_BENCH=OFF \
