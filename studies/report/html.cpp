@@ -93,28 +93,6 @@ std::string slug(std::string_view text) {
   return out;
 }
 
-std::string number(double value, int digits) {
-  if (!std::isfinite(value)) return {};
-  if (value == 0) return "0";
-  std::string text = fmt::format("{:.{}e}", value, digits - 1);
-  const std::size_t e = text.find('e');
-  const int power = std::atoi(text.c_str() + e + 1);
-  if (power >= -3 && power < 4) return fmt::format("{:.{}g}", value, std::max(digits, power + 1));
-  text.erase(e);
-  if (text.find('.') != std::string::npos) {
-    text.erase(text.find_last_not_of('0') + 1);
-    if (text.back() == '.') text.pop_back();
-  }
-  return text + "e" + std::to_string(power);
-}
-
-std::string exact_number(double value) {
-  constexpr int most = 17;  // significant digits that tell any two numbers apart
-  int digits = 1;
-  while (digits < most && std::strtod(number(value, digits).c_str(), nullptr) != value) ++digits;
-  return number(value, digits);
-}
-
 std::string with_exact_numbers(const std::string& text) {
   std::string out;
   for (std::size_t from = 0; from < text.size();) {
@@ -146,6 +124,7 @@ std::string plain(const nlohmann::json& value) {
 }
 
 std::string to_html(const Table& table, std::string_view caption) {
+  constexpr std::size_t short_text = 22;  // "converged at roundoff" stays on one line
   std::string out = fmt::format(
       "<div class=\"wide\" role=\"region\" tabindex=\"0\" aria-label=\"{0}\"><table>"
       "<caption>{0}</caption><thead><tr>",
@@ -165,7 +144,8 @@ std::string to_html(const Table& table, std::string_view caption) {
       const std::string& cell = table.rows[i][j];
       if (used[j])
         out += reads_as_number(cell) ? "<td class=\"n\">" + escape(cell) + "</td>"
-                                     : "<td>" + escape_sentence(cell) + "</td>";
+                                     : (j > 0 && cell.size() <= short_text ? "<td class=\"s\">" : "<td>") +
+                                           escape_sentence(cell) + "</td>";
     }
     out += "</tr>\n";
   }

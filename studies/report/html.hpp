@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "studies/io/numerals.hpp"
+
 namespace stickslip::report {
 
 /// `text` with & < > " ' replaced by entities: safe as element content and as an attribute value.
@@ -26,12 +28,8 @@ std::string embed_script(std::string_view code);
 /// `text` as an HTML id or a file's name: small letters and digits; what else stands between them becomes one '-'.
 std::string slug(std::string_view text);
 
-/// `digits` significant digits, with a power of ten below 0.001 and from 10000 on: "0.5", "1e5", "1.5e-4"; of larger
-/// numbers all digits before the point. Not finite: "".
-std::string number(double value, int digits = 3);
-
-/// The same with as many digits as it takes to read back the same.
-std::string exact_number(double value);
+using stickslip::exact_number;
+using stickslip::number;
 
 /// A text with the numbers that follow a '=' in the style of exact_number().
 std::string with_exact_numbers(const std::string& text);

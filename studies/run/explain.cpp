@@ -7,6 +7,7 @@
 #include "core/model/loading.hpp"
 #include "methods/engine_choice.hpp"
 #include "studies/input/method_options.hpp"
+#include "studies/io/numerals.hpp"
 #include "studies/io/printing.hpp"
 #include "studies/run/ledger_forecast.hpp"
 
@@ -16,17 +17,17 @@ namespace {
 const char* shape_name(ElementShape shape) {
   switch (shape) {
     case ElementShape::point:
-      return "springs";
+      return "spring";
     case ElementShape::bar2:
-      return "bars";
+      return "bar";
     case ElementShape::tri3:
-      return "T3 triangles";
+      return "T3 triangle";
     case ElementShape::quad4:
-      return "Q4 quadrilaterals";
+      return "Q4 quadrilateral";
     case ElementShape::tri6:
-      return "T6 triangles";
+      return "T6 triangle";
     case ElementShape::quad8:
-      return "Q8 quadrilaterals";
+      return "Q8 quadrilateral";
   }
   return "";
 }
@@ -51,9 +52,9 @@ std::string count(const List& list, const std::string& noun) {
 }
 
 std::string law_in_words(const FrictionLaw<Number>& law) {
-  if (!law.coefficient) return fmt::format("Tresca friction {}", law.limit->value);
-  const std::string coulomb = fmt::format("Coulomb friction {}", law.coefficient->value);
-  return law.limit ? coulomb + fmt::format(", limited to {}", law.limit->value) : coulomb;
+  if (!law.coefficient) return "Tresca friction " + exact_number(law.limit->value);
+  const std::string coulomb = "Coulomb friction " + exact_number(law.coefficient->value);
+  return law.limit ? coulomb + ", limited to " + exact_number(law.limit->value) : coulomb;
 }
 
 std::string contact_lines(const Model& model) {
@@ -103,8 +104,8 @@ std::string engine_lines(const Input& input, const Model& model) {
   if (condensed && !model.effects.linear_bulk) text += mixed_lines(model);
   const EnginePrice price = predict_price(model, input.method, bodies_factor(model));
   text += "  predicted: ";
-  if (can_condense(model)) text += fmt::format("{:.2g} Gflop condensed, ", 1e-9 * price.condensed);
-  return text + fmt::format("{:.2g} Gflop sparse\n", 1e-9 * price.sparse);
+  if (can_condense(model)) text += fmt::format("{} Gflop condensed, ", number(1e-9 * price.condensed, 2));
+  return text + fmt::format("{} Gflop sparse\n", number(1e-9 * price.sparse, 2));
 }
 
 }  // namespace
@@ -119,22 +120,21 @@ std::string explain(const Input& input, const Problem& problem) {
                                           : "small strain: linear strains, contact geometry of the start");
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const auto& mesh = model.bodies[b].mesh;
-    text += fmt::format("  {}: {} nodes, {} {}{}\n", scene.bodies[b].name, mesh.node_count, mesh.element_count(),
-                        shape_name(mesh.shape),
+    text += fmt::format("  {}: {}, {}{}\n", scene.bodies[b].name, counted(mesh.node_count, "node"),
+                        counted(mesh.element_count(), shape_name(mesh.shape)),
                         has_mean_dilatation(model.bodies[b].kinematics) ? " with mean dilatation" : "");
   }
   text += "contacts (node to segment):\n" + contact_lines(model);
   text += fmt::format("driving: {}, {}, {} to t = {}\n", count(scene.supports, "support"), count(scene.loads, "load"),
-                      count(model.times, "step"), model.times.empty() ? 0 : model.times.back());
+                      count(model.times, "step"), exact_number(model.times.empty() ? 0 : model.times.back()));
   if (scene.arc_length)
-    text +=
-        fmt::format("  along the path by arc length: the factor of load {} is found, in at most {} steps of {:.3g}\n",
-                    scene.arc_length->load, scene.arc_length->max, path_length(model, problem.slots));
+    text += fmt::format("  along the path by arc length: the factor of load {} is found, in at most {} steps of {}\n",
+                        scene.arc_length->load, scene.arc_length->max, number(path_length(model, problem.slots), 3));
   const bool monolithic = std::holds_alternative<MonolithicAL>(input.method);
   text += fmt::format("unknowns: {} displacements", model.free_dofs.size());
   text +=
       monolithic ? fmt::format(", {} multipliers\n", model.multiplier_count) : ", no multipliers among the unknowns\n";
-  text += fmt::format("method: {}\n", to_json(input.method).dump());
+  text += fmt::format("method: {}\n", json_with_exact_numbers(to_json(input.method)));
   text += engine_lines(input, model);
   text +=
       "\nwhat each effect takes (~ about, > and more, ? hangs on the path):\n" + ledger_table(forecast(input, problem));

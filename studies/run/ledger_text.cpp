@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "studies/io/numerals.hpp"
 #include "studies/run/ledger.hpp"
 
 namespace stickslip {
@@ -16,11 +17,6 @@ json amounts_json(const std::vector<Amount>& amounts) {
   json out = json::object();
   for (const auto& amount : amounts) out[amount.name] = amount.within > 0 ? json(std::llround(amount.value)) : json();
   return out;
-}
-
-std::string words(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
 }
 
 /// Three digits and a unit.
@@ -51,15 +47,37 @@ std::string unknowns_text(const std::vector<Amount>& amounts) {
 std::string counts_text(const std::vector<Amount>& amounts) {
   std::string text;
   for (const auto& amount : amounts)
-    if (amount.within > 0 && amount.value > 0)
-      text += fmt::format("{}{} {}{:.0f}", text.empty() ? "" : ", ", words(amount.name), amount.within == 1 ? "" : "~",
-                          amount.value);
+    if (amount.within > 0 && amount.value > 0) text += (text.empty() ? "" : ", ") + amount_in_words(amount);
   return text;
 }
 
 std::string joined(const std::vector<std::string>& parts) { return fmt::format("{}", fmt::join(parts, ", ")); }
 
+/// The name of one of them.
+std::string of_one(std::string names) {
+  for (const auto& [many, one] : {std::pair<std::string, std::string>{"analyses", "analysis"}, {"ies", "y"}, {"s", ""}})
+    if (names.ends_with(many)) return names.replace(names.size() - many.size(), many.size(), one);
+  return names;
+}
+
 }  // namespace
+
+std::string ledger_words(const std::string& name) {
+  std::string out = name;
+  std::replace(out.begin(), out.end(), '_', ' ');
+  for (const auto& [recorded, shown] : {std::pair<std::string, std::string>{"factorizations", "factorisations"},
+                                        {"backsolves", "back-solves"},
+                                        {"slots", "model data"},
+                                        {"one sided", "one-sided"}})
+    if (const auto at = out.find(recorded); at != std::string::npos) out.replace(at, recorded.size(), shown);
+  return out;
+}
+
+std::string amount_in_words(const Amount& amount) {
+  const std::string name = ledger_words(amount.name);
+  if (amount.within != 1) return "~" + number(amount.value) + " " + name;
+  return fmt::format("{:.0f} {}", amount.value, amount.value == 1 ? of_one(name) : name);
+}
 
 json repeatable_ledger_json(const Ledger& ledger) {
   json out = json::array();
@@ -84,11 +102,11 @@ std::string ledger_table(const Ledger& ledger) {
   std::vector<std::string> off;
   for (const auto& row : ledger) {
     if (!row.on) {
-      off.push_back(words(row.effect));
+      off.push_back(ledger_words(row.effect));
       continue;
     }
     const std::string counts = counts_text(row.counts);
-    text += fmt::format("  {:<20} {:>9} {:>9}{}{}\n", words(row.effect), unknowns_text(row.unknowns),
+    text += fmt::format("  {:<20} {:>9} {:>9}{}{}\n", ledger_words(row.effect), unknowns_text(row.unknowns),
                         sum_text(row.memory), counts.empty() ? "" : "  ", counts);
   }
   if (!off.empty()) text += "  off, and nothing of it there: " + joined(off) + "\n";
@@ -99,7 +117,7 @@ std::string ledger_line(const json& ledger) {
   std::vector<std::string> parts;
   for (const auto& row : ledger) {
     if (!row["on"].get<bool>()) continue;
-    std::string part = words(row["effect"]);
+    std::string part = ledger_words(row["effect"]);
     double bytes = 0;
     for (const auto& [name, amount] : row["memory"].items()) bytes += amount.get<double>();
     for (const auto& [name, amount] : row["unknowns"].items())

@@ -310,5 +310,12 @@ TEST(Ledger, AsJsonHasNullWhereNothingIsKnown) {
                                                  testing::HasSubstr("off, and nothing of it there: friction")));
 }
 
+TEST(Ledger, TellsAmountsInWords) {
+  EXPECT_EQ(amount_in_words({"analyses", 1}), "1 analysis");
+  EXPECT_EQ(amount_in_words({"body_backsolves", 12345}), "12345 body back-solves");
+  EXPECT_EQ(amount_in_words({"factor_entries", 213444, 2}), "~2.13e5 factor entries");
+  EXPECT_EQ(amount_in_words({"points", 0}), "0 points");
+}
+
 }  // namespace
 }  // namespace stickslip

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "studies/io/diagnostics.hpp"
+#include "studies/io/numerals.hpp"
 #include "studies/io/wording.hpp"
 
 namespace stickslip {
@@ -32,6 +33,14 @@ TEST(Printing, KnowsUtf8) {
 }
 
 TEST(Printing, WritesAnyBytesAsJson) { EXPECT_EQ(json_text({{"a", "b\xff"}}), "{\"a\":\"b\xEF\xBF\xBD\"}"); }
+
+TEST(Printing, WritesJsonWithNumbersAsPagesHaveThem) {
+  const nlohmann::json method = {{"penalty", {{"scale", "auto"}, {"list", {1, 0.5, true}}, {"stiffness", 1e10}}}};
+  EXPECT_EQ(json_with_exact_numbers(method),
+            "{\"penalty\":{\"list\":[1,0.5,true],\"scale\":\"auto\",\"stiffness\":1e10}}");
+  EXPECT_EQ(json_with_exact_numbers(1e-12), "1e-12");
+  EXPECT_EQ(json_with_exact_numbers(nlohmann::json::array()), "[]");
+}
 
 /// What bash makes of a word, by bash itself.
 std::string through_bash(const std::string& word) {

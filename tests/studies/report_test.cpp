@@ -175,7 +175,7 @@ TEST_F(Report, KeepsFailedRunsAsRowsWithTheirStatus) {
   cells[4]["status"] = "cap";
   record(description(), cells, picture());
   const std::string html = without_scripts(page());
-  EXPECT_THAT(html, HasSubstr("<tr class=\"failed\"><td>Penalty stiffness=1e9</td><td>not finite</td>"));
+  EXPECT_THAT(html, HasSubstr("<tr class=\"failed\"><td>Penalty stiffness=1e9</td><td class=\"s\">not finite</td>"));
   EXPECT_THAT(html, HasSubstr("step 2 of 10"));
   EXPECT_THAT(html, HasSubstr("2 of 7 runs did not converge (1 cap, 1 not_finite)"));
 
