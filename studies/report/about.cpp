@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "studies/report/html.hpp"
+#include "studies/report/labels.hpp"
 #include "studies/report/look_up.hpp"
 
 namespace stickslip::report {
@@ -55,10 +56,10 @@ std::string the_study(const Study& study) {
   if (!d.is_object()) return "<p>No study.json was recorded.</p>\n";
   std::string out;
   if (const std::string explain = text_at(d, "explain"); !explain.empty())
-    out +=
-        "<p class=\"note\">The scene of the study's last run; what varies, and the methods, are in the study as "
-        "given.</p>\n<pre class=\"wrap\">" +
-        escape(scene_in_words(explain)) + "</pre>\n";
+    out += folded("Its bodies, contacts, unknowns and effects, in words",
+                  "<p class=\"note\">The scene of the study's last run; what varies, and the methods, are in the study "
+                  "as given.</p>\n<pre class=\"wrap\">" +
+                      escape(scene_in_words(explain)) + "</pre>\n");
   std::vector<std::pair<std::string, json>> entries;
   for (const char* group : {"mesh", "size"})
     for (const auto& [key, value] : object_at(d, group).items()) {
@@ -86,6 +87,8 @@ std::string what_was_run(const Study& study) {
   for (const auto& option : study.shared) shared += (shared.empty() ? "" : ", ") + option;
   if (!shared.empty())
     out += "<p class=\"note\">Left out of the names of runs, since it tells none apart: " + escape(shared) + ".</p>\n";
+  if (const std::string words = understood(study); !words.empty())
+    out += "<p class=\"note\">" + escape(words) + "</p>\n";
   return out;
 }
 
@@ -147,7 +150,7 @@ std::string provenance(const Study& study) {
   for (const auto& [name, version] : object_at(p, "libraries").items())
     entries.emplace_back("library " + name, version);
   entries.emplace_back("scene hash", at(study.description, "scene_hash"));
-  return out + definitions(entries);
+  return out + folded("Program, machine and libraries", definitions(entries));
 }
 
 }  // namespace stickslip::report

@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "studies/report/html.hpp"
+#include "studies/report/labels.hpp"
 #include "studies/report/look_up.hpp"
 
 namespace stickslip::report {
@@ -48,8 +49,8 @@ std::string shade(const std::string& color, std::size_t count) {
 }
 
 const char* number_label =
-    "datum.value == 0 ? '0' : abs(datum.value) < 1e-3 || abs(datum.value) >= 1e4 ? "
-    "replace(format(datum.value, '~e'), '+', '') : format(datum.value, '~r')";
+    "datum.value == 0 ? '0' : replace(abs(datum.value) < 1e-3 || abs(datum.value) >= 1e4 ? "
+    "replace(format(datum.value, '~e'), '+', '') : format(datum.value, '~r'), '\u2212', '-')";
 
 json series_channel(const char* range) {
   return {{"field", "series"},

@@ -91,12 +91,13 @@ class Drawing::SvgWriter {
 };
 
 std::string Drawing::inline_svg() const {
+  constexpr double scrolls_below = 520;  // of wider drawings, on screens that do not show their parts (page.css)
   const std::string id = slug(title_) + "-all";
   std::string out = fmt::format(
       "<svg class=\"plot text{4}\" viewBox=\"0 0 {0} {1}\" style=\"max-width:{0}px\" role=\"img\"><title>{2}</title>"
       "<desc>{3}</desc>\n",
       short_number(width_), short_number(height_), escape(title_), escape(description_),
-      parts_.empty() ? "" : " whole");
+      std::string(parts_.empty() ? "" : " whole") + (width_ < scrolls_below ? " narrow" : ""));
   if (!parts_.empty()) out += "<g id=\"" + id + "\">\n";
   SvgWriter write(in_page, slug(title_) + "-clip-");
   for (const auto& item : items_) out += std::visit(write, item);

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "studies/report/chart_parts.hpp"
+#include "studies/report/labels.hpp"
 #include "studies/report/look_up.hpp"
 
 namespace stickslip::report {

@@ -162,4 +162,13 @@ std::string Figures::show(std::optional<Plate> plate) {
   return to_html(plates.back());
 }
 
+std::string Figures::beside(std::optional<Figure> figure, std::optional<Plate> plate) {
+  const auto open = [](const Figure& f) {
+    return std::count_if(f.panels.begin(), f.panels.end(), [](const Panel& panel) { return !panel.folded; });
+  };
+  const bool together = figure && plate && figure->folded.empty() && plate->folded.empty() && open(*figure) == 1;
+  const std::string left = show(std::move(figure)), right = show(std::move(plate));
+  return together ? "<div class=\"beside\">" + left + right + "</div>\n" : left + right;
+}
+
 }  // namespace stickslip::report

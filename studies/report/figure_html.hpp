@@ -15,6 +15,8 @@ class Figures {
   /// The figure as HTML; "" where there is none.
   std::string show(std::optional<Figure> figure);
   std::string show(std::optional<Plate> plate);
+  /// Side by side where both are there, open, and the figure has one panel; else one below the other.
+  std::string beside(std::optional<Figure> figure, std::optional<Plate> plate);
 
   std::vector<Figure> figures;
   std::vector<Plate> plates;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "studies/report/chart_parts.hpp"
 #include "studies/report/look_up.hpp"
@@ -166,6 +167,17 @@ bool keep_one_of_equals(std::vector<Strip>& strips) {
   return true;
 }
 
+/// Leaves out the contacts at which no run ever touches, as long as there are others; true where there were such.
+bool keep_what_touches(std::vector<Strip>& strips) {
+  std::set<std::string> touch;
+  for (const auto& strip : strips)
+    if (std::any_of(strip.steps.begin(), strip.steps.end(),
+                    [](const std::string& step) { return step.find_first_not_of('o') != std::string::npos; }))
+      touch.insert(strip.contact);
+  return !touch.empty() &&
+         std::erase_if(strips, [&](const Strip& strip) { return touch.count(strip.contact) == 0; }) > 0;
+}
+
 /// Whether every strip is the same from the first step to the last.
 bool nothing_changes(const std::vector<Strip>& strips) {
   return std::all_of(strips.begin(), strips.end(), [](const Strip& strip) {
@@ -182,7 +194,7 @@ std::optional<Plate> film_of_states(const Study& study) {
     if (cell.variant == study.main_variant && std::find(shown.begin(), shown.end(), cell.label) != shown.end())
       add_strips(cell, strips);
   if (strips.empty()) return std::nullopt;
-  const bool agree = keep_one_of_equals(strips);
+  const bool some_never_touch = keep_what_touches(strips), agree = keep_one_of_equals(strips);
   constexpr std::size_t most = 12;
   const std::size_t left_out = strips.size() - std::min(strips.size(), most);
   strips.resize(strips.size() - left_out);
@@ -194,7 +206,7 @@ std::optional<Plate> film_of_states(const Study& study) {
     text +=
         "; the most accurate run of each method and the one furthest off. Where two pictures differ, the methods "
         "disagree on the state of a point";
-  text += ".";
+  text += some_never_touch ? "; contacts that never touch are left out." : ".";
   if (left_out > 0) text += fmt::format(" {} more are left out.", left_out);
   const Layout layout = layout_of(strips);
   const double cell_height = head + strip_height + foot;

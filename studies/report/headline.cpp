@@ -9,6 +9,7 @@
 
 #include "studies/io/wording.hpp"
 #include "studies/report/html.hpp"
+#include "studies/report/labels.hpp"
 #include "studies/report/look_up.hpp"
 
 namespace stickslip::report {

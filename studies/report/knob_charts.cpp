@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "studies/report/chart_parts.hpp"
+#include "studies/report/labels.hpp"
 #include "studies/report/look_up.hpp"
 
 namespace stickslip::report {

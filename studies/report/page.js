@@ -242,7 +242,7 @@
   let unfolded = [];
   addEventListener('beforeprint', () => {
     unfolded = [...document.querySelectorAll(
-        'details.fold:not([open]), details:not([open]):not(figure details):has(> .wide)')];
+        'details.fold:not([open]), details:not([open]):not(figure details):has(> .wide, > pre.wrap, > dl)')];
     for (const details of unfolded) details.open = true;
     for (const figure of figures) draw(figure, 680).catch(console.error);
   });

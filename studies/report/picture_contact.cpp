@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -15,16 +16,33 @@ using nlohmann::json;
 
 namespace {
 
-void draw_state(const std::string& state, double x, double y, const std::string& tooltip, Drawing& drawing) {
+/// `size`: a share of the full one.
+void draw_state(const std::string& state, double x, double y, double size, const std::string& tooltip,
+                Drawing& drawing) {
+  const double half = 3.5 * size, line = 0.8 * size;
   if (state == "stick")
-    drawing.path(Path().rectangle(x - 3.5, y - 3.5, 7, 7), {"#ffffff", "#0072B2", 0.8, {}}, tooltip);
+    drawing.path(Path().rectangle(x - half, y - half, 2 * half, 2 * half), {"#ffffff", "#0072B2", line, {}}, tooltip);
   else if (state == "slip")
-    drawing.path(Path().move(x, y - 5).line(x + 4.5, y + 3).line(x - 4.5, y + 3).close(),
-                 {"#000000", "#E69F00", 0.8, {}}, tooltip);
+    drawing.path(
+        Path().move(x, y - 5 * size).line(x + 4.5 * size, y + 3 * size).line(x - 4.5 * size, y + 3 * size).close(),
+        {"#000000", "#E69F00", line, {}}, tooltip);
   else if (state == "closed")
-    drawing.path(Path().circle(x, y, 3), {"#000000", "#5b616b", 0.8, {}}, tooltip);
+    drawing.path(Path().circle(x, y, 3 * size), {"#000000", "#5b616b", line, {}}, tooltip);
   else
-    drawing.path(Path().circle(x, y, 3), {"#333333", "#ffffff", 1, {}}, tooltip);
+    drawing.path(Path().circle(x, y, 3 * size), {"#333333", "#ffffff", 1.2 * line, {}}, tooltip);
+}
+
+/// The size of symbols of which neighbours do not cover one another: by the median way from one to the next, since they
+/// come in order along their sides. Not so small that their colours are lost.
+double size_of(const std::vector<Point>& places) {
+  constexpr double room = 9, least = 0.45;  // pixels that a symbol of full size takes; a share
+  std::vector<double> ways;
+  for (std::size_t i = 1; i < places.size(); ++i)
+    ways.push_back(std::hypot(places[i].x - places[i - 1].x, places[i].y - places[i - 1].y));
+  if (ways.empty()) return 1;
+  const auto middle = ways.begin() + static_cast<std::ptrdiff_t>(ways.size() / 2);
+  std::nth_element(ways.begin(), middle, ways.end());
+  return std::clamp(*middle / room, least, 1.0);
 }
 
 int hold(const std::string& state) { return state == "stick" ? 2 : state == "open" ? 0 : 1; }
@@ -74,11 +92,17 @@ void draw_contact(const std::vector<ContactPoint>& contact, double scale, const 
     if (hold(c.state) > hold(symbol.point->state)) symbol.point = &c;
   }
   const Box& w = frame.window();
-  for (const auto& [point, tooltip] : symbols) {
-    const Point p = point->enlarged(scale);
+  std::vector<const Symbol*> seen;
+  std::vector<Point> places;
+  for (const auto& symbol : symbols) {
+    const Point p = symbol.point->enlarged(scale);
     if (p.x < w.min.x || p.x > w.max.x || p.y < w.min.y || p.y > w.max.y) continue;
-    draw_state(point->state, frame.x(p.x), frame.y(p.y), tooltip, drawing);
+    seen.push_back(&symbol);
+    places.push_back({frame.x(p.x), frame.y(p.y)});
   }
+  const double size = size_of(places);
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    draw_state(seen[i]->point->state, places[i].x, places[i].y, size, seen[i]->tooltip, drawing);
 }
 
 void draw_states(const std::vector<ContactPoint>& contact, double y, Drawing& drawing) {
@@ -90,7 +114,7 @@ void draw_states(const std::vector<ContactPoint>& contact, double y, Drawing& dr
   for (const auto& [state, words] :
        {std::pair{"stick", "sticks"}, {"slip", "slips"}, {"closed", "touches"}, {"open", "open"}}) {
     if (!present(state)) continue;
-    draw_state(state, x, y + 8, "", drawing);
+    draw_state(state, x, y + 8, 1, "", drawing);
     drawing.text(x + 10, y + 12, words);
     x += 80;
   }

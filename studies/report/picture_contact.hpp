@@ -26,7 +26,7 @@ std::vector<ContactPoint> read_contact(const nlohmann::json& contact, const std:
 
 /// Contact points inside the window, at the mesh's scale, with the states and tractions as a tooltip. A node that is in
 /// several contacts has one symbol, of the state that holds most (stick, then slip or touch, then open), and tells of
-/// all.
+/// all. Where neighbours would cover one another, symbols are smaller.
 void draw_contact(const std::vector<ContactPoint>& contact, double scale, const Frame& frame, Drawing& drawing);
 
 /// The legend of the states that the points are in, with its upper edge at y; stick and slip go together.

@@ -14,6 +14,7 @@
 #include "studies/io/input_fault.hpp"
 #include "studies/io/result_rows.hpp"
 #include "studies/report/html.hpp"
+#include "studies/report/labels.hpp"
 #include "studies/report/look_up.hpp"
 #include "studies/report/sample.hpp"
 
@@ -170,47 +171,6 @@ void complete_knobs(std::vector<Cell>& cells) {
     }
 }
 
-/// `label` without " NAME=VALUE" of a knob. An absolute value may be written in any form, so all up to the blank goes.
-std::string without(std::string label, const std::string& knob) {
-  const std::string key = " " + knob.substr(0, knob.find(" (")) + "=";
-  if (const std::size_t from = label.find(key); from != std::string::npos)
-    label.erase(from, std::min(label.find(' ', from + 1), label.size()) - from);
-  return label;
-}
-
-/// Takes out of the labels the options that have one value in all runs of a method that name them, as long as runs stay
-/// apart without.
-void shorten_labels(Study& study) {
-  for (const auto& family : study.families) {
-    std::map<std::string, std::set<std::string>> values;
-    std::set<std::string> labels;
-    for (const auto& cell : study.cells) {
-      if (cell.family != family || !labels.insert(cell.label).second) continue;
-      std::istringstream words(cell.label);
-      for (std::string word; words >> word;)
-        if (const std::size_t sign = word.find('='); sign != std::string::npos)
-          values[word.substr(0, sign)].insert(word.substr(sign + 1));
-    }
-    if (labels.size() < 2) continue;
-    for (const auto& [name, given] : values) {
-      std::set<std::string> shorter;
-      for (const auto& label : labels) shorter.insert(without(label, name));
-      if (given.size() > 1 || shorter.size() < labels.size()) continue;
-      labels = shorter;
-      study.shared.push_back(family_name(family) + " " + name + "=" + *given.begin());
-      for (auto& cell : study.cells)
-        if (cell.family == family) cell.label = without(cell.label, name);
-    }
-  }
-}
-
-/// Puts the methods' names before their options.
-void put_in_words(std::vector<Cell>& cells) {
-  for (auto& cell : cells)
-    cell.label =
-        family_name(cell.family) + cell.label.substr(cell.label.starts_with(cell.family) ? cell.family.size() : 0);
-}
-
 json read_json(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) return nullptr;
   json content = json::parse(read_file(path), nullptr, false);
@@ -249,8 +209,7 @@ Study read_study(const std::filesystem::path& directory) {
   }
   study.families = distinct(study.cells, [](const Cell& c) { return c.family; });
   complete_knobs(study.cells);
-  shorten_labels(study);
-  put_in_words(study.cells);
+  name_runs(study);
   study.variants = distinct(study.cells, [](const Cell& c) { return c.variant; });
   study.main_variant = main_variant_of(study);
   attach_curves(study, directory);
@@ -272,8 +231,8 @@ Study read_run(const std::filesystem::path& directory) {
   for (const char* part : {"interface", "film"})
     if (study.picture.is_object()) result[part] = at(study.picture, part);
   study.cells.push_back(read_cell(std::move(result)));
-  put_in_words(study.cells);
   study.families = {study.cells.front().family};
+  name_runs(study);
   study.variants = {""};
   study.ratio = measured_ratio(study.cells);
   measure_work(study.cells.front(), study.ratio.empty() ? 0 : study.ratio.begin()->second);
@@ -322,10 +281,6 @@ const Knob* find_knob(const Cell& cell, const std::string& name) {
   for (const auto& knob : cell.knobs)
     if (knob.name == name) return &knob;
   return nullptr;
-}
-
-std::string series_of(const Cell& cell, const std::string& knob) {
-  return knob.empty() ? cell.label : without(cell.label, knob);
 }
 
 std::string discretization_reference(const Study& study) {

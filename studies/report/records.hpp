@@ -21,7 +21,7 @@ struct Knob {
 /// One cell of a study: a method with its options, on one variant of the scene.
 struct Cell {
   nlohmann::json record;  ///< the line; without its steps, film and interface but where attach_curves() adds them
-  std::string label;      ///< method, in words, and options, without Study::shared
+  std::string label;      ///< method, in words, and options: see labels.hpp
   std::string family;     ///< key of the method: penalty, uzawa_al, monolithic_al, ...
   std::string status;
   bool converged = false;
@@ -29,6 +29,7 @@ struct Cell {
   int refine = 0;       ///< mesh level
   std::string variant;  ///< scene and, where there are several, mesh level
   std::vector<Knob> knobs;
+  std::map<std::string, std::string> bare = {};  ///< option and value, of those whose value stands alone in the label
   std::map<std::string, double> enforcement;     ///< against the same mesh; keys response:* sensitivity:* field:*
   std::map<std::string, double> discretization;  ///< against discretization_reference(); same keys
   std::map<std::string, double> kkt;             ///< method-blind measures
@@ -39,17 +40,18 @@ struct Cell {
 };
 
 struct Study {
-  nlohmann::json description;         ///< study.json; null where missing
-  nlohmann::json picture;             ///< picture.json; null where missing
-  std::vector<Cell> cells;            ///< in recorded order; of an id recorded twice, the last
-  std::vector<std::string> families;  ///< in order of appearance
-  std::vector<std::string> variants;  ///< in order of appearance
-  std::string main_variant;           ///< the one shown first: most cells converged, of equals the last
-  std::vector<std::string> shared;    ///< "METHOD OPTION=VALUE" that tells no two runs of the method apart
-  std::map<int, double> ratio;        ///< cost of one back-solve over one factorisation, by refinement; measured
-  bool refined = false;               ///< more than one mesh level
-  std::string faults;                 ///< of results.jsonl, in words
-  std::size_t unrecorded = 0;         ///< cells of the study without a row
+  nlohmann::json description;           ///< study.json; null where missing
+  nlohmann::json picture;               ///< picture.json; null where missing
+  std::vector<Cell> cells;              ///< in recorded order; of an id recorded twice, the last
+  std::vector<std::string> families;    ///< in order of appearance
+  std::vector<std::string> variants;    ///< in order of appearance
+  std::string main_variant;             ///< the one shown first: most cells converged, of equals the last
+  std::vector<std::string> shared;      ///< "METHOD OPTION=VALUE" that tells no two runs of the method apart
+  std::vector<std::string> understood;  ///< "METHOD OPTION=VALUE" of runs whose label does not name the option
+  std::map<int, double> ratio;          ///< cost of one back-solve over one factorisation, by refinement; measured
+  bool refined = false;                 ///< more than one mesh level
+  std::string faults;                   ///< of results.jsonl, in words
+  std::size_t unrecorded = 0;           ///< cells of the study without a row
 };
 
 /// Reads `directory`. Throws InputFault where there is no results.jsonl or study.json is no JSON.
@@ -70,9 +72,6 @@ std::string running_knob(const Study& study, const std::string& family);
 std::vector<std::string> knob_names(const Study& study);
 
 const Knob* find_knob(const Cell& cell, const std::string& name);
-
-/// Label without the part that says `knob`: what is constant along a curve.
-std::string series_of(const Cell& cell, const std::string& knob);
 
 /// What the discretisation errors are against: "the closed form", "the finer mesh", "the given values", or, where the
 /// study has several of them or names none, "the references".

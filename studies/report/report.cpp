@@ -15,6 +15,7 @@
 #include "studies/report/figure_html.hpp"
 #include "studies/report/headline.hpp"
 #include "studies/report/html.hpp"
+#include "studies/report/labels.hpp"
 #include "studies/report/look_up.hpp"
 #include "studies/report/page.hpp"
 #include "studies/report/picture.hpp"
@@ -59,10 +60,24 @@ std::string findings(const Study& study, const Study& shown) {
   return settings.empty() ? out : out + folded("Default, tuned and strict settings side by side", settings);
 }
 
-/// The chart beside the verdict: the worst response of the main variant against work.
-std::optional<Figure> first_chart(const Study& study) {
-  auto figure = work_precision(study, Against::same_mesh, Of::responses);
-  if (!figure) figure = work_precision(study, Against::discretization, Of::responses);
+/// What the first chart is of: responses, but where their errors are rounding in all runs, and those of derivatives are
+/// not.
+Of first_measure(const Study& study) {
+  constexpr double rounding = 1e-9;
+  const auto tells = [&](Of of) {
+    return std::any_of(study.cells.begin(), study.cells.end(), [&](const Cell& cell) {
+      return cell.variant == study.main_variant && cell.converged && accuracy(cell, of).value_or(0) > rounding;
+    });
+  };
+  return !tells(Of::responses) && tells(Of::sensitivities) ? Of::sensitivities : Of::responses;
+}
+
+/// The chart beside the verdict: the worst response, or derivative, of the main variant against work; lower beside a
+/// verdict of many rows.
+std::optional<Figure> first_chart(const Study& study, std::size_t rows_of_verdict) {
+  const Of of = first_measure(study);
+  auto figure = work_precision(study, Against::same_mesh, of);
+  if (!figure) figure = work_precision(study, Against::discretization, of);
   if (!figure) return std::nullopt;
   json rows = json::array();
   for (auto& row : figure->rows)
@@ -71,15 +86,22 @@ std::optional<Figure> first_chart(const Study& study) {
         }))
       rows.push_back(std::move(row));
   figure->rows = std::move(rows);
+  if (study.families.size() == 1) {  // its name is the same in all
+    for (auto& row : figure->rows) row["series"] = beside_method(row["series"], study.families.front());
+    for (auto& series : figure->series) series.name = beside_method(series.name, study.families.front());
+  }
   figure->choices.clear();
   figure->panels.erase(figure->panels.begin() + 1, figure->panels.end());
   figure->panels.front().title.clear();
-  constexpr double height = 200;
+  constexpr std::size_t few = 4;  // rows, beside which a screen of 800 pixels has room for the whole chart
+  const double height = 220 - 20 * static_cast<double>(std::max(rows_of_verdict, few) - few);
   figure->panels.front().spec["height"] = height;
   tag_lines(figure->rows, "work", height, "setting");
   figure->id = "first";
   figure->title = "What accuracy costs";
-  figure->text = "Error of the worst response. Lower left is better.";
+  figure->text = std::string("Error of the worst ") + (of == Of::responses ? "response" : "derivative") +
+                 ". Lower left is better.";
+  if (const std::string words = understood(study); !words.empty()) figure->text += " " + words;
   return figure;
 }
 
@@ -88,9 +110,9 @@ std::string first_screen(const Study& all, const Study& study, Figures& figures)
   auto overview = draw_overview(study.picture);
   if (const std::string title = text_at(study.description, "scene_title"); overview && !title.empty())
     overview->title = title;
-  const std::string scene = figures.show(std::move(overview)), chart = figures.show(first_chart(study));
-  const std::string sights = scene.empty() && chart.empty() ? "" : "<div class=\"first\">" + scene + chart + "</div>\n";
   const Verdict best = verdict(all);
+  const std::string scene = figures.show(std::move(overview)), chart = figures.show(first_chart(study, best.rows));
+  const std::string sights = scene.empty() && chart.empty() ? "" : "<div class=\"first\">" + scene + chart + "</div>\n";
   return best.reason + sights + best.table;
 }
 
@@ -114,10 +136,9 @@ std::string of_knobs(const Study& study, Figures& figures) {
 std::string of_solution(const Study& study, Figures& figures) {
   auto responses = response_histories(study);
   auto derivatives = derivative_histories(study, first_choice(responses, "response"));
-  std::string out = figures.show(std::move(responses)) + figures.show(std::move(derivatives));
+  std::string out = figures.beside(std::move(responses), film_of_states(study)) + figures.show(std::move(derivatives));
   if (has_close_up(study.picture)) out += figures.show(draw_picture(study.picture));
-  out += figures.show(tractions(study));
-  return out + figures.show(film_of_states(study));
+  return out + figures.show(tractions(study));
 }
 
 std::string of_solver(const Study& study, Figures& figures) {

@@ -11,6 +11,7 @@
 #include "studies/report/look_up.hpp"
 #include "studies/report/picture.hpp"
 #include "studies/report/tables.hpp"
+#include "studies/run/ledger.hpp"
 
 namespace stickslip::report {
 
@@ -22,7 +23,7 @@ std::string how_it_ended(const Cell& cell) {
   const std::size_t steps = array_at(cell.record, "steps").size();
   std::string out =
       fmt::format("{}, {}: {} with {}", family_name(cell.family), counted(static_cast<long>(steps), "step"),
-                  cell.status, work_in_words(cell, Of::sensitivities));
+                  in_plain_words(cell.status), work_in_words(cell, Of::sensitivities));
   if (cell.sensitivity_seconds > 0) out += " in " + seconds_in_words(cell.sensitivity_seconds);
   const std::string message = text_at(cell.record, "message");
   return out + (message.empty() ? "" : ": " + message) + ".";
@@ -51,11 +52,17 @@ std::string steps_table(const Study& run) {
   table.header = {"time", "status", "Newton", "augmentations", "cutbacks", "worst KKT measure"};
   const json& steps = array_at(cell.record, "steps");
   if (steps.empty()) return "";
+  constexpr std::size_t most_apart = 3;  // of more contacts the states of each share a column
+  const bool apart = object_at(steps.front(), "contacts").size() <= most_apart;
   std::vector<std::pair<std::string, bool>> contacts;  // and whether there is no friction
   for (const auto& [contact, unused] : object_at(steps.front(), "contacts").items()) {
     contacts.emplace_back(contact, is_frictionless(run, contact));
-    for (const auto& [state, n] : states_of(steps.front(), contact, contacts.back().second))
-      table.header.push_back(contact + ": " + state);
+    std::string words;
+    for (const auto& [state, n] : states_of(steps.front(), contact, contacts.back().second)) {
+      if (apart) table.header.push_back(contact + ": " + state);
+      words += (words.empty() ? "" : " / ") + std::string(state);
+    }
+    if (!apart) table.header.push_back(contact + ": " + words);
   }
   constexpr std::size_t most = 1000;
   const std::size_t stride = (steps.size() + most - 1) / most;
@@ -65,11 +72,17 @@ std::string steps_table(const Study& run) {
     double worst = 0;
     for (const auto& [measure, value] : object_at(step, "kkt").items())
       if (value.is_number()) worst = std::max(worst, value.get<double>());
-    std::vector<std::string> row = {number(number_at(step, "time"), 6), text_at(step, "status"),
+    std::vector<std::string> row = {number(number_at(step, "time"), 6), in_plain_words(text_at(step, "status")),
                                     whole(number_at(step, "newton")),   whole(number_at(step, "augmentations")),
                                     whole(number_at(step, "cutbacks")), number(worst)};
-    for (const auto& [contact, frictionless] : contacts)
-      for (const auto& [state, points] : states_of(step, contact, frictionless)) row.push_back(whole(points));
+    for (const auto& [contact, frictionless] : contacts) {
+      std::string counts;
+      for (const auto& [state, points] : states_of(step, contact, frictionless)) {
+        if (apart) row.push_back(whole(points));
+        counts += (counts.empty() ? "" : " / ") + whole(points);
+      }
+      if (!apart) row.push_back(counts);
+    }
     table.rows.push_back(row);
     const std::string status = text_at(step, "status");
     table.row_classes.emplace_back(status.starts_with("converged") ? "" : "failed");
@@ -78,7 +91,7 @@ std::string steps_table(const Study& run) {
 }
 
 /// Responses and their derivatives at the last step, a line each.
-std::string last_values(const Cell& cell) {
+Table last_values(const Cell& cell) {
   Table table;
   table.header = {"response", "value"};
   const json& sensitivities = object_at(cell.record, "sensitivities");
@@ -95,17 +108,7 @@ std::string last_values(const Cell& cell) {
     }
     table.rows.push_back(row);
   }
-  return table.rows.empty() ? "" : to_html(table, "Responses at the last step, and their derivatives");
-}
-
-/// A name of the ledger as the rest of the page has it.
-std::string ledger_words(const std::string& name) {
-  std::string words = in_plain_words(name);
-  for (const auto& [recorded, shown] : {std::pair<std::string, std::string>{"factorizations", "factorisations"},
-                                        {"backsolves", "back-solves"},
-                                        {"slots", "model data"}})
-    if (const auto at = words.find(recorded); at != std::string::npos) words.replace(at, recorded.size(), shown);
-  return words;
+  return table;
 }
 
 /// "3 displacements, 12 points": what is not zero of a row's amounts.
@@ -113,7 +116,7 @@ std::string amounts_in_words(const json& amounts) {
   std::string out;
   for (const auto& [name, amount] : amounts.items())
     if (amount.is_number() && amount != 0)
-      out += (out.empty() ? "" : ", ") + whole(amount.get<double>()) + " " + ledger_words(name);
+      out += (out.empty() ? "" : ", ") + amount_in_words({name, amount.get<double>()});
   return out;
 }
 
@@ -132,7 +135,7 @@ std::string ledger_table(const Cell& cell) {
         bytes += amount.get<double>();
         parts += (parts.empty() ? "" : ", ") + ledger_words(name) + " " + number(amount.get<double>() / 1000);
       }
-      table.rows.push_back({in_plain_words(text_at(row, "effect")),
+      table.rows.push_back({ledger_words(text_at(row, "effect")),
                             on ? amounts_in_words(object_at(row, "unknowns")) : "off",
                             bytes > 0 ? number(bytes / 1000) : "", parts, amounts_in_words(object_at(row, "counts")),
                             seconds.is_number() && seconds != 0 ? number(seconds.get<double>(), 2) : ""});
@@ -143,22 +146,31 @@ std::string ledger_table(const Cell& cell) {
 }  // namespace
 
 std::string first_of_run(const Study& run, Figures& figures) {
-  const std::string scene = figures.show(draw_overview(run.picture)), histories = figures.show(response_histories(run));
-  std::string out = scene + "<p class=\"reason\">" + escape_sentence(how_it_ended(run.cells.front())) + "</p>\n";
+  auto responses = response_histories(run);
+  const bool wide = responses && responses->panels.size() > 1;  // then they stand side by side below
+  const std::string scene = figures.show(draw_overview(run.picture)), histories = figures.show(std::move(responses));
+  std::string out = "<p class=\"reason\">" + escape_sentence(how_it_ended(run.cells.front())) + "</p>\n";
   for (const auto& warning : warning_sentences(run)) out += "<p class=\"warning\">" + escape(warning) + "</p>\n";
   if (run.picture.is_null())
     out += "<p class=\"note\">The bodies and tractions were not recorded; <code>run --report</code> does.</p>\n";
-  out += last_values(run.cells.front());
-  return "<div class=\"first\"><div>" + out + "</div>\n" + histories + "</div>\n";
+  constexpr std::size_t most_columns = 6;  // that half a page has room for
+  const Table values = last_values(run.cells.front());
+  const std::string table =
+      values.rows.empty() ? "" : to_html(values, "Responses at the last step, and their derivatives");
+  const bool narrow = values.header.size() <= most_columns;
+  const std::string words = "<div>" + out + (narrow ? table : "") + "</div>\n", below = narrow ? "" : table;
+  if (!wide && !scene.empty() && !histories.empty())
+    return "<div class=\"first\"><div>" + scene + words + "</div>\n" + histories + "</div>\n" + below;
+  return "<div class=\"first\">" + scene + words + "</div>\n" + below +
+         (histories.empty() ? "" : "<div class=\"first histories\">" + histories + "</div>\n");
 }
 
 std::vector<Section> sections_of_run(const Study& run, Figures& figures) {
   auto derivatives = derivative_histories(run, first_choice(response_histories(run), "response"));
   if (derivatives) derivatives->folded.clear();
-  std::string solution = figures.show(std::move(derivatives));
+  std::string solution = figures.beside(std::move(derivatives), film_of_states(run));
   if (has_close_up(run.picture)) solution += figures.show(draw_picture(run.picture));
   solution += figures.show(tractions(run));
-  solution += figures.show(film_of_states(run));
   auto convergence = convergence_histories(run);
   if (convergence) convergence->folded.clear();
   return {{"solution", "The solution", solution},

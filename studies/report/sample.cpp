@@ -79,6 +79,7 @@ Study sample_of(const Study& study) {
   sample.families = study.families;
   sample.main_variant = study.main_variant;
   sample.shared = study.shared;
+  sample.understood = study.understood;
   sample.ratio = study.ratio;
   sample.refined = study.refined;
   for (const auto& cell : study.cells)

@@ -87,7 +87,10 @@ std::string status_table(const Study& study) {
     table.rows.push_back(row);
     table.row_classes.emplace_back(failed ? "failed" : "");
   }
-  return "<h3>Which setting works where</h3>\n" + to_html(table, "Status by setting and scene");
+  const bool all_converged =
+      std::all_of(study.cells.begin(), study.cells.end(), [](auto& cell) { return cell.converged; });
+  const std::string title = "Which setting works where", content = to_html(table, "Status by setting and scene");
+  return all_converged ? folded(title + " (all runs converged)", content) : "<h3>" + title + "</h3>\n" + content;
 }
 
 namespace {
@@ -147,7 +150,8 @@ std::string results_table(const Study& study) {
     errors.row_classes.emplace_back(cell.converged ? "" : "failed");
   }
   costs.row_classes = errors.row_classes;
-  return compact_html(errors, "All runs: errors") + compact_html(costs, "All runs: costs") + messages(study);
+  return compact_html(errors, "All runs: errors") +
+         folded("Costs of all runs", compact_html(costs, "All runs: costs")) + messages(study);
 }
 
 namespace {

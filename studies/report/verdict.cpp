@@ -11,6 +11,7 @@
 #include "studies/io/wording.hpp"
 #include "studies/report/headline.hpp"
 #include "studies/report/html.hpp"
+#include "studies/report/labels.hpp"
 #include "studies/report/look_up.hpp"
 #include "studies/report/settings.hpp"
 
@@ -58,9 +59,11 @@ std::vector<const Cell*> runs_of(const Study& study) {
 struct Row {
   std::string name;
   std::vector<const Cell*> runs;
+  std::string head = name;  ///< what the table's first column says
 };
 
-std::vector<Row> rows_of(const Study& study) {
+/// The rows, and what the head of their column says.
+std::pair<std::vector<Row>, std::string> rows_of(const Study& study) {
   constexpr std::size_t most = 8;  // that a first screen has room for
   std::vector<Row> by_method, by_series;
   for (const auto& family : study.families) by_method.push_back({family_name(family), {}});
@@ -70,9 +73,11 @@ std::vector<Row> rows_of(const Study& study) {
     by_method[static_cast<std::size_t>(method)].runs.push_back(cell);
     const std::string series = series_of(*cell, knob);
     const auto known = std::find_if(by_series.begin(), by_series.end(), [&](auto& row) { return row.name == series; });
-    (known == by_series.end() ? by_series.emplace_back(Row{series, {}}) : *known).runs.push_back(cell);
+    (known == by_series.end() ? by_series.emplace_back(Row{series, {}, beside_method(series, cell->family)}) : *known)
+        .runs.push_back(cell);
   }
-  return !knob.empty() && by_series.size() > 1 && by_series.size() <= most ? by_series : by_method;
+  if (knob.empty() || by_series.size() < 2 || by_series.size() > most) return {by_method, "method"};
+  return {by_series, family_name(study.families.front())};
 }
 
 std::optional<Measure> measure_of(const Study& study, Of of) {
@@ -349,7 +354,7 @@ Verdict verdict(const Study& study) {
     if (auto measure = measure_of(study, of)) measures.push_back(*std::move(measure));
   if (measures.empty()) return {};
   std::string groups, heads, sentence;
-  const std::vector<Row> rows = rows_of(study);
+  const auto [rows, rows_are] = rows_of(study);
   std::vector<std::string> entries(rows.size());
   for (const auto& measure : measures) {
     groups +=
@@ -365,16 +370,17 @@ Verdict verdict(const Study& study) {
   }
   std::string body;
   for (std::size_t i = 0; i < rows.size(); ++i)
-    body += "<tr><th scope=\"row\">" + unbroken(rows[i].name) + "</th>" + entries[i] + "</tr>\n";
+    body += "<tr><th scope=\"row\">" + unbroken(rows[i].head) + "</th>" + entries[i] + "</tr>\n";
   const std::string against =
       measures.front().on_same_mesh ? "exact contact on the same mesh" : discretization_reference(study);
   const std::string table = fmt::format(
       "<div class=\"wide\" role=\"region\" tabindex=\"0\" aria-label=\"Verdict\"><table class=\"verdict\">"
       "<caption>The cheapest setting of each method within an accuracy of {}{}; &#9733; within "
-      "5 % of the least work</caption>\n<thead><tr><th rowspan=\"2\">method</th>{}</tr>"
+      "5 % of the least work</caption>\n<thead><tr><th rowspan=\"2\">{}</th>{}</tr>"
       "<tr>{}</tr></thead><tbody>\n{}</tbody></table></div>\n",
-      escape(against), study.main_variant.empty() ? "" : escape(" (" + study.main_variant + ")"), groups, heads, body);
-  return {"<p class=\"reason\">" + sentence + "</p>\n", table};
+      escape(against), study.main_variant.empty() ? "" : escape(" (" + study.main_variant + ")"), escape(rows_are),
+      groups, heads, body);
+  return {"<p class=\"reason\">" + sentence + "</p>\n", table, rows.size()};
 }
 
 }  // namespace stickslip::report

@@ -12,6 +12,7 @@ namespace stickslip::report {
 /// cheap. HTML, of the main variant; empty where no error was measured.
 struct Verdict {
   std::string reason, table;
+  std::size_t rows = 0;  ///< of the table
 };
 Verdict verdict(const Study& study);
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "studies/report/chart_parts.hpp"
+#include "studies/report/labels.hpp"
 #include "studies/report/plot.hpp"
 
 namespace stickslip::report {
@@ -41,14 +42,24 @@ std::vector<Window> windows_of(const Study& study, const std::vector<std::string
   return out;
 }
 
-constexpr double width = 520, left = 14, right = 506, row_height = 34;
+constexpr double narrow = 370;  ///< a phone shows it as it is
+constexpr double left = 14, row_height = 34, name_size = 11;
+
+/// As narrow as the names allow.
+double width_of(const std::vector<Window>& windows) {
+  constexpr double of_wide_fonts = 1.15;  // over Helvetica
+  double width = narrow;
+  for (const auto& window : windows)
+    width = std::max(width, 2 * left + of_wide_fonts * text_width(window.name, name_size));
+  return width;
+}
 
 /// The name, the bars between neighbours that both converged, and a mark a run: full where it reached the target, if
 /// there is one.
 void draw_window(const Window& window, const Series& looks, const Axis& x, std::optional<double> target, double top,
                  Drawing& drawing) {
   const double y = top + 23;
-  drawing.text(left, top + 11, window.name, {Anchor::start, 11});
+  drawing.text(left, top + 11, window.name, {Anchor::start, name_size});
   Style bar{looks.color, "", 7, {}};
   for (std::size_t i = 1; i < window.runs.size(); ++i)
     if (window.runs[i - 1].cell->converged && window.runs[i].cell->converged)
@@ -63,24 +74,31 @@ void draw_window(const Window& window, const Series& looks, const Axis& x, std::
   }
 }
 
-void draw_scale(const Axis& x, double top, double bottom, const std::string& title, Drawing& drawing) {
+/// The axis, with the remark in brackets of its title on a line of its own; returns where it ends.
+double draw_scale(const Axis& x, double top, double bottom, double right, const std::string& title, Drawing& drawing) {
   for (const double tick : x.ticks()) {
     drawing.line(x(tick), top, x(tick), bottom, {"line"});
     drawing.text(x(tick), bottom + 16, number(tick), {Anchor::middle});
   }
   drawing.line(left, bottom, right, bottom, {"ink"});
-  drawing.text((left + right) / 2, bottom + 34, title, {Anchor::middle});
+  const std::size_t remark = title.find(" (");
+  drawing.text((left + right) / 2, bottom + 34, title.substr(0, remark), {Anchor::middle});
+  if (remark == std::string::npos) return bottom + 38;
+  drawing.text((left + right) / 2, bottom + 50, title.substr(remark + 1), {Anchor::middle});
+  return bottom + 54;
 }
 
 double draw_legend(std::optional<double> target, double y, Drawing& drawing) {
+  constexpr double line = 20, next = 190;
   drawing.path(Path().circle(left + 6, y, 5), {"ink", "ink", 2, {}});
   drawing.text(left + 18, y + 4, target ? "converged, error at most " + number(*target) : "converged");
   if (target) {
-    drawing.path(Path().circle(left + 236, y, 5), {"ink", "paper", 2, {}});
-    drawing.text(left + 248, y + 4, "converged, less accurate");
+    y += line;
+    drawing.path(Path().circle(left + 6, y, 5), {"ink", "paper", 2, {}});
+    drawing.text(left + 18, y + 4, "converged, less accurate");
   }
-  drawing.path(marker("failed", left + 416, y), {"ink", "", 2, {}});
-  drawing.text(left + 428, y + 4, "failed");
+  drawing.path(marker("failed", left + next, y), {"ink", "", 2, {}});
+  drawing.text(left + next + 12, y + 4, "failed");
   return y + 14;
 }
 
@@ -135,11 +153,12 @@ std::optional<Plate> robustness_windows(const Study& study, const std::vector<st
       (target ? " A full mark is a run whose worst response is within " + number(*target) +
                     " of the exact contact conditions, an open one converged to something less accurate."
               : std::string());
+  const double width = width_of(windows), right = width - left;
   const Axis x(low, high, true, left, right);
   const double top = 8, bottom = top + row_height * static_cast<double>(windows.size()) + 4;
   Plate plate{
       "windows-" + slug(knobs.front()), title, text, Drawing(width, bottom, title, text), {}, rows_of(windows), ""};
-  draw_scale(x, top, bottom, knob_title(knobs), plate.drawing);
+  const double end = draw_scale(x, top, bottom, right, knob_title(knobs), plate.drawing);
   plate.table.header = {"method and scene", "runs", "converges from ... to", "fails at"};
   for (std::size_t i = 0; i < windows.size(); ++i) {
     const auto& looks = series.list[series.place(windows[i].name)];
@@ -151,7 +170,7 @@ std::optional<Plate> robustness_windows(const Study& study, const std::vector<st
   const auto& classes = plate.table.row_classes;
   if (std::all_of(classes.begin(), classes.end(), [](const auto& failed) { return failed.empty(); }))
     plate.folded = "every run converged";
-  plate.drawing.set_height(draw_legend(target, bottom + 54, plate.drawing));
+  plate.drawing.set_height(draw_legend(target, end + 16, plate.drawing));
   return plate;
 }
 

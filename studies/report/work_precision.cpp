@@ -6,6 +6,7 @@
 #include "studies/report/chart_parts.hpp"
 #include "studies/report/headline.hpp"
 #include "studies/report/html.hpp"
+#include "studies/report/labels.hpp"
 #include "studies/report/look_up.hpp"
 
 namespace stickslip::report {

@@ -76,6 +76,21 @@ TEST_F(ReportCharts, WindowsAreOneForEachSettingAndScene) {
   EXPECT_FALSE(report::robustness_windows(study(), {"scale"}));
 }
 
+/// Narrow enough for a phone at its own size; wider where a name asks for it.
+TEST_F(ReportCharts, WindowsAreReadableOnAPhone) {
+  const auto width = [&] {
+    const std::string svg = report::robustness_windows(study(), {"stiffness"})->drawing.inline_svg();
+    return std::stod(svg.substr(svg.find("viewBox=\"0 0 ") + 13));
+  };
+  record(description(), with_failure());
+  EXPECT_LE(width(), 375);  // what most phones have
+  EXPECT_THAT(report::robustness_windows(study(), {"stiffness"})->drawing.inline_svg(), HasSubstr(" narrow\""));
+  auto cells = with_failure();
+  for (auto& c : cells) c["vary"] = {{"/contacts/sole/" + std::string(80, 'x'), 0.3}};
+  record(description(), cells);
+  EXPECT_GT(width(), report::text_width("Penalty, " + std::string(80, 'x') + " = 0.3", 11));
+}
+
 // --- settings and profiles -----------------------------------------------------------------------------------------
 
 TEST_F(ReportCharts, TunedIsTheCheapestThatIsAccurateEnoughAndStrictTheMostAccurate) {
@@ -167,6 +182,21 @@ TEST_F(ReportCharts, FilmShowsOnceWhatAllRunsAgreeOn) {
   record(description(), cells);
   EXPECT_THAT(report::film_of_states(study())->text, HasSubstr("Where two pictures differ"));
   EXPECT_GT(report::film_of_states(study())->table.rows.size(), 2u);
+}
+
+TEST_F(ReportCharts, FilmLeavesOutContactsThatNeverTouch) {
+  auto cells = three_methods();
+  for (auto& c : cells) c["film"] = {{"times", {1, 2}}, {"contacts", {{"sole", {"ok", "ks"}}, {"side", {"oo", "oo"}}}}};
+  record(description(), cells);
+  const auto plate = report::film_of_states(study());
+  ASSERT_TRUE(plate);
+  EXPECT_THAT(plate->text, HasSubstr("contacts that never touch are left out"));
+  for (const auto& row : plate->rows) EXPECT_EQ(row["contact"], "sole");
+  for (auto& c : cells) c["film"]["contacts"].erase("sole");  // else there would be nothing to see
+  record(description(), cells);
+  const auto open = report::film_of_states(study());
+  ASSERT_TRUE(open);
+  EXPECT_THAT(open->text, Not(HasSubstr("left out")));
 }
 
 TEST_F(ReportCharts, AFrictionlessFilmTouchesAndDoesNotSlip) {

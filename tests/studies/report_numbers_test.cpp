@@ -9,6 +9,7 @@
 #include "studies/report/charts.hpp"
 #include "studies/report/headline.hpp"
 #include "studies/report/html.hpp"
+#include "studies/report/labels.hpp"
 #include "studies/report/records.hpp"
 #include "studies/report/report.hpp"
 #include "tests/studies/recorded_study.hpp"
@@ -213,6 +214,35 @@ TEST_F(ReportNumbers, LeavesOutOfNamesWhatTellsNoRunsApart) {
   // The last would be "uzawa_al scale=1.0" twice without the acceleration.
   EXPECT_THAT(s.cells[0].label, AllOf(HasSubstr("acceleration"), HasSubstr("scale"), Not(HasSubstr("limit"))));
   EXPECT_THAT(page(), HasSubstr("tells none apart: Uzawa AL limit=50"));
+}
+
+/// A switch that all names have is told where it is not as usual; a word that no other option has stands alone.
+TEST_F(ReportNumbers, NamesOfRunsAreShortAndSayWhatTheyLeaveOut) {
+  std::vector<json> cells;
+  const auto add = [&](const std::string& label) {
+    cells.push_back(cell("uzawa_al", {{"scale", 1}}, 1e-5, 10));
+    cells.back()["label"] = "uzawa_al " + label;
+  };
+  const auto labels = [&] {
+    record(description(), cells);
+    std::vector<std::string> out;
+    for (const auto& c : study().cells) out.push_back(c.label);
+    return out;
+  };
+  for (const char* options :
+       {"acceleration=none adapt=false scale=100", "acceleration=anderson adapt=false scale=10", "adapt=true scale=10",
+        "acceleration=anderson adapt=false sensitivity=oversized scale=10"})
+    add(options);
+  EXPECT_THAT(labels(), testing::ElementsAre("Uzawa AL acceleration=none scale=100", "Uzawa AL anderson scale=10",
+                                             "Uzawa AL adapt=true scale=10", "Uzawa AL anderson oversized scale=10"));
+  EXPECT_THAT(study().understood, testing::ElementsAre("Uzawa AL adapt=false"));
+  EXPECT_THAT(page(), HasSubstr("Where not named: adapt=false."));
+  EXPECT_EQ(report::series_of(study().cells[3], "acceleration"), "Uzawa AL oversized scale=10");
+  EXPECT_EQ(report::series_of(study().cells[3], "scale"), "Uzawa AL anderson oversized");
+  add("cone=anderson scale=10");  // the word is of two options, and these names do not have the switch
+  add("cone=frozen scale=10");
+  EXPECT_EQ(labels()[1], "Uzawa AL acceleration=anderson adapt=false scale=10");
+  EXPECT_THAT(study().understood, testing::IsEmpty());
 }
 
 TEST_F(ReportNumbers, GivesEachMethodAMarkerOfItsOwn) {
@@ -522,6 +552,24 @@ TEST_F(ReportNumbers, DrawsTractionsWithPressurePositiveAndTheClosedForm) {
   for (const auto& row : figure->rows)
     if (row["panel"] == "difference") largest = larger(largest, row["value"].get<double>());
   EXPECT_NEAR(largest, 0.5e-3, 1e-15);  // a difference of numbers near 2
+}
+
+TEST_F(ReportNumbers, CountsDifferencesOfTractionsBelowRoundingAsNone) {
+  auto cells = three_methods();
+  json& tangential = cells[0]["interface"]["sole"]["tangential"];
+  cells[0]["interface"]["sole"]["normal"] = cells.back()["interface"]["sole"]["normal"];
+  tangential[0] = 1e-18;  // of a largest of 0.3; the point is open
+  cells[0]["interface"]["sole"]["normal"][0] = -1e-18;
+  record(description(), cells);
+  const auto figure = report::tractions(study());
+  ASSERT_TRUE(figure);
+  int points = 0;
+  for (const auto& row : figure->rows)
+    if (row["panel"] == "difference" && row["label"] == "Penalty stiffness=1000") {
+      EXPECT_EQ(row["value"], 0);
+      ++points;
+    }
+  EXPECT_EQ(points, 3);
 }
 
 TEST_F(ReportNumbers, ShowsTheHistoryOfTheHardestStep) {

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "studies/report/picture.hpp"
@@ -102,6 +104,51 @@ TEST(ReportPicture, AFrictionlessContactTouchesAndDoesNotSlip) {
   for (auto& c : smooth["contact"]) c["state"] = "closed";
   EXPECT_THAT(report::draw_picture(smooth)->drawing.inline_svg(),
               AllOf(HasSubstr(">touches<"), Not(HasSubstr(">slips<")), Not(HasSubstr(">open<"))));
+}
+
+/// A block with `points` contact points in the middle of its lower side, over a tenth of its width.
+json narrow_contact(int points) {
+  json drawn = picture();
+  drawn["points"] = {{0, 0}, {1, 0}, {2, 0}, {0, 2}, {1, 2}, {2, 2}};
+  drawn["contact"] = json::array();
+  for (int i = 0; i < points; ++i)
+    drawn["contact"].push_back({{"name", "sole"}, {"x", 0.9 + 0.2 * i / (points - 1)}, {"y", 0}, {"state", "stick"}});
+  return drawn;
+}
+
+TEST(ReportPicture, ShowsASmallContactLargerBesideTheWhole) {
+  const auto overview = report::draw_overview(narrow_contact(9));
+  ASSERT_TRUE(overview);
+  EXPECT_THAT(overview->text, HasSubstr("Right: the contact at true scale."));
+  const std::string svg = overview->drawing.inline_svg();
+  EXPECT_NE(svg.find("the-scene-clip-2"), std::string::npos);                         // a window of its own
+  EXPECT_THAT(report::draw_picture(narrow_contact(9))->folded, HasSubstr("larger"));  // it says the same again
+  EXPECT_THAT(report::draw_overview(picture())->text, Not(HasSubstr("Right:")));      // the contact is the whole side
+}
+
+/// Widths of the symbols in a drawing, which are the only shapes in their colour.
+std::vector<double> symbols_of(const std::string& svg) {
+  std::vector<double> widths;
+  for (std::size_t at = svg.find("<path"); at != std::string::npos; at = svg.find("<path", at + 1)) {
+    const std::string path = svg.substr(at, svg.find('>', at) - at);
+    double x0 = 0, y0 = 0, x1 = 0;
+    if (path.find("fill:#0072B2") != std::string::npos &&
+        std::sscanf(path.c_str(), "<path d=\"M%lf %lfL%lf", &x0, &y0, &x1) == 3)
+      widths.push_back(std::abs(x1 - x0));
+  }
+  return widths;
+}
+
+TEST(ReportPicture, SymbolsOfManyPointsDoNotCoverOneAnother) {
+  const auto few = symbols_of(report::draw_overview(narrow_contact(9))->drawing.inline_svg());
+  const auto many = symbols_of(report::draw_overview(narrow_contact(60))->drawing.inline_svg());
+  ASSERT_EQ(few.size(), 10u);  // the last is that of the legend
+  ASSERT_EQ(many.size(), 61u);
+  EXPECT_EQ(few.front(), few.back());
+  EXPECT_EQ(many.back(), few.back());
+  // The window is 1.4 times as wide as the contact and has 300 pixels.
+  EXPECT_LT(many.front(), 300 / 1.4 / 59);
+  EXPECT_GT(many.front(), 2);  // pixels: the colour is seen
 }
 
 TEST(ReportPicture, HasNoWordsForStatesWhereNothingCanTouch) {

@@ -68,6 +68,28 @@ TEST_F(ReportOfARun, OfAFrictionlessSceneThatEndsOpenSpeaksOfNoSlipAndDrawsNoTra
                           Not(HasSubstr("tangential")), Not(HasSubstr("id=\"tractions\""))));
 }
 
+/// The two charts of the histories stand side by side below the picture; one alone stands beside it.
+TEST_F(ReportOfARun, TwoHistoriesHaveARowOfTheirOwn) {
+  const std::string row = "<div class=\"first histories\">";
+  const std::string with_loop = page_of("slider");
+  EXPECT_THAT(with_loop, AllOf(HasSubstr(row), HasSubstr("response over time"), HasSubstr("force along displacement")));
+  EXPECT_LT(with_loop.find("id=\"overview\""), with_loop.find(row));
+  EXPECT_LT(with_loop.find(row), with_loop.find("force along displacement"));
+  const std::string alone = page_of("pull_out");
+  EXPECT_THAT(alone, AllOf(Not(HasSubstr(row)), Not(HasSubstr("force along displacement"))));
+}
+
+TEST_F(ReportOfARun, StatesOfManyContactsShareAColumn) {
+  EXPECT_THAT(page_of("slider"), HasSubstr("sole: stick</th>"));
+  json result = json::parse(std::ifstream(directory_ / "result.json"));
+  for (auto& step : result["steps"])
+    for (const char* name : {"a", "b", "c"}) step["contacts"][name] = {{"open", 1}, {"stick", 2}, {"slip", 3}};
+  result["steps"][0]["contacts"]["a"]["open"] = 7;  // else the column would be the same in every row
+  std::ofstream(directory_ / "result.json") << result.dump();
+  EXPECT_THAT(written(), AllOf(HasSubstr("a: open / stick / slip</th>"), HasSubstr(">7 / 2 / 3</td>"),
+                               Not(HasSubstr("a: stick</th>"))));
+}
+
 TEST_F(ReportOfARun, WithoutAPictureSaysHowToGetOne) {
   const std::string html = page_of("slider", false);
   EXPECT_THAT(html, AllOf(HasSubstr("run --report"), HasSubstr("id=\"response-histories\""), HasSubstr("mu")));

@@ -22,8 +22,8 @@ class ReportVerdict : public recorded::StudyOnDisk {
  protected:
   std::string verdict_of(const json& about, const std::vector<json>& cells) {
     record(about, cells);
-    const auto [reason, table] = report::verdict(study());
-    return reason + table;
+    const auto verdict = report::verdict(study());
+    return verdict.reason + verdict.table;
   }
 };
 
@@ -154,9 +154,11 @@ TEST_F(ReportVerdict, OfOneMethodComparesItsOptions) {
       cells.back()["label"] = fmt::format("uzawa_al acceleration={} scale={}", acceleration, scale);
     }
   const std::string verdict = verdict_of(description(), cells);
-  const std::string head = "<th scope=\"row\"><span>Uzawa</span> <span>AL</span> <span>acceleration=";
-  EXPECT_THAT(verdict, testing::AllOf(HasSubstr(head + "none</span></th>"), HasSubstr(head + "anderson</span></th>")));
-  EXPECT_THAT(verdict, HasSubstr("cheapest by <b>Uzawa AL acceleration=anderson (scale=10 or 100)</b>"));
+  const std::string head = "<th scope=\"row\"><span>";  // the method, which is the same in each, heads their column
+  EXPECT_THAT(verdict, testing::AllOf(HasSubstr("<th rowspan=\"2\">Uzawa AL</th>"),
+                                      HasSubstr(head + "acceleration=none</span></th>"),
+                                      HasSubstr(head + "anderson</span></th>")));
+  EXPECT_THAT(verdict, HasSubstr("cheapest by <b>Uzawa AL anderson (scale=10 or 100)</b>"));
   EXPECT_THAT(verdict, HasSubstr("Uzawa AL acceleration=none (scale=10 or 100) takes 40 factorisations"));
 }
 
@@ -211,6 +213,35 @@ TEST_F(ReportVerdict, IsSilentWithoutErrors) {
   auto cells = three_methods();
   for (auto& c : cells) c["errors"] = json::object();
   EXPECT_EQ(verdict_of(description(), cells), "");
+}
+
+/// Where the responses of all runs err by rounding alone, their chart would order noise.
+TEST_F(ReportVerdict, TheChartBesideItIsOfDerivativesWhereResponsesErrByRounding) {
+  auto cells = three_methods();
+  record(description(), cells);
+  EXPECT_THAT(page(), HasSubstr("Error of the worst response."));
+  for (auto& c : cells) {
+    c["errors"]["enforcement"]["response:press"] = 1e-13;
+    c["errors"]["enforcement"]["sensitivity:press/E"] = 1e-5;
+  }
+  record(description(), cells);
+  EXPECT_THAT(page(), HasSubstr("Error of the worst derivative."));
+}
+
+/// A verdict of six rows is whole on the first screen, since the chart above it is lower.
+TEST_F(ReportVerdict, OfManyRowsHasALowerChartBesideIt) {
+  const auto page_of = [&](int options) {
+    std::vector<json> cells;
+    for (int i = 0; i < options; ++i)
+      for (const int scale : {1, 10, 100}) {
+        cells.push_back(cell("uzawa_al", {{"oversize", i}, {"scale", scale}}, 1e-5 / scale, 10 + scale));
+        cells.back()["label"] = fmt::format("uzawa_al oversize={} scale={}", i, scale);
+      }
+    record(description(), cells);
+    return page();
+  };
+  EXPECT_THAT(page_of(2), HasSubstr("\"height\":220.0"));
+  EXPECT_THAT(page_of(6), testing::AllOf(HasSubstr("\"height\":180.0"), Not(HasSubstr("\"height\":220.0"))));
 }
 
 TEST_F(ReportVerdict, ComesFirstOnThePage) {
