@@ -40,6 +40,7 @@ class SparseEngine {
   Vector<T> all(const Vector<T>& u) const;
   /// Engine displacements or increments over all dofs, in the axes, without those inside condensed bodies.
   Matrix<T> spread(const Matrix<T>& u) const { return out_of_frames(model_, slots_.frames, Layout::all, u); }
+  Vector<T> spread(const Vector<T>& u) const { return out_of_frames(model_, slots_.frames, Layout::all, u); }
   /// f_int - f_ext + contact.
   Vector<T> residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const;
   bool is_free(Eigen::Index row) const { return row_of_dof()[row] >= 0; }

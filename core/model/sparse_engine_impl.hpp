@@ -165,7 +165,7 @@ void SparseEngine<T>::hold_bodies(const BodyMotion<T>& at, const Vector<T>& u) {
   Vector<T> prescribed = u - held.u;
   for (int dof : model_.free_dofs) prescribed[dof] = T(0);
   if (values(prescribed).cwiseAbs().maxCoeff() > 0)
-    held.rows += into_frames(model_, slots_.frames, Layout::all, tangent_times(at, Vector<T>(spread(prescribed))));
+    held.rows += into_frames(model_, slots_.frames, Layout::all, tangent_times(at, spread(prescribed)));
   held_bodies_ = std::move(held);
 }
 
