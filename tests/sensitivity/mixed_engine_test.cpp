@@ -1,9 +1,9 @@
-/// Derivatives of scenes of which one body is condensed and another flows: both modes, by every scheme.
-/// (Direct ones are those of the engine in full: tests/methods/engine_agreement_test.cpp.)
+/// Derivatives of scenes of which one body is condensed and another flows: both modes, by every scheme, and the complex
+/// step of the whole program. (Direct ones are those of the engine in full: tests/methods/engine_agreement_test.cpp.)
 #include <gtest/gtest.h>
 
 #include "methods/engine_choice.hpp"
-#include "tests/support/both_modes.hpp"
+#include "tests/support/finite_strain.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace stickslip {
@@ -28,6 +28,14 @@ TEST(MixedEngine, HasOneDerivativeInBothModes) {
       EXPECT_LE(scenes::difference_of_modes(scene, method), std::holds_alternative<MonolithicAL>(method) ? 1e-11 : 1e-9)
           << name_of(method) << (inclined ? " inclined" : "");
     }
+  }
+}
+
+TEST(MixedEngine, HasTheDerivativesOfTheWholeRun) {
+  const Scene scene = scenes::punched_metal(3);
+  for (const Method& method : {Method(Penalty{}), uzawa(Sensitivity::iterated), Method(MonolithicAL{})}) {
+    EXPECT_TRUE(condenses(make_model(scene), method, LinearAlgebra::Engine::automatic)) << name_of(method);
+    scenes::expect_derivatives_of_the_oracle(scene, method);
   }
 }
 
