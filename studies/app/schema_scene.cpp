@@ -65,7 +65,7 @@ const char* const scene = R"json({
           "examples": [{"linear_elastic": {"E": 1000, "nu": 0.3}}]},
         "element": {"description": "left out: Q4, of j2_plastic Q4_mean_dilatation, which is for nu near 1/2 too; or as in the file",
           "enum": ["Q4", "Q4_mean_dilatation", "Q8", "T3", "T6", "bar", "point"], "examples": ["Q8"]},
-        "thickness": {"description": "of a body of plane_strain or plane_stress (length)",
+        "thickness": {"description": "of a body of plane_strain or plane_stress, at the start (length)",
           "$ref": "#/$defs/positive", "default": 1, "examples": [0.5]},
         "area": {"description": "cross-section of bars (length squared)", "$ref": "#/$defs/positive", "default": 1,
           "examples": [0.01]}}}},

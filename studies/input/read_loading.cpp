@@ -2,6 +2,7 @@
 #include <map>
 #include <tuple>
 
+#include "core/model/model.hpp"
 #include "studies/input/scene_reading.hpp"
 
 namespace stickslip {
@@ -80,6 +81,10 @@ void read_loaded_side(const JsonNode& on, const std::string& kind, SceneReading&
     on.must_be(in_quotes(side->body + ".node") + "; a load on the anchor of a spring does nothing");
   else if (!point && kind != "force" && side->side.facets.empty())
     on.error("is " + shown(on.value()) + ", single nodes without an area; use force instead of " + kind);
+  else if (kind == "pressure")
+    for (const Body& body : reading.scene.bodies)
+      if (const auto fault = pressure_fault(reading.scene, body); body.name == side->body && !fault.empty())
+        on.error("is " + shown(on.value()) + ", of a body that " + fault);
 }
 
 void read_loaded_body(const JsonNode& on, SceneReading& reading) {

@@ -19,9 +19,8 @@ void read_space(const JsonNode& root, SceneReading& reading) {
 
 void read_strain(const JsonNode& node, SceneReading& reading) {
   reading.scene.finite_strain = node.choice({"small", "finite"}) == "finite";
-  const Space space = reading.scene.space;
-  if (reading.scene.finite_strain && space != Space::plane_strain && space != Space::axisymmetric)
-    node.error(R"(is "finite", which needs the space "plane_strain" or "axisymmetric" in this version)");
+  if (reading.scene.finite_strain && reading.scene.space == Space::solid)
+    node.error(R"(is "finite", which needs a space "plane_strain", "plane_stress" or "axisymmetric" in this version)");
 }
 
 void read_linear_solver(const JsonNode& node, const Scene& scene, Input& input) {

@@ -101,6 +101,42 @@ struct ContactFields {
   }
 };
 
+/// Whether bodies change their thickness.
+bool thins(const Model& model) { return model.scene.finite_strain && model.scene.space == Space::plane_stress; }
+
+/// Mean stretch of the thickness of each element, one row.
+Matrix<double> element_thickness(const Problem& problem, const State<double>& state) {
+  std::vector<double> means;
+  for (std::size_t b = 0; b < problem.model.bodies.size(); ++b) {
+    const std::size_t first = means.size();
+    means.resize(first + problem.model.bodies[b].mesh.element_count(), 1);
+    std::vector<double> volumes(means.size() - first, 0);
+    for_each_strain(problem, state, b, [&](int e, const auto& H, double volume, const double* memory) {
+      if constexpr (std::decay_t<decltype(H)>::RowsAtCompileTime == 2) {
+        const double stretch = thickness_stretch(problem.slots.laws[b], H, memory);
+        volumes[e] += volume;
+        means[first + e] += (stretch - means[first + e]) * volume / volumes[e];
+      }
+    });
+  }
+  return Eigen::Map<const Vector<double>>(means.data(), static_cast<Eigen::Index>(means.size())).transpose();
+}
+
+/// Mean stretch of the thickness of the elements around each node.
+std::vector<double> nodal_thickness(const Problem& problem, const State<double>& state) {
+  const Matrix<double> of_element = element_thickness(problem, state);
+  std::vector<double> sums(problem.model.node_count, 0), counts(sums);
+  Eigen::Index element = 0;
+  for (const auto& body : problem.model.bodies)
+    for (int e = 0; e < body.mesh.element_count(); ++e, ++element)
+      for (int node : detail::element_nodes(body, e)) {
+        sums[node] += of_element(0, element);
+        ++counts[node];
+      }
+  for (std::size_t n = 0; n < sums.size(); ++n) sums[n] = counts[n] > 0 ? sums[n] / counts[n] : 1;
+  return sums;
+}
+
 /// Tributary areas of the points where they are now; empty where geometry stays that of the start.
 std::vector<double> present_areas(const Problem& problem, const State<double>& state) {
   const auto& model = problem.model;
@@ -108,7 +144,11 @@ std::vector<double> present_areas(const Problem& problem, const State<double>& s
   if (!model.effects.current_geometry) return areas;
   Slots<double> moved = problem.slots;
   moved.points += nodal(model, state.displacement);
-  for (const auto& point : model.points) areas.push_back(detail::tributary_area(point, moved));
+  const auto thickness = thins(model) ? nodal_thickness(problem, state) : std::vector<double>();
+  for (const auto& point : model.points) {
+    areas.push_back(detail::tributary_area(point, moved));
+    if (!thickness.empty()) areas.back() *= thickness[point.nodes[0]];
+  }
   return areas;
 }
 
@@ -187,6 +227,7 @@ VtuData fields_of(const CaseResult& result, const StepResult& step, bool last) {
   for (Eigen::Index e = 0; e < stress.cols(); ++e) mises(0, e) = von_mises(stress.col(e));
   data.cell_fields.push_back({"stress", stress});
   data.cell_fields.push_back({"von_mises", mises});
+  if (thins(model)) data.cell_fields.push_back({"thickness_stretch", element_thickness(problem, state)});
   if (model.effects.plasticity) data.cell_fields.push_back({"plastic_strain", element_plastic_strain(problem, state)});
   return data;
 }

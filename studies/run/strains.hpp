@@ -39,23 +39,39 @@ std::array<double, 4> stress_of(const Law<double>& law, const Mat<double, rows>&
       [&]<class L>(const L& of) -> std::array<double, 4> {
         if constexpr (ContinuumLaw<L>) {
           Mat<double, rows> s;
-          double across = 0;
-          if constexpr (Remembers<L>) {
-            const Vec<double, L::memory> h = Eigen::Map<const Vec<double, L::memory>>(memory);
-            s = of.template stress<double, rows>(H, h);
-            if constexpr (rows == 2) across = of.stress_across(H, h);
-          } else {
-            s = of.template stress<double, rows>(H);
-            if constexpr (rows == 2) across = of.stress_across(H);
-          }
+          double across = 0, stretch = 1;  // out of the plane
+          const auto take = [&](const auto&... remembered) {
+            s = of.template stress<double, rows>(H, remembered...);
+            if constexpr (rows == 2) across = of.stress_across(H, remembered...);
+            if constexpr (rows == 2) stretch = of.stretch_across(H, remembered...);
+          };
+          if constexpr (Remembers<L>)
+            take(Vec<double, L::memory>(Eigen::Map<const Vec<double, L::memory>>(memory)));
+          else
+            take();
           if (of.is_finite) {
             const Mat<double, rows> F = Mat<double, rows>::Identity() + H;
-            s = s * F.transpose() / F.determinant();
+            s = s * F.transpose() / (F.determinant() * stretch);
           }
           if constexpr (rows == 3) across = s(2, 2);
           return {s(0, 0), s(1, 1), across, s(0, 1)};
         }
         return {};
+      },
+      law);
+}
+
+/// Stretch of the thickness at a displacement gradient in the plane, and what its point remembers.
+inline double thickness_stretch(const Law<double>& law, const Mat<double, 2>& H, const double* memory) {
+  return std::visit(
+      [&]<class L>(const L& of) -> double {
+        if constexpr (ContinuumLaw<L>) {
+          if constexpr (Remembers<L>)
+            return of.stretch_across(H, Vec<double, L::memory>(Eigen::Map<const Vec<double, L::memory>>(memory)));
+          else
+            return of.stretch_across(H);
+        }
+        return 1;
       },
       law);
 }

@@ -127,6 +127,43 @@ TEST(Fields, OfContactAreOfPresentAreasTooAtFiniteStrain) {
   for (int i = 0; i < 2; ++i) EXPECT_DOUBLE_EQ(current[3 * node + i], nominal[3 * node + i] / 1.5);
 }
 
+TEST(Fields, OfPlaneStressAtFiniteStrainAreOfThePresentThickness) {
+  for (const bool metal : {false, true}) {
+    Scene scene = block(Space::plane_stress);
+    scene.finite_strain = true;
+    scene.bodies[0].material = NeoHookean{1000, 0.25, NeoHookean::Volumetric::log};
+    if (metal) scene.bodies[0].material = J2Plastic{1000, 0.25, 1e6, 0.0};
+    Made made(scene);
+    auto& state = made.state();
+    // half as wide again: of metal that does not flow ln h = -nu / (1 - nu) ln 1.5, of rubber 400 (h^2 - 1) + 400
+    // ln(1.5 h) = 0
+    for (int n = 0; n < 4; ++n) state.displacement[2 * n] = 0.5 * made.result.problem->slots.points(0, n);
+    double low = 0.5, high = 1;
+    for (int i = 0; i < 60; ++i) {
+      const double h = (low + high) / 2;
+      (h * h - 1 + std::log(1.5 * h) > 0 ? high : low) = h;
+    }
+    const double h = metal ? std::pow(1.5, -1.0 / 3) : low;
+    EXPECT_NEAR(made.array("thickness_stretch")[0], h, exact) << metal;
+    // Cauchy's along x: rubber 400 (1.5^2 - h^2) over the volume 1.5 h, metal E / (1 - nu^2) ln 1.5 over it
+    const double along = (metal ? 1000 / (1 - 0.0625) * std::log(1.5) : 400 * (2.25 - h * h)) / (1.5 * h);
+    const auto stress = made.array("stress");
+    EXPECT_NEAR(stress[0], along, 1e-12 * along) << metal;
+    EXPECT_EQ(stress[2], 0) << metal;
+    state.contact.state = {ContactState::slip, ContactState::open};
+    state.contact.traction << -6, 3, 0, 0;
+    const int node = made.model().side("block.bottom").nodes[0];
+    EXPECT_NEAR(made.array("contact_pressure_current")[node], 6 / (1.5 * h), exact) << metal;
+  }
+  for (const bool finite : {false, true}) {  // where the thickness stays there is no such field
+    Scene scene = block(finite ? Space::plane_strain : Space::plane_stress);
+    scene.finite_strain = finite;
+    if (finite) scene.bodies[0].material = NeoHookean{1000, 0.25};
+    Made made(scene);
+    EXPECT_THROW(made.array("thickness_stretch"), std::runtime_error);
+  }
+}
+
 TEST(Fields, OfContactAreThoseOfTheSlaveNodes) {
   Made made(block(Space::plane_strain));
   auto& state = made.state();

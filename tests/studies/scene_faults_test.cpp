@@ -73,14 +73,34 @@ std::vector<Broken> broken_finite() {
   const char* f = finite_scene;
   const char* const small = R"(needs "strain": "small")";
   return {
-      {"finite_plane_stress", f, R"("strain": "finite")", R"("space": "plane_stress", "strain": @"finite")", "/strain",
-       R"(needs the space "plane_strain" or "axisymmetric")"},
+      {"finite_solid",
+       R"({"space": "solid", "strain": "small", "time": {"end": 1, "steps": 1}, "method": {"penalty": {}},
+           "bodies": {"a": {"mesh": {"point": {"at": [0, 0, 0]}},
+           "material": {"grounded_spring": {"stiffness": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}}}},
+           "obstacles": {"o": {"plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}}}})",
+       R"("small")", R"(@"finite")", "/strain", R"(needs a space "plane_strain", "plane_stress" or "axisymmetric")"},
+      {"finite_averaged_plane_stress", f, R"("strain": "finite",
+  "bodies": {"block": {)",
+       R"("space": "plane_stress", "strain": "finite",
+  "bodies": {"block": {"element": @"Q4_mean_dilatation", )",
+       "/bodies/block/element", "in plane stress the thickness gives way"},
       {"finite_linear_elastic", f, R"("neo_hookean")", R"(@"linear_elastic")", "/bodies/block/material/linear_elastic",
        "allowed: neo_hookean"},
       {"finite_volumetric", f, R"("nu": 0.25})", R"("nu": 0.25, "volumetric": @"cubic"})",
        "/bodies/block/material/neo_hookean/volumetric", "allowed: quadratic, log"},
       {"finite_segments", f, R"("master": "floor"})", R"("master": "floor", @"discretization": "segment"})",
        "/contacts/sole/discretization", small},
+      {"finite_pressure_on_metal", R"({
+  "space": "plane_stress", "strain": "finite",
+  "bodies": {"block": {"mesh": {"box": {"min": [0, 0], "max": [4, 2], "cells": [4, 2]}},
+                       "material": {"j2_plastic": {"E": 1000, "nu": 0.25, "yield": 10, "hardening": 20}}}},
+  "supports": [{"on": "block.top", "move": {"x": 0, "y": -0.1}}],
+  "loads": [{"on": "block.left", "traction": [1, 0]}],
+  "time": {"end": 1, "steps": 2},
+  "method": {"monolithic_al": {}}
+})",
+       R"({"on": "block.left", "traction": [1, 0]})", R"({"on": @"block.left", "pressure": 1})", "/loads/0/on",
+       "a pressure on what flows is not known"},
       {"finite_condensed", f, R"("time")", R"("linear_solver": {"engine": @"condensed"}, "time")",
        "/linear_solver/engine", "allowed where strains are finite or all bodies flow: auto, sparse"},
   };
