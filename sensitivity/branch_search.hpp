@@ -1,11 +1,14 @@
 /// The branches that an increment takes at ties along one direction: found by flipping what is contradicted, all at
-/// once, then one by one, and where few points are weak by trying all (sensitivity/branches.hpp).
+/// once, then one by one, and where few points are weak by trying all (sensitivity/branches.hpp, of the bodies
+/// sensitivity/flow_ties.hpp).
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <set>
 
 #include "sensitivity/branches.hpp"
+#include "sensitivity/flow_ties.hpp"
 #include "sensitivity/monolithic.hpp"
 #include "sensitivity/penalty.hpp"
 #include "sensitivity/uzawa.hpp"
@@ -51,6 +54,7 @@ class BranchSearch {
         at_(at),
         own_(detail::own_rho(method, problem.slots, factor)),
         weak_(weak_points(problem.model, problem.slots, at, own_, cone_radius(method), along.largest_so_far)),
+        flows_(flow_ties(problem.model, problem.slots, at.displacement, previous.history.bodies)),
         along_(along) {
     std::vector<double> stiffened = factor;
     for (double& f : stiffened) f *= detail::oversize_of(method);
@@ -59,11 +63,12 @@ class BranchSearch {
 
   /// Leaves the derivative with the branches that it confirms in the block, and them in `at`.
   bool run() {
-    if (weak_.empty()) return follow_branches();
-    const auto found = at_.contact;
+    if (weak_.empty() && flows_.empty()) return follow_branches();
+    take_values(problem_.model, flows_, at_);
+    const State<double> found = at_;
     if (by_flipping()) return true;
     if (!unsettled_) {
-      at_.contact = found;
+      at_ = found;
       hold();
       if (by_flipping() || by_enumeration()) return true;
     }
@@ -74,20 +79,25 @@ class BranchSearch {
   /// has a regular tangent then.
   void hold() {
     for (const auto& w : weak_) take_branch(problem_.model, w.point, branches_of(problem_.model, w).front(), at_);
+    take_values(problem_.model, flows_, at_);
+    for (const auto& tie : flows_) at_.flow[tie.memory] = tie.branches.front();
   }
 
  private:
   struct Standing {
     bool possible = true;
-    std::vector<std::pair<int, Branch>> contradicted;  ///< by point
+    std::vector<std::function<void(State<double>&)>> contradicted;  ///< to the branches that are pointed to
     double by = 0;
+    bool is_confirmed() const { return possible && contradicted.empty(); }
   };
 
-  /// Differentiates with the branches in `at`. The bodies' pseudo-load does not depend on them: one serves all choices.
+  /// Differentiates with the branches in `at`. The bodies' pseudo-load depends on those of their flows alone: one
+  /// serves all choices of the others.
   bool follow_branches() {
-    if (load_.empty()) {
-      load_.push_back(pseudo_load(problem_, at_.displacement, increment_.time));
+    if (load_.empty() || load_flow_ != at_.flow) {
+      load_.assign(1, pseudo_load(problem_, at_, increment_.time));
       reduce(problem_, load_);
+      load_flow_ = at_.flow;
     }
     problem_.prepared = load_[0];
     const bool done = differentiate_alone(method_, problem_, previous_, increment_);
@@ -107,13 +117,26 @@ class BranchSearch {
           judge(problem_.model, problem_.slots, problem_.blocks[0], rho_, own_, cone_radius(method_), w, at_, along_);
       standing.possible &= verdict.possible;
       standing.by = std::max(standing.by, verdict.by);
-      if (verdict.contradicts) standing.contradicted.emplace_back(w.point, *std::move(verdict.contradicts));
+      if (!verdict.contradicts) continue;
+      standing.contradicted.push_back(
+          [this, p = w.point, branch = *verdict.contradicts](auto& at) { take_branch(problem_.model, p, branch, at); });
     }
+    judge_flows(standing);
     if (standing.possible && standing.by < least_) {
       least_ = standing.by;
-      best_ = at_.contact;
+      best_ = at_;
     }
     return standing;
+  }
+
+  void judge_flows(Standing& standing) const {
+    const auto verdicts = judge(problem_.model, problem_.blocks[0], flows_, at_, along_);
+    for (std::size_t k = 0; k < flows_.size(); ++k) {
+      standing.by = std::max(standing.by, verdicts[k].by);
+      if (!verdicts[k].contradicts) continue;
+      standing.contradicted.push_back(
+          [at_memory = flows_[k].memory, branch = *verdicts[k].contradicts](auto& at) { at.flow[at_memory] = branch; });
+    }
   }
 
   /// What tells one choice from another: branches, and in the plane the sides to which points slip.
@@ -124,12 +147,13 @@ class BranchSearch {
       const int direction = branch.ray.size() == 2 ? (branch.ray[1] > 0 ? 1 : 2) : 0;
       key.push_back(4 * static_cast<int>(branch.state) + direction);
     }
+    for (const auto& tie : flows_) key.push_back(at_.flow[tie.memory]);
     return key;
   }
 
   /// Flips all that is contradicted; where that was tried, the first alone.
   bool by_flipping() {
-    const std::size_t limit = 40 + 4 * weak_.size();
+    const std::size_t limit = 40 + 4 * (weak_.size() + flows_.size());
     std::set<std::vector<int>> tried;
     for (std::size_t round = 0; round < limit; ++round) {
       const auto before = key();
@@ -137,14 +161,13 @@ class BranchSearch {
       const auto standing = differentiate();
       if (!standing) return false;
       if (!standing->possible) return false;
-      if (standing->contradicted.empty()) return true;
+      if (standing->is_confirmed()) return true;
       const State<double> start = at_;
-      for (const auto& [point, branch] : standing->contradicted) take_branch(problem_.model, point, branch, at_);
+      for (const auto& take : standing->contradicted) take(at_);
       const auto after = key();
       if (after == before || !tried.count(after)) continue;  // (the same: a direction in space is being found)
-      at_.contact = start.contact;
-      const auto& [point, branch] = standing->contradicted.front();
-      take_branch(problem_.model, point, branch, at_);
+      at_ = start;
+      standing->contradicted.front()(at_);
     }
     return false;
   }
@@ -152,21 +175,28 @@ class BranchSearch {
   /// Tries all branches of few points.
   bool by_enumeration() {
     constexpr std::size_t most = 256;
-    std::vector<std::vector<Branch>> of_point;
-    std::size_t count = 1;
+    const Model& model = problem_.model;
+    std::vector<std::vector<std::function<void(State<double>&)>>> of_point;
     for (const auto& w : weak_) {
-      of_point.push_back(branches_of(problem_.model, w));
-      count *= of_point.back().size();
-      if (count > most) return false;
+      auto& branches = of_point.emplace_back();
+      for (const auto& branch : branches_of(model, w))
+        branches.push_back([&model, &w, branch](auto& at) { take_branch(model, w.point, branch, at); });
     }
+    for (const auto& tie : flows_) {
+      auto& branches = of_point.emplace_back();
+      for (int branch : tie.branches) branches.push_back([&tie, branch](auto& at) { at.flow[tie.memory] = branch; });
+    }
+    std::size_t count = 1;
+    for (const auto& branches : of_point)
+      if ((count *= branches.size()) > most) return false;
     for (std::size_t choice = 0; choice < count && !unsettled_; ++choice) {
       std::size_t rest = choice;
-      for (std::size_t k = 0; k < weak_.size(); ++k) {
-        take_branch(problem_.model, weak_[k].point, of_point[k][rest % of_point[k].size()], at_);
-        rest /= of_point[k].size();
+      for (const auto& branches : of_point) {
+        branches[rest % branches.size()](at_);
+        rest /= branches.size();
       }
       const auto standing = differentiate();
-      if (standing && standing->possible && standing->contradicted.empty()) return true;
+      if (standing && standing->is_confirmed()) return true;
     }
     return false;
   }
@@ -176,7 +206,7 @@ class BranchSearch {
   bool at_rounding() {
     constexpr double most = 1e3;  // 1e-7 of the derivatives: a point is weak up to 1e-8, as its derivative then is
     if (!(least_ <= most)) return false;
-    at_.contact = best_;
+    at_ = best_;
     return follow_branches();
   }
 
@@ -188,11 +218,13 @@ class BranchSearch {
   RegularisationField<double> own_;
   RegularisationField<Direction> rho_;
   std::vector<WeakPoint> weak_;
+  std::vector<FlowTie> flows_;
   Along along_;
   double least_ = std::numeric_limits<double>::infinity();  ///< least_, best_: of the choices tried, the one
                                                             ///< that was contradicted least
-  ContactField<double> best_;
+  State<double> best_;
   std::vector<PseudoLoad> load_;  ///< of the bodies, once it is asked for
+  FlowBranches load_flow_;        ///< the branches that it is of
   bool unsettled_ = false;        ///< a scheme's passes did not settle: all that it takes, for each choice again
 };
 

@@ -142,7 +142,7 @@ struct Derivatives::Progress {
     std::vector<PseudoLoad> loads;
     if (!detail::is_truncated(m)) {  // (which has one for each augmentation)
       for (std::size_t n = done; n < end; ++n)
-        loads.push_back(pseudo_load(problem, increments[n].state.displacement, increments[n].time));
+        loads.push_back(pseudo_load(problem, increments[n].state, increments[n].time));
       reduce(problem, loads);
     }
     std::vector<Unexpanded> unexpanded;
@@ -230,7 +230,8 @@ void Derivatives::follow(const Trajectory<double>& trajectory) {
   const auto& increments = trajectory.increments;
   for (std::size_t n = now.done; n < increments.size() && increments[n].usable(); ++n) {
     now.largest = std::max(now.largest, traction_scale(now.model, now.slots, increments[n].state));
-    now.postponed |= !worthwhile || has_ties(now.model, now.slots, now.method, increments[n], now.largest);
+    const auto& previous = n == 0 ? trajectory.initial : increments[n - 1].state;
+    now.postponed |= !worthwhile || has_ties(now.model, now.slots, now.method, previous, increments[n], now.largest);
     if (now.postponed) return;
     now.advance(trajectory, n + 1, n + 1 == increments.size());
   }

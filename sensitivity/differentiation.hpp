@@ -110,17 +110,18 @@ inline void add_derivatives(Vector<Direction>& v, const Eigen::Ref<const Matrix<
     for (Eigen::Index i = 0; i < v.size(); ++i) v[i].d[d] += columns(i, block.parameters[d]);
 }
 
-/// The pseudo-load of the bodies at displacements of all dofs, not yet reduced.
+/// The pseudo-load of the bodies at a state, not yet reduced.
 template <class E>
-PseudoLoad pseudo_load(const Differentiation<E>& problem, const Vector<double>& displacement, double time) {
+PseudoLoad pseudo_load(const Differentiation<E>& problem, const State<double>& at, double time) {
   const Model& model = problem.model;
+  const Vector<double>& displacement = at.displacement;
   PseudoLoad load;
   std::vector<Vector<Direction>> rows;
   for (auto& block : problem.blocks) {
     Vector<Direction> u = lift(displacement);
     prescribe(model, block.slots, time, u);
     for (Eigen::Index i = 0; i < u.size(); ++i) u[i].v = displacement[i];
-    const Vector<Direction> memory = bulk_flow(model, block.slots, u, block.previous.history.bodies);
+    const Vector<Direction> memory = bulk_flow(model, block.slots, u, block.previous.history.bodies, at.flow);
     Vector<Direction> balance = bulk_forces(model, block.slots, u, memory, &block.touched);
     balance -= external_forces(model, block.slots, time, u);
     rows.push_back(into_frames(model, block.slots.frames, Layout::all, std::move(balance)));

@@ -114,7 +114,7 @@ LinearisedEquilibrium<E>::LinearisedEquilibrium(Differentiation<E>& problem, con
     problem.prepared.reset();
     return;
   }
-  std::vector<PseudoLoad> alone{pseudo_load(problem, at.displacement, time)};
+  std::vector<PseudoLoad> alone{pseudo_load(problem, at, time)};
   reduce(problem, alone);
   load_ = std::move(alone[0]);
 }
@@ -223,8 +223,10 @@ void LinearisedEquilibrium<E>::settle(const std::vector<ContactField<Direction>>
     const auto displacement = without_inside(problem_, {load_, increment_});  // (what remembers is not condensed)
     for (std::size_t b = 0; b < problem_.blocks.size(); ++b) {
       auto& block = problem_.blocks[b];
-      block.current.history.bodies =
-          bulk_flow(problem_.model, block.slots, displacement[b], block.previous.history.bodies);
+      auto& bodies = block.current.history.bodies;
+      bodies = bulk_flow(problem_.model, block.slots, displacement[b], block.previous.history.bodies, at_.flow);
+      if (!at_.flow.empty())  // (what is left of a tie moves the values of a branch that is given)
+        for (Eigen::Index k = 0; k < bodies.size(); ++k) bodies[k].v = at_.history.bodies[k];
     }
   }
   problem_.unexpanded = {std::move(load_), increment_};

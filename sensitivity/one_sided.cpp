@@ -46,12 +46,14 @@ std::vector<double> traction_scales(const Model& model, const Slots<double>& slo
   return scales;
 }
 
-/// Weak points of all equilibria that the scheme differentiates in an increment.
+/// Whether one of the equilibria that the scheme differentiates in an increment has ties.
 template <class M>
-bool has_ties_of(const M& method, const Model& model, const Slots<double>& slots, const Increment<double>& increment,
-                 double largest) {
+bool has_ties_of(const M& method, const Model& model, const Slots<double>& slots, const State<double>& previous,
+                 const Increment<double>& increment, double largest) {
   const auto weak = [&](const State<double>& at, const std::vector<double>& factor) {
-    return !weak_points(model, slots, at, detail::own_rho(method, slots, factor), cone_radius(method), largest).empty();
+    const auto rho = detail::own_rho(method, slots, factor);
+    return !weak_points(model, slots, at, rho, cone_radius(method), largest).empty() ||
+           !flow_ties(model, slots, at.displacement, previous.history.bodies).empty();
   };
   if (!detail::is_truncated(method)) return weak(increment.state, increment.rho_factor);
   return std::any_of(increment.augmented.begin(), increment.augmented.end(),
@@ -60,10 +62,16 @@ bool has_ties_of(const M& method, const Model& model, const Slots<double>& slots
 
 /// Index of the first increment with ties; their number where none has.
 std::size_t first_tie(const Model& model, const Slots<double>& slots, const Method& method,
-                      const Trajectory<double>& trajectory) {
+                      const Trajectory<double>& trajectory, WholeStates& states) {
   const auto scales = traction_scales(model, slots, trajectory);
+  const auto has = [&](std::size_t n) {
+    if (!model.effects.plasticity)  // (contact tells, of thin states too)
+      return has_ties(model, slots, method, trajectory.initial, trajectory.increments[n], scales[n]);
+    const auto& increment = states.increment(n);
+    return has_ties(model, slots, method, states.before(n), increment, scales[n]);
+  };
   std::size_t n = 0;
-  while (n < scales.size() && !has_ties(model, slots, method, trajectory.increments[n], scales[n])) ++n;
+  while (n < scales.size() && !has(n)) ++n;
   return n;
 }
 
@@ -205,16 +213,17 @@ Margins margins(const Model& model, const Slots<double>& slots, const State<doub
   return least;
 }
 
-bool has_ties(const Model& model, const Slots<double>& slots, const Method& method, const Increment<double>& increment,
-              double largest) {
-  return std::visit([&](const auto& m) { return has_ties_of(m, model, slots, increment, largest); }, method);
+bool has_ties(const Model& model, const Slots<double>& slots, const Method& method, const State<double>& previous,
+              const Increment<double>& increment, double largest) {
+  return std::visit([&](const auto& m) { return has_ties_of(m, model, slots, previous, increment, largest); }, method);
 }
 
 std::optional<OneSided> one_sided_derivatives(const Model& model, const Slots<double>& slots, const Method& method,
                                               const Trajectory<double>& trajectory, Workspace<double>& workspace) {
   const int parameters = static_cast<int>(model.scene.parameters.size());
   if (parameters == 0) return std::nullopt;
-  const std::size_t first = first_tie(model, slots, method, trajectory);
+  WholeStates states(model, slots, method, trajectory, workspace);
+  const std::size_t first = first_tie(model, slots, method, trajectory, states);
   std::vector<Pairings> pairings;
   bool kinks = first < trajectory.increments.size();
   for (int j = 0; j < parameters; ++j) {
@@ -227,7 +236,6 @@ std::optional<OneSided> one_sided_derivatives(const Model& model, const Slots<do
   OneSided sides;
   sides.backward.assign(trajectory.increments.size(), unknown);
   sides.forward = sides.backward;
-  WholeStates states(model, slots, method, trajectory, workspace);
   auto both = [&](const auto& m, auto& engine) {
     for (int j = 0; j < parameters; ++j)
       run_sides(m, engine, model, slots, trajectory, states, first, j, pairings[j], sides);
@@ -238,26 +246,32 @@ std::optional<OneSided> one_sided_derivatives(const Model& model, const Slots<do
 
 void TakenBranches::give(Increment<double>& increment) const {
   increment.state.contact = contact;
-  for (std::size_t k = 0; k < sweeps.size(); ++k) increment.augmented[k].state.contact = sweeps[k];
+  increment.state.flow = flow;
+  for (std::size_t k = 0; k < sweeps.size(); ++k) {
+    increment.augmented[k].state.contact = sweeps[k].first;
+    increment.augmented[k].state.flow = sweeps[k].second;
+  }
 }
 
 std::optional<std::vector<TakenBranches>> consistent_at_ties(const Model& model, const Slots<double>& slots,
                                                              const Method& method, const Trajectory<double>& trajectory,
                                                              WholeStates& states, Workspace<double>& workspace,
                                                              Counters& counters) {
-  const std::size_t first = first_tie(model, slots, method, trajectory);
+  const std::size_t first = first_tie(model, slots, method, trajectory, states);
   if (first == trajectory.increments.size()) return std::nullopt;
   std::vector<TakenBranches> taken;
   for (const auto& increment : trajectory.increments) {
-    taken.push_back({increment.state.contact, {}});
-    for (const auto& sweep : increment.augmented) taken.back().sweeps.push_back(sweep.state.contact);
+    taken.push_back({increment.state.contact, {}, {}});
+    for (const auto& sweep : increment.augmented) taken.back().sweeps.push_back({sweep.state.contact, {}});
   }
   auto search = [&](const auto& m, auto& engine) {
     SideRun run(m, model, slots, engine, trajectory, states, make_slots<Direction>(model, all_growing(model.scene)), 1);
     const auto take = [&](std::size_t n, Increment<double>& increment) {
       taken[n].contact = std::move(increment.state.contact);
+      taken[n].flow = std::move(increment.state.flow);
       for (std::size_t k = 0; k < increment.augmented.size(); ++k)
-        taken[n].sweeps[k] = std::move(increment.augmented[k].state.contact);
+        taken[n].sweeps[k] = {std::move(increment.augmented[k].state.contact),
+                              std::move(increment.augmented[k].state.flow)};
     };
     run.run(0, trajectory.increments.size(), 1, take, true);
     counters += run.counters;

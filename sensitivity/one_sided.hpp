@@ -4,7 +4,8 @@
 /// (sensitivity/branches.hpp), found by flipping what is not confirmed. The history Dh then differs between the two
 /// sides, so both are carried to the end of the run, where they may agree again. Uzawa's truncated scheme does so in
 /// each augmentation. A projection onto a vertex of the master goes to another facet on each side
-/// (sensitivity/sided_geometry.hpp).
+/// (sensitivity/sided_geometry.hpp). Material points that are about to flow take branches likewise
+/// (sensitivity/flow_ties.hpp).
 ///
 /// Branches that no direction confirms give the derivative of nothing, and leave it in the history. So where there are
 /// ties, all parameters are differentiated with the branches that hold along one direction, in which all of them grow
@@ -50,15 +51,16 @@ struct OneSided {
 std::optional<OneSided> one_sided_derivatives(const Model& model, const Slots<double>& slots, const Method& method,
                                               const Trajectory<double>& trajectory, Workspace<double>& workspace);
 
-/// Whether some contact point is about to change its state in an increment. `largest`: traction_scale of the run so
-/// far.
-bool has_ties(const Model& model, const Slots<double>& slots, const Method& method, const Increment<double>& increment,
-              double largest);
+/// Whether some point, of contact or of a body, is about to change its state in an increment. `previous`: that at its
+/// start; `largest`: traction_scale of the run so far.
+bool has_ties(const Model& model, const Slots<double>& slots, const Method& method, const State<double>& previous,
+              const Increment<double>& increment, double largest);
 
-/// An increment's contact with the branches of its ties chosen, and that after each augmentation.
+/// An increment's contact and flow with the branches of its ties chosen, and those after each augmentation.
 struct TakenBranches {
   ContactField<double> contact;
-  std::vector<ContactField<double>> sweeps;
+  FlowBranches flow;
+  std::vector<std::pair<ContactField<double>, FlowBranches>> sweeps;
   void give(Increment<double>& increment) const;
 };
 

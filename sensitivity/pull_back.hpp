@@ -38,6 +38,7 @@ struct WorkPairs {
   Matrix<double> weights, motions;  ///< no weights: of what is remembered alone
   Matrix<double> before;            ///< what bodies remember of the last increment
   Matrix<double> memory;            ///< weights of what they remember of this one; empty: none
+  std::vector<FlowBranches> flows;  ///< per column
 };
 
 /// Derivatives by motion (no rows: no body remembers) and by what bodies remember of the last increment.
@@ -60,6 +61,7 @@ struct Inside {
   Vector<double> forces;     ///< of bodies and contact, all dofs; empty where no node has a frame of its own
   Vector<double> weights;    ///< a of what the objective reads of the bodies' forces, all dofs in the axes
   Matrix<double> u, others;  ///< engine increment that -c belongs to, and what the reduction left of c for it
+  FlowBranches flow;
 };
 
 /// One objective on its way back.
@@ -187,7 +189,8 @@ RecordedEquilibrium<E>::RecordedEquilibrium(AdjointProblem<E>& problem, const St
                        forces,
                        Vector<double>::Zero(model.dof_count()),
                        {},
-                       {}});
+                       {},
+                       at.flow});
   }
 }
 
@@ -201,7 +204,7 @@ void RecordedEquilibrium<E>::record(const State<double>& previous, const Regular
   prescribe(model, slots, time, prescribed_);
   outcome_start_ = tape.size();
   displacement_ = leaves(at_.displacement, tape);
-  const Vector<double> memory = bulk_flow(model, problem_.slots, at_.displacement, previous.history.bodies);
+  const Vector<double> memory = bulk_flow(model, problem_.slots, at_.displacement, previous.history.bodies, at_.flow);
   // (what reads forces by more than their derivative does so at supports, but for energies)
   forces_ =
       bulk_forces(model, problem_.slots, at_.displacement, memory, problem_.energies ? nullptr : &problem_.at_supports);
@@ -281,7 +284,7 @@ void RecordedEquilibrium<E>::pull_back_memory(int objective) {
   if (weight.size() == 0 || weight.cwiseAbs().maxCoeff() == 0) return;
   for (const auto& x : memory_) by(objective)[x.at] = 0;
   const auto left = pull_back_bodies(problem_.model, problem_.recorded, problem_.tape,
-                                     {{}, inside.motion, inside.before, weight}, by(objective));
+                                     {{}, inside.motion, inside.before, weight, {at_.flow}}, by(objective));
   seed(by(objective), displacement_, left.motion);
   inside.by_before += left.before;
 }
@@ -326,7 +329,7 @@ void RecordedEquilibrium<E>::balance(int objective) {
   if (weight.size() > 0 && weight.cwiseAbs().maxCoeff() > 0) {  // (the bodies' tangent is symmetric)
     inside.weights += weight;
     seed(by(objective), displacement_,
-         bulk_tangent_times(model, problem_.slots, {at_.displacement, inside.before}, weight));
+         bulk_tangent_times(model, problem_.slots, {at_.displacement, inside.before, 0, &at_.flow}, weight));
   }
   const auto in_frames = [&] {
     return Matrix<double>(into_frames(model, problem_.slots.frames, Layout::all, gather(objective, displacement_)));

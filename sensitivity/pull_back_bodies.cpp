@@ -32,6 +32,12 @@ Vector<double> remembered(const Matrix<double>& of, const BodyMesh& body, int e,
   return of.col(column).segment(body.first_memory + e * body.memory, body.memory);
 }
 
+/// The branches of the flows of a body's element in a column; nullptr: by their values.
+const int* branches_of(const WorkPairs& pairs, const BodyMesh& body, int e, Eigen::Index column) {
+  const FlowBranches& all = pairs.flows[column];
+  return all.empty() ? nullptr : all.data() + body.first_memory + e * body.memory;
+}
+
 /// The elements of a continuum: each is differentiated by its own inputs, for all increments together.
 template <class Shape, Kinematics kinematics, class L>
 void pull_back_continuum(const L& law, const Model& model, const Slots<Reverse>& slots, int b, const WorkPairs& pairs,
@@ -60,6 +66,7 @@ void pull_back_continuum(const L& law, const Model& model, const Slots<Reverse>&
       if constexpr (Remembers<L>) {
         state.before = remembered(pairs.before, body, e, n);
         state.memory = remembered(pairs.memory, body, e, n);
+        state.branches = branches_of(pairs, body, e, n);
       }
     }
     const auto work = element_work<Shape, kinematics>(plain, X, thickness.v, states, wanted);
@@ -110,7 +117,9 @@ void pull_back_two_nodes(const L& law, const Model& model, const Slots<Reverse>&
         const Vector<Reverse> variables = leaves(values(d), tape),
                               before = leaves(remembered(pairs.before, body, e, n), tape);
         const Vec<Reverse, D> moved = variables;
-        const Vec<Reverse, L::memory> after = law.template flow<D>(X, moved, before);
+        const int* const branch = branches_of(pairs, body, e, n);
+        const Vec<Reverse, L::memory> after =
+            law.template flow<D>(X, moved, before, branch ? *branch : flow_branch::by_values);
         const Vec<Reverse, D> force = law.template force<D>(X, moved, after);
         by.resize(tape.size(), 0);
         for (int m = 0; m < L::memory; ++m)

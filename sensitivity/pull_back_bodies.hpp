@@ -57,9 +57,9 @@ void pull_back_loads(AdjointProblem<E>& problem, const Inside& of, const Vector<
   for (int node : model.contact_nodes) touches[node] = 1;
   for (int dof : model.free_dofs)
     if (!touches[dof / model.dimension]) seed(rows[dof], weight[dof]);
-  Vector<double> held =
-      into_frames(model, problem.slots.frames, Layout::all,
-                  tangent_times(model, problem.slots, {of.motion, of.before, of.time}, a, true, &problem.at_supports));
+  Vector<double> held = into_frames(
+      model, problem.slots.frames, Layout::all,
+      tangent_times(model, problem.slots, {of.motion, of.before, of.time, &of.flow}, a, true, &problem.at_supports));
   for (int dof : model.free_dofs) held[dof] = 0;
   held = out_of_frames(model, problem.slots.frames, Layout::all, std::move(held));
   for (Eigen::Index i = 0; i < held.size(); ++i) seed(prescribed[i], held[i]);
@@ -80,7 +80,7 @@ void pull_back_inside(AdjointProblem<E>& problem) {
   for (auto& objective : problem.objectives) {
     auto& waiting = objective.inside;
     if (waiting.empty()) continue;
-    WorkPairs pairs{detail::weights_inside(problem, waiting), {}, {}, {}};
+    WorkPairs pairs{detail::weights_inside(problem, waiting), {}, {}, {}, {}};
     pairs.motions.resize(pairs.weights.rows(), pairs.weights.cols());
     pairs.before.resize(problem.model.memory_count, pairs.weights.cols());
     for (std::size_t n = 0; n < waiting.size(); ++n) {
@@ -89,6 +89,7 @@ void pull_back_inside(AdjointProblem<E>& problem) {
       pairs.weights.col(k) += waiting[n].weights;
       pairs.motions.col(k) = waiting[n].motion;
       pairs.before.col(k) = waiting[n].before;
+      pairs.flows.push_back(waiting[n].flow);
     }
     problem.tape.rewind(problem.slots_end);
     objective.by.resize(problem.slots_end);

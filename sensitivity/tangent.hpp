@@ -26,7 +26,7 @@ template <class Problem>
 bool factorise_converged(Problem& problem, const ContactInput<double>& input, const State<double>& at, bool unknown,
                          bool& redundant) {
   if (!problem.model.effects.linear_bulk)
-    problem.engine.linearise({at.displacement, input.previous.bodies, input.time});
+    problem.engine.linearise({at.displacement, input.previous.bodies, input.time, &at.flow});
   auto tangents = converged_tangents(input, at);
   Counters spent;
   const auto decided = unknown ? decided_elsewhere(problem.model, problem.slots, &at.contact) : std::vector<char>();

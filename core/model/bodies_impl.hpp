@@ -76,10 +76,14 @@ void with_law(const Model& model, const Slots<T>& slots, int b, Continuum&& cont
       slots.laws[b]);
 }
 
-/// What element e of a body remembers; nothing of a law that does not.
+/// What element e of a body remembers, and the branches of its flow from there; nothing of a law that does not.
 template <class L, class T>
-ElementMemory<T> memory_of_element(const BodyMesh& body, int e, const Vector<T>& memory) {
-  if constexpr (Remembers<L>) return memory.data() + body.first_memory + static_cast<Eigen::Index>(e) * body.memory;
+ElementMemory<T> memory_of_element(const BodyMesh& body, int e, const Vector<T>& memory,
+                                   const FlowBranches* branches = nullptr) {
+  if constexpr (Remembers<L>) {
+    const Eigen::Index first = body.first_memory + static_cast<Eigen::Index>(e) * body.memory;
+    return {memory.data() + first, branches && !branches->empty() ? branches->data() + first : nullptr};
+  }
   return {};
 }
 
@@ -172,7 +176,8 @@ Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>
 }
 
 template <class T>
-Vector<T> bulk_flow(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& before) {
+Vector<T> bulk_flow(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& before,
+                    const FlowBranches& branches) {
   Vector<T> after = before;
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     const auto& body = model.bodies[b];
@@ -183,7 +188,7 @@ Vector<T> bulk_flow(const Model& model, const Slots<T>& slots, const Vector<T>& 
           const auto nodes = detail::element_nodes(body, e);
           element_flow<T, Shape, kinematics>(law, detail::gather_coordinates<T, Shape>(slots.points, nodes.data()),
                                              detail::gather_displacements<T, Shape>(u, nodes.data()),
-                                             detail::memory_of_element<L>(body, e, before),
+                                             detail::memory_of_element<L>(body, e, before, &branches),
                                              after.data() + body.first_memory + e * body.memory);
         }
     };
@@ -191,9 +196,11 @@ Vector<T> bulk_flow(const Model& model, const Slots<T>& slots, const Vector<T>& 
       if constexpr (Remembers<L>)
         for (int e = 0; e < body.mesh.element_count(); ++e) {
           const auto nodes = detail::element_nodes(body, e);
+          auto memory = detail::memory_of_element<L>(body, e, before, &branches);
+          const int branch = memory.branch();
           after.template segment<L::memory>(body.first_memory + e * body.memory) = law.template flow<D>(
               detail::two_places<T, D>(slots.points, nodes), detail::two_node_stretch<T, D>(nodes, &u),
-              detail::memory_of_element<L>(body, e, before).template take<L::memory>());
+              memory.template take<L::memory>(), branch);
         }
     };
     detail::with_law<T>(model, slots, b, continuum, two_nodes);
@@ -281,7 +288,7 @@ void for_each_element_tangent(const Model& model, const Slots<T>& slots, int b, 
       if constexpr (requires { law.at_rest(); }) {
         if constexpr (solves)
           if (at) {
-            const auto before = detail::memory_of_element<L>(body, element(k), at->before);
+            const auto before = detail::memory_of_element<L>(body, element(k), at->before, at->branches);
             sink(nodes, element_tangent<T, Shape, kinematics>(law, X, local, thickness, before));
             continue;
           }
@@ -297,12 +304,17 @@ void for_each_element_tangent(const Model& model, const Slots<T>& slots, int b, 
       const auto X = detail::two_places<T, D>(slots.points, nodes);
       const auto d = detail::two_node_stretch<T, D>(nodes, u);
       Mat<T, D> block;
-      if constexpr (Remembers<L>)
-        block = at ? law.template stiffness<D>(
-                         X, d, detail::memory_of_element<L>(body, element(k), at->before).template take<L::memory>())
-                   : law.at_rest().template stiffness<D>(X, d);
-      else
+      if constexpr (Remembers<L>) {
+        if (at) {
+          auto before = detail::memory_of_element<L>(body, element(k), at->before, at->branches);
+          const int branch = before.branch();
+          block = law.template stiffness<D>(X, d, before.template take<L::memory>(), branch);
+        } else {
+          block = law.at_rest().template stiffness<D>(X, d);
+        }
+      } else {
         block = law.template stiffness<D>(X, d);
+      }
       Mat<T, 2 * D> K;
       K << block, -block, -block, block;
       sink(nodes, K);

@@ -10,6 +10,10 @@
 
 namespace stickslip {
 
+/// Branches of the bodies' flows (flow_branch), laid out as History::bodies: at the first number of each point. Empty:
+/// all by their values, as in a state that was solved for.
+using FlowBranches = std::vector<int>;
+
 template <class T>
 struct History {
   Vector<T> placement;  ///< s, the slip since the start, at tangential_offset()

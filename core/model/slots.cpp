@@ -1,6 +1,6 @@
-#include "core/model/slots.hpp"
-
 #include <Eigen/LU>
+
+#include "core/model/flow_points.hpp"
 
 namespace stickslip {
 
@@ -32,34 +32,9 @@ ElementLists inverted_elements(const Model& model, const Slots<double>& slots, c
 
 double yield_margin(const Model& model, const Slots<double>& slots, const BodyMotion<double>& at) {
   double least = std::numeric_limits<double>::infinity();
-  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
-    const auto& body = model.bodies[b];
-    if (body.memory == 0) continue;
-    const auto take = [&](double margin) { least = std::min(least, margin); };
-    const auto continuum = [&]<class Shape, Kinematics kinematics, class L>(const L& law) {
-      if constexpr (Remembers<L>)
-        for (int e = 0; e < body.mesh.element_count(); ++e) {
-          const auto nodes = detail::element_nodes(body, e);
-          const auto local = detail::gather_displacements<double, Shape>(at.displacement, nodes.data());
-          auto before = detail::memory_of_element<L>(body, e, at.before);
-          for_each_strain_in<double, Shape, kinematics>(
-              law.is_finite, detail::gather_coordinates<double, Shape>(slots.points, nodes.data()), 1.0, local,
-              [&](const auto& H, double) {
-                take(law.template margin<stress_dimension(kinematics)>(H, before.template take<L::memory>()));
-              });
-        }
-    };
-    const auto two_nodes = [&]<int D, class L>(const L& law) {
-      if constexpr (Remembers<L>)
-        for (int e = 0; e < body.mesh.element_count(); ++e) {
-          const auto nodes = detail::element_nodes(body, e);
-          take(law.template margin<D>(detail::two_places<double, D>(slots.points, nodes),
-                                      detail::two_node_stretch<double, D>(nodes, &at.displacement),
-                                      detail::memory_of_element<L>(body, e, at.before).template take<L::memory>()));
-        }
-    };
-    detail::with_law<double>(model, slots, b, continuum, two_nodes);
-  }
+  for_each_flow_point<double>(model, slots, at, nullptr, [&](const FlowPoint<double>& point) {
+    least = std::min(least, point.trial.margin(point.hardening));
+  });
   return least;
 }
 

@@ -11,6 +11,7 @@
 #include "core/contact/contact_point.hpp"
 #include "core/contact/surfaces.hpp"
 #include "core/mesh/generators.hpp"
+#include "core/model/history.hpp"
 #include "core/model/model.hpp"
 #include "core/model/supports.hpp"
 #include "core/solids/edges.hpp"
@@ -221,11 +222,13 @@ struct BodyMotion {
   const Vector<T>& displacement;  ///< all dofs, in the axes
   const Vector<T>& before;
   double time = 0;  ///< at its end; of the pressures that follow it
+  const FlowBranches* branches = nullptr;
 };
 
 /// What bodies remember at displacements of all dofs, of what they did `before`; empty where none does.
 template <class T>
-Vector<T> bulk_flow(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& before);
+Vector<T> bulk_flow(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& before,
+                    const FlowBranches& branches = {});
 
 /// Internal nodal forces of all bodies, dof-wise. u: all dofs; `memory`: what they remember there. `only`: elements
 /// that are visited, per body; nullptr: all.
@@ -258,8 +261,8 @@ Vector<T> bulk_tangent_times(const Model& model, const Slots<T>& slots, const Bo
 template <class T>
 T bulk_energy(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& memory);
 
-/// How far the nearest point of the bodies is from beginning to flow, or ceasing to: least |q / bound - 1| of the
-/// trials of a motion. Infinity where no body flows.
+/// How far the nearest point of the bodies is from beginning to flow, or ceasing to: least FlowTrial::margin of a
+/// motion. Infinity where no body flows.
 double yield_margin(const Model& model, const Slots<double>& slots, const BodyMotion<double>& at);
 
 /// Stretch of the thickness of plane stress at finite strain, and its derivatives by the displacements of the nodes of
@@ -306,7 +309,8 @@ namespace stickslip {
 #define STICKSLIP_SLOTS(EXTERN, T)                                                                           \
   EXTERN template Vector<T> bulk_forces(const Model&, const Slots<T>&, const Vector<T>&, const Vector<T>&,   \
                                         const ElementLists*);                                                \
-  EXTERN template Vector<T> bulk_flow(const Model&, const Slots<T>&, const Vector<T>&, const Vector<T>&);    \
+  EXTERN template Vector<T> bulk_flow(const Model&, const Slots<T>&, const Vector<T>&, const Vector<T>&,     \
+                                      const FlowBranches&);                                                  \
   EXTERN template T bulk_energy(const Model&, const Slots<T>&, const Vector<T>&, const Vector<T>&);          \
   EXTERN template void for_each_plastic_strain(const Model&, const Slots<T>&, int, const Vector<T>&,         \
                                                const std::function<void(const T&, const T&)>&);              \

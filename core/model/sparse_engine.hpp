@@ -123,6 +123,7 @@ class SparseEngine {
   struct Linearised {
     Vector<T> displacement, before;
     double time;
+    FlowBranches branches;
   };
   std::optional<Linearised> linearised_;
   /// Bodies that are linear for a while: their forces, less the loads that follow them, at a displacement of the free

@@ -52,7 +52,7 @@ void SparseEngine<T>::lay_out(const std::vector<std::vector<int>>& places) {
   for (std::size_t p = 0; p < places.size() && !model_.slides_along_curves(); ++p)
     point_map_.push_back(detail::entries_of(*pattern_, rows_of(p, places[p])));
   if (linearised_) {
-    const BodyMotion<T> at{linearised_->displacement, linearised_->before, linearised_->time};
+    const BodyMotion<T> at{linearised_->displacement, linearised_->before, linearised_->time, &linearised_->branches};
     assemble(lists, &at);
   } else {
     assemble(lists, nullptr);
@@ -116,7 +116,8 @@ void SparseEngine<T>::make_room(const std::vector<PointTangent<T>>& tangents) {
 template <class T>
 void SparseEngine<T>::linearise(const BodyMotion<T>& at) {
   assemble(*lists_, &at);
-  if (model_.slides_along_curves()) linearised_ = {at.displacement, at.before, at.time};
+  if (model_.slides_along_curves())
+    linearised_ = {at.displacement, at.before, at.time, at.branches ? *at.branches : FlowBranches()};
   valid_ = false;
 }
 

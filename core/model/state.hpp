@@ -72,7 +72,8 @@ struct State {
   Vector<T> displacement;  ///< all dofs
   Vector<T> multiplier;    ///< lambda as the increment's last equilibrium used it, laid out as traction
   ContactField<T> contact;
-  History<T> history;  ///< for the next increment
+  History<T> history;      ///< for the next increment
+  FlowBranches flow = {};  ///< of derivatives alone: those of points at a tie (sensitivity/flow_ties.hpp)
 };
 
 /// Uzawa: the equilibrium after one augmentation; kept only where the truncated sensitivity asks for it.

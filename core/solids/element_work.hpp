@@ -21,10 +21,11 @@ namespace stickslip {
 /// Nodal values of one element at one time.
 template <int nodes>
 struct StateOfElement {
-  Mat<double, 2, nodes> motion;  ///< u
-  Mat<double, 2, nodes> weight;  ///< a
-  Vector<double> before;         ///< what its points remember of the last increment, one after another
-  Vector<double> memory;         ///< b, laid out likewise
+  Mat<double, 2, nodes> motion;   ///< u
+  Mat<double, 2, nodes> weight;   ///< a
+  Vector<double> before;          ///< what its points remember of the last increment, one after another
+  Vector<double> memory;          ///< b, laid out likewise
+  const int* branches = nullptr;  ///< of the flows, likewise (ElementMemory)
 };
 
 /// By what the work is differentiated.
@@ -78,10 +79,11 @@ PointWork<rows> point_work(const Law& law, const Mat<double, rows>& H, const Mat
   return work;
 }
 
-/// Of a law that remembers, with b over the volume; `by_before`: derivatives by the memory before.
+/// Of a law that remembers, with b over the volume and the branch of its flow; `by_before`: derivatives by the memory
+/// before.
 template <int rows, class Law, std::size_t count, class Memory>
 PointWork<rows> point_work(const Law& law, const Mat<double, rows>& H, const Mat<double, rows>& A, double volume,
-                           std::array<double, count>& by_law, const Memory& before, const Memory& b,
+                           std::array<double, count>& by_law, const Memory& before, int branch, const Memory& b,
                            Memory& by_before) {
   constexpr int components = rows == 2 ? 4 : 5, memory = Law::memory;
   using Probe = Dual<components + memory + static_cast<int>(count)>;
@@ -95,7 +97,7 @@ PointWork<rows> point_work(const Law& law, const Mat<double, rows>& H, const Mat
       if ((p == 2) == (q == 2)) seeded(p, q) = Probe::seed(H(p, q), component(p, q));
   Vec<Probe, memory> remembered;
   for (int m = 0; m < memory; ++m) remembered[m] = Probe::seed(before[m], components + m);
-  const Vec<Probe, memory> after = probed.template flow<Probe, rows>(seeded, remembered);
+  const Vec<Probe, memory> after = probed.template flow<Probe, rows>(seeded, remembered, branch);
   const Mat<Probe, rows> P = probed.template stress<Probe, rows>(seeded, after);
   Probe sum(0.0);
   for (int k = 0; k < rows * rows; ++k) sum += A.data()[k] * P.data()[k];
@@ -147,8 +149,8 @@ auto averaged_work(const Law& law, const Mat<double, 2, Shape::nodes>& coordinat
     for (int k = 0; k < 2 * n; ++k)
       u.data()[k] = memory > 0 ? Probe::seed(state.motion.data()[k], at_motion + k) : Probe(state.motion.data()[k]);
     for (int m = 0; m < memory; ++m) before[m] = Probe::seed(state.before[m], at_memory + m);
-    const auto forces = averaged_forces<true, Probe, Shape, kinematics, Probe>(probed, X, u, Probe::seed(depth, 2 * n),
-                                                                               before.data(), after.data());
+    const auto forces = averaged_forces<true, Probe, Shape, kinematics, Probe>(
+        probed, X, u, Probe::seed(depth, 2 * n), ElementMemory<Probe>(before.data(), state.branches), after.data());
     Probe work(0.0);
     for (int k = 0; k < 2 * n; ++k) work += state.weight.data()[k] * forces.data()[k];
     for (int m = 0; m < memory; ++m) work += state.memory[m] * after[m];
@@ -195,8 +197,10 @@ auto element_work(const Law& law, const Mat<double, 2, Shape::nodes>& coordinate
         const Eigen::Index remembered = q * Law::memory;
         const Memory b = state.memory.template segment<Law::memory>(remembered) / gradient.volume;
         Memory by_before;
+        const int branch = state.branches ? state.branches[remembered] : flow_branch::by_values;
         work = detail::point_work<rows>(law, H, A, gradient.volume, out.law,
-                                        Memory(state.before.template segment<Law::memory>(remembered)), b, by_before);
+                                        Memory(state.before.template segment<Law::memory>(remembered)), branch, b,
+                                        by_before);
         out.before[s].template segment<Law::memory>(remembered) = gradient.volume * by_before;
         for (int a = 0; a < n; ++a)
           for (int i = 0; i < 2; ++i)

@@ -8,6 +8,7 @@
 /// dilatation at finite strain, where the tangent is the Dual of the whole element. Tested against that of all.
 #pragma once
 
+#include "core/solids/hardening.hpp"
 #include "core/solids/mean_dilatation.hpp"
 
 namespace stickslip {
@@ -16,17 +17,24 @@ namespace stickslip {
 template <class T>
 class ElementMemory {
  public:
-  ElementMemory(const T* numbers = nullptr) : next_(numbers) {}  // NOLINT: what is remembered is one
+  /// `branches`: of the flows from there (flow_branch), at the first number of each point; nullptr: by their values.
+  ElementMemory(const T* numbers = nullptr, const int* branches = nullptr)  // NOLINT: what is remembered is one
+      : next_(numbers), branches_(branches) {}
   /// Of the next point.
   template <int count>
   Vec<T, count> take() {
     const Vec<T, count> memory = Eigen::Map<const Vec<T, count>>(next_);
     next_ += count;
+    if (branches_) branches_ += count;
     return memory;
   }
+  const int* branches() const { return branches_; }
+  /// Of the next point.
+  int branch() const { return branches_ ? *branches_ : flow_branch::by_values; }
 
  private:
   const T* next_;
+  const int* branches_;
 };
 
 namespace detail {
@@ -49,8 +57,9 @@ Mat<T, 2, Shape::nodes> averaged_forces(const Law& law, const Mat<G, 2, Shape::n
   std::array<Mat<T, 3>, Element::points> P;
   for (std::size_t q = 0; q < Element::points; ++q) {
     if constexpr (requires { Law::memory; }) {
+      [[maybe_unused]] const int branch = memory.branch();
       Vec<T, Law::memory> remembered = memory.template take<Law::memory>();
-      if constexpr (flows) remembered = law.template flow<T, 3>(element.strain(q), remembered);
+      if constexpr (flows) remembered = law.template flow<T, 3>(element.strain(q), remembered, branch);
       if (after) after = std::copy(remembered.begin(), remembered.end(), after);
       P[q] = law.template stress<T, 3>(element.strain(q), remembered);
     } else {
@@ -102,9 +111,10 @@ Mat<T, components> material_tangent(const Law& law, const Mat<T, rows>& H, const
       if ((p == 2) == (q == 2)) seeded(p, q) = Probe::seed(H(p, q), component(p, q));
   Mat<Probe, rows> sigma;
   if constexpr (requires { Law::memory; }) {
+    const int branch = before.branch();
     const auto memory = before.template take<Law::memory>();
     const Vec<Probe, Law::memory> constant = memory.unaryExpr([](const T& x) { return Probe(x); });
-    sigma = law.template stress<Probe, rows>(seeded, law.template flow<Probe, rows>(seeded, constant));
+    sigma = law.template stress<Probe, rows>(seeded, law.template flow<Probe, rows>(seeded, constant, branch));
   } else {
     sigma = law.template stress<Probe, rows>(seeded);
   }
@@ -130,9 +140,11 @@ Mat<T, 2 * Shape::nodes> averaged_tangent(const Law& law, const Mat<T, 2, Shape:
   Mat<Probe, 2, n> forces;
   if constexpr (requires { Law::memory; }) {
     constexpr int count = points_of<Shape>(kinematics) * Law::memory;
+    const int* const branches = before.branches();
     const Vec<T, count> numbers = before.template take<count>();
     const Vec<Probe, count> constant = numbers.unaryExpr([](const T& x) { return Probe(x); });
-    forces = averaged_forces<true, Probe, Shape, kinematics, T>(law, coordinates, seeded, depth, constant.data());
+    forces = averaged_forces<true, Probe, Shape, kinematics, T>(law, coordinates, seeded, depth,
+                                                                ElementMemory<Probe>(constant.data(), branches));
   } else {
     forces = averaged_forces<true, Probe, Shape, kinematics, T>(law, coordinates, seeded, depth, {});
   }
@@ -192,7 +204,8 @@ void element_flow(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates, co
                   ElementMemory<T> before, T* after) {
   constexpr int rows = stress_dimension(kinematics);
   for_each_strain_in<T, Shape, kinematics>(law.is_finite, coordinates, T(1), u, [&](const auto& H, const T&) {
-    const Vec<T, Law::memory> flown = law.template flow<T, rows>(H, before.template take<Law::memory>());
+    const int branch = before.branch();
+    const Vec<T, Law::memory> flown = law.template flow<T, rows>(H, before.template take<Law::memory>(), branch);
     std::copy(flown.begin(), flown.end(), after);
     after += Law::memory;
   });

@@ -21,6 +21,13 @@ struct HardeningRow {
   Number strain, stress;
 };
 
+/// The branch that a flow takes. Derivatives at a tie between two take one that is given (sensitivity/flow_ties.hpp).
+namespace flow_branch {
+inline constexpr int by_values = 0;    ///< that of its values
+inline constexpr int none = 1;         ///< stays within the bound
+inline constexpr int first_piece = 2;  ///< ends on this piece of the bound, or as many behind it
+}  // namespace flow_branch
+
 /// How far a flow goes: the growth d of a, on the piece of this slope that has this bound where the flow began.
 template <class U, class T>
 struct Growth {
@@ -43,13 +50,14 @@ struct Hardening {
   }
 
   /// The growth from a that solve(bound, slope) finds on the piece that it ends on. `solve`: the growth where this
-  /// piece goes on for ever, with its bound at a.
+  /// piece goes on for ever, with its bound at a. `branch`: a piece, or by_values.
   template <class U, class Solve>
-  Growth<U, T> grow(const U& a, Solve&& solve) const {
-    for (int k = piece_at(value(a));; ++k) {
+  Growth<U, T> grow(const U& a, Solve&& solve, int branch = flow_branch::by_values) const {
+    const bool given = branch >= flow_branch::first_piece;
+    for (int k = given ? branch - flow_branch::first_piece : piece_at(value(a));; ++k) {
       Growth<U, T> growth{U(0), bound(k, a), slope_of(k)};
       growth.d = solve(growth.bound, growth.slope);
-      if (k == piece_count() - 1 || value(a) + value(growth.d) <= value(rows[k].strain)) return growth;
+      if (given || k == piece_count() - 1 || value(a) + value(growth.d) <= value(rows[k].strain)) return growth;
     }
   }
 
@@ -60,7 +68,6 @@ struct Hardening {
     return least;
   }
 
- private:
   int piece_count() const { return static_cast<int>(rows.size()) + 1; }
   /// The piece that a is on; at a corner the one behind it.
   int piece_at(double a) const {
@@ -68,15 +75,33 @@ struct Hardening {
     while (k < piece_count() - 1 && a >= value(rows[k].strain)) ++k;
     return k;
   }
+  /// Bound at a on piece k, or where that would be if it went on.
+  template <class U>
+  U bound(int k, const U& a) const {
+    if (k == 0) return U(yield) + U(slope_of(k)) * a;
+    return U(rows[k - 1].stress) + U(slope_of(k)) * (a - U(rows[k - 1].strain));
+  }
+
+ private:
   T slope_of(int k) const {
     if (k == piece_count() - 1) return slope;
     if (k == 0) return (rows[0].stress - yield) / rows[0].strain;
     return (rows[k].stress - rows[k - 1].stress) / (rows[k].strain - rows[k - 1].strain);
   }
-  template <class U>
-  U bound(int k, const U& a) const {
-    if (k == 0) return U(yield) + U(slope_of(k)) * a;
-    return U(rows[k - 1].stress) + U(slope_of(k)) * (a - U(rows[k - 1].strain));
+};
+
+/// What says which branch a flow takes.
+template <class T>
+struct FlowTrial {
+  T stress;         ///< that would be without a flow, as the bound counts it
+  T before, after;  ///< a
+  T modulus;        ///< that a flow takes off the stress, per growth of a
+
+  /// How far a motion is from where the law has no derivative: its trial from the bound, over that, and a from a corner
+  /// of a table, over that corner's.
+  double margin(const Hardening<T>& hardening) const {
+    return std::min(std::abs(value(stress) / value(hardening.bound(before)) - 1),
+                    hardening.distance_to_corner(value(after)));
   }
 };
 

@@ -92,13 +92,15 @@ struct J2Law {
     return {space == Space::plane_stress ? lame_of_plane_stress(lame, shear) : lame, shear};
   }
 
-  /// The memory that a displacement gradient H leaves of the one before. (Of an inverted element: the same.)
+  /// The memory that a displacement gradient H leaves of the one before. (Of an inverted element: the same.) `branch`:
+  /// of flow_branch.
   template <class U, int D>
-  Memory<U> flow(const Mat<U, D>& H, const Memory<U>& before) const {
-    if (is_inverted(H)) return before;
+  Memory<U> flow(const Mat<U, D>& H, const Memory<U>& before, int branch = flow_branch::by_values) const {
+    if (is_inverted(H) || branch == flow_branch::none) return before;
     Strain<U> e = elastic_strain<U, D>(H, before);
-    const Strain<U> flown = space == Space::plane_stress ? flow_of_plane_stress(e, before[3]) : flow_of(e, before[3]);
-    if (value(flown[4]) == 0) return before;
+    const Strain<U> flown =
+        space == Space::plane_stress ? flow_of_plane_stress(e, before[3], branch) : flow_of(e, before[3], branch);
+    if (branch == flow_branch::by_values && value(flown[4]) == 0) return before;
     Memory<U> after;
     after[3] = before[3] + flown[4];
     if (!is_finite) {
@@ -119,16 +121,20 @@ struct J2Law {
     return after;
   }
 
-  /// How far a motion is from where the law has no derivative: its trial from the bound, over that, and a from a corner
-  /// of a table, over that corner's.
+  /// What says which branch the flow takes.
+  template <class U, int D>
+  FlowTrial<U> trial(const Mat<U, D>& H, const Memory<U>& before, int branch = flow_branch::by_values) const {
+    using std::sqrt;
+    const Strain<U> tau = hooke(elastic_strain<U, D>(H, before));
+    const U across = space == Space::plane_stress ? U(0) : tau[3];
+    const U a = tau[0] - tau[1], b = tau[1] - across, c = across - tau[0];
+    const U squares = (a * a + b * b + c * c) / U(2) + U(3) * tau[2] * tau[2];
+    return {value(squares) > 0 ? U(sqrt(squares)) : U(0), before[3], flow<U, D>(H, before, branch)[3], U(T(3) * shear)};
+  }
+  /// FlowTrial::margin of a motion.
   template <int D>
   double margin(const Mat<double, D>& H, const Memory<double>& before) const {
-    const Strain<double> tau = hooke(elastic_strain<double, D>(H, before));
-    const double across = space == Space::plane_stress ? 0 : tau[3], a = tau[0] - tau[1], b = tau[1] - across,
-                 c = across - tau[0];
-    const double q = std::sqrt((a * a + b * b + c * c) / 2 + 3 * tau[2] * tau[2]);
-    return std::min(std::abs(q / hardening.bound(before[3]) - 1),
-                    hardening.distance_to_corner(flow<double, D>(H, before)[3]));
+    return trial<double, D>(H, before).margin(hardening);
   }
 
   /// Equivalent plastic strain at a memory.
@@ -252,7 +258,7 @@ struct J2Law {
 
   /// Plastic part of a trial strain: d n, and d; zero where it stays within the bound.
   template <class U>
-  Strain<U> flow_of(const Strain<U>& trial, const U& hardened) const {
+  Strain<U> flow_of(const Strain<U>& trial, const U& hardened, int branch) const {
     using std::sqrt;
     Strain<U> flown = Strain<U>::Constant(U(0));
     const U third = (trial[0] + trial[1] + trial[3]) / U(3);
@@ -262,16 +268,16 @@ struct J2Law {
                       U(2) * deviator[2] * deviator[2];
     if (!(value(squares) > 0)) return flown;
     const U q = U(shear) * sqrt(U(6) * squares);
-    if (!passes(q, hardening.bound(hardened))) return flown;
+    if (branch == flow_branch::by_values && !passes(q, hardening.bound(hardened))) return flown;
     const auto flow_on = [&](const U& bound, const T& slope) -> U { return (q - bound) / U(T(3) * shear + slope); };
-    const U d = hardening.grow(hardened, flow_on).d;
+    const U d = hardening.grow(hardened, flow_on, branch).d;
     flown = U(3) * U(shear) * d / q * deviator;
     flown[4] = d;
     return flown;
   }
 
   template <class U>
-  Strain<U> flow_of_plane_stress(const Strain<U>& trial, const U& hardened) const {
+  Strain<U> flow_of_plane_stress(const Strain<U>& trial, const U& hardened, int branch) const {
     using std::sqrt;
     Strain<U> flown = Strain<U>::Constant(U(0));
     const Strain<U> tau = hooke(trial);
@@ -279,14 +285,14 @@ struct J2Law {
     const U stiffness = U(T(shear * (T(3) * lame + T(2) * shear) / (lame + T(2) * shear)));
     const U square = apart * apart + tau[2] * tau[2];
     const double q = std::sqrt(value(p) * value(p) + 3 * value(square));
-    if (!passes(q, value(hardening.bound(hardened)))) return flown;
+    if (branch == flow_branch::by_values && !passes(q, value(hardening.bound(hardened)))) return flown;
     const auto flow_on = [&](const U& bound, const T& slope) -> U {
       const detail::PlaneStressReturn<U> back{p, square, stiffness, U(shear), bound, U(slope)};
       const detail::PlaneStressReturn<double> plain{value(p),     value(square), value(stiffness),
                                                     value(shear), value(bound),  value(slope)};
       return solve_implicit<U>(back, root_of(plain));
     };
-    const auto [d, bound, slope] = hardening.grow(hardened, flow_on);
+    const auto [d, bound, slope] = hardening.grow(hardened, flow_on, branch);
     const U m = d / (bound + U(slope) * d);
     const U mean = m * p / (U(1) + stiffness * m) / U(2), shares = U(1.5) * m / (U(1) + U(3) * U(shear) * m);
     flown[0] = mean + shares * apart;

@@ -6,9 +6,9 @@
 /// lacks does not compile. A law of two nodes (bars, springs) gives force, stiffness and energy of their relative
 /// displacement.
 ///
-/// A law that remembers says how many numbers a point (memory), how a motion changes them (flow), how far a motion is
-/// from where that has no derivative (margin), the plastic strain in them, and the law that it is at the start
-/// (at_rest); stress, force and energy are then those at a memory. At the start all numbers are zero.
+/// A law that remembers says how many numbers a point (memory), how a motion changes them (flow), what says which
+/// branch that takes (trial, hardening), the plastic strain in them, and the law that it is at the start (at_rest);
+/// stress, force and energy are then those at a memory. At the start all numbers are zero.
 #pragma once
 
 #include <concepts>
@@ -60,7 +60,8 @@ concept TwoNodeLawWith = requires(const L& law, const Mat<double, 2>& X, const V
 template <class L>
 concept Flows = requires(const L& law, const Mat<double, 2>& H, const Vec<double, memory_of<L>()>& memory) {
   { law.template flow<double, 2>(H, memory) } -> std::same_as<Vec<double, memory_of<L>()>>;
-  { law.template margin<2>(H, memory) } -> std::same_as<double>;
+  { law.template trial<double, 2>(H, memory) } -> std::same_as<FlowTrial<double>>;
+  { law.hardening.piece_count() } -> std::same_as<int>;
   { L::plastic_strain(memory) } -> std::convertible_to<double>;
   { law.at_rest().template stress<double, 2>(H) } -> std::same_as<Mat<double, 2>>;
 };
@@ -68,7 +69,8 @@ template <class L>
 concept TwoNodesFlow = requires(const L& law, const Mat<double, 2>& X, const Vec<double, 2>& d,
                                 const Vec<double, memory_of<L>()>& memory) {
   { law.template flow<2>(X, d, memory) } -> std::same_as<Vec<double, memory_of<L>()>>;
-  { law.template margin<2>(X, d, memory) } -> std::same_as<double>;
+  { law.template trial<2>(X, d, memory) } -> std::same_as<FlowTrial<double>>;
+  { law.hardening.piece_count() } -> std::same_as<int>;
   { L::plastic_strain(memory) } -> std::convertible_to<double>;
 };
 

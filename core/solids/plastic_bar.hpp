@@ -25,19 +25,21 @@ struct PlasticBarLaw {
   /// What it is at the start.
   const BarLaw<T>& at_rest() const { return elastic; }
 
-  /// The memory that a relative displacement d leaves of the one before. `coordinates`: D x 2.
+  /// The memory that a relative displacement d leaves of the one before. `coordinates`: D x 2; `branch`: of
+  /// flow_branch.
   template <int D>
-  Memory flow(const Mat<T, D, 2>& coordinates, const Vec<T, D>& d, const Memory& before) const {
-    return flow_of(elastic.template strain<D>(coordinates, d), before).memory;
+  Memory flow(const Mat<T, D, 2>& coordinates, const Vec<T, D>& d, const Memory& before,
+              int branch = flow_branch::by_values) const {
+    return flow_of(elastic.template strain<D>(coordinates, d), before, branch).memory;
   }
 
-  /// How far a motion is from where the law has no derivative (see J2Law).
+  /// What says which branch the flow takes.
   template <int D>
-  double margin(const Mat<double, D, 2>& coordinates, const Vec<double, D>& d,
-                const Vec<double, memory>& before) const {
-    const double strain = elastic.template strain<D>(coordinates, d), force = elastic.axial * (strain - before[0]);
-    return std::min(std::abs(std::abs(force) / (elastic.area * hardening.bound(before[1])) - 1),
-                    hardening.distance_to_corner(flow_of(strain, before).memory[1]));
+  FlowTrial<T> trial(const Mat<T, D, 2>& coordinates, const Vec<T, D>& d, const Memory& before,
+                     int branch = flow_branch::by_values) const {
+    const T strain = elastic.template strain<D>(coordinates, d), force = elastic.axial * (strain - before[0]);
+    const T size = value(force) > 0 ? force : T(-force);
+    return {size / elastic.area, before[1], flow_of(strain, before, branch).memory[1], elastic.axial / elastic.area};
   }
 
   /// Equivalent plastic strain at a memory.
@@ -52,14 +54,14 @@ struct PlasticBarLaw {
 
   /// Derivative of the force by d, with the flow from the memory before.
   template <int D>
-  Mat<T, D> stiffness(const Mat<T, D, 2>& coordinates, const Vec<T, D>& d, const Memory& before) const {
+  Mat<T, D> stiffness(const Mat<T, D, 2>& coordinates, const Vec<T, D>& d, const Memory& before,
+                      int branch = flow_branch::by_values) const {
     const T strain = elastic.template strain<D>(coordinates, d);
-    const auto [after, slope] = flow_of(strain, before);
+    const auto [after, slope, flows] = flow_of(strain, before, branch);
     const Vec<T, D> direction = elastic.template direction<D>(coordinates, d);
     const T length = norm((coordinates.col(1) - coordinates.col(0)).eval());
-    const T modulus = value(after[1]) == value(before[1])
-                          ? elastic.axial
-                          : T(elastic.axial * elastic.area * slope / (elastic.axial + elastic.area * slope));
+    const T modulus =
+        flows ? T(elastic.axial * elastic.area * slope / (elastic.axial + elastic.area * slope)) : elastic.axial;
     Mat<T, D> k;
     for (int i = 0; i < D; ++i)
       for (int j = 0; j < D; ++j) {
@@ -80,17 +82,21 @@ struct PlasticBarLaw {
   struct Flow {
     Memory memory;
     T slope;
+    bool flows;
   };
-  Flow flow_of(const T& strain, const Memory& before) const {
+  Flow flow_of(const T& strain, const Memory& before, int branch) const {
     const T force = elastic.axial * (strain - before[0]), bound = elastic.area * hardening.bound(before[1]);
     const bool pulled = value(force) > 0;
     const T size = pulled ? force : T(-force);
-    if (!(value(size) - value(bound) > 64 * unit_roundoff * value(bound))) return {before, T(0)};
+    const bool passes = branch == flow_branch::by_values
+                            ? value(size) - value(bound) > 64 * unit_roundoff * value(bound)
+                            : branch != flow_branch::none;
+    if (!passes) return {before, T(0), false};
     const auto flow_on = [&](const T& of_area, const T& slope) -> T {
       return (size - elastic.area * of_area) / (elastic.axial + elastic.area * slope);
     };
-    const auto growth = hardening.grow(before[1], flow_on);
-    return {{before[0] + (pulled ? growth.d : T(-growth.d)), before[1] + growth.d}, growth.slope};
+    const auto growth = hardening.grow(before[1], flow_on, branch);
+    return {{before[0] + (pulled ? growth.d : T(-growth.d)), before[1] + growth.d}, growth.slope, true};
   }
 };
 

@@ -26,9 +26,6 @@ void take_sides(const CaseResult& result, std::size_t n, StepResult& step) {
     take(result.one_sided->backward, result.one_sided->forward);
   else
     take(result.gradients.below, result.gradients.above);
-  if (has_sides && step.margins.yield <= weak_margin)  // which sides a flow that is about to begin has is not known
-    step.backward = step.forward = Matrix<double>::Constant(scene.responses.size(), scene.parameters.size(),
-                                                            std::numeric_limits<double>::quiet_NaN());
   if (step.backward.size() == 0) return;
   for (std::size_t i = 0; i < scene.responses.size(); ++i)
     for (std::size_t j = 0; j < scene.parameters.size(); ++j)
