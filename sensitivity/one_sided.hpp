@@ -25,9 +25,12 @@ namespace stickslip {
 /// How far the nearest contact point is from a change of state: `open` between open and closed (pressure, or k g / A of
 /// an open point, over the largest pressure or k / A times the largest motion); `slip` between stick and slip
 /// (distance to the cone, or k |dg_T| / A of a slipping point, over the friction bound); `yield` between elastic and
-/// plastic of a point of a body (yield_margin). Infinity where there is no such point.
+/// plastic of a point of a body (yield_margin); `vertex` from facet to facet of a master (vertex_margin). Infinity
+/// where there is no such point.
 struct Margins {
-  double open, slip, yield = std::numeric_limits<double>::infinity();
+  double open, slip;
+  double yield = std::numeric_limits<double>::infinity(), vertex = yield;
+  /// Of the changes of state that a derivative is told to have two sides at.
   double least() const { return std::min({open, slip, yield}); }
 };
 

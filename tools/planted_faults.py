@@ -269,6 +269,8 @@ FAULTS = [
      "branch == ahead ? unless(<<<rates.past>>>, behind)", "0 * rates.past"),
     ("adjoint at a tie without its branch", "sensitivity/pull_back_bodies.cpp",
      "return <<<all.empty()>>> ? nullptr", "true"),
+    ("vertex that is as far as the other one", "sensitivity/vertex_margin.cpp",
+     "(x - vertex).dot(half)) / <<<length>>>);", "1"),
     ("adjoint without what bodies remembered", "sensitivity/pull_back_bodies.hpp",
      "objective.history.local.bodies += <<<left.before.rowwise().sum()>>>;",
      "0 * left.before.rowwise().sum().eval()"),

@@ -7,6 +7,7 @@
 
 #include "core/model/response.hpp"
 #include "methods/regularisation.hpp"
+#include "sensitivity/vertex_margin.hpp"
 #include "studies/input/method_options.hpp"
 #include "studies/io/json_document.hpp"
 #include "studies/io/provenance.hpp"
@@ -179,6 +180,7 @@ json steps_json(const CaseResult& result) {
                   {"margins", {{"open", finite(step.margins.open)}, {"slip", finite(step.margins.slip)}}},
                   {"responses", responses}};
     if (result.problem->model.effects.plasticity) entry["margins"]["yield"] = finite(step.margins.yield);
+    if (slides_along_facets(result.problem->model)) entry["margins"]["vertex"] = finite(step.margins.vertex);
     if (!scene.parameters.empty()) {
       if (scene.sensitivity_mode == SensitivityMode::direct) entry["sensitivities"] = sensitivities;
       entry["differentiable"] = step.differentiable;

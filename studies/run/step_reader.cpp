@@ -1,6 +1,7 @@
 #include "studies/run/step_reader.hpp"
 
 #include "core/model/response.hpp"
+#include "sensitivity/vertex_margin.hpp"
 #include "studies/run/warnings.hpp"
 
 namespace stickslip {
@@ -21,6 +22,7 @@ StepReading StepReader::read(const State<double>& before, const Increment<double
   step.margins = margins(model, slots, state);
   if (model.effects.plasticity && flows_on(before, state))
     step.margins.yield = yield_margin(model, slots, {state.displacement, before.history.bodies});
+  step.margins.vertex = vertex_margin(model, slots, state, increment.time);
   step.responses = evaluate_responses(model, slots, state, increment.time);
   for (std::size_t b = 0; lets_go && b < model.bodies.size(); ++b)
     step.bodies.push_back(measures_of_body(problem_, state, b));
