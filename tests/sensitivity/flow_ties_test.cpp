@@ -261,7 +261,7 @@ TEST_P(FlowTiesOfBlocks, HaveTheSidesOfTheRunAndOneOfThemInBothModes) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Settings, FlowTiesOfBlocks,
+INSTANTIATE_TEST_SUITE_P(SlowSettings, FlowTiesOfBlocks,
                          testing::Values(Setting{Space::plane_strain, false, "Q4_mean_dilatation"},
                                          Setting{Space::plane_stress, false, "Q4"},
                                          Setting{Space::plane_strain, true, "Q4_mean_dilatation"},
