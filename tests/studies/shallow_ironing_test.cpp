@@ -1,0 +1,71 @@
+/// Shallow ironing of Fischer and Wriggers (2006) on its published mesh, against what published programs found (B3).
+#include <gtest/gtest.h>
+
+#include "tests/studies/cases.hpp"
+#include "tests/support/largest.hpp"
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+const std::filesystem::path meshes = STICKSLIP_SOURCE_DIR "/tests/support/meshes";
+
+/// A die with a round bottom (12 x 6 cells) on a slab of 12 x 4, ten times as soft (120 x 30): pressed by 1, of which a
+/// gap of 0.2 is air, and drawn along it, to two facets' length in ten steps from t = 1.45 on. The die's nodes are the
+/// slaves, the slab is smooth with continuous curvature.
+json shallow_ironing() {
+  const auto rubber = [](double E) { return json{{"neo_hookean", {{"E", E}, {"nu", 0.32}, {"volumetric", "log"}}}}; };
+  return {
+      {"strain", "finite"},
+      {"bodies",
+       {{"slab",
+         {{"mesh", {{"box", {{"min", {0, 0}}, {"max", {12, 4}}, {"cells", {120, 30}}}}}}, {"material", rubber(689.6)}}},
+        {"die", {{"mesh", {{"gmsh", "ironing_die.msh"}, {"body", "die"}}}, {"material", rubber(6896)}}}}},
+      {"contacts",
+       {{"sole",
+         {{"slave", "die.face"}, {"master", "slab.top"}, {"surface", {{"smooth", "b_spline"}}}, {"friction", 0.3}}}}},
+      {"supports",
+       {{{"on", "slab.bottom"}, {"move", {{"x", 0}, {"y", 0}}}},
+        {{"on", "die.top"}, {"move", {{"x", {{0, 0}, {1, 0}, {2, 10}}}, {"y", {{0, 0}, {1, -1}, {2, -1}}}}}}}},
+      {"time", {{"legs", {{1, 10}, {1.45, 45}, {1.47, 10}}}}},
+      {"responses",
+       {{"H", {{"reaction", {{"on", "die.top"}, {"component", "x"}}}}},
+        {"V", {{"reaction", {{"on", "die.top"}, {"component", "y"}}}}}}}};
+}
+
+TEST(SlowShallowIroning, LiesWithinThePublishedCurvesWithoutARipple) {
+  const auto result =
+      cases::run(shallow_ironing(), {{"monolithic_al", json::object()}}, meshes / "shallow_ironing.json");
+  ASSERT_TRUE(is_converged(result.status())) << result.message();
+  EXPECT_EQ(result.trajectory.counters.cutbacks, 0);
+  const auto within = [](double x, double least, double most) {
+    EXPECT_GE(x, least);
+    EXPECT_LE(x, most);
+  };
+  const auto& responses = result.problem->model.scene.responses;
+  const int h = responses[0].name == "H" ? 0 : 1, v = 1 - h;
+  double down = 0, along = 0, most = 0, least = 0;
+  int count = 0;
+  for (const auto& step : result.steps) {
+    const double t = step.increment->time, H = step.responses[h], V = -step.responses[v];
+    if (std::abs(t - 0.5) < 1e-9) within(V, 81.5, 96.2);
+    if (std::abs(t - 1) < 1e-9) {
+      within(V, 267, 332);
+      within(H, 55, 71);
+    }
+    if (t < 1.45 + 1e-9) continue;
+    down += V;
+    along += H;
+    most = count == 0 ? H / V : larger(most, H / V);
+    least = count == 0 ? H / V : -larger(-least, -H / V);
+    ++count;
+  }
+  ASSERT_EQ(count, 10);
+  within(down / count, 337, 421);
+  within(along / count, 102, 189);
+  within(along / down, 0.30, 0.53);
+  EXPECT_LE(most - least, 0.03 * along / down);
+}
+
+}  // namespace
+}  // namespace stickslip
