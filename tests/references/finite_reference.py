@@ -1,7 +1,7 @@
 """Independent reference solver for finite-strain frictional contact of two bodies, for the tests of stickslip.
 
-Reads a scene in stickslip's own JSON: plane strain, boxes and quads of Q4, neo-Hookean or metal (J2, multiplicative),
-supports, one contact or more.
+Reads a scene in stickslip's own JSON: plane strain or plane stress, boxes and quads of Q4, neo-Hookean or metal (J2,
+multiplicative, hardening linear or by a table), supports, one contact or more.
 All of contact is where it is now:
 
   gap    g = (x - y(xi)) . n, y(xi) the closest point of the master's curve, n out of the master, + offset
@@ -22,6 +22,9 @@ Curves: straight facets, a point belonging to the facet on its side of the bisec
 which the facet's line goes on; Catmull-Rom; uniform cubic B-spline. A ghost node 2 y1 - y2 stands beyond a free end.
 A point more than a hundredth of a facet past a free end has no contact.
 
+In plane stress the stretch of the thickness is sought by halving, point by point, until the laws of three dimensions
+leave no stress across; nothing here knows a law of plane stress.
+
 `press_fit` solves two concentric rings with an interference as a boundary value problem along the radius.
 """
 
@@ -38,6 +41,13 @@ PAST_THE_END = 0.01
 
 
 class FiniteBody(Body):
+    def __init__(self, description, dimension, plane_stress=False):
+        super().__init__(description, dimension)
+        self.plane_stress, self.thickness = plane_stress, description.get("thickness", 1.0)
+
+    def tributary(self, side):
+        return [self.thickness * area for area in super().tributary(side)]
+
     def _quad(self, m, dimension, folder):
         self._box({"min": [0, 0], "max": [1, 1], "cells": m["cells"]}, dimension, folder)
         a, b = self.X[:, :1], self.X[:, 1:]
@@ -54,7 +64,7 @@ class FiniteBody(Body):
         jacobian = np.einsum("eai,qak->eqik", self.X[self.E], local)  # dX_i / dxi_k
         det = jacobian[..., 0, 0] * jacobian[..., 1, 1] - jacobian[..., 0, 1] * jacobian[..., 1, 0]
         assert (det.real > 0).all(), "element turned inside out"
-        self.weight = det
+        self.weight = det * self.thickness
         self.gradient = np.einsum("qak,eqki->eqai", local, inverse2(jacobian, det))
         (self.kind, law), = self.description["material"].items()
         young, nu = law["E"], law["nu"]
@@ -65,18 +75,29 @@ class FiniteBody(Body):
         F = np.einsum("...eai,eqak->...eqik", ue, self.gradient) + np.eye(2)
         return F, F[..., 0, 0] * F[..., 1, 1] - F[..., 0, 1] * F[..., 1, 0]
 
+    def thickening(self, J):
+        """Stretch of the thickness."""
+        if not self.plane_stress:
+            return 1.0
+        pressure = lambda V: self.La * (np.log(V) / V if self.log else V - 1)
+        return np.exp(without_stress(lambda x: self.G * (np.exp(2 * x) - 1) / (J * np.exp(x)) +
+                                     pressure(J * np.exp(x)), J.shape))
+
     def forces(self, ue):
         """Internal forces of the elements (..., e, 4, 2) at their displacements."""
-        F, J = self.deformation(ue)
-        if not (J.real > 0).all():
+        F, plane = self.deformation(ue)
+        if not (plane.real > 0).all():
             raise Inverted
+        J = plane * self.thickening(plane)
         times_J = self.La * np.log(J) if self.log else self.La * (J - 1) * J  # J dvol/dJ
-        P = self.G * F + (times_J - self.G)[..., None, None] * np.swapaxes(inverse2(F, J), -1, -2)
+        P = self.G * F + (times_J - self.G)[..., None, None] * np.swapaxes(inverse2(F, plane), -1, -2)
         return np.einsum("...eqik,eqak,eq->...eai", P, self.gradient, self.weight)
 
     def energy(self, ue):
-        F, J = self.deformation(ue)
-        invariant = np.einsum("...ik,...ik->...", F, F) + 1
+        F, plane = self.deformation(ue)
+        thick = self.thickening(plane)
+        J = plane * thick
+        invariant = np.einsum("...ik,...ik->...", F, F) + thick ** 2
         vol = self.La / 2 * (np.log(J) if self.log else J - 1) ** 2
         return np.sum((self.G / 2 * (invariant - 3 - 2 * np.log(J)) + vol) * self.weight)
 
@@ -97,7 +118,14 @@ class MetalBody(FiniteBody):
     def prepare(self):
         super().prepare()
         law = self.description["material"]["j2_plastic"]
-        self.bound, self.slope = law["yield"], law["hardening"]
+        hardening = law["hardening"]
+        rows = hardening if isinstance(hardening, list) else [[0, law["yield"]], [1, law["yield"] + hardening]]
+        if rows[0][0] != 0:
+            rows = [[0, law["yield"]]] + rows
+        self.strains, self.stresses = np.array(rows).T
+        self.slopes = np.diff(self.stresses) / np.diff(self.strains)
+        if isinstance(hardening, list):
+            self.slopes = np.append(self.slopes, 0)
         self.forget()
 
     def forget(self):
@@ -105,41 +133,85 @@ class MetalBody(FiniteBody):
         self.memory = (np.zeros(shape + (2, 2), dtype=complex) + np.eye(2), np.ones(shape, dtype=complex),
                        np.zeros(shape, dtype=complex))
 
-    def flow(self, ue):
-        """F, elastic logarithmic strain in the plane and across, equivalent plastic strain."""
-        F, J = self.deformation(ue.astype(complex))
-        if not (J.real > 0).all():
-            raise Inverted
-        C, across, hardened = self.memory
-        e, z = logarithm(F @ C @ np.swapaxes(F, -1, -2)) / 2, np.log(across) / 2
+    def piece(self, hardened):
+        """Of the bound: slope there, and the bound that the piece has where nothing has flown."""
+        k = np.clip(np.searchsorted(self.strains.real, hardened.real, side="right") - 1, 0, len(self.slopes) - 1)
+        return self.slopes[k], self.stresses[k] - self.slopes[k] * self.strains[k]
+
+    def grown(self, q, hardened):
+        """Plastic strain that brings q back to the bound: sought by halving, then solved for on its piece."""
+        low, high = np.zeros(q.shape), q.real / (3 * self.G).real
+        for _ in range(60 if len(self.slopes) > 1 else 0):
+            middle = (low + high) / 2
+            slope, bound = self.piece(hardened + middle)
+            beyond = (q - 3 * self.G * middle - bound - slope * (hardened + middle)).real > 0
+            low, high = np.where(beyond, middle, low), np.where(beyond, high, middle)
+        slope, bound = self.piece(hardened + (low + high) / 2)
+        return (q - bound - slope * hardened) / (3 * self.G + slope)
+
+    def returned(self, e, z):
+        """Elastic strains in the plane and across behind the flow, and the equivalent plastic strain."""
+        hardened = self.memory[2] + np.zeros(np.shape(z))
         third = (e[..., 0, 0] + e[..., 1, 1] + z) / 3
         d, dz = e - third[..., None, None] * np.eye(2), z - third
         q = 2 * self.G * np.sqrt(1.5 * (np.einsum("...ij,...ij->...", d, d) + dz ** 2))
-        bound = self.bound + self.slope * hardened
-        flows = q.real > bound.real
-        grown = np.where(flows, (q - bound) / (3 * self.G + self.slope), 0)
+        slope, bound = self.piece(hardened)
+        flows = q.real > (bound + slope * hardened).real
+        grown = np.where(flows, self.grown(q, hardened), 0)
         share = np.where(flows, 3 * self.G * grown / np.where(flows, q, 1), 0)
-        return F, J, e - share[..., None, None] * d, z - share * dz, hardened + grown
+        return e - share[..., None, None] * d, z - share * dz, hardened + grown
+
+    def flow(self, ue):
+        """F, elastic logarithmic strain in the plane and across, equivalent plastic strain; logarithm of the stretch of
+        the thickness."""
+        F, J = self.deformation(ue.astype(complex))
+        if not (J.real > 0).all():
+            raise Inverted
+        C, across, _ = self.memory
+        e, z = logarithm(F @ C @ np.swapaxes(F, -1, -2)) / 2, np.log(across) / 2
+        thick = 0.0
+        if self.plane_stress:
+            def stress(x):
+                e_, z_, _ = self.returned(e, z + x)
+                return self.La * (e_[..., 0, 0] + e_[..., 1, 1] + z_) + 2 * self.G * z_
+            thick = without_stress(stress, e.shape[:-2])
+        return (F, J) + self.returned(e, z + thick + np.zeros(e.shape[:-2])) + (thick,)
 
     def forces(self, ue):
-        F, J, e, z, _ = self.flow(ue)
+        F, J, e, z, _, _ = self.flow(ue)
         pressure = self.La * (e[..., 0, 0] + e[..., 1, 1] + z)
         P = (pressure[..., None, None] * np.eye(2) + 2 * self.G * e) @ np.swapaxes(inverse2(F, J), -1, -2)
         return np.einsum("...eqik,eqak,eq->...eai", P, self.gradient, self.weight)
 
     def energy(self, ue):
-        _, _, e, z, _ = self.flow(ue)
+        _, _, e, z, _, _ = self.flow(ue)
         squares = np.einsum("...ij,...ij->...", e, e) + z ** 2
         return np.sum((self.La / 2 * (e[..., 0, 0] + e[..., 1, 1] + z) ** 2 + self.G * squares) * self.weight)
 
     def settle(self, ue):
-        F, J, e, z, hardened = self.flow(ue)
+        F, J, e, z, hardened, thick = self.flow(ue)
         inverse = inverse2(F, J)
-        self.memory = inverse @ exponential(2 * e) @ np.swapaxes(inverse, -1, -2), np.exp(2 * z), hardened
+        self.memory = (inverse @ exponential(2 * e) @ np.swapaxes(inverse, -1, -2), np.exp(2 * (z - thick)), hardened)
 
 
-def body_of(description, dimension):
-    return (MetalBody if "j2_plastic" in description["material"] else FiniteBody)(description, dimension)
+def body_of(description, dimension, plane_stress):
+    kind = MetalBody if "j2_plastic" in description["material"] else FiniteBody
+    return kind(description, dimension, plane_stress)
+
+
+def without_stress(stress, shape):
+    """Where stresses of a shape that grow with a real number vanish, each for itself: by halving to 4e-9, and three
+    corrections by the slope there, which what rides on it in complex numbers follows."""
+    low, high = np.full(shape, -2.0), np.full(shape, 2.0)
+    for _ in range(30):
+        middle = (low + high) / 2
+        tension = stress(middle).real > 0
+        low, high = np.where(tension, low, middle), np.where(tension, middle, high)
+    x, h = (low + high) / 2 + 0j, 1e-7
+    slope = (stress(x + h) - stress(x - h)).real / (2 * h)
+    for _ in range(3):
+        x = x - stress(x) / slope
+    return x
 
 
 def root(A):
@@ -283,7 +355,7 @@ class FiniteModel:
         self.document = document
         self.bodies, self.first, n = {}, {}, 0
         for name, description in document["bodies"].items():
-            body = self.bodies[name] = body_of(description, 2)
+            body = self.bodies[name] = body_of(description, 2, document["space"] == "plane_stress")
             body.prepare()
             self.first[name] = n
             n += len(body.X)

@@ -234,6 +234,25 @@ def metal(surface):
     return document
 
 
+def thin(document, title):
+    """The same in plane stress, slab and die of different thickness."""
+    document |= {"title": title, "space": "plane_stress"}
+    document["bodies"]["slab"]["thickness"], document["bodies"]["die"]["thickness"] = 0.8, 1.1
+    document["parameters"] |= {"thin": "/bodies/slab/thickness", "wide": "/bodies/die/thickness"}
+    return document
+
+
+def tabulated(document):
+    """The same of a metal that hardens by a table, whose corners the flow below the die passes."""
+    law = document["bodies"]["slab"]["material"]["j2_plastic"]
+    law["hardening"] = [[0, law.pop("yield")], [0.01, 0.0425], [0.06, 0.046], [0.2, 0.05]]
+    at = "/bodies/slab/material/j2_plastic/hardening"
+    document["parameters"] |= {"yield": at + "/0/1", "hardening": at + "/1/1", "corner": at + "/2/0",
+                               "last": at + "/3/1"}
+    document["title"] = document["title"].replace("metal slab", "slab of a metal with a table")
+    return document
+
+
 def finite_cases():
     """Name: scene. On facets drawn along by 0.7 the last step has no solution, see check_references.vertex."""
     return {
@@ -242,6 +261,10 @@ def finite_cases():
         "finite_ironing_b_spline": lambda: ironing({"smooth": "b_spline"}),
         "finite_ironing_frictionless": lambda: ironing("faceted", None),
         "finite_ironing_metal": lambda: metal({"smooth": "b_spline"}),
+        "finite_ironing_table": lambda: tabulated(metal({"smooth": "b_spline"})),
+        "finite_ironing_thin": lambda: thin(ironing("smooth"), "Die ironing a slab in plane stress"),
+        "finite_ironing_thin_table": lambda: tabulated(thin(metal({"smooth": "b_spline"}),
+                                                            "Die ironing a metal slab in plane stress")),
     }
 
 
