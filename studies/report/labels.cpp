@@ -103,17 +103,19 @@ bool speaks_for_itself(const std::string& value, const std::string& option, cons
 void say_values_alone(Study& study) {
   for (const auto& family : study.families) {
     const Options options = options_in(labels_of(study, family));
+    std::map<std::string, std::pair<std::string, std::string>> alone;  // by the words of the labels
+    for (const auto& [option, values] : options)
+      for (const auto& [value, unused] : values)
+        if (speaks_for_itself(value, option, options)) alone[" " + option + "=" + value + " "] = {option, value};
     for (auto& cell : study.cells) {
       if (cell.family != family) continue;
-      for (const auto& [option, values] : options)
-        for (const auto& [value, unused] : values) {
-          const std::string word = " " + option + "=" + value + " ";
-          const std::size_t at =
-              speaks_for_itself(value, option, options) ? (cell.label + " ").find(word) : std::string::npos;
-          if (at == std::string::npos) continue;
-          cell.label.replace(at, word.size() - 1, " " + value);
-          cell.bare[option] = value;
-        }
+      for (const auto& [word, entry] : alone) {
+        const auto& [option, value] = entry;
+        const std::size_t at = (cell.label + " ").find(word);
+        if (at == std::string::npos) continue;
+        cell.label.replace(at, word.size() - 1, " " + value);
+        cell.bare[option] = value;
+      }
     }
   }
 }
