@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "studies/io/amounts.hpp"
 #include "studies/io/wording.hpp"
 #include "studies/report/about.hpp"
 #include "studies/report/headline.hpp"
@@ -11,7 +12,6 @@
 #include "studies/report/look_up.hpp"
 #include "studies/report/picture.hpp"
 #include "studies/report/tables.hpp"
-#include "studies/run/ledger.hpp"
 
 namespace stickslip::report {
 
@@ -116,7 +116,7 @@ std::string amounts_in_words(const json& amounts) {
   std::string out;
   for (const auto& [name, amount] : amounts.items())
     if (amount.is_number() && amount != 0)
-      out += (out.empty() ? "" : ", ") + amount_in_words({name, amount.get<double>()});
+      out += (out.empty() ? "" : ", ") + amount_in_words(name, amount.get<double>());
   return out;
 }
 

@@ -48,8 +48,6 @@ nlohmann::json repeatable_ledger_json(const Ledger& ledger);
 
 /// A line for each effect that is on, and one that names the others. "~": about; "?": not known before the run.
 std::string ledger_table(const Ledger& ledger);
-/// A name of the ledger in words: "back-solves", "model data".
-std::string ledger_words(const std::string& name);
 /// "12 elements", "1 analysis"; of an amount that is not exact "~2.1e5 factor entries".
 std::string amount_in_words(const Amount& amount);
 /// What is on of a recorded ledger in one line: unknowns, memory, and seconds from a tenth on.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "studies/io/amounts.hpp"
 #include "studies/io/numerals.hpp"
 #include "studies/run/ledger.hpp"
 
@@ -53,30 +54,11 @@ std::string counts_text(const std::vector<Amount>& amounts) {
 
 std::string joined(const std::vector<std::string>& parts) { return fmt::format("{}", fmt::join(parts, ", ")); }
 
-/// The name of one of them.
-std::string of_one(std::string names) {
-  for (const auto& [many, one] : {std::pair<std::string, std::string>{"analyses", "analysis"}, {"ies", "y"}, {"s", ""}})
-    if (names.ends_with(many)) return names.replace(names.size() - many.size(), many.size(), one);
-  return names;
-}
-
 }  // namespace
 
-std::string ledger_words(const std::string& name) {
-  std::string out = name;
-  std::replace(out.begin(), out.end(), '_', ' ');
-  for (const auto& [recorded, shown] : {std::pair<std::string, std::string>{"factorizations", "factorisations"},
-                                        {"backsolves", "back-solves"},
-                                        {"slots", "model data"},
-                                        {"one sided", "one-sided"}})
-    if (const auto at = out.find(recorded); at != std::string::npos) out.replace(at, recorded.size(), shown);
-  return out;
-}
-
 std::string amount_in_words(const Amount& amount) {
-  const std::string name = ledger_words(amount.name);
-  if (amount.within != 1) return "~" + number(amount.value) + " " + name;
-  return fmt::format("{:.0f} {}", amount.value, amount.value == 1 ? of_one(name) : name);
+  return amount.within == 1 ? amount_in_words(amount.name, amount.value)
+                            : "~" + number(amount.value) + " " + ledger_words(amount.name);
 }
 
 json repeatable_ledger_json(const Ledger& ledger) {
