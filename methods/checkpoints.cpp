@@ -32,7 +32,7 @@ std::optional<CheckpointPlan> plan_checkpoints(std::size_t steps, double room) {
 }
 
 std::optional<CheckpointPlan> plan_checkpoints(const Model& model, const RunOptions& options) {
-  if (model.scene.arc_length) return std::nullopt;  // (a path goes on from the two states before)
+  if (model.scene.arc_length) return std::nullopt;     // (a path goes on from the two states before)
   if (options.output_every == 1) return std::nullopt;  // all are to stay
   const std::size_t steps = options.replay.empty() ? model.times.size() : options.replay.size();
   auto plan = plan_checkpoints(steps, options.state_memory / thinned_bytes(model));

@@ -204,7 +204,7 @@ void read_control(const JsonNode& node, SceneReading& reading) {
     return node.error(R"(is "arc_length", which finds the factor of one load, and the scene has )" +
                       std::to_string(loads) + R"(; write {"arc_length": {"load": i}})");
   }
-  if (reading.diagnostics.has_error_in("/loads")) return;
+  if (reading.diagnostics.has_error_in("/loads") || reading.diagnostics.has_error_in(node.pointer())) return;
   if (const std::string other = other_change(scene, arc.load); !other.empty())
     return node.error("finds the times of its steps, and " + other +
                       " changes in time: along a path only the load may; give it one value");

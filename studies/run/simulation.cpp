@@ -78,7 +78,7 @@ void check_memory(const Problem& problem, const Input& input) {
 }
 
 RunOptions run_options(const Input& input) {
-  RunOptions options{input.linear_algebra, input.backend, {}, {}};
+  RunOptions options{input.linear_algebra, input.backend};
   if (input.scene.sensitivity_mode == SensitivityMode::adjoint) options.state_memory = input.state_memory;
   options.output_every = fields_every(input.output);
   return options;

@@ -72,8 +72,8 @@ TEST(Path, FollowsATrussThroughBothLimitPointsToTheFullLoad) {
         EXPECT_NEAR(arc, 1, 1e-6) << w;  // Newton's last step but one is within the root of its tolerance
       }
       before = w;
-      highest = std::max(highest, w < 1 ? load * increment.time : 0);
-      lowest = std::min(lowest, load * increment.time);
+      highest = larger(highest, w < 1 ? load * increment.time : 0);
+      lowest = smaller(lowest, load * increment.time);
       if (std::abs(w - 0.4226497308) < 1e-3) continue;  // (at the limit point the derivative is infinite)
       EXPECT_NEAR(-s.derivative("w", "F", static_cast<int>(n)) * truss_stiffness(w), -increment.time,
                   1e-8 * std::abs(increment.time))

@@ -26,8 +26,8 @@ CaseResult run(nlohmann::json document, const nlohmann::json& method, const std:
   document["method"] = method;
   const Input input = read(document, name);
   std::shared_ptr<Condensation<double>> condensation;
-  return run_case(std::make_shared<const Problem>(input.scene), input.method,
-                  {input.linear_algebra, input.backend, {}, {}}, condensation);
+  return run_case(std::make_shared<const Problem>(input.scene), input.method, {input.linear_algebra, input.backend},
+                  condensation);
 }
 
 std::vector<nlohmann::json> scales_of(const nlohmann::json& scene) {

@@ -45,7 +45,9 @@ struct Solved {
     const Input input = cases::read(document, file);
     problem = std::make_unique<Problem>(input.scene);
     method = input.method;
-    trajectory = solve(problem->model, problem->slots, method, {input.linear_algebra, input.backend, {}, {}, &trace});
+    RunOptions options{input.linear_algebra, input.backend};
+    options.trace = &trace;
+    trajectory = solve(problem->model, problem->slots, method, options);
   }
 };
 

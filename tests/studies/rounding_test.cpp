@@ -45,7 +45,7 @@ CaseResult run(const Input& input, const Perturbation& by) {
   auto problem = std::make_shared<Problem>(perturbed::scene_of(input.scene, by));
   problem->slots = perturbed::slots_of(problem->model, by);
   std::shared_ptr<Condensation<double>> condensation;
-  return run_case(problem, input.method, {input.linear_algebra, input.backend, {}, {}}, condensation);
+  return run_case(problem, input.method, {input.linear_algebra, input.backend}, condensation);
 }
 
 /// Force that rounding leaves of a penalty where it is large against what bends a thin body: penalty times coordinate,

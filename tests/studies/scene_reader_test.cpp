@@ -358,10 +358,10 @@ TEST(SceneReader, CarriesOutOverridesAndNamesThemInFaults) {
   EXPECT_EQ(input->scene.contacts[0].friction->coefficient->value, 0.4);
   EXPECT_EQ(input->scene.legs[0].steps, 3);
   EXPECT_FALSE(read_scene(path.string(), {"/contacts/sole/friction=-0.4", "/time/stops=3"}, {}, diagnostics));
-  EXPECT_EQ(
-      diagnostics.text(),
-      "--set /contacts/sole/friction=-0.4: /contacts/sole/friction: is -0.4; must be a number >= 0\n"
-      "--set /time/stops=3: /time/stops: unknown key \"stops\"; did you mean \"steps\"? allowed: end, steps, legs\n");
+  EXPECT_EQ(diagnostics.text(),
+            "--set /contacts/sole/friction=-0.4: /contacts/sole/friction: is -0.4; must be a number >= 0\n"
+            "--set /time/stops=3: /time/stops: unknown key \"stops\"; did you mean \"steps\"? allowed: end, steps, "
+            "legs, control\n");
   std::filesystem::remove(path);
 }
 

@@ -186,7 +186,10 @@ TEST(Schema, HasInEveryObjectTheKeysThatTheReaderAllows) {
       } else if (pointer.find("/response") != std::string::npos) {
         keys->erase("about");
       }
-      if (pointer == "/time" && scene["time"].contains("legs")) keys = {{"legs"}};  // one way or the other
+      if (pointer == "/time" && scene["time"].contains("legs")) {  // one way or the other
+        keys = {{"legs"}};
+        allowed.erase("control");  // (is refused there by a sentence of its own)
+      }
       EXPECT_EQ(*keys, allowed) << pointer;
       ++compared;
     });

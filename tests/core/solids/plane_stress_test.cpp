@@ -210,7 +210,8 @@ TEST(ThinMetal, IsThatOfRevolutionWithNoStressAcrossWhileItFlowsOnAndBack) {
       EXPECT_LE(largest_entry(P - solid.stress<double, 3>(in_space, reference).topLeftCorner<2, 2>()), 1e-12 * 200)
           << size;
       EXPECT_NEAR((thin.energy<double, 2>(H, memory)), (solid.energy<double, 3>(in_space, reference)), 1e-13 * 200);
-      EXPECT_EQ((thin.flow<double, 2>(H, memory)), memory) << "it is on its bound";
+      // it is on its bound: what logarithms round may pass that, as they were rounded before
+      EXPECT_LE(largest_entry(thin.flow<double, 2>(H, memory) - memory), 1e-13 * (1 + largest_entry(memory))) << size;
     }
     EXPECT_GT(memory[3], 0.3);
   }
