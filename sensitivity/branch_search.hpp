@@ -12,6 +12,7 @@
 #include "sensitivity/monolithic.hpp"
 #include "sensitivity/penalty.hpp"
 #include "sensitivity/uzawa.hpp"
+#include "sensitivity/vertex_ties.hpp"
 
 namespace stickslip {
 namespace detail {
@@ -55,6 +56,7 @@ class BranchSearch {
         own_(detail::own_rho(method, problem.slots, factor)),
         weak_(weak_points(problem.model, problem.slots, at, own_, cone_radius(method), along.largest_so_far)),
         flows_(flow_ties(problem.model, problem.slots, at.displacement, previous.history.bodies)),
+        vertices_(vertex_ties(problem.model, problem.slots, at, increment.time, along.largest_so_far)),
         along_(along) {
     std::vector<double> stiffened = factor;
     for (double& f : stiffened) f *= detail::oversize_of(method);
@@ -63,7 +65,7 @@ class BranchSearch {
 
   /// Leaves the derivative with the branches that it confirms in the block, and them in `at`.
   bool run() {
-    if (weak_.empty() && flows_.empty()) return follow_branches();
+    if (weak_.empty() && flows_.empty() && vertices_.empty()) return follow_branches();
     take_values(problem_.model, flows_, at_);
     const State<double> found = at_;
     if (by_flipping()) return true;
@@ -122,6 +124,7 @@ class BranchSearch {
           [this, p = w.point, branch = *verdict.contradicts](auto& at) { take_branch(problem_.model, p, branch, at); });
     }
     judge_flows(standing);
+    judge_vertices(standing);
     if (standing.possible && standing.by < least_) {
       least_ = standing.by;
       best_ = at_;
@@ -139,6 +142,17 @@ class BranchSearch {
     }
   }
 
+  void judge_vertices(Standing& standing) const {
+    for (const auto& tie : vertices_) {
+      const auto verdict = judge(problem_.model, problem_.blocks[0], tie, at_, increment_.time, along_);
+      if (!verdict.contradicts) continue;
+      standing.by = std::max(standing.by, verdict.by);
+      standing.possible &= tie.crosses;
+      standing.contradicted.push_back(
+          [this, &tie, patch = *verdict.contradicts](auto& at) { take_patch(problem_.model, tie, patch, at); });
+    }
+  }
+
   /// What tells one choice from another: branches, and in the plane the sides to which points slip.
   std::vector<int> key() const {
     std::vector<int> key;
@@ -148,12 +162,13 @@ class BranchSearch {
       key.push_back(4 * static_cast<int>(branch.state) + direction);
     }
     for (const auto& tie : flows_) key.push_back(at_.flow[tie.memory]);
+    for (const auto& tie : vertices_) key.push_back(at_.contact.facing[tie.point].patch);
     return key;
   }
 
   /// Flips all that is contradicted; where that was tried, the first alone.
   bool by_flipping() {
-    const std::size_t limit = 40 + 4 * (weak_.size() + flows_.size());
+    const std::size_t limit = 40 + 4 * (weak_.size() + flows_.size() + vertices_.size());
     std::set<std::vector<int>> tried;
     for (std::size_t round = 0; round < limit; ++round) {
       const auto before = key();
@@ -185,6 +200,12 @@ class BranchSearch {
     for (const auto& tie : flows_) {
       auto& branches = of_point.emplace_back();
       for (int branch : tie.branches) branches.push_back([&tie, branch](auto& at) { at.flow[tie.memory] = branch; });
+    }
+    for (const auto& tie : vertices_) {
+      if (!tie.crosses) continue;
+      auto& patches = of_point.emplace_back();
+      for (int patch : {tie.first, tie.second})
+        patches.push_back([&model, &tie, patch](auto& at) { take_patch(model, tie, patch, at); });
     }
     std::size_t count = 1;
     for (const auto& branches : of_point)
@@ -219,6 +240,7 @@ class BranchSearch {
   RegularisationField<Direction> rho_;
   std::vector<WeakPoint> weak_;
   std::vector<FlowTie> flows_;
+  std::vector<VertexTie> vertices_;
   Along along_;
   double least_ = std::numeric_limits<double>::infinity();  ///< least_, best_: of the choices tried, the one
                                                             ///< that was contradicted least
@@ -254,6 +276,8 @@ bool differentiate_side(const M& method, Differentiation<E>& problem, const Stat
     if (!found) break;
     sweep = std::move(only);
     block.previous.contact.traction = block.current.contact.traction;
+    increment.state.history.patch = sweep.state.history.patch;
+    increment.state.history.foot = sweep.state.history.foot;
   }
   block.previous = start;
   return found;

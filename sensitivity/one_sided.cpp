@@ -53,7 +53,8 @@ bool has_ties_of(const M& method, const Model& model, const Slots<double>& slots
   const auto weak = [&](const State<double>& at, const std::vector<double>& factor) {
     const auto rho = detail::own_rho(method, slots, factor);
     return !weak_points(model, slots, at, rho, cone_radius(method), largest).empty() ||
-           !flow_ties(model, slots, at.displacement, previous.history.bodies).empty();
+           !flow_ties(model, slots, at.displacement, previous.history.bodies).empty() ||
+           !vertex_ties(model, slots, at, increment.time, largest).empty();
   };
   if (!detail::is_truncated(method)) return weak(increment.state, increment.rho_factor);
   return std::any_of(increment.augmented.begin(), increment.augmented.end(),
@@ -65,7 +66,7 @@ std::size_t first_tie(const Model& model, const Slots<double>& slots, const Meth
                       const Trajectory<double>& trajectory, WholeStates& states) {
   const auto scales = traction_scales(model, slots, trajectory);
   const auto has = [&](std::size_t n) {
-    if (!model.effects.plasticity)  // (contact tells, of thin states too)
+    if (!model.effects.plasticity && !model.slides_along_curves())  // (contact tells, of thin states too)
       return has_ties(model, slots, method, trajectory.initial, trajectory.increments[n], scales[n]);
     const auto& increment = states.increment(n);
     return has_ties(model, slots, method, states.before(n), increment, scales[n]);
@@ -247,6 +248,8 @@ std::optional<OneSided> one_sided_derivatives(const Model& model, const Slots<do
 void TakenBranches::give(Increment<double>& increment) const {
   increment.state.contact = contact;
   increment.state.flow = flow;
+  increment.state.history.foot = foot;
+  increment.state.history.patch = patch;
   for (std::size_t k = 0; k < sweeps.size(); ++k) {
     increment.augmented[k].state.contact = sweeps[k].first;
     increment.augmented[k].state.flow = sweeps[k].second;
@@ -261,7 +264,8 @@ std::optional<std::vector<TakenBranches>> consistent_at_ties(const Model& model,
   if (first == trajectory.increments.size()) return std::nullopt;
   std::vector<TakenBranches> taken;
   for (const auto& increment : trajectory.increments) {
-    taken.push_back({increment.state.contact, {}, {}});
+    const auto& history = increment.state.history;
+    taken.push_back({increment.state.contact, {}, history.foot, history.patch, {}});
     for (const auto& sweep : increment.augmented) taken.back().sweeps.push_back({sweep.state.contact, {}});
   }
   auto search = [&](const auto& m, auto& engine) {
@@ -269,6 +273,8 @@ std::optional<std::vector<TakenBranches>> consistent_at_ties(const Model& model,
     const auto take = [&](std::size_t n, Increment<double>& increment) {
       taken[n].contact = std::move(increment.state.contact);
       taken[n].flow = std::move(increment.state.flow);
+      taken[n].foot = std::move(increment.state.history.foot);
+      taken[n].patch = std::move(increment.state.history.patch);
       for (std::size_t k = 0; k < increment.augmented.size(); ++k)
         taken[n].sweeps[k] = {std::move(increment.augmented[k].state.contact),
                               std::move(increment.augmented[k].state.flow)};

@@ -63,6 +63,8 @@ bool has_ties(const Model& model, const Slots<double>& slots, const Method& meth
 struct TakenBranches {
   ContactField<double> contact;
   FlowBranches flow;
+  Vector<double> foot;  ///< of the history, and its labels: those of patches that were chosen at a vertex
+  std::vector<int> patch;
   std::vector<std::pair<ContactField<double>, FlowBranches>> sweeps;
   void give(Increment<double>& increment) const;
 };

@@ -265,6 +265,8 @@ FAULTS = [
      "lift(values(block.previous.history.bodies))"),
     ("bound that is reached but never passed", "sensitivity/flow_ties.cpp",
      "return unless(<<<rates.excess>>>, flowing);", "0 * rates.excess"),
+    ("vertex that a point leaves to the wrong side", "sensitivity/vertex_ties.cpp",
+     "const double rate = <<<along.side>>> * found.beyond.d[0];", "-along.side"),
     ("corner of a table that stops every flow", "sensitivity/flow_ties.cpp",
      "branch == ahead ? unless(<<<rates.past>>>, behind)", "0 * rates.past"),
     ("adjoint at a tie without its branch", "sensitivity/pull_back_bodies.cpp",

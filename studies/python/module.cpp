@@ -14,6 +14,7 @@
 #include "studies/io/printing.hpp"
 #include "studies/python/arrays.hpp"
 #include "studies/python/result.hpp"
+#include "studies/report/labels.hpp"
 #include "studies/report/records.hpp"
 #include "studies/run/explain.hpp"
 #include "studies/run/gradient_report.hpp"

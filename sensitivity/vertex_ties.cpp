@@ -1,0 +1,118 @@
+#include "sensitivity/vertex_ties.hpp"
+
+#include <algorithm>
+
+#include "core/model/loading.hpp"
+#include "core/model/moved_point.hpp"
+#include "sensitivity/one_sided.hpp"
+
+namespace stickslip {
+namespace {
+
+/// How a point stands to the line at which two patches of its curve part.
+template <class T>
+struct AtVertex {
+  T beyond;       ///< way past it, over the length of the first patch's facet
+  double turn;    ///< sine of the angle between the tangents
+  double length;  ///< of that facet
+};
+
+/// `compact`: displacements of the contact nodes.
+template <class T>
+AtVertex<T> at_vertex(const Model& model, const Slots<T>& slots, const Vector<T>& compact, double time, int p,
+                      int first, int second) {
+  const auto& point = model.points[p];
+  const auto& curve = model.curves[point.curve];
+  const RegularisationField<T> unread_rho;
+  const History<T> unread_history;
+  const ContactInput<T> input{model, slots, unread_rho, unread_history, ConeRadius::augmented, time, nullptr};
+  const auto moved = detail::displacement_in(compact);
+  const auto place = [&](int vertex) { return detail::vertex_of<T, T>(input, curve, vertex, moved); };
+  const auto tangent = [&](int patch, double end) -> Vec<T, 2> {
+    const auto slope = detail::patch_weights<T>(curve.patches[patch], T(end)).slope;
+    const Vec<T, 2> along = detail::on_patch<T>(curve.patches[patch], slope, place);
+    return along / norm(along);
+  };
+  const auto& ends = curve.patches[first].vertices;
+  const Vec<T, 2> vertex = place(ends[2]), facet = vertex - place(ends[1]);
+  Vec<T, 2> x = moved(point.places[0]);
+  for (int i = 0; i < 2; ++i) x[i] += slots.points(i, point.nodes[0]);
+  const Vec<T, 2> before = tangent(first, 1), after = tangent(second, 0), along = before + after;
+  const T length = norm(facet);
+  return {dot((x - vertex).eval(), along) / (norm(along) * length),
+          std::abs(value(before[0]) * value(after[1]) - value(before[1]) * value(after[0])), value(length)};
+}
+
+/// Whether patches have a kink where they meet: none where a B-spline goes on.
+bool has_kink(const Patch& first) { return first.smoothing != Smoothing::b_spline || !first.goes_on_after(); }
+
+/// Calls f(first, second) with the patches that part at the ends of what a point faces.
+template <class F>
+void for_each_vertex(const Model& model, const State<double>& state, int p, F&& f) {
+  const auto& point = model.points[p];
+  if (point.curve < 0 || state.contact.facing.empty()) return;
+  const auto& patches = model.curves[point.curve].patches;
+  const int now = state.contact.facing[p].patch;
+  if (now == Patch::none) return;
+  for (const auto& [first, second] : {std::pair(patches[now].previous, now), std::pair(now, patches[now].next)}) {
+    if (first == Patch::none || second == Patch::none || !has_kink(patches[first])) continue;
+    const int other = first == now ? second : first;
+    if (point.own.vertex == Patch::none || point.own.may_face(patches, other)) f(first, second);
+  }
+}
+
+bool reads_gaps(const Scene& scene) {
+  return std::any_of(scene.responses.begin(), scene.responses.end(),
+                     [](const Response& response) { return response.kind == Response::Kind::gap; });
+}
+
+}  // namespace
+
+std::vector<VertexTie> vertex_ties(const Model& model, const Slots<double>& slots, const State<double>& state,
+                                   double time, double largest) {
+  constexpr double straight = 1e-6;  // a turn that is none, as of the geometry at the start (sided_geometry.cpp)
+  std::vector<VertexTie> ties;
+  if (!model.slides_along_curves()) return ties;
+  const bool all = reads_gaps(model.scene);
+  const Vector<double> compact = to_compact(model, state.displacement);
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    const auto& point = model.points[p];
+    const bool open = state.contact.state[p] == ContactState::open;
+    const double elastic = slots.stiffness[p] / slots.geometry[p].area;
+    const bool touches = open && elastic * state.contact.gap[p] <= weak_margin * largest;
+    if (open && !touches && !all) continue;
+    const bool bears = -state.contact.traction[point.multiplier] > weak_margin * largest;
+    for_each_vertex(model, state, p, [&](int first, int second) {
+      const auto at = at_vertex(model, slots, compact, time, p, first, second);
+      if (std::abs(at.beyond) <= weak_margin) ties.push_back({p, first, second, !bears || at.turn <= straight});
+    });
+  }
+  return ties;
+}
+
+void take_patch(const Model& model, const VertexTie& tie, int patch, State<double>& at) {
+  const double xi = patch == tie.first ? 1 : 0;
+  at.contact.facing[tie.point] = {patch, xi, 0};
+  at.history.patch[tie.point] = patch;
+  if (const int foot = model.points[tie.point].foot; foot >= 0) at.history.foot[foot] = xi;
+}
+
+VertexVerdict judge(const Model& model, const ParameterBlock& block, const VertexTie& tie, const State<double>& at,
+                    double time, const Along& along) {
+  constexpr double share = 1e-10, rigid = 1e-3;  // as of contact points (sensitivity/branches.cpp)
+  const auto found = at_vertex(model, block.slots, to_compact(model, block.current.displacement), time, tie.point,
+                               tie.first, tie.second);
+  double motion = 0;
+  for (const auto& u : block.current.displacement) motion = std::max(motion, std::abs(u.d[0]));
+  for (Eigen::Index k = 0; k < block.slots.points.size(); ++k)
+    motion = std::max(motion, std::abs(block.slots.points.data()[k].d[0]));
+  const double rate = along.side * found.beyond.d[0];
+  const double negligible =
+      share * std::max(rigid * motion / found.length, along.parameter > 0 ? 1 / along.parameter : 0.0);
+  const bool on_second = at.contact.facing[tie.point].patch == tie.second;
+  const double by = (on_second ? -rate : rate) / negligible;
+  if (!(by > 1)) return {};
+  return {on_second ? tie.first : tie.second, by};
+}
+
+}  // namespace stickslip
