@@ -14,8 +14,11 @@ template <class T>
 struct AtVertex {
   T beyond;       ///< way past it, over the length of the first patch's facet
   double turn;    ///< sine of the angle between the tangents
+  double bend;    ///< jump of the curvature, times the length
   double length;  ///< of that facet
 };
+
+double cross(const Vec<double, 2>& a, const Vec<double, 2>& b) { return a[0] * b[1] - a[1] * b[0]; }
 
 /// `compact`: displacements of the contact nodes.
 template <class T>
@@ -28,22 +31,27 @@ AtVertex<T> at_vertex(const Model& model, const Slots<T>& slots, const Vector<T>
   const ContactInput<T> input{model, slots, unread_rho, unread_history, ConeRadius::augmented, time, nullptr};
   const auto moved = detail::displacement_in(compact);
   const auto place = [&](int vertex) { return detail::vertex_of<T, T>(input, curve, vertex, moved); };
-  const auto tangent = [&](int patch, double end) -> Vec<T, 2> {
-    const auto slope = detail::patch_weights<T>(curve.patches[patch], T(end)).slope;
-    const Vec<T, 2> along = detail::on_patch<T>(curve.patches[patch], slope, place);
-    return along / norm(along);
+  const auto at_end = [&](int patch, double end) {
+    const auto weights = detail::patch_weights<T>(curve.patches[patch], T(end));
+    const Vec<T, 2> slope = detail::on_patch<T>(curve.patches[patch], weights.slope, place),
+                    bend = detail::on_patch<T>(curve.patches[patch], weights.bend, place);
+    const double speed = value(norm(slope));
+    const Vec<T, 2> tangent = slope / norm(slope);
+    return std::pair(tangent, cross(values(slope), values(bend)) / (speed * speed * speed));
   };
   const auto& ends = curve.patches[first].vertices;
   const Vec<T, 2> vertex = place(ends[2]), facet = vertex - place(ends[1]);
   Vec<T, 2> x = moved(point.places[0]);
   for (int i = 0; i < 2; ++i) x[i] += slots.points(i, point.nodes[0]);
-  const Vec<T, 2> before = tangent(first, 1), after = tangent(second, 0), along = before + after;
+  const auto [before, bend_before] = at_end(first, 1);
+  const auto [after, bend_after] = at_end(second, 0);
+  const Vec<T, 2> along = before + after;
   const T length = norm(facet);
-  return {dot((x - vertex).eval(), along) / (norm(along) * length),
-          std::abs(value(before[0]) * value(after[1]) - value(before[1]) * value(after[0])), value(length)};
+  return {dot((x - vertex).eval(), along) / (norm(along) * length), std::abs(cross(values(before), values(after))),
+          std::abs(bend_after - bend_before) * value(length), value(length)};
 }
 
-/// Whether patches have a kink where they meet: none where a B-spline goes on.
+/// Whether patches may have a kink where they meet: none where a B-spline goes on.
 bool has_kink(const Patch& first) { return first.smoothing != Smoothing::b_spline || !first.goes_on_after(); }
 
 /// Calls f(first, second) with the patches that part at the ends of what a point faces.
@@ -84,6 +92,9 @@ std::vector<VertexTie> vertex_ties(const Model& model, const Slots<double>& slot
     const bool bears = -state.contact.traction[point.multiplier] > weak_margin * largest;
     for_each_vertex(model, state, p, [&](int first, int second) {
       const auto at = at_vertex(model, slots, compact, time, p, first, second);
+      // (splines share their tangent, whose derivative jumps with the curvature alone)
+      const auto& patch = model.curves[point.curve].patches[first];
+      if (patch.smoothing != Smoothing::none && patch.goes_on_after() && at.bend <= straight) return;
       if (std::abs(at.beyond) <= weak_margin) ties.push_back({p, first, second, !bears || at.turn <= straight});
     });
   }

@@ -5,7 +5,8 @@
 /// Where the patches go on straight (facets in line, and Catmull-Rom splines, whose curvature alone jumps), or where
 /// the point bears nothing, either patch has an equilibrium here, and the derivative with it is that of its side. Where
 /// a corner is pressed the force jumps with the normal: on the side on which the point stays the derivative is that of
-/// its patch, and on the other there is none. B-splines have no such ties. Source: core/README.md.
+/// its patch, and on the other there is none. Splines whose curvature goes on, B-splines among them, have no such ties.
+/// Source: core/README.md.
 #pragma once
 
 #include "sensitivity/branches.hpp"
