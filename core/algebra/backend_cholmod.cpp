@@ -107,9 +107,30 @@ struct CholmodFactor::Data {
       common.nmethods = 1;
       common.method[0].ordering = CHOLMOD_GIVEN;
       factor = cholmod_analyze_p(&a, order.data(), nullptr, 0, &common);
+      if (factor && !keeps_rows_last()) {
+        cholmod_free_factor(&factor, &common);
+        for (auto& columns : common.nrelax) columns = 0;
+        for (auto& zeros : common.zrelax) zeros = 0;
+        factor = cholmod_analyze_p(&a, order.data(), nullptr, 0, &common);
+      }
+      if (factor && !keeps_rows_last()) throw std::runtime_error("CHOLMOD does not leave the kept rows for the end");
     }
     check("analyse");
     size = {common.fl, common.lnz};
+  }
+
+  /// Whether in each supernode the kept rows stand behind the others. Supernodes that are joined for speed, at the
+  /// price of stored zeros, may join those of two bodies.
+  bool keeps_rows_last() const {
+    const auto* pi = static_cast<const int*>(factor->pi);
+    const auto* rows = static_cast<const int*>(factor->s);
+    const auto* permutation = static_cast<const int*>(factor->Perm);
+    const int eliminated = pattern->size - kept;
+    for (std::size_t s = 0; factor->is_super && s < factor->nsuper; ++s)
+      if (!std::is_sorted(rows + pi[s], rows + pi[s + 1],
+                          [&](int a, int b) { return permutation[a] < eliminated && permutation[b] >= eliminated; }))
+        return false;
+    return true;
   }
 
   /// Replaces b by x of L x = b (cholmod_super_lsolve) or L^T x = b (cholmod_super_ltsolve), rows in the order of
