@@ -49,11 +49,9 @@ class CholmodFactor {
   static FactorSize predict(std::shared_ptr<const Pattern> pattern, int kept);
   /// L_kk L_kk^T of the kept rows. pre: the last factorise() was done.
   Matrix<double> schur_complement() const;
-  /// y of L y = P b, which is `others`, and L_kk y_k. pre: the last factorise() was done.
+  /// Supernodes::reduce and expand. pre: the last factorise() was done.
   Reduction<double> reduce(const Matrix<double>& b);
-  /// x_o of L^T P x = y, x_k being `kept`, whatever y_k is; with `wanted`, the others may be zero. pre: the last
-  /// factorise() was done.
-  Matrix<double> expand(const Matrix<double>& kept, Matrix<double> y, const std::vector<int>* wanted);
+  Matrix<double> expand(const Matrix<double>& kept, const Matrix<double>& y, const std::vector<int>* wanted);
   void solve(const Matrix<double>& b, Matrix<double>& x, bool transposed);
   std::string name() const;
   long factor_nonzeros() const;

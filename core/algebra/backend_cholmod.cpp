@@ -9,6 +9,8 @@
 #include <new>
 #include <stdexcept>
 
+#include "core/algebra/supernodes.hpp"
+
 // OpenMP's, where CHOLMOD was built with it, null elsewhere.
 extern "C" {
 __attribute__((weak)) int omp_get_max_active_levels();
@@ -119,29 +121,20 @@ struct CholmodFactor::Data {
     size = {common.fl, common.lnz};
   }
 
-  /// Whether in each supernode the kept rows stand behind the others. Supernodes that are joined for speed, at the
-  /// price of stored zeros, may join those of two bodies.
-  bool keeps_rows_last() const {
-    const auto* pi = static_cast<const int*>(factor->pi);
-    const auto* rows = static_cast<const int*>(factor->s);
-    const auto* permutation = static_cast<const int*>(factor->Perm);
-    const int eliminated = pattern->size - kept;
-    for (std::size_t s = 0; factor->is_super && s < factor->nsuper; ++s)
-      if (!std::is_sorted(rows + pi[s], rows + pi[s + 1],
-                          [&](int a, int b) { return permutation[a] < eliminated && permutation[b] >= eliminated; }))
-        return false;
-    return true;
+  /// The factor, once there is one; before that its places alone.
+  Supernodes supernodes() const {
+    const auto ints = [](const void* list) { return static_cast<const int*>(list); };
+    return {static_cast<int>(factor->nsuper),
+            ints(factor->super),
+            ints(factor->pi),
+            ints(factor->s),
+            ints(factor->px),
+            static_cast<const double*>(factor->x),
+            ints(factor->Perm),
+            pattern->size,
+            pattern->size - kept};
   }
-
-  /// Replaces b by x of L x = b (cholmod_super_lsolve) or L^T x = b (cholmod_super_ltsolve), rows in the order of
-  /// elimination.
-  template <class Triangle>
-  void solve_triangle(Triangle&& solve, Matrix<double>& b) {
-    cholmod_dense columns = view(b);
-    const bool done = cholmod_ensure_dense(&e, columns.ncol, factor->maxesize, columns.ncol, CHOLMOD_REAL, &common) &&
-                      solve(factor, &columns, e, &common);
-    if (!done) throw std::bad_alloc();  // the factor is good, so nothing else can go wrong
-  }
+  bool keeps_rows_last() const { return !factor->is_super || supernodes().keep_rows_last(); }
 
   static cholmod_dense view(const Matrix<double>& b) {
     cholmod_dense rhs{};
@@ -152,101 +145,6 @@ struct CholmodFactor::Data {
     rhs.xtype = CHOLMOD_REAL;
     rhs.dtype = CHOLMOD_DOUBLE;
     return rhs;
-  }
-
-  /// Calls f(first column, their number, the rows of each as kept ones, L of these rows and columns) for all columns of
-  /// L that belong to kept rows, supernode by supernode. No kept row has an eliminated one after it in its tree, but
-  /// one tree may stand before another: each body has its own. The upper triangle of L means nothing.
-  template <class F>
-  void for_each_kept_block(F&& f) const {
-    using Block = Eigen::Map<const Matrix<double>, 0, Eigen::OuterStride<>>;
-    const auto* x_of = static_cast<const double*>(factor->x);
-    const auto* super = static_cast<const int*>(factor->super);
-    const auto* pi = static_cast<const int*>(factor->pi);
-    const auto* px = static_cast<const int*>(factor->px);
-    const auto* rows = static_cast<const int*>(factor->s);
-    const auto* permutation = static_cast<const int*>(factor->Perm);
-    const int eliminated = pattern->size - kept;
-    std::vector<int> places;
-    for (std::size_t s = 0; s < factor->nsuper; ++s) {
-      int first = super[s];
-      while (first < super[s + 1] && permutation[first] < eliminated) ++first;
-      if (first == super[s + 1]) continue;
-      const int local = first - super[s], count = pi[s + 1] - pi[s];
-      places.clear();
-      for (int i = local; i < count; ++i) places.push_back(permutation[rows[pi[s] + i]] - eliminated);
-      f(first, super[s + 1] - first, places,
-        Block(x_of + px[s] + static_cast<std::ptrdiff_t>(local) * (count + 1), count - local, super[s + 1] - first,
-              Eigen::OuterStride<>(count)));
-    }
-  }
-
-  /// Supernodes on the way from some rows (as in the pattern) up to the roots of the elimination tree.
-  std::vector<char> ancestors_of(const std::vector<int>& wanted) const {
-    const auto* super = static_cast<const int*>(factor->super);
-    const auto* pi = static_cast<const int*>(factor->pi);
-    const auto* rows = static_cast<const int*>(factor->s);
-    const auto* permutation = static_cast<const int*>(factor->Perm);
-    std::vector<char> is_wanted(pattern->size, false), marked(factor->nsuper, false);
-    for (int row : wanted) is_wanted[row] = true;
-    std::vector<int> supernode_of(pattern->size);
-    for (std::size_t s = 0; s < factor->nsuper; ++s)
-      for (int k = super[s]; k < super[s + 1]; ++k) {
-        supernode_of[k] = static_cast<int>(s);
-        if (is_wanted[permutation[k]]) marked[s] = true;
-      }
-    for (std::size_t s = 0; s < factor->nsuper; ++s) {  // (a parent stands behind its children)
-      const int parent = pi[s] + super[s + 1] - super[s];
-      if (marked[s] && parent < pi[s + 1]) marked[supernode_of[rows[parent]]] = true;
-    }
-    return marked;
-  }
-
-  /// Replaces y by x of L^T x = y, rows in the order of elimination, in the supernodes that some rows (as in the
-  /// pattern) hang on; elsewhere by zero.
-  void solve_back(const std::vector<int>& wanted, Matrix<double>& y) const {
-    using Block = Eigen::Map<const Matrix<double>, 0, Eigen::OuterStride<>>;
-    const auto* x_of = static_cast<const double*>(factor->x);
-    const auto* super = static_cast<const int*>(factor->super);
-    const auto* pi = static_cast<const int*>(factor->pi);
-    const auto* px = static_cast<const int*>(factor->px);
-    const auto* rows = static_cast<const int*>(factor->s);
-    const auto marked = ancestors_of(wanted);
-    Matrix<double> known;
-    for (std::size_t s = factor->nsuper; s-- > 0;) {
-      const int own = super[s + 1] - super[s], count = pi[s + 1] - pi[s], below = count - own;
-      const Block L(x_of + px[s], count, own, Eigen::OuterStride<>(count));
-      auto x = y.middleRows(super[s], own);
-      if (!marked[s]) {
-        x.setZero();
-        continue;
-      }
-      known.resize(below, y.cols());
-      for (Eigen::Index c = 0; c < y.cols(); ++c)
-        for (int i = 0; i < below; ++i) known(i, c) = y(rows[pi[s] + own + i], c);
-      x.noalias() -= L.bottomRows(below).transpose() * known;
-      L.topRows(own).template triangularView<Eigen::Lower>().transpose().solveInPlace(x);
-    }
-  }
-
-  /// Smallest l_kk^2 / a_kk: a pivot over the diagonal entry it came from, which no diagonal scaling changes.
-  double smallest_pivot(const double* values) const {
-    const auto* x_of = static_cast<const double*>(factor->x);
-    const auto* super = static_cast<const int*>(factor->super);
-    const auto* pi = static_cast<const int*>(factor->pi);
-    const auto* px = static_cast<const int*>(factor->px);
-    const auto* permutation = static_cast<const int*>(factor->Perm);
-    double smallest = 1;
-    for (std::size_t s = 0; s < factor->nsuper; ++s) {
-      const int rows = pi[s + 1] - pi[s];
-      for (int k = super[s]; k < super[s + 1]; ++k) {
-        const int local = k - super[s];
-        const double l = x_of[px[s] + static_cast<std::ptrdiff_t>(local) * (rows + 1)];
-        const double ratio = l * l / values[diagonal[permutation[k]]];
-        if (!(ratio >= smallest)) smallest = ratio;  // also where it is not a number
-      }
-    }
-    return smallest;
   }
 };
 
@@ -288,7 +186,7 @@ Factorisation CholmodFactor::factorise(const double* values) {
     return {Outcome::not_positive_definite,
             "pivot of row " + std::to_string(static_cast<const int*>(d.factor->Perm)[d.factor->minor]) +
                 " is not positive"};
-  return {Outcome::done, "", d.smallest_pivot(values)};
+  return {Outcome::done, "", d.supernodes().smallest_pivot([&](int row) { return values[d.diagonal[row]]; })};
 }
 
 void CholmodFactor::solve(const Matrix<double>& b, Matrix<double>& x, bool /*transposed: symmetric*/) {
@@ -299,56 +197,13 @@ void CholmodFactor::solve(const Matrix<double>& b, Matrix<double>& x, bool /*tra
   x = Eigen::Map<const Matrix<double>>(static_cast<const double*>(d.x->x), b.rows(), b.cols());
 }
 
-Matrix<double> CholmodFactor::schur_complement() const {
-  const Data& d = *data_;
-  Matrix<double> complement = Matrix<double>::Zero(d.kept, d.kept);
-  Matrix<double> L = Matrix<double>::Zero(d.kept, d.kept);
-  Eigen::Index column = 0;
-  d.for_each_kept_block([&](int, int columns, const std::vector<int>& rows, const auto& block) {
-    for (int k = 0; k < columns; ++k, ++column)
-      for (std::size_t i = k; i < rows.size(); ++i) L(rows[i], column) = block(i, k);
-  });
-  complement.selfadjointView<Eigen::Lower>().rankUpdate(L);
-  complement.triangularView<Eigen::StrictlyUpper>() = complement.transpose();
-  return complement;
-}
+Matrix<double> CholmodFactor::schur_complement() const { return data_->supernodes().schur_complement(); }
 
-Reduction<double> CholmodFactor::reduce(const Matrix<double>& b) {
-  Data& d = *data_;
-  const Eigen::Map<const Eigen::VectorXi> order(static_cast<const int*>(d.factor->Perm), b.rows());
-  Reduction<double> reduced{Matrix<double>::Zero(d.kept, b.cols()), b(order, Eigen::all)};
-  d.solve_triangle(cholmod_super_lsolve, reduced.others);
-  d.for_each_kept_block([&](int first, int columns, const std::vector<int>& rows, const auto& block) {
-    const auto y = reduced.others.middleRows(first, columns);
-    const Eigen::Index below = block.rows() - columns;
-    Matrix<double> product(block.rows(), b.cols());
-    product.topRows(columns) = block.topRows(columns).template triangularView<Eigen::Lower>() * y;
-    product.bottomRows(below) = block.bottomRows(below) * y;
-    reduced.kept(rows, Eigen::all) += product;
-  });
-  return reduced;
-}
+Reduction<double> CholmodFactor::reduce(const Matrix<double>& b) { return data_->supernodes().reduce(b); }
 
-Matrix<double> CholmodFactor::expand(const Matrix<double>& kept, Matrix<double> y, const std::vector<int>* wanted) {
-  Data& d = *data_;
-  d.for_each_kept_block([&](int first, int columns, const std::vector<int>& rows, const auto& block) {
-    const Matrix<double> x = kept(rows, Eigen::all);
-    const Eigen::Index below = block.rows() - columns;
-    auto to = y.middleRows(first, columns);  // L_kk^T x_k
-    to = block.topRows(columns).template triangularView<Eigen::Lower>().transpose() * x.topRows(columns);
-    to += block.bottomRows(below).transpose() * x.bottomRows(below);
-  });
-  if (wanted)
-    d.solve_back(*wanted, y);
-  else
-    d.solve_triangle(cholmod_super_ltsolve, y);
-  const auto* permutation = static_cast<const int*>(d.factor->Perm);
-  const int eliminated = d.pattern->size - d.kept;
-  Matrix<double> x(eliminated, y.cols());
-  for (int c = 0; c < y.cols(); ++c)
-    for (int k = 0; k < y.rows(); ++k)
-      if (permutation[k] < eliminated) x(permutation[k], c) = y(k, c);
-  return x;
+Matrix<double> CholmodFactor::expand(const Matrix<double>& kept, const Matrix<double>& y,
+                                     const std::vector<int>* wanted) {
+  return data_->supernodes().expand(kept, y, wanted);
 }
 
 std::string CholmodFactor::name() const {

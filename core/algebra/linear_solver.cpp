@@ -227,7 +227,7 @@ Matrix<T> LinearSolver<T>::expand(const Matrix<T>& kept, Matrix<T> others, const
   Implementation& s = *implementation_;
   if (!s.usable) throw std::logic_error("LinearSolver: expansion without a factorisation");
   Matrix<T> x;
-  if (s.by_halves([&](auto& factor) { x = factor.expand(kept, std::move(others), wanted); })) {
+  if (s.by_halves([&](auto& factor) { x = factor.expand(kept, others, wanted); })) {
     s.counters.half_solves += static_cast<long>(kept.cols());
     return x;
   }
