@@ -6,16 +6,22 @@
 
 namespace stickslip {
 
+/// Adds external nodal forces at time t that do not depend on displacements, times a sign, to all dofs.
+template <class T>
+void add_dead_forces(const Model& model, const Slots<T>& slots, double t, double sign, Vector<T>& forces) {
+  for (std::size_t l = 0; l < slots.loads.size(); ++l) {
+    const auto& history = model.scene.loads[l].history;
+    const T factor = T(sign) * (history ? evaluate(*history, t, slots.numbers) : T(1));
+    const auto& load = slots.loads[l];
+    for (std::size_t k = 0; k < load.dofs.size(); ++k) forces[load.dofs[k]] += factor * load.forces[k];
+  }
+}
+
 /// External nodal forces at time t that do not depend on displacements, all dofs.
 template <class T>
 Vector<T> dead_forces(const Model& model, const Slots<T>& slots, double t) {
   Vector<T> forces = Vector<T>::Constant(model.dof_count(), T(0));
-  for (std::size_t l = 0; l < slots.loads.size(); ++l) {
-    const auto& history = model.scene.loads[l].history;
-    const T factor = history ? evaluate(*history, t, slots.numbers) : T(1);
-    for (int dof = 0; dof < model.dof_count(); ++dof)
-      if (!vanishes(slots.loads[l][dof])) forces[dof] += factor * slots.loads[l][dof];
-  }
+  add_dead_forces(model, slots, t, 1, forces);
   return forces;
 }
 
@@ -24,6 +30,15 @@ template <class T>
 Vector<T> external_forces(const Model& model, const Slots<T>& slots, double t, const Vector<T>& u) {
   if (model.followers.empty()) return dead_forces(model, slots, t);
   return dead_forces(model, slots, t) + follower_forces(model, slots, t, u);
+}
+
+/// Forces of elements less the external ones at time t and displacements of all dofs.
+template <class T>
+Vector<T> less_external_forces(const Model& model, const Slots<T>& slots, double t, const Vector<T>& u,
+                               Vector<T> internal) {
+  add_dead_forces(model, slots, t, -1, internal);
+  if (!model.followers.empty()) internal -= follower_forces(model, slots, t, u);
+  return internal;
 }
 
 /// The tangent of what is inside and on the bodies, forces of elements less those of pressures that follow them, times

@@ -11,9 +11,9 @@ namespace stickslip {
 /// f_int - f_ext + contact over all dofs, in the axes: zero along free dofs in equilibrium, the force of the support on
 /// the body along prescribed ones (support_forces). `internal`: bulk_forces of the state.
 template <class T>
-Vector<T> nodal_balance(const Model& model, const Slots<T>& slots, const State<T>& state, const Vector<T>& internal,
+Vector<T> nodal_balance(const Model& model, const Slots<T>& slots, const State<T>& state, Vector<T> internal,
                         double time) {
-  Vector<T> rows = internal - external_forces(model, slots, time, state.displacement);
+  Vector<T> rows = less_external_forces(model, slots, time, state.displacement, std::move(internal));
   add_compact(model, contact_forces(model, slots, state.contact), rows);
   return rows;
 }

@@ -20,6 +20,26 @@
 
 namespace stickslip {
 
+/// Nodal forces of a load at history = 1, of the dofs on which it acts.
+template <class T>
+struct NodalLoad {
+  std::vector<int> dofs;  ///< ascending
+  std::vector<T> forces;
+
+  explicit NodalLoad(const Vector<T>& all) {
+    for (int dof = 0; dof < all.size(); ++dof)
+      if (!vanishes(all[dof])) {
+        dofs.push_back(dof);
+        forces.push_back(all[dof]);
+      }
+  }
+  Vector<T> all(int dof_count) const {
+    Vector<T> spread = Vector<T>::Constant(dof_count, T(0));
+    for (std::size_t k = 0; k < dofs.size(); ++k) spread[dofs[k]] = forces[k];
+    return spread;
+  }
+};
+
 template <class T>
 struct Slots {
   Numbers<T> numbers;
@@ -29,7 +49,7 @@ struct Slots {
   std::vector<PointGeometry<T>> geometry;  ///< per contact point
   std::vector<T> stiffness;                ///< per contact point: local nodal stiffness k_i (force per length)
   std::vector<FrictionLaw<T>> friction;    ///< per contact; empty, and unread, where frictionless
-  std::vector<Vector<T>> loads;            ///< per load: nodal forces at history = 1
+  std::vector<NodalLoad<T>> loads;         ///< per load
   std::vector<Matrix<T>> frames;           ///< per framed node: its frame, one vector a column
   std::vector<Vector<T>> spins;            ///< per contact point: displacement of its obstacle there when it rotates by
                                            ///< one degree; empty where no obstacle rotates

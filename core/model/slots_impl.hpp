@@ -163,7 +163,7 @@ Slots<T> make_slots(const Model& model, const Numbers<T>& numbers, Points<T> poi
   for (const auto& point : model.points) slots.geometry.push_back(detail::initial_geometry(model, point, slots));
   for (const auto& framed : model.framed) slots.frames.push_back(nodal_frame(model.scene, framed, numbers));
   slots.stiffness = contact_stiffness(model, slots);
-  for (const auto& load : model.scene.loads) slots.loads.push_back(load_vector(model, load, slots));
+  for (const auto& load : model.scene.loads) slots.loads.emplace_back(load_vector(model, load, slots));
   const auto& obstacles = model.scene.obstacles;
   const bool turns =
       std::any_of(obstacles.begin(), obstacles.end(), [](const auto& o) { return o.rotate.has_value(); });

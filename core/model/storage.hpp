@@ -24,7 +24,7 @@ SlotBytes slot_bytes(const Slots<T>& slots) {
   constexpr long one = sizeof(U);
   SlotBytes held;
   held.bodies = one * static_cast<long>(slots.numbers.at_slot.size() + slots.points.size());
-  for (const auto& load : slots.loads) held.bodies += one * load.size();
+  for (const auto& load : slots.loads) held.bodies += one * static_cast<long>(load.forces.size());
   for (const auto& frame : slots.frames) held.bodies += one * frame.size();
   for (const auto& geometry : slots.geometry)
     held.contact += static_cast<long>(sizeof(PointGeometry<U>)) + one * geometry.weights.size();

@@ -69,7 +69,7 @@ Solution quarter_ring(Space space, double nu, const std::string& element, int n)
   s.loads = {scenes::traction("ring.inner", {0.0, 0.0})};
   Solution out{make_model(s), {}, {}};
   out.slots = make_slots<double>(out.model, s.as<double>());
-  auto& forces = out.slots.loads[0];
+  Vector<double> forces = Vector<double>::Zero(out.model.dof_count());
   for (const auto& edge : out.model.side("ring.inner").edges)
     for_each_edge_point(out.slots.points, edge, out.slots.depths[0], [&](const auto& values, const auto& tau, double) {
       for (std::size_t a = 0; a < edge.size(); ++a) {  // the inward normal of the solid lies on the left of the edge
@@ -77,6 +77,7 @@ Solution quarter_ring(Space space, double nu, const std::string& element, int n)
         forces[2 * edge[a] + 1] += 10 * values[a] * tau[0];
       }
     });
+  out.slots.loads[0] = NodalLoad<double>(forces);
   Workspace<double> workspace;
   const auto trajectory = solve(out.model, out.slots, MonolithicAL{}, {}, workspace);
   EXPECT_TRUE(is_converged(trajectory.status)) << trajectory.message;

@@ -81,7 +81,7 @@ std::vector<Vector<T>> groups(const Model& model, const Slots<T>& slots) {
   for (const auto& law : slots.friction) lists[6].push_back(law.slope_at_apex());
   std::vector<Vector<T>> out;
   for (const auto& list : lists) out.push_back(Eigen::Map<const Vector<T>>(list.data(), list.size()));
-  for (const auto& load : slots.loads) out.push_back(load);
+  for (const auto& load : slots.loads) out.push_back(load.all(model.dof_count()));
   const Vector<double> u = derivatives::arbitrary(model.dof_count());
   out.push_back(bulk_forces<T>(model, slots, u.unaryExpr([](double x) { return T(x); }), {}));
   return out;
@@ -227,7 +227,7 @@ TEST(NodalStiffness, AgainstABodyIsTheHarmonicMeanOfTheTwoSides) {
 Vector<double> total(const Scene& scene, int load) {
   const Model model = make_model(scene);
   const auto slots = make_slots<double>(model, scene.as<double>());
-  return slots.loads[load].reshaped(model.dimension, model.node_count).rowwise().sum();
+  return slots.loads[load].all(model.dof_count()).reshaped(model.dimension, model.node_count).rowwise().sum();
 }
 
 TEST(Loads, AddUpToTheForceOrToTheTractionTimesTheLength) {
@@ -252,7 +252,8 @@ TEST(Loads, ShareAForceByTributaryLength) {
   scene.loads = {scenes::force("block.bottom", {8.0, 0.0})};
   const Model model = make_model(scene);
   const auto slots = make_slots<double>(model, scene.as<double>());
-  for (int node = 0; node < 5; ++node) EXPECT_DOUBLE_EQ(slots.loads[0][2 * node], node == 0 || node == 4 ? 1 : 2);
+  const Vector<double> forces = slots.loads[0].all(model.dof_count());
+  for (int node = 0; node < 5; ++node) EXPECT_DOUBLE_EQ(forces[2 * node], node == 0 || node == 4 ? 1 : 2);
 }
 
 TEST(Loads, ShareAForceByTributaryLengthOfUnequalEdges) {
@@ -277,8 +278,9 @@ TEST(Loads, ShareAForceByTributaryLengthOfUnequalEdges) {
     shortest = smaller(shortest, length);
   }
   ASSERT_GT(longest, 1.5 * shortest);
+  const Vector<double> forces = slots.loads[0].all(model.dof_count());
   for (int node : side.nodes)
-    EXPECT_NEAR(slots.loads[0][2 * node], 8 * tributary[node] / tributary.sum(), 100 * epsilon) << node;
+    EXPECT_NEAR(forces[2 * node], 8 * tributary[node] / tributary.sum(), 100 * epsilon) << node;
 }
 
 TEST(Loads, GiveAForceToTheNamedNodesAlone) {
@@ -291,7 +293,7 @@ TEST(Loads, GiveAForceToTheNamedNodesAlone) {
   for (int load = 0; load < 2; ++load) {
     const auto nodes = model.side(scene.loads[load].on).nodes;
     double sum = 0;
-    for (int node : nodes) sum += slots.loads[load][2 * node];
+    for (int node : nodes) sum += slots.loads[load].all(model.dof_count())[2 * node];
     EXPECT_NEAR(sum, 3, 20 * epsilon) << scene.loads[load].on;  // a dozen terms
   }
 }
