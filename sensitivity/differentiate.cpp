@@ -114,7 +114,10 @@ struct Derivatives::Progress {
     blocks = parameter_blocks(model);
     for (auto& block : blocks)  // displacements of the increments are expanded together
       for (auto* state : {&block.previous, &block.current}) state->displacement.resize(0);
-    for (const auto& block : blocks) gradients.storage.slots += slot_bytes(block.slots).all();
+    for (const auto& block : blocks) {
+      gradients.storage.slots += slot_bytes(block.slots).all();
+      if (block.stiffness) gradients.storage.stiffness += block.stiffness->bytes();
+    }
   }
 
   /// Differentiates the increments up to `end`, as many together as their columns fit into one solve; one by one where

@@ -22,12 +22,13 @@ struct SchemeRecord {
 
 /// Memory that derivatives took, in bytes, each kind at its most.
 struct DerivativeStorage {
-  long slots = 0;     ///< of dual numbers, or of reverse ones
-  long states = 0;    ///< direct: those of the increments solved together; adjoint: of those solved again together
-  long loads = 0;     ///< direct: their pseudo-loads, and the solutions
-  long tape = 0;      ///< adjoint
-  long adjoints = 0;  ///< adjoint: derivatives by the tape's entries, the bodies' pairs that wait, and of checkpoints
-                      ///< what they keep of a factor
+  long slots = 0;      ///< of dual numbers, or of reverse ones
+  long stiffness = 0;  ///< direct: of linear bodies, with its derivatives
+  long states = 0;     ///< direct: those of the increments solved together; adjoint: of those solved again together
+  long loads = 0;      ///< direct: their pseudo-loads, and the solutions
+  long tape = 0;       ///< adjoint
+  long adjoints = 0;   ///< adjoint: derivatives by the tape's entries, the bodies' pairs that wait, and of checkpoints
+                       ///< what they keep of a factor
 };
 
 struct Gradients {

@@ -6,14 +6,9 @@
 
 #include "core/model/loading.hpp"
 #include "sensitivity/differentiate.hpp"
+#include "sensitivity/dual_stiffness.hpp"
 
 namespace stickslip {
-
-/// Parameters differentiated in one sweep.
-inline constexpr int directions = 4;
-using Direction = Dual<directions>;
-
-STICKSLIP_SLOTS(extern, Direction);  // compiled in directions.cpp
 
 /// Numbers of the scene with up to `directions` parameters seeded, each in a direction of its own.
 inline Numbers<Direction> seeded(const Scene& scene, const std::vector<int>& parameters) {
@@ -32,12 +27,22 @@ ElementLists touched_elements(const Model& model, const Slots<Direction>& slots)
 /// shape of bodies first, so that few sweeps visit elements.
 std::vector<std::vector<int>> parameter_groups(const Model& model);
 
+/// Whether the stiffness of linear bodies is kept with its derivatives: not of a run of two steps or less, where that
+/// saves nothing, nor for more parameters than go into one solve, whose memory it would double.
+inline bool keeps_stiffness(const Model& model) {
+  return model.times.size() > 2 && static_cast<int>(model.scene.parameters.size()) <= columns_together;
+}
+
+/// Bytes of the stiffness that parameter_blocks() would keep.
+long kept_stiffness_bytes(const Model& model);
+
 /// Slots and running state of up to `directions` parameters.
 struct ParameterBlock {
   std::vector<int> parameters;  ///< by direction
   Slots<Direction> slots;
   State<Direction> previous, current;
-  ElementLists touched;
+  ElementLists touched;                                    ///< those whose forces are differentiated in each increment
+  std::optional<DualStiffness> stiffness = std::nullopt;  ///< of the others that parameters touch
 
   /// At the initial state.
   ParameterBlock(const Model& model, std::vector<int> seeds, Slots<Direction> of)
@@ -46,13 +51,18 @@ struct ParameterBlock {
         previous(initial_state<Direction>(model, slots)),
         current(previous),
         touched(touched_elements(model, slots)) {}
+
+  /// Takes the elements of linear bodies out of `touched`, into `stiffness`.
+  void keep_stiffness(const Model& model);
 };
 
 /// Blocks of all the scene's parameters, at the initial state.
 inline std::vector<ParameterBlock> parameter_blocks(const Model& model) {
   std::vector<ParameterBlock> blocks;
-  for (const auto& group : parameter_groups(model))
+  for (const auto& group : parameter_groups(model)) {
     blocks.emplace_back(model, group, make_slots<Direction>(model, seeded(model.scene, group)));
+    if (keeps_stiffness(model)) blocks.back().keep_stiffness(model);
+  }
   return blocks;
 }
 
@@ -123,7 +133,8 @@ PseudoLoad pseudo_load(const Differentiation<E>& problem, const State<double>& a
     for (Eigen::Index i = 0; i < u.size(); ++i) u[i].v = displacement[i];
     const Vector<Direction> memory = bulk_flow(model, block.slots, u, block.previous.history.bodies, at.flow);
     Vector<Direction> balance = bulk_forces(model, block.slots, u, memory, &block.touched);
-    balance -= external_forces(model, block.slots, time, u);
+    if (block.stiffness) block.stiffness->add_forces(u, balance);
+    balance = less_external_forces(model, block.slots, time, u, std::move(balance));
     rows.push_back(into_frames(model, block.slots.frames, Layout::all, std::move(balance)));
     load.displacement.push_back(std::move(u));
   }

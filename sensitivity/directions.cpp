@@ -1,6 +1,7 @@
 /// The slots and bodies in the scalar of direct differentiation, and which elements it touches.
 #include <numeric>
 
+#include "core/model/body_matrix.hpp"
 #include "sensitivity/differentiation.hpp"
 
 namespace stickslip {
@@ -14,6 +15,14 @@ const auto has_no_derivative = []<class L>(const L& law) {
   if constexpr (!Remembers<L> && requires { law.numbers(); }) return detail::is_constant(law.numbers());
   return false;
 };
+
+/// Takes those of linear bodies out of lists of elements.
+ElementLists take_linear(const Model& model, ElementLists& lists) {
+  ElementLists linear(lists.size());
+  for (std::size_t b = 0; b < lists.size(); ++b)
+    if (is_among(model, b, BodyKind::constant)) std::swap(linear[b], lists[b]);
+  return linear;
+}
 
 /// The parameters, of those given, that touch elements; all of them, where a law does not tell.
 std::vector<int> touching_elements(const Model& model, const std::vector<int>& parameters) {
@@ -37,6 +46,21 @@ std::vector<int> touching_elements(const Model& model, const std::vector<int>& p
 }
 
 }  // namespace
+
+void ParameterBlock::keep_stiffness(const Model& model) {
+  stiffness.emplace(model, slots, take_linear(model, touched));
+}
+
+long kept_stiffness_bytes(const Model& model) {
+  long bytes = 0;
+  if (!keeps_stiffness(model)) return bytes;
+  for (const auto& group : parameter_groups(model)) {
+    const auto numbers = seeded(model.scene, group);
+    auto touched = touched_elements(model, make_body_slots(model, numbers, initial_points(model, numbers)));
+    bytes += DualStiffness::bytes_of(model, take_linear(model, touched));
+  }
+  return bytes;
+}
 
 std::vector<std::vector<int>> parameter_groups(const Model& model) {
   const int parameters = static_cast<int>(model.scene.parameters.size());

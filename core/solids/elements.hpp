@@ -101,6 +101,10 @@ namespace detail {
 /// Place of H_pq, or sigma_pq, among those that are not always zero: 00 01 10 11 22.
 constexpr int component(int p, int q) { return p == 2 ? 4 : 2 * p + q; }
 
+/// A law whose tangent is the same at all displacements.
+template <class Law>
+concept IsLinear = !requires { Law::memory; } && !Law::is_finite;
+
 /// dsigma/dH times a volume, component by component; of a law that remembers, with the flow from `before`.
 template <class T, int components, int rows, class Law>
 Mat<T, components> material_tangent(const Law& law, const Mat<T, rows>& H, const T& volume, ElementMemory<T>& before) {
@@ -163,23 +167,35 @@ Mat<T, 2 * Shape::nodes> element_tangent(const Law& law, const Mat<T, 2, Shape::
   constexpr int n = Shape::nodes;
   if constexpr (detail::averages<Law, kinematics>())
     if (law.is_finite) return detail::averaged_tangent<T, Shape, kinematics>(law, coordinates, u, depth, before);
+  constexpr int rows = stress_dimension(kinematics), components = rows == 2 ? 4 : 5;
+  // Derivatives of a symmetric tangent are dear, so they are made of its lower blocks alone.
+  constexpr bool mirrors = tells_constants<T>;
   Mat<T, 2 * n> K = Mat<T, 2 * n>::Constant(T(0));
+  Mat<T, components> at_unit_volume;
+  if constexpr (detail::IsLinear<Law>)
+    at_unit_volume = detail::material_tangent<T, components, rows>(law, Mat<T, rows>::Constant(T(0)), T(1), before);
   for_each_gradient<T, Shape, kinematics>(coordinates, depth, [&](const auto& gradient) {
-    constexpr int rows = stress_dimension(kinematics), components = rows == 2 ? 4 : 5;
-    const auto C = detail::material_tangent<T, components, rows>(law, gradient.of(u), gradient.volume, before);
+    Mat<T, components> C;
+    if constexpr (detail::IsLinear<Law>)
+      C = at_unit_volume * gradient.volume;
+    else
+      C = detail::material_tangent<T, components, rows>(law, gradient.of(u), gradient.volume, before);
     for (int b = 0; b < n; ++b)
       for (int k = 0; k < 2; ++k) {
         Vec<T, components> column = Vec<T, components>::Constant(T(0));  // dsigma/du_kb
         gradient.for_each(k, b, [&](int p, int q, const T& x) {
           for (int c = 0; c < components; ++c) column[c] += C(c, detail::component(p, q)) * x;
         });
-        for (int a = 0; a < n; ++a)
+        for (int a = mirrors ? b : 0; a < n; ++a)
           for (int i = 0; i < 2; ++i)
             gradient.for_each(i, a, [&](int p, int q, const T& x) {
               K(a * 2 + i, b * 2 + k) += column[detail::component(p, q)] * x;
             });
       }
   });
+  if constexpr (mirrors)
+    for (int b = 1; b < n; ++b)
+      for (int a = 0; a < b; ++a) K.template block<2, 2>(2 * a, 2 * b) = K.template block<2, 2>(2 * b, 2 * a).transpose();
   return K;
 }
 

@@ -158,6 +158,7 @@ void add_sensitivity_rows(const CaseResult& result, Ledger& ledger) {
                     model.effects.sensitivity && !adjoint,
                     {{"parameters", static_cast<double>(gradients.last_displacement.cols())}},
                     {{"slots", adjoint ? 0 : slots},
+                     {"stiffness", static_cast<double>(storage.stiffness)},
                      {"states", adjoint ? 0 : static_cast<double>(storage.states)},
                      {"solves", static_cast<double>(storage.loads)},
                      {"sweeps", adjoint ? 0 : kept_sweeps(result.trajectory)},

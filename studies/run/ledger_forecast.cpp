@@ -166,6 +166,7 @@ LedgerRow direct_row(const Input& input, const Problem& problem, const Size& n) 
           on,
           {{"parameters", p}},
           {{"slots", blocks * slots},
+           {"stiffness", on ? static_cast<double>(kept_stiffness_bytes(problem.model)) : 0},
            {"states", together * blocks * state, within},
            {"solves", together * solve, within},
            {"sweeps", 0, on && n.truncated ? not_known : exactly},

@@ -1,0 +1,14 @@
+/// The scalar of direct differentiation.
+#pragma once
+
+#include "core/model/slots.hpp"
+
+namespace stickslip {
+
+/// Parameters differentiated in one sweep.
+inline constexpr int directions = 4;
+using Direction = Dual<directions>;
+
+STICKSLIP_SLOTS(extern, Direction);  // compiled in directions.cpp
+
+}  // namespace stickslip
