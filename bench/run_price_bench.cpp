@@ -8,11 +8,14 @@
 ///                                      run, mean of those that factorise and those that update, and over one that
 ///                                      factorises
 ///   derivative_price/METHOD/condensed  ten steps; `with_over_without` of eight derivatives, and what they add in F
+///   adjoint_price/METHOD               ten steps; `gradient_over_run` of one objective by some thousand shape
+///                                      parameters
 #include <benchmark/benchmark.h>
 
 #include <ctime>
 
 #include "core/model/body_matrix.hpp"
+#include "sensitivity/adjoint.hpp"
 #include "sensitivity/differentiate.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -136,6 +139,43 @@ void derivative_price(benchmark::State& state, const Method& method, Kind engine
   }
 }
 
+/// The plate with the nodes of its free sides as shape parameters, along both axes, and the friction over all steps as
+/// the objective.
+Scene shaped_plate(int cells, int steps) {
+  Scene scene = plate(cells, steps, true, 0);
+  for (const char* side : {"plate.top", "plate.left", "plate.bottom"})
+    for (int node = 1; node < cells; ++node)
+      for (int axis = 0; axis < 2; ++axis)
+        scenes::shape(scene, std::string(side).substr(6) + std::to_string(2 * node + axis),
+                      {0, side, "", {1.0 - axis, 1.0 * axis}, node, 0});
+  const auto is_friction = [](const Response& response) { return response.name == "friction"; };
+  const auto& responses = scene.responses;
+  const auto found = std::find_if(responses.begin(), responses.end(), is_friction);
+  scene.objectives = {{"drag", static_cast<int>(found - responses.begin())}};
+  scene.sensitivity_mode = SensitivityMode::adjoint;
+  return scene;
+}
+
+void adjoint_price(benchmark::State& state, const Method& method) {
+  const Scene scene = shaped_plate(static_cast<int>(state.range(0)), 10);
+  const Model model = make_model(scene);
+  const auto slots = make_slots<double>(model, scene.as<double>());
+  double forward = 0, backward = 0;
+  for (auto _ : state) {
+    Workspace<double> workspace;
+    Trajectory<double> trajectory;
+    forward += seconds_of([&] { trajectory = solve(model, slots, method, {}, workspace); });
+    Gradients gradients;
+    backward += seconds_of([&] { gradients = adjoint(model, slots, method, trajectory, workspace); });
+    if (!is_converged(gradients.status)) state.SkipWithError(gradients.message.c_str());
+  }
+  const auto runs = static_cast<double>(state.iterations());
+  state.counters["parameters"] = static_cast<double>(scene.parameters.size());
+  state.counters["s_run"] = forward / runs;
+  state.counters["s_gradient"] = backward / runs;
+  state.counters["gradient_over_run"] = backward / forward;
+}
+
 void register_all() {
   const std::vector<std::pair<std::string, Method>> methods{
       {"penalty", Penalty{}}, {"uzawa", UzawaAL{}}, {"monolithic", MonolithicAL{}}};
@@ -154,6 +194,8 @@ void register_all() {
     add(
         "derivative_price/" + name + "/condensed",
         [=](benchmark::State& s) { derivative_price(s, method, Kind::condensed); }, 100);
+    add(
+        "adjoint_price/" + name, [=](benchmark::State& s) { adjoint_price(s, method); }, 143);
   }
 }
 
