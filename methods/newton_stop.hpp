@@ -86,7 +86,7 @@ class NewtonStop {
     std::size_t hash = 1469598103934665603ull;
     for (ContactState s : field.state) hash = (hash ^ static_cast<std::size_t>(s)) * 1099511628211ull;
     for (std::size_t p = 0; p < field.facing.size(); ++p)
-      if (field.state[p] != ContactState::open)
+      if (field.state[p] != ContactState::open && field.facing[p].pieces.empty())
         hash = (hash ^ static_cast<std::size_t>(field.facing[p].patch)) * 1099511628211ull;
     return hash;
   }

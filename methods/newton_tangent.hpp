@@ -34,11 +34,11 @@ void yield_decided(const ContactInput<T>& input, const std::vector<char>& decide
 template <class T, class F>
 void for_each_column(const Model& model, const Slots<T>& slots, std::size_t p, const PointTangent<T>& tangent, F&& f) {
   const int D = model.dimension;
-  const bool along_curve = !tangent.places.empty();
-  const auto& places = along_curve ? tangent.places : model.points[p].places;
+  const bool by_places = !tangent.places.empty();
+  const auto& places = by_places ? tangent.places : model.points[p].places;
   for (int n = 0; n < static_cast<int>(places.size()); ++n)
     for (int i = 0; i < D; ++i)
-      f((along_curve ? n * D : 0) + i, places[n] * D + i, along_curve ? T(1) : slots.geometry[p].weights[n]);
+      f((by_places ? n * D : 0) + i, places[n] * D + i, by_places ? T(1) : slots.geometry[p].weights[n]);
 }
 
 /// What the columns of a point's tangent take from compact displacements.

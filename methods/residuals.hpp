@@ -32,12 +32,17 @@ struct Residuals {
   }
 };
 
-/// How many closed points face another patch of their curves than in `last`.
+/// Whether a point faces another patch of its curve; integrated over them it has no kink there.
+inline bool has_crossed(const Facing& before, const Facing& after) {
+  return before.pieces.empty() && after.pieces.empty() && before.patch != after.patch;
+}
+
+/// How many closed points have crossed over to another patch of their curves since `last`.
 template <class T>
 int count_crossings(const ContactField<T>& field, const std::vector<Facing>& last) {
   int crossed = 0;
   for (std::size_t p = 0; p < last.size(); ++p)
-    crossed += field.state[p] != ContactState::open && last[p].patch != field.facing[p].patch;
+    crossed += field.state[p] != ContactState::open && has_crossed(last[p], field.facing[p]);
   return crossed;
 }
 
@@ -223,7 +228,7 @@ int Evaluator<T, E>::accept(const detail::Evaluation<T>& at) {
   const auto& facing = at.field.facing;
   int crossed = 0;
   for (std::size_t p = 0; p < facing.size() && !last_.empty(); ++p) {
-    if (at.field.state[p] == ContactState::open || facing[p].patch == last_[p].patch) continue;
+    if (at.field.state[p] == ContactState::open || !detail::has_crossed(last_[p], facing[p])) continue;
     ++crossed;
     auto& visited = visited_[p];
     const bool again = std::find(visited.begin(), visited.end(), facing[p].patch) != visited.end();

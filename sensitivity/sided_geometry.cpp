@@ -13,16 +13,12 @@ namespace {
 /// Whether what a point faces hangs on where it is at the start: at a vertex, or at the end of a piece.
 bool may_leave(const ContactPoint& point) {
   using Master = ContactPoint::Master;
-  if (point.master == Master::pieces) return point.obstacle < 0;
+  if (point.master == Master::pieces) return point.obstacle < 0 && point.curve < 0;
   return point.master == Master::facet || point.master == Master::vertex;
 }
 
 bool same_part(const ContactPoint& a, const ContactPoint& b) {
-  const auto same = [](const Piece& p, const Piece& q) {
-    return p.slave == q.slave && p.master == q.master && p.from == q.from && p.to == q.to;
-  };
-  return a.master == b.master && a.nodes == b.nodes && a.of_polyline == b.of_polyline &&
-         std::equal(a.pieces.begin(), a.pieces.end(), b.pieces.begin(), b.pieces.end(), same);
+  return a.master == b.master && a.nodes == b.nodes && a.of_polyline == b.of_polyline && a.pieces == b.pieces;
 }
 
 /// The point of the same slave node; nullptr where there is none.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
+#include <set>
 
 #include "core/model/loading.hpp"
 #include "core/model/moved_point.hpp"
@@ -32,7 +34,69 @@ double least_way(const std::vector<Patch>& patches, int faced, const Place& x, P
   return least;
 }
 
+/// Nodes at which the slave side ends that is integrated over a curve.
+std::vector<int> ends_of_slave(const Model& model, int curve) {
+  std::set<std::array<int, 2>> facets;
+  for (const auto& point : model.points)
+    if (point.curve == curve)
+      for (const auto& facet : point.pieces) facets.insert(facet.slave);
+  std::map<int, int> count;
+  for (const auto& facet : facets)
+    for (int node : facet) ++count[node];
+  std::vector<int> ends;
+  for (const auto& [node, times] : count)
+    if (times == 1) ends.push_back(node);
+  return ends;
+}
+
+/// Whether an integrated curve turns at one of its nodes, or its facets there are stretched unlike one another.
+/// `present(node)`, `of_start(node)`: where nodes are and were.
+template <class At, class OfStart>
+bool has_kink_at(const MasterCurve& curve, int node, At&& present, OfStart&& of_start) {
+  constexpr double straight = 1e-6;  // as of vertices that node-to-segment faces
+  const auto along = [&](int patch, const auto& where) -> Place {
+    return where(curve.facets[patch][1]) - where(curve.facets[patch][0]);
+  };
+  for (std::size_t f = 0; f < curve.facets.size(); ++f) {
+    const int next = curve.patches[f].next;
+    if (curve.facets[f][1] != node || next == Patch::none) continue;
+    const Place a = along(static_cast<int>(f), present), b = along(next, present);
+    const double stretch = a.norm() / along(static_cast<int>(f), of_start).norm(),
+                 other = b.norm() / along(next, of_start).norm();
+    return std::abs(a[0] * b[1] - a[1] * b[0]) > straight * a.norm() * b.norm() ||
+           std::abs(stretch - other) > straight * stretch;
+  }
+  return false;
+}
+
 }  // namespace
+
+double integration_margin(const Model& model, const Slots<double>& slots, const State<double>& state) {
+  double least = std::numeric_limits<double>::infinity();
+  const auto of_start = [&](int node) -> Place { return slots.points.col(node).head<2>(); };
+  const auto present = [&](int node) -> Place {
+    return of_start(node) + state.displacement.segment<2>(2 * static_cast<Eigen::Index>(node));
+  };
+  for (int c = 0; c < static_cast<int>(model.curves.size()); ++c) {
+    const auto& curve = model.curves[c];
+    if (!model.slides_along_curves() || !curve.is_integrated()) continue;
+    const auto ends = ends_of_slave(model, c);
+    const auto is_end = [](const std::vector<int>& of, int node) {
+      return std::find(of.begin(), of.end(), node) != of.end();
+    };
+    for (std::size_t p = 0; p < model.points.size(); ++p) {
+      if (model.points[p].curve != c || state.contact.state[p] == ContactState::open) continue;
+      for (const auto& piece : state.contact.facing[p].pieces)
+        for (int side : {0, 1})
+          for (int node : piece.master) {
+            if (!is_end(ends, piece.slave[side]) || !has_kink_at(curve, node, present, of_start)) continue;
+            const Place a = present(piece.slave[0]), tau = present(piece.slave[1]) - a;
+            least = std::min(least, std::abs(detail::place_along<double>(node, present, a, tau) - side));
+          }
+    }
+  }
+  return least;
+}
 
 bool slides_along_facets(const Model& model) {
   const auto has_facets = [](const MasterCurve& curve) {
@@ -42,7 +106,7 @@ bool slides_along_facets(const Model& model) {
 }
 
 double vertex_margin(const Model& model, const Slots<double>& slots, const State<double>& state, double time) {
-  double least = std::numeric_limits<double>::infinity();
+  double least = integration_margin(model, slots, state);
   if (!slides_along_facets(model)) return least;
   const RegularisationField<double> unread_rho;
   const ContactInput<double> input{model, slots, unread_rho, state.history, ConeRadius::augmented, time, nullptr};
@@ -52,6 +116,7 @@ double vertex_margin(const Model& model, const Slots<double>& slots, const State
     const auto& point = model.points[p];
     if (point.curve < 0 || state.contact.state[p] == ContactState::open) continue;
     const auto& curve = model.curves[point.curve];
+    if (curve.is_integrated()) continue;
     const int faced = state.contact.facing[p].patch;
     if (faced == Patch::none || !is_facet(curve.patches[faced])) continue;
     const Place x = slots.points.col(point.nodes[0]).head<2>() + moved(point.places[0]);

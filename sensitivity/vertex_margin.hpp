@@ -12,8 +12,14 @@ namespace stickslip {
 /// Whether some point slides along facets, and there are vertices at which its master bends.
 bool slides_along_facets(const Model& model);
 
-/// The way of the nearest closed point to a vertex, over the length of the facet that it faces; free ends aside.
-/// Infinity where no closed point slides along facets.
+/// Of segment integration at finite strain: the way of a node at which the master turns, or its facets are stretched
+/// unlike one another, to an end of the slave side that touches it, over the length of the slave facet. Where that
+/// vanishes, what the points integrate has two slopes, elsewhere one: an end of the master that passes by, which
+/// carries no kink within 1e-6, aside. Infinity where there is none.
+double integration_margin(const Model& model, const Slots<double>& slots, const State<double>& state);
+
+/// The way of the nearest closed point to a vertex, over the length of the facet that it faces; free ends aside; or
+/// integration_margin(). Infinity where no closed point slides along facets.
 double vertex_margin(const Model& model, const Slots<double>& slots, const State<double>& state, double time);
 
 }  // namespace stickslip

@@ -15,6 +15,7 @@
 #include <array>
 #include <vector>
 
+#include "core/contact/piece.hpp"
 #include "core/contact/point_geometry.hpp"
 
 namespace stickslip {
@@ -55,6 +56,9 @@ struct Facing {
   int patch = Patch::none;  ///< none: nothing of the curve is faced
   double xi = 0;
   double distance = 0;  ///< where nothing is faced: to the nearest facet
+  /// Segment-integrated: what of the curve is faced, from whose facet `patch` lengths along the curve are measured.
+  std::vector<Piece> pieces = {};
+  std::vector<int> nodes = {};  ///< of the slave's facets and these pieces, in the order of the weights
   friend bool operator==(const Facing&, const Facing&) = default;
 };
 

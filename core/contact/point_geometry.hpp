@@ -57,6 +57,15 @@ PointGeometry<T> rigid(const T& gap, const Eigen::Matrix<T, Eigen::Dynamic, 1, 0
   return g;
 }
 
+/// Of a point that faces nothing: of its slave's nodes, `count`, its own alone moves in w.
+template <class T>
+PointGeometry<T> alone(const T& gap, const Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1>& normal, int count) {
+  PointGeometry<T> g = rigid(gap, normal);
+  g.weights = decltype(g.weights)::Constant(count, T(0));
+  g.weights[0] = T(1);
+  return g;
+}
+
 }  // namespace detail
 
 }  // namespace stickslip

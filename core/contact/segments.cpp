@@ -9,6 +9,10 @@ namespace {
 /// Breakpoints closer than this part of the slave facet are one; a facet steeper than this faces nothing.
 constexpr double band = 1e-9;
 
+/// Sides that end together do so only as well as an equilibrium was solved for: within this part of the slave facet
+/// they end together, so that what a point weighs has no kink there.
+constexpr double same_end = 1e-6;
+
 struct Break {
   double place;
   int end;  ///< as Piece::from
@@ -17,19 +21,30 @@ struct Break {
 /// A master facet that the slave facet faces, its shadow on it, and where its ends are.
 struct Shadow {
   std::array<int, 2> nodes;
+  int facet;
   Break low, high;
 };
 
+/// The place of a node on the slave facet as a breakpoint.
+Break break_at(double place, int node, const std::vector<int>& ends) {
+  if (std::find(ends.begin(), ends.end(), node) == ends.end()) return {place, node};
+  if (std::abs(place) <= same_end) return {0, Piece::start};
+  if (std::abs(place - 1) <= same_end) return {1, Piece::end};
+  return {place, node};
+}
+
 std::vector<Shadow> shadows(const Points<double>& points, const Vec<double, 2>& a, const Vec<double, 2>& tau,
-                            const std::vector<std::vector<int>>& masters) {
+                            const std::vector<std::vector<int>>& masters, const std::vector<int>& ends) {
   std::vector<Shadow> out;
   const Vec<double, 2> nu(tau[1], -tau[0]);
-  for (const auto& facet : masters) {
+  for (std::size_t f = 0; f < masters.size(); ++f) {
+    const auto& facet = masters[f];
     const Vec<double, 2> c = points.col(facet[0]), d = points.col(facet[1]), along = d - c;
     if (nu.dot(Vec<double, 2>(along[1], -along[0])) >= -band * nu.norm() * along.norm()) continue;
-    const double at_c = (c - a).dot(tau) / tau.squaredNorm(), at_d = (d - a).dot(tau) / tau.squaredNorm();
-    if (at_c > band && at_d < 1 - band && at_c - at_d > band)  // the master runs the other way: d comes first
-      out.push_back({{facet[0], facet[1]}, {at_d, facet[1]}, {at_c, facet[0]}});
+    const Break high = break_at((c - a).dot(tau) / tau.squaredNorm(), facet[0], ends),
+                low = break_at((d - a).dot(tau) / tau.squaredNorm(), facet[1], ends);
+    if (high.place > band && low.place < 1 - band && high.place - low.place > band)  // it runs the other way
+      out.push_back({{facet[0], facet[1]}, static_cast<int>(f), low, high});
   }
   return out;
 }
@@ -50,11 +65,11 @@ std::vector<Break> breakpoints(const std::vector<Shadow>& all) {
 
 }  // namespace
 
-std::vector<Piece> facing_pieces(const Points<double>& points, const std::vector<int>& slave,
-                                 const std::vector<std::vector<int>>& masters) {
+std::vector<Piece> facing_pieces(const Points<double>& points, const std::array<int, 2>& slave,
+                                 const std::vector<std::vector<int>>& masters, const std::vector<int>& ends) {
   const Vec<double, 2> a = points.col(slave[0]), tau = points.col(slave[1]).head<2>() - points.col(slave[0]).head<2>();
   const Vec<double, 2> nu = Vec<double, 2>(tau[1], -tau[0]) / tau.norm();
-  const auto candidates = shadows(points, a, tau, masters);
+  const auto candidates = shadows(points, a, tau, masters, ends);
   const auto breaks = breakpoints(candidates);
   std::vector<Piece> pieces;
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
@@ -77,13 +92,24 @@ std::vector<Piece> facing_pieces(const Points<double>& points, const std::vector
       continue;
     }
     Piece piece;
-    piece.slave = {slave[0], slave[1]};
+    piece.slave = slave;
     piece.master = nearest->nodes;
+    piece.facet = nearest->facet;
     piece.from = breaks[k].end;
     piece.to = breaks[k + 1].end;
     pieces.push_back(piece);
   }
   return pieces;
+}
+
+std::vector<int> nodes_of_pieces(int own, const std::vector<Piece>& facets, const std::vector<Piece>& pieces) {
+  std::vector<int> nodes{own};
+  const auto add = [&](int node) {
+    if (node >= 0 && std::find(nodes.begin(), nodes.end(), node) == nodes.end()) nodes.push_back(node);
+  };
+  for (const auto& facet : facets) std::for_each(facet.slave.begin(), facet.slave.end(), add);
+  for (const auto& piece : pieces) std::for_each(piece.master.begin(), piece.master.end(), add);
+  return nodes;
 }
 
 }  // namespace stickslip

@@ -20,8 +20,13 @@ History<T> initial_history(const Model& model, const Slots<T>& slots) {
     const auto& point = model.points[p];
     if (point.curve >= 0 && !history.patch.empty()) history.patch[p] = point.facing.patch;
     if (point.foot < 0) continue;
+    if (point.curve >= 0 && point.facing.patch == Patch::none) continue;
+    if (!point.pieces.empty()) {
+      const auto foot = detail::pieces_of_start(model, point, slots).foot;
+      history.foot.segment(point.foot, point.curve >= 0 ? 1 : 2) = foot.head(point.curve >= 0 ? 1 : 2);
+      continue;
+    }
     if (point.curve >= 0) {
-      if (point.facing.patch == Patch::none) continue;
       history.foot[point.foot] = detail::foot_of_start(model, point, slots).xi;
       continue;
     }
@@ -125,11 +130,13 @@ double tie_at(const ContactInput<T>& input, int p, const Vector<T>& compact) {
   return tie_length(point, input.slots.geometry[p], reach);
 }
 
-/// A point where it is now. `facing`: where a curve is faced; `moved(place)`: displacement of a contact node, in the
+/// A point where it is now. `facing`: what of a curve is faced; `moved(place)`: displacement of a contact node, in the
 /// scalar U built on T.
 template <class U, class T, int D, class Moved>
 MovedPoint<U, D> present_point(const ContactInput<T>& input, int p, const Facing* facing, Moved&& moved) {
   const auto& point = input.model.points[p];
+  if constexpr (D == 2)
+    if (!point.pieces.empty()) return moved_on_pieces<U, T>(input, p, facing, moved);
   if constexpr (D == 2)
     if (point.curve >= 0) return moved_on_curve<U, T>(input, p, *facing, moved);
   return moved_point<U, T, D>(input, p, moved(point.places[0]));
@@ -253,7 +260,7 @@ Vector<T> dissipated(const ContactInput<T>& input, const ContactField<T>& field,
       const int k = point.multiplier + 1 + a;
       const T plastic = field.slip[tangential_offset(input.model, static_cast<int>(p)) + a] -
                         (field.traction[k] - multiplier[k]) / input.rho[p].tangential;
-      work[point.contact] += input.slots.geometry[p].area * field.traction[k] * plastic;
+      work[point.contact] += area_in(field, input.slots, p) * field.traction[k] * plastic;
     }
   }
   return work;

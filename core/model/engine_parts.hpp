@@ -106,7 +106,7 @@ inline bool same_values(const Vector<double>& a, const Vector<double>& b) { retu
 
 /// The entries of a point's tangent that has a row for each dof.
 template <class T, class Add>
-void for_each_entry_along_curve(const PointTangent<T>& tangent, bool unknown_multipliers, Add&& add) {
+void for_each_entry_by_places(const PointTangent<T>& tangent, bool unknown_multipliers, Add&& add) {
   const int count = static_cast<int>(tangent.force_w.rows()), C = static_cast<int>(tangent.row_l.rows());
   for (int r = 0; r < count; ++r)
     for (int c = 0; c < count; ++c) add(r, c, tangent.force_w(r, c));
@@ -125,7 +125,7 @@ void for_each_entry_along_curve(const PointTangent<T>& tangent, bool unknown_mul
 template <class T, class Add>
 void for_each_entry(const PointGeometry<T>& geometry, const PointTangent<T>& tangent, bool unknown_multipliers,
                     Add&& add) {
-  if (!tangent.places.empty()) return for_each_entry_along_curve(tangent, unknown_multipliers, add);
+  if (!tangent.places.empty()) return for_each_entry_by_places(tangent, unknown_multipliers, add);
   const int D = static_cast<int>(tangent.force_w.rows()), C = static_cast<int>(tangent.row_l.rows());
   const int nodes = static_cast<int>(geometry.weights.size());
   for (int n = 0; n < nodes; ++n)
@@ -202,6 +202,11 @@ Matrix<T> solve_updated(const TangentUpdate& update, const Matrix<T>& b, Solving
   return solve(b);
 }
 
+/// Whether some contact is segment-integrated.
+inline bool integrates(const Model& model) {
+  return std::any_of(model.points.begin(), model.points.end(), [](const auto& point) { return !point.pieces.empty(); });
+}
+
 /// Slip couples the normal into the tangential rows, not the other way round; with the radius of the cone fixed while
 /// the system is solved (that of known multipliers), or a law of friction without pressure, nothing couples them. Where
 /// frames turn, friction follows them and has no potential whatever its law.
@@ -209,6 +214,7 @@ inline Symmetry symmetry_of(const Model& model, bool unknown_multipliers, ConeRa
   const bool fixed_radius = cone == ConeRadius::multiplier && !unknown_multipliers;
   if (!model.followers.empty()) return Symmetry::general;  // of a pressure that follows a side with ends
   if (model.effects.friction && model.effects.current_geometry) return Symmetry::general;
+  if (model.effects.current_geometry && integrates(model)) return Symmetry::general;  // its forces have no potential
   if (model.effects.coupled_friction && !fixed_radius) return Symmetry::general;
   return unknown_multipliers ? Symmetry::indefinite : Symmetry::positive_definite;
 }

@@ -201,20 +201,17 @@ void place_contact_nodes(Model& model) {
     if (turns(point))
       for (const auto& [a, b] : point.area_facets) nodes.insert({a, b});
   model.contact_nodes.assign(nodes.begin(), nodes.end());
-  auto place_of = [&](int node) {
-    const auto found = std::lower_bound(model.contact_nodes.begin(), model.contact_nodes.end(), node);
-    return static_cast<int>(found - model.contact_nodes.begin());
-  };
   for (auto& point : model.points)
-    for (int node : point.nodes) point.places.push_back(place_of(node));
+    for (int node : point.nodes) point.places.push_back(model.place_of(node));
   for (auto& point : model.points)
     if (turns(point))
-      for (const auto& [a, b] : point.area_facets) point.facet_places.emplace_back(place_of(a), place_of(b));
+      for (const auto& [a, b] : point.area_facets)
+        point.facet_places.emplace_back(model.place_of(a), model.place_of(b));
   for (auto& curve : model.curves)
     for (int node : curve.nodes)
-      if (slides) curve.places.push_back(place_of(node));
+      if (slides) curve.places.push_back(model.place_of(node));
   for (auto& framed : model.framed)
-    if (nodes.count(framed.node)) framed.place = place_of(framed.node);
+    if (nodes.count(framed.node)) framed.place = model.place_of(framed.node);
 }
 
 /// Whether the elements of a body have a mean dilatation: where that is asked for; and quadrilaterals of four nodes of

@@ -9,7 +9,6 @@
 
 #include "core/contact/contact_point.hpp"
 #include "core/contact/curve.hpp"
-#include "core/contact/segments.hpp"
 #include "core/mesh/mesh.hpp"
 #include "core/model/design_velocity.hpp"
 #include "core/model/scene.hpp"
@@ -43,6 +42,10 @@ struct MasterCurve {
   std::vector<int> places;  ///< of these in Model::contact_nodes
   int vertex_count = 0;
   std::vector<Patch> patches;
+  /// Where it is integrated over, piece by piece: the nodes of each patch, and those at which the side ends.
+  std::vector<std::vector<int>> facets = {};
+  std::vector<int> ends = {};
+  bool is_integrated() const { return !facets.empty(); }
 };
 
 /// One slave node and what it can touch. Fixed for small strain.
@@ -58,15 +61,17 @@ struct ContactPoint {
   int foot = -1;                 ///< offset of its foot's place in History::foot; -1: it has none
   std::vector<int> nodes;        ///< slave, then master nodes (facet: its two; vertex: itself, then the far ends of the
                                  ///< facets at whose very end the projection lies; curve: of the patch of the start)
-  int slave_nodes = 1;           ///< how many of `nodes` are the slave's; more than one if segment-integrated
+  int slave_nodes = 1;           ///< how many of `nodes` are the slave's, the first; several if segment-integrated
   std::vector<int> places;       ///< of `nodes` in Model::contact_nodes
   std::vector<int> neighbours;   ///< vertex: the vertices before and after it, whose facets share the normal
   std::vector<int> of_polyline;  ///< points of the polyline: the facet's two, or the vertex between its neighbours
   std::vector<std::pair<int, int>> area_facets;   ///< facets of the slave side at the node
   std::vector<std::pair<int, int>> facet_places;  ///< the same in Model::contact_nodes, of a solid body's along a curve
   std::vector<std::vector<int>> area_edges;  ///< sides of elements there, of which a share is tributary to the node
-  std::vector<Piece> pieces;                 ///< segment-integrated: what the multiplier of nodes[0] acts on
-  bool area_of_bar = false;                  ///< tributary area is the bar's cross-section; with no facets either: 1
+  /// Segment-integrated: what the multiplier of nodes[0] acts on; at finite strain its whole facets, whose pieces are
+  /// found as they move (Facing)
+  std::vector<Piece> pieces;
+  bool area_of_bar = false;    ///< tributary area is the bar's cross-section; with no facets either: 1
   bool shares_normal = false;  ///< deformable continua on both sides: the normal is the bisector of the two
   int slave_body = 0;
   double mesh_size = 0;   ///< local size of the slave side, 0 for a lumped point
@@ -169,6 +174,10 @@ struct Model {
   /// Steps that a run asks for, or may take along a path.
   long most_steps() const { return scene.arc_length ? scene.arc_length->max : static_cast<long>(times.size()); }
   int dof_count() const { return dimension * node_count; }
+  /// Place of a contact node in `contact_nodes`.
+  int place_of(int node) const {
+    return static_cast<int>(std::lower_bound(contact_nodes.begin(), contact_nodes.end(), node) - contact_nodes.begin());
+  }
   /// Whether points face other places of their curves as they move.
   bool slides_along_curves() const { return effects.current_geometry && !curves.empty(); }
   /// The nodes and facets of "body.side", "body.a & body.b", "body.a - body.b". Throws ModelError.

@@ -1,7 +1,9 @@
-/// Contact points where they are now: against rigid obstacles, which carry what touches them along, and along curves.
+/// Contact points where they are now: against rigid obstacles, which carry what touches them along, along curves, and
+/// integrated over the pieces of either that they face.
 #pragma once
 
 #include "core/contact/curve_search.hpp"
+#include "core/model/faced_pieces.hpp"
 #include "core/model/slots.hpp"
 #include "core/model/state.hpp"
 
@@ -34,8 +36,8 @@ Vector<T> foot_on(const Obstacle& obstacle, const Place& x, const Read& numbers)
   return foot;
 }
 
-/// A point where it is now: its geometry, its foot (in the frame of the obstacle; on a curve: xi, 0), and the way of
-/// the foot since the last increment, less what carries it along.
+/// A point where it is now: its geometry, its foot (in the frame of the obstacle; on a curve: xi, 0, or integrated over
+/// it: a length along it, 0), and the way of the foot since the last increment, less what carries it along.
 template <class T, int D>
 struct MovedPoint {
   PointGeometry<T> geometry;
@@ -60,6 +62,27 @@ Frame<T, D> frame_of_obstacle(const ContactInput<T>& input, const Obstacle& obst
   return frame;
 }
 
+/// Where a node is in a frame. `u`: its displacement, in the scalar U built on T.
+template <class U, class T, int D>
+Vec<U, D> place_in(const Frame<T, D>& frame, const Points<T>& points, int node, const Vec<U, D>& u) {
+  Vec<U, D> x;
+  for (int i = 0; i < D; ++i) x[i] = U(points(i, node) - frame.shift[i]) + u[i];
+  if constexpr (D == 2)
+    if (frame.turn) x += frame.turn->back().change(Vec<U, 2>(x[0] - U(frame.center[0]), x[1] - U(frame.center[1])));
+  return x;
+}
+
+/// Turns what is of a frame with it.
+template <class U, class T>
+void turn_with(const Frame<T, 2>& frame, MovedPoint<U, 2>& at) {
+  if (!frame.turn) return;
+  const auto turned = [&](const Vec<U, 2>& v) { return Vec<U, 2>(v + frame.turn->change(v)); };
+  const Vec<U, 2> normal = turned(Vec<U, 2>(at.geometry.normal[0], at.geometry.normal[1]));
+  at.geometry.normal << normal[0], normal[1];
+  at.geometry.tangents = tangent_frame<U>(at.geometry.normal);
+  at.way = turned(at.way);
+}
+
 /// Against an obstacle. `u`: displacement of the slave node, in the scalar U built on T.
 template <class U, class T, int D>
 MovedPoint<U, D> moved_point(const ContactInput<T>& input, int p, const Vec<U, D>& u) {
@@ -67,24 +90,14 @@ MovedPoint<U, D> moved_point(const ContactInput<T>& input, int p, const Vec<U, D
   const auto number = [&](const Number& n) { return U(input.slots.numbers(n)); };
   const auto& obstacle = input.model.scene.obstacles[point.obstacle];
   const auto frame = frame_of_obstacle<T, D>(input, obstacle);
-  Vec<U, D> x;
-  for (int i = 0; i < D; ++i) x[i] = U(input.slots.points(i, point.nodes[0]) - frame.shift[i]) + u[i];
-  if constexpr (D == 2)
-    if (frame.turn) x += frame.turn->back().change(Vec<U, 2>(x[0] - U(frame.center[0]), x[1] - U(frame.center[1])));
+  const Vec<U, D> x = place_in<U, T, D>(frame, input.slots.points, point.nodes[0], u);
   MovedPoint<U, D> at;
   at.geometry = against_rigid<U>(x, obstacle.shape, number);
   for (int i = 0; i < D; ++i) {
     at.foot[i] = x[i] - at.geometry.gap * at.geometry.normal[i];
     at.way[i] = point.foot < 0 ? U(0) : U(at.foot[i] - U(input.previous.foot[point.foot + i]));
   }
-  if constexpr (D == 2)
-    if (frame.turn) {  // what is of the frame is turned with it
-      const auto turned = [&](const Vec<U, 2>& v) { return Vec<U, 2>(v + frame.turn->change(v)); };
-      const Vec<U, 2> normal = turned(Vec<U, 2>(at.geometry.normal[0], at.geometry.normal[1]));
-      at.geometry.normal << normal[0], normal[1];
-      at.geometry.tangents = tangent_frame<U>(at.geometry.normal);
-      at.way = turned(at.way);
-    }
+  if constexpr (D == 2) turn_with<U, T>(frame, at);
   at.geometry.gap += number(input.model.scene.contacts[point.contact].offset);
   at.geometry.area = U(input.slots.geometry[p].area);
   return at;
@@ -106,21 +119,57 @@ Vec<U, 2> vertex_of(const ContactInput<T>& input, const MasterCurve& curve, int 
   return {U(input.slots.points(0, node)) + u[0], U(input.slots.points(1, node)) + u[1]};
 }
 
+/// A point that faces nothing of its curve.
+template <class U, class T>
+MovedPoint<U, 2> beside_curve(const ContactInput<T>& input, int p, const Facing& facing) {
+  const auto& start = input.slots.geometry[p];
+  MovedPoint<U, 2> at;
+  at.faces = false;
+  at.geometry = alone<U>(U(facing.distance), start.normal.unaryExpr([](const T& n) { return U(n); }),
+                         input.model.points[p].slave_nodes);
+  at.geometry.area = U(start.area);
+  return at;
+}
+
+/// Segment-integrated. `facing`: as search found it; unread against an obstacle.
+template <class U, class T, class Moved>
+MovedPoint<U, 2> moved_on_pieces(const ContactInput<T>& input, int p, const Facing* facing, Moved&& moved) {
+  const auto& point = input.model.points[p];
+  const bool along_curve = point.curve >= 0;
+  if (along_curve && facing->patch == Patch::none) return beside_curve<U, T>(input, p, *facing);
+  const auto number = [&](const Number& n) { return U(input.slots.numbers(n)); };
+  const auto frame =
+      along_curve ? Frame<T, 2>{} : frame_of_obstacle<T, 2>(input, input.model.scene.obstacles[point.obstacle]);
+  const auto place = [&](int node) {
+    return place_in<U, T, 2>(frame, input.slots.points, node, moved(input.model.place_of(node)));
+  };
+  const Facing unread;
+  auto faced = faced_pieces<U>(input.model, point, input.slots, along_curve ? *facing : unread, place, number);
+  MovedPoint<U, 2> at;
+  at.geometry = std::move(faced.geometry);
+  at.foot = faced.foot;
+  const auto before = [&](int i) { return U(input.previous.foot[point.foot + i]); };
+  if (point.foot >= 0 && !along_curve) {
+    at.way = Vec<U, 2>(at.foot[0] - before(0), at.foot[1] - before(1));
+  } else if (const int last = point.foot >= 0 ? input.previous.patch[p] : Patch::none; last != Patch::none) {
+    const auto& curve = input.model.curves[point.curve];
+    const U slid = at.foot[0] + U(length_between(curve, input.slots.points, last, facing->patch)) - before(0);
+    for (int i = 0; i < 2; ++i) at.way[i] = faced.tangent[i] * slid;
+  }
+  turn_with<U, T>(frame, at);
+  at.geometry.gap += number(input.model.scene.contacts[point.contact].offset);
+  return at;
+}
+
 /// Against a curve, at a place of it that search found.
 template <class U, class T, class Moved>
 MovedPoint<U, 2> moved_on_curve(const ContactInput<T>& input, int p, const Facing& facing, Moved&& moved) {
   const auto& point = input.model.points[p];
   const auto& curve = input.model.curves[point.curve];
-  const auto& start = input.slots.geometry[p];
+  if (facing.patch == Patch::none) return beside_curve<U, T>(input, p, facing);
   const auto place = [&](int vertex) { return vertex_of<U, T>(input, curve, vertex, moved); };
   MovedPoint<U, 2> at;
-  at.geometry.area = U(start.area);
-  if (facing.patch == Patch::none) {
-    at.faces = false;
-    at.geometry = rigid<U>(U(facing.distance), start.normal.unaryExpr([](const T& n) { return U(n); }));
-    at.geometry.area = U(start.area);
-    return at;
-  }
+  at.geometry.area = U(input.slots.geometry[p].area);
   Vec<U, 2> x = moved(point.places[0]);
   for (int i = 0; i < 2; ++i) x[i] += U(input.slots.points(i, point.nodes[0]));
   const Patch& patch = curve.patches[facing.patch];
@@ -150,6 +199,13 @@ std::vector<Facing> facings(const ContactInput<T>& input, const Vector<T>& compa
   const auto moved = displacement_in(compact);
   for (std::size_t c = 0; c < model.curves.size(); ++c) {
     const auto& curve = model.curves[c];
+    if (curve.is_integrated()) {
+      Points<double> places = values(input.slots.points);
+      for (std::size_t n = 0; n < model.contact_nodes.size(); ++n)
+        places.col(model.contact_nodes[n]).head<2>() += values(moved(static_cast<int>(n)));
+      find_pieces(model, static_cast<int>(c), values(input.slots.points), places, found);
+      continue;
+    }
     Eigen::Matrix2Xd places(2, curve.vertex_count);
     for (int v = 0; v < curve.vertex_count; ++v) places.col(v) = values(vertex_of<T, T>(input, curve, v, moved));
     const CurveSearch search(curve.patches, places);

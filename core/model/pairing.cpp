@@ -7,7 +7,9 @@
 
 #include "core/contact/curve_search.hpp"
 #include "core/contact/search.hpp"
+#include "core/contact/segments.hpp"
 #include "core/mesh/sides.hpp"
+#include "core/model/faced_pieces.hpp"
 
 namespace stickslip {
 namespace {
@@ -143,8 +145,9 @@ void pair_nodes(Model& model, const Points<double>& points, const Pairing& pairi
   }
 }
 
-/// The facets of a side that touches itself, one behind the other; which place is its first hangs on no numbering: of
-/// a loop the furthest from its middle, of these the one furthest to the left, and below; longer loops come first.
+/// The facets of a side that touches itself, or is integrated over, one behind the other; which place is its first
+/// hangs on no numbering: of a loop the furthest from its middle, of these the one furthest to the left, and below;
+/// longer loops come first.
 std::vector<std::vector<int>> in_order(const std::vector<std::vector<int>>& facets, const Points<double>& points) {
   std::map<int, int> starting;
   std::set<int> ends;
@@ -208,7 +211,7 @@ std::pair<MasterCurve, Eigen::Matrix2Xd> make_curve(const Model& model, const Po
     places = vertices_of(polyline, model.scene.as<double>());
     facets = facets_of(polyline);
   } else {
-    if (contact.is_of_itself()) facets = in_order(facets, points);
+    if (contact.is_of_itself() || contact.segment) facets = in_order(facets, points);
     std::map<int, int> number;
     for (auto& facet : facets)
       for (int& node : facet) {
@@ -260,8 +263,21 @@ void pair_along_curve(Model& model, const Points<double>& points, const Pairing&
   model.curves.push_back(std::move(curve));
 }
 
-/// Segment-integrated: the multiplier of each slave node on the pieces of its facets.
-void pair_segments(Model& model, const Points<double>& points, const Pairing& pairing) {
+/// The curve that points are integrated over as they slide along it.
+MasterCurve integrated_curve(const Model& model, const Points<double>& points, const Pairing& pairing) {
+  MasterCurve curve = make_curve(model, points, pairing).first;
+  for (const auto& patch : curve.patches) {
+    const int begin = curve.nodes[patch.vertices[1]], end = curve.nodes[patch.vertices[2]];
+    curve.facets.push_back({begin, end});
+    if (patch.previous == Patch::none) curve.ends.push_back(begin);
+    if (patch.next == Patch::none) curve.ends.push_back(end);
+  }
+  return curve;
+}
+
+/// The pieces of the slave facets that each node's multiplier acts on; `whole`: all facets, as they are, which face
+/// what they come to face.
+std::map<int, std::vector<Piece>> pieces_of_nodes(const Points<double>& points, const Pairing& pairing, bool whole) {
   const auto& nodes = pairing.slave.nodes;
   auto carries = [&](int node) { return std::find(nodes.begin(), nodes.end(), node) != nodes.end(); };
   std::map<int, std::vector<Piece>> of_node;
@@ -269,7 +285,7 @@ void pair_segments(Model& model, const Points<double>& points, const Pairing& pa
     Piece whole_facet;
     whole_facet.slave = {facet[0], facet[1]};
     const auto pieces =
-        pairing.obstacle >= 0 ? std::vector<Piece>{whole_facet} : facing_pieces(points, facet, pairing.master.facets);
+        whole ? std::vector<Piece>{whole_facet} : facing_pieces(points, whole_facet.slave, pairing.master.facets);
     for (Piece piece : pieces)
       for (int end = 0; end < 2; ++end)
         if (carries(facet[end])) {
@@ -278,18 +294,32 @@ void pair_segments(Model& model, const Points<double>& points, const Pairing& pa
           of_node[facet[end]].push_back(piece);
         }
   }
-  for (int node : nodes) {
+  return of_node;
+}
+
+/// Segment-integrated: the multiplier of each slave node on the pieces of its facets.
+void pair_segments(Model& model, const Points<double>& points, const Pairing& pairing) {
+  const bool slides = model.scene.finite_strain && pairing.obstacle < 0;
+  auto of_node = pieces_of_nodes(points, pairing, slides || pairing.obstacle >= 0);
+  const int curve = slides ? static_cast<int>(model.curves.size()) : -1;
+  if (slides) model.curves.push_back(integrated_curve(model, points, pairing));
+  const std::size_t first = model.points.size();
+  for (int node : pairing.slave.nodes) {
     if (of_node[node].empty()) continue;
     ContactPoint point = slave_point(model, points, pairing, node);
     point.master = ContactPoint::Master::pieces;
+    point.curve = curve;
     point.pieces = of_node[node];
-    auto add = [&](int n) {
-      if (n >= 0 && std::find(point.nodes.begin(), point.nodes.end(), n) == point.nodes.end()) point.nodes.push_back(n);
-    };
-    for (const auto& piece : point.pieces) std::for_each(piece.slave.begin(), piece.slave.end(), add);
-    point.slave_nodes = static_cast<int>(point.nodes.size());
-    for (const auto& piece : point.pieces) std::for_each(piece.master.begin(), piece.master.end(), add);
+    point.slave_nodes = static_cast<int>(nodes_of_pieces(node, point.pieces, {}).size());
+    point.nodes = nodes_of_pieces(node, point.pieces, point.pieces);
     add_point(model, std::move(point));
+  }
+  if (!slides) return;
+  std::vector<Facing> found(model.points.size());
+  find_pieces(model, curve, points, points, found);
+  for (std::size_t p = first; p < model.points.size(); ++p) {
+    model.points[p].facing = found[p];
+    model.points[p].nodes = found[p].nodes;
   }
 }
 

@@ -7,10 +7,11 @@ namespace stickslip {
 
 /// Tangent of one point with respect to its relative displacement w (where it faces an obstacle as that is now: the
 /// displacement of its slave node, which turns normal and frame) and its scaled multiplier l = lambda / rho. Along a
-/// curve: with respect to the displacements of all `places` that it depends on, node-major.
+/// curve, or integrated where it is now: with respect to the displacements of all `places` that it depends on,
+/// node-major.
 template <class T>
 struct PointTangent {
-  Matrix<T> force_w, force_l;    ///< D x D, D x components; along a curve: a row, or a column, for each dof of `places`
+  Matrix<T> force_w, force_l;    ///< D x D, D x components; with `places`: a row, or a column, for each dof of these
   Matrix<T> row_w, row_l;        ///< of A (t - lambda): components x D, components x components
   std::vector<int> places = {};  ///< in Model::contact_nodes; empty: those of the weights
 };
@@ -47,64 +48,89 @@ struct FixedInput {
   Vec<Probe, Tangents> placement;
 };
 
-/// Rows of A (t - lambda) by `count` displacements, then multipliers.
+/// Displacements that are seeded at once, in front of the multipliers.
+struct Seeded {
+  int first, count;
+};
+
+/// Rows of A (t - lambda) by the seeded displacements, and by multipliers.
 template <class T, class Probe, int Tangents>
 void take_rows(const Traction<Probe, Tangents>& traction, const Traction<Probe, Tangents>& lambda, const T& area,
-               int count, PointTangent<T>& tangent) {
+               Seeded seeded, PointTangent<T>& tangent) {
   constexpr int C = 1 + Tangents;
-  tangent.row_w.resize(C, count);
-  tangent.row_l.resize(C, C);
   for (int r = 0; r < C; ++r) {
     const Probe row = r == 0 ? traction.normal - lambda.normal : traction.tangential[r - 1] - lambda.tangential[r - 1];
-    for (int j = 0; j < count; ++j) tangent.row_w(r, j) = area * row.d[j];
-    for (int c = 0; c < C; ++c) tangent.row_l(r, c) = area * row.d[count + c];
+    for (int j = 0; j < seeded.count; ++j) tangent.row_w(r, seeded.first + j) = area * row.d[j];
+    for (int c = 0; c < C; ++c) tangent.row_l(r, c) = area * row.d[seeded.count + c];
   }
 }
 
-template <class T, int Tangents>
-PointTangent<T> tangent_along_curve(const ContactInput<T>& input, int p, const Facing& facing, const Vector<T>& compact,
-                                    const Vector<T>& multiplier, ContactState state) {
-  constexpr int C = 1 + Tangents, most = 9;  // the slave, and four vertices each of this patch and of the last
-  using Probe = Dual<2 * most + C, T>;
+/// The places that the tangent of a point has columns for: first those that its forces are on, `faced` of them.
+template <class T>
+std::vector<int> places_of_tangent(const ContactInput<T>& input, int p, const Facing* facing, int& faced) {
   const auto& point = input.model.points[p];
+  std::vector<int> places = {point.places[0]};
+  if (!point.pieces.empty()) {
+    if (!facing) places = point.places;
+    for (std::size_t n = 1; facing && n < facing->nodes.size(); ++n)
+      places.push_back(input.model.place_of(facing->nodes[n]));
+    faced = static_cast<int>(places.size());
+    return places;
+  }
   const auto& curve = input.model.curves[point.curve];
-  PointTangent<T> tangent;
-  auto& places = tangent.places;
-  places = {point.places[0]};
-  const auto index = [&](int place) {
-    return static_cast<int>(std::find(places.begin(), places.end(), place) - places.begin());
-  };
   const auto add_patch = [&](int patch) {
     if (curve.obstacle >= 0 || patch == Patch::none) return;
     for (int vertex : curve.patches[patch].vertices)
-      if (vertex != Patch::none && index(curve.places[vertex]) == static_cast<int>(places.size()))
+      if (vertex != Patch::none && std::find(places.begin(), places.end(), curve.places[vertex]) == places.end())
         places.push_back(curve.places[vertex]);
   };
-  add_patch(facing.patch);
-  const int faced = static_cast<int>(places.size());
+  add_patch(facing->patch);
+  faced = static_cast<int>(places.size());
   if (point.foot >= 0) add_patch(input.previous.patch[p]);
+  return places;
+}
+
+/// `facing`: what a point faces of its curve; nullptr against an obstacle, which a point is integrated over.
+template <class T, int Tangents>
+PointTangent<T> tangent_by_places(const ContactInput<T>& input, int p, const Facing* facing, const Vector<T>& compact,
+                                  const Vector<T>& multiplier, ContactState state) {
+  // (along a curve all at once: the slave, and four vertices each of this patch and of the last)
+  constexpr int C = 1 + Tangents, at_once = 18;
+  using Probe = Dual<at_once + C, T>;
+  PointTangent<T> tangent;
+  int faced = 0;
+  auto& places = tangent.places;
+  places = places_of_tangent(input, p, facing, faced);
   const int count = static_cast<int>(2 * places.size());
-  const auto moved = [&](int place) {
-    const int n = index(place);
-    Vec<Probe, 2> u;
-    for (int i = 0; i < 2; ++i) u[i] = Probe::seed(compact[2 * place + i], 2 * n + i);
-    return u;
-  };
-  const auto at = moved_on_curve<Probe, T>(input, p, facing, moved);
-  const auto lambda = seeded_multiplier<Probe, T, Tangents>(input, p, multiplier, count);
-  const FixedInput<Probe, T, Tangents> fixed_input(input, p);
-  const auto outcome = outcome_of<Probe, T, 2, Tangents>(input, at, lambda, fixed_input.placement, fixed_input.rho,
-                                                         fixed_input.friction, 0, &state);
-  const Vec<Probe, 2> force = point_force<Probe, 2, Tangents>(at.geometry, outcome.traction);
   tangent.force_w = Matrix<T>::Constant(count, count, T(0));
   tangent.force_l = Matrix<T>::Constant(count, C, T(0));
-  for (int n = 0; n < std::min(faced, static_cast<int>(at.geometry.weights.size())); ++n)
-    for (int i = 0; i < 2; ++i) {
-      const Probe share = at.geometry.weights[n] * force[i];
-      for (int j = 0; j < count; ++j) tangent.force_w(2 * n + i, j) = share.d[j];
-      for (int c = 0; c < C; ++c) tangent.force_l(2 * n + i, c) = share.d[count + c];
-    }
-  take_rows<T>(outcome.traction, lambda, input.slots.geometry[p].area, count, tangent);
+  tangent.row_w.resize(C, count);
+  tangent.row_l.resize(C, C);
+  const FixedInput<Probe, T, Tangents> fixed_input(input, p);
+  for (int first = 0; first < count; first += at_once) {
+    const Seeded seeded{first, std::min(at_once, count - first)};
+    const auto moved = [&](int place) {
+      const int k = 2 * static_cast<int>(std::find(places.begin(), places.end(), place) - places.begin()) - first;
+      Vec<Probe, 2> u;
+      for (int i = 0; i < 2; ++i) {
+        u[i] = Probe(compact[2 * place + i]);
+        if (k >= 0 && k < seeded.count) u[i].d[k + i] = T(1);
+      }
+      return u;
+    };
+    const auto at = present_point<Probe, T, 2>(input, p, facing, moved);
+    const auto lambda = seeded_multiplier<Probe, T, Tangents>(input, p, multiplier, seeded.count);
+    const auto outcome = outcome_of<Probe, T, 2, Tangents>(input, at, lambda, fixed_input.placement, fixed_input.rho,
+                                                           fixed_input.friction, 0, &state);
+    const Vec<Probe, 2> force = point_force<Probe, 2, Tangents>(at.geometry, outcome.traction);
+    for (int n = 0; n < std::min(faced, static_cast<int>(at.geometry.weights.size())); ++n)
+      for (int i = 0; i < 2; ++i) {
+        const Probe share = at.geometry.weights[n] * force[i];
+        for (int j = 0; j < seeded.count; ++j) tangent.force_w(2 * n + i, first + j) = share.d[j];
+        for (int c = 0; c < C; ++c) tangent.force_l(2 * n + i, c) = share.d[seeded.count + c];
+      }
+    take_rows<T>(outcome.traction, lambda, input.slots.geometry[p].area, seeded, tangent);
+  }
   return tangent;
 }
 
@@ -117,8 +143,9 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
   const auto& point = input.model.points[p];
   return detail::with_point(input.model, point, [&]<int D, int Tangents>() {
     if constexpr (D == 2)
-      if (point.curve >= 0 && input.model.effects.current_geometry)
-        return detail::tangent_along_curve<T, Tangents>(input, p, facing[p], compact, multiplier, state);
+      if ((point.curve >= 0 || !point.pieces.empty()) && input.model.effects.current_geometry)
+        return detail::tangent_by_places<T, Tangents>(input, p, point.curve >= 0 ? &facing[p] : nullptr, compact,
+                                                      multiplier, state);
     constexpr int C = 1 + Tangents;
     using Probe = Dual<D + C, T>;
     const bool present = input.model.effects.current_geometry;
@@ -144,12 +171,12 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
                                                    fixed_input.friction, input.cone, 0, &state);
     }
     const Vec<Probe, D> force = point_force<Probe, D, Tangents>(geometry, outcome.traction);
-    PointTangent<T> tangent{Matrix<T>(D, D), Matrix<T>(D, C), {}, {}};
+    PointTangent<T> tangent{Matrix<T>(D, D), Matrix<T>(D, C), Matrix<T>(C, D), Matrix<T>(C, C)};
     for (int i = 0; i < D; ++i) {
       for (int j = 0; j < D; ++j) tangent.force_w(i, j) = force[i].d[j];
       for (int c = 0; c < C; ++c) tangent.force_l(i, c) = force[i].d[D + c];
     }
-    detail::take_rows<T>(outcome.traction, lambda, input.slots.geometry[p].area, D, tangent);
+    detail::take_rows<T>(outcome.traction, lambda, input.slots.geometry[p].area, {0, D}, tangent);
     return tangent;
   });
 }

@@ -135,7 +135,7 @@ T contact_half_width(const Model& model, const Slots<T>& slots, const State<T>& 
   Vector<T> moment = Vector<T>::Constant(2, T(0)), normal = moment;  // normal: of the contact as a whole
   int closed = 0;
   const auto nodal_force = [&](int p) {
-    return -slots.geometry[p].area * state.contact.traction[model.points[p].multiplier];
+    return -area_in(state.contact, slots, p) * state.contact.traction[model.points[p].multiplier];
   };
   const auto place = [&](int p) { return place_of(model, slots, state, model.points[p].nodes[0]); };
   for (int p : of_contact) {
@@ -178,7 +178,7 @@ T contact_response(const Model& model, const Slots<T>& slots, const Response& re
   std::vector<T> samples, weights;
   for (int p : of_contact) {
     if (response.kind == Kind::slip && model.points[p].tangents == 0) continue;
-    weights.push_back(slots.geometry[p].area);
+    weights.push_back(area_in(state.contact, slots, p));
     if (response.kind == Kind::contact_pressure) samples.push_back(-state.contact.traction[model.points[p].multiplier]);
     if (response.kind == Kind::gap) samples.push_back(state.contact.gap[p]);
     if (response.kind == Kind::slip) samples.push_back(slip_component(model, slots, state, p, response.component));

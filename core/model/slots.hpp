@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/contact/contact_point.hpp"
+#include "core/contact/segments.hpp"
 #include "core/contact/surfaces.hpp"
 #include "core/mesh/generators.hpp"
 #include "core/model/history.hpp"
@@ -110,21 +111,59 @@ T tributary_area(const ContactPoint& point, const Slots<T>& slots) {
   return area;
 }
 
-/// Geometry of a segment-integrated point, its area included.
+/// Area that a point has, whatever of it faces something. pre: geometry is not fixed at the start, or the point is not
+/// segment-integrated.
 template <class T>
-PointGeometry<T> integrated_geometry(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
-  return against_pieces<T>(
-      slots.points, point.pieces, point.nodes,
-      [&](const Vec<T, 2>& x) {
-        const auto g = against_rigid<T>(x, model.scene.obstacles[point.obstacle].shape, slots.numbers);
-        Foot<T> foot;
-        for (int i = 0; i < 2; ++i) {
-          foot.normal[i] = g.normal[i];
-          foot.at[i] = x[i] - g.gap * g.normal[i];
-        }
-        return foot;
-      },
-      slots.depths[point.slave_body]);
+T whole_area(const ContactPoint& point, const Slots<T>& slots) {
+  if (point.pieces.empty()) return tributary_area(point, slots);
+  return area_of_facets<T>(
+      point.pieces, [&](int node) { return point2(slots.points, node); }, slots.depths[point.slave_body]);
+}
+
+/// Length at the start along an integrated curve, from where one facet begins to where another does; round a loop the
+/// shorter way.
+template <class T>
+T length_between(const MasterCurve& curve, const Points<T>& points, int from, int to) {
+  const int count = static_cast<int>(curve.facets.size());
+  const bool loop = curve.patches.back().next == 0;
+  if (loop && 2 * std::abs(to - from) > count) to += to < from ? count : -count;
+  T length{};
+  for (int f = std::min(from, to); f < std::max(from, to); ++f) {
+    const auto& facet = curve.facets[(f + count) % count];
+    length += norm(Vec<T, 2>(points.col(facet[1]) - points.col(facet[0])));
+  }
+  return from < to ? length : T(-length);
+}
+
+/// What a segment-integrated point faces. `facing`: unread where that is an obstacle; `at(node)`: where a node is, in
+/// the scalar U built on T; `numbers`: those of the scene in it.
+template <class U, class T, class At, class Read>
+FacedPieces<U> faced_pieces(const Model& model, const ContactPoint& point, const Slots<T>& slots, const Facing& facing,
+                            At&& at, const Read& numbers) {
+  const bool along_curve = point.curve >= 0;
+  const auto of_start = [&](int node) { return Vec<U, 2>(U(slots.points(0, node)), U(slots.points(1, node))); };
+  const auto rigid_foot = [&](const Vec<U, 2>& x) {
+    const auto g = against_rigid<U>(x, model.scene.obstacles[point.obstacle].shape, numbers);
+    Foot<U> foot;
+    for (int i = 0; i < 2; ++i) {
+      foot.normal[i] = g.normal[i];
+      foot.at[i] = x[i] - g.gap * g.normal[i];
+    }
+    return foot;
+  };
+  const auto begin = [&](int facet) {
+    return along_curve ? U(length_between(model.curves[point.curve], slots.points, facing.patch, facet)) : U(0);
+  };
+  const auto& depth = slots.depths[point.slave_body];
+  return face_pieces<U>(along_curve ? facing.pieces : point.pieces, along_curve ? facing.nodes : point.nodes, at,
+                        of_start, Depth<U>{depth.of_revolution, U(depth.thickness)}, rigid_foot, begin, !along_curve);
+}
+
+/// What a segment-integrated point faces at the start. pre: it faces something.
+template <class T>
+FacedPieces<T> pieces_of_start(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
+  const auto at = [&](int node) { return point2(slots.points, node); };
+  return faced_pieces<T>(model, point, slots, point.facing, at, slots.numbers);
 }
 
 /// Vertex of the polyline that a point faces, in the order of ContactPoint::of_polyline.
@@ -155,21 +194,25 @@ CurveFoot<T> foot_of_start(const Model& model, const ContactPoint& point, const 
   return foot_on_patch<T>(curve.patches[point.facing.patch], point.facing.xi, x, place);
 }
 
-/// Geometry against the place of a curve that a point faces at the start; where it faces none, gap and normal are such
-/// that it neither presses nor weighs: its distance, and against its own side.
+/// Geometry of a point that faces nothing of its curve at the start: gap and normal are such that it neither presses
+/// nor weighs, its distance, and against its own side.
+template <class T>
+PointGeometry<T> facing_nothing(const ContactPoint& point, const Slots<T>& slots) {
+  decltype(PointGeometry<T>::normal) normal(2);
+  normal << T(0), T(1);
+  if (!point.area_facets.empty()) {
+    const Vec<T, 2> outward = slave_normal(point.area_facets, slots.points);
+    const T length = norm(outward);
+    normal << -outward[0] / length, -outward[1] / length;
+  }
+  return alone<T>(T(point.facing.distance), normal, point.slave_nodes);
+}
+
+/// Geometry against the place of a curve that a point faces at the start.
 template <class T>
 PointGeometry<T> against_curve(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
+  if (point.facing.patch == Patch::none) return facing_nothing(point, slots);
   PointGeometry<T> geometry;
-  if (point.facing.patch == Patch::none) {
-    decltype(geometry.normal) normal(2);
-    normal << T(0), T(1);
-    if (!point.area_facets.empty()) {
-      const Vec<T, 2> outward = slave_normal(point.area_facets, slots.points);
-      const T length = norm(outward);
-      normal << -outward[0] / length, -outward[1] / length;
-    }
-    return rigid<T>(T(point.facing.distance), normal);
-  }
   const auto foot = foot_of_start(model, point, slots);
   const auto& curve = model.curves[point.curve];
   geometry.gap = foot.gap;
@@ -204,8 +247,11 @@ template <class T>
 PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
   const auto& numbers = slots.numbers;
   PointGeometry<T> geometry;
-  if (point.master == ContactPoint::Master::pieces) {
-    geometry = integrated_geometry(model, point, slots);
+  const bool integrated = point.master == ContactPoint::Master::pieces;
+  if (integrated && (point.curve < 0 || point.facing.patch != Patch::none)) {
+    geometry = pieces_of_start(model, point, slots).geometry;
+  } else if (integrated) {
+    geometry = facing_nothing(point, slots);
   } else if (point.master == ContactPoint::Master::curve) {
     geometry = against_curve(model, point, slots);
   } else if (point.master == ContactPoint::Master::obstacle) {
@@ -230,7 +276,7 @@ PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point,
       geometry.gap += geometry.weights[n] * dot(geometry.normal, point2(slots.points, point.nodes[n]));
   }
   geometry.gap += numbers(model.scene.contacts[point.contact].offset);
-  if (point.pieces.empty()) geometry.area = tributary_area(point, slots);
+  if (!integrated || point.curve >= 0) geometry.area = whole_area(point, slots);
   return geometry;
 }
 

@@ -79,6 +79,8 @@ void SparseEngine<T>::assemble(const RowLists& lists, const BodyMotion<T>* at) {
 template <class T>
 std::vector<int> SparseEngine<T>::places_around(std::size_t p, const PointTangent<T>& tangent) const {
   std::vector<int> places = tangent.places;
+  std::sort(places.begin(), places.end());
+  if (model_.points[p].curve < 0) return places;
   const auto& curve = model_.curves[model_.points[p].curve];
   const auto add = [&](const Patch& patch) {
     for (int vertex : patch.vertices)

@@ -39,6 +39,12 @@ const PointGeometry<T>& geometry_in(const ContactField<T>& field, const S& slots
   return field.moved.empty() ? slots.geometry[p] : field.moved[p];
 }
 
+/// Area that the tractions of a point act on in a field, in the measure of the start.
+template <class S, class T>
+const T& area_in(const ContactField<T>& field, const S& slots, std::size_t p) {
+  return geometry_in(field, slots, p).area;
+}
+
 /// Calls f(n, place) with the places in Model::contact_nodes of the nodes that weights[n] of geometry_in() are of.
 template <class T, class F>
 void for_each_place(const Model& model, const ContactField<T>& field, std::size_t p, F&& f) {
@@ -47,9 +53,14 @@ void for_each_place(const Model& model, const ContactField<T>& field, std::size_
     for (std::size_t n = 0; n < point.places.size(); ++n) f(n, point.places[n]);
     return;
   }
+  const Facing& facing = field.facing[p];
+  if (!facing.nodes.empty()) {
+    for (std::size_t n = 0; n < facing.nodes.size(); ++n) f(n, model.place_of(facing.nodes[n]));
+    return;
+  }
   f(std::size_t{0}, point.places[0]);
   const auto& curve = model.curves[point.curve];
-  const int patch = field.facing[p].patch;
+  const int patch = facing.patch;
   if (curve.obstacle >= 0 || patch == Patch::none) return;
   std::size_t n = 0;
   for (int vertex : curve.patches[patch].vertices)

@@ -223,7 +223,6 @@ void read_contact(const std::string& name, const JsonNode& node, SceneReading& r
   }
   if (const auto discretization = node.find("discretization")) {
     contact.segment = discretization->choice({"node", "segment"}) == "segment";
-    if (contact.segment) reading.only_at_small_strain(*discretization);
     if (contact.segment && contact.is_of_itself())
       discretization->error(R"(is "segment", which is between two sides; of a side that touches itself: "node")");
     if (contact.segment && contact.smoothing != Smoothing::none)

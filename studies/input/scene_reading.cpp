@@ -95,10 +95,6 @@ std::vector<Number> SceneReading::direction(const JsonNode& node, const char* wh
   return numbers;
 }
 
-void SceneReading::only_at_small_strain(const JsonNode& node) const {
-  if (scene.finite_strain) node.error_at_key(R"(needs "strain": "small" in this version)");
-}
-
 Rotation SceneReading::rotation(const JsonNode& node) {
   Rotation rotation;
   rotation.angle.points = {{0, Number()}};

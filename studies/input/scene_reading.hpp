@@ -62,9 +62,6 @@ struct SceneReading {
   /// {"center", "angle"} and in space "axis".
   Rotation rotation(const JsonNode&);
 
-  /// Reports, at its key, what is made for small strain alone, where the scene's is finite.
-  void only_at_small_strain(const JsonNode&) const;
-
   /// Slot of a number 0 that the file does not write: a shape parameter's distance.
   int extra_slot(const std::string& pointer) { return slot(pointer, 0); }
 

@@ -5,6 +5,7 @@
 
 #include "core/model/objective.hpp"
 #include "methods/engine_choice.hpp"
+#include "sensitivity/vertex_margin.hpp"
 #include "studies/io/json_document.hpp"
 #include "studies/run/step_reader.hpp"
 #include "studies/run/warnings.hpp"
@@ -26,6 +27,13 @@ void take_sides(const CaseResult& result, std::size_t n, StepResult& step) {
     take(result.one_sided->backward, result.one_sided->forward);
   else
     take(result.gradients.below, result.gradients.above);
+  if (result.gradients.of.size() > n &&
+      integration_margin(result.problem->model, result.problem->slots, step.increment->state) <= weak_margin) {
+    step.differentiable = false;  // and neither side is known
+    const auto& like = result.gradients.of[n];
+    step.backward = step.forward =
+        Matrix<double>::Constant(like.rows(), like.cols(), std::numeric_limits<double>::quiet_NaN());
+  }
   if (step.backward.size() == 0) return;
   for (std::size_t i = 0; i < scene.responses.size(); ++i)
     for (std::size_t j = 0; j < scene.parameters.size(); ++j)

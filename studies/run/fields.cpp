@@ -146,7 +146,7 @@ std::vector<double> present_areas(const Problem& problem, const State<double>& s
   moved.points += nodal(model, state.displacement);
   const auto thickness = thins(model) ? nodal_thickness(problem, state) : std::vector<double>();
   for (const auto& point : model.points) {
-    areas.push_back(detail::tributary_area(point, moved));
+    areas.push_back(detail::whole_area(point, moved));
     if (!thickness.empty()) areas.back() *= thickness[point.nodes[0]];
   }
   return areas;

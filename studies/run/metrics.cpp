@@ -210,10 +210,11 @@ std::vector<ContactSummary> summarise(const Model& model, const Slots<double>& s
     const ContactState s = state.contact.state[p];
     ++(s == ContactState::open ? summary.open : s == ContactState::stick ? summary.stick : summary.slip);
     summary.penetration = larger(summary.penetration, -state.contact.gap[p]);
-    summary.normal_force -= slots.geometry[p].area * state.contact.traction[point.multiplier];
+    summary.normal_force -= area_in(state.contact, slots, p) * state.contact.traction[point.multiplier];
     for (int i = 0; i < model.dimension; ++i)
       for (int a = 0; a < point.tangents; ++a)
-        summary.tangential_force[i] -= slots.geometry[p].area * state.contact.traction[point.multiplier + 1 + a] *
+        summary.tangential_force[i] -= area_in(state.contact, slots, p) *
+                                       state.contact.traction[point.multiplier + 1 + a] *
                                        geometry_in(state.contact, slots, p).tangents(i, a);
   }
   return all;

@@ -190,7 +190,7 @@ Share share_of(const Problem& problem, const ContactField<double>& field, int c)
   for (std::size_t p = 0; p < problem.model.points.size(); ++p) {
     const auto& point = problem.model.points[p];
     if (point.contact != c) continue;
-    const double force = -problem.slots.geometry[p].area * field.traction[point.multiplier];
+    const double force = -area_in(field, problem.slots, p) * field.traction[point.multiplier];
     ++share.points;
     share.force += force;
     share.of_one = larger(share.of_one, force);
