@@ -97,7 +97,8 @@ TEST(Checkpoints, GiveBackTheStatesOfMetalThatFlows) {
 }
 
 TEST(Checkpoints, GiveBackTheStatesOfADieThatSlidesAlongASmoothSide) {
-  for (const Method& method : scenes::all_methods()) expect_same_states(scenes::sliding_die(), method);
+  for (const Scene& die : {scenes::sliding_die(), scenes::integrated_die()})
+    for (const Method& method : scenes::all_methods()) expect_same_states(die, method);
 }
 
 TEST(Checkpoints, GiveBackTheStatesOfStepsThatAreCut) {

@@ -83,7 +83,8 @@ TEST(Checkpoints, LeaveTheGradientOfMetalThatFlows) {
 }
 
 TEST(Checkpoints, LeaveTheGradientOfADieThatSlidesAlongASmoothSide) {
-  for (const Method& method : all_schemes()) expect_same_gradient(scenes::sliding_die(), method);
+  for (const Scene& die : {scenes::sliding_die(), scenes::integrated_die()})
+    for (const Method& method : all_schemes()) expect_same_gradient(die, method);
 }
 
 /// The branches at ties are searched for forward in time, over the same states.

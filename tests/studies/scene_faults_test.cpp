@@ -71,7 +71,6 @@ const char* const finite_scene = R"({
 /// What finite strain does not know yet, and what does not go with it.
 std::vector<Broken> broken_finite() {
   const char* f = finite_scene;
-  const char* const small = R"(needs "strain": "small")";
   return {
       {"finite_solid",
        R"({"space": "solid", "strain": "small", "time": {"end": 1, "steps": 1}, "method": {"penalty": {}},
@@ -88,8 +87,9 @@ std::vector<Broken> broken_finite() {
        "allowed: neo_hookean"},
       {"finite_volumetric", f, R"("nu": 0.25})", R"("nu": 0.25, "volumetric": @"cubic"})",
        "/bodies/block/material/neo_hookean/volumetric", "allowed: quadratic, log"},
-      {"finite_segments", f, R"("master": "floor"})", R"("master": "floor", @"discretization": "segment"})",
-       "/contacts/sole/discretization", small},
+      {"finite_segments_of_one_side", f, R"("master": "floor"})",
+       R"("master": "block.bottom", "discretization": @"segment"})", "/contacts/sole/discretization",
+       "between two sides"},
       {"finite_pressure_on_metal", R"({
   "space": "plane_stress", "strain": "finite",
   "bodies": {"block": {"mesh": {"box": {"min": [0, 0], "max": [4, 2], "cells": [4, 2]}},

@@ -46,4 +46,12 @@ inline Scene sliding_die() {
   return s;
 }
 
+/// The same die, integrated over the facets that it comes to face.
+inline Scene integrated_die() {
+  Scene s = sliding_die();
+  s.contacts[0].smoothing = Smoothing::none;
+  s.contacts[0].segment = true;
+  return s;
+}
+
 }  // namespace stickslip::scenes

@@ -1,0 +1,340 @@
+/// Segment integration at finite strain: the patch test of A13 between any two meshes, sliding with friction over
+/// facets and ends, invariance, its limit of small strain, tangents and derivatives against the complex step.
+#include <gtest/gtest.h>
+
+#include "sensitivity/one_sided.hpp"
+#include "sensitivity/vertex_margin.hpp"
+#include "tests/support/blocks.hpp"
+#include "tests/support/finite_strain.hpp"
+#include "tests/support/tangents.hpp"
+
+namespace stickslip {
+namespace {
+
+using scenes::finite_methods;
+using scenes::finite_schemes;
+using scenes::parameter;
+using scenes::response;
+using scenes::run;
+using scenes::table;
+using Kind = Response::Kind;
+
+Body rubber(Body body, Scene& s, const std::string& name, double E) {
+  body.material = NeoHookean{parameter(s, name, E), 0.3, NeoHookean::Volumetric::log};
+  return body;
+}
+
+Scene empty(std::vector<Leg> legs) {
+  Scene s;
+  s.finite_strain = true;
+  s.legs = std::move(legs);
+  return s;
+}
+
+Contact joint(Scene& s, const std::string& slave, const std::string& master, double mu) {
+  Contact contact = scenes::contact("joint", slave, master);
+  contact.segment = true;
+  if (mu > 0) contact.friction = parameter(s, "mu", mu);
+  return contact;
+}
+
+const Table still = table({{0, 0.0}});
+
+// --- A13: two blocks, pressed on one another by any meshes ----------------------------------------------------------
+
+Scene stacked(double stretch, double mu, int slave, int master, Space space = Space::plane_strain) {
+  Scene s = empty({{1, 4}});
+  s.space = space;
+  s.bodies = {rubber(scenes::box_body("lower", {0, 0}, {2, 0.5}, {master, 2}), s, "E", 1000),
+              rubber(scenes::box_body("upper", {0, 0.5}, {2, 1}, {slave, 2}), s, "E_upper", 1000)};
+  s.contacts = {joint(s, "upper.bottom", "lower.top", mu)};
+  const Number down = parameter(s, "down", stretch - 1);
+  s.supports = {scenes::support("lower.bottom", {{'y', still}}),
+                scenes::support("upper.top", {{'y', table({{0, 0.0}, {1, down}})}})};
+  if (space != Space::axisymmetric) {  // (a side held on both bodies would decide a multiplier that friction has)
+    s.supports.push_back(scenes::support("lower.left & lower.bottom", {{'x', still}}));
+    s.supports.push_back(scenes::support("upper.left & upper.top", {{'x', still}}));
+  }
+  s.responses = {response("press", Kind::reaction, "upper.top", "y"),
+                 response("wide", Kind::displacement, "upper.right", "x"),
+                 response("gap", Kind::gap, "joint", "", Response::Take::min),
+                 response("least", Kind::contact_pressure, "joint", "", Response::Take::min),
+                 response("most", Kind::contact_pressure, "joint", "", Response::Take::max)};
+  return s;
+}
+
+constexpr std::pair<int, int> ratios[] = {{4, 4}, {8, 4}, {4, 8}, {3, 4}, {5, 4}, {7, 11}};
+
+TEST(FiniteSegments, PassAUniformPressureBetweenAnyTwoMeshes) {
+  for (const auto& [slave, master] : ratios)
+    for (const auto& [l1, l2, P1] : {std::array{0.9, 1.0449972898, -120.5210836}, {0.7, 1.1507960463, -458.4239232}})
+      for (const double mu : {0.0, 0.2})  // (both sides stretch alike: nothing slips)
+        for (const auto& method : finite_methods()) {
+          const auto s = run(stacked(l1, mu, slave, master), method);
+          ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
+          // equilibrium is solved to 1e-10 of the largest nodal force
+          EXPECT_NEAR(s.value("most") / s.value("least"), 1, 1e-10) << slave << ":" << master << name_of(method);
+          const double overlap = std::abs(s.value("gap"));
+          EXPECT_LE(overlap, std::holds_alternative<Penalty>(method) ? 1e-4 : 1e-11) << name_of(method);
+          // the closed form has ten digits; by its overlap a penalty stretches less
+          EXPECT_NEAR(s.value("most"), -P1, 1e-7 + 2e4 * overlap) << name_of(method);
+          EXPECT_NEAR(s.value("press") / 2, P1, 1e-7 + 2e4 * overlap) << name_of(method);
+          EXPECT_NEAR(s.value("wide") / 2 + 1, l2, 1e-8 + 10 * overlap) << name_of(method);
+        }
+}
+
+TEST(FiniteSegments, PassAUniformPressureOfRevolutionAndInPlaneStress) {
+  for (const Space space : {Space::axisymmetric, Space::plane_stress})
+    for (const auto& [slave, master] : {std::pair{3, 4}, {7, 11}})
+      for (const auto& method : finite_methods()) {
+        const auto s = run(stacked(0.8, 0.2, slave, master, space), method);
+        ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
+        EXPECT_NEAR(s.value("most") / s.value("least"), 1, 1e-10) << slave << ":" << master << name_of(method);
+      }
+}
+
+// --- a die pressed into a slab and dragged along it, over facets and over the end ------------------------------------
+
+/// `turned`: the whole scene about the origin, radians; `from`: where the die begins; `along`: how far it is dragged.
+struct Ironing {
+  double mu = 0.3, turned = 0, from = 0.8, along = 0.7;
+  bool segment = true, shaped = false;
+};
+
+Scene ironing(const Ironing& of = {}) {
+  Scene s = empty({{1, 3}, {2, 5}});
+  const double c = std::cos(of.turned), sn = std::sin(of.turned);
+  const auto corner = [&](double x, double y) { return std::array<Number, 2>{c * x - sn * y, sn * x + c * y}; };
+  QuadMesh slab, die;
+  slab.corners = {corner(0, 0), corner(4, 0), corner(4, 1), corner(0, 1)};
+  slab.cells = {12, 3};
+  const double x = of.from;
+  die.corners = {corner(x + 0.1, 1.05), corner(x + 0.9, 1.0), corner(x + 1, 1.6), corner(x, 1.6)};
+  die.cells = {4, 2};
+  s.bodies = {rubber({"slab", slab, LinearElastic{1.0, 0.0}, "", 1.0}, s, "E", 1),
+              rubber({"die", die, LinearElastic{1.0, 0.0}, "", 1.0}, s, "E_die", 5)};
+  s.contacts = {joint(s, "die.bottom", "slab.top", of.mu)};
+  s.contacts[0].segment = of.segment;
+  const Number down = parameter(s, "down", -0.15), along = parameter(s, "along", of.along);
+  const auto moves = [&](bool drags) {
+    std::map<char, Table> move{{'x', table({{0, 0.0}, {1, 0.0}})}, {'y', table({{0, 0.0}, {1, down}})}};
+    if (drags) move['x'].points.emplace_back(2, along);
+    return move;
+  };
+  if (of.turned == 0) {
+    s.supports = {scenes::support("slab.bottom", {{'x', still}, {'y', still}}),
+                  scenes::support("die.top", moves(of.along != 0))};
+  } else {
+    s.supports = {
+        scenes::support("slab.bottom", {{'x', still}, {'y', still}}),
+        scenes::support("die.top", {{'x', table({{0, 0.0}, {1, 0.15 * sn}, {2, c * of.along + 0.15 * sn}})},
+                                    {'y', table({{0, 0.0}, {1, -0.15 * c}, {2, sn * of.along - 0.15 * c}})}})};
+    s.parameters.clear();
+  }
+  s.responses = {response("x", Kind::reaction, "die.top", "x"),
+                 response("y", Kind::reaction, "die.top", "y"),
+                 response("floor x", Kind::reaction, "slab.bottom", "x"),
+                 response("floor y", Kind::reaction, "slab.bottom", "y"),
+                 response("energy", Kind::strain_energy, ""),
+                 response("normal", Kind::contact_force, "joint", "normal"),
+                 response("on slave", Kind::contact_force, "joint", "y")};
+  if (of.mu > 0) {
+    s.responses.push_back(response("slid", Kind::slip, "joint"));
+    s.responses.push_back(response("heat", Kind::dissipation, "joint"));
+  }
+  if (of.shaped) {
+    scenes::shape(s, "lift", {1, "die.bottom", "die.top", {0, 1}, -1, 0});
+    scenes::shape(s, "bump", {1, "die.bottom", "", {0.3, -1}, 2, 0});
+    scenes::shape(s, "floor", {0, "slab.top", "slab.bottom", {0.2, 1}, -1, 0});
+  }
+  return s;
+}
+
+TEST(FiniteSegments, MethodsAgreeOnADieThatCrossesFacets) {
+  auto methods = finite_methods();
+  std::get<Penalty>(methods[0]).stiffness = scenes::relative(100);
+  const auto exact = run(ironing(), methods[2]);
+  ASSERT_TRUE(is_converged(exact.trajectory.status)) << exact.trajectory.message;
+  for (int m : {0, 1}) {
+    const auto s = run(ironing(), methods[m]);
+    ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(methods[m]) << s.trajectory.message;
+    for (const char* name : {"x", "y", "energy", "heat"})  // (a penalty's overlap is some 1 / 100 of the depth)
+      EXPECT_NEAR(s.value(name), exact.value(name), (m == 0 ? 0.03 : 1e-9) * std::abs(exact.value("y")))
+          << name_of(methods[m]) << " " << name;
+  }
+}
+
+TEST(FiniteSegments, ForcesBalanceBetweenSlaveAndMaster) {
+  // to what equilibrium is solved to, 1e-10 of the largest nodal force; over the end of the slab too
+  for (const double from : {0.8, 2.7})
+    for (const auto& method : finite_methods()) {
+      const auto s = run(ironing({0.3, 0, from}), method);
+      ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
+      for (int n = 0; n < static_cast<int>(s.trajectory.increments.size()); ++n) {
+        const double size = std::abs(s.value("y"));
+        EXPECT_NEAR(s.value("x", n), -s.value("floor x", n), 1e-9 * size);
+        EXPECT_NEAR(s.value("y", n), -s.value("floor y", n), 1e-9 * size);
+        EXPECT_NEAR(s.value("y", n), -s.value("on slave", n), 1e-9 * size);
+      }
+    }
+}
+
+TEST(FiniteSegments, FrictionWorkAndStrainEnergyAddUpToTheWorkDone) {
+  // 24 steps lose 0.1 % by their length, and 4 facets a second-order share of the work of the normal force
+  for (const double mu : {0.0, 0.3}) {
+    Scene scene = ironing({mu});
+    scene.legs = {{1, 12}, {2, 12}};
+    const auto s = run(scene, MonolithicAL{});
+    ASSERT_TRUE(is_converged(s.trajectory.status)) << s.trajectory.message;
+    double work = 0, x = 0, y = 0, at_x = 0, at_y = 0;
+    for (int n = 0; n < static_cast<int>(s.trajectory.increments.size()); ++n) {
+      const double t = s.trajectory.increments[n].time;
+      const double to_x = t <= 1 ? 0 : 0.7 * (t - 1), to_y = t <= 1 ? -0.15 * t : -0.15;
+      work += 0.5 * ((x + s.value("x", n)) * (to_x - at_x) + (y + s.value("y", n)) * (to_y - at_y));
+      x = s.value("x", n);
+      y = s.value("y", n);
+      at_x = to_x;
+      at_y = to_y;
+    }
+    const double heat = mu > 0 ? s.value("heat") : 0;
+    EXPECT_NEAR(work, s.value("energy") + heat, 0.004 * work) << mu;
+  }
+}
+
+TEST(FiniteSegments, RippleLessThanNodeToSegment) {
+  const auto ripple = [](bool segment) {
+    Ironing of;
+    of.segment = segment;
+    Scene scene = ironing(of);
+    scene.legs = {{1, 3}, {2, 35}};
+    const auto s = run(scene, MonolithicAL{});
+    EXPECT_TRUE(is_converged(s.trajectory.status)) << s.trajectory.message;
+    double most = 0;
+    for (int n = 12; n + 1 < static_cast<int>(s.trajectory.increments.size()); ++n)  // once it slips
+      most = larger(most, std::abs(s.value("y", n + 1) - 2 * s.value("y", n) + s.value("y", n - 1)));
+    return most / std::abs(s.value("y"));
+  };
+  const double by_nodes = ripple(false), by_segments = ripple(true);
+  RecordProperty("by_nodes", std::to_string(by_nodes));
+  RecordProperty("by_segments", std::to_string(by_segments));
+  EXPECT_LE(by_segments, 0.7 * by_nodes);  // 0.023 against 0.043 of the force
+}
+
+TEST(FiniteSegments, DoNotKnowDirectionsInSpace) {
+  for (const double from : {0.8, 2.7})
+    for (double turned : {0.5, 2.9}) {
+      const auto s = run(ironing({0.3, 0, from}), MonolithicAL{}),
+                 t = run(ironing({0.3, turned, from}), MonolithicAL{});
+      ASSERT_TRUE(is_converged(t.trajectory.status)) << t.trajectory.message;
+      const double c = std::cos(turned), sn = std::sin(turned), size = std::abs(s.value("y"));
+      EXPECT_NEAR(t.value("x"), c * s.value("x") - sn * s.value("y"), 1e-10 * size);
+      EXPECT_NEAR(t.value("y"), sn * s.value("x") + c * s.value("y"), 1e-10 * size);
+      for (const char* name : {"energy", "heat", "slid", "normal"})
+        EXPECT_NEAR(t.value(name), s.value(name), 1e-10 * size) << name;
+    }
+}
+
+TEST(FiniteSegments, SmallStrainIsTheirLimit) {  // D3
+  const auto press = [](bool finite, double down, double mu) {
+    Scene s = ironing({mu, 0, 0.8, 0});
+    s.finite_strain = finite;
+    for (auto& body : s.bodies)
+      if (!finite) body.material = LinearElastic{body.name == "die" ? 5.0 : 1.0, 0.3};
+    std::get<QuadMesh>(s.bodies[1].mesh).corners = {{{0.9, 1.0}, {1.7, 1.0}, {1.8, 1.6}, {0.8, 1.6}}};
+    s.supports[1] =
+        scenes::support("die.top", {{'x', table({{0, 0.0}, {1, -0.3 * down}})}, {'y', table({{0, 0.0}, {1, down}})}});
+    s.legs = {{1, 2}};
+    s.parameters.clear();
+    const auto solved = run(s, MonolithicAL{});
+    EXPECT_TRUE(is_converged(solved.trajectory.status)) << solved.trajectory.message;
+    return Eigen::Vector2d(solved.value("x"), solved.value("y")) / down;
+  };
+  for (const double mu : {0.0, 0.1}) {
+    double last = 0;
+    for (double down : {-1e-2, -1e-3, -1e-4}) {  // the difference falls with the strain
+      const Eigen::Vector2d small = press(false, down, mu);
+      const double difference = (press(true, down, mu) - small).norm() / small.norm();
+      EXPECT_LE(difference, 10 * std::abs(down));
+      if (last > 0) {
+        EXPECT_NEAR(std::log10(last / difference), 1, 0.2);
+      }
+      last = difference;
+    }
+  }
+}
+
+TEST(FiniteSegments, TangentsAreTheComplexStepOfForcesAndRows) {
+  for (const Scene& scene : {ironing(), ironing({0.3, 0, 2.7}), stacked(0.7, 0.2, 3, 16)})
+    for (const Method& method : {Method(MonolithicAL{}), Method(Penalty{scenes::relative(100)})}) {
+      const auto s = run(scene, method);
+      ASSERT_TRUE(is_converged(s.trajectory.status)) << s.trajectory.message;
+      for (std::size_t n = 0; n < s.trajectory.increments.size(); ++n)
+        EXPECT_LE(scenes::errors_of_tangent(s.model, s.slots, method, s.trajectory, n).largest(), 1e-10);  // rounding
+    }
+}
+
+TEST(FiniteSegments, DerivativesEqualTheComplexStepAndTheAdjoint) {
+  for (const Method& method : finite_schemes()) scenes::expect_derivatives_in_both_modes(ironing(), method);
+  Ironing shaped;
+  shaped.shaped = true;
+  for (const Method& method : {Method(MonolithicAL{}), finite_schemes()[0]})
+    scenes::expect_derivatives_in_both_modes(ironing(shaped), method);
+  scenes::expect_derivatives_in_both_modes(ironing({0}), MonolithicAL{});
+  scenes::expect_derivatives_in_both_modes(ironing({0.3, 0, 2.7}), MonolithicAL{});
+  scenes::expect_derivatives_in_both_modes(stacked(0.8, 0.2, 3, 4, Space::axisymmetric), MonolithicAL{});
+  scenes::expect_derivatives_in_both_modes(stacked(0.8, 0.2, 3, 4, Space::plane_stress), MonolithicAL{});
+}
+
+TEST(FiniteSegments, TellWhereAnEndOfTheSlaveMeetsABendOfTheMaster) {
+  const auto s = run(ironing(), MonolithicAL{});
+  ASSERT_TRUE(is_converged(s.trajectory.status)) << s.trajectory.message;
+  State<double> state = s.trajectory.increments.back().state;
+  EXPECT_GT(integration_margin(s.model, s.slots, state), 1e-3);
+  EXPECT_LT(integration_margin(s.model, s.slots, state), 10);
+  EXPECT_EQ(vertex_margin(s.model, s.slots, state, 2), integration_margin(s.model, s.slots, state));
+  const int end = s.model.side("die.bottom").nodes.back();
+  for (std::size_t p = 0; p < s.model.points.size(); ++p) {
+    if (s.model.points[p].nodes[0] != end) continue;
+    ASSERT_NE(state.contact.state[p], ContactState::open);
+    const int vertex = state.contact.facing[p].pieces.front().master[0];
+    const auto dofs = [&](int node) { return state.displacement.segment<2>(2 * static_cast<Eigen::Index>(node)); };
+    dofs(end) = s.slots.points.col(vertex).head<2>() + dofs(vertex) - s.slots.points.col(end).head<2>();
+  }
+  EXPECT_LE(integration_margin(s.model, s.slots, state), weak_margin);
+}
+
+// --- obstacles -------------------------------------------------------------------------------------------------------
+
+/// A block pressed onto a floor by a load, which turns and moves; `round`: a disk.
+Scene on_floor(bool round, bool segment = true) {
+  Scene s = empty({{1, 2}, {2, 5}});
+  s.bodies = {rubber(scenes::box_body("block", {-1, 0}, {1, 1}, {4, 2}), s, "E", 100)};
+  Obstacle floor{"floor", Plane{{0.0, 0.0}, {0.0, 1.0}}};
+  if (round) floor.shape = Circle{{0.1, -3}, parameter(s, "R", 3)};
+  floor.rotate = Rotation{{0.0, -2.0}, {}, table({{0, 0.0}, {1, 0.0}, {2, parameter(s, "angle", 6)}})};
+  floor.move = {{'x', table({{0, 0.0}, {1, 0.0}, {2, parameter(s, "aside", 0.1)}})}};
+  s.obstacles = {floor};
+  s.contacts = {joint(s, "block.bottom", "floor", 0.1)};
+  s.contacts[0].segment = segment;
+  s.loads = {scenes::traction("block.right", {parameter(s, "load", 1), 0.0})};
+  s.supports = {scenes::support("block.top", {{'x', still}, {'y', table({{0, 0.0}, {1, -0.1}})}})};
+  s.responses = {response("x", Kind::reaction, "block.top", "x"), response("y", Kind::reaction, "block.top", "y"),
+                 response("slid", Kind::slip, "joint"), response("heat", Kind::dissipation, "joint")};
+  return s;
+}
+
+TEST(FiniteSegments, ObstaclesMoveAndTurnWithTheirFriction) {
+  for (const bool round : {false, true}) {
+    for (const Method& method : finite_schemes()) scenes::expect_derivatives_in_both_modes(on_floor(round), method);
+    // (a block of 8 by 4 is within 2 % of node-to-segment: both have the error of their mesh)
+    const auto integrated = run(on_floor(round), MonolithicAL{}), nodal = run(on_floor(round, false), MonolithicAL{});
+    for (const char* name : {"x", "y", "slid"})
+      EXPECT_NEAR(integrated.value(name), nodal.value(name), 0.05 * std::abs(nodal.value("y"))) << name;
+    const auto s = run(on_floor(round), MonolithicAL{});
+    for (std::size_t n = 0; n < s.trajectory.increments.size(); ++n)
+      EXPECT_LE(scenes::errors_of_tangent(s.model, s.slots, MonolithicAL{}, s.trajectory, n).largest(), 1e-10);
+  }
+}
+
+}  // namespace
+}  // namespace stickslip
