@@ -55,8 +55,8 @@ struct Slots {
                                            ///< one degree; empty where no obstacle rotates
 };
 
-/// What rounding may make of a point's gap, length: that of its coordinates; where their initial gap is exactly zero,
-/// that of the displacements alone, so that contacts which begin closed have the same branches under every load,
+/// Length up to which a point's gap may be rounding of the coordinates. Where its initial gap is exactly zero, it is
+/// rounding of displacements alone. Why: contacts that begin closed then have the same branches under every load,
 /// however small. `reach`: largest displacement of its nodes.
 template <class T>
 double tie_length(const ContactPoint& point, const PointGeometry<T>& geometry, double reach = 0) {
@@ -155,8 +155,8 @@ CurveFoot<T> foot_of_start(const Model& model, const ContactPoint& point, const 
   return foot_on_patch<T>(curve.patches[point.facing.patch], point.facing.xi, x, place);
 }
 
-/// Geometry against the place of a curve that a point faces at the start; where it faces none, gap and normal are such
-/// that it neither presses nor weighs: its distance, and against its own side.
+/// Geometry against the place of a curve that a point faces at the start. A point that faces none neither presses nor
+/// weighs: its gap is its distance, its normal is against its own side.
 template <class T>
 PointGeometry<T> against_curve(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
   PointGeometry<T> geometry;
