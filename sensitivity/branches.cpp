@@ -71,8 +71,7 @@ struct BoundRate {
 };
 
 bool is_at_corner(const FrictionLaw<double>& law, double pressure) {
-  if (!law.coefficient || !law.limit) return false;
-  return std::abs(*law.coefficient * pressure - *law.limit) <= weak_margin * *law.limit;
+  return law.corner() && law.distance_to_corner(pressure) <= weak_margin * *law.limit;
 }
 
 /// `moved`: derivative of the pressure.

@@ -32,8 +32,7 @@ Margins margins_of(const Model& model, const Slots<double>& slots, const State<d
                            ? bound - tangential(contact.traction, point.multiplier + 1)
                            : elastic * tangential(contact.slip, tangential_offset(model, p));
   margin.slip = reach / bound;
-  if (is_slipping(contact.state[p]) && law.coefficient && law.limit)
-    margin.slip = std::min(margin.slip, std::abs(*law.coefficient * pressure - *law.limit) / bound);
+  if (is_slipping(contact.state[p])) margin.slip = std::min(margin.slip, law.distance_to_corner(pressure) / bound);
   return margin;
 }
 

@@ -53,7 +53,7 @@ void project_point(const Traction<T, Tangents>& multiplier, const PointRegularis
     const bool augmented = cone == ConeRadius::augmented;
     const T pressure = augmented ? T(-trial.normal) : T(-multiplier.normal);
     if (!state) piece = friction.piece(value(pressure));
-    if (value(pressure) > 0 || augmented || piece == ContactState::limited) bound = friction.bound(pressure, piece);
+    if (value(pressure) > 0 || augmented || !friction.follows_pressure(piece)) bound = friction.bound(pressure, piece);
   }
   point.state = state ? *state : classify(trial, value(bound), value(rho.normal) * tie_length);
   if (point.state == ContactState::slip) point.state = piece;

@@ -48,7 +48,7 @@ struct Slots {
   std::vector<Depth<T>> depths;            ///< per body
   std::vector<PointGeometry<T>> geometry;  ///< per contact point
   std::vector<T> stiffness;                ///< per contact point: local nodal stiffness k_i (force per length)
-  std::vector<FrictionLaw<T>> friction;    ///< per contact; empty, and unread, where frictionless
+  std::vector<FrictionLaw<T>> friction;    ///< per contact; unread where frictionless
   std::vector<NodalLoad<T>> loads;         ///< per load
   std::vector<Matrix<T>> frames;           ///< per framed node: its frame, one vector a column
   std::vector<Vector<T>> spins;            ///< per contact point: displacement of its obstacle there when it rotates by

@@ -52,9 +52,16 @@ std::string count(const List& list, const std::string& noun) {
 }
 
 std::string law_in_words(const FrictionLaw<Number>& law) {
-  if (!law.coefficient) return "Tresca friction " + exact_number(law.limit->value);
-  const std::string coulomb = "Coulomb friction " + exact_number(law.coefficient->value);
-  return law.limit ? coulomb + ", limited to " + exact_number(law.limit->value) : coulomb;
+  const auto coulomb = [&] { return "Coulomb friction " + exact_number(law.coefficient->value); };
+  switch (law.kind()) {
+    case FrictionKind::coulomb:
+      return coulomb();
+    case FrictionKind::limited_coulomb:
+      return coulomb() + ", limited to " + exact_number(law.limit->value);
+    case FrictionKind::tresca:
+      return "Tresca friction " + exact_number(law.limit->value);
+  }
+  return "";
 }
 
 std::string contact_lines(const Model& model) {
