@@ -129,8 +129,9 @@ ContactProblem contact_problem(const ContactInput<T>& input, const CondensedEngi
     ContactProblem::Point at{point.multiplier, point.tangents > 0 ? point.multiplier + 1 : -1};
     const double local = value(input.slots.stiffness[p]) / value(geometry.area);
     if (point.tangents > 0)
-      at.friction = input.slots.friction[point.contact].template as<double>([](const T& x) { return value(x); });
-    if (at.friction.limit) *at.friction.limit /= local;
+      at.friction = input.slots.friction[point.contact]
+                        .template as<double>([](const T& x) { return value(x); })
+                        .in_units_of(local);
     if (stored) {
       at.yield_normal = local / value(input.rho[p].normal);
       at.yield_tangential = local / value(input.rho[p].tangential);

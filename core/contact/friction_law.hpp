@@ -86,6 +86,12 @@ struct FrictionLaw {
   /// Numbers that it consists of.
   int size() const { return (coefficient ? 1 : 0) + (limit ? 1 : 0); }
 
+  /// The law of tractions in units of `stress`.
+  FrictionLaw in_units_of(const T& stress) const {
+    FrictionLaw law = *this;
+    if (limit) *law.limit /= stress;
+    return law;
+  }
   template <class U, class Cast>
   FrictionLaw<U> as(Cast&& cast) const {
     std::optional<U> mu, most;
