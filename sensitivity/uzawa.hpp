@@ -360,8 +360,7 @@ bool pull_back_fixed_point(AdjointProblem<E>& problem, RecordedEquilibrium<E>& r
   return true;
 }
 
-/// The fixed point with the factor of kappa_s rho. The fixed point does not depend on rho, so kappa_s rho is a
-/// constant.
+/// The fixed point with the factor of kappa_s rho, which is a constant: the fixed point does not depend on rho.
 template <class E>
 bool pull_back_preconditioned(const UzawaAL& method, AdjointProblem<E>& problem, const State<double>& previous,
                               const Increment<double>& increment) {
