@@ -7,10 +7,11 @@
 ///              or while one is rounding
 ///
 /// Weights are numbers of the iteration, not of the scene: they are formed from the primal parts and not
-/// differentiated, which the fixed point does not notice. An extrapolated x is on trial: where its residual is not
-/// below 0.9 of the last one, or q of it where the contraction q is slower, the plain step from there is taken in its
-/// place, which has cost one evaluation. Two of these are free; more must have been earned, one each by an
-/// extrapolation worth two plain steps, so that an iteration is never much worse than plain. [IT69], [WN11]
+/// differentiated, and the fixed point does not depend on them. An extrapolated x is on trial. It is refused where its
+/// residual is not below 0.9 of the last one; where the contraction q is slower than 0.9, not below q of it. Then the
+/// plain step from the last x that was not refused takes its place. A refusal costs one evaluation. Two are free; each
+/// further one must be earned, by an extrapolation worth two plain steps. So an iteration is never much worse than a
+/// plain one. [IT69], [WN11]
 #pragma once
 
 #include <vector>
@@ -24,17 +25,17 @@ namespace stickslip {
 /// Differences of two arguments of one map, and of their images.
 struct Secant {
   Vector<double> argument, image;
-  double noise = 0;  ///< of the image, relative to the length of the argument
+  double noise = 0;  ///< of the image, over the length of the argument
 };
 
-/// Contraction of a linear map A out of some of its secants, in the order in which they were met: its spectral radius
-/// on the space of their arguments (Arnoldi, where they are successive). A direction, new but for what the ones before
-/// it hold, of whose image more than 2 % may be noise is left out; where fewer than two are left, it is the ratio of
-/// the lengths of the last. pre: no argument is zero.
+/// Contraction of a linear map A from some of its secants, in the order in which they were met: the spectral radius of
+/// A on the space of their arguments (Arnoldi, where they are successive). Each secant counts by the part of its
+/// argument that is new beside those before. It is left out where more than 2 % of the image of that part may be noise.
+/// Where fewer than two are left, the result is the ratio of the lengths of the last secant. pre: no argument is zero.
 double contraction(const std::vector<Secant>& secants);
 
-/// Anderson's gamma, one weight a difference of successive residuals, the oldest first; zero for those that are left
-/// out: lengths up to `noise` are rounding.
+/// Anderson's gamma: one weight a difference of successive residuals, the oldest first; zero for differences that are
+/// left out. `noise`: a length up to this is rounding.
 Vector<double> anderson_weights(const Matrix<double>& differences, const Vector<double>& residual, double noise);
 
 /// What the next argument of an accelerated iteration is made from: the last evaluations of one map.

@@ -19,10 +19,10 @@ struct ContactTrial {
   }
 };
 
-/// That of a point after a step in a branch that solved for its traction: of a closed point the traction says its
-/// state, for its gap is what the curvature of surfaces left; of an open one its gap. (Where geometry is linear both
-/// say the same but for rounding.) `seen`: the multipliers that stand beside gap and slip, which differ from those that
-/// were solved for where these are tractions of points with given multipliers (Compliance).
+/// The trial of a point after a step in a branch that solved for its traction. The traction says the state of a closed
+/// point, for its gap is what the curvature of surfaces left. The gap says that of an open one. (Where geometry is
+/// linear both say the same but for rounding.) `seen`: the multipliers that stand beside gap and slip. They differ from
+/// those that were solved for where these are tractions of points with given multipliers (Compliance).
 template <class T>
 ContactTrial trial_after(const ContactInput<T>& input, int p, const Vector<T>& multiplier, const Vector<T>& seen,
                          ContactState branch, const ContactField<T>& field) {
@@ -45,9 +45,10 @@ ContactTrial trial_after(const ContactInput<T>& input, int p, const Vector<T>& m
   return trial;
 }
 
-/// Gives points that start on their cone, up to 1e-8, the branch of the last increment: one that slipped then starts
-/// there, off it by what that increment's tolerance left, and rounding must not decide where the path begins. If it
-/// slips on, the front of slip need not be found anew; if it turns back, the first step takes it inside its cone.
+/// Gives points that start on their cone, up to 1e-8, the branch of the last increment. Why: a point that slipped then
+/// starts there, off the cone by what that increment's tolerance left, and rounding must not decide where the path
+/// begins. If it slips on, the front of slip need not be found anew. If it turns back, the first step takes it inside
+/// its cone.
 template <class T>
 void resume_on_cone(const ContactInput<T>& input, const Vector<T>& multiplier, std::span<const ContactState> last,
                     ContactField<T>& field) {

@@ -1,14 +1,15 @@
-/// What the augmentations of one increment tell of themselves: how far they are from their fixed point, how fast they
-/// get there, and whether they ever will.
+/// What the augmentations of one increment tell of their own convergence: how far they are from their fixed point, how
+/// fast they get there, and whether they ever will.
 ///
-///   contraction   of the map lambda -> t(u(lambda), lambda), from differences of its values in the same contact
-///                 states, as far as they are above rounding and what the inner solves have left
-///   error left    q / (1 - q) times the last update, the rest of its geometric series
+///   contraction   q of the map lambda -> t(u(lambda), lambda), from differences of its values in the same contact
+///                 states, as far as these stand above rounding and above the residuals of the inner solves
+///   error left    q / (1 - q) times the last update: the sum of the geometric series of updates to come
 ///   two-cycle     three updates in a row undo each other, but for 1e-6
-///   infeasible    a constraint that does not yield: its multiplier grows by enough to close a gap of 1e-8 of the
-///                 displacements through the local stiffness k, and the gap moves by less than 1e-6 of that, three
-///                 times in a row. Against a body of stiffness k it would move by about the whole, whatever rho is.
-///                 Growth that leads out of the state's share of the cone ends in another state, and is left to go on
+///   infeasible    a constraint whose gap does not answer to its multiplier, three times in a row. The change of the
+///                 multiplier would close a gap of 1e-8 of the displacements through the local stiffness k, and the gap
+///                 moves by less than 1e-6 of that. Against a body of stiffness k it would move by about the whole,
+///                 whatever rho is. A change that leads out of the state's part of the cone ends in another state: it
+///                 does not count
 #pragma once
 
 #include <string>
@@ -42,45 +43,51 @@ class Augmentations {
   Augmentations(const Model& model, const Slots<T>& slots, UzawaAL::Acceleration acceleration)
       : model_(model), slots_(slots), acceleration_(acceleration), stuck_(model.points.size(), 0) {}
 
-  /// Takes in the map's value at `multiplier`; `reach`: largest displacement of a contact node; `left`: share of the
-  /// residual it started from that the inner solve has left.
+  /// Takes in one value of the map: `field` at `multiplier`. `reach`: largest displacement of a contact node. `left`:
+  /// residual of the inner solve, over the one that it started from.
   void record(const Vector<T>& multiplier, const ContactField<T>& field, double reach, double left);
 
   bool settled() const { return settled_; }            ///< no state changed since the last augmentation
   double contraction() const { return contraction_; }  ///< 0: not measured yet
   double update() const { return values_or_zero(update_); }
+  /// Largest error of a multiplier: update() times q / (1 - q), and at least update(). q = 0 is not measured: update().
+  /// q > 1 - 1e-4 gives update() too. Updates that do not fall come from constraints that repeat one another: rounding
+  /// in the gap pushes their multipliers for ever, and moves nothing. A rho so small that updates truly fall that
+  /// slowly is seen by the violation, which has a tolerance of its own.
   double error_left() const {
-    // beyond it, a constraint that others repeat: what is left of it, at rounding, pushes its multiplier for ever,
-    // which moves nothing. Of a rho that small by itself the violation, held against its own tolerance, tells the error
     constexpr double not_falling = 1 - 1e-4;
     const double q = contraction_;
     if (q == 0 || q > not_falling) return update();
     return update() * std::max(1.0, q / (1 - q));
   }
+  /// In the same states the last update has not fallen to half of the one before.
   bool stalled() const { return settled_ && last_update_ > 0 && 2 * update_.norm() > last_update_; }
-  /// The updates have not fallen for long: a rho far above the stiffness of the other body turns what the inner solves
-  /// leave into tractions.
+  /// In the same states no update has fallen to 0.7 of the least one for 50 augmentations. The cause is a rho far above
+  /// the stiffness of the other body: it turns residuals of the inner solves into tractions.
   bool exhausted() const { return settled_ && idle_ >= 50; }
-  /// Fast enough that updates which do not fall are rounding.
+  /// q < 0.9: so fast a map would have reached rounding, so updates that do not fall are rounding.
   bool converges() const { return contraction_ > 0 && contraction_ < 0.9; }
   const std::vector<double>& violations() const { return violations_; }  ///< per point, length
   const std::vector<double>& last_violations() const { return last_violations_; }
   double violation() const {
     return violations_.empty() ? 0 : *std::max_element(violations_.begin(), violations_.end());
   }
-  /// Whether all that is left is what a nodal force makes of the tractions, and of the gaps through k.
+  /// Whether a nodal force of this size explains what is left: each update, as a traction, and each violation, as a gap
+  /// through the local stiffness k.
   bool is_within(double force) const;
   bool alternates() const { return undone_ >= patience; }
-  /// Whether the update of what the scalar carries still falls, asked once the value has settled.
+  /// Whether the derivatives that the scalar carries (methods/carried.hpp) still converge. Asked once the value has
+  /// settled. They have converged where their update is below 1e-13 of themselves, or no longer falls. On a double:
+  /// false.
   bool carried_moves() {
     const bool moves = carried_ > 1e-13 * Carried<T>::size(field_.traction) && carried_ < settled_carried_;
     settled_carried_ = carried_;
     return moves;
   }
-  /// The next value is that of another map: rho has changed.
+  /// Says that rho has changed, so that the next value is that of another map.
   void change_map() { same_map_ = false; }
-  /// The point with the largest violation that does not yield, in words of the scene; empty where none has more than
-  /// `negligible`.
+  /// Of the points whose gap does not answer to their multiplier, the one with the largest violation, in words of the
+  /// scene. Empty where no violation is above `negligible`.
   std::string unyielding(double negligible) const;
 
  private:
@@ -96,14 +103,14 @@ class Augmentations {
   UzawaAL::Acceleration acceleration_;
   bool settled_ = false, same_map_ = true;
   double contraction_ = 0, last_update_ = 0, carried_ = 0;
-  double inner_error_ = 0;   ///< of the last value, which the inner solve has left
-  double least_update_ = 0;  ///< in the present states
-  int idle_ = 0;             ///< augmentations since it last fell, to 0.7
+  double inner_error_ = 0;   ///< part of the update (norm) that the last inner solve left uncertain
+  double least_update_ = 0;  ///< least norm of an update in the present states
+  int idle_ = 0;             ///< augmentations since an update fell to 0.7 of the least
   double settled_carried_ = std::numeric_limits<double>::infinity();
   Vector<double> update_;
   std::vector<double> violations_, last_violations_;
   std::vector<Secant> secants_;  ///< the last few, of the same map in the same states
-  std::vector<int> stuck_;       ///< per point: augmentations in a row that it has not yielded to
+  std::vector<int> stuck_;       ///< per point: augmentations in a row that its gap has not answered to
   int undone_ = 0;
   Vector<T> multiplier_;
   ContactField<T> field_;
@@ -150,17 +157,18 @@ void Augmentations<T>::record_rate(const Vector<T>& multiplier, const ContactFie
   const Vector<double> moved = values(multiplier - multiplier_);
   const double length = moved.norm(), rounding = 8 * unit_roundoff * values(field.traction).norm();
   const double noise = (rounding + before + inner_error_) / length;
-  // rounding has no rate; nor have values between which the inner solves saw nothing to solve for
+  // rounding has no rate; nor have values so close that an inner solve found nothing to solve
   if (100 * rounding > length || noise > 0.5) return;
   secants_.push_back({moved, values(field.traction - field_.traction), noise});
   if (secants_.size() > kept_secants) secants_.erase(secants_.begin());
   const double q = stickslip::contraction(secants_);
-  // plain updates turn into the slowest mode, which accelerated ones suppress once they have shown it
+  // Plain updates align with the slowest mode, so the last q counts. Accelerated ones suppress that mode once they have
+  // shown it, so the largest q counts.
   const bool plain = acceleration_ == UzawaAL::Acceleration::none || secants_.size() == 1;
   if (plain || q < 1) contraction_ = plain ? q : std::max(contraction_, q);
 }
 
-/// Whether a multiplier that grows by `by` for ever stays closed, and sticking if it sticks.
+/// Whether a multiplier that goes on to grow by `by` stays closed, and sticks if it sticks.
 template <class T>
 bool Augmentations<T>::keeps_state(const Vector<double>& by, const ContactField<T>& field, int p) const {
   const auto& point = model_.points[p];
@@ -169,6 +177,9 @@ bool Augmentations<T>::keeps_state(const Vector<double>& by, const ContactField<
   return by.tail(point.tangents).norm() <= -slots_.friction[point.contact].slope_at_infinity() * by[0];
 }
 
+/// Whether a point answers to the last change of its multiplier. `pushed`: the motion that the change would cause in a
+/// body of the local stiffness k. Where that is below `telling` of the displacements it says nothing, and the point
+/// counts as answering. Else a constraint that moves by less than `nothing` of it does not answer.
 template <class T>
 bool Augmentations<T>::yields(const Vector<T>& multiplier, const ContactField<T>& field, int p, double reach) const {
   constexpr double telling = 1e-8, nothing = 1e-6;

@@ -1,14 +1,14 @@
 /// A run whose states would take more memory than they may: which of them stay whole, and how the others come back.
 ///
-/// Of a state the displacement and what bodies remember grow with the bodies; without them it is thin. Of N steps the
-/// first n leave thin states behind, but for every s-th, and come back by solving s - 1 of them again from the last
-/// whole one, a stretch at a time. With room for M whole states
+/// The displacement in a state, and what bodies remember, grow with the bodies; a state without them is thin. Of N
+/// steps the first n leave thin states behind, but for every s-th. Thin states come back a stretch at a time: its s - 1
+/// steps are solved again from the last whole state. With room for M whole states
 ///
 ///   whole  N - n + n / s + (s - 1) <= M,      solved again  n - n / s
 ///
-/// s is the least that there is room for, so that hardly more steps are solved again than there is no room for; where
-/// no s is enough, s = sqrt(N) takes the least, 2 sqrt(N) states. A stretch begins with the scales of the run and the
-/// factor that it had there, and so comes out the same to the last bit. Compare [GW00].
+/// s is the least that there is room for, so that hardly more steps are solved again than there is no room for. Where
+/// there is room for no s, s = sqrt(N) needs the least, 2 sqrt(N) states. A stretch begins with the scales and the
+/// factor that the run had there, and so comes out the same to the last bit. Compare [GW00].
 #pragma once
 
 #include <memory>
@@ -89,7 +89,7 @@ class Checkpoints {
   const std::shared_ptr<Condensation<T>>& condensation() const { return condensation_; }
   /// Increments up to the end of a step.
   std::size_t end(std::size_t step) const { return ends_[step]; }
-  /// Where the stretch begins that holds increment n, which is thin; and its last step.
+  /// Where the stretch that holds increment n, which is thin, begins.
   const Start& start_of(std::size_t n) const {
     std::size_t k = starts_.size();
     while (k > 1 && end(starts_[k - 1].step) > n) --k;

@@ -26,8 +26,8 @@ inline NodeRange nodes_of_body(const Model& model, std::size_t b) {
   return {model.bodies[b].first_node, model.bodies[b].first_node + model.bodies[b].mesh.node_count};
 }
 
-/// How an elastic body can move as a whole although its supports, and its contact points in these states, hold it, in
-/// 2D: "along (0, 1)" or "about (X, Y)"; empty where it cannot. What it touches counts as fixed.
+/// How an elastic body can move as a whole although its supports and its contact points, in these states, hold it:
+/// "along (0, 1)" or "about (X, Y)"; empty where it cannot. In 2D. What it touches counts as fixed.
 template <class T>
 std::string free_motion(const Model& model, const Slots<T>& slots, std::size_t b,
                         const std::vector<ContactState>& states) {
@@ -128,9 +128,9 @@ std::string words_of_flow(const Model& model, const Slots<T>& slots, const State
   return "";
 }
 
-/// Supports may drive a point into its obstacle, against a method that `prevents_penetration`. A body without a support
-/// of which no contact point sticks may move without resistance, where the tangent is singular, and so may one whose
-/// supports leave a motion free.
+/// Two causes. Supports may drive a point into its obstacle, against a method that `prevents_penetration`. A body may
+/// move without resistance where the tangent is singular: one without a support of which no contact point sticks, or
+/// one whose supports leave a motion free.
 template <class T>
 void name_failure(const Model& model, const Slots<T>& slots, double time, bool prevents_penetration,
                   Increment<T>& failed) {

@@ -6,15 +6,17 @@
 
 namespace stickslip {
 
-bool has_unknown_multipliers(const Method& method) { return std::holds_alternative<MonolithicAL>(method); }
+bool has_unknown_multipliers(const Method& method) {
+  return std::visit([](const auto& m) { return m.has_unknown_multipliers; }, method);
+}
 
-ConeRadius cone_radius(const Method& method) {
+ConeRadius cone_radius_of(const Method& method) {
   return std::visit([](const auto& m) { return cone_radius(m); }, method);
 }
 
 EnginePrice predict_price(const Model& model, const Method& method, const FactorSize& factor) {
   const bool unknown = has_unknown_multipliers(method);
-  return predict_price(model, unknown, detail::symmetry_of(model, unknown, cone_radius(method)), factor);
+  return predict_price(model, unknown, detail::symmetry_of(model, unknown, cone_radius_of(method)), factor);
 }
 
 bool condenses(const Model& model, const Method& method, LinearAlgebra::Engine engine,

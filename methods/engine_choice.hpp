@@ -6,10 +6,10 @@
 
 namespace stickslip {
 
-/// Whether the tangent has the multipliers among its unknowns.
+/// Whether multipliers are unknowns of a method's systems, and the radius of its cone. (Named unlike the methods' own
+/// cone_radius(): a method that lacks one would convert to Method.)
 bool has_unknown_multipliers(const Method& method);
-
-ConeRadius cone_radius(const Method& method);
+ConeRadius cone_radius_of(const Method& method);
 
 /// Price of a run by each engine. `factor`: of the bodies (bodies_factor).
 EnginePrice predict_price(const Model& model, const Method& method, const FactorSize& factor);
@@ -24,7 +24,7 @@ template <class T>
 void make_engine(const Model& model, const Slots<T>& slots, const Method& method, const RunOptions& options,
                  Workspace<T>& workspace) {
   const bool unknown_multipliers = has_unknown_multipliers(method);
-  const ConeRadius cone = cone_radius(method);
+  const ConeRadius cone = cone_radius_of(method);
   const auto engine = options.linear_algebra.engine;
   std::shared_ptr<Condensation<T>> condensed;  // bodies among others
   if (can_condense(model) && engine != LinearAlgebra::Engine::sparse) {

@@ -40,21 +40,22 @@ struct Anchor {
 /// Whether lambda stays as it is given, or is solved for.
 enum class Multipliers { given, unknown };
 
-/// Given multipliers as tractions that are solved for, point by point: of a stiff point an iterate of the traction
-/// follows from the step, and not from the gap, which any curvature throws off by many tractions. With
+/// Given multipliers, with tractions that are solved for, point by point. Why: of a stiff point any curvature changes
+/// the gap by many tractions over the stiffness, so an iterate of the traction is taken from the step and not from the
+/// gap. With
 ///
 ///   t = P_mu(lambda + rho g~),   g~ = g - (lambda - given) / stiffness,   A (t - lambda) = 0
 ///
-/// lambda = P_mu(given + stiffness g) at the solution, whatever rho is.
+/// the solution has lambda = P_mu(given + stiffness g), whatever rho is.
 template <class T>
 struct Compliance {
-  Vector<T> given;  ///< lambda that stays
+  Vector<T> given;  ///< the multipliers that are given
   Vector<T> share;  ///< rho over the stiffness of the method, each component; 1: no traction is solved for
-  /// What stands for lambda in the trial lambda + rho g~ without the gap.
+  /// The part of the trial lambda + rho g~ that does not depend on the gap.
   Vector<T> seen(const Vector<T>& lambda) const { return lambda + share.cwiseProduct(given - lambda); }
 };
 
-/// Where a step of a path ends (methods/path.hpp): at an arc length from the state that is left,
+/// Where a step of a path ends (methods/path.hpp): at an arc length from the state at its beginning,
 ///
 ///   |u - u'|^2 / length^2 + (t - t')^2 / span^2 = 1        |u|: root mean square over the nodes that are free
 struct Arc {
@@ -71,16 +72,16 @@ struct EquilibriumTask {
   const ContactInput<T>& contact;
   Multipliers multipliers = Multipliers::given;
   const Anchor<T>& anchor;  ///< may be empty
-  /// States of the last increment, which points resume that start on their cone; empty where none is to.
+  /// States of the last increment, for points that start on their cone (methods/assumed_branches.hpp); empty: for none.
   std::span<const ContactState> resumed = {};
-  /// Share of its first residual at which a solve that is one of many may also end, while states still change; 0: it
-  /// does not.
+  /// Of a solve that is one of many: it may also end at this share of its first residual, while states still change. 0:
+  /// it does not.
   double forcing = 0;
-  /// Displacement of the state that is left, all dofs; nullptr: what supports prescribe stays what it is.
+  /// Displacement of the last state, all dofs; nullptr: what supports prescribe stays what it is.
   const Vector<T>* from = nullptr;
-  /// Of given multipliers whose tractions are solved for; nullptr: none are.
+  /// Tractions that are solved for in place of given multipliers; nullptr: none are.
   const Compliance<T>* compliance = nullptr;
-  /// Of a step whose time is unknown; nullptr: it is given.
+  /// The arc that ends a step whose time is unknown; nullptr: the time is given.
   const Arc* arc = nullptr;
   /// Whether lambda is an unknown of the engine's systems.
   bool solves_for_multipliers() const { return multipliers == Multipliers::unknown; }
@@ -109,8 +110,8 @@ struct Equilibrium {
   ContactField<T> field;
   int iterations = 0;
   bool rough = false;  ///< ended by `forcing`, short of the tolerance
-  /// A tangent on the way was (Engine::reversed): there may be other solutions. (Of bodies whose tangent is not
-  /// constant it tells nothing.)
+  /// Some tangent of the iterations had a determinant of the other sign (Engine::reversed): there may be other
+  /// solutions. It tells nothing of bodies whose tangent is not constant.
   bool reversed = false;
   std::vector<IterationRecord> history;
 };

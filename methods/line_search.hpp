@@ -5,11 +5,11 @@
 
 namespace stickslip {
 
-/// Moves the unknowns, and their evaluation, along a step; returns the share of it. The full step is taken where it
-/// lands in another active set, for that is how the set is found; within one set the residual must fall: backtracking,
+/// Moves the unknowns, and their evaluation, along a step; returns the share of the step. A full step that lands in
+/// another active set is taken, for that is how the set is found. Within one set the residual must fall: backtracking,
 /// down to 1/64. A trial that is not finite is always halved; where all are, the full step is taken as it is. Points
-/// that slide over other surfaces go no further than a facet at once: beyond, the tangent knows nothing.
-/// `used`: states of the last tangent.
+/// that slide over other surfaces go no further than a facet at once, beyond which the tangent knows nothing. `used`:
+/// states of the last tangent.
 template <class T, class E>
 double search_line(Evaluator<T, E>& evaluate, const NewtonStep<T>& step, const std::vector<ContactState>& used,
                    const NewtonOptions& options, Unknowns<T>& unknowns, detail::Evaluation<T>& at) {

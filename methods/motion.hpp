@@ -10,12 +10,12 @@
 /// regular, and for a large alpha the points know little of each other (alpha: methods/motion_pace.hpp). After each
 /// step the method tries without the term: nothing but a solution of the unmodified equations counts.
 ///
-/// Where there may be several solutions (a tangent on the way has the other sign of its determinant, friction may hold
-/// a body between surfaces, or mu reaches a critical value), the one is taken in whose branches the motion comes to
-/// rest: path, D and alpha say which, not rho and not the method. With few points the motion is followed by trying all
-/// branches (methods/solutions.hpp), which also tells that there is no solution, and the method starts from the one
-/// found. Proximal point method: R. T. Rockafellar, SIAM J. Control Optim. 14 (1976) 877-898; measured against others
-/// in core/README.md.
+/// There may be several solutions where the determinant of a tangent on the way has another sign, where friction may
+/// hold a body between surfaces, and where mu reaches a critical value. Then the solution is taken in whose branches
+/// the motion comes to rest. Path, D and alpha say which; rho and the method do not. With few points the motion is
+/// followed by trying all branches (methods/solutions.hpp): that also tells that there is no solution. The method then
+/// starts from the one found. Proximal point method: R. T. Rockafellar, SIAM J. Control Optim. 14 (1976) 877-898;
+/// measured against others in core/README.md.
 #pragma once
 
 #include "methods/monolithic.hpp"
@@ -29,8 +29,8 @@ namespace stickslip {
 
 namespace detail {
 
-/// Whether friction alone may hold some body between surfaces that are not parallel: one without a support that touches
-/// what it touches along more than one normal.
+/// Whether friction alone may hold some body between surfaces that are not parallel: a body without a support whose
+/// contacts have more than one normal.
 template <class T>
 bool is_wedged(const Model& model, const Slots<T>& slots) {
   constexpr double parallel = 1e-9;
@@ -54,7 +54,7 @@ bool is_wedged(const Model& model, const Slots<T>& slots) {
   });
 }
 
-/// Adds to an increment what an attempt at it cost that was made before.
+/// Adds to an increment the cost of an earlier attempt at it.
 template <class T>
 void add_cost(const Increment<T>& before, Increment<T>& increment) {
   increment.history.insert(increment.history.begin(), before.history.begin(), before.history.end());
@@ -84,7 +84,7 @@ struct Solutions {
   bool feasible = true;                ///< some motion violates no constraint
 };
 
-/// Nothing where points are too many, or bodies can move although all of them stick.
+/// Nothing where there are too many points, or bodies can move although all points stick.
 template <class M, class T, class E>
 std::optional<Solutions<T>> try_all_branches(const M& method, Run<T, E>& run, const State<T>& previous,
                                              const std::vector<double>& factor, double time) {
@@ -125,8 +125,8 @@ Increment<T> without_solution(Increment<T> direct, bool feasible) {
   return direct;
 }
 
-/// The increment in the solution of all that the motion comes to rest in; nothing where it comes to none, or the method
-/// does not stay there. `direct`: what the method found on its own; `before`: scales before that.
+/// The increment in that one of all solutions in which the motion comes to rest. Nothing where the motion comes to no
+/// rest, or the method leaves the solution. `direct`: what the method found on its own. `before`: scales before that.
 template <class M, class T, class E>
 std::optional<Increment<T>> take_resting_solution(const M& method, Run<T, E>& run, const State<T>& previous,
                                                   const std::vector<double>& factor, double time,
@@ -146,9 +146,9 @@ std::optional<Increment<T>> take_resting_solution(const M& method, Run<T, E>& ru
 }
 
 /// Follows the overdamped motion from `previous` until the method solves the unmodified equations. `several`: there may
-/// be more solutions; then that solution must have the branches of the step before, and neither it nor any step but the
-/// first may be farther away than all the way so far: it could as well belong to another one. Its history holds all
-/// iterations; where no attempt succeeds its status is that of the last.
+/// be more solutions. Then the solution must have the branches of the step before. Neither the solution, nor any step
+/// but the first, may then be farther away than all the way so far: it could as well belong to another solution. The
+/// history holds all iterations. Where no attempt succeeds the status is that of the last.
 template <class M, class T, class E>
 Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& previous, const std::vector<double>& factor,
                            double time, bool several) {

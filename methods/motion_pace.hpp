@@ -1,16 +1,16 @@
 /// The pace of the overdamped motion (methods/motion.hpp), whoever makes its steps: the method itself, or the
 /// enumeration of all branches (methods/solutions.hpp).
 ///
-/// alpha, the share of the local stiffness that damps a step, starts at 1, falls to a fifth after each step and grows
-/// eightfold where one fails. A solution farther away than all the way so far could as well belong to another branch of
-/// solutions: neither a step but the first nor the rest at the end may lead there.
+/// alpha is the share of the local stiffness that damps a step. It starts at 1, falls to a fifth after each step, and
+/// grows eightfold where a step fails. A solution farther away than all the way so far could as well belong to another
+/// branch of solutions: no step but the first, and not the rest at the end, may lead there.
 #pragma once
 
 namespace stickslip {
 
 class MotionPace {
  public:
-  /// `negligible`: length of a way that is none.
+  /// `negligible`: a way up to this length counts as none.
   explicit MotionPace(double negligible = 0) : negligible_(negligible) {}
 
   double alpha() const { return alpha_; }

@@ -56,9 +56,10 @@ inline constexpr const char* kept_message =
 template <class T>
 using KeptSolution = std::tuple<NewtonEnd, Unknowns<T>, Evaluation<T>>;
 
-/// Whether points that slide along curves give another way on from an end. Where states cycle because points go to and
-/// fro at a vertex, they are kept on their patches; from the solution of that there may be a way to one in which all
-/// points face what they are on. Where there is none, the end is that of the kept points, and says so.
+/// Whether points that slide along curves give another way on from an end. States may cycle because points go to and
+/// fro at a vertex: then the points are kept on their patches. From the solution of that there may be a way to a
+/// solution in which all points face what they are on. Where there is none, the end is that of the kept points, and
+/// says so.
 template <class T, class E>
 bool goes_on(Evaluator<T, E>& evaluate, NewtonStop& stop, NewtonEnd& end, Unknowns<T>& unknowns, Evaluation<T>& at,
              std::optional<KeptSolution<T>>& kept) {

@@ -15,11 +15,15 @@ struct NewtonEnd {
   bool rough = false;  ///< short of the tolerance, as `forcing` allows
 };
 
-/// Converged: all residuals within the tolerance, and no state changed since the last tangent. Where they stop falling
-/// at the level of their own rounding the status is converged_at_roundoff; where they do so above it, but close to the
-/// solution, stagnated. A set of states that is met again without half of its residual gone is a cycle: in 2D a step
-/// depends on the set alone, so that all would repeat. (Where it hangs on the place too, to let sets repeat made the
-/// path chaotic, and the penalty no faster.) [AC91], [HSW08]
+/// How the iterations end:
+///
+///   converged               all residuals within the tolerance, and no state changed since the last tangent
+///   converged_at_roundoff   residuals stop falling at the level of their own rounding
+///   stagnated               residuals stop falling above that level, but close to the solution
+///   cycle                   a set of states is met again, with more than half of its residual left
+///
+/// Why a cycle: in 2D a step depends on the set of states alone, so that all would repeat. (Where a step depends on the
+/// place too, letting sets repeat made the path chaotic, and the penalty no faster.) [AC91], [HSW08]
 class NewtonStop {
  public:
   /// `extra`: iterations that follow the one that has converged, for a derivative that rides on the scalar.

@@ -11,8 +11,8 @@ namespace stickslip {
 
 namespace detail {
 
-/// A constraint that supports decide takes its multiplier from the gap as a penalty of the local stiffness k / A would,
-/// step by step, also where rho is smaller: steps of rho would not get to the bound of friction.
+/// A constraint that supports decide takes its multiplier from the gap, step by step, as a penalty of the local
+/// stiffness k / A would. That holds also where rho is smaller: steps of rho would not reach the bound of friction.
 template <class T>
 void yield_decided(const ContactInput<T>& input, const std::vector<char>& decided,
                    std::vector<PointTangent<T>>& tangents) {
@@ -69,7 +69,8 @@ void multiply_by_rho(const ContactInput<T>& input, Matrix<T>& l) {
 template <class T>
 class OwnTractions {
  public:
-  /// `tangents`: in lambda as contact points see it; they become those in the displacements alone.
+  /// `tangents`: with respect to displacement and to lambda as the points see it. They become tangents with respect to
+  /// the displacement alone.
   void eliminate(const EquilibriumTask<T>& task, std::vector<PointTangent<T>>& tangents) {
     points_.clear();
     for (std::size_t p = 0; p < tangents.size(); ++p) {
@@ -147,9 +148,9 @@ class NewtonTangent {
       decided_ = decided_elsewhere(model, slots, &field);
   }
 
-  /// Prepares the engine to solve with the tangent in `branches`. Where that is singular while points are open, as of a
-  /// body that nothing holds but the contact it is about to make, they are presumed closed, in `branches` too: those
-  /// that should not be are in tension then, and open. False where the tangent stays singular.
+  /// Prepares the engine to solve with the tangent in `branches`. It may be singular while points are open, as of a
+  /// body that nothing holds but the contact it is about to make. Then open points are presumed closed, in `branches`
+  /// too: those that should not be are in tension next, and open. False where the tangent stays singular.
   bool factorise(const Unknowns<T>& unknowns, std::vector<ContactState>& branches);
   /// The same in these branches alone.
   bool factorise_in(const std::vector<ContactState>& branches, const Unknowns<T>& unknowns);
@@ -175,7 +176,7 @@ class NewtonTangent {
   std::vector<PointTangent<T>> tangents_;
   detail::OwnTractions<T> own_;  ///< where tractions are solved for point by point
   bool redundant_ = false;
-  int presumptions_ = 3;  ///< left
+  int presumptions_ = 3;  ///< how often open points may still be presumed closed
 };
 
 template <class T, class E>
@@ -219,9 +220,9 @@ NewtonStep<T> NewtonTangent<T, E>::step(const Vector<T>& rows_u, const Vector<T>
   return step;
 }
 
-/// With K x = -R and K y = df_ext/dt a step is x + y dt, and dt is what takes it to the arc: of two places on that the
-/// one in the direction of the iterate, at the very beginning of a path that in the direction of the load; the nearest
-/// to the arc where the line misses it.
+/// A step along a path is x + y dt, with K x = -R and K y = df_ext/dt; dt takes it to the arc. Of the two places where
+/// that line meets the arc, the one in the direction of the iterate is taken; at the very beginning of a path, the one
+/// in the direction of the load. Where the line misses the arc, its nearest place is taken.
 template <class T, class E>
 NewtonStep<T> NewtonTangent<T, E>::step_along(const Arc& arc, const Unknowns<T>& unknowns, const Vector<T>& rows_u,
                                               const Vector<T>& rows_l) {

@@ -1,4 +1,7 @@
 /// Options of the methods, with their defaults, meaning and range. One struct a method; `Method` is the closed set.
+///
+/// Each says its name; the option that rho is made from (regularisation), with its name and the multiple of the local
+/// stiffness that "auto" stands for (automatic_multiple); and whether multipliers are unknowns of the systems solved.
 #pragma once
 
 #include <optional>
@@ -27,14 +30,19 @@ struct Regularisation {
 struct Penalty {
   static constexpr std::string_view name = "penalty";
   static constexpr double automatic_multiple = 1e3;
+  static constexpr std::string_view regularisation_name = "stiffness";
+  static constexpr bool has_unknown_multipliers = false;
   Regularisation stiffness;
   Number tangential_ratio = 1.0;  ///< tangential over normal penalty; > 0
   NewtonOptions newton;
+  Regularisation& regularisation() { return stiffness; }
 };
 
 struct UzawaAL {
   static constexpr std::string_view name = "uzawa_al";
   static constexpr double automatic_multiple = 10;
+  static constexpr std::string_view regularisation_name = "scale";
+  static constexpr bool has_unknown_multipliers = false;
   static constexpr double automatic_oversize = 1e3;  ///< of the oversized scheme
   enum class Acceleration { none, aitken, anderson };
   enum class Cone { augmented, frozen };
@@ -48,6 +56,7 @@ struct UzawaAL {
   Sensitivity sensitivity = Sensitivity::iterated;
   std::optional<double> oversize;  ///< kappa_s of the oversized and the preconditioned scheme, > 1; none: automatic
   NewtonOptions newton;
+  Regularisation& regularisation() { return scale; }
 };
 
 /// Options of a method that do not go together: the name of the one to change, and why; empty where all do.
@@ -76,10 +85,13 @@ OptionConflict conflict(const M&) {
 struct MonolithicAL {
   static constexpr std::string_view name = "monolithic_al";
   static constexpr double automatic_multiple = 1;
+  static constexpr std::string_view regularisation_name = "scale";
+  static constexpr bool has_unknown_multipliers = true;
   enum class Cone { augmented, multiplier };
   Regularisation scale;
   Cone cone = Cone::augmented;  ///< radius -mu z_N (augmented) or -mu lambda_N (multiplier): same zeros, another path
   NewtonOptions newton;
+  Regularisation& regularisation() { return scale; }
 };
 
 /// The closed set: what is missing in a visit over it does not compile.

@@ -8,9 +8,10 @@
 ///
 /// so that neither a stop that holds the bodies nor a fold of the load ends the path. Newton's method solves for both
 /// by bordering: two solves with the tangent that every method has (NewtonTangent::step_along). A step begins in the
-/// direction of the last one. Where that fails, or turns back, the bodies go on and the load returns: so a path bends
-/// at a contact that closes while the load falls. Then half an arc is tried. The last step ends at the full load.
-/// Derivatives are those of the points found, each at its own load, as they are at times that are given.
+/// direction of the last one. Where that fails or turns back, the bodies go on and the load returns, for a path bends
+/// like that at a contact that closes while the load falls. Where that fails too, half an arc is tried. The last step
+/// ends at the full load. Derivatives are those of the points found, each at its own load, as they are at times that
+/// are given.
 /// [R79], [C81]
 #pragma once
 
@@ -141,8 +142,8 @@ class Path {
   }
   static constexpr double nearly = 1e-9;  // of the full load
 
-  /// Whether a step was found that has not gone back to where the path came from, motion and load alike. (What turns
-  /// within a short one is a corner.)
+  /// Whether a step was found that has not gone back to where the path came from, in motion and load alike. (One that
+  /// turns back within a short arc has met a corner.)
   bool goes_on(const Increment<T>& increment) const {
     constexpr double is_short = 1.0 / 64;  // of the arc
     const auto [before, then] = before_last();

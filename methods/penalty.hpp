@@ -28,8 +28,8 @@ constexpr bool prevents_penetration(const Penalty&) { return false; }
 
 namespace detail {
 
-/// Points, closed in `field`, whose constraints could contradict others: not those whose slave node belongs to no other
-/// point and is free to follow along the normal.
+/// Points, closed in `field`, whose constraints could contradict others. Left out is a point whose slave node belongs
+/// to no other point and is free to follow along the normal.
 template <class T>
 std::vector<int> shared_points(const Model& model, const Slots<T>& slots, const ContactField<T>& field) {
   std::vector<int> users(model.node_count, 0);
@@ -45,11 +45,11 @@ std::vector<int> shared_points(const Model& model, const Slots<T>& slots, const 
   return shared;
 }
 
-/// A point whose overlap no stiffness removes, in words; empty where there is none. One augmentation from the solution
-/// with 1e8 nodal stiffnesses, tangential tractions as they are and points closed and opened until their tractions and
-/// gaps agree, leaves some 1e-8 of an overlap that bodies can yield to; but the overlap that supports or other contacts
-/// prescribe it leaves, there or where it was pushed to: the force is stiffness times overlap. It is made only where
-/// points share a node or are held by supports.
+/// A point whose overlap no stiffness removes, in words; empty where there is none. It is found by one augmentation
+/// from the solution with 1e8 nodal stiffnesses: tangential tractions stay as they are, and points are closed and
+/// opened until their tractions and gaps agree. That leaves some 1e-8 of an overlap that bodies can yield to. An
+/// overlap that supports or other contacts prescribe stays, there or where it was pushed to: its force is stiffness
+/// times overlap. The augmentation is made only where points share a node or are held by supports.
 template <class T, class E>
 std::string unyielding_point(Run<T, E>& run, const ContactInput<T>& found, const Equilibrium<T>& equilibrium) {
   constexpr double stiff = 1e8, left = 1e-5, negligible = 1e-9;

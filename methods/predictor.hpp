@@ -3,9 +3,9 @@
 ///
 ///   K du_free = -R(u, t) - K du_prescribed,
 ///
-/// for a step taken by the nodes at the supports alone would crush the elements there, and an obstacle that withdraws
-/// by a step leaves all that it touches: R is that of obstacles where they have moved to, and what touched follows
-/// them.
+/// Without it a step taken by the nodes at the supports alone would crush the elements there, and an obstacle that
+/// withdraws would leave all that it touches. R is that of obstacles where they have moved to, and what touched them
+/// follows.
 #pragma once
 
 #include "methods/newton_tangent.hpp"

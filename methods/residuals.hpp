@@ -105,16 +105,16 @@ double prescribed_motion(const Model& model, const Slots<T>& slots, double time)
 /// Sizes of motions and places, lengths.
 struct Reach {
   double moved = 0;       ///< largest displacement of a contact node
-  double placed = 0;      ///< what rounds in its gap: that, and its coordinates where geometry is the present one
+  double placed = 0;      ///< what rounds in its gap: moved, and coordinates where geometry is the present one
   double prescribed = 0;  ///< largest displacement that supports prescribe
 };
 
 /// What rounding alone may leave of the residuals. `rounding`: of the bodies' forces.
 inline void set_floors(const PointSizes& sizes, const RunScales& scales, double rounding, const Reach& reach,
                        Residuals& residuals) {
-  // Rounding of this share of the forces means displacements 1e9 times those that they cause in the stiffest body: one
-  // that drifts off on a nearly singular tangent, and no equilibrium that rounding hides; unless supports move it as
-  // far, or a softer one yields as far.
+  // Rounding of this share of the forces means displacements 1e9 times those that the forces cause in the stiffest
+  // body. That is no equilibrium that rounding hides, but a body that drifts off on a nearly singular tangent; unless
+  // supports move it that far, or a softer body yields that far.
   constexpr double adrift = 1e-5, carried = 10, yielded = 1e3;
   const double bulk_floor = rounding_factor * ratio(rounding, scales.force);
   if (bulk_floor <= adrift || reach.moved <= carried * reach.prescribed ||
@@ -123,7 +123,7 @@ inline void set_floors(const PointSizes& sizes, const RunScales& scales, double 
                                                                            std::max(reach.placed, sizes.distance),
                                                                        scales.force);
   residuals.floor_length = rounding_factor * ratio(unit_roundoff * reach.placed, scales.length);
-  // in slip the bound passes on what rounding makes of the pressure lambda_N + rho g_N
+  // in slip the bound turns the rounding of the pressure lambda_N + rho g_N into one of the tangential traction
   residuals.floor_traction = rounding_factor * ratio(unit_roundoff * sizes.rho * reach.placed, scales.traction);
 }
 
@@ -132,7 +132,7 @@ template <class T>
 void measure_multipliers(const ContactInput<T>& input, const Vector<T>& multiplier, const PointSizes& sizes,
                          double reach, Evaluation<T>& at) {
   const Model& model = input.model;
-  // a body that slides where nothing presses: all its tractions are what rounding makes of its displacements
+  // where a body slides and nothing presses, all tractions are what rounding makes of its displacements
   const bool presses = at.scales.traction > rounding_factor * unit_roundoff * sizes.elastic * reach;
   for (std::size_t p = 0; p < model.points.size(); ++p)
     for (int c = 0; c < model.points[p].components(); ++c) {
@@ -177,7 +177,7 @@ class Evaluator {
   /// Takes an evaluation for the next iterate; returns how many closed points came to another patch of their curves.
   int accept(const detail::Evaluation<T>& at);
   /// Lets points that went to and fro between patches that meet at a corner stay on theirs until the equilibrium is
-  /// found, as at a vertex whose two normals push a point to either side. False where none did.
+  /// found. At such a vertex two normals push a point to either side. False where no point did.
   bool keep_patches();
   /// Whether points were kept on patches that they do not face.
   bool keeps_wrong(const Unknowns<T>& unknowns, const ContactField<T>& field) const;

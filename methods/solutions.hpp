@@ -11,8 +11,8 @@
 ///
 ///   (I - P) g + P tau = g_f,   P = B^T (K + B W B^T)^-1 B W
 ///
-/// and each combination of branches a linear system for the rest, with the yield y of a regularised constraint (0 where
-/// it is exact) and the traction sigma it has stored:
+/// Each combination of branches makes a linear system of it. y: compliance of a regularised constraint, 0 where it is
+/// exact; sigma: the tangential traction that it has stored.
 ///
 ///   open   tau_N = tau_T = 0                    valid where g_N >= 0
 ///   closed g_N = y tau_N                        valid where tau_N <= 0
@@ -65,7 +65,7 @@ bool can_try_all_branches(const Model& model);
 bool may_have_several(const ContactProblem& problem);
 
 /// All solutions; those whose tractions differ by less than 1e-9 of the largest are one. Nothing where bodies can move
-/// although all points stick. With `alpha`: of the problem with alpha D (v - from) among its forces.
+/// although all points stick. `alpha`: adds alpha D (v - from) to the forces of the problem.
 /// `rounding`: share of lengths and of tractions by which a branch may be missed.
 inline constexpr double rounding_of_branches = 1e-11;  // a dozen unknowns, condition numbers up to 1e4
 std::optional<std::vector<BranchSolution>> all_solutions(const ContactProblem& problem, double alpha = 0,
@@ -79,9 +79,8 @@ bool has_repeated_constraints(const ContactProblem& problem);
 /// Whether some motion of the bodies violates no constraint.
 bool is_feasible(const ContactProblem& problem);
 
-/// Which of all solutions is taken: that in whose branches the overdamped motion from the start comes to rest, each
-/// step of it the solution nearest to the last (methods/motion.hpp). Its index; nothing where the motion comes to no
-/// rest.
+/// Index of that one of all solutions in whose branches the overdamped motion from the start comes to rest; nothing
+/// where it comes to none. Each step of the motion is the solution nearest to the last one (methods/motion.hpp).
 std::optional<std::size_t> resting_solution(const ContactProblem& problem, const std::vector<BranchSolution>& all);
 
 /// Whether mu of some point reaches k_t / |k_nt|, its slave node's stiffness with all other contact nodes held
@@ -130,8 +129,9 @@ ContactProblem contact_problem(const ContactInput<T>& input, const CondensedEngi
     ContactProblem::Point at{point.multiplier, point.tangents > 0 ? point.multiplier + 1 : -1};
     const double local = value(input.slots.stiffness[p]) / value(geometry.area);
     if (point.tangents > 0)
-      at.friction = input.slots.friction[point.contact].template as<double>([](const T& x) { return value(x); });
-    if (at.friction.limit) *at.friction.limit /= local;
+      at.friction = input.slots.friction[point.contact]
+                        .template as<double>([](const T& x) { return value(x); })
+                        .in_units_of(local);
     if (stored) {
       at.yield_normal = local / value(input.rho[p].normal);
       at.yield_tangential = local / value(input.rho[p].tangential);

@@ -29,10 +29,10 @@ void count_solutions(const M& method, Run<T, E>& run, const State<T>& previous, 
   }
 }
 
-/// Where the branch of solutions that leads to an increment's solution ends and this jumps: the end of the thousandth
-/// of the increment in which at least a quarter of its motion falls, but not the first of a run. It is looked for where
-/// solutions were counted, and there were several at either end or a tangent on the way had the other sign of its
-/// determinant; and where bodies that are not linear move suddenly.
+/// Where the branch of solutions that leads to an increment's solution ends, so that the solution jumps. It is the end
+/// of that thousandth of the increment in which at least a quarter of its motion falls, but not the first thousandth of
+/// a run. Two cases make one look for it: solutions were counted, and either end has several or a tangent on the way
+/// had a determinant of the other sign; or bodies that are not linear move suddenly.
 template <class T, class E, class M>
 std::optional<double> find_jump(const M& method, Run<T, E>& run, const State<T>& previous,
                                 const std::vector<double>& factor, double start, double end, const State<T>& reached) {
@@ -77,8 +77,8 @@ double pace_of(const Model& model, const State<T>& from, const State<T>& to, dou
   return largest_nodal_norm(Vector<T>(to.displacement - from.displacement), model.dimension) / duration;
 }
 
-/// Whether bodies that are not linear move at four times the pace of the increment before, or more: as beyond a limit
-/// point, if it is a jump.
+/// Whether bodies that are not linear move at four times the pace of the increment before, or more: so they would
+/// beyond a limit point, if the solution jumps there.
 template <class T>
 bool is_sudden(const std::vector<Increment<T>>& before, double pace) {
   constexpr double sudden = 4;
@@ -147,9 +147,9 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
   return false;
 }
 
-/// Whether increments may have several solutions, for all that can be told before the first: friction may hold a body
-/// between surfaces; of few points, some combination of branches has a negative determinant; of many, a point could
-/// jump on its own, as mu exceeds k_t / |k_nt| of its stiffness with all others held.
+/// Whether increments may have several solutions, for all that can be told before the first. Friction may hold a body
+/// between surfaces. Of few points, some combination of branches has a negative determinant. Of many, a point could
+/// jump on its own: mu exceeds k_t / |k_nt| of its stiffness with all others held.
 template <class T, class E>
 bool may_have_several(Run<T, E>& run) {
   const Model& model = run.model;

@@ -12,18 +12,18 @@ namespace stickslip {
 /// Columns of forces that a body, or all bodies together, may be given: three rows a body, force along x and y and
 /// moment about the origin over the size of the model.
 struct RigidStatics {
-  /// Of contact points, by factors >= 0, three a point: the edges n - mu e and n + mu e of its cone, and none; or n, -e
-  /// and e, where the law of friction has no cone.
+  /// Columns of contact points, three a point, with factors >= 0: the edges n - mu e and n + mu e of its cone, and a
+  /// zero; where the law of friction has no cone, n, -e and e.
   Matrix<double> pushes;
-  Matrix<double> holds;  ///< of supports, by factors of either sign
+  Matrix<double> holds;  ///< columns of supports, with factors of either sign
   Vector<double> load;
   Matrix<double> tangential;  ///< a row for each point whose law has a limit: its tangential force by those factors
   Vector<double> limit;       ///< of their sizes (force)
 };
 
-/// Share of the load that no such forces balance, |load + pushes x + holds y| / |load| at its least over x >= 0 and y
-/// with |tangential x| <= limit, which counts in with what it is missed by; 0 without load. Non-negative least squares
-/// [LH74].
+/// Share of the load that no such forces balance: the least |load + pushes x + holds y| / |load| over x >= 0 and y with
+/// |tangential x| <= limit. Where the last cannot be met, what it is missed by counts in. 0 without load. Non-negative
+/// least squares [LH74].
 double unbalanced_share(const RigidStatics& statics);
 
 /// A body's column block in RigidStatics, at a time. pre: 2D, not of revolution.

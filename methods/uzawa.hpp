@@ -6,18 +6,20 @@
 ///   rho           scale, force per length cubed; adapt: times 4 where an augmentation left more than 1/4 of the
 ///                 violation
 ///   acceleration  lambda <- an extrapolation of the last t, put back onto the cone (methods/acceleration.hpp)
-///   cone          augmented: radius -mu z_N, the tangent of slip is unsymmetric
-///                 frozen: radius -mu lambda_N of the last augmentation. The tangent is symmetric, but the radius is
-///                 one more fixed point iteration, whose error changes by -mu/s an augmentation where the load path has
-///                 the slope s (tangential over normal stiffness of the unloading): beyond s it ends in a two-cycle
+///   cone          augmented: radius -mu z_N; the tangent of slip is unsymmetric
+///                 frozen: radius -mu lambda_N of the last augmentation; the tangent is symmetric. The radius is a
+///                 fixed point iteration of its own: an augmentation multiplies its error by -mu/s, s the slope of the
+///                 load path (tangential over normal stiffness of the unloading). For mu > s it ends in a two-cycle
 ///
-/// The error shrinks by 1/(1 + rho s_min) an augmentation (s_min: smallest compliance of the active
-/// constraints, S = B K^-1 B^T A), so a large rho needs few augmentations of harder inner problems. Slip is always
-/// measured from the last converged increment, never from the last augmentation. Start: the last increment's lambda.
-/// Stops where update, violation and states have settled to `tolerance`; gives up where the updates undo each other
-/// (cycle) or a constraint does not yield (infeasible). Inner solves on the way go to a hundredth of the residual they
-/// start from (the truncated scheme differentiates each of them, and takes them exact); the last is exact. Options:
-/// methods/options.hpp. [SL92]
+/// An augmentation shrinks the error to 1/(1 + rho s_min) of itself, s_min the smallest compliance of the active
+/// constraints (S = B K^-1 B^T A). So a large rho needs few augmentations, of harder inner problems. Slip is always
+/// measured from the last converged increment, never from the last augmentation. lambda starts as the last increment's.
+///
+/// The loop ends where update, violation and states have settled to `tolerance`. It gives up where the updates undo
+/// each other (cycle), or where a gap does not answer to its multiplier (infeasible). Inner solves on the way end at a
+/// hundredth of the residual that they start from; the last is exact. The truncated scheme differentiates each of them,
+/// so there all are exact. Options: methods/options.hpp. The update lambda <- t is AugmentationLoop::update; its
+/// derivative is take_derivatives() of sensitivity/uzawa.hpp. [SL92]
 #pragma once
 
 #include "methods/augmentation.hpp"
@@ -36,8 +38,8 @@ inline bool is_globalised(const UzawaAL& method) { return method.cone == UzawaAL
 
 namespace detail {
 
-/// Raises the factor of the points whose violation did not fall to a quarter; capped at 1e3 nodal stiffnesses. True
-/// where one was raised.
+/// Raises the factor of the points whose violation did not fall to a quarter, up to 1e3 nodal stiffnesses. True where
+/// one was raised.
 template <class T>
 bool adapt(const Slots<T>& slots, const RegularisationField<T>& initial, const std::vector<double>& before,
            const std::vector<double>& now, double negligible, std::vector<double>& factor) {
@@ -68,13 +70,14 @@ Vector<T> into_cones(const Model& model, const Slots<T>& slots, Vector<T> multip
   return multiplier;
 }
 
-/// Share of its first residual, which the last update of lambda leaves, to which an inner solve goes while more
-/// augmentations follow. Points that hardly slip would change their states in it down to rounding, each time anew; at a
-/// hundredth the augmentations do not notice, and the contraction they show is off by as little.
+/// Where an inner solve may end while more augmentations follow, as a share of the residual that the last update of
+/// lambda left it with. An exact solve would change the states of points that hardly slip, down to rounding, each time
+/// anew. At a hundredth the augmentations do not notice, and the contraction that they show is off by a hundredth.
 inline constexpr double forcing = 0.01;
 
-/// An inner residual above the error that the outer tolerance allows would stall the updates: the last of them are by
-/// 1 - q smaller than that error.
+/// Newton's options of an inner solve. The last updates are 1 - q times the error that the outer tolerance allows, q
+/// the contraction. An inner residual above them would stall them, so the inner tolerance is a hundredth of them, if it
+/// is not smaller already; it goes down to 1e-15.
 inline NewtonOptions inner_options(const UzawaAL& method, double contraction) {
   constexpr double least = 1e-15;
   NewtonOptions inner = method.newton;
@@ -84,13 +87,13 @@ inline NewtonOptions inner_options(const UzawaAL& method, double contraction) {
   return inner;
 }
 
-/// Augmentations in a row that change nothing but states: points at a tie go to and fro for ever.
+/// Augmentations in a row that may change nothing but states, for points at a tie go to and fro for ever.
 inline constexpr int patience_at_ties = 4;
 
 inline constexpr const char* frozen_advice =
     ", as a frozen cone does where the friction coefficient exceeds the slope of the load path; use the augmented cone";
 
-/// How the augmentations stand: the status they could end with, if `done`.
+/// How the augmentations stand. `done`: they end, with `status`.
 struct Standing {
   Status status = Status::converged;
   bool done = false;
@@ -99,8 +102,14 @@ struct Standing {
   double negligible = 0;  ///< a violation that counts as none: that of the tolerance, or of rounding
 };
 
-/// `reach`: largest displacement of a contact node; `noise`: force that rounding leaves of the inner solve, 0 where the
-/// tolerance ended it.
+/// Where the augmentations stand after the last one. `reach`: largest displacement of a contact node. `noise`: nodal
+/// force that rounding left of the inner solve; 0: its tolerance ended it.
+///
+///   gap        what rounding of the displacements makes of a gap
+///   traction   what rounding makes of an update: rho gap, and rounding of the tractions; 1 + mu times that, because in
+///              slip the bound turns the rounding of the pressure into one of the tangential traction
+///   drowned    updates no longer fall, and ten times `noise` explains all that is left: a stiff body on a soft one
+///              rounds so, in tractions, and in gaps through the soft one
 template <class T>
 Standing judge(const UzawaAL& method, const Slots<T>& slots, const RegularisationField<T>& rho, double reach,
                double noise, const RunScales& scales, const Augmentations<T>& progress) {
@@ -108,12 +117,12 @@ Standing judge(const UzawaAL& method, const Slots<T>& slots, const Regularisatio
   double stiffest = 0, friction = 0;
   for (const auto& r : rho) stiffest = std::max(stiffest, value(r.normal));
   for (const auto& law : slots.friction) friction = std::max(friction, value(law.slope_at_apex()));
-  // in slip the bound passes the rounding of the pressure on
   const double traction = (1 + friction) * (stiffest * gap + 10 * unit_roundoff * scales.traction);
   const bool small = progress.error_left() <= method.tolerance * scales.traction;
-  // a stiff body on a soft one: what its rounding leaves to the tractions, and to the gaps through the soft one
   const bool drowned = noise > 0 && progress.stalled() && progress.is_within(10 * noise);
-  // where nothing falls any more, rounding may have met the condition of a stiff body on a soft one
+  // Rounding ends the augmentations in one of four cases: drowned; nothing falls, and violation and update are
+  // rounding; nothing has fallen for 50 augmentations, and the violation is within 1e3 roundings of a gap (a stiff body
+  // on a soft one); nothing has fallen for 50, of a map that contracts fast, and the violation is within its tolerance.
   const bool at_roundoff = drowned ||
                            (progress.stalled() && progress.violation() <= gap && progress.update() <= traction) ||
                            (progress.exhausted() && progress.violation() <= 1e3 * gap) ||
@@ -163,7 +172,8 @@ class AugmentationLoop {
         progress_(run.model, run.slots, method.acceleration),
         accelerator_(method.acceleration) {
     increment_.rho_factor = std::move(rho_factor);
-    // (a loop that is differentiated as it was cut off begins with the last increment's lambda, as its derivative does)
+    // (the truncated scheme's derivative begins with the last increment's lambda: so does the loop that it
+    // differentiates)
     const State<T>& with_lambda = truncated_ && !start.is_step() ? previous : start.from;
     unknowns_ = {run.engine.begin(time, start.from.displacement, previous.history.bodies), with_lambda.contact.traction,
                  time};
@@ -225,7 +235,8 @@ class AugmentationLoop {
     return at_limit || (over && (!is_converged(now_.status) || truncated_ || !progress_.carried_moves()));
   }
 
-  /// lambda <- t, or an extrapolation; rho is adapted.
+  /// The update lambda <- t, or an extrapolation of it; rho is adapted. Its derivative D lambda <- D t is
+  /// take_derivatives() of sensitivity/uzawa.hpp.
   void update(const Equilibrium<T>& equilibrium) {
     rough_ &= !now_.done;
     const bool raised = method_.adapt && progress_.settled() && !now_.done &&
@@ -253,14 +264,14 @@ class AugmentationLoop {
   const bool truncated_ = method_.sensitivity == UzawaAL::Sensitivity::truncated;
   const int limit_ = method_.max_augmentations * (truncated_ ? 1 : Carried<T>::augmentations);
   const RegularisationField<T> initial_;
-  const RunScales before_;                 ///< without what an extrapolated lambda may overshoot by
+  const RunScales before_;                 ///< at the increment's start: an extrapolated lambda may overshoot
   std::span<const ContactState> resumed_;  ///< at the first augmentation
   Unknowns<T> unknowns_;
   Augmentations<T> progress_;
   Accelerator<T> accelerator_;
   Standing now_;
   bool rough_ = !truncated_;  ///< whether the next inner solve may end short of its tolerance
-  int within_ = 0;            ///< augmentations in a row that were
+  int within_ = 0;            ///< augmentations in a row that were within the tolerance
   Increment<T> increment_;
 };
 

@@ -17,8 +17,8 @@
 namespace stickslip {
 namespace detail {
 
-/// What of a method's scheme the branches depend on: the equilibrium that it differentiates, its cone, and what it
-/// multiplies rho by.
+/// What the branches depend on of a method's scheme: the equilibrium that it differentiates, its cone, and its factor
+/// on rho.
 template <class M>
 constexpr bool is_truncated(const M&) {
   return false;
@@ -77,8 +77,8 @@ class BranchSearch {
     return at_rounding();
   }
 
-  /// Takes the branch of each weak point that holds most: a body that only friction or a contact about to open holds
-  /// has a regular tangent then.
+  /// Takes that branch of each weak point that holds most, so that a body which only friction, or a contact about to
+  /// open, holds has a regular tangent.
   void hold() {
     for (const auto& w : weak_) take_branch(problem_.model, w.point, branches_of(problem_.model, w).front(), at_);
     take_values(problem_.model, flows_, at_);
@@ -88,13 +88,13 @@ class BranchSearch {
  private:
   struct Standing {
     bool possible = true;
-    std::vector<std::function<void(State<double>&)>> contradicted;  ///< to the branches that are pointed to
+    std::vector<std::function<void(State<double>&)>> contradicted;  ///< each takes the branch that is pointed to
     double by = 0;
     bool is_confirmed() const { return possible && contradicted.empty(); }
   };
 
-  /// Differentiates with the branches in `at`. The bodies' pseudo-load depends on those of their flows alone: one
-  /// serves all choices of the others.
+  /// Differentiates with the branches in `at`. The bodies' pseudo-load depends on the branches of their flows alone, so
+  /// one serves all choices of the others.
   bool follow_branches() {
     if (load_.empty() || load_flow_ != at_.flow) {
       load_.assign(1, pseudo_load(problem_, at_, increment_.time));
@@ -153,7 +153,7 @@ class BranchSearch {
     }
   }
 
-  /// What tells one choice from another: branches, and in the plane the sides to which points slip.
+  /// What tells one choice from another: the branches, and in the plane the directions of slip.
   std::vector<int> key() const {
     std::vector<int> key;
     for (const auto& w : weak_) {
@@ -166,7 +166,7 @@ class BranchSearch {
     return key;
   }
 
-  /// Flips all that is contradicted; where that was tried, the first alone.
+  /// Flips all that is contradicted at once; where that choice was tried before, only the first.
   bool by_flipping() {
     const std::size_t limit = 40 + 4 * (weak_.size() + flows_.size() + vertices_.size());
     std::set<std::vector<int>> tried;
@@ -222,8 +222,8 @@ class BranchSearch {
     return false;
   }
 
-  /// Where both branches of a point are contradicted, it is by what the solution's tolerance leaves of the tie: takes
-  /// those that were contradicted least.
+  /// Where both branches of a point are contradicted, that is by what the solution's tolerance leaves of the tie. Takes
+  /// the branches that were contradicted least.
   bool at_rounding() {
     constexpr double most = 1e3;  // 1e-7 of the derivatives: a point is weak up to 1e-8, as its derivative then is
     if (!(least_ <= most)) return false;
@@ -250,8 +250,8 @@ class BranchSearch {
   bool unsettled_ = false;        ///< a scheme's passes did not settle: all that it takes, for each choice again
 };
 
-/// Differentiates one increment along one direction; its branches at ties become those that are confirmed. False where
-/// none are; with `held` they become those that hold most then, and the derivative is theirs.
+/// Differentiates one increment along one direction; its branches at ties become those that are confirmed. Where none
+/// are: false; or, with `held`, the branches that hold most, with their derivative.
 template <class M, class E>
 bool differentiate_side(const M& method, Differentiation<E>& problem, const State<double>& previous,
                         Increment<double>& increment, const Along& along, bool held = false) {

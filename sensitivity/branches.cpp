@@ -25,9 +25,9 @@ Vector<T> trial(const Model& model, const State<T>& state, const PointRegularisa
   return z;
 }
 
-/// Derivatives below this are zero beside those of all points, of tractions and of motions times k / A, beside what a
-/// rigid motion leaves of these, and beside the tractions over the parameter. `multiple`: of rho in k / A, which
-/// magnifies the rounding of a motion.
+/// Derivatives below this are zero. It is a share of the derivatives of all points, as tractions and as motions times k
+/// / A; of what a rigid motion leaves of these; and of the tractions over the parameter. `multiple`: rho over k / A,
+/// which magnifies the rounding of a motion.
 double negligible(const Model& model, const Slots<double>& slots, const ParameterBlock& block, double multiple,
                   const Along& along) {
   constexpr double share = 1e-10, rigid = 1e-3, roundings = 64;
@@ -47,7 +47,8 @@ double negligible(const Model& model, const Slots<double>& slots, const Paramete
   return std::max(share, roundings * unit_roundoff * multiple) * size;
 }
 
-/// The derivative of a trial, s Dz, and what is negligible of it; `kinematic`: of a motion, k / A over rho.
+/// s Dz, the derivative of a trial, and the size up to which it is negligible. `kinematic`: k / A over rho, for a
+/// motion.
 struct Judged {
   double normal;
   Vector<double> tangential;
@@ -63,15 +64,14 @@ Branch slip_along(const Judged& d, double normal, ContactState piece) {
 
 Verdict contradicted(Branch by_branch, double by) { return {true, std::move(by_branch), by}; }
 
-/// Derivative of the bound of friction along a direction, and the piece that it is of: at a corner the lesser one.
+/// Derivative of the bound of friction along a direction, and its piece. At a corner it is the lesser derivative.
 struct BoundRate {
   double rate;
   ContactState piece;
 };
 
 bool is_at_corner(const FrictionLaw<double>& law, double pressure) {
-  if (!law.coefficient || !law.limit) return false;
-  return std::abs(*law.coefficient * pressure - *law.limit) <= weak_margin * *law.limit;
+  return law.corner() && law.distance_to_corner(pressure) <= weak_margin * *law.limit;
 }
 
 /// `moved`: derivative of the pressure.
@@ -86,7 +86,7 @@ BoundRate bound_rate(const FrictionLaw<Direction>& law, double pressure, double 
   return law.piece(pressure) == ContactState::slip ? sloping : level;
 }
 
-/// A closed point without a trial of its own: the derivative of its bound is `bound`, on `piece`.
+/// Of a closed point without a trial of its own. `bound`: derivative of its bound, on `piece`.
 Verdict judge_from_apex(const Judged& d, double bound, ContactState piece, const Branch& now) {
   const Branch stick{ContactState::stick, {}};
   const double length = d.tangential.norm(), excess = length - bound;
@@ -140,7 +140,7 @@ std::vector<WeakPoint> weak_points(const Model& model, const Slots<double>& slot
       continue;
     }
     const double excess = tangential - bound;
-    // of a small rho, (|z_T| - bound) / rho is rounding long before the slip itself is
+    // with a small rho, (|z_T| - bound) / rho is rounding long before the slip itself is
     const double slip = state.contact.slip.segment(tangential_offset(model, p), point.tangents).norm();
     const double beyond = elastic * std::min(excess / rho[p].tangential, slip), inside = -excess;
     if ((excess > 0 ? beyond : inside) <= weak_margin * bound)

@@ -12,8 +12,8 @@
 ///
 /// At the corner of a limited law (core/contact/friction_law.hpp) Dbound is the lesser of both. Tresca's bound has no
 /// apex: a point that opens or closes while it bears a tangential traction jumps, and has no derivative to that side.
-/// A point that slides while it touches (z_N = 0, z_T not) closes into slip: that is `opens` too. Where Dz itself ties,
-/// both branches have the same derivative, and either is confirmed.
+/// A point that slides while it touches (z_N = 0, z_T not zero) closes into slip: that is `opens` too. Where Dz itself
+/// ties, both branches have the same derivative, and either is confirmed.
 #pragma once
 
 #include <optional>
@@ -32,8 +32,8 @@ struct WeakPoint {
 /// Largest pressure, or k / A times the largest motion: contact that has only just begun is measured by that.
 double traction_scale(const Model& model, const Slots<double>& slots, const State<double>& state);
 
-/// The points of an equilibrium that are about to change state. `rho`, `cone`: of the equilibrium; `largest`: the
-/// traction_scale of the run so far (all that was moved may be back where it was).
+/// The points of an equilibrium that are about to change state. `rho`, `cone`: of the equilibrium. `largest`: the
+/// traction_scale of the run so far, for what was moved may be back where it was.
 std::vector<WeakPoint> weak_points(const Model& model, const Slots<double>& slots, const State<double>& state,
                                    const RegularisationField<double>& rho, ConeRadius cone, double largest);
 
@@ -49,10 +49,10 @@ void take_branch(const Model& model, int point, const Branch& branch, State<doub
 /// All branches that a tie can take in the plane; in space without those that slip from an apex.
 std::vector<Branch> branches_of(const Model& model, const WeakPoint& weak);
 
-/// What a derivative found with the branches of a state says of them.
+/// What a derivative, found with the branches of a state, says of them.
 struct Verdict {
   bool possible = true;               ///< false: the parameter cannot move this way (friction below zero)
-  std::optional<Branch> contradicts;  ///< the branch that it points to, where it contradicts the one it was found with
+  std::optional<Branch> contradicts;  ///< where it contradicts the branch it was found with: the one that it points to
   double by = 0;                      ///< how much, in units of what is negligible
 };
 
@@ -63,8 +63,8 @@ struct Along {
   double largest_so_far;  ///< traction_scale of the run up to here
 };
 
-/// `block`: the derivative, in its first direction; `rho`: that of the scheme, as is the block's multiplier; `own`:
-/// that of the equilibrium.
+/// `block`: the derivative, in its first direction. `rho`: that of the scheme, which belongs to the block's multiplier.
+/// `own`: that of the equilibrium.
 Verdict judge(const Model& model, const Slots<double>& slots, const ParameterBlock& block,
               const RegularisationField<Direction>& rho, const RegularisationField<double>& own, ConeRadius cone,
               const WeakPoint& weak, const State<double>& at, const Along& along);

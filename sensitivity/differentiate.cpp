@@ -9,8 +9,8 @@ namespace stickslip {
 
 namespace {
 
-/// Derivatives of an increment with those of responses that can tie replaced by what they are on one side, where that
-/// is more than rounding of the motion makes of it.
+/// Derivatives of an increment. Responses that can tie get the derivative of one side, where it differs by more than
+/// rounding of the motion.
 Matrix<double> with_ties(const Model& model, const std::vector<ParameterBlock>& blocks,
                          const std::vector<State<Direction>>& at, Matrix<double> of, Ties side) {
   constexpr double rounding = 1e-9;

@@ -36,8 +36,8 @@ struct Gradients {
   std::string message;
   /// Per increment of the trajectory: responses x parameters. Ends where the scheme failed.
   std::vector<Matrix<double>> of;
-  /// The same from below and from above, where a response is the largest or smallest of values that tie; empty where
-  /// none is.
+  /// The same from below and from above, for responses that are the largest or smallest of values that tie; empty where
+  /// there is none.
   std::vector<Matrix<double>> below, above;
   Matrix<double> of_objectives;       ///< objectives x parameters; empty where it failed
   std::vector<SchemeRecord> records;  ///< per increment; empty but for Uzawa
@@ -50,8 +50,8 @@ struct Gradients {
   DerivativeStorage storage;
 };
 
-/// Derivatives of a run: all at its end, or as it goes, where a step's last factor is worth more than solving for many
-/// steps at once.
+/// Derivatives of a run: all at its end, or as it goes, where having a step's last factor saves more than solving for
+/// many steps at once.
 class Derivatives {
  public:
   /// All must outlive it; the workspace is that of the run (its engine is used, and left with another factor).

@@ -18,17 +18,17 @@ inline Numbers<Direction> seeded(const Scene& scene, const std::vector<int>& par
   return numbers;
 }
 
-/// Elements whose forces parameters touch, body by body: by material, thickness, shape or prescribed motion. A
-/// pseudo-load has no others. All elements, where nodes have frames, whose derivatives turn the forces themselves, and
-/// of a body that remembers.
+/// Elements whose forces a parameter touches, body by body: by material, thickness, shape or prescribed motion. A
+/// pseudo-load comes from these alone. Where nodes have frames, whose derivatives turn the forces themselves, these are
+/// all elements; of a body that remembers too.
 ElementLists touched_elements(const Model& model, const Slots<Direction>& slots);
 
 /// Parameters in groups of up to `directions`, by their place in the scene: those that touch material, thickness or
 /// shape of bodies first, so that few sweeps visit elements.
 std::vector<std::vector<int>> parameter_groups(const Model& model);
 
-/// Whether the stiffness of linear bodies is kept with its derivatives: not of a run of two steps or less, where that
-/// saves nothing, nor for more parameters than go into one solve, whose memory it would double.
+/// Whether the stiffness of linear bodies is kept with its derivatives. A run of two steps or less would save nothing.
+/// With more parameters than go into one solve it would double the memory of that.
 inline bool keeps_stiffness(const Model& model) {
   return model.times.size() > 2 && static_cast<int>(model.scene.parameters.size()) <= columns_together;
 }
@@ -41,7 +41,7 @@ struct ParameterBlock {
   std::vector<int> parameters;  ///< by direction
   Slots<Direction> slots;
   State<Direction> previous, current;
-  ElementLists touched;                                    ///< those whose forces are differentiated in each increment
+  ElementLists touched;                                   ///< those whose forces are differentiated in each increment
   std::optional<DualStiffness> stiffness = std::nullopt;  ///< of the others that parameters touch
 
   /// At the initial state.
@@ -66,10 +66,10 @@ inline std::vector<ParameterBlock> parameter_blocks(const Model& model) {
   return blocks;
 }
 
-/// What parameters and prescribed motions do to the bodies' balance in an increment whose free displacements are held:
-/// it does not depend on the derivatives so far, but on those of what bodies remember.
+/// What parameters and prescribed motions do to the bodies' balance in an increment while its free displacements are
+/// held. It depends on the derivative of what bodies remember, and on no other derivative so far.
 struct PseudoLoad {
-  std::vector<Vector<Direction>> displacement;  ///< per block: with the derivative of prescribed motion
+  std::vector<Vector<Direction>> displacement;  ///< per block, with the derivative of prescribed motion
   Matrix<double> rows;                          ///< a column a parameter, all dofs; until it is reduced
   Reduction<double> reduced;                    ///< to the engine's rows
 };
@@ -156,8 +156,7 @@ void reduce(Differentiation<E>& problem, std::vector<PseudoLoad>& loads) {
   }
 }
 
-/// Displacements of all dofs with their derivatives, but for what is inside condensed bodies: there without, which
-/// saves the solve.
+/// Displacements of all dofs with their derivatives. Inside condensed bodies they are without, which saves the solve.
 template <class E>
 std::vector<Vector<Direction>> without_inside(const Differentiation<E>& problem, Unexpanded increment) {
   const Matrix<double> all = problem.engine.spread(increment.increment);

@@ -36,16 +36,15 @@ class LinearisedEquilibrium {
                         bool unknown, const History<double>& previous);
 
   bool valid() const { return valid_; }
-  /// Solves for the derivative given D lambda (per block; read as a seed, also where lambda is unknown: then zero).
-  /// `fields`: t_hat with all derivatives in. Adds D lambda to `lambda` where it is unknown. False where the tangent
-  /// turns out to be singular.
+  /// Solves for the derivative. `lambda`: D lambda, per block, given as a seed; an unknown one is given as zero, and
+  /// its D lambda is added. `fields`: t_hat with all derivatives in. False where the tangent turns out to be singular.
   bool solve(std::vector<Vector<Direction>>& lambda, std::vector<ContactField<Direction>>& fields);
 
   /// Completes the state of every block from the last solve, but for the displacements, which are left unexpanded.
   void settle(const std::vector<ContactField<Direction>>& fields, const std::vector<Vector<Direction>>& lambda);
 
-  /// Largest derivatives, by parameter, of the contact displacements, then and now, and of the forces of bodies and
-  /// loads on the unknowns, whatever part of these cancels.
+  /// Largest derivatives, by parameter: reach() of the contact displacements, then and now; load() of the forces of
+  /// bodies and loads on the unknowns, however much of these cancels.
   Vector<double> reach() const {
     const Matrix<double> then = gather(
         problem_.blocks,
@@ -86,8 +85,8 @@ class LinearisedEquilibrium {
   ConeRadius cone_;
   double time_;
   bool unknown_, valid_ = false;
-  bool redundant_ = false;                ///< constraints repeat one another: the tangent yields, and is used twice
-  bool unproven_ = false;                 ///< the factor is Newton's last, and has not been seen to solve these rows
+  bool redundant_ = false;                ///< constraints repeat one another: the tangent is used twice
+  bool unproven_ = false;                 ///< the factor is Newton's last; not yet seen to solve these rows
   Solving solving_ = Solving::unrefined;  ///< as long as that solves the first rows
   PseudoLoad load_;
   Matrix<double> increment_, compact_;
@@ -166,9 +165,9 @@ void LinearisedEquilibrium<E>::improve(const Rows& rows, std::vector<Vector<Dire
   }
 }
 
-/// Rows of the derivative problem at the derivatives reached so far. `accurate`: what is left of the displacement rows
-/// is rounding, measured by the derivatives of the forces that should balance in them. It is not where a large rho
-/// magnifies the rounding of Dg: an unknown lambda then takes the defect up in another pass, a given one can't.
+/// Rows of the derivative problem at the derivatives reached so far. `accurate`: the displacement rows are rounding,
+/// measured by the derivatives of the forces that should balance in them. A large rho magnifies the rounding of Dg, and
+/// then they are more. Another pass takes the defect up where lambda is unknown; where it is given, none can.
 template <class E>
 typename LinearisedEquilibrium<E>::Rows LinearisedEquilibrium<E>::evaluate(
     const std::vector<Vector<Direction>>& compact, const std::vector<Vector<Direction>>& lambda) {
@@ -225,7 +224,7 @@ void LinearisedEquilibrium<E>::settle(const std::vector<ContactField<Direction>>
       auto& block = problem_.blocks[b];
       auto& bodies = block.current.history.bodies;
       bodies = bulk_flow(problem_.model, block.slots, displacement[b], block.previous.history.bodies, at_.flow);
-      if (!at_.flow.empty())  // (what is left of a tie moves the values of a branch that is given)
+      if (!at_.flow.empty())  // (what is left of a tie moves the values of a branch that is prescribed)
         for (Eigen::Index k = 0; k < bodies.size(); ++k) bodies[k].v = at_.history.bodies[k];
     }
   }

@@ -32,8 +32,7 @@ Margins margins_of(const Model& model, const Slots<double>& slots, const State<d
                            ? bound - tangential(contact.traction, point.multiplier + 1)
                            : elastic * tangential(contact.slip, tangential_offset(model, p));
   margin.slip = reach / bound;
-  if (is_slipping(contact.state[p]) && law.coefficient && law.limit)
-    margin.slip = std::min(margin.slip, std::abs(*law.coefficient * pressure - *law.limit) / bound);
+  if (is_slipping(contact.state[p])) margin.slip = std::min(margin.slip, law.distance_to_corner(pressure) / bound);
   return margin;
 }
 
@@ -76,7 +75,7 @@ std::size_t first_tie(const Model& model, const Slots<double>& slots, const Meth
   return n;
 }
 
-/// A pressure that is about to begin widens a contact of one point, or of none, with an infinite slope.
+/// A pressure that is about to begin widens a contact of one point, or of none, at an infinite rate.
 bool widens_at_once(const Model& model, const Slots<double>& slots, const State<double>& state, const Response& asked) {
   if (asked.kind != Response::Kind::contact_half_width) return false;
   const double largest = traction_scale(model, slots, state);
@@ -185,7 +184,7 @@ void run_sides(const M& method, E& engine, const Model& model, const Slots<doubl
 }
 
 /// Numbers of the scene with one seed: all parameters grow together, each by a share of its value. The shares differ,
-/// so that what cancels between two parameters does not here.
+/// so that two parameters do not cancel here.
 Numbers<Direction> all_growing(const Scene& scene) {
   constexpr double golden = 0.6180339887498949;
   auto numbers = scene.as<Direction>();

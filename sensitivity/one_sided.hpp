@@ -7,10 +7,10 @@
 /// (sensitivity/sided_geometry.hpp). Material points that are about to flow take branches likewise
 /// (sensitivity/flow_ties.hpp).
 ///
-/// Branches that no direction confirms give the derivative of nothing, and leave it in the history. So where there are
-/// ties, all parameters are differentiated with the branches that hold along one direction, in which all of them grow
-/// (consistent_at_ties): that is the derivative of a neighbouring smooth piece of the solution, for every scheme and
-/// its adjoint, and exact again where the kink has passed.
+/// Branches that no direction confirms would give the derivative of nothing, and leave it in the history. So where
+/// there are ties, all parameters are differentiated with the branches that hold along one direction, in which all of
+/// them grow (consistent_at_ties). That is the derivative of a neighbouring smooth piece of the solution, for every
+/// scheme and its adjoint. Once the kink has passed it is exact again.
 #pragma once
 
 #include <limits>
@@ -22,19 +22,22 @@
 
 namespace stickslip {
 
-/// How far the nearest contact point is from a change of state: `open` between open and closed (pressure, or k g / A of
-/// an open point, over the largest pressure or k / A times the largest motion); `slip` between stick and slip
-/// (distance to the cone, or k |dg_T| / A of a slipping point, over the friction bound); `yield` between elastic and
-/// plastic of a point of a body (yield_margin); `vertex` from facet to facet of a master (vertex_margin). Infinity
-/// where there is no such point.
+/// How far the nearest point is from a change of state; infinity where there is no such point.
+///
+///   open    between open and closed: pressure, or k g / A of an open point, over the largest of pressure and k / A
+///           times motion
+///   slip    between stick and slip, or pieces of the bound: distance to the cone, or k |dg_T| / A of a slipping point,
+///           over the bound
+///   yield   between elastic and plastic, of a point of a body (yield_margin)
+///   vertex  from facet to facet of a master (vertex_margin)
 struct Margins {
   double open, slip;
   double yield = std::numeric_limits<double>::infinity(), vertex = yield;
-  /// Of the changes of state that a derivative is told to have two sides at.
+  /// The least of those at which a derivative is told to have two sides.
   double least() const { return std::min({open, slip, yield}); }
 };
 
-/// A distance from a change of state up to this is none: a point is weak.
+/// A point is weak where its distance from a change of state is no more than this.
 inline constexpr double weak_margin = 1e-8;
 
 /// Of one contact point.
@@ -44,7 +47,7 @@ Margins margins(const Model& model, const Slots<double>& slots, const State<doub
 
 struct OneSided {
   /// Per increment: responses x parameters, from below and from above. NaN where a side has none: the response jumps,
-  /// or its slope is infinite (core/README.md), or no branches were confirmed.
+  /// its slope is infinite (core/README.md), or no branches were confirmed.
   std::vector<Matrix<double>> backward, forward;
   Counters counters;
 };

@@ -6,10 +6,10 @@
 ///
 ///   K^T a = -c,      DJ += a . dR/dslots      history <- a . dR/dhistory
 ///
-/// where a is the force's weight along free dofs and -dJ/d(reaction) along prescribed ones, which then need no case of
-/// their own. An increment solves for a at the contact, in the engine's unknowns; a inside the bodies, and what it
-/// weighs there, is found for many increments together (sensitivity/pull_back_bodies.hpp). The schemes differ in what
-/// becomes of the derivative by lambda.
+/// where a is the force's weight along free dofs, and -dJ/d(reaction) along prescribed ones, so that these need no case
+/// of their own. An increment solves for a at the contact, in the engine's unknowns. a inside the bodies, and what it
+/// weighs there, is found for many increments together (pull_back_bodies.hpp). The schemes differ in what becomes of
+/// the derivative by lambda.
 /// Path-dependent adjoint: [MTV94]
 #pragma once
 
@@ -35,32 +35,32 @@ inline HistoryDerivative no_derivative(const History<double>& like, Eigen::Index
 
 /// Weights a and motions u of an objective, a column an increment, all dofs in the axes.
 struct WorkPairs {
-  Matrix<double> weights, motions;  ///< no weights: of what is remembered alone
+  Matrix<double> weights, motions;  ///< weights empty: of the memory alone
   Matrix<double> before;            ///< what bodies remember of the last increment
-  Matrix<double> memory;            ///< weights of what they remember of this one; empty: none
+  Matrix<double> memory;            ///< weights of what bodies remember of this increment; empty: none
   std::vector<FlowBranches> flows;  ///< per column
 };
 
-/// Derivatives by motion (no rows: no body remembers) and by what bodies remember of the last increment.
+/// Derivatives by motion (no rows where no body remembers), and by what bodies remember of the last increment.
 struct WorkLeft {
   Matrix<double> motion, before;
 };
 
-/// Adds to the derivatives by the entries of the tape, `by`, what the pairs give. An element of a continuum is
-/// differentiated by its own inputs, which are few (core/solids/element_work.hpp), and the chain goes on from there;
-/// one of two nodes is recorded behind what `tape` holds, and taken off again.
+/// Adds the share of the pairs to `by`, the derivatives by the entries of the tape. An element of a continuum is
+/// differentiated by its own inputs, which are few (core/solids/element_work.hpp); the chain goes on from there. An
+/// element of two nodes is recorded at the end of the tape, which is then rewound.
 WorkLeft pull_back_bodies(const Model& model, const Slots<Reverse>& slots, Tape& tape, const WorkPairs& pairs,
                           std::vector<double>& by);
 
-/// What an equilibrium leaves to be done inside the bodies.
+/// The share of an equilibrium inside the bodies, which waits for other increments.
 struct Inside {
   Vector<double> motion;          ///< u, all dofs in the axes
   Vector<double> before;          ///< what bodies remember of the last increment
-  Vector<double> by_before = {};  ///< derivative by that, of what they remember of this one
+  Vector<double> by_before = {};  ///< derivative by `before`, through what bodies remember of this increment
   double time = 0;
   Vector<double> forces;     ///< of bodies and contact, all dofs; empty where no node has a frame of its own
-  Vector<double> weights;    ///< a of what the objective reads of the bodies' forces, all dofs in the axes
-  Matrix<double> u, others;  ///< engine increment that -c belongs to, and what the reduction left of c for it
+  Vector<double> weights;    ///< weights of the bodies' forces in what the objective reads, all dofs in the axes
+  Matrix<double> u, others;  ///< solution for -c, engine dofs; what reduce() kept of c for expand()
   FlowBranches flow;
 };
 
@@ -109,7 +109,7 @@ class RecordedEquilibrium {
   void balance(int objective);
   /// Takes the derivative by lambda out.
   Vector<double> take_multiplier(int objective);
-  /// Largest derivative by a nodal force, of those that were added up on the way.
+  /// Largest derivative by a nodal force so far.
   double force_weight(int objective) const {
     const auto largest = [](const auto& m) { return m.size() ? m.cwiseAbs().maxCoeff() : 0.0; };
     return std::max(largest(inside_[objective].weights), largest(inside_[objective].u));
@@ -141,7 +141,7 @@ class RecordedEquilibrium {
   const State<double>& at_;
   Vector<double> scale_;  ///< rho of each multiplier component
   bool unknown_, valid_ = false, redundant_ = false;
-  int outcome_start_ = 0;  ///< on the tape: behind it, functions of the variables below
+  int outcome_start_ = 0;  ///< place on the tape; behind it: functions of the variables below
   Vector<Reverse> prescribed_, displacement_, multiplier_;
   int first_read_ = 0;        ///< entry of the first of AdjointProblem::read_forces
   Vector<double> forces_;     ///< of the bodies, where they are read
@@ -205,7 +205,7 @@ void RecordedEquilibrium<E>::record(const State<double>& previous, const Regular
   outcome_start_ = tape.size();
   displacement_ = leaves(at_.displacement, tape);
   const Vector<double> memory = bulk_flow(model, problem_.slots, at_.displacement, previous.history.bodies, at_.flow);
-  // (what reads forces by more than their derivative does so at supports, but for energies)
+  // (more than the derivative of forces is read at supports alone, but for energies)
   forces_ =
       bulk_forces(model, problem_.slots, at_.displacement, memory, problem_.energies ? nullptr : &problem_.at_supports);
   Vector<Reverse> internal = forces_.unaryExpr([](double x) { return Reverse(x); });
@@ -225,7 +225,7 @@ void RecordedEquilibrium<E>::record(const State<double>& previous, const Regular
   state_.history = next_history(input, state_.contact, multiplier_);
   state_.history.bodies = memory_;
   const Vector<Reverse> balance = nodal_balance(model, slots, state_, internal, time);
-  // (the engine has the tangent of pressures that follow the bodies; rows know what else they depend on)
+  // (the engine has the tangent of pressures that follow the bodies; rows_ has their other derivatives)
   rows_ = balance;
   if (!model.followers.empty()) {
     const Vector<Reverse> still = at_.displacement.unaryExpr([](double x) { return Reverse(x); });
@@ -265,7 +265,7 @@ void RecordedEquilibrium<E>::seed_traction(int objective, const Vector<double>& 
   seed(by(objective), state_.contact.traction, derivative);
 }
 
-/// Moves what is seeded to the variables of the increment, but for the bodies' forces: takes their weights out.
+/// Moves what is seeded to the variables of the increment. Takes out, and returns, the weights of the bodies' forces.
 template <class E>
 Vector<double> RecordedEquilibrium<E>::pull_back(int objective) {
   problem_.tape.pull_back(by(objective), outcome_start_);
@@ -289,7 +289,7 @@ void RecordedEquilibrium<E>::pull_back_memory(int objective) {
   inside.by_before += left.before;
 }
 
-/// A solve took the derivative by the free displacements up.
+/// Clears the derivative by the free displacements: a solve has taken it up.
 template <class E>
 void RecordedEquilibrium<E>::clear_free(int objective) {
   const auto& frames = problem_.slots.frames;
@@ -305,7 +305,7 @@ void RecordedEquilibrium<E>::clear_held(Matrix<double>& rows) {
     if (!problem_.engine.is_free(i)) rows.row(i).setZero();
 }
 
-/// Moves the weights that a solution gives the rows of the contact; the bodies' share in them waits.
+/// Moves the weights that a solution gives the rows of the contact. The bodies' share in these rows waits.
 template <class E>
 void RecordedEquilibrium<E>::seed_contact(int objective, const BlockVector<double>& solution) {
   const Model& model = problem_.model;

@@ -1,17 +1,18 @@
-/// Points at the apex of their cone. With z = 0 the projection has no tangent but a directional derivative,
+/// Points at the apex of their cone, z = 0. There the projection has no tangent, but a directional derivative:
 ///
 ///   Dt = 0  if Dz_N > 0,  else  Dt_N = Dz_N,  Dt_T = Dz_T  or  bound Dz_T / |Dz_T|,  bound = -mu Dz_N
 ///
-/// which is positively homogeneous: where it slips, Dt is the tangent of the projection at any place of the ray Dz,
-/// applied to Dz. So the tangent is taken on the ray (ContactField::ray), and the traction stays zero. Where mu = 0
-/// the cone is a line: the pressure is what it is, and the ray is the direction of Dz_T. Source: core/README.md.
+/// It is positively homogeneous. So where the point slips, Dt is the tangent of the projection at any place of the ray
+/// Dz, applied to Dz. The tangent is therefore taken at a place of the ray (ContactField::ray), while the traction
+/// stays zero. Where mu = 0 the cone is a line: the pressure is what it is, and the ray is the direction of Dz_T.
+/// Source: core/README.md.
 #pragma once
 
 #include "core/model/contact_assembly.hpp"
 
 namespace stickslip {
 
-/// Whether the state of a point says where on its cone the tangent is to be taken.
+/// Whether a point has a ray.
 inline bool has_ray(const Model& model, const Vector<double>& ray, std::size_t p) {
   const auto& point = model.points[p];
   return ray.size() > 0 && ray.segment(point.multiplier, point.components()).cwiseAbs().maxCoeff() > 0;
@@ -19,8 +20,8 @@ inline bool has_ray(const Model& model, const Vector<double>& ray, std::size_t p
 
 namespace detail {
 
-/// The traction of a point whose trial z is moved to `ray` (units of traction, any size) and back to where it was: the
-/// derivatives are those on the ray, the value is that at the apex.
+/// The traction with derivatives as they are where the trial z is moved to `ray` (units of traction, any size), and
+/// with its value at the apex.
 template <class T, int Tangents>
 Traction<T, Tangents> traction_on_ray(const Traction<T, Tangents>& z, const Vector<double>& ray,
                                       const FrictionLaw<T>& friction) {
@@ -61,8 +62,8 @@ void take_rays(const ContactInput<T>& input, const Vector<T>& multiplier, const 
   }
 }
 
-/// The multiplier whose trial lies on the ray of each point that has one, far enough from the apex to be seen beside
-/// the rounding of rho g: what a tangent is taken at.
+/// The multiplier at which a tangent is taken. It takes the trial of each point that has a ray onto the ray, so far
+/// from the apex that the rounding of rho g does not count.
 inline Vector<double> multiplier_on_rays(const ContactInput<double>& input, const State<double>& at) {
   Vector<double> multiplier = at.multiplier;
   const auto& ray = at.contact.ray;

@@ -1,11 +1,11 @@
 /// One-sided contact geometry where a parameter moves a projection off a vertex of the master.
 ///
-/// A slave node that faces a vertex at which one of its facets begins (node-to-segment), or whose segment ends at a
-/// master node (segment integration), faces another part of the master as soon as the parameter moves. The contact is
-/// paired anew on nodes moved by 1e-7 of their mesh size to that side; the geometry there, as a function of the
-/// parameters, is taken at the nodes as they are. Where it is continuous in value its derivative is that of the side;
-/// where it jumps (the normal, at a corner of the master) there is none. Nor is there where a node slides off the end
-/// of the master or onto it, which pairing sees 1e-6 of a facet later.
+/// A slave node faces another part of the master as soon as a parameter moves, if it faces a vertex at which one of its
+/// facets begins (node-to-segment), or if its segment ends at a master node (segment integration). The contact is
+/// paired anew on nodes moved by 1e-7 of their mesh size to that side. The geometry there, as a function of the
+/// parameters, is taken at the nodes as they are. Where it is continuous in value, its derivative is that of the side.
+/// Where it jumps, as the normal at a corner of the master, there is none. There is none either where a node slides off
+/// the end of the master or onto it; pairing sees that 1e-6 of a facet later.
 #pragma once
 
 #include "sensitivity/direct.hpp"

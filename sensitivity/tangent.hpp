@@ -45,9 +45,9 @@ bool factorise_converged(Problem& problem, const ContactInput<double>& input, co
   return valid;
 }
 
-/// The same with the factor that the engine has of Newton's last iteration, whose tangent is that of the converged
-/// state but for directions in space: it is used as it is, or updated. False where that cannot be. What it solves is to
-/// be checked.
+/// The same with the engine's factor of Newton's last iteration. Its tangent is that of the converged state, but for
+/// directions in space: so it is used as it is, or updated. False where that cannot be. The caller must check what it
+/// solves.
 template <class Problem>
 bool reuse_factor(Problem& problem, const ContactInput<double>& input, const State<double>& at, bool unknown) {
   if (unknown && !decided_elsewhere(problem.model, problem.slots).empty()) return false;

@@ -1,25 +1,28 @@
 /// Uzawa: the derivative of  lambda <- t(u(lambda), lambda)  mirrors the updates.
 ///
-///   iterated        (two-phase) lambda first converges, then  D lambda <- D t(Du(D lambda), D lambda)  with one
-///                   factorisation, a back-solve a parameter and pass, until settled: error q^m, q the contraction of
-///                   the updates
+///   iterated        (two-phase) lambda first converges, then  D lambda <- D t(Du(D lambda), D lambda)  is repeated
+///                   until settled, with one factorisation, and a back-solve a parameter and pass. After m passes the
+///                   error is q^m, q the contraction of the updates
 ///   truncated       (piggyback) one pass per augmentation that was performed, with its own tangent: the exact
 ///                   derivative of the truncated algorithm, for a loop that was cut off or stopped at a coarse
 ///                   tolerance
 ///   oversized       one pass with kappa_s rho in place of rho, states frozen: error O(1/kappa_s), no iteration [SZ00]
 ///   preconditioned  the iterated scheme with kappa_s rho in place of rho. Its fixed point is that of rho: Dg = 0 and
-///                   D t_T = D(bound m) hold there, and rho stands in neither. The error shrinks by
-///                   1 / (1 + kappa_s rho s_min) a pass, so that four to six passes reach rounding whatever q was
+///                   D t_T = D(bound m) hold there, and rho stands in neither. A pass shrinks the error to
+///                   1 / (1 + kappa_s rho s_min) of itself: four to six passes reach rounding, whatever q was
 ///
-/// kappa_s is `oversize`. Automatic it is 1e3 for the oversized scheme. The preconditioned one takes q / (1 - q) /
-/// 5e-4, which makes the measured contraction q one of 5e-4, and at least 300 nodal stiffnesses, for directions that
-/// the updates did not excite; at most 1e5 of them. Rounding of D lambda grows as kappa_s rho, passes fall with it:
-/// with these, four to six passes and errors below 1e-10 up to q = 0.995 (1e-4, 1e3 and 1e6 save one pass and leave
-/// 4e-10).
+/// The repeated step D lambda <- D t is take_derivatives(). It is the derivative of the update lambda <- t of
+/// methods/uzawa.hpp (AugmentationLoop::update). iterate_back() is its transpose.
 ///
-/// All carry D lambda of the last increment in as D lambda^0. Adjoint: the same maps transposed. The derivative by t
-/// goes to lambda and back,  l <- l D t/D lambda,  until nothing is left (iterated; as a fixed point, accelerated),
-/// augmentation by augmentation (truncated), or once. [SLK10 sec. 1], [CD20]
+/// kappa_s is `oversize`. Where it is automatic, the oversized scheme takes 1e3. The preconditioned one takes q / ((1 -
+/// q) 5e-4): that turns the measured contraction q into one of 5e-4. It takes at least 300 nodal stiffnesses, for
+/// directions that the updates did not excite, and at most 1e5. Why these numbers: rounding of D lambda grows as
+/// kappa_s rho, and passes fall with it. They give four to six passes and errors below 1e-10 up to q = 0.995. With
+/// 1e-4, 1e3 and 1e6 in their place there is one pass less, and an error of 4e-10.
+///
+/// All schemes begin with D lambda of the last increment as D lambda^0. Adjoint: the same maps transposed. The
+/// derivative by t goes to lambda and back,  l <- l D t/D lambda,  until nothing is left (iterated; accelerated, as a
+/// fixed point), augmentation by augmentation (truncated), or once. [SLK10 sec. 1], [CD20]
 #pragma once
 
 #include "methods/uzawa.hpp"
@@ -43,7 +46,7 @@ std::vector<Vector<Direction>> carried_multiplier(Differentiation<E>& problem, c
   return lambda;
 }
 
-/// D lambda <- D t of `fields`; values stay.
+/// D lambda <- D t of `fields`: the derivative of the update lambda <- t in methods/uzawa.hpp. Values stay.
 inline void take_derivatives(std::vector<Vector<Direction>>& lambda,
                              const std::vector<ContactField<Direction>>& fields) {
   for (std::size_t b = 0; b < lambda.size(); ++b)
@@ -63,7 +66,7 @@ LinearisedEquilibrium<E> linearise(const UzawaAL& method, Differentiation<E>& pr
 /// kappa_s of the preconditioned scheme, from the contraction of the updates (0: not measured).
 inline double chosen_oversize(const UzawaAL& method, const Slots<double>& slots, const RegularisationField<double>& rho,
                               double contraction) {
-  constexpr double target = 5e-4, least = 300, most = 1e5;  // a pass; nodal stiffnesses
+  constexpr double target = 5e-4, least = 300, most = 1e5;  // contraction; the others are nodal stiffnesses
   if (method.oversize) return *method.oversize;
   double smallest = std::numeric_limits<double>::infinity(), largest = 0;
   for (std::size_t p = 0; p < rho.size(); ++p) {
@@ -76,8 +79,8 @@ inline double chosen_oversize(const UzawaAL& method, const Slots<double>& slots,
   return std::max(1.0, std::min(std::max(measured, least / smallest), most / largest));
 }
 
-/// The state with the multiplier that has, with kappa_s rho, the traction that was found as its trial: the violation
-/// left by the augmentations is then not magnified. A slipping point has it on the edge of its cone.
+/// The state with another multiplier: the one whose trial, with kappa_s rho, is the traction that was found. In slip
+/// the trial is on the edge of the cone. Why: kappa_s rho would magnify the violation that the augmentations left.
 inline State<double> restated(const Model& model, State<double> at, const RegularisationField<double>& rho) {
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     if (at.contact.state[p] == ContactState::open) continue;
@@ -91,12 +94,12 @@ inline State<double> restated(const Model& model, State<double> at, const Regula
   return at;
 }
 
-/// Passes between which a change must have fallen far enough to get to its end within a limit.
+/// Watches whether a change falls fast enough to get to its end within `limit` passes.
 class Progress {
  public:
   static constexpr int limit = 20000;
-  /// Whether there is no hope: at the rate of the last `window` passes, `change` does not fall to `enough` in what is
-  /// left of the limit. A linear iteration slows down, as its fast modes die out, and never speeds up.
+  /// Whether there is no hope: at the rate of the last `window` passes, the passes left do not take `change` down to
+  /// `enough`. A linear iteration slows down, as its fast modes die out, and never speeds up.
   bool is_hopeless(int pass, double change, double enough) {
     if (pass % window != 0) return false;
     const double before = std::exchange(last_, change);
@@ -110,13 +113,21 @@ class Progress {
   double last_ = 0;
 };
 
-/// Iterates D lambda until the change, extrapolated by its own contraction, is below `tolerance` of D lambda or at the
-/// rounding of rho Dg, for every parameter. Dg is rounded as its terms are and as the forces are that balance in it: of
-/// a thickness, on which the tractions do not depend, nothing but that rounding is left.
+/// Iterates D lambda <- D t, until all parameters have ended. With `change` the largest change of D lambda in a pass, q
+/// the ratio of the last two changes and `floors` what rounding of rho Dg makes of a change, a parameter ends where
+///
+///   left <= enough   left = change q / (1 - q), the sum of all changes to come; enough: `tolerance` of D lambda
+///   stalled          change <= floors, or the rounding of D lambda
+///   drifts           constraints that repeat one another push each other's multiplier for ever by what rounding left
+///                    between them: changes of 1e-11 that do not fall. A slow mode would need more than `limit` passes
+///                    at such a q, and would not start at so small a change
+///
+/// Dg is rounded as its terms are, and as the forces are that balance in it. Example: tractions do not depend on a
+/// thickness, so of its Dg nothing but that rounding is left.
 template <class E>
 bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, const RegularisationField<double>& rho,
              std::vector<Vector<Direction>>& lambda, std::vector<ContactField<Direction>>& fields, double tolerance) {
-  double stiffest = 0, yielding = 0;  // rho; rho of a unit of force on the local stiffness
+  double stiffest = 0, yielding = 0;  // largest rho; largest rho over k: traction per force that rounds in a node
   for (std::size_t p = 0; p < rho.size(); ++p) {
     stiffest = std::max(stiffest, rho[p].normal);
     yielding = std::max(yielding, rho[p].normal / problem.slots.stiffness[p]);
@@ -132,18 +143,16 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
     take_derivatives(lambda, fields);
     const Vector<double> floors = 8 * unit_roundoff * (stiffest * linearised.reach() + yielding * linearised.load());
     bool settled = true;
-    double slowest = 0;  // largest change over what would be enough
+    double slowest = 0;  // largest change / enough of a parameter that has not ended
     record = {pass, 1, 0};
     for (int j = 0; j < problem.parameters && after.rows() > 0; ++j) {
       const double change = (after.col(j) - before.col(j)).cwiseAbs().maxCoeff();
       const double size = after.col(j).cwiseAbs().maxCoeff();
-      // (where the derivative is zero, what the last increment left of it says how small that is)
+      // (of a zero derivative, the size of what the last increment left tells how small that is)
       if (pass == 1) carried[j] = before.col(j).cwiseAbs().maxCoeff();
       const double q = last[j] > 0 ? change / last[j] : 1;
       const double left = q < 1 ? change * q / (1 - q) : change;
       const bool stalled = pass > 3 && change <= std::max(floors[j], 4 * unit_roundoff * std::max(size, carried[j]));
-      // Constraints that repeat one another push each other's multiplier for ever by what rounding left between them. A
-      // slow mode would need more than `limit` passes at such a q, and not start at so small a change.
       const bool drifts = pass > 10 && q > 1 - 1e-4 && change <= 1e-11 * std::max(size, carried[j]);
       const double enough = std::max(tolerance * size, floors[j]);
       const bool ended = change == 0 || stalled || drifts || (q < 1 && pass > 2 && left <= enough);
@@ -160,7 +169,7 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
   return false;
 }
 
-/// One pass for each augmentation that was made.
+/// One pass for each augmentation that was performed.
 template <class E>
 bool differentiate_augmentations(const UzawaAL& method, Differentiation<E>& problem, const State<double>& previous,
                                  const Increment<double>& increment) {
@@ -197,7 +206,7 @@ bool differentiate_preconditioned(const UzawaAL& method, Differentiation<E>& pro
   if (!linearised.valid()) return false;
   auto lambda = carried_multiplier(problem, at.multiplier);
   std::vector<ContactField<Direction>> fields;
-  // (another pass divides what is left by some thousand: there is no need to see it below 1e-13)
+  // (a pass divides the error by some thousand, so that 1e-12 is enough where other schemes ask for 1e-13)
   if (!iterate(problem, linearised, rho, lambda, fields, 1e-12)) return false;
   problem.record->oversize = oversize;
   linearised.settle(fields, lambda);
@@ -235,7 +244,7 @@ bool differentiate_increment(const UzawaAL& method, Differentiation<E>& problem,
 
 namespace detail {
 
-/// rho of the loop times `oversize`, on a tape that is rewound.
+/// rho of the loop times `oversize`, recorded on the tape after it was rewound.
 template <class E>
 RegularisationField<Reverse> recorded_regularisation(const UzawaAL& method, AdjointProblem<E>& problem,
                                                      std::vector<double> factor, double oversize) {
@@ -244,11 +253,15 @@ RegularisationField<Reverse> recorded_regularisation(const UzawaAL& method, Adjo
   return adapted(initial_regularisation(problem.recorded, method), factor);
 }
 
-/// Moves c, the derivative by lambda that the outcome asks for, through all updates before: finds x = c + A^T x, A the
-/// linearised update, and moves x, with Anderson's extrapolation, which takes half the passes of the series sum (A^T)^k
-/// c or less. What the last pass has moved stays moved, what those before it have is put back. `left`, c + A^T x - x,
-/// settles at nothing, but for the multiplier of a constraint that supports decide: it is whatever it started from,
-/// which is the last increment's. `contraction` of A as far as it is known (0: not), for Anderson's changes hide it.
+/// Moves the derivative by lambda back through all updates. c: that derivative, as the outcome asks for it; A: the
+/// linearised update. Finds x = c + A^T x, and moves x. Anderson's extrapolation takes half the passes of the series
+/// sum (A^T)^k c, or less. What the last pass moved stays moved; what the passes before it moved is put back.
+///
+///   left         c + A^T x - x: the derivative by the lambda that the increment began with. It settles at zero, but
+///                for the multiplier of a constraint that supports decide: that keeps the last increment's
+///   plain        x is the last image, not an extrapolation: `left` is then the next term of the series, so that its
+///                changes tell whether it has settled or stalled
+///   contraction  of A, as far as it is known (0: not), for changes under Anderson's extrapolation hide it
 template <class E>
 bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, int objective, double contraction,
                   Vector<double>& left) {
@@ -263,7 +276,7 @@ bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, 
   const auto start = recorded.gathered(objective);
   Accelerator<double> accelerator(UzawaAL::Acceleration::anderson);
   Vector<double> x = asked;
-  bool plain = true;  // whether x is the last image, so that `left` is a term of the series
+  bool plain = true;
   Progress progress;
   for (int pass = 1; pass <= Progress::limit; ++pass) {
     recorded.seed_traction(objective, x);
@@ -290,7 +303,7 @@ bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, 
   return false;
 }
 
-/// All augmentations that were performed, the last one first.
+/// Goes back through all augmentations that were performed, the last one first.
 template <class E>
 bool pull_back_augmentations(const UzawaAL& method, AdjointProblem<E>& problem, const State<double>& previous,
                              const Increment<double>& increment) {
@@ -347,7 +360,7 @@ bool pull_back_fixed_point(AdjointProblem<E>& problem, RecordedEquilibrium<E>& r
   return true;
 }
 
-/// The fixed point with the factor of kappa_s rho, which is no function of the scene in it.
+/// The fixed point with the factor of kappa_s rho, which is a constant: the fixed point does not depend on rho.
 template <class E>
 bool pull_back_preconditioned(const UzawaAL& method, AdjointProblem<E>& problem, const State<double>& previous,
                               const Increment<double>& increment) {

@@ -1,11 +1,14 @@
 /// Points that slide along curves and are, at the end of an increment, just where one patch ends and the next begins.
 ///
 /// Two patches part at the line through their vertex v that halves their tangents t, t':  (x - v) . (t + t') = 0. Along
-/// one direction of the parameters, dphi = s d with s = +-1, such a point faces the second iff s D of that is positive.
-/// Where the patches go on straight (facets in line, and Catmull-Rom splines, whose curvature alone jumps), or where
-/// the point bears nothing, either patch has an equilibrium here, and the derivative with it is that of its side. Where
-/// a corner is pressed the force jumps with the normal: on the side on which the point stays the derivative is that of
-/// its patch, and on the other there is none. Splines whose curvature goes on, B-splines among them, have no such ties.
+/// one direction of the parameters, dphi = s d with s = +-1, such a point faces the second iff s D((x - v) . (t + t'))
+/// > 0.
+///
+///   straight, or free   the patches go on straight (facets in line; Catmull-Rom splines, whose curvature alone jumps),
+///                       or the point bears nothing. Either patch has an equilibrium here, with its side's derivative
+///   pressed corner      the force jumps with the normal. On the side on which the point stays the derivative is
+///                       that of its patch; on the other there is none
+///   smooth              splines whose curvature goes on, B-splines among them: no tie
 /// Source: core/README.md.
 #pragma once
 

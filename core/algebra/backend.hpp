@@ -7,8 +7,8 @@
 ///   std::string name() const                                    library, version, kind, ordering
 ///   long factor_nonzeros() const                                entries of the last factor
 ///   long factor_bytes() const                                   what the library keeps of it
-/// `Factor<T>` is the closed set of those built in. Data is what the library keeps; it is held by a shared_ptr because
-/// that destroys a type which is incomplete here, and it is never shared.
+/// `Factor<T>` is the closed set of the classes built in. Data is what the library keeps. Its type is incomplete here,
+/// so a shared_ptr holds it, which can destroy such a type; it is never shared.
 #pragma once
 
 #include <memory>
@@ -29,9 +29,9 @@ struct Factorisation {
   };
   Outcome outcome = Outcome::done;
   std::string message;  ///< empty where done
-  /// Smallest pivot over the largest entry of its column, rows and columns being scaled (so the units of the unknowns
-  /// do not matter); in (0, 1] or a little above. Only its order of magnitude has a meaning: a small one is a reason
-  /// to look at the condition number.
+  /// Smallest pivot over the largest entry of its column. Rows and columns are scaled, so the units of the unknowns do
+  /// not matter. In (0, 1] or a little above. Only its order of magnitude has a meaning: a small one is a reason to
+  /// look at the condition number.
   double smallest_pivot = 1;
   int determinant_sign = 1;  ///< +1 or -1; of the real part of the determinant's phase where complex
 };
@@ -45,7 +45,7 @@ class CholmodFactor {
   CholmodFactor(std::shared_ptr<const Pattern> pattern, int kept);
   Factorisation factorise(const double* values);
   FactorSize size() const;  ///< by the analysis
-  /// Of a factor, which is not made; throws as the constructor does.
+  /// Size of the factor that a pattern would have, without making it; throws as the constructor does.
   static FactorSize predict(std::shared_ptr<const Pattern> pattern, int kept);
   /// L_kk L_kk^T of the kept rows. pre: the last factorise() was done.
   Matrix<double> schur_complement() const;

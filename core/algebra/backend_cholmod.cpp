@@ -21,7 +21,8 @@ namespace stickslip {
 namespace {
 
 /// While it lives, OpenMP takes one thread. CHOLMOD asks for four in its supernodes, whatever the machine has, to add
-/// up what takes microseconds: on 2 cores a factorisation of 20 000 unknowns took 74 ms of CPU with them, 20 without.
+/// up what takes microseconds. On 2 cores a factorisation of 20 000 unknowns took 74 ms of CPU with four threads, 20 ms
+/// with one.
 class OneThread {
  public:
   OneThread() {
@@ -93,9 +94,9 @@ struct CholmodFactor::Data {
                                std::to_string(common.status) + ")");
   }
 
-  /// AMD; METIS too, and the better of the two, where AMD's factor costs over 500 flops an entry and fills in
-  /// fivefold: in 3D it does, in 2D METIS takes ten times the analysis for a tie. With kept rows an AMD that is told to
-  /// leave them for the end: a seventh more fill than without.
+  /// The ordering is AMD's. Where AMD's factor costs over 500 flops an entry and fills in fivefold, METIS is tried too
+  /// and the better one taken: in 3D that is so; in 2D METIS takes ten times the analysis and gains nothing. With kept
+  /// rows it is an AMD that is told to leave them for the end: a seventh more fill than without.
   void analyse() {
     cholmod_sparse a = matrix(nullptr);
     if (kept == 0) {

@@ -12,8 +12,8 @@
 
 namespace stickslip {
 
-/// The zero of equation.excess(x), in double, which falls from a positive value at x = 0 to a negative one: Newton's
-/// method, and halves of what brackets the zero where a step leaves it.
+/// The zero of equation.excess(x), in double. The excess falls from a positive value at x = 0 to a negative one.
+/// Newton's method; a step that leaves the bracket of the zero is replaced by half of the bracket.
 template <class Equation>
 double root_of(const Equation& equation) {
   constexpr int most = 200;

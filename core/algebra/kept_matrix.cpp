@@ -45,9 +45,10 @@ std::vector<int> transposed_entries(const Pattern& pattern) {
   return entry;
 }
 
-/// Oettli and Prager's backward error of up to K columns, |b - A x|_i / (|A||x| + |b|)_i at its largest. `entry`: where
-/// the entries of a column of A^T are; null where A^T is meant, or A is symmetric. Not a number where an entry is none.
-/// One pass, that keeps nothing: what it costs counts where a run solves for many right-hand sides.
+/// Oettli and Prager's backward error of up to K columns: the largest |b - A x|_i / (|A||x| + |b|)_i. Not a number
+/// where an entry of the columns is none. `entry`: where the entries of a column of A^T are; null where A^T is meant,
+/// or A is symmetric. One pass that keeps nothing, because a run that solves for many right-hand sides pays for it each
+/// time.
 template <int K, class T, class Columns>
 double oettli_prager(const Pattern& pattern, const T* values, const int* entry, const T* x, const Columns& b) {
   double error = 0;

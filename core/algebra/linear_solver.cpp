@@ -18,12 +18,12 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-/// A pivot below this, relative to its column, calls for a look at the condition number: of itself it proves nothing
-/// (a stiff penalty makes one), and above it a matrix that is singular to working precision is not in sight.
+/// A pivot below this, relative to its column, calls for an estimate of the condition number. Such a pivot alone proves
+/// nothing: a stiff penalty makes one. A matrix that is singular to working precision has pivots far below it.
 constexpr double small_pivot = 1e-8;
 /// The scaled matrix counts as singular where its condition number times epsilon exceeds this. Rounding gives an
-/// exactly singular matrix some condition number beyond 1 / epsilon: 4e16 and more where a body floats; where random
-/// rows depend on each other, one in 3500 stays below the limit.
+/// exactly singular matrix some condition number beyond 1 / epsilon: 4e16 and more where a body floats. Of matrices
+/// whose random rows depend on each other, one in 3500 stays below the limit.
 constexpr double singular_condition = 0.1;
 
 std::string scientific(double x) {

@@ -37,7 +37,7 @@ struct SolverCounters {
   long fallbacks = 0;    ///< factorisations repeated by another kind because the first failed
 };
 
-/// Right-hand sides b whose rows o, those that are not kept, are eliminated.
+/// Right-hand sides b with their rows o eliminated. o: the rows that are not kept; k: the kept ones.
 template <class T>
 struct Reduction {
   Matrix<T> kept;    ///< b_k - A_ko A_oo^-1 b_o
@@ -82,13 +82,13 @@ class LinearSolver {
   /// factorise() returned true.
   Matrix<T> schur_complement();
 
-  /// A solve in two halves, x_k known between them: b reduced to the kept rows, and x_o of A_oo x_o + A_ok x_k = b_o,
-  /// `others` being of the reduction. A Cholesky factor that has the kept rows last (CHOLMOD) goes forwards and then
-  /// backwards; of another factor each half is a whole solve. Halves are not refined: the triangular solves of a
-  /// Cholesky factor are stable whatever the scales of the unknowns [Hig02, 10.1]. pre: the last factorise() returned
-  /// true.
-  /// `wanted`: rows of x_o that are read, where not all are: the way back then leads through their ancestors in the
-  /// elimination tree alone, and the others may be zero.
+  /// A solve in two halves, between which x_k becomes known. reduce() takes b to the kept rows. expand() gives x_o of
+  /// A_oo x_o + A_ok x_k = b_o; `others`: those of the reduction. A Cholesky factor that has the kept rows last
+  /// (CHOLMOD) goes forwards in the first half and backwards in the second. With another factor each half is a whole
+  /// solve. Halves are not refined: the triangular solves of a Cholesky factor are stable whatever the scales of the
+  /// unknowns [Hig02, 10.1]. pre: the last factorise() returned true.
+  /// `wanted`: the rows of x_o that are read, where not all are. The way back then leads through their ancestors in the
+  /// elimination tree alone, and the other rows may be zero.
   Reduction<T> reduce(const Matrix<T>& right_hand_sides);
   Matrix<T> expand(const Matrix<T>& kept, Matrix<T> others, const std::vector<int>* wanted = nullptr);
 
@@ -105,7 +105,7 @@ class LinearSolver {
   const SolverCounters& counters() const;
   std::string name() const;            ///< e.g. "MUMPS 5.5.1 LU, PORD"; empty before analyse()
   const std::string& message() const;  ///< why the last factorise() failed
-  /// Size of the factor by the analysis; of a backend that does not tell, predict_factor(). pre: analyse().
+  /// Size of the factor by the analysis; where the backend does not tell it, that of predict_factor(). pre: analyse().
   FactorSize factor_size() const;
   long factor_nonzeros() const;  ///< entries of the last factor; 0 where the backend does not tell
   long factor_bytes() const;     ///< that the backend keeps of it, indices included
@@ -115,8 +115,8 @@ class LinearSolver {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Of the Cholesky factor of a pattern, its last `kept` rows eliminated last, by CHOLMOD's symbolic analysis; without
-/// CHOLMOD as if it were of a square of cells in the plane.
+/// Size of the Cholesky factor of a pattern whose last `kept` rows are eliminated last, by CHOLMOD's symbolic analysis.
+/// Without CHOLMOD it is that of a square of cells in the plane.
 FactorSize predict_factor(std::shared_ptr<const Pattern> pattern, int kept);
 
 /// Names of the backends built in, for provenance: {"CHOLMOD 3.0.14", "UMFPACK 5.7.9", "MUMPS 5.5.1", "Eigen 3.4.0"}.

@@ -12,7 +12,7 @@ namespace stickslip {
 class Tape {
  public:
   int size() const { return static_cast<int>(entries_.size()); }
-  /// Memory that it has taken: for its longest so far, and room to grow.
+  /// Bytes that it has taken: for its longest state so far, with room to grow.
   long bytes() const { return static_cast<long>(entries_.capacity() * sizeof(Entry)); }
 
   /// A variable that nothing on the tape was computed into.
@@ -25,8 +25,8 @@ class Tape {
   /// Forgets everything from entry `start` on.
   void rewind(int start) { entries_.resize(start); }
 
-  /// Moves the derivatives in `by` (one per entry: of the final result by this entry) from the results recorded since
-  /// `start` to their arguments. What is a leaf, or was recorded before, keeps and gathers them; the rest is zero
+  /// Moves derivatives from the results recorded since `start` to their arguments. `by`: the derivative of the final
+  /// result by each entry. Leaves, and entries recorded before `start`, gather and keep theirs. All others are zero
   /// again, so that more may be seeded and moved.
   void pull_back(std::vector<double>& by, int start) const {
     for (int i = size() - 1; i >= start; --i) {

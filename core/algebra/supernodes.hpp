@@ -1,11 +1,11 @@
-/// A supernodal Cholesky factor L of a matrix whose last rows are kept, as CHOLMOD lays it out, and the two halves of a
-/// solve that stop at the kept rows:
+/// A supernodal Cholesky factor L, as CHOLMOD lays it out, of a matrix whose last rows are kept. The two halves of a
+/// solve stop at the kept rows:
 ///
 ///   A = [ L_oo       ] [ ... ]^T     reduce:  L_oo y_o = b_o,   r_k = b_k - L_ko y_o
 ///       [ L_ko  L_kk ]               expand:  L_oo^T x_o = y_o - L_ko^T x_k
 ///
-/// Up to 16 right-hand sides go through L together, each of their rows beside one another in memory: where supernodes
-/// have a few columns, as in the plane, that takes a third of the time of the BLAS, which is called for each of them.
+/// Up to 16 right-hand sides go through L together, the entries of each row side by side in memory. Where supernodes
+/// have a few columns, as in the plane, that takes a third of the time of the BLAS, which is called for each supernode.
 #pragma once
 
 #include <vector>
@@ -41,7 +41,7 @@ struct Supernodes {
   Reduction<double> reduce(const Matrix<double>& b) const;
   /// x_o, in the order of the matrix. `wanted`: rows of it that are asked for; the others may then be zero.
   Matrix<double> expand(const Matrix<double>& kept, const Matrix<double>& y, const std::vector<int>* wanted) const;
-  /// Smallest l_kk^2 / a_kk, a pivot over the diagonal entry it came from, which no diagonal scaling changes.
+  /// Smallest l_kk^2 / a_kk: a pivot over the diagonal entry that it came from. No diagonal scaling changes it.
   /// `diagonal`: of the matrix, by row.
   template <class Diagonal>
   double smallest_pivot(Diagonal&& diagonal) const {

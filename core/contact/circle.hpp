@@ -27,7 +27,7 @@ PointGeometry<T> against(const Point& x, const Circle& circle, const Read& numbe
   return detail::rigid<T>(sign * (distance - numbers(circle.radius)), n);
 }
 
-/// The key of the surface that is at fault where no place of it is nearer to x than another; nullptr where one is.
+/// The key of the surface that is wrong where x has no nearest place on it; nullptr where x has one.
 template <class Point>
 const char* ambiguous_at(const Point& x, const Circle& circle, const Numbers<double>& numbers) {
   return x[0] == numbers(circle.center[0]) && x[1] == numbers(circle.center[1]) ? "circle/center" : nullptr;

@@ -38,8 +38,8 @@ struct PointRegularisation {
   T normal{}, tangential{};
 };
 
-/// Takes a point whose gap, placement and slip are known to its traction. `tie_length`: a gap up to this is none;
-/// `state`: the branch to take, or nullptr to classify.
+/// Sets state and traction of a point whose gap, placement and slip are known. `tie_length`: a gap up to this counts as
+/// none. `state`: the branch to take; nullptr: classify.
 template <class T, int Tangents>
 void project_point(const Traction<T, Tangents>& multiplier, const PointRegularisation<T>& rho,
                    const FrictionLaw<T>& friction, ConeRadius cone, double tie_length, const ContactState* state,
@@ -53,7 +53,7 @@ void project_point(const Traction<T, Tangents>& multiplier, const PointRegularis
     const bool augmented = cone == ConeRadius::augmented;
     const T pressure = augmented ? T(-trial.normal) : T(-multiplier.normal);
     if (!state) piece = friction.piece(value(pressure));
-    if (value(pressure) > 0 || augmented || piece == ContactState::limited) bound = friction.bound(pressure, piece);
+    if (value(pressure) > 0 || augmented || !friction.follows_pressure(piece)) bound = friction.bound(pressure, piece);
   }
   point.state = state ? *state : classify(trial, value(bound), value(rho.normal) * tie_length);
   if (point.state == ContactState::slip) point.state = piece;
@@ -78,9 +78,9 @@ PointOutcome<T, Tangents> evaluate_point(const PointGeometry<T>& geometry, const
   return point;
 }
 
-/// Evaluates the point in its present geometry. `foot`: the place on the obstacle that it faces, in the frame of the
-/// obstacle, which carries the friction along; `way`: from that of the last increment to it, as the obstacle stands
-/// now. Its tangential part is the slip; on a curved obstacle it is the chord, O(slip^3) from the arc.
+/// Evaluates the point in its present geometry. `foot`: the place that it faces, in the frame of the obstacle, which
+/// carries the friction along. `way`: vector to this place from that of the last increment, both where the obstacle
+/// stands now. The slip is the tangential part of `way`: on a curved obstacle the chord, O(slip^3) off the arc.
 template <class T, int D, int Tangents>
 PointOutcome<T, Tangents> evaluate_moved_point(const PointGeometry<T>& geometry, const Vec<T, D>& foot,
                                                const Vec<T, D>& way, const Traction<T, Tangents>& multiplier,

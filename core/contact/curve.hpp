@@ -32,13 +32,13 @@ struct Patch {
   bool goes_on_after() const { return vertices[3] != none; }
 };
 
-/// A point that is a vertex of the curve that it faces, a side in contact with itself. It faces patches behind it on
-/// the curve alone, so that one of two places that meet is the slave; none that it shapes itself; and none of its own
-/// wall.
+/// A point that is a vertex of the curve that it faces: a side in contact with itself. It faces only patches that come
+/// after it on the curve, so that of two places that meet one is the slave. It never faces a patch that it shapes, nor
+/// one of its own wall.
 struct OwnVertex {
   int vertex = Patch::none;
-  double reach = 0;             ///< it is further inside of nothing
-  std::vector<char> wall = {};  ///< per patch: whether it is of the point's own wall
+  double reach = 0;             ///< length: deeper than this it counts as inside of no patch
+  std::vector<char> wall = {};  ///< per patch: whether it belongs to the point's own wall
 
   bool may_face(const std::vector<Patch>& patches, int p) const {
     const auto& vertices = patches[p].vertices;
@@ -134,8 +134,8 @@ struct CurveFoot {
   std::array<T, 4> weights;
 };
 
-/// Geometry of x against a patch. `xi`: the foot in double, of search; two steps of Newton's method in T from there
-/// give its derivatives up to the second. `place(vertex)`: where a vertex is.
+/// Geometry of x against a patch. `xi`: the foot in double, found by the search. Steps of Newton's method from there,
+/// in T, give its derivatives: one step the first, two the second. `place(vertex)`: where a vertex is.
 template <class T, class Place>
 CurveFoot<T> foot_on_patch(const Patch& patch, double xi, const Vec<T, 2>& x, Place&& place) {
   CurveFoot<T> foot;
@@ -158,8 +158,8 @@ CurveFoot<T> foot_on_patch(const Patch& patch, double xi, const Vec<T, 2>& x, Pl
   return foot;
 }
 
-/// Weights of displacements in w: 1 of the slave node, -N_i of the vertices that a patch has, none of these where they
-/// are `rigid`.
+/// Weights of displacements in w: 1 of the slave node, -N_i of the vertices that a patch has. Where these are `rigid`
+/// they have none.
 template <class T>
 auto foot_weights(const Patch& patch, const std::array<T, 4>& n, bool rigid) {
   const auto vertices = rigid ? 0 : 4 - std::count(patch.vertices.begin(), patch.vertices.end(), Patch::none);
@@ -171,10 +171,15 @@ auto foot_weights(const Patch& patch, const std::array<T, 4>& n, bool rigid) {
   return weights;
 }
 
-/// What a vertex of a side that touches itself may face. Its own wall, which it never faces, are the patches that it is
-/// behind of at the start, no further from it, or from where a ray through the solid comes out, than twice the way of
-/// that ray.
-/// `places`: of the start; `outward`: normal of the side there; `mesh_size`: of the side there.
+/// What a vertex of a side that touches itself may face.
+///
+///   through  how far a ray from the vertex, straight into the solid, runs until it comes out
+///   reach    through, and at least the mesh size
+///   wall     patches on the other face of the solid that the vertex itself is on. A patch belongs to it where the
+///            vertex is behind the patch, and the distance to the patch, from the vertex or from where the ray comes
+///            out, is less than 2 through plus the length of the patch
+///
+/// All are of the start. `places`: of the vertices; `outward`: normal of the side at the vertex; `mesh_size`: there.
 OwnVertex own_vertex(const std::vector<Patch>& patches, const Eigen::Matrix2Xd& places, int vertex,
                      const Vec<double, 2>& outward, double mesh_size);
 

@@ -9,12 +9,14 @@
 namespace stickslip {
 namespace {
 
-/// How far past the free end of a curve a point still faces it, of the length of the last patch. Two sides that end
-/// together do so only as well as their overlap lets them: of two blocks pressed to 0.7 of their height, the stiffness
-/// of a penalty, or the first augmentation, moves the last node off its master and back for ever. Here it may.
+/// How far past the free end of a curve a point still faces it, as a share of the length of the last patch. Two sides
+/// that end together overlap only roughly. Example: two blocks pressed to 0.7 of their height; the stiffness of a
+/// penalty, or the first augmentation, moves the last node off its master and back for ever. Within this share the node
+/// stays.
 constexpr double past_end_of_curve = 0.01;
 
-/// Cosine of the least angle between the outward normals of what touches itself: the sides of a corner never do.
+/// Two places of a curve touch only where the cosine of the angle between their outward normals is below minus this, at
+/// more than 120 degrees: the two sides of a corner never do.
 constexpr double least_against = 0.5;
 
 auto place_in(const Eigen::Matrix2Xd& places) {
@@ -73,7 +75,7 @@ double CurveSearch::distance(const Box& box, const Vec<double, 2>& x) const {
   return (box.low - x).cwiseMax(x - box.high).cwiseMax(0.0).norm();
 }
 
-/// False where no facet of a box counts by its normal or, of the curve of x itself, because x is too far behind it.
+/// False where no facet of a box counts: by its normal, or because x is too far behind the curve, if that is its own.
 bool CurveSearch::may_count(const Box& box, const Sought& sought) const {
   constexpr double rounding = 1e-12;
   const Vec<double, 2>& outward = sought.outward;
@@ -81,7 +83,7 @@ bool CurveSearch::may_count(const Box& box, const Sought& sought) const {
       (outward.array() * box.normal_low.array()).min(outward.array() * box.normal_high.array());
   if (least.sum() > (rounding - (sought.own ? least_against : 0)) * outward.norm()) return false;
   if (!sought.own) return true;
-  double most = 0;  // that the gap can be
+  double most = 0;  // largest gap of x to a facet of the box
   for (int i = 0; i < 2; ++i) {
     const double near = sought.x[i] - box.low[i], far = sought.x[i] - box.high[i];
     most += std::max(
@@ -90,8 +92,8 @@ bool CurveSearch::may_count(const Box& box, const Sought& sought) const {
   return most >= -reach(box.first, box.last, sought) - rounding * size_;
 }
 
-/// How far x may be inside of some of the patches first to last - 1 of its own curve: a quarter as far as of those next
-/// to the one that it faced.
+/// How far x may be inside of some of the patches first to last - 1 of its own curve: its reach, where one of them is
+/// within 8 patches of the one that it faced last; elsewhere a quarter of its reach.
 double CurveSearch::reach(int first, int last, const Sought& sought) const {
   constexpr int next_to = 8;
   const int count = static_cast<int>(patches_.size());
@@ -153,8 +155,8 @@ Vec<double, 2> CurveSearch::tangent_at_end(int patch, int end) const {
   return detail::on_patch<double>(patches_[patch], w.slope, place_in(places_)).normalized();
 }
 
-/// The place faced by a point whose foot is beyond the end of a patch at a corner, or where what counts of the curve
-/// ends.
+/// The place that a point faces whose foot is beyond the end of a patch: at a corner, or where the patches that count
+/// end.
 Facing CurveSearch::at_end(Facing at, const Sought& sought) const {
   const Vec<double, 2>& x = sought.x;
   const Patch& patch = patches_[at.patch];

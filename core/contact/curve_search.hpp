@@ -1,11 +1,12 @@
 /// Which place of a master curve a point faces: the nearest, found by a tree of boxes over the curve.
 ///
-/// A box holds a stretch of the curve and the normals of its facets, so that what is too far away, or looks the wrong
-/// way, is passed over as a whole: the search takes about log n facets also of a side that may touch itself, where the
-/// nearest n are its own.
+/// A box holds a stretch of the curve and bounds of the normals of its facets. A box that is too far away, or looks the
+/// wrong way, is passed over as a whole. The search takes about log n facets, also on a side that may touch itself,
+/// where the nearest n facets are the point's own.
 ///
-/// At a corner the curve is two straight lines that end in their bisector, so that the gap is continuous there and has
-/// no states of its own: beyond a convex corner a point has the gap of the line on its side of the bisector.
+/// At a corner the curve consists of two straight lines that end in their bisector. So the gap is continuous there, and
+/// the corner has no states of its own: beyond a convex corner a point has the gap of the line on its side of the
+/// bisector.
 #pragma once
 
 #include "core/contact/curve.hpp"
@@ -19,13 +20,15 @@ class CurveSearch {
   CurveSearch(const std::vector<Patch>& patches, const Eigen::Matrix2Xd& places);
 
   /// The place that x faces; none where it lies past a free end, or at the centre of a bend. Only patches count whose
-  /// normal is against `outward`, the normal of the side that x is on; zero: all do. A point that is outside of the
-  /// solid by the nearest patch of all is not inside of it by another. Where two patches meet it is the second's.
-  /// Where places are not finite, as in a trial that is rejected, nothing is faced, at no finite distance.
+  /// normal is against `outward`, the normal of the side that x is on; where that is zero, all count. A point that is
+  /// outside of the solid by the nearest patch of all is not inside of it by another. Where two patches meet, the place
+  /// is on the second. Where places are not finite, as in a trial that is rejected, nothing is faced and the distance
+  /// is infinite.
   Facing facing(const Vec<double, 2>& x, const Vec<double, 2>& outward) const;
-  /// Of a vertex of this very curve: patches count whose normal is against `outward` by more than 120 degrees. It is
-  /// inside of what it is beside of, up to its reach; of what is not next to `last`, the patch that it faced in the
-  /// last state, up to a quarter of that. Where it faces nothing, the distance is the size of the curve.
+  /// The same for a vertex of this very curve. Patches count whose normal makes more than 120 degrees with `outward`.
+  /// The vertex can be inside of a patch that it is beside of, no deeper than its reach; where the patch is not next to
+  /// `last`, no deeper than a quarter of that. `last`: the patch that it faced in the last state. Where it faces
+  /// nothing, the distance is the size of the curve.
   Facing facing_itself(const Vec<double, 2>& x, const Vec<double, 2>& outward, const OwnVertex& own, int last) const;
   /// The foot of x on one patch, beyond its ends too.
   Facing stay(int patch, const Vec<double, 2>& x) const;
@@ -35,15 +38,15 @@ class CurveSearch {
     int patch = Patch::none;
     double xi = 0, distance = std::numeric_limits<double>::infinity();
   };
-  /// What is sought: the place nearest to x, of patches that look against `outward`; `own`: where there is one, those
-  /// alone that it may face.
+  /// What is sought: the place nearest to x among patches that look against `outward`. `own`: where given, the patches
+  /// that it may face alone.
   struct Sought {
     Vec<double, 2> x, outward;
     const OwnVertex* own = nullptr;
     int last = Patch::none;
   };
-  /// Patches first to last - 1: bounds of their ends and of their unit normals. Its left child, where it has any,
-  /// follows it; `right`: where the other is, 0 for none.
+  /// Patches first to last - 1, with bounds of their ends and of their unit normals. The left child, if there is one,
+  /// is the next box. `right`: index of the other child; 0: none.
   struct Box {
     Vec<double, 2> low, high, normal_low, normal_high;
     int first, last, right = 0;

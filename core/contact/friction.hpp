@@ -26,7 +26,7 @@ struct Traction {
 inline constexpr double tie_band = 1e-12;
 
 /// The branch of a trial traction. `bound`: friction bound >= 0; `tie_normal`: z_N up to this counts as closed.
-/// Ties: a body that just rests is closed, a point on the cone sticks, and no bound never means stick.
+/// Ties: a body that just rests is closed; a point on the cone sticks; a point whose bound is zero slips.
 template <class T, int Tangents>
 ContactState classify(const Traction<T, Tangents>& trial, double bound, double tie_normal) {
   if (value(trial.normal) > tie_normal) return ContactState::open;

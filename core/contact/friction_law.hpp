@@ -4,14 +4,17 @@
 ///   bound(p) = min(mu p, limit)   both: Coulomb with a shear limit, as of a yielding surface (Orowan)
 ///   bound(p) = limit              limit alone: Tresca; at p = 0 it jumps, since an open point bears nothing
 ///
-/// The bound stands here, which linear piece of it holds, its derivative, what is left of it at the apex of the cone
-/// (p = 0), and whether it couples pressure and tangential traction. It is the least of a multiple of p and a constant,
-/// hence concave, with a corner where mu p = limit: methods/solutions and statics, which look for all solutions, and
-/// sensitivity/branches, rays and one_sided, which know the sides of the corner, take it apart into these two pieces.
+/// It is the least of a multiple of p and a constant, hence concave, with a corner where mu p = limit. Here stand the
+/// bound, its linear pieces, their corner, its slopes, and what it says of the apex of the cone (p = 0). Two kinds of
+/// code take it apart into its pieces: methods/solutions and statics, which look for all solutions, and
+/// sensitivity/branches and rays, which know the sides of the corner. All else asks the law.
 /// E. Orowan, Proc. Inst. Mech. Eng. 150 (1943) 140-167 (limit); [AC91] (Coulomb).
 #pragma once
 
+#include <cassert>
+#include <cmath>
 #include <concepts>
+#include <limits>
 #include <optional>
 
 #include "core/algebra/scalar.hpp"
@@ -25,16 +28,26 @@ enum class ContactState : unsigned char { open, stick, slip, limited };
 /// Whether a point with this state slips.
 inline bool is_slipping(ContactState state) { return state == ContactState::slip || state == ContactState::limited; }
 
+/// The kinds of law, for who tells them apart in words: a switch that lacks one does not compile.
+enum class FrictionKind { coulomb, limited_coulomb, tresca };
+
+/// At least one of its numbers is there.
 template <class T>
 struct FrictionLaw {
   std::optional<T> coefficient;  ///< mu >= 0
   std::optional<T> limit;        ///< >= 0, force per area
 
-  FrictionLaw() = default;
+  FrictionLaw() : coefficient(T(0)) {}  ///< bears nothing
   template <std::convertible_to<T> U>
   FrictionLaw(const U& mu) : coefficient(mu) {}  // NOLINT: a number alone is Coulomb's
-  FrictionLaw(std::optional<T> mu, std::optional<T> most) : coefficient(std::move(mu)), limit(std::move(most)) {}
+  FrictionLaw(std::optional<T> mu, std::optional<T> most) : coefficient(std::move(mu)), limit(std::move(most)) {
+    assert(coefficient || limit);
+  }
 
+  FrictionKind kind() const {
+    if (!coefficient) return FrictionKind::tresca;
+    return limit ? FrictionKind::limited_coulomb : FrictionKind::coulomb;
+  }
   /// Bound on the piece that `slip` names: slip or limited.
   T bound(const T& pressure, ContactState slip) const {
     return slip == ContactState::limited ? *limit : T(*coefficient * pressure);
@@ -47,6 +60,18 @@ struct FrictionLaw {
   /// Bound at a pressure, without derivative.
   double bound(double pressure) const {
     return piece(pressure) == ContactState::limited ? value(*limit) : value(*coefficient) * pressure;
+  }
+  /// Whether the bound of a piece follows the pressure. Without pressure such a piece bears nothing.
+  static bool follows_pressure(ContactState slip) { return slip != ContactState::limited; }
+  /// Pressure at the corner between two pieces; none where there is one piece.
+  std::optional<double> corner() const {
+    if (!coefficient || !limit) return std::nullopt;
+    return value(*limit) / value(*coefficient);
+  }
+  /// Difference between the bounds of two pieces, force per area: zero at their corner; infinity where there is one.
+  double distance_to_corner(double pressure) const {
+    if (!coefficient || !limit) return std::numeric_limits<double>::infinity();
+    return std::abs(value(*coefficient) * pressure - value(*limit));
   }
   /// Slope of the bound where the pressure begins: mu, or 0.
   T slope_at_apex() const { return coefficient ? *coefficient : T(0); }
@@ -61,12 +86,18 @@ struct FrictionLaw {
   /// Numbers that it consists of.
   int size() const { return (coefficient ? 1 : 0) + (limit ? 1 : 0); }
 
+  /// The law of tractions in units of `stress`.
+  FrictionLaw in_units_of(const T& stress) const {
+    FrictionLaw law = *this;
+    if (limit) *law.limit /= stress;
+    return law;
+  }
   template <class U, class Cast>
   FrictionLaw<U> as(Cast&& cast) const {
-    FrictionLaw<U> law;
-    if (coefficient) law.coefficient = cast(*coefficient);
-    if (limit) law.limit = cast(*limit);
-    return law;
+    std::optional<U> mu, most;
+    if (coefficient) mu = cast(*coefficient);
+    if (limit) most = cast(*limit);
+    return {std::move(mu), std::move(most)};
   }
 };
 

@@ -49,7 +49,7 @@ PointGeometry<T> against_rigid(const Place& x, const RigidSurface& surface, cons
       surface);
 }
 
-/// The key of the surface that is at fault where no place of it is nearer to x than another; nullptr where one is.
+/// The key of the surface that is wrong where x has no nearest place on it; nullptr where x has one.
 template <class Place>
 const char* ambiguity(const Place& x, const RigidSurface& surface, const Numbers<double>& numbers) {
   return std::visit(

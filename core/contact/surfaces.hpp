@@ -52,8 +52,9 @@ PointGeometry<T> against_vertex(const Vec<T, 2>& x, const Vec<T, 2>& before, con
   return g;
 }
 
-/// Lets a projection that lies just at the end of the facet v -> `to` slide off v: to one side it moves along the
-/// facet, to the other it does not (or along another facet), so half the slope is the mean of both derivatives.
+/// Gives a projection that lies just at the end v of the facet v -> `to` half the slope of one that slides along it. On
+/// one side of v it does slide along the facet; on the other it rests, or slides along another facet. Half the slope is
+/// the mean of both derivatives.
 template <class T>
 void slide_off(PointGeometry<T>& geometry, const Vec<T, 2>& x, const Vec<T, 2>& v, const Vec<T, 2>& to) {
   const Vec<T, 2> tau = to - v;
@@ -75,11 +76,11 @@ Vec<T, 2> slave_normal(const std::vector<std::pair<int, int>>& facets, const Poi
 }
 
 /// Turns the frame of a point half-way to its slave side: n becomes the bisector of the master normal and the reversed
-/// slave normal (outward, need not be a unit vector). With contact geometry fixed at the start the common tangent plane
-/// that the two surfaces are about to share is known only up to the angle between them; the bisector is right to second
-/// order in that angle and treats both bodies alike, while the master normal of a curved pair turns part of the closing
-/// motion into slip (two cylinders at b/R = 0.085: 3/4 of the slip that friction is to see). The gap is left to the
-/// caller: it is that of slave and master place along the new normal.
+/// slave normal. `outward`: the slave normal, of any length. Why: with contact geometry fixed at the start, the tangent
+/// plane that the two surfaces are about to share is known only up to the angle between them. The bisector is right to
+/// second order in that angle and treats both bodies alike. The master normal of a curved pair would turn part of the
+/// closing motion into slip: of two cylinders at b/R = 0.085, 3/4 of the slip that friction is to see. The gap is left
+/// to the caller: it is that of slave and master place along the new normal.
 template <class T>
 void share_normal(PointGeometry<T>& geometry, const Vec<T, 2>& slave_normal) {
   const T length = norm(slave_normal);

@@ -94,8 +94,8 @@ bool is_constant(const A& entries) {
                      [](const auto& x) { return stickslip::is_constant(x); });
 }
 
-/// Forces of one element of a continuum. Derivatives are computed of what depends on them alone: most parameters touch
-/// few elements, and those of a material no gradient.
+/// Forces of one element of a continuum. Derivatives are computed only of what depends on parameters: most parameters
+/// touch few elements, and those of a material touch no gradient.
 template <class T, class Shape, Kinematics kinematics, class L>
 Mat<T, 2, Shape::nodes> forces_of_element(const L& law, const Mat<T, 2, Shape::nodes>& coordinates,
                                           const Mat<T, 2, Shape::nodes>& u, const T& thickness,

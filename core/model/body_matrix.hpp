@@ -40,8 +40,8 @@ ContactLast with_contact_last(const Model& model);
 /// Entry of (row, column) in the pattern. pre: it exists.
 int locate(const Pattern& pattern, int row, int column);
 
-/// Values of the bodies' tangent on a pattern; the first lists are those of element_rows(). `at`: a motion; nullptr: of
-/// the start.
+/// Values of the bodies' tangent on a pattern, whose first lists are those of element_rows(). `at`: the motion where it
+/// is taken; nullptr: the start.
 template <class T>
 std::vector<T> assemble_bodies(const Model& model, const Slots<T>& slots, const RowLists& lists, const Pattern& pattern,
                                const BodyMotion<T>* at = nullptr, BodyKind kind = BodyKind::all);

@@ -10,46 +10,46 @@
 
 namespace stickslip {
 
-/// S = K_cc - K_ci K_ii^-1 K_ic of the bodies of constant stiffness, c their contact dofs (prescribed ones among them),
-/// i their other free dofs, all in the frames. Serves every method, sensitivity and cell of a sweep on the same
-/// numbers.
+/// S = K_cc - K_ci K_ii^-1 K_ic of the bodies of constant stiffness, in the frames of the nodes. c: their contact dofs,
+/// prescribed ones among them; i: their other free dofs. One S serves every method, sensitivity and cell of a sweep on
+/// the same numbers.
 ///
-/// One factorisation does it, of
+/// One factorisation makes it, of
 ///
 ///   M = [ K_ii  K_ic     ]
 ///       [ K_ci  K_cc + D ],   D = diag K_cc
 ///
-/// with the contact dofs eliminated last: M is positive definite wherever K_ii is, also for a body that nothing but
-/// contact holds, and the Schur complement of M is S + D. The same factor reduces, on its way forwards, and expands, on
-/// its way back; neither meets D.
+/// with the contact dofs eliminated last. D makes M positive definite wherever K_ii is, also for a body that nothing
+/// but contact holds. The Schur complement of M is S + D, from which D is taken off. The same factor reduces by the
+/// forward half of a solve, and expands by the backward half; D enters neither.
 template <class T>
 class Condensation {
  public:
   /// Orders and analyses the matrix.
   Condensation(const Model& model, Backend backend);
-  /// And factorises it.
+  /// Orders, analyses and factorises.
   Condensation(const Model& model, const Slots<T>& slots, Backend backend) : Condensation(model, backend) {
     factorise(slots);
   }
-  /// Size of the factor, as far as the backend tells; none of bodies that have nothing inside.
+  /// Size of the factor, as far as the backend tells; zero where all dofs are of the contact.
   FactorSize factor_size() const { return rows_.interior.empty() ? FactorSize{} : solver_.factor_size(); }
-  /// Makes S. False, as valid() then is, where K_ii is singular: `message` says why, and nothing else may be asked.
+  /// Makes S. False where K_ii is singular: `message` says why, valid() is false too, and nothing else may be asked.
   bool factorise(const Slots<T>& slots);
   bool valid() const { return valid_; }
   const Matrix<T>& schur() const { return schur_; }
-  const std::vector<int>& contact() const { return rows_.contact; }    ///< dofs, as the rows of S follow one another
+  const std::vector<int>& contact() const { return rows_.contact; }    ///< dofs, in the order of the rows of S
   const std::vector<int>& interior() const { return rows_.interior; }  ///< dofs
-  /// Rows over all dofs -> rows of the contact dofs, r_c - K_ci K_ii^-1 r_i, and what expand() takes of them. Those of
-  /// other bodies are not read.
+  /// Takes rows over all dofs to rows of the contact dofs. `kept`: r_c - K_ci K_ii^-1 r_i. `others`: what expand()
+  /// needs of r_i. Rows of bodies that are not condensed are not read.
   Reduction<T> reduce(const Matrix<T>& rows);
-  /// Increments u over all dofs, zero where they are prescribed outside the contact, and of other bodies: u_c =
-  /// `compact` and K_ii u_i + K_ic u_c = r_i, `others` being of the rows' reduction.
-  /// `wanted`: dofs that are read, ascending, where not all are; the others inside may then be zero.
+  /// Increments u over all dofs: u_c = `compact`, and u_i solves K_ii u_i + K_ic u_c = r_i. u is zero where it is
+  /// prescribed outside the contact, and in bodies that are not condensed. `others`: of reduce(r). `wanted`: dofs that
+  /// are read, ascending, where not all are; other dofs inside may then be zero.
   Matrix<T> expand(const Matrix<T>& compact, Matrix<T> others, const std::vector<int>* wanted = nullptr);
   const std::string& message() const { return solver_.message(); }
   std::string name() const { return solver_.name(); }
   long factor_bytes() const { return solver_.factor_bytes(); }
-  /// Right-hand sides solved with the factor so far; one that is reduced or expanded alone counts half.
+  /// Right-hand sides solved with the factor so far; a reduction or an expansion alone counts half.
   double backsolves() const {
     return static_cast<double>(solver_.counters().backsolves) +
            0.5 * static_cast<double>(solver_.counters().half_solves);
@@ -64,9 +64,10 @@ class Condensation {
   bool valid_ = false;
 };
 
-/// Loads of the condensed bodies, less the forces of what is prescribed outside the contact, reduced. `u`: what is
-/// prescribed, all dofs in the frames; `external`: in the axes; `rest` becomes what is prescribed outside the contact,
-/// zero elsewhere. `only`: elements of the condensed bodies; nullptr: all are.
+/// The loads of the condensed bodies, less the forces of what is prescribed outside the contact, reduced to the
+/// contact. `u`: prescribed displacements, all dofs, in the frames. `external`: loads, in the axes. `rest`: set to what
+/// is prescribed outside the contact, zero elsewhere. `only`: elements of the condensed bodies; nullptr: all elements
+/// are theirs.
 template <class T>
 Reduction<T> reduce_loads(Condensation<T>& condensation, const Model& model, const Slots<T>& slots, const Vector<T>& u,
                           const Vector<T>& external, Vector<T>& rest, const ElementLists* only = nullptr) {

@@ -9,7 +9,7 @@
 namespace stickslip {
 namespace detail {
 
-/// The diagonal of the contact dofs; where there is none, as of a node that bars hold along one direction alone, any
+/// The diagonal of the contact dofs. Where an entry is zero, as of a node that bars hold along one direction alone, any
 /// positive number will do.
 template <class T>
 Vector<double> shift_of(const Pattern& pattern, const std::vector<T>& values, int interior) {

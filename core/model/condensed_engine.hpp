@@ -30,14 +30,14 @@ class CondensedEngine {
   /// The bodies' tangent times a motion, all dofs in the axes, that is zero inside.
   Vector<T> tangent_times(const BodyMotion<T>&, const Vector<T>& motion) const;
   bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
-  /// In place of factorise() where few points changed since (model/tangent_update.hpp); until the next factorise() all
-  /// solves are with these tangents. False, and nothing changed, where it does not pay or can't be.
+  /// In place of factorise(), where few points changed since (model/tangent_update.hpp). Until the next factorise() all
+  /// solves are with these tangents. False, and nothing changed, where an update does not pay or cannot be made.
   bool update(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
-  /// Whether the tangent has the other sign of its determinant than where all points stick: such a tangent belongs to a
-  /// problem that has several solutions, or none, under some load.
+  /// Whether the determinant of the tangent has another sign than where all points stick. A problem with such a tangent
+  /// has several solutions, or none, under some load.
   bool reversed() const;
   BlockVector<T> solve(const BlockVector<T>& rows, Solving how = Solving::refined);
-  /// Right-hand sides that the factor solves for one that is refined.
+  /// Solves by the factor that one refined right-hand side takes.
   int solves() const { return update_.empty() ? 1 : 2; }
   Matrix<T> apply_stiffness(const Matrix<T>& u, bool /*transposed*/ = false) const {
     return condensation_->schur() * u;  // (symmetric)
@@ -59,7 +59,7 @@ class CondensedEngine {
   /// The tangents of the factor, which may be used again or updated.
   using Carried = FactorRecipe<T>;
   Carried carried() const { return {valid_, factorised_, held_, update_}; }
-  /// Goes back to it, by a factorisation where there was a factor: what is solved from there has the same bits again.
+  /// Goes back to it, by a factorisation where it had a factor: later solves have the same bits as they had then.
   void carry(const Carried& carried, Counters& counters);
 
  private:
@@ -75,13 +75,13 @@ class CondensedEngine {
   Vector<T> load_;               ///< f_ext - K rest, reduced to the contact dofs
   Matrix<T> others_;             ///< of that reduction
   double time_ = 0;              ///< of the loads
-  Reduction<T> load_rate_;       ///< of what they change by in a unit of time, once it was asked for
+  Reduction<T> load_rate_;       ///< change of the loads in a unit of time, reduced; made on demand
   double largest_external_ = 0;  ///< nodal force of the loads
   Symmetry symmetry_;
   std::vector<int> active_;  ///< multiplier rows in the factor: those of points that are not open
-  std::vector<int> place_;   ///< and where they stand in it; -1: not there
+  std::vector<int> place_;   ///< per multiplier row: its place in the factor; -1: none
   Vector<T> open_diagonal_;  ///< of the other multiplier rows
-  Matrix<T> matrix_;         ///< that is factorised
+  Matrix<T> matrix_;         ///< the one that is factorised
   DenseFactor<T> factor_;
   bool valid_ = false;
   std::vector<PointTangent<T>> factorised_;

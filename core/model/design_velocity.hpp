@@ -25,7 +25,7 @@ class ShapeExtension {
   const std::vector<char>& given() const { return given_; }
   /// The field with these values at the given nodes (zero elsewhere): linear in them.
   Vector<double> extend(const Vector<double>& values) const;
-  /// Derivatives by the values at the given nodes out of those by the field: extend() transposed.
+  /// extend() transposed: from derivatives by the field to derivatives by the values at the given nodes.
   Vector<double> pull_back(const Vector<double>& by_field) const;
 
  private:

@@ -16,8 +16,9 @@ struct BlockVector {
   Matrix<T> u, l;
 };
 
-/// How rows are solved for. After an update a solution is refined, for another solve, but where it is checked by who
-/// asks for it. pre of `transposed`, with K^T in place of K: that is not after an update.
+/// How rows are solved for. `refined`: after an update of the factor, a second solve refines the solution. `unrefined`:
+/// it does not, for the caller checks the solution. `transposed`: with K^T in place of K; pre: no update since the
+/// factorisation.
 enum class Solving { refined, unrefined, transposed };
 
 /// What an engine holds now, in bytes, and what it has done beside what Counters count.
@@ -32,7 +33,7 @@ struct EngineHoldings {
   bool unsymmetric = false;                     ///< the tangents are
 };
 
-/// A factor as what it is made of: matrix and library being the same, it comes out the same to the last bit.
+/// What a factor was made from. With the same matrix and library it comes out the same to the last bit.
 template <class T>
 struct FactorRecipe {
   bool valid = false;
@@ -52,8 +53,8 @@ struct ForceScale {
   double rounding = 0;  ///< what rounding alone may leave in a row
 };
 
-/// Share of the forces of a condensed body that residuals are measured by: of a body that supports carry along, S u and
-/// the load cancel, and of tolerances of 1e-10 a ten-thousandth is rounding.
+/// Share of the forces of a condensed body that residuals are measured by. Of a body that supports carry along, S u and
+/// the load cancel. With tolerances of 1e-10, a ten-thousandth of these forces is rounding.
 inline constexpr double cancelling_forces = 1e-4;
 
 /// Largest Euclidean norm of the nodal vectors (D consecutive entries) of the primal parts; NaN where one is.
@@ -162,7 +163,7 @@ void for_each_framed_entry(const Model& model, const Slots<T>& slots, int p, con
     for (int r = 0; r < rows; ++r) add(r, c, K(r, c));
 }
 
-/// Whether a point's multipliers are their own rows alone.
+/// Whether a point's multiplier rows hold nothing but the multipliers themselves.
 template <class T>
 bool is_open(const PointTangent<T>& tangent) {
   return tangent.row_w.cwiseAbs().maxCoeff() == 0;
@@ -207,9 +208,10 @@ inline bool integrates(const Model& model) {
   return std::any_of(model.points.begin(), model.points.end(), [](const auto& point) { return !point.pieces.empty(); });
 }
 
-/// Slip couples the normal into the tangential rows, not the other way round; with the radius of the cone fixed while
-/// the system is solved (that of known multipliers), or a law of friction without pressure, nothing couples them. Where
-/// frames turn, friction follows them and has no potential whatever its law.
+/// Slip couples the normal into the tangential rows, and not the other way round: the tangent is unsymmetric. It is
+/// symmetric where nothing couples them: where the radius of the cone is fixed while the system is solved (that of
+/// given multipliers), or where the bound does not depend on the pressure. Where frames turn, friction follows them and
+/// has no potential, whatever its law.
 inline Symmetry symmetry_of(const Model& model, bool unknown_multipliers, ConeRadius cone) {
   const bool fixed_radius = cone == ConeRadius::multiplier && !unknown_multipliers;
   if (!model.followers.empty()) return Symmetry::general;  // of a pressure that follows a side with ends

@@ -12,17 +12,18 @@ namespace {
 struct Iterations {
   double tangents, solves;
 };
-// Rounded from the GRECO plate with 40 to 160 cells a side, all methods: 7 to 11 and 43 to 140 in an increment that
-// finds stick and slip from nothing, 0.1 to 0.5 and 18 to 60 in one that follows it; without friction 1 and 2.
+// Tangents and solves of an increment, rounded from the GRECO plate with 40 to 160 cells a side, all methods. With
+// friction: 7 to 11 tangents and 43 to 140 solves where stick and slip are found from nothing; 0.1 to 0.5 and 18 to 60
+// where they are followed. Without friction: 1 and 2.
 constexpr Iterations first_with_friction{8, 40}, next_with_friction{0.5, 20};
 constexpr Iterations first_without{1.5, 3}, next_without{0.5, 3};
 // Of bodies whose stiffness changes every tangent is factorised: 4 to 6 an increment of a punch on metal, all methods.
 constexpr Iterations next_changing{5, 5};
-// Beside an operation of a sparse factorisation: one of a back-solve waits for memory, less so with many right-hand
-// sides; one of a dense factorisation runs on large blocks. Orders of magnitude.
+// Time of an operation, where one of a sparse factorisation takes 1. Orders of magnitude. A back-solve waits for
+// memory, less so with many right-hand sides. A dense factorisation runs on large blocks.
 constexpr double of_solve = 3, of_block_solve = 1.2, of_dense = 1.0 / 3;
-// A constrained ordering costs more than a free one; LU twice what a Cholesky factorisation does. Pattern, ordering and
-// assembly of the bodies, by either engine: half a factorisation.
+// A constrained ordering costs more than a free one. LU costs twice a Cholesky factorisation. Pattern, ordering and
+// assembly of the bodies cost half a factorisation, by either engine.
 constexpr double free_ordering = 0.8, lu = 2, setting_up = 0.5;
 constexpr int few_unknowns = 200;
 
@@ -44,7 +45,7 @@ FactorSize tangent_factor(const Model& model, bool unknown_multipliers, const Mi
   return predict_factor(make_pattern(size, tangent_rows(model, unknown_multipliers, mixed)), 0);
 }
 
-/// Where the tangent of some body changes from iteration to iteration, and every derivative has one of its own.
+/// The price where the tangent of some body changes in each iteration, and each derivative needs a tangent of its own.
 EnginePrice price_of_changing(const Model& model, bool unknown_multipliers, Symmetry symmetry,
                               const FactorSize& bodies) {
   const double increments = static_cast<double>(model.times.size()), derivatives = derivatives_of(model.scene);

@@ -7,8 +7,8 @@
 
 namespace stickslip {
 
-/// Floating-point operations, those that are bound by memory or run on dense blocks weighed by how fast they are beside
-/// the operations of a sparse factorisation.
+/// Floating-point operations, in units of one of a sparse factorisation: operations that wait for memory count more,
+/// those on dense blocks less, by the time that they take.
 struct EnginePrice {
   double sparse = 0;
   double condensed = 0;  ///< as far as bodies can be; infinite where none can
@@ -25,8 +25,8 @@ FactorSize bodies_factor(const Model& model);
 /// `symmetry`: of the tangents; `factor`: of the bodies.
 EnginePrice predict_price(const Model& model, bool unknown_multipliers, Symmetry symmetry, const FactorSize& factor);
 
-/// Whether the bodies are to be condensed. Below 200 unknowns they are, whatever the price, where all can be: there the
-/// calls cost more than the operations.
+/// Whether the bodies are to be condensed. Where all can be, and there are fewer than 200 unknowns, they always are:
+/// there calls cost more than operations.
 bool prefers_condensed(const Model& model, const EnginePrice& price);
 
 }  // namespace stickslip

@@ -1,7 +1,7 @@
-/// Local history: all that an increment reads of the last one beside its start values, and beside the traction where a
-/// method carries that on. Kernels read it and never the last displacements, so direct differentiation carries its
-/// derivative from increment to increment, an adjoint goes back through it, and the oracle runs it in its own scalar.
-/// What it begins with is a function of the slots: initial_history().
+/// Local history: what an increment reads of the last one, apart from start values, and apart from the traction where a
+/// method carries that on. Kernels read the history and never the last displacements. So direct differentiation carries
+/// its derivative from increment to increment, an adjoint goes back through it, and the oracle runs it in its own
+/// scalar. The first history is a function of the slots: initial_history().
 #pragma once
 
 #include <vector>

@@ -180,8 +180,8 @@ Vector<T> follower_forces(const Model& model, const Slots<T>& slots, double t, c
   return forces;
 }
 
-/// Calls sink(nodes, K) for each edge that a pressure follows: derivatives of its forces by displacements, node-major;
-/// in plane stress once more with what the thickness makes of them.
+/// Calls sink(nodes, K) for each edge that a pressure follows: derivatives of its forces by displacements, node-major.
+/// In plane stress it calls again with the part that the stretch of the thickness adds.
 template <class T, class Sink>
 void for_each_follower_tangent(const Model& model, const Slots<T>& slots, const BodyMotion<T>& at, Sink&& sink) {
   constexpr int most = 6;  // dofs of an edge

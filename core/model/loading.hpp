@@ -41,8 +41,8 @@ Vector<T> less_external_forces(const Model& model, const Slots<T>& slots, double
   return internal;
 }
 
-/// The tangent of what is inside and on the bodies, forces of elements less those of pressures that follow them, times
-/// a vector, all dofs; or, `transposed`, its transpose times it. `only`: elements that are visited.
+/// The tangent times a vector, all dofs: of the forces of elements, less those of pressures that follow the bodies.
+/// `transposed`: its transpose instead. `only`: elements that are visited.
 template <class T>
 Vector<T> tangent_times(const Model& model, const Slots<T>& slots, const BodyMotion<T>& at, const Vector<T>& vector,
                         bool transposed, const ElementLists* only = nullptr) {
@@ -56,8 +56,8 @@ Vector<T> tangent_times(const Model& model, const Slots<T>& slots, const BodyMot
   return product;
 }
 
-/// Sets what is prescribed of a displacement vector (all dofs, in the axes) to its values at time t; the rest of it
-/// stays, also across an inclined direction.
+/// Sets the prescribed entries of a displacement vector (all dofs, in the axes) to their values at time t. All else
+/// stays, also what a node moves across an inclined direction.
 template <class T>
 void prescribe(const Model& model, const Slots<T>& slots, double t, Vector<T>& displacement) {
   const int D = model.dimension;

@@ -5,10 +5,10 @@
 
 namespace stickslip {
 
-/// Tangent of one point with respect to its relative displacement w (where it faces an obstacle as that is now: the
-/// displacement of its slave node, which turns normal and frame) and its scaled multiplier l = lambda / rho. Along a
-/// curve, or integrated where it is now: with respect to the displacements of all `places` that it depends on,
-/// node-major.
+/// Tangent of one point with respect to a displacement and to its scaled multiplier l = lambda / rho. The displacement
+/// is w, the relative one. Where the point faces an obstacle as that is now, it is that of the slave node, which turns
+/// normal and frame. Along a curve, or integrated where it is now, it is those of all `places` that the point depends
+/// on, node-major.
 template <class T>
 struct PointTangent {
   Matrix<T> force_w, force_l;    ///< D x D, D x components; with `places`: a row, or a column, for each dof of these

@@ -25,8 +25,8 @@ Vector<T> nodal_balance(const Model& model, const Slots<T>& slots, const State<T
 /// Samples that differ by up to this share of the largest are the same: to choose among them is left to rounding.
 inline constexpr double take_tie = 1e-9;
 
-/// Of a largest or smallest value that several samples share: the mean of their derivatives, or what it is if the
-/// parameter falls or grows.
+/// The derivative of a largest or smallest value that several samples share: the mean of theirs, or the one-sided one
+/// where the parameter falls (below) or grows (above).
 enum class Ties { mean, below, above };
 
 namespace detail {
@@ -123,9 +123,9 @@ T contact_force(const Model& model, const Slots<T>& slots, const Response& respo
   return force;
 }
 
-/// Half width of a contact from the second moment of its pressures, a = 2 sqrt(I / F) as of Hertz's p0 sqrt(1 -
-/// x^2/a^2); of revolution its radius, sqrt(5/2 I / F), likewise. 0 where fewer than two points are closed, one in
-/// revolution: one alone has no width, but off the axis.
+/// Half width of a contact from its force F and the second moment I of its pressures: a = 2 sqrt(I / F), as of Hertz's
+/// p0 sqrt(1 - x^2/a^2). Of revolution it is the radius, sqrt(5/2 I / F), likewise. 0 where fewer than two points are
+/// closed; of revolution one is enough, if it is off the axis.
 template <class T>
 T contact_half_width(const Model& model, const Slots<T>& slots, const State<T>& state,
                      const std::vector<int>& of_contact) {

@@ -45,8 +45,8 @@ void for_each_breakpoint(const Table& table, F&& f) {
     for (std::size_t i = 0; i < table.points.size(); ++i) f(table.time(n, i));
 }
 
-/// The time that the points of a repeated table know: `t`, less the periods that went by. A breakpoint of any repeat
-/// is met to the last bit, so that no rounding adds up over the repeats.
+/// `t` less the periods of a repeated table that went by: the time that its points know. A breakpoint of any repeat is
+/// met to the last bit, so that no rounding adds up over the repeats.
 inline double time_in_period(const Table& table, double t) {
   if (table.repeat == 1 || t <= table.start()) return t;
   const double period = table.period(), rounding = 4e-16 * std::abs(t);

@@ -6,7 +6,7 @@
 namespace stickslip {
 
 /// Which multiplier components have nothing left to decide: their constraint moves along with what supports prescribe,
-/// or with the components before it. Empty where there is none. `field`: that the geometry is of; nullptr: of the
+/// or with the components before them. Empty where there is none. `field`: where the geometry is taken; nullptr: the
 /// start.
 template <class T>
 std::vector<char> decided_elsewhere(const Model& model, const Slots<T>& slots, const ContactField<T>* field = nullptr) {
@@ -46,8 +46,8 @@ std::vector<char> decided_elsewhere(const Model& model, const Slots<T>& slots, c
   return decided;
 }
 
-/// Adds -share times the multiplier's own stiffness to the rows of closed constraints, which have none: those in
-/// `which`, or all where it is nullptr. The residual stays what it is; only the step changes.
+/// Adds -share times the multiplier's own stiffness to the rows of closed constraints, which have none. `which`: these
+/// constraints alone; nullptr: all. The residual stays what it is: only the step changes.
 template <class T>
 void yield_rows(const Model& model, const std::vector<char>* which, double share,
                 std::vector<PointTangent<T>>& tangents) {
@@ -64,11 +64,14 @@ void yield_rows(const Model& model, const std::vector<char>* which, double share
   }
 }
 
-/// Factorises with unknown multipliers that need not be unique. A constraint that supports decide takes its multiplier
-/// from the gap as a penalty would, step by step: nothing where the support agrees with it. Where constraints repeat
-/// one another the tangent is singular; a yield of 1e-8 then shares the force out in the least norm, far above the
-/// limit of singularity and small enough to cost one iteration more. `redundant`: that yield was needed, and is kept.
-/// `hold`: as of the engine's factorise().
+/// Factorises with unknown multipliers that need not be unique. There are two cases:
+///
+///   - A constraint that supports decide. Its multiplier follows from the gap, step by step, as a penalty's would, and
+///     is zero where the support agrees with the constraint.
+///   - Constraints that repeat one another. The tangent is singular. A compliance of 1e-8 shares the force out in the
+///     least norm; it is far above the limit of singularity, and costs one iteration more.
+///
+/// `redundant`: whether that compliance was needed; it is kept then. `hold`: as of the engine's factorise().
 template <class T, class E>
 bool factorise_sharing(E& engine, const Model& model, const std::vector<char>& decided,
                        std::vector<PointTangent<T>> tangents, bool& redundant, Counters& counters,

@@ -49,15 +49,15 @@ struct Slots {
   std::vector<Depth<T>> depths;            ///< per body
   std::vector<PointGeometry<T>> geometry;  ///< per contact point
   std::vector<T> stiffness;                ///< per contact point: local nodal stiffness k_i (force per length)
-  std::vector<FrictionLaw<T>> friction;    ///< per contact; empty, and unread, where frictionless
+  std::vector<FrictionLaw<T>> friction;    ///< per contact; unread where frictionless
   std::vector<NodalLoad<T>> loads;         ///< per load
   std::vector<Matrix<T>> frames;           ///< per framed node: its frame, one vector a column
   std::vector<Vector<T>> spins;            ///< per contact point: displacement of its obstacle there when it rotates by
                                            ///< one degree; empty where no obstacle rotates
 };
 
-/// What rounding may make of a point's gap, length: that of its coordinates; where their initial gap is exactly zero,
-/// that of the displacements alone, so that contacts which begin closed have the same branches under every load,
+/// Length up to which a point's gap may be rounding of the coordinates. Where its initial gap is exactly zero, it is
+/// rounding of displacements alone. Why: contacts that begin closed then have the same branches under every load,
 /// however small. `reach`: largest displacement of its nodes.
 template <class T>
 double tie_length(const ContactPoint& point, const PointGeometry<T>& geometry, double reach = 0) {

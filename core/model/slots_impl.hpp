@@ -44,9 +44,9 @@ bool is_held(const Model& model, const Slots<T>& slots, int node, const Vector<d
   return true;
 }
 
-/// k_i between the slave's and the master's stiffness: their harmonic mean, as springs in series. Where supports hold
-/// one side along a direction of the contact and not the other, that other alone yields there, and its stiffness is
-/// k_i (their sum, where each yields alone along another direction). Supports decide, not sizes: k_i is smooth in both.
+/// k_i from the slave's and the master's stiffness: their harmonic mean, as of springs in series. Where supports hold
+/// one of them along a direction of the contact, the other alone yields there, and k_i is its stiffness. Where each
+/// yields alone along another direction, k_i is their sum. Supports decide, not sizes: k_i is smooth in both.
 template <class T>
 T stiffness_between(const Model& model, const Slots<T>& slots, int p, const T& slave, const T& master) {
   const auto& point = model.points[p];

@@ -55,14 +55,14 @@ class SparseEngine {
   Vector<T> tangent_times(const BodyMotion<T>& at, const Vector<T>& motion) const;
   /// `hold`: stiffness against motion of each contact node, the same in all directions, force per length; empty: none.
   bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
-  /// In place of factorise() where few points changed since (model/tangent_update.hpp); until the next factorise() all
-  /// solves are with these tangents. False, and nothing changed, where it does not pay or can't be.
+  /// In place of factorise(), where few points changed since (model/tangent_update.hpp). Until the next factorise() all
+  /// solves are with these tangents. False, and nothing changed, where an update does not pay or cannot be made.
   bool update(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
-  /// Whether the tangent has the other sign of its determinant than where all points stick: such a tangent belongs to a
-  /// problem that has several solutions, or none, under some load.
+  /// Whether the determinant of the tangent has another sign than where all points stick. A problem with such a tangent
+  /// has several solutions, or none, under some load.
   bool reversed() const;
   BlockVector<T> solve(const BlockVector<T>& rows, Solving how = Solving::refined);
-  /// Right-hand sides that the factor solves for one that is refined.
+  /// Solves by the factor that one refined right-hand side takes.
   int solves() const { return update_.empty() ? 1 : 2; }
   /// The bodies' stiffness times engine increments (engine rows), or its transpose.
   Matrix<T> apply_stiffness(const Matrix<T>& u, bool transposed = false) const;
@@ -89,7 +89,7 @@ class SparseEngine {
     long bytes() const { return factor.bytes(); }
   };
   Carried carried() const { return {places_, model_.effects.linear_bulk ? recipe() : FactorRecipe<T>{}}; }
-  /// Goes back to it, by a factorisation where there was a factor: what is solved from there has the same bits again.
+  /// Goes back to it, by a factorisation where it had a factor: later solves have the same bits as they had then.
   void carry(const Carried& carried, Counters& counters);
 
  private:

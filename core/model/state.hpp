@@ -20,16 +20,16 @@ template <class T>
 struct ContactField {
   std::vector<ContactState> state;
   Vector<T> gap;
-  Vector<T> placement;  ///< s, the slip since the start; in a State it is part of its history, and empty here
-  Vector<T> foot;       ///< the same of places on obstacles
+  Vector<T> placement;  ///< s, the slip since the start; empty in a State, whose history holds it
+  Vector<T> foot;       ///< places on obstacles, as History::foot; empty in a State likewise
   Vector<T> slip;       ///< dg_T of this increment
   Vector<T> traction;   ///< t; compression negative
   /// Geometry of each point where it is now; empty where it stays that of the start (Slots::geometry).
   std::vector<PointGeometry<T>> moved;
   /// What each point faces of its curve; empty where no point slides along one.
   std::vector<Facing> facing;
-  /// Of derivatives alone (sensitivity/branches.hpp): the direction that the trial of a slipping point takes from the
-  /// apex of its cone, laid out as traction, zero elsewhere; empty where no point is there.
+  /// For derivatives alone (sensitivity/branches.hpp), laid out as traction: the direction in which the trial of a
+  /// slipping point leaves the apex of its cone. Zero for other points; empty where no point is at an apex.
   Vector<double> ray;
 };
 
@@ -45,7 +45,7 @@ const T& area_in(const ContactField<T>& field, const S& slots, std::size_t p) {
   return geometry_in(field, slots, p).area;
 }
 
-/// Calls f(n, place) with the places in Model::contact_nodes of the nodes that weights[n] of geometry_in() are of.
+/// Calls f(n, place) for each n: weights[n] of geometry_in() belongs to the node Model::contact_nodes[place].
 template <class T, class F>
 void for_each_place(const Model& model, const ContactField<T>& field, std::size_t p, F&& f) {
   const auto& point = model.points[p];
@@ -67,7 +67,7 @@ void for_each_place(const Model& model, const ContactField<T>& field, std::size_
     if (vertex != Patch::none) f(++n, curve.places[vertex]);
 }
 
-/// The nodes that the weights of geometry_in() are of.
+/// The nodes to which the weights of geometry_in() belong.
 template <class T>
 std::vector<int> nodes_in(const Model& model, const ContactField<T>& field, std::size_t p) {
   std::vector<int> nodes;
@@ -84,7 +84,7 @@ struct State {
   Vector<T> multiplier;    ///< lambda as the increment's last equilibrium used it, laid out as traction
   ContactField<T> contact;
   History<T> history;      ///< for the next increment
-  FlowBranches flow = {};  ///< of derivatives alone: those of points at a tie (sensitivity/flow_ties.hpp)
+  FlowBranches flow = {};  ///< for derivatives alone: of points at a tie (sensitivity/flow_ties.hpp)
 };
 
 /// Uzawa: the equilibrium after one augmentation; kept only where the truncated sensitivity asks for it.
@@ -103,16 +103,20 @@ struct Increment {
   State<T> state;
   std::vector<double> rho_factor;  ///< adaption of the regularisation, per contact point
   int newton = 0, augmentations = 0, cutbacks = 0;
-  double pace = 0;         ///< largest motion of a node over the time it took; of bodies that are not linear
+  double pace = 0;         ///< largest motion of a node over the increment's time; 0 where all bodies are linear
   double contraction = 0;  ///< Uzawa: last measured ratio of multiplier updates; 0 if not measured
   std::vector<IterationRecord> history;
   std::vector<AugmentedState<T>> augmented;
-  bool reversed = false;  ///< a tangent on the way was (Engine::reversed): there may be other solutions
-  bool counted = false;   ///< all solutions of the increment were looked for
-  std::vector<State<T>>
-      others;                  ///< and these are those that were not taken; their dissipation is that of the taken one
-  std::optional<double> jump;  ///< where the branch of solutions ended that led here, as a time
-  bool cut_off = false;        ///< by max_augmentations, as asked: status cap, but each of its equilibria was found
+  /// Some tangent of Newton's method had a determinant of the other sign (Engine::reversed): the increment may have
+  /// other solutions.
+  bool reversed = false;
+  bool counted = false;  ///< all solutions of the increment were looked for
+  /// Solutions that were found and not taken. Their dissipation is that of the taken one.
+  std::vector<State<T>> others;
+  /// Time at which the branch of solutions ended that led here, so that the solution jumped; none: it did not.
+  std::optional<double> jump;
+  /// max_augmentations ended the increment, as the scene asked (status cap). Each of its equilibria was found.
+  bool cut_off = false;
   /// Good enough to go on from.
   bool usable() const { return is_converged(status) || cut_off; }
 };

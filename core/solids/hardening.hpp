@@ -49,8 +49,8 @@ struct Hardening {
     return bound(piece_at(value(a)), a);
   }
 
-  /// The growth from a that solve(bound, slope) finds on the piece that it ends on. `solve`: the growth where this
-  /// piece goes on for ever, with its bound at a. `branch`: a piece, or by_values.
+  /// The growth of a, on the piece of the bound where it ends. solve(bound, slope): the growth if the piece with this
+  /// slope, and this bound at a, went on for ever. `branch`: a piece, or by_values.
   template <class U, class Solve>
   Growth<U, T> grow(const U& a, Solve&& solve, int branch = flow_branch::by_values) const {
     const bool given = branch >= flow_branch::first_piece;
@@ -90,15 +90,15 @@ struct Hardening {
   }
 };
 
-/// What says which branch a flow takes.
+/// The numbers that decide which branch a flow takes.
 template <class T>
 struct FlowTrial {
   T stress;         ///< that would be without a flow, as the bound counts it
   T before, after;  ///< a
   T modulus;        ///< that a flow takes off the stress, per growth of a
 
-  /// How far a motion is from where the law has no derivative: its trial from the bound, over that, and a from a corner
-  /// of a table, over that corner's.
+  /// How far a motion is from where the law has no derivative, the lesser of two distances: of the trial stress from
+  /// the bound, over the bound; of a from a corner of the table, over that corner's strain.
   double margin(const Hardening<T>& hardening) const {
     return std::min(std::abs(value(stress) / value(hardening.bound(before)) - 1),
                     hardening.distance_to_corner(value(after)));

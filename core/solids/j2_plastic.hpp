@@ -121,7 +121,7 @@ struct J2Law {
     return after;
   }
 
-  /// What says which branch the flow takes.
+  /// The numbers that decide which branch the flow takes.
   template <class U, int D>
   FlowTrial<U> trial(const Mat<U, D>& H, const Memory<U>& before, int branch = flow_branch::by_values) const {
     using std::sqrt;

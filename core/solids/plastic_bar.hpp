@@ -33,7 +33,7 @@ struct PlasticBarLaw {
     return flow_of(elastic.template strain<D>(coordinates, d), before, branch).memory;
   }
 
-  /// What says which branch the flow takes.
+  /// The numbers that decide which branch the flow takes.
   template <int D>
   FlowTrial<T> trial(const Mat<T, D, 2>& coordinates, const Vec<T, D>& d, const Memory& before,
                      int branch = flow_branch::by_values) const {

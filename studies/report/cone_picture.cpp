@@ -39,8 +39,8 @@ Panel panel_of(const ConePath& path, double left) {
 /// Corners of the bound over the pressure: where it begins, where it bends, where the panel ends.
 std::vector<std::pair<double, double>> edge_of(const FrictionLaw<double>& law, double far) {
   std::vector<std::pair<double, double>> edge{{0, law.bound(0)}};
-  if (law.coefficient && law.limit && *law.limit < *law.coefficient * far)
-    edge.emplace_back(*law.limit / *law.coefficient, *law.limit);
+  const auto corner = law.corner();
+  if (corner && law.piece(far) != law.piece(0)) edge.emplace_back(*corner, law.bound(far));
   edge.emplace_back(far, law.bound(far));
   return edge;
 }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/model/response.hpp"
+#include "methods/engine_choice.hpp"
 #include "methods/regularisation.hpp"
 #include "sensitivity/vertex_margin.hpp"
 #include "studies/input/method_options.hpp"
@@ -70,7 +71,7 @@ json kkt_json(const KktError& e) {
 
 json size_json(const CaseResult& result) {
   const auto& model = result.problem->model;
-  const bool unknown = std::holds_alternative<MonolithicAL>(result.method);
+  const bool unknown = has_unknown_multipliers(result.method);
   return {{"displacements", model.free_dofs.size()},
           {"multipliers", unknown ? model.multiplier_count : 0},
           {"nonzeros", result.nonzeros},

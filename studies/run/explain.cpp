@@ -52,9 +52,16 @@ std::string count(const List& list, const std::string& noun) {
 }
 
 std::string law_in_words(const FrictionLaw<Number>& law) {
-  if (!law.coefficient) return "Tresca friction " + exact_number(law.limit->value);
-  const std::string coulomb = "Coulomb friction " + exact_number(law.coefficient->value);
-  return law.limit ? coulomb + ", limited to " + exact_number(law.limit->value) : coulomb;
+  const auto coulomb = [&] { return "Coulomb friction " + exact_number(law.coefficient->value); };
+  switch (law.kind()) {
+    case FrictionKind::coulomb:
+      return coulomb();
+    case FrictionKind::limited_coulomb:
+      return coulomb() + ", limited to " + exact_number(law.limit->value);
+    case FrictionKind::tresca:
+      return "Tresca friction " + exact_number(law.limit->value);
+  }
+  return "";
 }
 
 std::string contact_lines(const Model& model) {
@@ -130,10 +137,9 @@ std::string explain(const Input& input, const Problem& problem) {
   if (scene.arc_length)
     text += fmt::format("  along the path by arc length: the factor of load {} is found, in at most {} steps of {}\n",
                         scene.arc_length->load, scene.arc_length->max, number(path_length(model, problem.slots), 3));
-  const bool monolithic = std::holds_alternative<MonolithicAL>(input.method);
+  const bool unknown = has_unknown_multipliers(input.method);
   text += fmt::format("unknowns: {} displacements", model.free_dofs.size());
-  text +=
-      monolithic ? fmt::format(", {} multipliers\n", model.multiplier_count) : ", no multipliers among the unknowns\n";
+  text += unknown ? fmt::format(", {} multipliers\n", model.multiplier_count) : ", no multipliers among the unknowns\n";
   text += fmt::format("method: {}\n", json_with_exact_numbers(to_json(input.method)));
   text += engine_lines(input, model);
   text +=

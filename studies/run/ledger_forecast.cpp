@@ -41,7 +41,7 @@ Size size_of(const Input& input, const Model& model) {
   n.condensed = condenses_some && model.effects.linear_bulk;
   n.mixed = condenses_some && !n.condensed;
   n.unknown = has_unknown_multipliers(input.method);
-  n.unsymmetric = detail::symmetry_of(model, n.unknown, cone_radius(input.method)) == Symmetry::general;
+  n.unsymmetric = detail::symmetry_of(model, n.unknown, cone_radius_of(input.method)) == Symmetry::general;
   n.dofs = model.dof_count();
   n.contact_dofs = static_cast<double>(model.contact_nodes.size()) * model.dimension;
   n.free = static_cast<double>(model.free_dofs.size());

@@ -55,6 +55,23 @@ bool is_flat(const Model& model, const ContactPoint& point) {
   return point.obstacle >= 0 && is_flat(model.scene.obstacles[point.obstacle].shape);
 }
 
+/// The number of a law that has no influence where no point slips.
+struct IdleNumber {
+  double value;
+  std::string words;
+};
+
+IdleNumber idle_number(const FrictionLaw<double>& law) {
+  switch (law.kind()) {
+    case FrictionKind::coulomb:
+    case FrictionKind::limited_coulomb:
+      return {*law.coefficient, fmt::format("friction coefficient of {:.6g}", *law.coefficient)};
+    case FrictionKind::tresca:
+      return {*law.limit, fmt::format("limit of friction, {:.6g},", *law.limit)};
+  }
+  return {};
+}
+
 void add_slips(const CaseResult& result, std::vector<Warning>& warnings) {
   constexpr double most = 0.5;  // of a slave element
   const auto& model = result.problem->model;
@@ -84,12 +101,11 @@ void add_slips(const CaseResult& result, std::vector<Warning>& warnings) {
                                       "that of the start, which holds below some half of one",
                                       name, farthest[c])});
     const auto& law = result.problem->slots.friction[c];
-    if (contacts[c].friction && !law.bears_nothing() && closed[c] && !slipped[c])
-      warnings.push_back({WarningCode::idle_friction, name, law.coefficient ? *law.coefficient : *law.limit,
-                          "lower the friction, or pull harder",
-                          fmt::format("{}: no point slipped in any step, so that the {} has no influence", name,
-                                      law.coefficient ? fmt::format("friction coefficient of {:.6g}", *law.coefficient)
-                                                      : fmt::format("limit of friction, {:.6g},", *law.limit))});
+    if (!contacts[c].friction || law.bears_nothing() || !closed[c] || slipped[c]) continue;
+    const IdleNumber idle = idle_number(law);
+    warnings.push_back(
+        {WarningCode::idle_friction, name, idle.value, "lower the friction, or pull harder",
+         fmt::format("{}: no point slipped in any step, so that the {} has no influence", name, idle.words)});
   }
 }
 

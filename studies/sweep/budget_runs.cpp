@@ -38,12 +38,6 @@ void tighten(Method& method) {
   std::visit([](auto& chosen) { tighten(chosen); }, method);
 }
 
-Regularisation& regularisation_of(Penalty& method) { return method.stiffness; }
-template <class AugmentedLagrangian>
-Regularisation& regularisation_of(AugmentedLagrangian& method) {
-  return method.scale;
-}
-
 /// The cell with the exact enforcement, on a finer mesh and in finer steps. Faults are in the diagnostics.
 std::optional<CellInput> exact_cell(const CellInput& cell, int mesh_halvings, int step_halvings, MeshFiles& meshes,
                                     Diagnostics& diagnostics) {
@@ -96,7 +90,7 @@ void multiply_stiffness(Method& method, Scene& scene, double factor) {
     rho.value.value *= factor;
     if (rho.value.slot >= 0) scene.numbers[static_cast<std::size_t>(rho.value.slot)] *= factor;
   };
-  std::visit([&](auto& chosen) { multiply(regularisation_of(chosen), chosen.automatic_multiple); }, method);
+  std::visit([&](auto& chosen) { multiply(chosen.regularisation(), chosen.automatic_multiple); }, method);
 }
 
 void refine_steps(JsonDocument& scene, int halvings, const Place& origin) {

@@ -68,7 +68,8 @@ Quantities<D> inputs_of(const ClosedForm& form, const json& entry, const CaseRes
   if (scene.contacts.empty()) return in;
   const auto& contact = scene.contacts.front();
   if (form.has_input("modulus") && !in.count("modulus")) in["modulus"] = contact_modulus(scene, numbers, contact);
-  if (form.has_input("friction") && !in.count("friction") && contact.friction && !contact.friction->limit)
+  if (form.has_input("friction") && !in.count("friction") && contact.friction &&
+      contact.friction->kind() == FrictionKind::coulomb)
     in["friction"] = numbers(*contact.friction->coefficient);
   return in;
 }

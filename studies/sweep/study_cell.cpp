@@ -21,15 +21,11 @@ namespace {
 
 using nlohmann::json;
 
-Regularisation& regularisation_of(Penalty& method) { return method.stiffness; }
-Regularisation& regularisation_of(UzawaAL& method) { return method.scale; }
-Regularisation& regularisation_of(MonolithicAL& method) { return method.scale; }
-
 /// Whether a method runs as it does without any option; "auto" and the number it stands for are the same.
 bool is_default(Method method) {
   std::visit(
       [](auto& m) {
-        auto& rho = regularisation_of(m);
+        auto& rho = m.regularisation();
         if (rho.kind == Regularisation::Kind::relative && rho.value.value == m.automatic_multiple)
           rho.kind = Regularisation::Kind::automatic;
       },
