@@ -142,7 +142,7 @@ json write_run(const std::filesystem::path& directory, const RunArguments& argum
   if (arguments.report) write_run_report(directory);
   add_files(directory, result_files(simulation, result), names);
   add_files(directory, traced, names);
-  if (arguments.report) add_files(directory, {"report.html"}, names);
+  if (arguments.report) add_files(directory, {"picture.json", "report.html", "figures/"}, names);
   return document;
 }
 
@@ -289,7 +289,7 @@ int schema_command(const std::string& kind) {
 int report_command(const std::string& directory) {
   const bool of_run = holds(directory, "result.json");
   if (!of_run && !holds(directory, "results.jsonl"))
-    throw InputFault(directory + ": there is no results.jsonl; run `stickslip study` first");
+    throw InputFault(directory + ": there are no results; run `stickslip study`, or `stickslip run` first");
   const DirectoryLock lock(directory);
   if (of_run) {
     prepare_directory(directory, {"report.html"}, {"figures"});

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <functional>
@@ -6,6 +7,7 @@
 #include <new>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -15,6 +17,7 @@
 #include "studies/io/input_fault.hpp"
 #include "studies/io/printing.hpp"
 #include "studies/io/provenance.hpp"
+#include "studies/io/wording.hpp"
 
 namespace {
 
@@ -128,8 +131,18 @@ Actions add_commands(CLI::App& app, Arguments& given) {
   return actions;
 }
 
+/// What is wrong with the first word of the line; "" where it is a command or an option, or there is none.
+std::string unknown_command(const Actions& actions, int argc, char** argv) {
+  const std::string word = argc > 1 ? argv[1] : "-";
+  std::vector<std::string> names;
+  for (const auto& [command, action] : actions) names.push_back(command->get_name());
+  if (word.starts_with('-') || std::find(names.begin(), names.end(), word) != names.end()) return "";
+  return "there is no command " + in_quotes(word) + ";" + suggestion(word, names) + " allowed: " + listed(names);
+}
+
 /// Exit code of the command that the line names; 2 where the line is at fault, which is printed.
 int run_line(CLI::App& app, const Actions& actions, int argc, char** argv) {
+  if (const std::string fault = unknown_command(actions, argc, argv); !fault.empty()) throw InputFault(fault);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -119,6 +119,10 @@ std::optional<Input> read_scene(const JsonDocument& given, const std::optional<s
   const std::filesystem::path folder = std::filesystem::path(given.file()).parent_path();
   JsonDocument document = given;
   const JsonNode file_root(given, diagnostics);
+  if (given.root().is_object() && given.root().contains("scene") && !given.root().contains("bodies")) {
+    file_root.error("is a study, not a scene; `stickslip study` runs it");
+    return std::nullopt;
+  }
   if (!file_root.is_object(
           {{"bodies", "time"},
            {"$schema", "title", "space", "strain", "obstacles", "contacts", "supports", "loads", "responses",

@@ -96,8 +96,9 @@ std::optional<Figure> derivative_histories(const Study& study, const std::string
   if (figure.rows.empty()) return std::nullopt;
   figure.series = series.list;
   add_given(figure, study, Of::sensitivities, end);
-  json spec = curves("Derivative over time", channel("time", "time", false), channel("value", "{response}", false),
-                     tooltip({{"series", "run"}, {"time", "time"}, {"value", "value"}}));
+  json spec =
+      curves("Derivative over time", channel("time", time_title(told), false), channel("value", "{response}", false),
+             tooltip({{"series", "run"}, {"time", "time"}, {"value", "value"}}));
   figure.panels.push_back({"", spec, "time", "value", false, false, "time", false});
   figure.title = "Histories: derivatives over time";
   figure.folded = "of any response by any parameter";

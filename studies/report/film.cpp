@@ -118,13 +118,15 @@ void draw_strip(const Strip& strip, double left, double top, double strip_width,
 }
 
 void draw_legend(const std::vector<Strip>& strips, double x, double y, Drawing& drawing) {
+  constexpr double of_wide_fonts = 1.15;  // over Helvetica
   for (const auto& look : looks_of(strips)) {
     drawing.path(Path().rectangle(x, y, 16, 12), {"ink", look.fill, 1, {}});
     drawing.text(x + 22, y + 10, look.words);
-    x += 75;
+    x += 22 + of_wide_fonts * text_width(look.words, 12) + 16;
   }
-  drawing.text(x, y + 10, "down: time; across: contact points");
-  drawing.part(0, y - 4, x + 200, 24);
+  const std::string directions = "down: time; across: contact points";
+  drawing.text(x, y + 10, directions);
+  drawing.part(0, y - 4, x + of_wide_fonts * text_width(directions, 12), 24);
 }
 
 Table tabulate(const std::vector<Strip>& strips) {

@@ -180,6 +180,8 @@ std::string mesh_sentence(const Study& study) {
   std::string out = fmt::format("Against {} the {} is off by {} in its worst response", discretization_reference(study),
                                 own ? "run that enforces contact best" : "best run", percent(*error));
   if (*error <= rounding) return out + ", which is rounding.";
+  if (*error <= digits_of_given_values && discretization_reference(study) == "the given values")
+    return out + ", which is within the digits that are given.";
   if (own && *best_method < *own)
     out += fmt::format(": that is {}, and enforcing contact more strictly does not bring the answer nearer to it",
                        in_words(what_else_errs(study)));

@@ -54,11 +54,12 @@ std::optional<Figure> convergence_histories(const Study& study) {
   figure.id = "histories";
   figure.folded = "of each run";
   figure.title = "Convergence: residual per iteration in the hardest step";
-  figure.text =
-      "For each run, the load step that took most iterations (of a run that failed, the last). The residual "
-      "is the largest of equilibrium" +
-      std::string(is_frictionless(study) ? " and contact" : ", normal and tangential contact") +
-      ", each relative to its own scale; an augmented run starts anew with each augmentation, which is the sawtooth.";
+  figure.text = (study.cells.size() > 1 ? "For each run, the load step" : "The load step") +
+                std::string(
+                    " that took most iterations (of a run that failed, the last). The residual is the largest "
+                    "of equilibrium") +
+                (is_frictionless(study) ? " and contact" : ", normal and tangential contact") +
+                ", each relative to its own scale";
   const auto shown = telling_cells(study, Furthest::left_out);
   add_first(series, study, shown);
   for (const auto& cell : study.cells) {
@@ -70,6 +71,9 @@ std::optional<Figure> convergence_histories(const Study& study) {
     add_iterations(figure.rows, cell, *step, 2 * series.place(name));
   }
   if (figure.rows.empty()) return std::nullopt;
+  const bool augmented =
+      std::any_of(figure.rows.begin(), figure.rows.end(), [](const json& r) { return r["augmentation"] > 1; });
+  figure.text += augmented ? "; an augmented run starts anew with each augmentation, which is the sawtooth." : ".";
   show_zeros(figure.rows, "error");
   figure.series = series.list;
   const json tips = tooltip({{"series", "run"},

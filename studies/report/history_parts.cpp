@@ -67,6 +67,15 @@ History history_of(const Cell& cell, Of of) {
   return out;
 }
 
+bool goes_back(const std::vector<History>& runs) {
+  return std::any_of(runs.begin(), runs.end(),
+                     [](const History& run) { return !std::is_sorted(run.times.begin(), run.times.end()); });
+}
+
+std::string time_title(const std::vector<History>& runs) {
+  return goes_back(runs) ? "time, which scales the load" : "time";
+}
+
 std::string most_to_see(const std::vector<History>& runs, const std::function<bool(const std::string&)>& passes) {
   constexpr double clearly = 1.01, rounding = 1e-9;  // neither orders curves
   std::string best;

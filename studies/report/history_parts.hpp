@@ -23,6 +23,12 @@ History history_of(const Cell& cell, Of of);
 /// "d RESPONSE / d PARAMETER".
 std::string derivative_name(const std::string& response, const std::string& parameter);
 
+/// Whether some run goes back in time, as a path by arc length does: its time scales the load.
+bool goes_back(const std::vector<History>& runs);
+
+/// The title of the axis of time.
+std::string time_title(const std::vector<History>& runs);
+
 /// Of the names that pass, the one whose curve goes furthest up and down over its largest size; by the run in which it
 /// does so least, since what only some runs show may be rounding. Of equals the first; "" where none passes.
 std::string most_to_see(const std::vector<History>& runs, const std::function<bool(const std::string&)>& passes);

@@ -155,7 +155,9 @@ std::optional<Figure> error_against_knob(const Study& study, const std::vector<s
         channel("shown", derivative ? "relative error of the sensitivity" : "relative error of the response", true);
     json spec = with_guides(curves(figure.title + ", " + panel, x, y, tips), x, y);
     spec["transform"] = only_if("datum.panel == '" + panel + "'");
-    figure.panels.push_back({panel, spec, "option_value", "shown", true, true, panel, false});
+    const bool noise = !tells_apart(study, derivative ? Of::sensitivities : Of::responses) &&
+                       tells_apart(study, derivative ? Of::responses : Of::sensitivities);
+    figure.panels.push_back({panel, spec, "option_value", "shown", true, true, panel, noise});
     offer(figure, derivative ? "Sensitivity" : "Response", "quantity", "", panel);
   }
   offer(figure, "Scene", "scene", study.main_variant);

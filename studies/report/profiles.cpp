@@ -128,7 +128,11 @@ std::optional<Figure> profiles(const Study& study, Of of) {
   factor["scale"] = {{"type", "log"}, {"nice", false}, {"domainMin", 1}};  // nothing takes less than the least work
   panel("factor", "performance profile", factor);
   panel("work", "data profile", channel("x", "work (factorisations and weighted back-solves)", true));
-  if (study.variants.size() < 3) figure.folded = "of two scenes alone";
+  const bool of_meshes = std::all_of(study.cells.begin(), study.cells.end(), [](auto& c) { return c.scene.empty(); });
+  if (of_meshes)
+    figure.folded = "of the meshes of one scene alone";
+  else if (study.variants.size() < 3)
+    figure.folded = "of two scenes alone";
   return figure;
 }
 

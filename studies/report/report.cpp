@@ -63,13 +63,8 @@ std::string findings(const Study& study, const Study& shown) {
 /// What the first chart is of: responses, but where their errors are rounding in all runs, and those of derivatives are
 /// not.
 Of first_measure(const Study& study) {
-  constexpr double rounding = 1e-9;
-  const auto tells = [&](Of of) {
-    return std::any_of(study.cells.begin(), study.cells.end(), [&](const Cell& cell) {
-      return cell.variant == study.main_variant && cell.converged && accuracy(cell, of).value_or(0) > rounding;
-    });
-  };
-  return !tells(Of::responses) && tells(Of::sensitivities) ? Of::sensitivities : Of::responses;
+  return !tells_apart(study, Of::responses) && tells_apart(study, Of::sensitivities) ? Of::sensitivities
+                                                                                     : Of::responses;
 }
 
 /// The chart beside the verdict: the worst response, or derivative, of the main variant against work; lower beside a
@@ -91,6 +86,7 @@ std::optional<Figure> first_chart(const Study& study, std::size_t rows_of_verdic
     for (auto& series : figure->series) series.name = beside_method(series.name, study.families.front());
   }
   figure->choices.clear();
+  figure->folded.clear();
   figure->panels.erase(figure->panels.begin() + 1, figure->panels.end());
   figure->panels.front().title.clear();
   constexpr std::size_t few = 4;  // rows, beside which a screen of 800 pixels has room for the whole chart

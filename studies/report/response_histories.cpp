@@ -5,6 +5,7 @@
 #include <map>
 
 #include "studies/report/chart_parts.hpp"
+#include "studies/report/headline.hpp"
 #include "studies/report/history_parts.hpp"
 #include "studies/report/look_up.hpp"
 
@@ -99,6 +100,55 @@ Pair first_pair(const std::vector<Pair>& pairs, const std::vector<History>& runs
   return found == pairs.end() ? Pair{force, ""} : *found;
 }
 
+/// Whether a response keeps one value in every run, as far as a chart shows.
+bool is_level(const std::vector<History>& runs, const std::string& response) {
+  constexpr double shown = 1e-5;  // of a value, as an axis magnifies no less
+  return std::all_of(runs.begin(), runs.end(), [&](const History& run) {
+    const auto found = run.values.find(response);
+    if (found == run.values.end()) return true;
+    const auto [low, high] = std::minmax_element(found->second.begin(), found->second.end());
+    return *high - *low <= shown * std::max(std::abs(*low), std::abs(*high));
+  });
+}
+
+/// What is shown over time first: the force of the first pair; where that is level, what has most to see; of a path by
+/// arc length, which time does not order, the displacement.
+std::string first_over_time(const Pair& first, const std::vector<History>& runs) {
+  if (goes_back(runs) && !first.against.empty()) return first.against;
+  return is_level(runs, first.force) ? most_to_see(runs, [](const std::string&) { return true; }) : first.force;
+}
+
+/// The most that runs differ by in a response, over its largest value; nothing of a single run, or of unlike steps.
+std::optional<double> spread_of(const std::vector<History>& runs, const std::string& response) {
+  double most = 0, size = 0;
+  const auto first = runs.front().values.find(response);
+  for (const auto& run : runs) {
+    const auto found = run.values.find(response);
+    if (found == run.values.end() || first == runs.front().values.end() || run.times != runs.front().times) return {};
+    for (std::size_t i = 0; i < run.times.size(); ++i) {
+      most = std::max(most, std::abs(found->second[i] - first->second[i]));
+      size = std::max(size, std::abs(first->second[i]));
+    }
+  }
+  return runs.size() > 1 && size > 0 ? std::optional(most / size) : std::nullopt;
+}
+
+/// What is to be seen, and what is not.
+std::string in_words(const std::vector<History>& runs, const Pair& first, const std::string& over_time, bool has_path) {
+  constexpr double hardly = 0.02;  // of the height of a chart: the width of two markers
+  std::string out = "Of every step.";
+  if (const auto spread = spread_of(runs, over_time); spread && *spread < hardly)
+    out += fmt::format(
+        " The curves of {} lie on each other: the runs shown at first differ by {} of its largest value "
+        "at most.",
+        over_time, percent(*spread));
+  if (has_path && ends_in_a_loop(runs.front(), first))
+    out +=
+        " A loop that does not come back along itself is friction's memory: where force and displacement are of the "
+        "same place and direction, the area it encloses is the work that friction took.";
+  return out;
+}
+
 /// All responses of a run over time, and the forces of `pairs` along their displacements.
 void add_run(Figure& figure, const Cell& cell, const History& history, const std::vector<Pair>& pairs,
              std::size_t turn) {
@@ -152,26 +202,24 @@ std::optional<Figure> response_histories(const Study& study) {
   const auto tips = [](const char* x, const char* title) {
     return tooltip({{"series", "run"}, {x, title}, {"value", "value"}});
   };
-  json over_time = curves("Response over time", channel("time", "time", false), channel("value", "{response}", false),
-                          tips("time", "time"));
+  json over_time = curves("Response over time", channel("time", time_title(told), false),
+                          channel("value", "{response}", false), tips("time", "time"));
   over_time["transform"] = only_if("datum.panel == 'time'");
   figure.panels.push_back({"response over time", over_time, "time", "value", false, false, "time", false});
   const bool has_path = !distinct(figure.rows, "path", "path").empty();
   figure.title =
       has_path ? "Histories: responses over time, and forces along displacements" : "Histories: responses over time";
   const Pair first = first_pair(pairs, told);
-  figure.text = "Of every step.";
-  if (has_path && ends_in_a_loop(told.front(), first))
-    figure.text +=
-        " A loop that does not come back along itself is friction's memory: where force and displacement are of the "
-        "same place and direction, the area it encloses is the work that friction took.";
+  const std::string response = first_over_time(first, told);
+  figure.text = in_words(told, first, response, has_path);
   if (has_path) {
     json path = curves("Force along displacement", channel("displacement", "{against}", false),
                        channel("value", "{force}", false), tips("displacement", "displacement"));
     path["transform"] = only_if("datum.panel == 'path'");
-    figure.panels.push_back({"force along displacement", path, "displacement", "value", false, false, "path", false});
+    figure.panels.push_back(
+        {"force along displacement", path, "displacement", "value", false, false, "path", is_level(told, first.force)});
   }
-  offer(figure, "Response", "response", first.force, "time");
+  offer(figure, "Response", "response", response, "time");
   offer(figure, "Path", "path", first.words(), "path");
   offer_cells(figure, shown);
   return figure;

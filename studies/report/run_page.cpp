@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "studies/io/amounts.hpp"
 #include "studies/io/wording.hpp"
@@ -90,6 +91,24 @@ std::string steps_table(const Study& run) {
   return compact_html(table, "Steps");
 }
 
+/// Of a parameter the largest of its derivatives, each over its response: what is next to nothing beside it is
+/// rounding.
+double largest_share(const Cell& cell, const std::string& parameter) {
+  double largest = 0;
+  for (const auto& [response, by] : object_at(cell.record, "sensitivities").items()) {
+    const json &slope = at(by, parameter), &value = at(object_at(cell.record, "responses"), response);
+    if (slope.is_number() && value.is_number() && value != 0)
+      largest = std::max(largest, std::abs(slope.get<double>() / value.get<double>()));
+  }
+  return largest;
+}
+
+/// A derivative in eight digits; in two where it is rounding, whose digits say nothing.
+std::string slope_in_words(double slope, double value, double largest_share) {
+  constexpr double rounding = 1e-12;
+  return number(slope, std::abs(slope) <= rounding * largest_share * std::abs(value) ? 2 : 8);
+}
+
 /// Responses and their derivatives at the last step, a line each.
 Table last_values(const Cell& cell) {
   Table table;
@@ -103,8 +122,10 @@ Table last_values(const Cell& cell) {
   for (const auto& [response, value] : object_at(cell.record, "responses").items()) {
     std::vector<std::string> row = {response, value.is_number() ? number(value, 10) : ""};
     for (std::size_t column = 2; column < table.header.size(); ++column) {
-      const json& slope = at(at(sensitivities, response), table.header[column].substr(6));
-      row.push_back(slope.is_number() ? number(slope, 8) : "");
+      const std::string parameter = table.header[column].substr(6);
+      const json& slope = at(at(sensitivities, response), parameter);
+      row.push_back(
+          slope.is_number() && value.is_number() ? slope_in_words(slope, value, largest_share(cell, parameter)) : "");
     }
     table.rows.push_back(row);
   }
@@ -148,6 +169,9 @@ std::string ledger_table(const Cell& cell) {
 std::string first_of_run(const Study& run, Figures& figures) {
   auto responses = response_histories(run);
   const bool wide = responses && responses->panels.size() > 1;  // then they stand side by side below
+  constexpr double low = 200;                                   // so that the first screen has them whole
+  if (wide)
+    for (Panel& panel : responses->panels) panel.spec["height"] = low;
   const std::string scene = figures.show(draw_overview(run.picture)), histories = figures.show(std::move(responses));
   std::string out = "<p class=\"reason\">" + escape_sentence(how_it_ended(run.cells.front())) + "</p>\n";
   for (const auto& warning : warning_sentences(run)) out += "<p class=\"warning\">" + escape(warning) + "</p>\n";

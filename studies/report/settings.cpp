@@ -43,6 +43,13 @@ std::optional<double> accuracy(const Cell& cell, Of of) {
 
 double work_of(const Cell& cell, Of of) { return of == Of::responses ? cell.work : cell.sensitivity_work; }
 
+bool tells_apart(const Study& study, Of of) {
+  constexpr double rounding = 1e-9;
+  return std::any_of(study.cells.begin(), study.cells.end(), [&](const Cell& cell) {
+    return cell.variant == study.main_variant && cell.converged && accuracy(cell, of).value_or(0) > rounding;
+  });
+}
+
 std::optional<double> own_error(const Study& study, Of of) {
   const Cell* best = nullptr;
   for (const auto& cell : study.cells)

@@ -19,6 +19,9 @@ std::optional<double> accuracy(const Cell& cell, Of of);
 /// Work of the solution, or of it and its derivatives.
 double work_of(const Cell& cell, Of of);
 
+/// Whether some converged run of the main variant errs by more than rounding; where none does, charts order noise.
+bool tells_apart(const Study& study, Of of);
+
 /// What the mesh itself is off by: the worst error, against the study's discretisation reference, of the run of the
 /// main variant that enforces contact best.
 std::optional<double> own_error(const Study& study, Of of);

@@ -183,7 +183,20 @@ bool sort_for_panels(json& rows) {
   return !differences.empty();
 }
 
-/// One panel a kind of traction that is not zero everywhere, and one of the differences.
+/// Whether all rows of a panel have one value, up to rounding.
+bool is_level(const json& rows, const std::string& panel) {
+  constexpr double alike = 1e-9;
+  double low = INFINITY, high = -INFINITY;
+  for (const auto& r : rows)
+    if (r["panel"] == panel) {
+      low = std::min(low, r["value"].get<double>());
+      high = std::max(high, r["value"].get<double>());
+    }
+  return high - low <= alike * std::max(std::abs(low), std::abs(high));
+}
+
+/// One panel a kind of traction that is not zero everywhere, and one of the differences. What is the same at all points
+/// of all runs is folded, where there is something else.
 void add_panels(Figure& figure) {
   const json tips = tooltip({{"series", "run"}, {"s", "position"}, {"value", "value"}, {"state", "state"}});
   for (const auto& [panel, title, logarithmic] :
@@ -196,8 +209,10 @@ void add_panels(Figure& figure) {
     json spec = curves(figure.title + ": " + title, channel("s", "position along the interface", false),
                        channel("shown", title, logarithmic), tips);
     spec["transform"] = only_if("datum.panel == '" + panel + "'");
-    figure.panels.push_back({title, spec, "s", "shown", false, logarithmic, panel, false});
+    figure.panels.push_back({title, spec, "s", "shown", false, logarithmic, panel, is_level(figure.rows, panel)});
   }
+  if (std::all_of(figure.panels.begin(), figure.panels.end(), [](const Panel& panel) { return panel.folded; }))
+    for (Panel& panel : figure.panels) panel.folded = false;
 }
 
 }  // namespace

@@ -18,15 +18,14 @@
 namespace stickslip::report {
 namespace {
 
-constexpr double rounding = 1e-12;               ///< what sixteen digits leave: no mesh errs by so little
-constexpr double same = 1 + 1e-9;                ///< of works: counts are whole, and what differs, differs by more
-constexpr double digits_of_given_values = 1e-9;  ///< below it they are the reference's, not the mesh's
-constexpr double much_faster = 1.25;             ///< seconds of runs this short vary by some 20 %
+constexpr double rounding = 1e-12;    ///< what sixteen digits leave: no mesh errs by so little
+constexpr double same = 1 + 1e-9;     ///< of works: counts are whole, and what differs, differs by more
+constexpr double much_faster = 1.25;  ///< seconds of runs this short vary by some 20 %
 
 /// An accuracy that is asked for.
 struct Level {
   double error = 0;
-  std::string whose = {};  ///< "mesh, steps: " where these err by so much
+  std::string whose = {};  ///< "own error of mesh, steps: " where these err by so much
 
   std::string title() const { return percent(error); }
   std::string html() const { return escape(whose) + "<span>" + escape(title()) + "</span>"; }
@@ -96,7 +95,7 @@ std::optional<Measure> measure_of(const Study& study, Of of) {
   for (const double error : asked) measure.levels.push_back({error});
   const double digits = discretization_reference(study) == "the given values" ? digits_of_given_values : rounding;
   if (const auto own = own_error(study, of); measure.on_same_mesh && own && *own > digits)
-    measure.levels.push_back({*own, fmt::format("{}: ", fmt::join(what_else_errs(study), ", "))});
+    measure.levels.push_back({*own, fmt::format("own error of {}: ", fmt::join(what_else_errs(study), ", "))});
   return measure;
 }
 
@@ -201,12 +200,12 @@ bool is_least(const Column& column, const Measure& measure, const Cell& cell) {
   return measure.work(cell) <= much_the_same * measure.work(*column.least);
 }
 
-/// Whether seconds name a winner, clearly ahead of every other method, that work does not.
+/// Whether a run is, up to what seconds vary by, as fast as any, while one of least work clearly is not.
 bool is_fastest(const Column& column, const Measure& measure, const Cell& cell) {
-  return column.fastest == &cell && !is_least(column, measure, cell) &&
-         std::all_of(column.runs.begin(), column.runs.end(), [&](const Choice& other) {
-           return !other.run || other.run == &cell || measure.seconds(*other.run) == 0 ||
-                  measure.seconds(*other.run) > much_faster * measure.seconds(cell);
+  if (!column.fastest || measure.seconds(cell) == 0) return false;
+  const double fast = much_faster * measure.seconds(*column.fastest);
+  return measure.seconds(cell) <= fast && std::any_of(column.runs.begin(), column.runs.end(), [&](const Choice& other) {
+           return other.run && is_least(column, measure, *other.run) && measure.seconds(*other.run) > fast;
          });
 }
 
@@ -263,32 +262,52 @@ bool counts_leave_open(const std::vector<const Choice*>& winners, const std::vec
   });
 }
 
-/// The counts of a run, and where they have to be weighed the work that they make.
-std::string taken(const Choice& choice, const Measure& measure, bool weighed) {
-  const std::string counts = work_in_words(*choice.run, measure.of);
-  return weighed ? counts + " (work " + number(measure.work(*choice.run), 3) + ")" : counts;
-}
+/// What runs take, in words.
+class Costs {
+ public:
+  /// `weighed`: with the work that counts make, where they alone do not order the runs.
+  Costs(const Measure& measure, bool weighed) : measure_(measure), weighed_(weighed) {}
+
+  /// "7 factorisations and 204 back-solves in 24 augmentations"; after the first "7 and 204".
+  std::string of(const Choice& choice) {
+    const Counts counts = counts_of(*choice.run, measure_.of);
+    std::string out = told_ ? fmt::format("{} and {}", counts.factorizations, counts.backsolves)
+                            : work_in_words(*choice.run, measure_.of);
+    told_ = true;
+    const long augmentations = measure_.of == Of::responses ? std::lround(choice.run->count("augmentations")) : 0;
+    if (augmentations > 0) out += " in " + counted(augmentations, "augmentation");
+    return weighed_ ? out + " (work " + number(measure_.work(*choice.run), 3) + ")" : out;
+  }
+  bool are_the_same(const Choice& a, const Choice& b) const { return Costs(*this).brief(a) == Costs(*this).brief(b); }
+
+ private:
+  std::string brief(const Choice& choice) {
+    told_ = true;
+    return of(choice);
+  }
+
+  const Measure& measure_;
+  bool weighed_, told_ = false;
+};
 
 /// Methods with what they take: once where that is the same for all.
-std::string winners_in_words(const std::vector<const Choice*>& winners, const Measure& measure, bool weighed) {
-  const std::string first = taken(*winners.front(), measure, weighed);
+std::string winners_in_words(const std::vector<const Choice*>& winners, Costs& costs) {
   const bool alike = std::all_of(winners.begin(), winners.end(),
-                                 [&](const Choice* choice) { return taken(*choice, measure, weighed) == first; });
+                                 [&](const Choice* choice) { return costs.are_the_same(*choice, *winners.front()); });
   std::vector<std::string> names;
   for (const Choice* choice : winners)
-    names.push_back("<b>" + escape_sentence(choice->name()) + "</b>" +
-                    (alike ? "" : " with " + taken(*choice, measure, weighed)));
-  return enumerated(names) + (alike ? ": " + first : "");
+    names.push_back("<b>" + escape_sentence(choice->name()) + "</b>" + (alike ? "" : " with " + costs.of(*choice)));
+  return enumerated(names) + (alike ? " with " + costs.of(*winners.front()) : "");
 }
 
 /// Those of least work and, set off, those near it. pre: sorted by work.
-std::string cheapest_in_words(const std::vector<const Choice*>& winners, const Measure& measure, bool weighed) {
+std::string cheapest_in_words(const std::vector<const Choice*>& winners, const Measure& measure, Costs& costs) {
   const auto first_near = std::find_if(winners.begin(), winners.end(), [&](const Choice* choice) {
     return measure.work(*choice->run) > same * measure.work(*winners.front()->run);
   });
   const std::vector<const Choice*> least(winners.begin(), first_near), near(first_near, winners.end());
-  const std::string out = winners_in_words(least, measure, weighed);
-  return near.empty() ? out : out + ", and within 5 % of that by " + winners_in_words(near, measure, weighed);
+  const std::string out = "cheapest by " + winners_in_words(least, costs);
+  return near.empty() ? out : out + "; within 5 % of that " + winners_in_words(near, costs);
 }
 
 /// Of more than three the dearest alone.
@@ -300,15 +319,30 @@ std::vector<const Choice*> few_of(const std::vector<const Choice*>& others, cons
 }
 
 /// What those take that are not the cheapest; `many`: of more, these are the dearest.
-std::string what_others_take(const std::vector<const Choice*>& others, const Measure& measure, bool many,
-                             bool weighed) {
+std::string what_others_take(const std::vector<const Choice*>& others, bool many, Costs& costs) {
   std::string out;
   for (const Choice* choice : others)
-    out += std::string(!out.empty() ? ", "
-                       : many       ? " where the dearest, "
-                                    : " where ") +
-           escape_sentence(choice->name()) + (many ? ", takes " : " takes ") + taken(*choice, measure, weighed);
+    out += (many ? "; the dearest, " : "; ") + escape_sentence(choice->name()) + (many ? ", takes " : " takes ") +
+           costs.of(*choice);
   return out;
+}
+
+/// Who was faster by the clock than the slowest of those of least work; "" where none was.
+std::string who_is_faster(const Measure& measure, const Column& column) {
+  std::vector<std::string> faster;
+  const Choice* slowest = nullptr;
+  for (const Choice& choice : column.runs) {
+    if (!choice.run) continue;
+    if (is_fastest(column, measure, *choice.run))
+      faster.push_back(escape_sentence(choice.name() + ", " + seconds_in_words(measure.seconds(*choice.run))));
+    if (is_least(column, measure, *choice.run) &&
+        (!slowest || measure.seconds(*choice.run) > measure.seconds(*slowest->run)))
+      slowest = &choice;
+  }
+  if (faster.empty()) return "";
+  return fmt::format("; by the clock faster: {}, where {} took {}", enumerated(faster),
+                     escape_sentence(slowest->name()),
+                     escape_sentence(seconds_in_words(measure.seconds(*slowest->run))));
 }
 
 /// "Penalty does not get there (best 2.4 %)" of rows that no choice stands for; "" where there is none.
@@ -332,16 +366,13 @@ std::string reason(const std::vector<Row>& rows, const Measure& measure) {
     std::stable_sort(winners.begin(), winners.end(),
                      [&](const Choice* a, const Choice* b) { return measure.work(*a->run) < measure.work(*b->run); });
     const auto told = few_of(others, measure);
-    const bool weighed = counts_leave_open(winners, told, measure.of);
-    std::string out = "To " + level.title() + " the " + measure.noun() + " is cheapest by " +
-                      cheapest_in_words(winners, measure, weighed) +
-                      what_others_take(told, measure, told.size() < others.size(), weighed);
-    for (const Choice& choice : column.runs)
-      if (choice.run && is_fastest(column, measure, *choice.run))
-        out += fmt::format("; by the clock {} was faster ({} for {})", escape_sentence(choice.name()),
-                           escape(seconds_in_words(measure.seconds(*choice.run))),
-                           escape(seconds_in_words(measure.seconds(*column.least))));
-    return out + "." + who_misses(rows, measure, column);
+    Costs costs(measure, counts_leave_open(winners, told, measure.of));
+    const std::string noun = measure.of == Of::responses ? "Response" : "Derivative";
+    std::string out = noun + " to " + escape_sentence(level.title()) + ": ";
+    out += cheapest_in_words(winners, measure, costs);
+    out += what_others_take(told, told.size() < others.size(), costs);
+    out += who_is_faster(measure, column);
+    return "<p class=\"reason\">" + out + "." + who_misses(rows, measure, column) + "</p>\n";
   }
   return "";
 }
@@ -353,7 +384,7 @@ Verdict verdict(const Study& study) {
   for (const Of of : {Of::responses, Of::sensitivities})
     if (auto measure = measure_of(study, of)) measures.push_back(*std::move(measure));
   if (measures.empty()) return {};
-  std::string groups, heads, sentence;
+  std::string groups, heads, sentences;
   const auto [rows, rows_are] = rows_of(study);
   std::vector<std::string> entries(rows.size());
   for (const auto& measure : measures) {
@@ -366,7 +397,7 @@ Verdict verdict(const Study& study) {
       for (std::size_t i = 0; i < rows.size(); ++i)
         entries[i] += entry(rows[i], measure, column, column.runs[i], within);
     }
-    sentence += (sentence.empty() ? "" : " ") + reason(rows, measure);
+    sentences += reason(rows, measure);
   }
   std::string body;
   for (std::size_t i = 0; i < rows.size(); ++i)
@@ -380,7 +411,7 @@ Verdict verdict(const Study& study) {
       "<tr>{}</tr></thead><tbody>\n{}</tbody></table></div>\n",
       escape(against), study.main_variant.empty() ? "" : escape(" (" + study.main_variant + ")"), escape(rows_are),
       groups, heads, body);
-  return {"<p class=\"reason\">" + sentence + "</p>\n", table, rows.size()};
+  return {sentences, table, rows.size()};
 }
 
 }  // namespace stickslip::report

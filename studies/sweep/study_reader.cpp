@@ -93,6 +93,11 @@ std::optional<Study> read_study(const std::string& file, Diagnostics& diagnostic
   Study study;
   study.document = *std::move(document);
   const JsonNode root(study.document, diagnostics);
+  if (root.value().is_object() && root.value().contains("bodies") && !root.value().contains("scene")) {
+    root.error("is a scene, not a study; `stickslip run` runs it, and a study names it: \"scene\": \"" +
+               std::filesystem::path(file).filename().string() + "\"");
+    return std::nullopt;
+  }
   if (!root.is_object({{"scene"},
                        {"$schema", "title", "methods", "vary", "refine", "reference", "errors", "accuracy", "timing",
                         "error_budget"}}))

@@ -138,6 +138,14 @@ def names(work):
     print("control characters, formulas and bytes that are no text", flush=True)
 
 
+def what_is_mistaken(work):
+    scene, study = write(work / "a.json", SCENE), write(work / "a.study.json", dict(STUDY, scene="a.json"))
+    run("runn", str(scene), code=2, says='there is no command "runn"; did you mean "run"?')
+    run("run", str(study), code=2, says="is a study, not a scene; `stickslip study` runs it")
+    run("study", str(scene), code=2, says="is a scene, not a study; `stickslip run` runs it")
+    print("commands and files that are mistaken for others", flush=True)
+
+
 def damaged_records(work):
     study, whole = str(work / "timed.study.json"), work / "whole"
     for name, text in (("timings.jsonl", '{"id": 3}\n{"id": "a", "round": 1, "seconds": {"total": "x"}}\n\xff\n'),
@@ -334,8 +342,8 @@ def main():
         study = write(work / "a.study.json", STUDY)
         timed = write(work / "timed.study.json", dict(STUDY, timing={"repeat": 2}))
         run("study", str(timed), "-o", str(work / "whole"), code=0)
-        for part in (files_that_are_none, names, damaged_records, sizes, cells_that_fail, directory_that_vanishes,
-                     worker_that_is_killed, merges, leftovers, templates):
+        for part in (files_that_are_none, names, what_is_mistaken, damaged_records, sizes, cells_that_fail,
+                     directory_that_vanishes, worker_that_is_killed, merges, leftovers, templates):
             part(work)
 
 

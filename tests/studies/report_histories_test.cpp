@@ -109,6 +109,31 @@ TEST_F(ReportHistories, SpeakOfMemoryOnlyWhereAPathClosesAboveRounding) {
   EXPECT_THAT(report::response_histories(study())->text, Not(HasSubstr("memory")));
 }
 
+/// A force that stays draws a level line along every displacement.
+TEST_F(ReportHistories, BeginWithWhatChangesAndFoldThePathOfAForceThatStays) {
+  json steps = json::array();
+  for (int n = 1; n <= 10; ++n)
+    steps.push_back(
+        {{"time", n}, {"responses", {{"u", n}, {"grip", 3 + 1e-8 * n}, {"press", 10}}}, {"history", json::array()}});
+  record_steps(steps);
+  const auto figure = report::response_histories(study());
+  EXPECT_THAT(choice(*figure, "response")->chosen, testing::ElementsAre("u"));
+  EXPECT_TRUE(figure->panels[1].folded);
+  EXPECT_THAT(figure->text, HasSubstr("The curves of u lie on each other: the runs shown at first differ by 0 of"));
+  record_steps(to_and_fro(40));
+  EXPECT_FALSE(report::response_histories(study())->panels[1].folded);
+}
+
+/// Where loads are found by arc length, time goes back past a limit point.
+TEST_F(ReportHistories, OfAPathByArcLengthBeginWithTheDisplacement) {
+  json steps = to_and_fro(40);
+  for (std::size_t n = 0; n < steps.size(); ++n) steps[n]["time"] = n < 20 ? n : 40 - n;
+  record_steps(steps);
+  const auto figure = report::response_histories(study());
+  EXPECT_THAT(choice(*figure, "response")->chosen, testing::ElementsAre("u"));
+  EXPECT_THAT(report::draw_plot(*figure, figure->panels[0])->inline_svg(), HasSubstr(">time, which scales the load<"));
+}
+
 TEST_F(ReportHistories, OfDerivativesDoNotBeginWithRounding) {
   json steps = to_and_fro(40);
   for (std::size_t n = 0; n < steps.size(); ++n)

@@ -79,6 +79,18 @@ TEST_F(ReportOfARun, TwoHistoriesHaveARowOfTheirOwn) {
   EXPECT_THAT(alone, AllOf(Not(HasSubstr(row)), Not(HasSubstr("force along displacement"))));
 }
 
+/// Of the slider u follows U0, and no force does: what their derivatives hold is rounding.
+TEST_F(ReportOfARun, HasTwoDigitsOfWhatIsRounding) {
+  const std::string html = page_of("slider");
+  const auto row = html.substr(html.find("<td>pull</td>"), 400);
+  EXPECT_THAT(row.substr(0, row.find("</tr>")), testing::ContainsRegex("\"n\">-?[0-9](\\.[0-9])?e-1[0-9]</td>"));
+}
+
+/// A run without augmentations has no sawtooth to explain.
+TEST_F(ReportOfARun, SpeaksOfAugmentationsWhereThereAreSome) {
+  EXPECT_THAT(page_of("slider"), AllOf(HasSubstr("<p>The load step that took most"), Not(HasSubstr("sawtooth"))));
+}
+
 TEST_F(ReportOfARun, StatesOfManyContactsShareAColumn) {
   EXPECT_THAT(page_of("slider"), HasSubstr("sole: stick</th>"));
   json result = json::parse(std::ifstream(directory_ / "result.json"));
