@@ -91,7 +91,7 @@ struct Differentiation {
   Counters counters;
   Status status = Status::singular;  ///< where a scheme fails: that it could not factorise, or cap
   std::string message = {};
-  bool follows = false;                                 ///< the engine has the factor of the method's last iteration
+  bool follows = false;                                 ///< the engine has a factor that may serve (reuse_factor)
   std::optional<SchemeRecord> record = std::nullopt;    ///< of the last increment
   std::optional<PseudoLoad> prepared = std::nullopt;    ///< of the next increment; empty: the scheme makes it
   std::optional<Unexpanded> unexpanded = std::nullopt;  ///< of the last increment, for expand()

@@ -15,8 +15,8 @@ class DualStiffness {
   /// Of the elements in `lists`, which are of bodies of constant stiffness.
   DualStiffness(const Model& model, const Slots<Direction>& slots, const ElementLists& lists);
 
-  /// Adds the forces of its elements at displacements of all dofs: their derivatives, and where nodes have frames, whose
-  /// derivatives turn the forces, their values.
+  /// Adds the forces of its elements at displacements of all dofs: their derivatives, and where nodes have frames,
+  /// whose derivatives turn the forces, their values.
   void add_forces(const Vector<Direction>& u, Vector<Direction>& forces) const;
 
   long bytes() const;

@@ -85,6 +85,7 @@ struct AdjointProblem {
   bool energies = false;         ///< an objective reads the bodies' forces everywhere
   std::vector<int> read_forces;  ///< dofs of which the bodies' forces are read: of nodes at supports, or all
   long waiting_bytes = 0;        ///< largest, of what waited inside the bodies
+  bool follows = false;          ///< the engine has the factor of the increment that came last
   Counters counters;
   Status status = Status::singular;  ///< why a scheme gave up
   std::string message;
@@ -171,7 +172,9 @@ RecordedEquilibrium<E>::RecordedEquilibrium(AdjointProblem<E>& problem, const St
     for (int c = 0; c < model.points[p].components(); ++c)
       scale_[model.points[p].multiplier + c] = c == 0 ? plain[p].normal : plain[p].tangential;
   const ContactInput<double> input{model, problem.slots, plain, previous.history, cone, time, &at.contact.facing};
-  valid_ = factorise_converged(problem, input, at, unknown, redundant_);
+  valid_ = (problem.follows && reuse_factor(problem, input, at, unknown)) ||
+           factorise_converged(problem, input, at, unknown, redundant_);
+  problem.follows = valid_ && !redundant_;
   if (!valid_) return;
   record(previous, rho, cone, time, objectives);
   Vector<double> forces;
@@ -348,7 +351,7 @@ void RecordedEquilibrium<E>::balance(int objective) {
   for (int pass = 0; pass <= refinements && first > 0; ++pass) {
     if (pass > 0 && !redundant_ && std::max(largest(rows), largest(rows_l)) <= 1e-13 * first) break;
     const auto a = problem_.engine.solve({-rows, -rows_l}, Solving::transposed);
-    ++problem_.counters.sensitivity_backsolves;
+    problem_.counters.sensitivity_backsolves += problem_.engine.solves();
     u += a.u;
     seed_contact(objective, a);
     if (!unknown_) break;

@@ -45,12 +45,12 @@ bool factorise_converged(Problem& problem, const ContactInput<double>& input, co
   return valid;
 }
 
-/// The same with the engine's factor of Newton's last iteration. Its tangent is that of the converged state, but for
-/// directions in space: so it is used as it is, or updated. False where that cannot be. The caller must check what it
-/// solves.
+/// The same with the factor that the engine has. It may be of Newton's last iteration, whose tangent is that of the
+/// converged state, but for directions in space; or of an increment beside this one. It is used as it is, or updated.
+/// False where that cannot be. The caller must check, or refine, what it solves.
 template <class Problem>
 bool reuse_factor(Problem& problem, const ContactInput<double>& input, const State<double>& at, bool unknown) {
-  if (unknown && !decided_elsewhere(problem.model, problem.slots).empty()) return false;
+  if (unknown && !decided_elsewhere(problem.model, problem.slots, &at.contact).empty()) return false;
   Counters spent;
   const bool updated = problem.engine.update(converged_tangents(input, at), spent);
   spent.sensitivity_backsolves = std::exchange(spent.backsolves, 0);

@@ -186,7 +186,7 @@ BlockVector<T> CondensedEngine<T>::solve(const BlockVector<T>& rows, Solving how
   for (std::size_t a = 0; a < active_.size(); ++a) b.row(free + a) = rows.l.row(active_[a]);
   const Matrix<T> x = detail::solve_updated<T>(
       update_, b, how, [&](const Matrix<T>& r) { return factor_.solve(r, transposed); },
-      [&](const Matrix<T>& y) { return Matrix<T>(matrix_ * y); });
+      [&](const Matrix<T>& y) { return transposed ? Matrix<T>(matrix_.transpose() * y) : Matrix<T>(matrix_ * y); });
   BlockVector<T> out{Matrix<T>::Zero(free_.size(), columns), Matrix<T>::Zero(model_.multiplier_count, columns)};
   for (int i = 0; i < free; ++i) out.u.row(free_list_[i]) = x.row(i);
   if (unknown_multipliers_) {

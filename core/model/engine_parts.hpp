@@ -17,8 +17,7 @@ struct BlockVector {
 };
 
 /// How rows are solved for. `refined`: after an update of the factor, a second solve refines the solution. `unrefined`:
-/// it does not, for the caller checks the solution. `transposed`: with K^T in place of K; pre: no update since the
-/// factorisation.
+/// it does not, for the caller checks the solution. `transposed`: with K^T in place of K, refined.
 enum class Solving { refined, unrefined, transposed };
 
 /// What an engine holds now, in bytes, and what it has done beside what Counters count.
@@ -194,12 +193,15 @@ bool update_factor(const Model& model, const Slots<T>& slots, const std::vector<
   return false;
 }
 
-/// The solution with a factor and its update; only in double there are any.
+/// The solution with a factor and its update; only in double there are any. `solve` and `multiply`: with K, or K^T.
 template <class T, class Solve, class Multiply>
 Matrix<T> solve_updated(const TangentUpdate& update, const Matrix<T>& b, Solving how, Solve&& solve,
                         Multiply&& multiply) {
-  if constexpr (std::is_same_v<T, double>)
-    if (!update.empty()) return how == Solving::unrefined ? update.solve(b, solve) : update.solve(b, solve, multiply);
+  if constexpr (std::is_same_v<T, double>) {
+    if (update.empty()) return solve(b);
+    if (how == Solving::transposed) return update.solve_transposed(b, solve, multiply);
+    return how == Solving::unrefined ? update.solve(b, solve) : update.solve(b, solve, multiply);
+  }
   return solve(b);
 }
 

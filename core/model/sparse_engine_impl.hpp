@@ -298,7 +298,7 @@ BlockVector<T> SparseEngine<T>::solve(const BlockVector<T>& rows, Solving how) {
     Matrix<T> product = Matrix<T>::Zero(size_, x.cols());
     for (int j = 0; j < size_; ++j)
       for (int k = pattern_->column_start[j]; k < pattern_->column_start[j + 1]; ++k)
-        product.row(pattern_->row[k]) += values_[k] * x.row(j);
+        product.row(transposed ? j : pattern_->row[k]) += values_[k] * x.row(transposed ? pattern_->row[k] : j);
     return product;
   };
   const Matrix<T> x = detail::solve_updated<T>(

@@ -12,13 +12,20 @@ constexpr double negligible = 1e-13;
 
 double norm_1(const Matrix<double>& a) { return a.cwiseAbs().colwise().sum().maxCoeff(); }
 
-/// v^T x of a column.
-template <class Column, class X>
-double along(const Column& column, const X& x) {
+/// a^T x of a vector over some rows.
+template <class X>
+double along(const std::vector<int>& rows, const Vector<double>& a, const X& x) {
   double sum = 0;
-  for (std::size_t i = 0; i < column.rows.size(); ++i)
-    if (column.rows[i] >= 0) sum += column.v[i] * x[column.rows[i]];
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (rows[i] >= 0) sum += a[i] * x[rows[i]];
   return sum;
+}
+
+/// Takes a vector over some rows, times a factor, from x.
+template <class X>
+void subtract(const std::vector<int>& rows, const Vector<double>& a, double factor, X&& x) {
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (rows[i] >= 0) x[rows[i]] -= factor * a[i];
 }
 
 void drop_absent_rows(TangentUpdate::Change& change) {
@@ -60,7 +67,7 @@ bool TangentUpdate::take(std::vector<Change> changes, Eigen::Index size, Counter
   }
   Matrix<double> C(count, count);
   for (Eigen::Index i = 0; i < count; ++i)
-    for (Eigen::Index j = 0; j < count; ++j) C(i, j) = along(columns[i], columns[j].z);
+    for (Eigen::Index j = 0; j < count; ++j) C(i, j) = along(columns[i].rows, columns[i].v, columns[j].z);
   Eigen::PartialPivLU<Matrix<double>> inverse;
   if (count > 0) {
     const double before = std::max(1.0, norm_1(C));  // what cancels where the change makes the tangent singular
@@ -83,19 +90,38 @@ Matrix<double> TangentUpdate::solve(const Matrix<double>& b, const Product& solv
 Matrix<double> TangentUpdate::solve(const Matrix<double>& b, const Product& solve, const Product& multiply) const {
   const Matrix<double> x = this->solve(b, solve);
   Matrix<double> rest = b - multiply(x);
-  for (const auto& column : columns_)
-    for (Eigen::Index c = 0; c < x.cols(); ++c) {
-      const double share = along(column, x.col(c));
-      for (std::size_t i = 0; i < column.rows.size(); ++i)
-        if (column.rows[i] >= 0) rest(column.rows[i], c) -= column.u[i] * share;
-    }
+  subtract_product(&Column::u, &Column::v, x, rest);
   return x + this->solve(rest, solve);
+}
+
+Matrix<double> TangentUpdate::solve_transposed(const Matrix<double>& b, const Product& solve,
+                                               const Product& multiply) const {
+  const Matrix<double> x = solve(prepared(b));
+  Matrix<double> rest = b - multiply(x);
+  subtract_product(&Column::v, &Column::u, x, rest);
+  return x + solve(prepared(std::move(rest)));
+}
+
+void TangentUpdate::subtract_product(Vector<double> Column::*left, Vector<double> Column::*right,
+                                     const Matrix<double>& x, Matrix<double>& rows) const {
+  for (const auto& column : columns_)
+    for (Eigen::Index c = 0; c < x.cols(); ++c)
+      subtract(column.rows, column.*left, along(column.rows, column.*right, x.col(c)), rows.col(c));
+}
+
+Matrix<double> TangentUpdate::prepared(Matrix<double> b) const {
+  Matrix<double> w(static_cast<Eigen::Index>(columns_.size()), b.cols());
+  for (std::size_t k = 0; k < columns_.size(); ++k) w.row(k) = columns_[k].z.transpose() * b;
+  w = inverse_.transpose().solve(w).eval();
+  for (std::size_t k = 0; k < columns_.size(); ++k)
+    for (Eigen::Index c = 0; c < b.cols(); ++c) subtract(columns_[k].rows, columns_[k].v, w(k, c), b.col(c));
+  return b;
 }
 
 void TangentUpdate::correct(Matrix<double>& x) const {
   Matrix<double> w(static_cast<Eigen::Index>(columns_.size()), x.cols());
   for (std::size_t k = 0; k < columns_.size(); ++k)
-    for (Eigen::Index c = 0; c < x.cols(); ++c) w(k, c) = along(columns_[k], x.col(c));
+    for (Eigen::Index c = 0; c < x.cols(); ++c) w(k, c) = along(columns_[k].rows, columns_[k].v, x.col(c));
   w = inverse_.solve(w).eval();
   for (std::size_t k = 0; k < columns_.size(); ++k) x -= columns_[k].z * w.row(k);
 }

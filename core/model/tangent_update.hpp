@@ -4,7 +4,8 @@
 ///
 ///   (K + U V^T)^-1 b = y - Z C^-1 V^T y,   y = K^-1 b,  Z = K^-1 U,  C = I + V^T Z
 ///
-/// and det(K + U V^T) = det K det C. W. W. Hager, Updating the inverse of a matrix, SIAM Rev. 31 (1989) 221-239.
+/// its transpose  (K + U V^T)^-T b = K^-T (b - V C^-T Z^T b),  and det(K + U V^T) = det K det C. W. W. Hager, Updating
+/// the inverse of a matrix, SIAM Rev. 31 (1989) 221-239.
 #pragma once
 
 #include <Eigen/LU>
@@ -45,6 +46,8 @@ class TangentUpdate {
   Matrix<double> solve(const Matrix<double>& b, const Product& solve) const;
   /// The same refined once, for another solve. multiply(x) = K x.
   Matrix<double> solve(const Matrix<double>& b, const Product& solve, const Product& multiply) const;
+  /// (K + U V^T)^-T b, refined once. solve(b) = K^-T b, multiply(x) = K^T x.
+  Matrix<double> solve_transposed(const Matrix<double>& b, const Product& solve, const Product& multiply) const;
 
  private:
   struct Column {
@@ -57,6 +60,11 @@ class TangentUpdate {
 
   /// K^-1 b -> (K + U V^T)^-1 b, column by column.
   void correct(Matrix<double>& x) const;
+  /// b -> b - V C^-T Z^T b.
+  Matrix<double> prepared(Matrix<double> b) const;
+  /// Takes left right^T x, `left` and `right` being U and V or V and U, from rows.
+  void subtract_product(Vector<double> Column::*left, Vector<double> Column::*right, const Matrix<double>& x,
+                        Matrix<double>& rows) const;
 
   bool append_kept(const Change& change, std::vector<Column>& columns) const;
   static void append_new(Change change, std::vector<Column>& columns, std::vector<std::size_t>& fresh);

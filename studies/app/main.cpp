@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/algebra/linear_solver.hpp"
+#include "core/algebra/memory.hpp"
 #include "studies/app/commands.hpp"
 #include "studies/io/input_fault.hpp"
 #include "studies/io/printing.hpp"
@@ -161,6 +162,7 @@ int run_line(CLI::App& app, const Actions& actions, int argc, char** argv) {
 
 int main(int argc, char** argv) {
   set_blas_threads(1);
+  keep_freed_memory();
   CLI::App app{"stickslip: one frictional contact problem, three ways to enforce it, and their derivatives"};
   app.require_subcommand(1);
   app.set_version_flag("--version", [] { return version_text(); });

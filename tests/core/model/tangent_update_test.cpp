@@ -62,6 +62,26 @@ TEST(TangentUpdate, SolvesWithTheChangedTangent) {
   });
 }
 
+TEST(TangentUpdate, SolvesWithTheTransposeOfTheChangedTangent) {
+  const EngineProblem problem = stuck(20);
+  for_each_engine(problem, [&](auto make, bool unknown) {
+    auto engine = make();
+    const auto [r, l] = right_hand_sides(engine, problem);
+    Counters counters;
+    ASSERT_TRUE(engine.factorise(problem.tangents(), counters));
+    for (int count : {1, 3, 2}) {
+      const auto other = turned(problem, count).tangents();
+      ASSERT_TRUE(engine.update(other, counters)) << engine.name() << unknown << count;
+      auto anew = make();
+      ASSERT_TRUE(anew.factorise(other, counters));
+      const auto updated = engine.solve({r, l}, Solving::transposed), exact = anew.solve({r, l}, Solving::transposed);
+      EXPECT_LT(derivatives::relative_difference(updated.u, exact.u), solved) << engine.name() << unknown << count;
+      if (!unknown) continue;
+      EXPECT_LT(derivatives::relative_difference(updated.l, exact.l), solved) << engine.name() << count;
+    }
+  });
+}
+
 TEST(TangentUpdate, SolvesWithoutARefinementWhereThatIsCheckedElsewhere) {
   const EngineProblem problem = stuck(20);
   for_each_engine(problem, [&](auto make, bool unknown) {
