@@ -24,6 +24,7 @@
 #include "methods/solutions.hpp"
 #include "methods/statics.hpp"
 #include "methods/uzawa.hpp"
+#include "methods/work_bound.hpp"
 
 namespace stickslip {
 
@@ -151,7 +152,7 @@ std::optional<Increment<T>> take_resting_solution(const M& method, Run<T, E>& ru
 /// history holds all iterations. Where no attempt succeeds the status is that of the last.
 template <class M, class T, class E>
 Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& previous, const std::vector<double>& factor,
-                           double time, bool several) {
+                           double time, bool several, const WorkBound& bound) {
   const Vector<double> D = damping(run.model, run.slots);
   const RunScales scales = run.account.scales;
   std::vector<IterationRecord> history;
@@ -172,7 +173,7 @@ Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& prev
   Increment<T> result;
   State<T> rest = previous;
   MotionPace pace;
-  while (pace.goes_on()) {
+  do {
     auto moved = attempt(rest, pace.alpha());
     const double length = distance(rest, moved.state);
     if (!moved.usable() || (several && !pace.allows(length))) {
@@ -197,7 +198,7 @@ Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& prev
       rough_step = false;
     else
       pace.hasten();
-  }
+  } while (pace.goes_on() && !bound.is_spent());
   result.history = std::move(history);
   result.newton = iterations;
   return result;
@@ -206,10 +207,11 @@ Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& prev
 }  // namespace detail
 
 /// Solves one increment from `previous`, to `time`; `factor`: adaption of rho so far. `may_move`: whether the motion
-/// stands in where the method alone finds nothing.
+/// stands in where the method alone finds nothing. `bound`: of the step that it is a part of, begun.
 template <class M, class T, class E>
 Increment<T> find_increment(const M& method, Run<T, E>& run, const State<T>& previous,
-                            const std::vector<double>& factor, double time, bool may_move = true) {
+                            const std::vector<double>& factor, double time, const WorkBound& bound,
+                            bool may_move = true) {
   const RunScales before = run.account.scales;
   auto direct = solve_increment(method, run, previous, factor, time, Start<T>{previous, {}});
   const bool solved = direct.usable();
@@ -217,7 +219,7 @@ Increment<T> find_increment(const M& method, Run<T, E>& run, const State<T>& pre
   const bool prescribed =
       direct.status == Status::infeasible &&
       (!prevents_penetration(method) || !prescribed_penetration(run.model, run.slots, direct.state).empty());
-  const bool final = prescribed || (solved && (!several || direct.cut_off));
+  const bool final = prescribed || (solved && (!several || direct.cut_off)) || (!solved && bound.is_spent());
   if (final || run.model.points.empty() || !is_globalised(method) || (!solved && !may_move)) return direct;
   if (!solved && unbalanced_body(run.model, run.slots, time) != balanced) {
     direct.status = Status::no_equilibrium;
@@ -232,7 +234,7 @@ Increment<T> find_increment(const M& method, Run<T, E>& run, const State<T>& pre
     if (auto taken = take_among_all()) return std::move(*taken);
   }
   const RunScales after = std::exchange(run.account.scales, before);
-  auto rest = detail::follow_motion(method, run, previous, factor, time, several);
+  auto rest = detail::follow_motion(method, run, previous, factor, time, several, bound);
   // a multiplier that grows for ever makes any violation small against it
   constexpr double runaway = 1e4;
   const bool grown = direct.status == Status::infeasible && values(rest.state.contact.traction).norm() >

@@ -45,7 +45,9 @@ class Path {
   /// increment is at t = 0, where something is held from the start on.
   bool advance() {
     if (trajectory_.increments.empty()) {
-      auto held = find_increment(method_, run_, trajectory_.initial, {}, 0.0);
+      WorkBound bound(run_.model, run_.account.counters, method_.newton.max_iterations);
+      bound.begin();
+      auto held = find_increment(method_, run_, trajectory_.initial, {}, 0.0, bound);
       held.time = 0;
       if (!held.usable() || held.state.displacement != trajectory_.initial.displacement ||
           held.state.contact.traction != trajectory_.initial.contact.traction) {

@@ -82,8 +82,11 @@ class Sequence {
 
   /// Whether the equilibrium is found, but for what the tolerance of a task that gives multipliers asks for.
   bool find() {
-    constexpr int most_unsettled = 8;
+    // Of 1200 that were found, of all scenes and methods, none took more than 2 and 3 of these.
+    constexpr int most_unsettled = 3, patience = 6;
     const int most = std::min(40, options_.max_iterations);
+    double least_residual = std::numeric_limits<double>::infinity();
+    int waited = 0;  // steps since it last fell to its half
     Vector<T> about = unknowns_.u;
     if (task_.from) about = into_frames(task_.contact.model, task_.contact.slots.frames, Layout::all, *task_.from);
     const auto closed = [](ContactState s) { return s != ContactState::open; };
@@ -102,10 +105,13 @@ class Sequence {
       history_.push_back(record(at, {}, before == branches_ ? 0 : 1, 1));
       if (!at.residuals.finite()) return false;
       const double residual = at.residuals.largest();
+      waited = 2 * residual < least_residual ? 0 : waited + 1;
+      if (waited == 0) least_residual = residual;
       const bool falls = history_.size() < 2 || 2 * residual < history_[history_.size() - 2].residual;
       const bool near = at.residuals.within(std::sqrt(options_.tolerance));
       const bool solved = at.residuals.within_rounding(options_.tolerance);
       if (before == branches_ && (solved || (near && !falls))) return true;
+      if (waited > patience) return false;
       about = unknowns_.u;
     }
     return false;

@@ -45,13 +45,15 @@ std::optional<double> find_jump(const M& method, Run<T, E>& run, const State<T>&
   Trace* const trace = std::exchange(run.account.trace, nullptr);
   State<T> before = previous, after = reached;
   bool solved = true;
+  WorkBound bound(run.model, run.account.counters, method.newton.max_iterations);
+  bound.begin();
   for (int level = 0; level < halvings && solved; ++level) {
     const double middle = (start + end) / 2;
-    auto half = find_increment(method, run, before, factor, middle);
+    auto half = find_increment(method, run, before, factor, middle, bound);
     solved = half.usable();
     if (!solved) break;
     const bool near = moved(before, half.state) < much * moved(before, after);
-    auto rest = find_increment(method, run, half.state, factor, end);
+    auto rest = find_increment(method, run, half.state, factor, end, bound);
     solved = rest.usable() || near;  // (what still stands near the start jumps later, found or not)
     if (!solved) break;
     const bool first = rest.usable() && moved(before, half.state) >= moved(half.state, rest.state);
@@ -96,6 +98,7 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
   double reached = start, step = target - start;
   int easy = 0, cutbacks = 0;
   std::optional<Increment<T>> failed;
+  WorkBound bound(run.model, run.account.counters, method.newton.max_iterations);
   while (true) {
     const bool last = reached + step >= target - 1e-9 * (target - start);
     const double next = last ? target : reached + step;
@@ -103,7 +106,9 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
     const State<T>& previous = increments.empty() ? trajectory.initial : increments.back().state;
     const auto factor = increments.empty() ? std::vector<double>{} : increments.back().rho_factor;
     const bool may_move = run.model.effects.linear_bulk || !may_cut || step < patient * (target - start);
-    auto increment = find_increment(method, run, previous, factor, next, may_move);
+    bound.begin();
+    auto increment = find_increment(method, run, previous, factor, next, bound, may_move);
+    bound.end(increment.usable() ? std::max(1, increment.augmentations) : 0);
     increment.time = next;
     increment.requested = last;
     increment.cutbacks = cutbacks;
@@ -134,11 +139,12 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
     easy = 0;
     step = (next - reached) / 2;
     const bool vanishes = !(reached + step > reached && reached + step < next);  // between neighbouring numbers
-    if (!may_cut || impossible || vanishes || step < smallest * (target - start)) break;
+    if (!may_cut || impossible || vanishes || bound.is_spent() || step < smallest * (target - start)) break;
     ++cutbacks;
     ++run.account.counters.cutbacks;
   }
   diagnose(run.model, run.slots, target, prevents_penetration(method), *failed);
+  if (bound.is_spent()) failed->message += (failed->message.empty() ? "" : "; ") + bound.in_words();
   trajectory.increments.resize(start_count);
   failed->time = target;
   failed->requested = true;

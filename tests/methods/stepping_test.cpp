@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/model/response.hpp"
+#include "tests/support/blocks.hpp"
 #include "tests/support/same_bits.hpp"
 #include "tests/support/solved.hpp"
 
@@ -59,6 +60,32 @@ TEST(Stepping, GivesUpWithTheStatusAndKeepsWhatWasReached) {
   EXPECT_TRUE(s.trajectory.increments.back().requested);
   EXPECT_EQ(s.trajectory.increments.back().time, 1);
   EXPECT_GT(s.trajectory.increments.back().cutbacks, 0);
+}
+
+/// Two blocks at finite strain, the upper one pressed on the lower and drawn along it.
+Scene drawn_blocks() {
+  Scene s;
+  s.finite_strain = true;
+  s.legs = {{1, 1}};
+  for (auto [name, low, high] : {std::tuple("lower", 0.0, 1.0), std::tuple("upper", 1.0, 2.0)})
+    s.bodies.push_back(scenes::box_body(name, {0, low}, {3, high}, {name == std::string("upper") ? 4 : 3, 1}));
+  for (auto& body : s.bodies) body.material = NeoHookean{1000.0, 0.3};
+  s.contacts = {scenes::contact("sole", "upper.bottom", "lower.top")};
+  s.contacts[0].friction = 0.3;
+  s.supports = {scenes::support("lower.bottom", {{'x', scenes::ramp(0.0)}, {'y', scenes::ramp(0.0)}}),
+                scenes::support("upper.top", {{'x', scenes::ramp(1.0)}, {'y', scenes::ramp(-0.3)}})};
+  return s;
+}
+
+TEST(Stepping, GivesUpAfterBoundedWork) {
+  // No part of the step ends within its few iterations; the motion would take hundreds of steps in each.
+  MonolithicAL method;
+  method.newton.max_iterations = 3;
+  const auto s = run(drawn_blocks(), method);
+  EXPECT_EQ(s.trajectory.status, Status::cap) << s.trajectory.message;
+  EXPECT_NE(s.trajectory.message.find("given up after"), std::string::npos) << s.trajectory.message;
+  EXPECT_LE(s.trajectory.counters.newton, 5050);  // (the bound, one equilibrium, and parts that go well)
+  ASSERT_EQ(s.trajectory.increments.size(), 1u);
 }
 
 TEST(Stepping, BreakpointsOfEveryTableAreHit) {
