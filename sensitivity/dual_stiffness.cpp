@@ -62,12 +62,23 @@ void DualStiffness::add_forces(const Vector<Direction>& u, Vector<Direction>& fo
     entry += count * (count + 1) / 2;
   };
   for (std::size_t e = 0; e + 1 < start_.size(); ++e) switch (start_[e + 1] - start_[e]) {
-      case 4: add.template operator()<4>(e); break;
-      case 6: add.template operator()<6>(e); break;
-      case 8: add.template operator()<8>(e); break;
-      case 12: add.template operator()<12>(e); break;
-      case 16: add.template operator()<16>(e); break;
-      default: assert(false);  // no element has so many dofs
+      case 4:
+        add.template operator()<4>(e);
+        break;
+      case 6:
+        add.template operator()<6>(e);
+        break;
+      case 8:
+        add.template operator()<8>(e);
+        break;
+      case 12:
+        add.template operator()<12>(e);
+        break;
+      case 16:
+        add.template operator()<16>(e);
+        break;
+      default:
+        assert(false);  // no element has so many dofs
     }
 }
 
@@ -82,7 +93,8 @@ long DualStiffness::bytes_of(const Model& model, const ElementLists& lists) {
     if (lists[b].empty()) continue;
     const long dofs = static_cast<long>(detail::element_nodes(model.bodies[b], 0).size()) * model.dimension;
     const long entries = dofs * (dofs + 1) / 2;
-    bytes += static_cast<long>(lists[b].size() * ((dofs + 1) * sizeof(int) + entries * (1 + directions) * sizeof(double)));
+    bytes +=
+        static_cast<long>(lists[b].size() * ((dofs + 1) * sizeof(int) + entries * (1 + directions) * sizeof(double)));
   }
   return bytes;
 }
