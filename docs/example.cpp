@@ -23,7 +23,8 @@ int main() {
   const auto trajectory = solve(model, slots, MonolithicAL{}, {}, workspace);
   const auto gradients = differentiate(model, slots, MonolithicAL{}, trajectory, workspace);
   const auto& last = trajectory.increments.back();
-  const double press = evaluate_responses(model, slots, last.state, last.time)[0], slope = gradients.of.back()(0, 0);
+  const double press = evaluate_responses(model, slots, last.state, last.time)[0],
+               slope = gradients.of_responses.back()(0, 0);
   std::printf("press = %g, d press / dF = %g\n", press, slope);
   // exact: F - k g0 = 5, and 1; a few roundings of the load of 15
   return std::abs(press - 5) < 1e-13 && std::abs(slope - 1) < 1e-13 ? 0 : 1;

@@ -24,13 +24,13 @@ namespace detail {
 
 /// Component c of the constraint that a closed point should meet: g_N, or in stick dg_T (length).
 template <class T>
-double constraint(const Model& model, const ContactField<T>& field, int p, int c) {
+double constraint_error(const Model& model, const ContactField<T>& field, int p, int c) {
   return value(c == 0 ? field.gap[p] : field.slip[tangential_offset(model, p) + c - 1]);
 }
 
 /// Number of constraints of a point in its state.
 template <class T>
-int constraints(const Model& model, const ContactField<T>& field, int p) {
+int constraint_count(const Model& model, const ContactField<T>& field, int p) {
   if (field.state[p] == ContactState::open) return 0;
   return field.state[p] == ContactState::stick ? model.points[p].components() : 1;
 }
@@ -88,7 +88,7 @@ class Augmentations {
   void change_map() { same_map_ = false; }
   /// Of the points whose gap does not answer to their multiplier, the one with the largest violation, in words of the
   /// scene. Empty where no violation is above `negligible`.
-  std::string unyielding(double negligible) const;
+  std::string unanswered(double negligible) const;
 
  private:
   static constexpr int patience = 3;
@@ -96,7 +96,7 @@ class Augmentations {
   static double values_or_zero(const Vector<double>& v) { return v.size() ? v.cwiseAbs().maxCoeff() : 0; }
   void record_rate(const Vector<T>& multiplier, const ContactField<T>& field, double left);
   bool keeps_state(const Vector<double>& by, const ContactField<T>& field, int p) const;
-  bool yields(const Vector<T>& multiplier, const ContactField<T>& field, int p, double reach) const;
+  bool answers(const Vector<T>& multiplier, const ContactField<T>& field, int p, double reach) const;
 
   const Model& model_;
   const Slots<T>& slots_;
@@ -137,9 +137,9 @@ void Augmentations<T>::record(const Vector<T>& multiplier, const ContactField<T>
   last_violations_ = std::move(violations_);
   violations_.assign(points, 0.0);
   for (int p = 0; p < points; ++p) {
-    for (int c = 0; c < detail::constraints(model_, field, p); ++c)
-      violations_[p] = std::max(violations_[p], std::abs(detail::constraint(model_, field, p, c)));
-    stuck_[p] = multiplier_.size() && !yields(multiplier, field, p, reach) ? stuck_[p] + 1 : 0;
+    for (int c = 0; c < detail::constraint_count(model_, field, p); ++c)
+      violations_[p] = std::max(violations_[p], std::abs(detail::constraint_error(model_, field, p, c)));
+    stuck_[p] = multiplier_.size() && !answers(multiplier, field, p, reach) ? stuck_[p] + 1 : 0;
   }
   multiplier_ = multiplier;
   field_ = field;
@@ -181,16 +181,17 @@ bool Augmentations<T>::keeps_state(const Vector<double>& by, const ContactField<
 /// body of the local stiffness k. Where that is below `telling` of the displacements it says nothing, and the point
 /// counts as answering. Else a constraint that moves by less than `nothing` of it does not answer.
 template <class T>
-bool Augmentations<T>::yields(const Vector<T>& multiplier, const ContactField<T>& field, int p, double reach) const {
+bool Augmentations<T>::answers(const Vector<T>& multiplier, const ContactField<T>& field, int p, double reach) const {
   constexpr double telling = 1e-8, nothing = 1e-6;
   const double compliance = value(slots_.geometry[p].area) / value(slots_.stiffness[p]);
-  const int common = std::min(detail::constraints(model_, field, p), detail::constraints(model_, field_, p));
+  const int common = std::min(detail::constraint_count(model_, field, p), detail::constraint_count(model_, field_, p));
   const int first = model_.points[p].multiplier, components = model_.points[p].components();
   const Vector<double> by = values(multiplier.segment(first, components) - multiplier_.segment(first, components));
   if (!keeps_state(by, field, p)) return true;
   for (int c = 0; c < common; ++c) {
     const double pushed = compliance * std::abs(by[c]);
-    const double before = detail::constraint(model_, field_, p, c), now = detail::constraint(model_, field, p, c);
+    const double before = detail::constraint_error(model_, field_, p, c),
+                 now = detail::constraint_error(model_, field, p, c);
     if (pushed > telling * reach && std::abs(now - before) <= nothing * pushed) return false;
   }
   return true;
@@ -208,7 +209,7 @@ bool Augmentations<T>::is_within(double force) const {
 }
 
 template <class T>
-std::string Augmentations<T>::unyielding(double negligible) const {
+std::string Augmentations<T>::unanswered(double negligible) const {
   int worst = -1;
   for (int p = 0; p < static_cast<int>(stuck_.size()); ++p)
     if (stuck_[p] >= patience && (worst < 0 || violations_[p] > violations_[worst])) worst = p;

@@ -59,8 +59,8 @@ struct Compliance {
 ///
 ///   |u - u'|^2 / length^2 + (t - t')^2 / span^2 = 1        |u|: root mean square over the nodes that are free
 struct Arc {
-  const Vector<double>& left;  ///< u', all dofs
-  double time = 0;             ///< t'
+  const Vector<double>& start;  ///< u', all dofs
+  double time = 0;              ///< t'
   double length = 0, span = 0;
   double nodes = 0;
   bool begins = false;  ///< whether the start values are u' and t'
@@ -78,7 +78,7 @@ struct EquilibriumTask {
   /// it does not.
   double forcing = 0;
   /// Displacement of the last state, all dofs; nullptr: what supports prescribe stays what it is.
-  const Vector<T>* from = nullptr;
+  const Vector<T>* last_displacement = nullptr;
   /// Tractions that are solved for in place of given multipliers; nullptr: none are.
   const Compliance<T>* compliance = nullptr;
   /// The arc that ends a step whose time is unknown; nullptr: the time is given.
@@ -106,10 +106,10 @@ template <class T>
 struct Equilibrium {
   Status status = Status::converged;
   std::string message;
-  Unknowns<T> at;
+  Unknowns<T> unknowns;
   ContactField<T> field;
   int iterations = 0;
-  bool rough = false;  ///< ended by `forcing`, short of the tolerance
+  bool inexact = false;  ///< ended by `forcing`, short of the tolerance
   /// Some tangent of the iterations had a determinant of the other sign (Engine::reversed): there may be other
   /// solutions. It tells nothing of bodies whose tangent is not constant.
   bool reversed = false;

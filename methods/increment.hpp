@@ -24,17 +24,17 @@ struct Run {
 /// Where a method begins to look for an increment's solution, and what holds the bodies there.
 template <class T>
 struct Start {
-  const State<T>& from;      ///< the last increment's state, or a step of the motion
+  const State<T>& state;     ///< the last increment's state, or a step of the motion
   Anchor<T> anchor;          ///< of the motion; empty: the unmodified equations
-  bool rough_step = true;    ///< whether a step of the motion is solved to the root of the tolerance alone
+  bool inexact_step = true;  ///< whether a step of the motion is solved to the root of the tolerance alone
   const Arc* arc = nullptr;  ///< of a step along a path, whose time is a guess then
   bool is_step() const { return anchor.stiffness.size() > 0; }
   /// States that points resume which start on their cone: those of the last increment, where it starts there.
   std::span<const ContactState> resumed(const State<T>& previous) const {
-    if (&from != &previous) return {};
+    if (&state != &previous) return {};
     return previous.contact.state;
   }
-  double tolerance(double asked) const { return is_step() && rough_step ? std::sqrt(asked) : asked; }
+  double tolerance(double asked) const { return is_step() && inexact_step ? std::sqrt(asked) : asked; }
 };
 
 /// An equilibrium as the state that the next increment starts from. `at`: its multiplier is the lambda it was found
@@ -53,7 +53,7 @@ State<T> settle(Run<T, E>& run, const ContactInput<T>& input, Unknowns<T> at, Co
 /// Fills the parts of an increment that all methods have.
 template <class T>
 void account_for(Increment<T>& increment, const Equilibrium<T>& equilibrium, int augmentation) {
-  increment.time = equilibrium.at.time;
+  increment.time = equilibrium.unknowns.time;
   increment.status = equilibrium.status;
   increment.message = equilibrium.message;
   increment.newton += equilibrium.iterations;

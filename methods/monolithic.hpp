@@ -31,13 +31,13 @@ Increment<T> solve_increment(const MonolithicAL& method, Run<T, E>& run, const S
   const ContactInput<T> input{run.model, run.slots, rho, previous.history, cone_radius(method), time};
   NewtonOptions options = method.newton;
   options.tolerance = start.tolerance(options.tolerance);
-  const EquilibriumTask<T> task{input, Multipliers::unknown,     start.anchor, start.resumed(previous),
-                                0,     &start.from.displacement, nullptr,      start.arc};
-  auto u = run.engine.begin(time, start.from.displacement, previous.history.bodies);
+  const EquilibriumTask<T> task{input, Multipliers::unknown,      start.anchor, start.resumed(previous),
+                                0,     &start.state.displacement, nullptr,      start.arc};
+  auto u = run.engine.begin(time, start.state.displacement, previous.history.bodies);
   auto equilibrium =
-      find_equilibrium<T>(run.engine, task, {std::move(u), start.from.contact.traction, time}, options, run.account);
+      find_equilibrium<T>(run.engine, task, {std::move(u), start.state.contact.traction, time}, options, run.account);
   account_for(increment, equilibrium, 0);
-  increment.state = settle(run, input, std::move(equilibrium.at), std::move(equilibrium.field));
+  increment.state = settle(run, input, std::move(equilibrium.unknowns), std::move(equilibrium.field));
   return increment;
 }
 

@@ -157,10 +157,10 @@ Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& prev
   const RunScales scales = run.account.scales;
   std::vector<IterationRecord> history;
   int iterations = 0;
-  bool rough_step = !several;  // (multipliers that are not unique keep what a rough step leaves)
+  bool inexact_step = !several;  // (multipliers that are not unique keep what an inexact step leaves)
   const auto attempt = [&](const State<T>& from, double alpha) {
     run.account.scales = scales;  // iterates on the way do not count
-    Start<T> start{from, {}, rough_step};
+    Start<T> start{from, {}, inexact_step};
     if (alpha > 0) start.anchor = {alpha * D, to_compact(run.model, from.displacement)};
     auto found = solve_increment(method, run, previous, factor, time, start);
     history.insert(history.end(), found.history.begin(), found.history.end());
@@ -194,8 +194,8 @@ Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& prev
       result.cut_off = false;
       result.message = "the motion does not come to rest";
     }
-    if (length == 0 && rough_step)  // so near to rest that a rough step begins solved
-      rough_step = false;
+    if (length == 0 && inexact_step)  // so near to rest that an inexact step begins solved
+      inexact_step = false;
     else
       pace.hasten();
   } while (pace.goes_on() && !bound.is_spent());

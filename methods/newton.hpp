@@ -101,11 +101,11 @@ Equilibrium<T> newton(E& engine, const EquilibriumTask<T>& task, Unknowns<T> unk
   const auto finish = [&](NewtonEnd end) {
     result.status = end.status;
     result.message = std::move(end.message);
-    result.rough = end.rough;
+    result.inexact = end.inexact;
     result.iterations = static_cast<int>(result.history.size()) - 1 + predictions;
     if (is_converged(end.status)) account.scales = at.scales;
     if (task.arc) engine.move_loads(unknowns.time);  // (a trial may have been of another)
-    result.at = std::move(unknowns);
+    result.unknowns = std::move(unknowns);
     result.field = std::move(at.field);
     return std::move(result);
   };
@@ -114,7 +114,7 @@ Equilibrium<T> newton(E& engine, const EquilibriumTask<T>& task, Unknowns<T> unk
     if (account.trace) account.trace->take(input, unknowns.multiplier, at.field, result.history.back(), iteration);
     auto end = stop.judge(at.residuals, at.field, result.history);
     if (end && !detail::goes_on(evaluate, stop, *end, unknowns, at, kept)) {
-      if (end->status == Status::converged && !end->rough && tangent.redundant())
+      if (end->status == Status::converged && !end->inexact && tangent.redundant())
         end->message = detail::redundant_message;
       return finish(std::move(*end));
     }

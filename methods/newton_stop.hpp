@@ -12,7 +12,7 @@ namespace stickslip {
 struct NewtonEnd {
   Status status = Status::converged;
   std::string message = "";
-  bool rough = false;  ///< short of the tolerance, as `forcing` allows
+  bool inexact = false;  ///< short of the tolerance, as `forcing` allows
 };
 
 /// How the iterations end:

@@ -228,7 +228,7 @@ NewtonStep<T> NewtonTangent<T, E>::step_along(const Arc& arc, const Unknowns<T>&
                                               const Vector<T>& rows_l) {
   NewtonStep<T> step = this->step(rows_u, rows_l);
   const auto along = this->step(-engine_.load_rate(unknowns.u), Vector<T>::Constant(rows_l.size(), T(0)));
-  const Vector<double> moved = values(engine_.all(unknowns.u)) - arc.left,
+  const Vector<double> moved = values(engine_.all(unknowns.u)) - arc.start,
                        start = moved + values(engine_.increment(step.u.col(0), 0)),
                        y = values(engine_.increment(along.u.col(0), 1));
   const double passed = unknowns.time - arc.time, of_motion = 1 / (arc.nodes * arc.length * arc.length),
@@ -245,7 +245,7 @@ NewtonStep<T> NewtonTangent<T, E>::step_along(const Arc& arc, const Unknowns<T>&
 template <class T, class E>
 bool NewtonTangent<T, E>::factorise_in(const std::vector<ContactState>& branches, const Unknowns<T>& unknowns) {
   auto tangents = point_tangents(branches, unknowns);
-  if (task_.from && !task_.contact.model.effects.linear_bulk) tangents_ = tangents;
+  if (task_.last_displacement && !task_.contact.model.effects.linear_bulk) tangents_ = tangents;
   if (!decided_.empty()) detail::yield_decided(task_.contact, decided_, tangents);
   const auto& hold = task_.anchor.stiffness;
   if (!redundant_) {

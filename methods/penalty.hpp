@@ -75,19 +75,19 @@ std::string unyielding_point(Run<T, E>& run, const ContactInput<T>& found, const
   std::vector<ContactState> states = equilibrium.field.state;
   for (std::size_t p = 0; p < states.size(); ++p)
     if (states[p] != ContactState::open) states[p] = closed(static_cast<int>(p));
-  const Vector<T> compact = run.engine.compact(equilibrium.at.u);
+  const Vector<T> compact = run.engine.compact(equilibrium.unknowns.u);
   double rest = 0;
   for (int round = 0; round < most_rounds; ++round) {
     const auto pushed = evaluate_contact<T>(input, compact, traction, &states);
     ForceScale unused;
-    Vector<T> rows = run.engine.residual(equilibrium.at.u, contact_forces(model, run.slots, pushed), unused);
+    Vector<T> rows = run.engine.residual(equilibrium.unknowns.u, contact_forces(model, run.slots, pushed), unused);
     for (Eigen::Index row = 0; row < rows.size(); ++row)
       if (!run.engine.is_free(row)) rows[row] = T(0);
     std::vector<PointTangent<T>> tangents;
     for (int p = 0; p < static_cast<int>(model.points.size()); ++p)
       tangents.push_back(point_tangent<T>(input, p, compact, traction, states[p], equilibrium.field.facing));
     if (!run.engine.factorise(tangents, run.account.counters)) return "";
-    const Vector<T> u = equilibrium.at.u + run.engine.solve({-rows, {}}).u.col(0);
+    const Vector<T> u = equilibrium.unknowns.u + run.engine.solve({-rows, {}}).u.col(0);
     ++run.account.counters.backsolves;
     const auto after = evaluate_contact<T>(input, run.engine.compact(u), traction, &states);
     run.account.counters.contact_evaluations += 2 * static_cast<long>(model.points.size());
@@ -123,13 +123,13 @@ Increment<T> solve_increment(const Penalty& method, Run<T, E>& run, const State<
   const ContactInput<T> input{run.model, run.slots, rho, previous.history, cone_radius(method), time};
   NewtonOptions options = method.newton;
   options.tolerance = start.tolerance(options.tolerance);
-  const EquilibriumTask<T> task{input, Multipliers::given,       start.anchor, start.resumed(previous),
-                                0,     &start.from.displacement, nullptr,      start.arc};
-  auto u = run.engine.begin(time, start.from.displacement, previous.history.bodies);
+  const EquilibriumTask<T> task{input, Multipliers::given,        start.anchor, start.resumed(previous),
+                                0,     &start.state.displacement, nullptr,      start.arc};
+  auto u = run.engine.begin(time, start.state.displacement, previous.history.bodies);
   const auto equilibrium = find_equilibrium<T>(
       run.engine, task, {std::move(u), stored_traction(run.model, previous), time}, options, run.account);
   account_for(increment, equilibrium, 0);
-  increment.state = settle(run, input, equilibrium.at, equilibrium.field);
+  increment.state = settle(run, input, equilibrium.unknowns, equilibrium.field);
   if (!is_converged(equilibrium.status) || start.is_step()) return increment;
   const std::string point = detail::unyielding_point(run, input, equilibrium);
   if (point.empty()) return increment;

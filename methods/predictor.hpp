@@ -67,10 +67,10 @@ template <class T, class E>
 bool predict(E& engine, const EquilibriumTask<T>& task, Evaluator<T, E>& evaluate, NewtonTangent<T, E>& tangent,
              Account& account, Unknowns<T>& unknowns) {
   const auto& [model, slots] = std::tie(task.contact.model, task.contact.slots);
-  if (!task.from) return false;
+  if (!task.last_displacement) return false;
   if (task.arc) return task.arc->begins && begin_path(engine, task, evaluate, tangent, account, unknowns);
   if (model.effects.linear_bulk) return false;
-  Unknowns<T> start{into_frames(model, slots.frames, Layout::all, *task.from), unknowns.multiplier};
+  Unknowns<T> start{into_frames(model, slots.frames, Layout::all, *task.last_displacement), unknowns.multiplier};
   const Vector<T> prescribed = unknowns.u - start.u;
   const auto& points = model.points;
   const bool pushed = std::any_of(points.begin(), points.end(), [&](const auto& p) { return detail::moves(model, p); });
@@ -86,7 +86,7 @@ bool predict(E& engine, const EquilibriumTask<T>& task, Evaluator<T, E>& evaluat
   const Vector<T> motion = engine.spread(prescribed);
   Vector<T> forces = Vector<T>::Constant(static_cast<Eigen::Index>(model.contact_nodes.size()) * model.dimension, T(0));
   detail::add_tangent_times(model, slots, tangent.tangents(), Vector<T>(engine.compact(prescribed)), forces, at.rows_l);
-  const BodyMotion<T> at_start{*task.from, task.contact.previous.bodies, task.contact.time};
+  const BodyMotion<T> at_start{*task.last_displacement, task.contact.previous.bodies, task.contact.time};
   Vector<T> rows = engine.tangent_times(at_start, motion);
   add_compact(model, forces, rows);
   rows = at.rows_u + into_frames(model, slots.frames, Layout::all, std::move(rows));

@@ -88,7 +88,8 @@ class Sequence {
     double least_residual = std::numeric_limits<double>::infinity();
     int waited = 0;  // steps since it last fell to its half
     Vector<T> about = unknowns_.u;
-    if (task_.from) about = into_frames(task_.contact.model, task_.contact.slots.frames, Layout::all, *task_.from);
+    if (task_.last_displacement)
+      about = into_frames(task_.contact.model, task_.contact.slots.frames, Layout::all, *task_.last_displacement);
     const auto closed = [](ContactState s) { return s != ContactState::open; };
     if (std::any_of(task_.resumed.begin(), task_.resumed.end(), closed))
       branches_.assign(task_.resumed.begin(), task_.resumed.end());
@@ -246,7 +247,7 @@ Equilibrium<T> solve_in_sequence(E& engine, const EquilibriumTask<T>& task, cons
   const auto compliance = compliant ? compliance_of(input, start.multiplier, rho) : Compliance<T>{};
   const ContactInput<T> seen{input.model, input.slots, rho, input.previous, input.cone, input.time};
   const EquilibriumTask<T> turns{
-      seen, task.multipliers, task.anchor, task.resumed, 0, task.from, compliant ? &compliance : nullptr};
+      seen, task.multipliers, task.anchor, task.resumed, 0, task.last_displacement, compliant ? &compliance : nullptr};
   Sequence<T, E> sequence(engine, turns, start, options, account);
   Equilibrium<T> equilibrium;
   equilibrium.status = Status::cycle;

@@ -71,15 +71,15 @@ System system_of(const ContactProblem& problem, const Relation& r, const std::ve
     const auto& [state, sign] = combination[p];
     if (state == ContactState::open) continue;
     const int n = point.normal, t = point.tangential;
-    system.matrix.col(n) = r.of_tau.col(n) + point.yield_normal * r.of_g.col(n);
+    system.matrix.col(n) = r.of_tau.col(n) + point.compliance_normal * r.of_g.col(n);
     if (t < 0) continue;
     if (state == ContactState::slip) {
       system.matrix.col(n) -= sign * *point.friction.coefficient * r.of_tau.col(t);
     } else if (state == ContactState::limited) {
       system.right -= sign * *point.friction.limit * r.of_tau.col(t);
     } else {
-      system.matrix.col(t) = r.of_tau.col(t) + point.yield_tangential * r.of_g.col(t);
-      system.right += point.yield_tangential * point.stored * r.of_g.col(t);
+      system.matrix.col(t) = r.of_tau.col(t) + point.compliance_tangential * r.of_g.col(t);
+      system.right += point.compliance_tangential * point.stored * r.of_g.col(t);
     }
   }
   return system;
@@ -98,7 +98,7 @@ Outcome outcome_of(const ContactProblem& problem, const std::vector<Branch>& com
     if (state == ContactState::open) continue;
     const int n = point.normal, t = point.tangential;
     out.tau[n] = x[n];
-    out.g[n] = point.yield_normal * x[n];
+    out.g[n] = point.compliance_normal * x[n];
     if (t < 0) continue;
     if (state == ContactState::slip) {
       out.tau[t] = -sign * *point.friction.coefficient * x[n];
@@ -106,7 +106,7 @@ Outcome outcome_of(const ContactProblem& problem, const std::vector<Branch>& com
       out.tau[t] = sign * *point.friction.limit;
     } else {
       out.tau[t] = x[t];
-      out.g[t] = point.yield_tangential * (x[t] - point.stored);
+      out.g[t] = point.compliance_tangential * (x[t] - point.stored);
     }
   }
   return out;
@@ -147,7 +147,7 @@ bool is_valid(const ContactProblem& problem, const std::vector<Branch>& combinat
     // (a slipping point is on the bound of its piece: whether that is the least one is asked where there are two)
     const bool asked = state == ContactState::stick || point.friction.size() > 1;
     if (asked && std::abs(tangential) > point.friction.bound(-normal) + traction) return false;
-    const double plastic = at.g[point.tangential] - point.yield_tangential * (tangential - point.stored);
+    const double plastic = at.g[point.tangential] - point.compliance_tangential * (tangential - point.stored);
     if (is_slipping(state) && sign * plastic < -length) return false;
   }
   return true;

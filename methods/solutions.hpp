@@ -35,10 +35,10 @@ namespace stickslip {
 /// An increment on its free contact dofs.
 struct ContactProblem {
   struct Point {
-    int normal = 0, tangential = -1;                ///< components; tangential -1: without friction
-    FrictionLaw<double> friction;                   ///< of tractions as lengths
-    double yield_normal = 0, yield_tangential = 0;  ///< y
-    double stored = 0;                              ///< sigma, length; read where y > 0
+    int normal = 0, tangential = -1;                          ///< components; tangential -1: without friction
+    FrictionLaw<double> friction;                             ///< of tractions as lengths
+    double compliance_normal = 0, compliance_tangential = 0;  ///< y
+    double stored = 0;                                        ///< sigma, length; read where y > 0
   };
   std::vector<Point> points;
   std::vector<Eigen::Index> dofs;  ///< compact dofs that are free
@@ -133,8 +133,8 @@ ContactProblem contact_problem(const ContactInput<T>& input, const CondensedEngi
                         .template as<double>([](const T& x) { return value(x); })
                         .in_units_of(local);
     if (stored) {
-      at.yield_normal = local / value(input.rho[p].normal);
-      at.yield_tangential = local / value(input.rho[p].tangential);
+      at.compliance_normal = local / value(input.rho[p].normal);
+      at.compliance_tangential = local / value(input.rho[p].tangential);
       if (point.tangents > 0) at.stored = value((*stored)[point.multiplier + 1]) / local;
     }
     problem.points.push_back(at);

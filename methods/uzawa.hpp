@@ -97,7 +97,7 @@ inline constexpr const char* frozen_advice =
 struct Standing {
   Status status = Status::converged;
   bool done = false;
-  bool within = false;  ///< update and violation are within the tolerance, whatever the states do
+  bool within_tolerance = false;  ///< update and violation are within the tolerance, whatever the states do
   std::string message;
   double negligible = 0;  ///< a violation that counts as none: that of the tolerance, or of rounding
 };
@@ -129,7 +129,7 @@ Standing judge(const UzawaAL& method, const Slots<T>& slots, const Regularisatio
                            (progress.exhausted() && progress.converges() && progress.violation() <= violation);
   Standing now;
   now.negligible = std::max(violation, gap);
-  now.within = small && progress.violation() <= now.negligible;
+  now.within_tolerance = small && progress.violation() <= now.negligible;
   auto end = [&](Status status, std::string message = "") {
     now.status = status;
     now.done = true;
@@ -139,7 +139,7 @@ Standing judge(const UzawaAL& method, const Slots<T>& slots, const Regularisatio
   if ((progress.settled() || progress.update() == 0) && ((small && progress.violation() <= violation) || at_roundoff))
     return end(small ? Status::converged : Status::converged_at_roundoff);
   if (progress.violation() <= gap) return now;
-  if (const std::string point = progress.unyielding(violation); !point.empty()) return end(Status::infeasible, point);
+  if (const std::string point = progress.unanswered(violation); !point.empty()) return end(Status::infeasible, point);
   if (!progress.alternates()) return now;
   const std::string cycle = "the augmentations go to and fro between two multipliers";
   return end(Status::cycle, cycle + (is_globalised(method) ? "; try more steps" : frozen_advice));
@@ -174,9 +174,9 @@ class AugmentationLoop {
     increment_.rho_factor = std::move(rho_factor);
     // (the truncated scheme's derivative begins with the last increment's lambda: so does the loop that it
     // differentiates)
-    const State<T>& with_lambda = truncated_ && !start.is_step() ? previous : start.from;
-    unknowns_ = {run.engine.begin(time, start.from.displacement, previous.history.bodies), with_lambda.contact.traction,
-                 time};
+    const State<T>& with_lambda = truncated_ && !start.is_step() ? previous : start.state;
+    unknowns_ = {run.engine.begin(time, start.state.displacement, previous.history.bodies),
+                 with_lambda.contact.traction, time};
   }
 
   Increment<T> solve() {
@@ -185,7 +185,7 @@ class AugmentationLoop {
       const ContactInput<T> input{run_.model, run_.slots, rho, previous_.history, cone_radius(method_), time_};
       auto equilibrium = balance(input);
       if (!is_converged(equilibrium.status) || ends_with(input, equilibrium)) {
-        increment_.state = settle(run_, input, std::move(equilibrium.at), std::move(equilibrium.field));
+        increment_.state = settle(run_, input, std::move(equilibrium.unknowns), std::move(equilibrium.field));
         return std::move(increment_);
       }
       update(equilibrium);
@@ -195,15 +195,15 @@ class AugmentationLoop {
  private:
   /// The inner solve: lambda stays as it is.
   Equilibrium<T> balance(const ContactInput<T>& input) {
-    rough_ &= increment_.augmentations + 1 < limit_;
+    inexact_ &= increment_.augmentations + 1 < limit_;
     const bool first = increment_.augmentations == 0;
     run_.account.scales = before_;
     const EquilibriumTask<T> task{input,
                                   Multipliers::given,
                                   start_.anchor,
                                   resumed_,
-                                  rough_ ? forcing : 0,
-                                  first ? &start_.from.displacement : nullptr,
+                                  inexact_ ? forcing : 0,
+                                  first ? &start_.state.displacement : nullptr,
                                   nullptr,
                                   start_.arc};
     auto equilibrium =
@@ -217,8 +217,9 @@ class AugmentationLoop {
   /// Whether the increment ends with this inner solve, as solved or given up; its status and message then stand.
   bool ends_with(const ContactInput<T>& input, const Equilibrium<T>& equilibrium) {
     if (truncated_ && run_.model.effects.sensitivity)
-      increment_.augmented.push_back({settle(run_, input, equilibrium.at, equilibrium.field), increment_.rho_factor});
-    const double reach = largest_nodal_norm(run_.engine.compact(equilibrium.at.u), run_.model.dimension);
+      increment_.augmented.push_back(
+          {settle(run_, input, equilibrium.unknowns, equilibrium.field), increment_.rho_factor});
+    const double reach = largest_nodal_norm(run_.engine.compact(equilibrium.unknowns.u), run_.model.dimension);
     const double first = equilibrium.history.front().residual, rest = equilibrium.history.back().residual;
     const double noise = equilibrium.status == Status::converged_at_roundoff
                              ? equilibrium.history.back().equilibrium * run_.account.scales.force
@@ -226,19 +227,19 @@ class AugmentationLoop {
     progress_.record(unknowns_.multiplier, equilibrium.field, reach, first > 0 ? rest / first : 0);
     increment_.contraction = progress_.contraction();
     now_ = judge(method_, run_.slots, input.rho, reach, noise, run_.account.scales, progress_);
-    within_ = now_.within && !equilibrium.rough ? within_ + 1 : 0;
-    rough_ &= !now_.within;
-    now_.done |= within_ >= patience_at_ties;  // the states that still change are those of a tie
+    times_within_ = now_.within_tolerance && !equilibrium.inexact ? times_within_ + 1 : 0;
+    inexact_ &= !now_.within_tolerance;
+    now_.done |= times_within_ >= patience_at_ties;  // the states that still change are those of a tie
     const bool at_limit = increment_.augmentations >= limit_;
     conclude(now_, at_limit, increment_);
-    const bool over = now_.done && !equilibrium.rough;
+    const bool over = now_.done && !equilibrium.inexact;
     return at_limit || (over && (!is_converged(now_.status) || truncated_ || !progress_.carried_moves()));
   }
 
   /// The update lambda <- t, or an extrapolation of it; rho is adapted. Its derivative D lambda <- D t is
   /// take_derivatives() of sensitivity/uzawa.hpp.
   void update(const Equilibrium<T>& equilibrium) {
-    rough_ &= !now_.done;
+    inexact_ &= !now_.done;
     const bool raised = method_.adapt && progress_.settled() && !now_.done &&
                         adapt(run_.slots, initial_, progress_.last_violations(), progress_.violations(),
                               now_.negligible, increment_.rho_factor);
@@ -249,8 +250,8 @@ class AugmentationLoop {
     resumed_ = {};
     const auto cones = [&](Vector<T> x) { return into_cones(run_.model, run_.slots, std::move(x)); };
     const Vector<T>& traction = equilibrium.field.traction;
-    unknowns_.u = equilibrium.at.u;
-    unknowns_.time = equilibrium.at.time;
+    unknowns_.u = equilibrium.unknowns.u;
+    unknowns_.time = equilibrium.unknowns.time;
     unknowns_.multiplier = raised || now_.done ? traction
                                                : accelerator_.next(unknowns_.multiplier, traction, progress_.settled(),
                                                                    progress_.contraction(), cones);
@@ -270,8 +271,8 @@ class AugmentationLoop {
   Augmentations<T> progress_;
   Accelerator<T> accelerator_;
   Standing now_;
-  bool rough_ = !truncated_;  ///< whether the next inner solve may end short of its tolerance
-  int within_ = 0;            ///< augmentations in a row that were within the tolerance
+  bool inexact_ = !truncated_;  ///< whether the next inner solve may end short of its tolerance
+  int times_within_ = 0;        ///< augmentations in a row that were within the tolerance
   Increment<T> increment_;
 };
 

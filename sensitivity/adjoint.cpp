@@ -24,7 +24,7 @@ struct Recording {
     numbers = model.scene.as<Reverse>();
     for (const auto& parameter : model.scene.parameters)
       for (const auto& [slot, weight] : parameter.slots)
-        if (numbers.at_slot[slot].at < 0) numbers.at_slot[slot] = Reverse::leaf(numbers.at_slot[slot].v, tape);
+        if (numbers.at_slot[slot].entry < 0) numbers.at_slot[slot] = Reverse::leaf(numbers.at_slot[slot].v, tape);
     Numbers<Reverse> unshaped = numbers;
     for (const auto& velocity : model.velocities) unshaped.at_slot[velocity.slot] = 0;
     made = initial_points(model, unshaped);
@@ -33,7 +33,7 @@ struct Recording {
       auto of_body = points.middleCols(model.bodies[b].first_node, model.bodies[b].mesh.node_count);
       const auto is_of_body = [&](const auto& velocity) { return velocity.body == static_cast<int>(b); };
       bool shaped = std::any_of(model.velocities.begin(), model.velocities.end(), is_of_body);
-      for (const auto& x : of_body.reshaped()) shaped |= x.at >= 0;
+      for (const auto& x : of_body.reshaped()) shaped |= x.entry >= 0;
       if (!shaped) continue;
       for (auto& x : of_body.reshaped()) x = Reverse::leaf(x.v, tape);
     }
@@ -44,10 +44,10 @@ struct Recording {
   /// Derivatives by all numbers of the scene out of those by the slots.
   Vector<double> by_numbers(const Model& model, std::vector<double>& by) const {
     tape.pull_back(by, points_end);
-    const auto derivative = [&](const Reverse& x) { return x.at >= 0 ? by[x.at] : 0; };
+    const auto derivative = [&](const Reverse& x) { return x.entry >= 0 ? by[x.entry] : 0; };
     const Matrix<double> of_points = points.unaryExpr(derivative);
     for (Eigen::Index i = 0; i < made.size(); ++i)
-      if (made.data()[i].at >= 0) by[made.data()[i].at] += of_points.data()[i];
+      if (made.data()[i].entry >= 0) by[made.data()[i].entry] += of_points.data()[i];
     tape.pull_back(by, 0);
     Vector<double> out(numbers.at_slot.size());
     for (std::size_t i = 0; i < numbers.at_slot.size(); ++i) out[i] = derivative(numbers.at_slot[i]);
@@ -68,13 +68,13 @@ struct Recording {
   }
 };
 
-DerivativeStorage storage_of(const Recording& recording, const std::vector<Backward>& objectives, long waiting) {
+DerivativeStorage storage_of(const Recording& recording, const std::vector<BackwardSweep>& objectives, long waiting) {
   DerivativeStorage storage;
   storage.adjoints = waiting;
   storage.slots = slot_bytes(recording.slots).all();
   storage.tape = recording.tape.bytes();
   for (const auto& objective : objectives) {
-    storage.adjoints += static_cast<long>(objective.by.capacity() * sizeof(double));
+    storage.adjoints += static_cast<long>(objective.adjoint.capacity() * sizeof(double));
   }
   return storage;
 }
@@ -120,14 +120,14 @@ void pull_back_initial_history(AdjointProblem<E>& problem) {
   problem.tape.rewind(problem.slots_end);
   const auto initial = initial_history<Reverse>(problem.model, problem.recorded);
   for (auto& objective : problem.objectives) {
-    objective.by.resize(problem.slots_end);
-    objective.by.resize(problem.tape.size(), 0);
+    objective.adjoint.resize(problem.slots_end);
+    objective.adjoint.resize(problem.tape.size(), 0);
     const auto seed = [&](const Vector<Reverse>& part, const Vector<double>& derivative) {
       for (Eigen::Index i = 0; i < part.size(); ++i)
-        if (part[i].at >= 0) objective.by[part[i].at] += derivative[i];
+        if (part[i].entry >= 0) objective.adjoint[part[i].entry] += derivative[i];
     };
     for_each_part(seed, initial, objective.history.local);
-    problem.tape.pull_back(objective.by, problem.slots_end);
+    problem.tape.pull_back(objective.adjoint, problem.slots_end);
   }
 }
 
@@ -144,7 +144,7 @@ bool run(const M& method, AdjointProblem<E>& problem, WholeStates& states, const
     if (!taken.empty()) taken[n].give(with_branches.emplace(increment));
     if (!pull_back_increment(method, problem, previous, with_branches ? *with_branches : increment)) return false;
     const std::size_t together = model.effects.plasticity ? 1 : columns_together;  // history needs what is inside
-    if (problem.objectives.front().inside.size() >= together) pull_back_inside(problem);
+    if (problem.objectives.front().waiting.size() >= together) pull_back_inside(problem);
   }
   pull_back_inside(problem);
   pull_back_initial_history(problem);
@@ -167,7 +167,7 @@ Matrix<double> objective_gradients(const Model& model, const Slots<double>& slot
                                    const Gradients& gradients) {
   const auto& objectives = model.scene.objectives;
   const int parameters = static_cast<int>(model.scene.parameters.size());
-  if (objectives.empty() || parameters == 0 || gradients.of.size() < trajectory.increments.size()) return {};
+  if (objectives.empty() || parameters == 0 || gradients.of_responses.size() < trajectory.increments.size()) return {};
   Matrix<double> of = Matrix<double>::Zero(objectives.size(), parameters);
   for (int first = 0; first < parameters; first += directions) {
     std::vector<int> block;
@@ -181,7 +181,8 @@ Matrix<double> objective_gradients(const Model& model, const Slots<double>& slot
         const auto& objective = objectives[i];
         if (!contributes(objective, increment.time, model.times.back())) continue;
         Direction response(values[objective.response]);
-        for (std::size_t d = 0; d < block.size(); ++d) response.d[d] = gradients.of[n](objective.response, block[d]);
+        for (std::size_t d = 0; d < block.size(); ++d)
+          response.d[d] = gradients.of_responses[n](objective.response, block[d]);
         const Direction share = contribution(objective, response, increment.time, numbers);
         for (std::size_t d = 0; d < block.size(); ++d) of(i, block[d]) += share.d[d];
       }
@@ -206,9 +207,9 @@ Gradients adjoint(const Model& model, const Slots<double>& slots, const Method& 
   gradients.counters += gradients.search;
   Recording recording(model);
   Tape& tape = recording.tape;
-  std::vector<Backward> objectives(scene.objectives.size());
+  std::vector<BackwardSweep> objectives(scene.objectives.size());
   const bool energies = reads_energies(scene);
-  for (auto& objective : objectives) objective.by.resize(tape.size(), 0);
+  for (auto& objective : objectives) objective.adjoint.resize(tape.size(), 0);
   bool done = false;
   long waiting = 0;
   auto backward = [&](const auto& m, auto& engine) {
@@ -228,13 +229,13 @@ Gradients adjoint(const Model& model, const Slots<double>& slots, const Method& 
   gradients.counters += states.take_counters();
   gradients.repeated = states.repeated();
   if (!done) return gradients;
-  for (auto& objective : objectives) objective.by.resize(tape.size());
+  for (auto& objective : objectives) objective.adjoint.resize(tape.size());
   gradients.storage = storage_of(recording, objectives, waiting);
   gradients.storage.states = states.bytes();
   if (workspace.checkpoints) gradients.storage.adjoints += workspace.checkpoints->bytes();
   gradients.of_objectives = Matrix<double>::Zero(objectives.size(), scene.parameters.size());
   for (std::size_t i = 0; i < objectives.size(); ++i) {
-    const Vector<double> by = recording.by_numbers(model, objectives[i].by);
+    const Vector<double> by = recording.by_numbers(model, objectives[i].adjoint);
     for (std::size_t j = 0; j < scene.parameters.size(); ++j)
       for (const auto& [slot, weight] : scene.parameters[j].slots) gradients.of_objectives(i, j) += weight * by[slot];
   }

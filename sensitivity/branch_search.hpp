@@ -47,7 +47,7 @@ class BranchSearch {
   /// `increment`: what is differentiated; `at`: its equilibrium, whose branches change.
   BranchSearch(const M& method, Differentiation<E>& problem, const State<double>& previous,
                const Increment<double>& increment, State<double>& at, const std::vector<double>& factor,
-               const Along& along)
+               const SideDirection& along)
       : method_(method),
         problem_(problem),
         previous_(previous),
@@ -57,7 +57,7 @@ class BranchSearch {
         weak_(weak_points(problem.model, problem.slots, at, own_, cone_radius(method), along.largest_so_far)),
         flows_(flow_ties(problem.model, problem.slots, at.displacement, previous.history.bodies)),
         vertices_(vertex_ties(problem.model, problem.slots, at, increment.time, along.largest_so_far)),
-        along_(along) {
+        direction_(along) {
     std::vector<double> stiffened = factor;
     for (double& f : stiffened) f *= detail::oversize_of(method);
     rho_ = regularisation_blocks(method, problem, stiffened)[0];
@@ -89,7 +89,7 @@ class BranchSearch {
   struct Standing {
     bool possible = true;
     std::vector<std::function<void(State<double>&)>> contradicted;  ///< each takes the branch that is pointed to
-    double by = 0;
+    double severity = 0;
     bool is_confirmed() const { return possible && contradicted.empty(); }
   };
 
@@ -115,27 +115,27 @@ class BranchSearch {
     }
     Standing standing;
     for (const auto& w : weak_) {
-      auto verdict =
-          judge(problem_.model, problem_.slots, problem_.blocks[0], rho_, own_, cone_radius(method_), w, at_, along_);
+      auto verdict = judge(problem_.model, problem_.slots, problem_.blocks[0], rho_, own_, cone_radius(method_), w, at_,
+                           direction_);
       standing.possible &= verdict.possible;
-      standing.by = std::max(standing.by, verdict.by);
+      standing.severity = std::max(standing.severity, verdict.severity);
       if (!verdict.contradicts) continue;
       standing.contradicted.push_back(
           [this, p = w.point, branch = *verdict.contradicts](auto& at) { take_branch(problem_.model, p, branch, at); });
     }
     judge_flows(standing);
     judge_vertices(standing);
-    if (standing.possible && standing.by < least_) {
-      least_ = standing.by;
+    if (standing.possible && standing.severity < least_) {
+      least_ = standing.severity;
       best_ = at_;
     }
     return standing;
   }
 
   void judge_flows(Standing& standing) const {
-    const auto verdicts = judge(problem_.model, problem_.blocks[0], flows_, at_, along_);
+    const auto verdicts = judge(problem_.model, problem_.blocks[0], flows_, at_, direction_);
     for (std::size_t k = 0; k < flows_.size(); ++k) {
-      standing.by = std::max(standing.by, verdicts[k].by);
+      standing.severity = std::max(standing.severity, verdicts[k].severity);
       if (!verdicts[k].contradicts) continue;
       standing.contradicted.push_back(
           [at_memory = flows_[k].memory, branch = *verdicts[k].contradicts](auto& at) { at.flow[at_memory] = branch; });
@@ -144,9 +144,9 @@ class BranchSearch {
 
   void judge_vertices(Standing& standing) const {
     for (const auto& tie : vertices_) {
-      const auto verdict = judge(problem_.model, problem_.blocks[0], tie, at_, increment_.time, along_);
+      const auto verdict = judge(problem_.model, problem_.blocks[0], tie, at_, increment_.time, direction_);
       if (!verdict.contradicts) continue;
-      standing.by = std::max(standing.by, verdict.by);
+      standing.severity = std::max(standing.severity, verdict.severity);
       standing.possible &= tie.crosses;
       standing.contradicted.push_back(
           [this, &tie, patch = *verdict.contradicts](auto& at) { take_patch(problem_.model, tie, patch, at); });
@@ -241,7 +241,7 @@ class BranchSearch {
   std::vector<WeakPoint> weak_;
   std::vector<FlowTie> flows_;
   std::vector<VertexTie> vertices_;
-  Along along_;
+  SideDirection direction_;
   double least_ = std::numeric_limits<double>::infinity();  ///< least_, best_: of the choices tried, the one
                                                             ///< that was contradicted least
   State<double> best_;
@@ -254,7 +254,7 @@ class BranchSearch {
 /// are: false; or, with `held`, the branches that hold most, with their derivative.
 template <class M, class E>
 bool differentiate_side(const M& method, Differentiation<E>& problem, const State<double>& previous,
-                        Increment<double>& increment, const Along& along, bool held = false) {
+                        Increment<double>& increment, const SideDirection& along, bool held = false) {
   const auto search = [&](const Increment<double>& of, State<double>& at, const std::vector<double>& factor) {
     BranchSearch branches(method, problem, previous, of, at, factor, along);
     if (branches.run()) return true;

@@ -29,7 +29,7 @@ Vector<T> trial(const Model& model, const State<T>& state, const PointRegularisa
 /// / A; of what a rigid motion leaves of these; and of the tractions over the parameter. `multiple`: rho over k / A,
 /// which magnifies the rounding of a motion.
 double negligible(const Model& model, const Slots<double>& slots, const ParameterBlock& block, double multiple,
-                  const Along& along) {
+                  const SideDirection& along) {
   constexpr double share = 1e-10, rigid = 1e-3, roundings = 64;
   double size = along.parameter > 0 ? along.largest_so_far / along.parameter : 0, reach = 0;
   for (const auto& u : block.current.displacement) reach = std::max(reach, std::abs(u.d[0]));
@@ -197,7 +197,7 @@ std::vector<Branch> branches_of(const Model& model, const WeakPoint& weak) {
 
 Verdict judge(const Model& model, const Slots<double>& slots, const ParameterBlock& block,
               const RegularisationField<Direction>& rho, const RegularisationField<double>& own, ConeRadius cone,
-              const WeakPoint& weak, const State<double>& at, const Along& direction) {
+              const WeakPoint& weak, const State<double>& at, const SideDirection& direction) {
   const int p = weak.point;
   const double side = direction.side;
   const auto& point = model.points[p];
@@ -230,7 +230,7 @@ Verdict judge(const Model& model, const Slots<double>& slots, const ParameterBlo
     else if (!jumps && now.state != ContactState::slip)
       verdict = contradicted({ContactState::slip, {}}, 0);
     verdict.possible = !(jumps && bears && open);
-    if (open) verdict.by = closing;
+    if (open) verdict.severity = closing;
     return verdict;
   }
   const bool augmented = cone == ConeRadius::augmented;

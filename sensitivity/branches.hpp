@@ -53,11 +53,11 @@ std::vector<Branch> branches_of(const Model& model, const WeakPoint& weak);
 struct Verdict {
   bool possible = true;               ///< false: the parameter cannot move this way (friction below zero)
   std::optional<Branch> contradicts;  ///< where it contradicts the branch it was found with: the one that it points to
-  double by = 0;                      ///< how much, in units of what is negligible
+  double severity = 0;                ///< how much, in units of what is negligible
 };
 
 /// The direction of a derivative, and what it is measured by.
-struct Along {
+struct SideDirection {
   double side;            ///< -1 or 1, times the seed
   double parameter;       ///< size of what is seeded by one; 0: not known
   double largest_so_far;  ///< traction_scale of the run up to here
@@ -67,6 +67,6 @@ struct Along {
 /// `own`: that of the equilibrium.
 Verdict judge(const Model& model, const Slots<double>& slots, const ParameterBlock& block,
               const RegularisationField<Direction>& rho, const RegularisationField<double>& own, ConeRadius cone,
-              const WeakPoint& weak, const State<double>& at, const Along& along);
+              const WeakPoint& weak, const State<double>& at, const SideDirection& along);
 
 }  // namespace stickslip

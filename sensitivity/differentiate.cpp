@@ -211,12 +211,12 @@ struct Derivatives::Progress {
     std::vector<Vector<Direction>> responses;
     for (std::size_t b = 0; b < blocks.size(); ++b)
       responses.push_back(evaluate_responses(model, blocks[b].slots, at[b], time));
-    gradients.of.push_back(gather(
+    gradients.of_responses.push_back(gather(
         blocks, parameters(), [&](auto&, int b) -> auto& { return responses[b]; }));
     const auto& asked = model.scene.responses;
     if (std::any_of(asked.begin(), asked.end(), can_tie)) {
-      gradients.below.push_back(with_ties(model, blocks, at, gradients.of.back(), Ties::below));
-      gradients.above.push_back(with_ties(model, blocks, at, gradients.of.back(), Ties::above));
+      gradients.from_below.push_back(with_ties(model, blocks, at, gradients.of_responses.back(), Ties::falling));
+      gradients.from_above.push_back(with_ties(model, blocks, at, gradients.of_responses.back(), Ties::growing));
     }
   }
 };

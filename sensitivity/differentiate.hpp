@@ -35,10 +35,10 @@ struct Gradients {
   Status status = Status::converged;  ///< singular: the tangent of an increment; cap: an iterated scheme did not settle
   std::string message;
   /// Per increment of the trajectory: responses x parameters. Ends where the scheme failed.
-  std::vector<Matrix<double>> of;
+  std::vector<Matrix<double>> of_responses;
   /// The same from below and from above, for responses that are the largest or smallest of values that tie; empty where
   /// there is none.
-  std::vector<Matrix<double>> below, above;
+  std::vector<Matrix<double>> from_below, from_above;
   Matrix<double> of_objectives;       ///< objectives x parameters; empty where it failed
   std::vector<SchemeRecord> records;  ///< per increment; empty but for Uzawa
   Matrix<double> last_displacement;   ///< of the last increment: all dofs x parameters; empty where the scheme failed

@@ -43,9 +43,9 @@ class LinearisedEquilibrium {
   /// Completes the state of every block from the last solve, but for the displacements, which are left unexpanded.
   void settle(const std::vector<ContactField<Direction>>& fields, const std::vector<Vector<Direction>>& lambda);
 
-  /// Largest derivatives, by parameter: reach() of the contact displacements, then and now; load() of the forces of
-  /// bodies and loads on the unknowns, however much of these cancels.
-  Vector<double> reach() const {
+  /// Largest derivatives, by parameter: largest_motion() of the contact displacements, then and now; load() of the
+  /// forces of bodies and loads on the unknowns, however much of these cancels.
+  Vector<double> largest_motion() const {
     const Matrix<double> then = gather(
         problem_.blocks,
         problem_.parameters, [&](auto& block, int) -> auto& { return block.previous.history.placement; });

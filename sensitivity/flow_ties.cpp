@@ -21,12 +21,13 @@ struct Rates {
   double negligible;
   double excess;     ///< of the trial over the bound, on the piece of the branch
   double start = 0;  ///< of a before the flow, beyond the corner
-  double past = 0;   ///< of a after it, beyond the corner, as the stress that takes
+  double end = 0;    ///< of a after it, beyond the corner, as the stress that takes
   bool has_corner = false;
 };
 
 /// `motion`: largest derivative of a displacement of the body.
-Rates rates_of(const FlowPoint<Direction>& point, const FlowTie& tie, int branch, double motion, const Along& along) {
+Rates rates_of(const FlowPoint<Direction>& point, const FlowTie& tie, int branch, double motion,
+               const SideDirection& along) {
   constexpr double share = 1e-10, rigid = 1e-3;  // as of contact points (sensitivity/branches.cpp)
   const auto& [stress, before, after, modulus] = point.trial;
   const auto rate = [&](const Direction& x) { return along.side * x.d[0]; };
@@ -37,7 +38,7 @@ Rates rates_of(const FlowPoint<Direction>& point, const FlowTie& tie, int branch
   if (rates.has_corner) {
     const Direction& corner = point.hardening.rows[static_cast<std::size_t>(tie.corner)].strain;
     rates.start = rate(before) - rate(corner);
-    rates.past = rate(after) - rate(corner);
+    rates.end = rate(after) - rate(corner);
     of_strain = std::max(of_strain, std::abs(corner.d[0]));
     if (branch == flow_branch::none) piece = rates.start < 0 ? tie.corner : tie.corner + 1;
   } else if (branch == flow_branch::none) {
@@ -45,7 +46,7 @@ Rates rates_of(const FlowPoint<Direction>& point, const FlowTie& tie, int branch
   }
   const Direction bound = point.hardening.bound(piece, before);
   rates.excess = (rate(stress) - rate(bound)) / bound.v;
-  rates.past *= modulus.v / bound.v;
+  rates.end *= modulus.v / bound.v;
   const double size = std::max(
       {std::abs(stress.d[0]), std::abs(bound.d[0]), modulus.v * of_strain, rigid * modulus.v * motion / point.size});
   rates.negligible = share * std::max(size / bound.v, along.parameter > 0 ? 1 / along.parameter : 0.0);
@@ -65,7 +66,7 @@ FlowVerdict verdict_of(const FlowTie& tie, int branch, const Rates& rates) {
   if (tie.yields())
     if (const auto verdict = unless(-rates.excess, flow_branch::none); verdict.contradicts) return verdict;
   if (!rates.has_corner) return {};
-  return branch == ahead ? unless(rates.past, behind) : unless(-rates.past, ahead);
+  return branch == ahead ? unless(rates.end, behind) : unless(-rates.end, ahead);
 }
 
 }  // namespace
@@ -103,7 +104,7 @@ void take_values(const Model& model, const std::vector<FlowTie>& ties, State<dou
 }
 
 std::vector<FlowVerdict> judge(const Model& model, const ParameterBlock& block, const std::vector<FlowTie>& ties,
-                               const State<double>& at, const Along& along) {
+                               const State<double>& at, const SideDirection& along) {
   std::vector<FlowVerdict> verdicts(ties.size());
   if (ties.empty()) return verdicts;
   ElementLists elements(model.bodies.size());

@@ -37,11 +37,11 @@ void take_values(const Model& model, const std::vector<FlowTie>& ties, State<dou
 /// What a derivative found with the branches of a state says of a tie.
 struct FlowVerdict {
   std::optional<int> contradicts;  ///< the branch that it points to, where it contradicts the one it was found with
-  double by = 0;                   ///< how much, in units of what is negligible
+  double severity = 0;             ///< how much, in units of what is negligible
 };
 
 /// One verdict for each tie. `block`: the derivative, in its first direction, found with the branches of `at`.
 std::vector<FlowVerdict> judge(const Model& model, const ParameterBlock& block, const std::vector<FlowTie>& ties,
-                               const State<double>& at, const Along& along);
+                               const State<double>& at, const SideDirection& along);
 
 }  // namespace stickslip

@@ -129,14 +129,15 @@ std::vector<Matrix<double>> computed_derivatives(const Model& model, const Slots
                           : adjoint(model, slots, method, trajectory, workspace);
   if (direct) gradients.of_objectives = objective_gradients(model, slots, trajectory, gradients);
   const bool complete =
-      direct ? gradients.of.size() == trajectory.increments.size() : gradients.of_objectives.size() > 0;
+      direct ? gradients.of_responses.size() == trajectory.increments.size() : gradients.of_objectives.size() > 0;
   if (!complete && !gradients.message.empty()) check.message = gradients.message;
   if (!complete || scene.parameters.empty()) return {};
   const auto responses = static_cast<Eigen::Index>(scene.responses.size());
   const auto objectives = static_cast<Eigen::Index>(scene.objectives.size());
   std::vector<Matrix<double>> computed(trajectory.increments.size(),
                                        Matrix<double>::Zero(responses + objectives, scene.parameters.size()));
-  for (std::size_t n = 0; n < gradients.of.size(); ++n) computed[n].topRows(responses) = gradients.of[n];
+  for (std::size_t n = 0; n < gradients.of_responses.size(); ++n)
+    computed[n].topRows(responses) = gradients.of_responses[n];
   if (objectives > 0) computed.back().bottomRows(objectives) = gradients.of_objectives;
   return computed;
 }

@@ -99,8 +99,8 @@ struct SideRun {
   const Slots<double>& slots;
   E& engine;
   WholeStates& states;
-  double parameter;            ///< Along::parameter
-  std::vector<double> scales;  ///< Along::largest_so_far
+  double parameter;            ///< SideDirection::parameter
+  std::vector<double> scales;  ///< SideDirection::largest_so_far
   std::vector<ParameterBlock> blocks;
   Counters counters;
 
@@ -162,7 +162,7 @@ void run_sides(const M& method, E& engine, const Model& model, const Slots<doubl
     const auto& increment = trajectory.increments[n];
     const auto& block = run.blocks[0];
     const auto values =
-        evaluate_responses(model, block.slots, block.current, increment.time, side < 0 ? Ties::below : Ties::above);
+        evaluate_responses(model, block.slots, block.current, increment.time, side < 0 ? Ties::falling : Ties::growing);
     auto& out = (side < 0 ? sides.backward : sides.forward)[n];
     for (std::size_t i = 0; i < responses.size(); ++i)
       if (!widens_at_once(model, slots, increment.state, responses[i])) out(i, parameter) = values[i].d[0];

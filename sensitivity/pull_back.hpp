@@ -36,27 +36,27 @@ inline HistoryDerivative no_derivative(const History<double>& like, Eigen::Index
 /// Weights a and motions u of an objective, a column an increment, all dofs in the axes.
 struct WorkPairs {
   Matrix<double> weights, motions;  ///< weights empty: of the memory alone
-  Matrix<double> before;            ///< what bodies remember of the last increment
+  Matrix<double> last_memory;       ///< what bodies remember of the last increment
   Matrix<double> memory;            ///< weights of what bodies remember of this increment; empty: none
   std::vector<FlowBranches> flows;  ///< per column
 };
 
 /// Derivatives by motion (no rows where no body remembers), and by what bodies remember of the last increment.
-struct WorkLeft {
-  Matrix<double> motion, before;
+struct WorkDerivative {
+  Matrix<double> motion, last_memory;
 };
 
 /// Adds the share of the pairs to `by`, the derivatives by the entries of the tape. An element of a continuum is
 /// differentiated by its own inputs, which are few (core/solids/element_work.hpp); the chain goes on from there. An
 /// element of two nodes is recorded at the end of the tape, which is then rewound.
-WorkLeft pull_back_bodies(const Model& model, const Slots<Reverse>& slots, Tape& tape, const WorkPairs& pairs,
-                          std::vector<double>& by);
+WorkDerivative pull_back_bodies(const Model& model, const Slots<Reverse>& slots, Tape& tape, const WorkPairs& pairs,
+                                std::vector<double>& by);
 
 /// The share of an equilibrium inside the bodies, which waits for other increments.
-struct Inside {
-  Vector<double> motion;          ///< u, all dofs in the axes
-  Vector<double> before;          ///< what bodies remember of the last increment
-  Vector<double> by_before = {};  ///< derivative by `before`, through what bodies remember of this increment
+struct InteriorShare {
+  Vector<double> motion;               ///< u, all dofs in the axes
+  Vector<double> last_memory;          ///< what bodies remember of the last increment
+  Vector<double> by_last_memory = {};  ///< derivative by `last_memory`, through what bodies remember of this increment
   double time = 0;
   Vector<double> forces;     ///< of bodies and contact, all dofs; empty where no node has a frame of its own
   Vector<double> weights;    ///< weights of the bodies' forces in what the objective reads, all dofs in the axes
@@ -65,10 +65,10 @@ struct Inside {
 };
 
 /// One objective on its way back.
-struct Backward {
-  std::vector<double> by;  ///< derivative by each entry of the tape
+struct BackwardSweep {
+  std::vector<double> adjoint;  ///< derivative by each entry of the tape
   HistoryDerivative history;
-  std::vector<Inside> inside;  ///< of the increments that wait
+  std::vector<InteriorShare> waiting;  ///< of the increments that wait
 };
 
 /// Everything a scheme reads to take one increment back.
@@ -80,7 +80,7 @@ struct AdjointProblem {
   Tape& tape;
   const Slots<Reverse>& recorded;
   int slots_end = 0;  ///< on the tape
-  std::vector<Backward>& objectives;
+  std::vector<BackwardSweep>& objectives;
   ElementLists at_supports;      ///< elements with a dof that is prescribed: reactions are forces of these
   bool energies = false;         ///< an objective reads the bodies' forces everywhere
   std::vector<int> read_forces;  ///< dofs of which the bodies' forces are read: of nodes at supports, or all
@@ -113,7 +113,7 @@ class RecordedEquilibrium {
   /// Largest derivative by a nodal force so far.
   double force_weight(int objective) const {
     const auto largest = [](const auto& m) { return m.size() ? m.cwiseAbs().maxCoeff() : 0.0; };
-    return std::max(largest(inside_[objective].weights), largest(inside_[objective].u));
+    return std::max(largest(interior_[objective].weights), largest(interior_[objective].u));
   }
   /// All that an objective has gathered so far, to go back to it.
   struct Gathered;
@@ -131,11 +131,11 @@ class RecordedEquilibrium {
   void clear_free(int objective);
   void seed_contact(int objective, const BlockVector<double>& solution);
   void clear_held(Matrix<double>& rows);
-  std::vector<double>& by(int objective) { return problem_.objectives[objective].by; }
+  std::vector<double>& adjoint(int objective) { return problem_.objectives[objective].adjoint; }
   Vector<double> gather(int objective, const Vector<Reverse>& leaves);
   static void seed(std::vector<double>& by, const Vector<Reverse>& at, const Vector<double>& derivative) {
     for (Eigen::Index i = 0; i < at.size(); ++i)
-      if (at[i].at >= 0) by[at[i].at] += derivative[i];
+      if (at[i].entry >= 0) by[at[i].entry] += derivative[i];
   }
 
   AdjointProblem<E>& problem_;
@@ -151,13 +151,13 @@ class RecordedEquilibrium {
   State<Reverse> state_;
   Vector<Reverse> rows_, multiplier_rows_;  ///< residual, in the frames of the nodes
   std::vector<Reverse> shares_;             ///< of this increment in each objective
-  std::vector<Inside> inside_;              ///< per objective
+  std::vector<InteriorShare> interior_;     ///< per objective
 };
 
 template <class E>
 struct RecordedEquilibrium<E>::Gathered {
-  std::vector<double> by;
-  Inside inside;
+  std::vector<double> adjoint;
+  InteriorShare interior;
 };
 
 template <class E>
@@ -183,17 +183,17 @@ RecordedEquilibrium<E>::RecordedEquilibrium(AdjointProblem<E>& problem, const St
     add_compact(model, values(contact_forces(model, problem.recorded, state_.contact)), forces);
   }
   for (auto& objective : problem.objectives) {
-    objective.by.resize(problem.slots_end);
-    objective.by.resize(problem.tape.size(), 0);
-    inside_.push_back({at.displacement,
-                       previous.history.bodies,
-                       Vector<double>::Zero(model.memory_count),
-                       time,
-                       forces,
-                       Vector<double>::Zero(model.dof_count()),
-                       {},
-                       {},
-                       at.flow});
+    objective.adjoint.resize(problem.slots_end);
+    objective.adjoint.resize(problem.tape.size(), 0);
+    interior_.push_back({at.displacement,
+                         previous.history.bodies,
+                         Vector<double>::Zero(model.memory_count),
+                         time,
+                         forces,
+                         Vector<double>::Zero(model.dof_count()),
+                         {},
+                         {},
+                         at.flow});
   }
 }
 
@@ -250,31 +250,31 @@ void RecordedEquilibrium<E>::record(const State<double>& previous, const Regular
 template <class E>
 Vector<double> RecordedEquilibrium<E>::gather(int objective, const Vector<Reverse>& leaves) {
   if (leaves.size() == 0) return {};
-  return Eigen::Map<const Vector<double>>(by(objective).data() + leaves[0].at, leaves.size());
+  return Eigen::Map<const Vector<double>>(adjoint(objective).data() + leaves[0].entry, leaves.size());
 }
 
 template <class E>
 void RecordedEquilibrium<E>::seed_outcome(int objective) {
-  if (!shares_.empty() && shares_[objective].at >= 0) by(objective)[shares_[objective].at] += 1;
+  if (!shares_.empty() && shares_[objective].entry >= 0) adjoint(objective)[shares_[objective].entry] += 1;
   const auto& history = problem_.objectives[objective].history;
-  seed(by(objective), state_.contact.traction, history.traction);
-  for_each_part(
-      [&](const Vector<Reverse>& part, const Vector<double>& derivative) { seed(by(objective), part, derivative); },
-      state_.history, history.local);
+  seed(adjoint(objective), state_.contact.traction, history.traction);
+  for_each_part([&](const Vector<Reverse>& part,
+                    const Vector<double>& derivative) { seed(adjoint(objective), part, derivative); },
+                state_.history, history.local);
 }
 
 template <class E>
 void RecordedEquilibrium<E>::seed_traction(int objective, const Vector<double>& derivative) {
-  seed(by(objective), state_.contact.traction, derivative);
+  seed(adjoint(objective), state_.contact.traction, derivative);
 }
 
 /// Moves what is seeded to the variables of the increment. Takes out, and returns, the weights of the bodies' forces.
 template <class E>
 Vector<double> RecordedEquilibrium<E>::pull_back(int objective) {
-  problem_.tape.pull_back(by(objective), outcome_start_);
+  problem_.tape.pull_back(adjoint(objective), outcome_start_);
   Vector<double> weight = Vector<double>::Zero(problem_.model.dof_count());
   int entry = first_read_;
-  for (int dof : problem_.read_forces) weight[dof] = std::exchange(by(objective)[entry++], 0);
+  for (int dof : problem_.read_forces) weight[dof] = std::exchange(adjoint(objective)[entry++], 0);
   return weight;
 }
 
@@ -282,14 +282,14 @@ Vector<double> RecordedEquilibrium<E>::pull_back(int objective) {
 /// remembered before.
 template <class E>
 void RecordedEquilibrium<E>::pull_back_memory(int objective) {
-  auto& inside = inside_[objective];
+  auto& inside = interior_[objective];
   const Vector<double> weight = gather(objective, memory_);
   if (weight.size() == 0 || weight.cwiseAbs().maxCoeff() == 0) return;
-  for (const auto& x : memory_) by(objective)[x.at] = 0;
+  for (const auto& x : memory_) adjoint(objective)[x.entry] = 0;
   const auto left = pull_back_bodies(problem_.model, problem_.recorded, problem_.tape,
-                                     {{}, inside.motion, inside.before, weight, {at_.flow}}, by(objective));
-  seed(by(objective), displacement_, left.motion);
-  inside.by_before += left.before;
+                                     {{}, inside.motion, inside.last_memory, weight, {at_.flow}}, adjoint(objective));
+  seed(adjoint(objective), displacement_, left.motion);
+  inside.by_last_memory += left.last_memory;
 }
 
 /// Clears the derivative by the free displacements: a solve has taken it up.
@@ -299,7 +299,7 @@ void RecordedEquilibrium<E>::clear_free(int objective) {
   Vector<double> left = into_frames(problem_.model, frames, Layout::all, gather(objective, displacement_));
   for (int dof : problem_.model.free_dofs) left[dof] = 0;
   left = out_of_frames(problem_.model, frames, Layout::all, std::move(left));
-  for (Eigen::Index i = 0; i < left.size(); ++i) by(objective)[displacement_[i].at] = left[i];
+  for (Eigen::Index i = 0; i < left.size(); ++i) adjoint(objective)[displacement_[i].entry] = left[i];
 }
 
 template <class E>
@@ -317,22 +317,22 @@ void RecordedEquilibrium<E>::seed_contact(int objective, const BlockVector<doubl
                                              problem_.engine.compact(Vector<double>(solution.u.col(0))));
   for (std::size_t n = 0; n < model.contact_nodes.size(); ++n)
     for (int i = 0; i < D; ++i)
-      if (const int dof = model.contact_nodes[n] * D + i; model.free_index[dof] >= 0 && rows_[dof].at >= 0)
-        by(objective)[rows_[dof].at] += compact[n * D + i];
-  if (unknown_) seed(by(objective), multiplier_rows_, solution.l.col(0));
+      if (const int dof = model.contact_nodes[n] * D + i; model.free_index[dof] >= 0 && rows_[dof].entry >= 0)
+        adjoint(objective)[rows_[dof].entry] += compact[n * D + i];
+  if (unknown_) seed(adjoint(objective), multiplier_rows_, solution.l.col(0));
   pull_back(objective);
 }
 
 template <class E>
 void RecordedEquilibrium<E>::balance(int objective) {
   const Model& model = problem_.model;
-  auto& inside = inside_[objective];
+  auto& inside = interior_[objective];
   const Vector<double> weight = pull_back(objective);
   pull_back_memory(objective);
   if (weight.size() > 0 && weight.cwiseAbs().maxCoeff() > 0) {  // (the bodies' tangent is symmetric)
     inside.weights += weight;
-    seed(by(objective), displacement_,
-         bulk_tangent_times(model, problem_.slots, {at_.displacement, inside.before, 0, &at_.flow}, weight));
+    seed(adjoint(objective), displacement_,
+         bulk_tangent_times(model, problem_.slots, {at_.displacement, inside.last_memory, 0, &at_.flow}, weight));
   }
   const auto in_frames = [&] {
     return Matrix<double>(into_frames(model, problem_.slots.frames, Layout::all, gather(objective, displacement_)));
@@ -369,30 +369,30 @@ void RecordedEquilibrium<E>::balance(int objective) {
 template <class E>
 Vector<double> RecordedEquilibrium<E>::take_multiplier(int objective) {
   const Vector<double> derivative = gather(objective, multiplier_);
-  for (const auto& x : multiplier_) by(objective)[x.at] = 0;
+  for (const auto& x : multiplier_) adjoint(objective)[x.entry] = 0;
   return derivative;
 }
 
 template <class E>
 typename RecordedEquilibrium<E>::Gathered RecordedEquilibrium<E>::gathered(int objective) const {
-  return {problem_.objectives[objective].by, inside_[objective]};
+  return {problem_.objectives[objective].adjoint, interior_[objective]};
 }
 
 template <class E>
 void RecordedEquilibrium<E>::restore(int objective, const Gathered& gathered) {
-  by(objective) = gathered.by;
-  inside_[objective] = gathered.inside;
+  adjoint(objective) = gathered.adjoint;
+  interior_[objective] = gathered.interior;
 }
 
 template <class E>
 HistoryDerivative RecordedEquilibrium<E>::finish(int objective) {
-  seed(by(objective), prescribed_, gather(objective, displacement_));
+  seed(adjoint(objective), prescribed_, gather(objective, displacement_));
   HistoryDerivative history{{}, Vector<double>::Zero(scale_.size())};
   for_each_part([&](Vector<double>& part, const Vector<Reverse>& of) { part = gather(objective, of); }, history.local,
                 history_);
-  if (inside_[objective].by_before.size() > 0) history.local.bodies += inside_[objective].by_before;
-  problem_.tape.pull_back(by(objective), problem_.slots_end);
-  problem_.objectives[objective].inside.push_back(std::move(inside_[objective]));
+  if (interior_[objective].by_last_memory.size() > 0) history.local.bodies += interior_[objective].by_last_memory;
+  problem_.tape.pull_back(adjoint(objective), problem_.slots_end);
+  problem_.objectives[objective].waiting.push_back(std::move(interior_[objective]));
   return history;
 }
 

@@ -41,13 +41,13 @@ const int* branches_of(const WorkPairs& pairs, const BodyMesh& body, int e, Eige
 /// The elements of a continuum: each is differentiated by its own inputs, for all increments together.
 template <class Shape, Kinematics kinematics, class L>
 void pull_back_continuum(const L& law, const Model& model, const Slots<Reverse>& slots, int b, const WorkPairs& pairs,
-                         std::vector<double>& by, WorkLeft& left) {
+                         std::vector<double>& by, WorkDerivative& left) {
   const auto& body = model.bodies[b];
   const auto [plain, numbers] = plain_law(law);
   const Reverse& thickness = slots.depths[b].thickness;
   std::vector<StateOfElement<Shape::nodes>> states(increments_in(pairs));
   if (!Remembers<L> && pairs.weights.size() == 0) return;
-  const auto is_on_tape = [](const Reverse& x) { return x.at >= 0; };
+  const auto is_on_tape = [](const Reverse& x) { return x.entry >= 0; };
   const Wanted wanted{is_on_tape(slots.points(0, body.first_node)) || is_on_tape(thickness),
                       std::any_of(numbers.begin(), numbers.end(), is_on_tape)};
   if (!Remembers<L> && !wanted.geometry && !wanted.law) return;
@@ -64,14 +64,14 @@ void pull_back_continuum(const L& law, const Model& model, const Slots<Reverse>&
           state.weight(i, a) = pairs.weights.size() > 0 ? pairs.weights(2 * nodes[a] + i, n) : 0;
         }
       if constexpr (Remembers<L>) {
-        state.before = remembered(pairs.before, body, e, n);
+        state.last_memory = remembered(pairs.last_memory, body, e, n);
         state.memory = remembered(pairs.memory, body, e, n);
         state.branches = branches_of(pairs, body, e, n);
       }
     }
     const auto work = element_work<Shape, kinematics>(plain, X, thickness.v, states, wanted);
     const auto add = [&](const Reverse& input, double derivative) {
-      if (input.at >= 0) by[input.at] += derivative;
+      if (input.entry >= 0) by[input.entry] += derivative;
     };
     for (int a = 0; a < Shape::nodes; ++a)
       for (int i = 0; i < 2; ++i) add(slots.points(i, nodes[a]), work.coordinates(i, a));
@@ -82,9 +82,9 @@ void pull_back_continuum(const L& law, const Model& model, const Slots<Reverse>&
       const auto by_part = element_work<Shape, kinematics>(part, X, thickness.v, states, {false, true}).law;
       for (std::size_t k = 0; k < by_part.size(); ++k) add(its_numbers[k], by_part[k]);
     });
-    for (std::size_t n = 0; n < work.before.size(); ++n) {
+    for (std::size_t n = 0; n < work.last_memory.size(); ++n) {
       const auto column = static_cast<Eigen::Index>(n);
-      left.before.col(column).segment(body.first_memory + e * body.memory, body.memory) += work.before[n];
+      left.last_memory.col(column).segment(body.first_memory + e * body.memory, body.memory) += work.last_memory[n];
       for (int a = 0; a < Shape::nodes; ++a) left.motion.col(column).segment<2>(2 * nodes[a]) += work.motion[n].col(a);
     }
   }
@@ -93,7 +93,7 @@ void pull_back_continuum(const L& law, const Model& model, const Slots<Reverse>&
 /// Elements of two nodes: each is recorded behind what the tape holds, increment by increment, and taken off again.
 template <int D, class L>
 void pull_back_two_nodes(const L& law, const Model& model, const Slots<Reverse>& slots, int b, Tape& tape,
-                         const WorkPairs& pairs, std::vector<double>& by, WorkLeft& left) {
+                         const WorkPairs& pairs, std::vector<double>& by, WorkDerivative& left) {
   const int start = tape.size();
   if (!Remembers<L> && pairs.weights.size() == 0) return;
   const auto& body = model.bodies[b];
@@ -110,12 +110,12 @@ void pull_back_two_nodes(const L& law, const Model& model, const Slots<Reverse>&
       const auto seed = [&](const auto& results, const auto& weights) {
         by.resize(tape.size(), 0);
         for (Eigen::Index i = 0; i < results.size(); ++i)
-          if (results[i].at >= 0) by[results[i].at] += weights[i];
+          if (results[i].entry >= 0) by[results[i].entry] += weights[i];
         tape.pull_back(by, start);
       };
       if constexpr (Remembers<L>) {
         const Vector<Reverse> variables = leaves(values(d), tape),
-                              before = leaves(remembered(pairs.before, body, e, n), tape);
+                              before = leaves(remembered(pairs.last_memory, body, e, n), tape);
         const Vec<Reverse, D> moved = variables;
         const int* const branch = branches_of(pairs, body, e, n);
         const Vec<Reverse, L::memory> after =
@@ -123,12 +123,13 @@ void pull_back_two_nodes(const L& law, const Model& model, const Slots<Reverse>&
         const Vec<Reverse, D> force = law.template force<D>(X, moved, after);
         by.resize(tape.size(), 0);
         for (int m = 0; m < L::memory; ++m)
-          if (after[m].at >= 0) by[after[m].at] += remembered(pairs.memory, body, e, n)[m];
+          if (after[m].entry >= 0) by[after[m].entry] += remembered(pairs.memory, body, e, n)[m];
         seed(force, weight);
-        for (int m = 0; m < L::memory; ++m) left.before(body.first_memory + e * body.memory + m, n) += by[before[m].at];
+        for (int m = 0; m < L::memory; ++m)
+          left.last_memory(body.first_memory + e * body.memory + m, n) += by[before[m].entry];
         for (int i = 0; i < D; ++i) {
-          left.motion(nodes[1] * D + i, n) += by[variables[i].at];
-          left.motion(nodes[0] * D + i, n) -= by[variables[i].at];
+          left.motion(nodes[1] * D + i, n) += by[variables[i].entry];
+          left.motion(nodes[0] * D + i, n) -= by[variables[i].entry];
         }
       } else {
         seed(law.template force<D>(X, d), weight);
@@ -141,12 +142,12 @@ void pull_back_two_nodes(const L& law, const Model& model, const Slots<Reverse>&
 
 }  // namespace
 
-WorkLeft pull_back_bodies(const Model& model, const Slots<Reverse>& slots, Tape& tape, const WorkPairs& pairs,
-                          std::vector<double>& by) {
-  WorkLeft left;
+WorkDerivative pull_back_bodies(const Model& model, const Slots<Reverse>& slots, Tape& tape, const WorkPairs& pairs,
+                                std::vector<double>& by) {
+  WorkDerivative left;
   if (model.memory_count > 0) {
     left.motion = Matrix<double>::Zero(model.dof_count(), increments_in(pairs));
-    left.before = Matrix<double>::Zero(model.memory_count, increments_in(pairs));
+    left.last_memory = Matrix<double>::Zero(model.memory_count, increments_in(pairs));
   }
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
     detail::with_law<Reverse>(

@@ -12,15 +12,15 @@ namespace detail {
 
 /// a of the waiting equilibria over all dofs in the axes, zero where motion is prescribed.
 template <class E>
-Matrix<double> weights_inside(AdjointProblem<E>& problem, const std::vector<Inside>& waiting) {
+Matrix<double> weights_inside(AdjointProblem<E>& problem, const std::vector<InteriorShare>& waiting) {
   const Model& model = problem.model;
   const auto count = static_cast<Eigen::Index>(waiting.size());
-  const auto join = [&](Matrix<double> Inside::*part) {
+  const auto join = [&](Matrix<double> InteriorShare::*part) {
     Matrix<double> all((waiting[0].*part).rows(), count);
     for (Eigen::Index n = 0; n < count; ++n) all.col(n) = waiting[n].*part;
     return all;
   };
-  Matrix<double> all = problem.engine.expand(join(&Inside::u), -join(&Inside::others));
+  Matrix<double> all = problem.engine.expand(join(&InteriorShare::u), -join(&InteriorShare::others));
   for (Eigen::Index n = 0; n < count; ++n) {
     Vector<double> a = into_frames(model, problem.slots.frames, Layout::all, Vector<double>(all.col(n)));
     for (Eigen::Index dof = 0; dof < a.size(); ++dof)
@@ -32,7 +32,8 @@ Matrix<double> weights_inside(AdjointProblem<E>& problem, const std::vector<Insi
 
 /// Moves weights `a` (all dofs, in the axes) inside the bodies to loads, frames and prescribed motion.
 template <class E>
-void pull_back_loads(AdjointProblem<E>& problem, const Inside& of, const Vector<double>& a, std::vector<double>& by) {
+void pull_back_loads(AdjointProblem<E>& problem, const InteriorShare& of, const Vector<double>& a,
+                     std::vector<double>& by) {
   const Model& model = problem.model;
   const auto& slots = problem.recorded;
   Tape& tape = problem.tape;
@@ -50,16 +51,16 @@ void pull_back_loads(AdjointProblem<E>& problem, const Inside& of, const Vector<
   by.resize(problem.slots_end);
   by.resize(tape.size(), 0);
   const auto seed = [&](const Reverse& x, double derivative) {
-    if (x.at >= 0) by[x.at] += derivative;
+    if (x.entry >= 0) by[x.entry] += derivative;
   };
   const Vector<double> weight = into_frames(model, problem.slots.frames, Layout::all, a);
   std::vector<char> touches(model.node_count, 0);
   for (int node : model.contact_nodes) touches[node] = 1;
   for (int dof : model.free_dofs)
     if (!touches[dof / model.dimension]) seed(rows[dof], weight[dof]);
-  Vector<double> held = into_frames(
-      model, problem.slots.frames, Layout::all,
-      tangent_times(model, problem.slots, {of.motion, of.before, of.time, &of.flow}, a, true, &problem.at_supports));
+  Vector<double> held = into_frames(model, problem.slots.frames, Layout::all,
+                                    tangent_times(model, problem.slots, {of.motion, of.last_memory, of.time, &of.flow},
+                                                  a, true, &problem.at_supports));
   for (int dof : model.free_dofs) held[dof] = 0;
   held = out_of_frames(model, problem.slots.frames, Layout::all, std::move(held));
   for (Eigen::Index i = 0; i < held.size(); ++i) seed(prescribed[i], held[i]);
@@ -73,28 +74,28 @@ template <class E>
 void pull_back_inside(AdjointProblem<E>& problem) {
   long waiting = 0;
   for (const auto& objective : problem.objectives)
-    for (const auto& of : objective.inside)
+    for (const auto& of : objective.waiting)
       waiting +=
           bytes_of(of.motion) + bytes_of(of.forces) + bytes_of(of.weights) + bytes_of(of.u) + bytes_of(of.others);
   problem.waiting_bytes = std::max(problem.waiting_bytes, waiting);
   for (auto& objective : problem.objectives) {
-    auto& waiting = objective.inside;
+    auto& waiting = objective.waiting;
     if (waiting.empty()) continue;
     WorkPairs pairs{detail::weights_inside(problem, waiting), {}, {}, {}, {}};
     pairs.motions.resize(pairs.weights.rows(), pairs.weights.cols());
-    pairs.before.resize(problem.model.memory_count, pairs.weights.cols());
+    pairs.last_memory.resize(problem.model.memory_count, pairs.weights.cols());
     for (std::size_t n = 0; n < waiting.size(); ++n) {
       const auto k = static_cast<Eigen::Index>(n);
-      detail::pull_back_loads(problem, waiting[n], pairs.weights.col(k), objective.by);
+      detail::pull_back_loads(problem, waiting[n], pairs.weights.col(k), objective.adjoint);
       pairs.weights.col(k) += waiting[n].weights;
       pairs.motions.col(k) = waiting[n].motion;
-      pairs.before.col(k) = waiting[n].before;
+      pairs.last_memory.col(k) = waiting[n].last_memory;
       pairs.flows.push_back(waiting[n].flow);
     }
     problem.tape.rewind(problem.slots_end);
-    objective.by.resize(problem.slots_end);
-    const auto left = pull_back_bodies(problem.model, problem.recorded, problem.tape, pairs, objective.by);
-    if (left.before.size() > 0) objective.history.local.bodies += left.before.rowwise().sum();
+    objective.adjoint.resize(problem.slots_end);
+    const auto left = pull_back_bodies(problem.model, problem.recorded, problem.tape, pairs, objective.adjoint);
+    if (left.last_memory.size() > 0) objective.history.local.bodies += left.last_memory.rowwise().sum();
     waiting.clear();
   }
 }

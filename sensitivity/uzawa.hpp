@@ -127,10 +127,10 @@ class Progress {
 template <class E>
 bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, const RegularisationField<double>& rho,
              std::vector<Vector<Direction>>& lambda, std::vector<ContactField<Direction>>& fields, double tolerance) {
-  double stiffest = 0, yielding = 0;  // largest rho; largest rho over k: traction per force that rounds in a node
+  double stiffest = 0, rho_over_k = 0;  // largest rho; largest rho over k: traction per force that rounds in a node
   for (std::size_t p = 0; p < rho.size(); ++p) {
     stiffest = std::max(stiffest, rho[p].normal);
-    yielding = std::max(yielding, rho[p].normal / problem.slots.stiffness[p]);
+    rho_over_k = std::max(rho_over_k, rho[p].normal / problem.slots.stiffness[p]);
   }
   Eigen::ArrayXd last = Eigen::ArrayXd::Zero(problem.parameters), carried = last;
   auto columns = [&](auto&& pick) { return gather(problem.blocks, problem.parameters, pick); };
@@ -141,7 +141,8 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
     if (!linearised.solve(lambda, fields)) return false;
     const Matrix<double> after = columns([&](auto&, int b) -> auto& { return fields[b].traction; });
     take_derivatives(lambda, fields);
-    const Vector<double> floors = 8 * unit_roundoff * (stiffest * linearised.reach() + yielding * linearised.load());
+    const Vector<double> floors =
+        8 * unit_roundoff * (stiffest * linearised.largest_motion() + rho_over_k * linearised.load());
     bool settled = true;
     double slowest = 0;  // largest change / enough of a parameter that has not ended
     record = {pass, 1, 0};

@@ -12,7 +12,7 @@ namespace {
 /// How a point stands to the line at which two patches of its curve part.
 template <class T>
 struct AtVertex {
-  T beyond;       ///< way past it, over the length of the first patch's facet
+  T overshoot;    ///< way past it, over the length of the first patch's facet
   double turn;    ///< sine of the angle between the tangents
   double bend;    ///< jump of the curvature, times the length
   double length;  ///< of that facet
@@ -95,7 +95,7 @@ std::vector<VertexTie> vertex_ties(const Model& model, const Slots<double>& slot
       // (splines share their tangent, whose derivative jumps with the curvature alone)
       const auto& patch = model.curves[point.curve].patches[first];
       if (patch.smoothing != Smoothing::none && patch.goes_on_after() && at.bend <= straight) return;
-      if (std::abs(at.beyond) <= weak_margin) ties.push_back({p, first, second, !bears || at.turn <= straight});
+      if (std::abs(at.overshoot) <= weak_margin) ties.push_back({p, first, second, !bears || at.turn <= straight});
     });
   }
   return ties;
@@ -109,7 +109,7 @@ void take_patch(const Model& model, const VertexTie& tie, int patch, State<doubl
 }
 
 VertexVerdict judge(const Model& model, const ParameterBlock& block, const VertexTie& tie, const State<double>& at,
-                    double time, const Along& along) {
+                    double time, const SideDirection& along) {
   constexpr double share = 1e-10, rigid = 1e-3;  // as of contact points (sensitivity/branches.cpp)
   const auto found = at_vertex(model, block.slots, to_compact(model, block.current.displacement), time, tie.point,
                                tie.first, tie.second);
@@ -117,7 +117,7 @@ VertexVerdict judge(const Model& model, const ParameterBlock& block, const Verte
   for (const auto& u : block.current.displacement) motion = std::max(motion, std::abs(u.d[0]));
   for (Eigen::Index k = 0; k < block.slots.points.size(); ++k)
     motion = std::max(motion, std::abs(block.slots.points.data()[k].d[0]));
-  const double rate = along.side * found.beyond.d[0];
+  const double rate = along.side * found.overshoot.d[0];
   const double negligible =
       share * std::max(rigid * motion / found.length, along.parameter > 0 ? 1 / along.parameter : 0.0);
   const bool on_second = at.contact.facing[tie.point].patch == tie.second;

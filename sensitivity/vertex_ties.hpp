@@ -33,9 +33,9 @@ void take_patch(const Model& model, const VertexTie& tie, int patch, State<doubl
 /// What a derivative found with the patches of a state says of a tie.
 struct VertexVerdict {
   std::optional<int> contradicts;  ///< the patch that it points to, where it contradicts the one it was found with
-  double by = 0;                   ///< how much, in units of what is negligible
+  double severity = 0;             ///< how much, in units of what is negligible
 };
 VertexVerdict judge(const Model& model, const ParameterBlock& block, const VertexTie& tie, const State<double>& at,
-                    double time, const Along& along);
+                    double time, const SideDirection& along);
 
 }  // namespace stickslip

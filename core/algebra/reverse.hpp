@@ -50,13 +50,13 @@ class Tape {
 /// A value and its entry on a tape; a constant has none.
 struct Reverse {
   double v = 0;
-  int at = -1;
+  int entry = -1;
   Tape* tape = nullptr;
 
   Reverse() = default;
   Reverse(double primal) : v(primal) {}  // NOLINT: a constant
   Reverse(int primal) : v(primal) {}     // NOLINT
-  Reverse(double primal, int entry, Tape* on) : v(primal), at(entry), tape(on) {}
+  Reverse(double primal, int number, Tape* on) : v(primal), entry(number), tape(on) {}
 
   static Reverse leaf(double primal, Tape& tape) { return {primal, tape.leaf(), &tape}; }
 
@@ -89,12 +89,12 @@ struct Reverse {
 
  private:
   static Reverse of(const Reverse& a, double primal, double by_a) {
-    return a.tape ? Reverse(primal, a.tape->record(a.at, by_a, -1, 0), a.tape) : Reverse(primal);
+    return a.tape ? Reverse(primal, a.tape->record(a.entry, by_a, -1, 0), a.tape) : Reverse(primal);
   }
   static Reverse of(const Reverse& a, const Reverse& b, double primal, double by_a, double by_b) {
     if (!b.tape) return of(a, primal, by_a);
     if (!a.tape) return of(b, primal, by_b);
-    return {primal, a.tape->record(a.at, by_a, b.at, by_b), a.tape};
+    return {primal, a.tape->record(a.entry, by_a, b.entry, by_b), a.tape};
   }
 };
 

@@ -67,7 +67,7 @@ namespace detail {
 /// N_i and their first two derivatives at a place of a patch.
 template <class T>
 struct PatchWeights {
-  std::array<T, 4> at, slope, bend;
+  std::array<T, 4> value, slope, bend;
 };
 
 template <class T>
@@ -75,25 +75,25 @@ PatchWeights<T> patch_weights(const Patch& patch, const T& s) {
   const T zero(0), one(1), half(0.5), sixth(1.0 / 6);
   PatchWeights<T> w;
   if (patch.smoothing == Smoothing::none) {
-    w.at = {zero, one - s, s, zero};
+    w.value = {zero, one - s, s, zero};
     w.slope = {zero, -one, one, zero};
     w.bend = {zero, zero, zero, zero};
     return w;
   }
   const T r = one - s;
   if (patch.smoothing == Smoothing::catmull_rom) {
-    w.at = {-half * s * r * r, one + half * s * s * (T(3) * s - T(5)), half * s * (one + s * (T(4) - T(3) * s)),
-            -half * s * s * r};
+    w.value = {-half * s * r * r, one + half * s * s * (T(3) * s - T(5)), half * s * (one + s * (T(4) - T(3) * s)),
+               -half * s * s * r};
     w.slope = {-half * r * (one - T(3) * s), half * s * (T(9) * s - T(10)), half * (one + s * (T(8) - T(9) * s)),
                half * s * (T(3) * s - T(2))};
     w.bend = {T(2) - T(3) * s, T(9) * s - T(5), T(4) - T(9) * s, T(3) * s - one};
   } else {
-    w.at = {sixth * r * r * r, sixth * (T(4) + s * s * (T(3) * s - T(6))), sixth * (one + T(3) * s * (one + s * r)),
-            sixth * s * s * s};
+    w.value = {sixth * r * r * r, sixth * (T(4) + s * s * (T(3) * s - T(6))), sixth * (one + T(3) * s * (one + s * r)),
+               sixth * s * s * s};
     w.slope = {-half * r * r, half * s * (T(3) * s - T(4)), half * (one + s * (T(2) - T(3) * s)), half * s * s};
     w.bend = {r, T(3) * s - T(2), one - T(3) * s, s};
   }
-  for (auto* order : {&w.at, &w.slope, &w.bend}) {  // what stands in for a vertex that is not there
+  for (auto* order : {&w.value, &w.slope, &w.bend}) {  // what stands in for a vertex that is not there
     auto& n = *order;
     if (!patch.goes_on_before()) {
       n[1] += T(2) * n[0];
@@ -123,14 +123,14 @@ Vec<T, 2> on_patch(const Patch& patch, const std::array<T, 4>& n, Place&& place)
 /// Place of a curve.
 template <class T, class Place>
 Vec<T, 2> place_on(const Patch& patch, const T& xi, Place&& place) {
-  return detail::on_patch<T>(patch, detail::patch_weights<T>(patch, xi).at, place);
+  return detail::on_patch<T>(patch, detail::patch_weights<T>(patch, xi).value, place);
 }
 
 /// The foot of a point on a patch and what belongs to it.
 template <class T>
 struct CurveFoot {
   T xi{}, gap{};
-  Vec<T, 2> at, normal;  ///< place and unit normal out of the solid
+  Vec<T, 2> place, normal;  ///< place and unit normal out of the solid
   std::array<T, 4> weights;
 };
 
@@ -145,16 +145,16 @@ CurveFoot<T> foot_on_patch(const Patch& patch, double xi, const Vec<T, 2>& x, Pl
     const auto w = detail::patch_weights<T>(patch, foot.xi);
     const Vec<T, 2> slope = detail::on_patch<T>(patch, w.slope, place),
                     bend = detail::on_patch<T>(patch, w.bend, place);
-    const Vec<T, 2> off = x - detail::on_patch<T>(patch, w.at, place);
+    const Vec<T, 2> off = x - detail::on_patch<T>(patch, w.value, place);
     foot.xi += dot(off, slope) / (dot(slope, slope) - dot(off, bend));
   }
   const auto w = detail::patch_weights<T>(patch, foot.xi);
-  foot.weights = w.at;
-  foot.at = detail::on_patch<T>(patch, w.at, place);
+  foot.weights = w.value;
+  foot.place = detail::on_patch<T>(patch, w.value, place);
   const Vec<T, 2> slope = detail::on_patch<T>(patch, w.slope, place);
   const T length = norm(slope);
   foot.normal << slope[1] / length, -slope[0] / length;
-  foot.gap = dot((x - foot.at).eval(), foot.normal);
+  foot.gap = dot((x - foot.place).eval(), foot.normal);
   return foot;
 }
 

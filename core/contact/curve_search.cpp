@@ -180,7 +180,7 @@ Facing CurveSearch::slide(Facing at, const Vec<double, 2>& x, int hops) const {
     const auto w = detail::patch_weights<double>(patch, at.xi);
     const Vec<double, 2> slope = detail::on_patch<double>(patch, w.slope, place);
     const Vec<double, 2> bend = detail::on_patch<double>(patch, w.bend, place);
-    const Vec<double, 2> off = x - detail::on_patch<double>(patch, w.at, place);
+    const Vec<double, 2> off = x - detail::on_patch<double>(patch, w.value, place);
     const double metric = slope.squaredNorm(), falls = metric - off.dot(bend);
     if (!(falls > 1e-8 * metric)) return {};  // the centre of the bend, or past it
     const double whole = off.dot(slope) / falls;

@@ -9,14 +9,14 @@ namespace {
 
 struct Foot {
   double xi, distance;
-  Vec<double, 2> at;
+  Vec<double, 2> place;
 };
 
 /// Decides between feet at the same distance by geometry alone: inside a facet before at its end, then by place.
 bool before(const Foot& a, const Foot& b) {
   const bool a_inside = a.xi >= 0 && a.xi <= 1, b_inside = b.xi >= 0 && b.xi <= 1;
   if (a_inside != b_inside) return a_inside;
-  return a.at[0] < b.at[0] || (a.at[0] == b.at[0] && a.at[1] < b.at[1]);
+  return a.place[0] < b.place[0] || (a.place[0] == b.place[0] && a.place[1] < b.place[1]);
 }
 
 Foot project(const Points<double>& points, const std::vector<int>& facet, const Vec<double, 2>& x) {

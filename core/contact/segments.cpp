@@ -80,23 +80,23 @@ std::vector<Piece> facing_pieces(const Points<double>& points, const std::array<
     for (const auto& shadow : candidates) {
       if (shadow.low.place > middle || shadow.high.place < middle) continue;
       const auto foot = detail::foot_on_facet<double>(x, nu, points.col(shadow.nodes[0]), points.col(shadow.nodes[1]));
-      const double distance = (x - foot.at).norm();
+      const double distance = (x - foot.place).norm();
       if (distance < least) {
         least = distance;
         nearest = &shadow;
       }
     }
     if (!nearest) continue;
-    if (!pieces.empty() && pieces.back().master == nearest->nodes && pieces.back().to == breaks[k].end) {
-      pieces.back().to = breaks[k + 1].end;  // another facet's shadow began there, but this one is nearer
+    if (!pieces.empty() && pieces.back().master == nearest->nodes && pieces.back().last_end == breaks[k].end) {
+      pieces.back().last_end = breaks[k + 1].end;  // another facet's shadow began there, but this one is nearer
       continue;
     }
     Piece piece;
     piece.slave = slave;
     piece.master = nearest->nodes;
     piece.facet = nearest->facet;
-    piece.from = breaks[k].end;
-    piece.to = breaks[k + 1].end;
+    piece.first_end = breaks[k].end;
+    piece.last_end = breaks[k + 1].end;
     pieces.push_back(piece);
   }
   return pieces;

@@ -51,7 +51,7 @@ T place_along(int piece_end, At&& at, const Vec<T, 2>& a, const Vec<T, 2>& tau) 
 /// Foot of a point on a master: position, unit normal out of the master, and its weights on the piece's master nodes.
 template <class T>
 struct Foot {
-  Vec<T, 2> at, normal;
+  Vec<T, 2> place, normal;
   std::array<T, 2> weights{};
 };
 
@@ -62,7 +62,7 @@ Foot<T> foot_on_facet(const Vec<T, 2>& x, const Vec<T, 2>& nu, const Vec<T, 2>& 
   const T length = norm(tau);
   const T eta = ((x[0] - c[0]) * nu[1] - (x[1] - c[1]) * nu[0]) / (tau[0] * nu[1] - tau[1] * nu[0]);
   Foot<T> foot;
-  for (int i = 0; i < 2; ++i) foot.at[i] = c[i] + eta * tau[i];
+  for (int i = 0; i < 2; ++i) foot.place[i] = c[i] + eta * tau[i];
   foot.normal = Vec<T, 2>(tau[1] / length, -tau[0] / length);
   foot.weights = {T(1) - eta, eta};
   return foot;
@@ -120,7 +120,8 @@ PieceSums<T> integrate_pieces(const std::vector<Piece>& pieces, const std::vecto
     const Vec<T, 2> A = of_start(piece.slave[0]), Tau = of_start(piece.slave[1]) - A;
     const T length = norm(tau);
     const Vec<T, 2> nu(tau[1] / length, -tau[0] / length);
-    const T from = detail::place_along<T>(piece.from, at, a, tau), to = detail::place_along<T>(piece.to, at, a, tau);
+    const T from = detail::place_along<T>(piece.first_end, at, a, tau),
+            to = detail::place_along<T>(piece.last_end, at, a, tau);
     PiecePlace<T> place;
     place.slave_length = norm(Tau);
     for (int q = 0; q < 3; ++q) {
@@ -137,7 +138,7 @@ PieceSums<T> integrate_pieces(const std::vector<Piece>& pieces, const std::vecto
       if (!rigid)
         for (int m = 0; m < 2; ++m) share(piece.master[m], -dA * foot.weights[m]);
       for (int i = 0; i < 2; ++i) {
-        sums.gap[i] += dA * (x[i] - foot.at[i]);
+        sums.gap[i] += dA * (x[i] - foot.place[i]);
         sums.normal[i] += dA * (foot.normal[i] - (rigid ? T(0) : nu[i]));
       }
       visit(piece, place);
@@ -168,7 +169,7 @@ FacedPieces<T> face_pieces(const std::vector<Piece>& pieces, const std::vector<i
   FacedPieces<T> faced;
   const auto remember = [&](const Piece& piece, const PiecePlace<T>& place) {
     if (piece.master[0] == Piece::none) {
-      for (int i = 0; i < 2; ++i) faced.foot[i] += place.area * place.foot.at[i];
+      for (int i = 0; i < 2; ++i) faced.foot[i] += place.area * place.foot.place[i];
       return;
     }
     const auto along = [&](auto&& where) { return Vec<T, 2>(where(piece.master[1]) - where(piece.master[0])); };

@@ -18,7 +18,7 @@ using MshGroup = std::pair<int, long long>;
 
 struct MshNode {
   long long tag = 0;
-  std::array<double, 3> at{};
+  std::array<double, 3> place{};
 };
 
 /// An element of one physical group; an element of several groups is listed once for each.

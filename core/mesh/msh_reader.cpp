@@ -155,7 +155,7 @@ class Import {
       if (n == 0) n = body.mesh.node_count++;
     body.points.resize(2, body.mesh.node_count);
     for (std::size_t i = 0; i < number.size(); ++i)
-      if (number[i] >= 0) body.points.col(number[i]) << file_.nodes[i].at[0], file_.nodes[i].at[1];
+      if (number[i] >= 0) body.points.col(number[i]) << file_.nodes[i].place[0], file_.nodes[i].place[1];
     for (const MshElement* element : elements)
       for (int k = 0; k < count; ++k) body.mesh.connectivity.push_back(number[element->nodes[k]]);
     return number;
@@ -168,7 +168,7 @@ class Import {
     for (const MshElement* element : elements)
       for (int k = 0; k < nodes_of(element->shape); ++k)
         for (int axis = 0; axis < 3; ++axis) {
-          const double x = file_.nodes[element->nodes[k]].at[axis];
+          const double x = file_.nodes[element->nodes[k]].place[axis];
           low[axis] = std::min(low[axis], x);
           high[axis] = std::max(high[axis], x);
         }

@@ -288,7 +288,7 @@ void for_each_element_tangent(const Model& model, const Slots<T>& slots, int b, 
       if constexpr (requires { law.at_rest(); }) {
         if constexpr (solves)
           if (at) {
-            const auto before = detail::memory_of_element<L>(body, element(k), at->before, at->branches);
+            const auto before = detail::memory_of_element<L>(body, element(k), at->last_memory, at->branches);
             sink(nodes, element_tangent<T, Shape, kinematics>(law, X, local, thickness, before));
             continue;
           }
@@ -306,7 +306,7 @@ void for_each_element_tangent(const Model& model, const Slots<T>& slots, int b, 
       Mat<T, D> block;
       if constexpr (Remembers<L>) {
         if (at) {
-          auto before = detail::memory_of_element<L>(body, element(k), at->before, at->branches);
+          auto before = detail::memory_of_element<L>(body, element(k), at->last_memory, at->branches);
           const int branch = before.branch();
           block = law.template stiffness<D>(X, d, before.template take<L::memory>(), branch);
         } else {

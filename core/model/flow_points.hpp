@@ -40,7 +40,7 @@ void for_each_flow_point(const Model& model, const Slots<T>& slots, const BodyMo
           const int e = element(k);
           const auto nodes = detail::element_nodes(body, e);
           const auto X = detail::gather_coordinates<T, Shape>(slots.points, nodes.data());
-          auto before = detail::memory_of_element<L>(body, e, at.before, at.branches);
+          auto before = detail::memory_of_element<L>(body, e, at.last_memory, at.branches);
           Eigen::Index memory = first_of(e);
           for_each_strain_in<T, Shape, kinematics>(
               law.is_finite, X, T(1), detail::gather_displacements<T, Shape>(at.displacement, nodes.data()),
@@ -59,7 +59,7 @@ void for_each_flow_point(const Model& model, const Slots<T>& slots, const BodyMo
           const int e = element(k);
           const auto nodes = detail::element_nodes(body, e);
           const auto X = detail::two_places<T, D>(slots.points, nodes);
-          auto before = detail::memory_of_element<L>(body, e, at.before, at.branches);
+          auto before = detail::memory_of_element<L>(body, e, at.last_memory, at.branches);
           const int branch = before.branch();
           const auto trial = law.template trial<D>(X, detail::two_node_stretch<T, D>(nodes, &at.displacement),
                                                    before.template take<L::memory>(), branch);

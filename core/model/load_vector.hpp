@@ -114,7 +114,7 @@ struct FollowedEdge {
   std::vector<char> loaded;
   int body;
   T pressure;
-  const ElementEdge* behind;                      ///< nullptr: its thickness stays
+  const ElementEdge* backing;                     ///< nullptr: its thickness stays
   std::vector<ThicknessStretch<T>> stretch = {};  ///< by point; empty where it stays
 
   T pressure_at(int point) const { return stretch.empty() ? pressure : T(pressure * stretch[point].value); }
@@ -128,7 +128,7 @@ void for_each_followed_edge(const Model& model, const Slots<T>& slots, double t,
     const T factor = load.history ? evaluate(*load.history, t, slots.numbers) : T(1);
     const T pressure = factor * slots.numbers(load.vector[0]);
     for (std::size_t k = 0; k < follower.side.edges.size(); ++k) {
-      const ElementEdge* const behind = follower.behind.empty() ? nullptr : &follower.behind[k];
+      const ElementEdge* const behind = follower.backing.empty() ? nullptr : &follower.backing[k];
       FollowedEdge<T> edge{follower.side.edges[k], {}, follower.side.body, pressure, behind};
       for (int node : edge.nodes) edge.loaded.push_back(is_of(follower.side, node));
       if (behind) edge.stretch = edge_stretches(model, slots, edge.body, *behind, u);
@@ -151,7 +151,7 @@ template <class T, class Sink>
 void add_thickness_tangent(const Model& model, const Slots<T>& slots, const FollowedEdge<T>& edge, const Points<T>& at,
                            Sink&& sink) {
   const auto& body = model.bodies[edge.body];
-  const auto nodes = element_nodes(body, edge.behind->element);
+  const auto nodes = element_nodes(body, edge.backing->element);
   Matrix<T> K = Matrix<T>::Constant(2 * nodes.size(), 2 * nodes.size(), T(0));
   for (int q = 0; q < static_cast<int>(edge.stretch.size()); ++q) {
     const auto force = pressure_on(at, edge.loaded, slots.depths[edge.body],

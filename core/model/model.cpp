@@ -252,7 +252,7 @@ Follower follower(const Model& model, int load) {
   const auto& body = model.scene.bodies[follower.side.body];
   if (const auto fault = pressure_fault(model.scene, body); !fault.empty())
     throw ModelError(fault, "/loads/" + std::to_string(load) + "/on");
-  follower.behind = elements_behind(model.bodies[follower.side.body], follower.side.edges);
+  follower.backing = elements_behind(model.bodies[follower.side.body], follower.side.edges);
   return follower;
 }
 

@@ -128,7 +128,7 @@ struct ElementEdge {
 struct Follower {
   int load = 0;  ///< index in Scene::loads
   SideSet side = {};
-  std::vector<ElementEdge> behind = {};  ///< per edge of the side, whose thickness changes; empty where none does
+  std::vector<ElementEdge> backing = {};  ///< per edge of the side, whose thickness changes; empty where none does
 };
 
 /// Where a response is taken that names a point: nodes and weights of the element that holds it (fixed: the point is

@@ -58,7 +58,7 @@ Frame<T, D> frame_of_obstacle(const ContactInput<T>& input, const Obstacle& obst
     frame.shift[axis - 'x'] = evaluate(table, input.time, input.slots.numbers);
   if (!obstacle.rotate) return frame;
   for (int i = 0; i < D; ++i) frame.center[i] = input.slots.numbers(obstacle.rotate->center[i]);
-  frame.turn = Turn<T>::by(evaluate(obstacle.rotate->angle, input.time, input.slots.numbers));
+  frame.turn = Turn<T>::from_degrees(evaluate(obstacle.rotate->angle, input.time, input.slots.numbers));
   return frame;
 }
 
@@ -180,7 +180,8 @@ MovedPoint<U, 2> moved_on_curve(const ContactInput<T>& input, int p, const Facin
   at.geometry.weights = foot_weights(patch, foot.weights, curve.obstacle >= 0);
   at.foot[0] = foot.xi;
   if (point.foot >= 0 && input.previous.patch[p] != Patch::none)
-    at.way = foot.at - place_on<U>(curve.patches[input.previous.patch[p]], U(input.previous.foot[point.foot]), place);
+    at.way =
+        foot.place - place_on<U>(curve.patches[input.previous.patch[p]], U(input.previous.foot[point.foot]), place);
   return at;
 }
 

@@ -26,8 +26,8 @@ Vector<T> nodal_balance(const Model& model, const Slots<T>& slots, const State<T
 inline constexpr double take_tie = 1e-9;
 
 /// The derivative of a largest or smallest value that several samples share: the mean of theirs, or the one-sided one
-/// where the parameter falls (below) or grows (above).
-enum class Ties { mean, below, above };
+/// where the parameter falls or grows.
+enum class Ties { mean, falling, growing };
 
 namespace detail {
 
@@ -35,7 +35,7 @@ namespace detail {
 template <int N>
 Dual<N> on_side(Ties ties, Response::Take take, const std::vector<Dual<N>>& tied) {
   Dual<N> one = tied.front();
-  const bool upper = (ties == Ties::above) == (take == Response::Take::max);
+  const bool upper = (ties == Ties::growing) == (take == Response::Take::max);
   for (const auto& sample : tied)
     for (int j = 0; j < N; ++j) one.d[j] = upper ? std::max(one.d[j], sample.d[j]) : std::min(one.d[j], sample.d[j]);
   return one;

@@ -147,7 +147,7 @@ FacedPieces<U> faced_pieces(const Model& model, const ContactPoint& point, const
     Foot<U> foot;
     for (int i = 0; i < 2; ++i) {
       foot.normal[i] = g.normal[i];
-      foot.at[i] = x[i] - g.gap * g.normal[i];
+      foot.place[i] = x[i] - g.gap * g.normal[i];
     }
     return foot;
   };
@@ -286,7 +286,7 @@ PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point,
 template <class T>
 struct BodyMotion {
   const Vector<T>& displacement;  ///< all dofs, in the axes
-  const Vector<T>& before;
+  const Vector<T>& last_memory;
   double time = 0;  ///< at its end; of the pressures that follow it
   const FlowBranches* branches = nullptr;
 };

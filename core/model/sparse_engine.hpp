@@ -121,7 +121,7 @@ class SparseEngine {
   std::vector<std::vector<int>> places_;  ///< per point: those that the pattern has, sorted; none slides: empty
   /// Motion that the bodies' tangent is taken at, kept where the pattern may change.
   struct Linearised {
-    Vector<T> displacement, before;
+    Vector<T> displacement, last_memory;
     double time;
     FlowBranches branches;
   };

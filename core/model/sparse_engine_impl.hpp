@@ -52,7 +52,8 @@ void SparseEngine<T>::lay_out(const std::vector<std::vector<int>>& places) {
   for (std::size_t p = 0; p < places.size() && !model_.slides_along_curves(); ++p)
     point_map_.push_back(detail::entries_of(*pattern_, rows_of(p, places[p])));
   if (linearised_) {
-    const BodyMotion<T> at{linearised_->displacement, linearised_->before, linearised_->time, &linearised_->branches};
+    const BodyMotion<T> at{linearised_->displacement, linearised_->last_memory, linearised_->time,
+                           &linearised_->branches};
     assemble(lists, &at);
   } else {
     assemble(lists, nullptr);
@@ -119,7 +120,7 @@ template <class T>
 void SparseEngine<T>::linearise(const BodyMotion<T>& at) {
   assemble(*lists_, &at);
   if (model_.slides_along_curves())
-    linearised_ = {at.displacement, at.before, at.time, at.branches ? *at.branches : FlowBranches()};
+    linearised_ = {at.displacement, at.last_memory, at.time, at.branches ? *at.branches : FlowBranches()};
   valid_ = false;
 }
 

@@ -44,37 +44,38 @@ void check_axis(const Scene& scene, const Constraint& constraint) {
 
 /// The constraints of one node so far, whose directions are independent.
 struct Held {
-  std::vector<Constraint> by;
+  std::vector<Constraint> constraints;
 
   /// Adds one; where its direction is not a new one it must prescribe what the others do already.
   void add(const Scene& scene, const Numbers<double>& numbers, const Constraint& constraint, const Eigen::VectorXd& x) {
     const Eigen::VectorXd d = direction(scene, constraint, numbers);
-    Eigen::MatrixXd others(d.size(), by.size());
-    for (std::size_t c = 0; c < by.size(); ++c) others.col(c) = direction(scene, by[c], numbers);
+    Eigen::MatrixXd others(d.size(), constraints.size());
+    for (std::size_t c = 0; c < constraints.size(); ++c) others.col(c) = direction(scene, constraints[c], numbers);
     Eigen::VectorXd weights;
-    if (!by.empty()) weights = others.colPivHouseholderQr().solve(d);
-    if (by.empty() || (d - others * weights).norm() > new_direction) return by.push_back(constraint);
+    if (!constraints.empty()) weights = others.colPivHouseholderQr().solve(d);
+    if (constraints.empty() || (d - others * weights).norm() > new_direction) return constraints.push_back(constraint);
     std::set<double> times;
     const auto take = [&](double t) { times.insert(t); };
     for_each_breakpoint(scene.supports[constraint.support], take);
-    for (const auto& other : by) for_each_breakpoint(scene.supports[other.support], take);
+    for (const auto& other : constraints) for_each_breakpoint(scene.supports[other.support], take);
     if (scene.finite_strain)  // between breakpoints a place that is turned runs along an arc
       for (auto next = times.begin(); next != times.end() && std::next(next) != times.end(); ++next)
         next = times.insert((*next + *std::next(next)) / 2).first;
     double largest = 0, difference = 0;
     std::size_t with = 0;  // who has the largest say
-    for (std::size_t c = 1; c < by.size(); ++c)
+    for (std::size_t c = 1; c < constraints.size(); ++c)
       if (std::abs(weights[c]) > std::abs(weights[with])) with = c;
     for (double t : times) {
       const double own = prescribed_value(scene, constraint, x, t, numbers);
       double theirs = 0;
-      for (std::size_t c = 0; c < by.size(); ++c) theirs += weights[c] * prescribed_value(scene, by[c], x, t, numbers);
+      for (std::size_t c = 0; c < constraints.size(); ++c)
+        theirs += weights[c] * prescribed_value(scene, constraints[c], x, t, numbers);
       largest = std::max({largest, std::abs(own), std::abs(theirs)});
       difference = std::max(difference, std::abs(own - theirs));
     }
     if (difference <= 1e-10 * largest) return;  // rounding of directions and of arms
-    throw ModelError("moves a node that " + scene.supports[by[with].support].on +
-                         " has too differently from the support there (" + pointer_of(scene, by[with]) + ")",
+    throw ModelError("moves a node that " + scene.supports[constraints[with].support].on +
+                         " has too differently from the support there (" + pointer_of(scene, constraints[with]) + ")",
                      pointer_of(scene, constraint));
   }
 };
@@ -104,18 +105,18 @@ void number_dofs(Model& model, const Points<double>& points) {
   for (const auto& body : model.bodies)
     if (body.mesh.shape == ElementShape::point) anchors.insert(body.first_node + 1);
   for (int anchor : anchors) held[anchor];
-  for (int node : axis) held[node].by.push_back({0, -1, 'x'});
+  for (int node : axis) held[node].constraints.push_back({0, -1, 'x'});
   for (auto& [node, of] : held) {
-    const bool framed =
-        std::any_of(of.by.begin(), of.by.end(), [](const auto& c) { return c.axis == Constraint::inclined; });
-    for (int k = 0; k < static_cast<int>(of.by.size()); ++k)
-      of.by[k].dof = node * D + (framed ? k : of.by[k].axis - 'x');
+    const bool framed = std::any_of(of.constraints.begin(), of.constraints.end(),
+                                    [](const auto& c) { return c.axis == Constraint::inclined; });
+    for (int k = 0; k < static_cast<int>(of.constraints.size()); ++k)
+      of.constraints[k].dof = node * D + (framed ? k : of.constraints[k].axis - 'x');
     for (int dof = node * D; anchors.count(node) && dof < (node + 1) * D; ++dof)
-      if (std::none_of(of.by.begin(), of.by.end(), [&](const auto& c) { return c.dof == dof; }))
-        of.by.push_back({dof, -1, 'x'});
-    std::sort(of.by.begin(), of.by.end(), [](const auto& a, const auto& b) { return a.dof < b.dof; });
-    model.constraints.insert(model.constraints.end(), of.by.begin(), of.by.end());
-    if (framed) model.framed.push_back({node, -1, of.by});
+      if (std::none_of(of.constraints.begin(), of.constraints.end(), [&](const auto& c) { return c.dof == dof; }))
+        of.constraints.push_back({dof, -1, 'x'});
+    std::sort(of.constraints.begin(), of.constraints.end(), [](const auto& a, const auto& b) { return a.dof < b.dof; });
+    model.constraints.insert(model.constraints.end(), of.constraints.begin(), of.constraints.end());
+    if (framed) model.framed.push_back({node, -1, of.constraints});
   }
   model.free_index.assign(model.dof_count(), 0);
   for (const auto& constraint : model.constraints) model.free_index[constraint.dof] = -1;

@@ -41,7 +41,7 @@ struct Turn {
   T sine, cosine_less_one;  ///< the latter without cancellation at small angles
 
   /// `degrees`: the angle, positive counter-clockwise.
-  static Turn by(const T& degrees) {
+  static Turn from_degrees(const T& degrees) {
     using std::sin;
     const T angle = degrees * T(std::acos(-1.0) / 180), half = sin(angle / T(2));
     return {sin(angle), T(-2) * half * half};
@@ -60,7 +60,7 @@ template <class T, class Place>
 Vector<T> rotated(const Rotation& rotation, const Place& x, const T& degrees, bool finite, const Numbers<T>& numbers) {
   if (!finite) return degrees * displacement_per_degree<T>(rotation, x, numbers);
   const Vec<T, 2> arm(x[0] - numbers(rotation.center[0]), x[1] - numbers(rotation.center[1]));
-  return Turn<T>::by(degrees).change(arm);
+  return Turn<T>::from_degrees(degrees).change(arm);
 }
 
 /// Unit vector that a constraint prescribes the displacement along. pre: it has a support.

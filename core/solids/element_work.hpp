@@ -23,7 +23,7 @@ template <int nodes>
 struct StateOfElement {
   Mat<double, 2, nodes> motion;   ///< u
   Mat<double, 2, nodes> weight;   ///< a
-  Vector<double> before;          ///< what its points remember of the last increment, one after another
+  Vector<double> last_memory;     ///< what its points remember of the last increment, one after another
   Vector<double> memory;          ///< b, laid out likewise
   const int* branches = nullptr;  ///< of the flows, likewise (ElementMemory)
 };
@@ -41,7 +41,7 @@ struct ElementWork {
   double depth = 0;
   std::array<double, numbers> law{};
   std::vector<Mat<double, 2, nodes>> motion = {};  ///< per state; empty of a law that does not remember
-  std::vector<Vector<double>> before = {};
+  std::vector<Vector<double>> last_memory = {};
 };
 
 namespace detail {
@@ -148,7 +148,7 @@ auto averaged_work(const Law& law, const Mat<double, 2, Shape::nodes>& coordinat
     Vec<Probe, memory> before, after;
     for (int k = 0; k < 2 * n; ++k)
       u.data()[k] = memory > 0 ? Probe::seed(state.motion.data()[k], at_motion + k) : Probe(state.motion.data()[k]);
-    for (int m = 0; m < memory; ++m) before[m] = Probe::seed(state.before[m], at_memory + m);
+    for (int m = 0; m < memory; ++m) before[m] = Probe::seed(state.last_memory[m], at_memory + m);
     const auto forces = averaged_forces<true, Probe, Shape, kinematics, Probe>(
         probed, X, u, Probe::seed(depth, 2 * n), ElementMemory<Probe>(before.data(), state.branches), after.data());
     Probe work(0.0);
@@ -160,7 +160,7 @@ auto averaged_work(const Law& law, const Mat<double, 2, Shape::nodes>& coordinat
     if constexpr (memory > 0) {
       out.motion.emplace_back();
       for (int k = 0; k < 2 * n; ++k) out.motion.back().data()[k] = work.d[at_motion + k];
-      out.before.emplace_back(work.d.template segment<memory>(at_memory).matrix());
+      out.last_memory.emplace_back(work.d.template segment<memory>(at_memory).matrix());
     }
   }
   return out;
@@ -180,7 +180,7 @@ auto element_work(const Law& law, const Mat<double, 2, Shape::nodes>& coordinate
   if constexpr (requires { Law::memory; })
     for (const auto& state : states) {
       out.motion.emplace_back(Mat<double, 2, n>::Zero());
-      out.before.emplace_back(state.before.size());
+      out.last_memory.emplace_back(state.last_memory.size());
     }
   std::array<Gradient<double, Shape, kinematics>, points> gradients;
   std::array<detail::ByGradient<Shape, kinematics>, points> by;
@@ -199,9 +199,9 @@ auto element_work(const Law& law, const Mat<double, 2, Shape::nodes>& coordinate
         Memory by_before;
         const int branch = state.branches ? state.branches[remembered] : flow_branch::by_values;
         work = detail::point_work<rows>(law, H, A, gradient.volume, out.law,
-                                        Memory(state.before.template segment<Law::memory>(remembered)), branch, b,
+                                        Memory(state.last_memory.template segment<Law::memory>(remembered)), branch, b,
                                         by_before);
-        out.before[s].template segment<Law::memory>(remembered) = gradient.volume * by_before;
+        out.last_memory[s].template segment<Law::memory>(remembered) = gradient.volume * by_before;
         for (int a = 0; a < n; ++a)
           for (int i = 0; i < 2; ++i)
             gradient.for_each(i, a, [&](int p, int r, double x) {

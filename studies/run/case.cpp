@@ -26,11 +26,11 @@ void take_sides(const CaseResult& result, std::size_t n, StepResult& step) {
   if (result.one_sided)
     take(result.one_sided->backward, result.one_sided->forward);
   else
-    take(result.gradients.below, result.gradients.above);
-  if (result.gradients.of.size() > n &&
+    take(result.gradients.from_below, result.gradients.from_above);
+  if (result.gradients.of_responses.size() > n &&
       integration_margin(result.problem->model, result.problem->slots, step.increment->state) <= weak_margin) {
     step.differentiable = false;  // and neither side is known
-    const auto& like = result.gradients.of[n];
+    const auto& like = result.gradients.of_responses[n];
     step.backward = step.forward =
         Matrix<double>::Constant(like.rows(), like.cols(), std::numeric_limits<double>::quiet_NaN());
   }
@@ -55,7 +55,7 @@ std::vector<StepResult> gather_steps(const CaseResult& result, const StepReader&
     step.margins = read.margins;
     step.responses = read.responses;
     step.bodies = read.bodies;
-    if (n < result.gradients.of.size()) step.sensitivities = result.gradients.of[n];
+    if (n < result.gradients.of_responses.size()) step.sensitivities = result.gradients.of_responses[n];
     if (n < result.gradients.records.size()) step.scheme = result.gradients.records[n];
     take_sides(result, n, step);
     steps.push_back(std::move(step));
@@ -126,7 +126,7 @@ std::string overflow_of(const CaseResult& result, const StepResult& step) {
 
 /// Which derivative is not finite, in words; empty where all are.
 std::string overflow_of(const Gradients& gradients, const Scene& scene) {
-  for (const auto& of : gradients.of)
+  for (const auto& of : gradients.of_responses)
     for (Eigen::Index i = 0; i < of.rows(); ++i)
       for (Eigen::Index j = 0; j < of.cols(); ++j)
         if (!std::isfinite(of(i, j)))

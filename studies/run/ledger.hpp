@@ -13,11 +13,11 @@
 
 namespace stickslip {
 
-/// A number of a row. `within`: of a forecast, the factor that it holds to; 1: exactly; 0: not known before the run.
+/// A number of a row. `spread`: of a forecast, the factor that it holds to; 1: exactly; 0: not known before the run.
 struct Amount {
   std::string name;
   double value = 0;
-  double within = 1;
+  double spread = 1;
 };
 
 /// A row of the ledger.

@@ -115,7 +115,7 @@ void add_contact_rows(const Problem& problem, const Size& n, const Amount& facto
                     {{"tangential", n.unknown ? n.tangential : 0}},
                     {{"history", number * (2 * n.tangential + n.feet + n.contacts) * n.states},
                      {"multipliers", 2 * number * n.tangential * n.states},
-                     {"factor", spares ? factor.value : 0, spares ? factor.within : exactly}},
+                     {"factor", spares ? factor.value : 0, spares ? factor.spread : exactly}},
                     {{"unsymmetric_factorizations", 0, n.unsymmetric ? not_known : exactly}},
                     not_apart});
   ledger.push_back(

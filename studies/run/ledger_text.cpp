@@ -16,7 +16,7 @@ using nlohmann::json;
 
 json amounts_json(const std::vector<Amount>& amounts) {
   json out = json::object();
-  for (const auto& amount : amounts) out[amount.name] = amount.within > 0 ? json(std::llround(amount.value)) : json();
+  for (const auto& amount : amounts) out[amount.name] = amount.spread > 0 ? json(std::llround(amount.value)) : json();
   return out;
 }
 
@@ -33,8 +33,8 @@ std::string sum_text(const std::vector<Amount>& amounts) {
   bool exact = true, all = true;
   for (const auto& amount : amounts) {
     sum += amount.value;
-    exact &= amount.within == 1 || amount.value == 0;
-    all &= amount.within > 0;
+    exact &= amount.spread == 1 || amount.value == 0;
+    all &= amount.spread > 0;
   }
   if (sum == 0) return all ? "" : "?";
   return (!all ? ">" : exact ? "" : "~") + bytes_text(sum);
@@ -48,7 +48,7 @@ std::string unknowns_text(const std::vector<Amount>& amounts) {
 std::string counts_text(const std::vector<Amount>& amounts) {
   std::string text;
   for (const auto& amount : amounts)
-    if (amount.within > 0 && amount.value > 0) text += (text.empty() ? "" : ", ") + amount_in_words(amount);
+    if (amount.spread > 0 && amount.value > 0) text += (text.empty() ? "" : ", ") + amount_in_words(amount);
   return text;
 }
 
@@ -57,7 +57,7 @@ std::string joined(const std::vector<std::string>& parts) { return fmt::format("
 }  // namespace
 
 std::string amount_in_words(const Amount& amount) {
-  return amount.within == 1 ? amount_in_words(amount.name, amount.value)
+  return amount.spread == 1 ? amount_in_words(amount.name, amount.value)
                             : "~" + number(amount.value) + " " + ledger_words(amount.name);
 }
 

@@ -75,7 +75,7 @@ class Pool {
  public:
   struct Worker {
     pid_t process;
-    int in;
+    int input;
     std::string unread;
     std::optional<std::size_t> piece;  ///< that it works on
   };
@@ -86,7 +86,7 @@ class Pool {
         ::kill(worker.process, SIGKILL);
         ::waitpid(worker.process, nullptr, 0);
       }
-      if (worker.in >= 0) ::close(worker.in);
+      if (worker.input >= 0) ::close(worker.input);
     }
   }
 
@@ -101,7 +101,7 @@ class Pool {
       if (::getppid() != parent) ::_exit(1);
 #endif
       ::close(ends[0]);
-      for (const auto& other : workers) ::close(other.in);
+      for (const auto& other : workers) ::close(other.input);
       serve(ends[1], counter, count, work);
     }
     ::close(ends[1]);
@@ -110,8 +110,8 @@ class Pool {
 
   /// Forgets a worker that closed its pipe and returns the signal that ended it, 0 for none.
   int dismiss(Worker& worker) {
-    ::close(worker.in);
-    worker.in = -1;
+    ::close(worker.input);
+    worker.input = -1;
     int status = 0;
     ::waitpid(worker.process, &status, 0);
     worker.process = 0;
@@ -156,13 +156,14 @@ void run_in_processes(int jobs, std::size_t count, const std::function<std::stri
   std::size_t open = pool.workers.size();
   while (open > 0) {
     std::vector<pollfd> ready;
-    for (const auto& worker : pool.workers) ready.push_back({worker.in, POLLIN, 0});  // a negative one is passed over
+    for (const auto& worker : pool.workers)
+      ready.push_back({worker.input, POLLIN, 0});  // a negative one is passed over
     if (::poll(ready.data(), ready.size(), -1) < 0 && errno != EINTR) fail("wait for the workers");
     for (std::size_t w = 0; w < ready.size(); ++w) {
       if (ready[w].fd < 0 || ready[w].revents == 0) continue;
       auto& worker = pool.workers[w];
       char block[65536];
-      const ssize_t size = ::read(worker.in, block, sizeof block);
+      const ssize_t size = ::read(worker.input, block, sizeof block);
       if (size < 0 && errno == EINTR) continue;
       if (size < 0) fail("read from a worker");
       worker.unread.append(block, static_cast<std::size_t>(size));

@@ -154,7 +154,7 @@ TEST(Adjoint, TakesOneTransposedSolveAnObjectiveAndIncrementHoweverManyParameter
   const auto all = both(scene, MonolithicAL{});
   scene.parameters.resize(1);
   const auto one = both(scene, MonolithicAL{});
-  const auto increments = static_cast<long>(all.forward.of.size());
+  const auto increments = static_cast<long>(all.forward.of_responses.size());
   const long solves = increments * static_cast<long>(scene.objectives.size());
   EXPECT_EQ(all.backward.counters.sensitivity_backsolves, one.backward.counters.sensitivity_backsolves);
   EXPECT_GE(all.backward.counters.sensitivity_backsolves, solves);
@@ -168,7 +168,7 @@ TEST(Adjoint, UpdatesTheFactorOfTheIncrementBehindWhereFewPointsChanged) {
   for (auto engine : {LinearAlgebra::Engine::sparse, LinearAlgebra::Engine::condensed}) {
     // (its sole is slipping along: a point or two change in an increment)
     const auto b = both(with_objectives(scenes::pull_out(40, {0, 1}, 20)), MonolithicAL{}, engine);
-    const auto increments = static_cast<long>(b.forward.of.size());
+    const auto increments = static_cast<long>(b.forward.of_responses.size());
     EXPECT_LT(2 * b.backward.counters.sensitivity_factorizations, increments);
     EXPECT_GT(b.backward.counters.sensitivity_factorizations, 0);
   }

@@ -59,7 +59,7 @@ TEST(Derivatives, ThatFollowARunFactoriseNothing) {
       const Vector<double> change = with[n].state.displacement - without[n].state.displacement;
       EXPECT_LE(largest_entry(change), 1e-12 * largest_entry(without[n].state.displacement)) << name_of(method) << n;
     }
-    expect_same(following.gradients.of, at_the_end.gradients.of, std::string(name_of(method)));
+    expect_same(following.gradients.of_responses, at_the_end.gradients.of_responses, std::string(name_of(method)));
   }
 }
 
@@ -76,7 +76,7 @@ TEST(Derivatives, ThatFollowARunLoseNoMoreUnderAStiffPenalty) {
     ASSERT_TRUE(is_converged(following.trajectory.status)) << following.trajectory.message;
     ASSERT_TRUE(is_converged(following.gradients.status)) << following.gradients.message;
     // rounding times the stiffness, and a hundred terms in a row
-    expect_same(following.gradients.of, at_the_end.gradients.of, "penalty", 1e-14 * stiffness);
+    expect_same(following.gradients.of_responses, at_the_end.gradients.of_responses, "penalty", 1e-14 * stiffness);
   }
 }
 
@@ -94,7 +94,7 @@ TEST(Derivatives, OfManyParametersAreThoseOfEachAlone) {
     Workspace<double> workspace;
     const auto trajectory = solve(model, slots, MonolithicAL{}, {}, workspace);
     responses = evaluate_responses(model, slots, trajectory.increments[0].state, 1.0);
-    return differentiate(model, slots, MonolithicAL{}, trajectory, workspace).of[0];
+    return differentiate(model, slots, MonolithicAL{}, trajectory, workspace).of_responses[0];
   };
   const Matrix<double> all = gradient_of(scene);
   constexpr double rounding = 1e-11;  // by condition numbers up to 1e4, of a response over the parameter
@@ -141,7 +141,7 @@ TEST(Derivatives, OfSeveralIncrementsAtOnceAreThoseOfOneAtATime) {
           }
         },
         method, *workspace.engine);
-    expect_same(together.of, alone, std::string(name_of(method)));
+    expect_same(together.of_responses, alone, std::string(name_of(method)));
   }
 }
 
@@ -160,16 +160,16 @@ TEST(Derivatives, OfContactResponsesNeedNoDisplacementsInside) {
     };
     const auto found = differentiated(contact_alone), expected = differentiated(full);
     ASSERT_TRUE(is_converged(found.status)) << found.message;
-    ASSERT_EQ(found.of.size(), expected.of.size());
+    ASSERT_EQ(found.of_responses.size(), expected.of_responses.size());
     std::vector<Matrix<double>> kept;
-    for (std::size_t n = 0; n < expected.of.size(); ++n) {
-      Matrix<double> rows(found.of[n].rows(), found.of[n].cols());
+    for (std::size_t n = 0; n < expected.of_responses.size(); ++n) {
+      Matrix<double> rows(found.of_responses[n].rows(), found.of_responses[n].cols());
       for (std::size_t i = 0; i < contact_alone.responses.size(); ++i)
         for (std::size_t k = 0; k < full.responses.size(); ++k)
-          if (full.responses[k].name == contact_alone.responses[i].name) rows.row(i) = expected.of[n].row(k);
+          if (full.responses[k].name == contact_alone.responses[i].name) rows.row(i) = expected.of_responses[n].row(k);
       kept.push_back(rows);
     }
-    expect_same(found.of, kept, std::string(name_of(method)));
+    expect_same(found.of_responses, kept, std::string(name_of(method)));
     expect_same({found.last_displacement}, {expected.last_displacement}, "displacement");
   }
 }

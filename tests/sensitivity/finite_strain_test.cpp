@@ -281,7 +281,7 @@ TEST(FiniteStrain, FeetBeginAsFunctionsOfTheScene) {
       const auto exact = oracle::complex_step(r.model, method, r.trajectory.step_table(), j);
       for (Eigen::Index i = 0; i < exact.rows(); ++i)
         EXPECT_NEAR(
-            r.gradients.of[0](i, j), exact(i, 0),
+            r.gradients.of_responses[0](i, j), exact(i, 0),
             1e-9 * std::max(std::abs(exact(i, 0)), std::abs(r.value(s.responses[i].name, 0) / s.parameters[j].value)))
             << name_of(method) << " " << s.responses[i].name << " by " << s.parameters[j].name;
     }

@@ -47,7 +47,7 @@ Found derivative_of(const Both& b, const std::string& response, const std::strin
     return std::find_if(all.begin(), all.end(), [&](const auto& x) { return x.name == name; }) - all.begin();
   };
   const auto i = place(scene.responses, response), j = place(scene.parameters, parameter);
-  const double given = b.solved.gradients.of[n](i, j);
+  const double given = b.solved.gradients.of_responses[n](i, j);
   if (!b.sides) return {given, given, given};
   return {b.sides->backward[n](i, j), b.sides->forward[n](i, j), given};
 }

@@ -82,7 +82,8 @@ TEST(FrictionLawDerivatives, EqualTheOracleInWhichEveryPieceOccurs) {
         for (Eigen::Index r = 0; r < exact.rows(); ++r)
           for (Eigen::Index n = 0; n < exact.cols(); ++n)
             // iterated schemes end at 1e-10 of the largest, and rounding is some 1e-13 of what a response is made of
-            EXPECT_NEAR(s.gradients.of[n](r, j), exact(r, n), 1e-7 * largest_entry(exact.row(r)) + rounding[r])
+            EXPECT_NEAR(s.gradients.of_responses[n](r, j), exact(r, n),
+                        1e-7 * largest_entry(exact.row(r)) + rounding[r])
                 << name_of(method) << " response " << r << " parameter " << j << " increment " << n;
       }
     }

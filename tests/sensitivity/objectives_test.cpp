@@ -42,7 +42,7 @@ struct Made {
     increment.state.displacement << x, y, 0, 0;
     Matrix<double> derivative(2, 2);
     derivative << x, 2 * x, y, 3 * y;
-    gradients.of.push_back(derivative);
+    gradients.of_responses.push_back(derivative);
   }
 };
 
@@ -72,7 +72,7 @@ TEST(Objectives, GradientsGoByTheChainRuleAndCountTheTarget) {
 
 TEST(Objectives, OfARunThatEndedEarlyHaveNoGradient) {
   Made made;
-  made.gradients.of.pop_back();
+  made.gradients.of_responses.pop_back();
   EXPECT_EQ(objective_gradients(made.model, made.slots, made.trajectory, made.gradients).size(), 0);
 }
 

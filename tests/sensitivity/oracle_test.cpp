@@ -19,7 +19,7 @@ using scenes::run;
 /// allows: oracle and scheme round differently, by 50 u cond; 1e-10 where that is less.
 double worst_error(const Scene& scene, const Method& method) {
   const auto s = run(scene, method);
-  EXPECT_EQ(s.gradients.of.size(), s.trajectory.increments.size()) << s.gradients.message;
+  EXPECT_EQ(s.gradients.of_responses.size(), s.trajectory.increments.size()) << s.gradients.message;
   Matrix<double> responses(scene.responses.size(), s.trajectory.increments.size());
   for (std::size_t n = 0; n < s.trajectory.increments.size(); ++n) {
     const auto& increment = s.trajectory.increments[n];
@@ -34,9 +34,9 @@ double worst_error(const Scene& scene, const Method& method) {
           std::max(largest_entry(exact.row(i)), largest_entry(responses.row(i)) / std::abs(scene.parameters[j].value));
       for (Eigen::Index n = 0; n < exact.cols(); ++n) {
         // a response that stays zero (no slip, no heat) has the derivative zero, to the last bit
-        const double error = std::abs(s.gradients.of[n](i, j) - exact(i, n)) / (scale > 0 ? scale : 1);
+        const double error = std::abs(s.gradients.of_responses[n](i, j) - exact(i, n)) / (scale > 0 ? scale : 1);
         EXPECT_LE(error, 1e-3) << name_of(method) << " " << scene.responses[i].name << "/" << scene.parameters[j].name
-                               << " increment " << n << ": " << s.gradients.of[n](i, j) << " " << exact(i, n);
+                               << " increment " << n << ": " << s.gradients.of_responses[n](i, j) << " " << exact(i, n);
         worst = larger(worst, error / rounding);
       }
     }
@@ -176,7 +176,7 @@ Preconditioned preconditioned(const Scene& scene, const scenes::Solved& exact, d
   const auto s = run(scene, uzawa(multiple, UzawaAL::Sensitivity::preconditioned, UzawaAL::Acceleration::anderson));
   Preconditioned out;
   const auto increments = static_cast<long>(s.trajectory.increments.size());
-  EXPECT_EQ(s.gradients.of.size(), exact.gradients.of.size());
+  EXPECT_EQ(s.gradients.of_responses.size(), exact.gradients.of_responses.size());
   const auto search = s.gradients.search;
   EXPECT_LE(s.gradients.counters.sensitivity_factorizations - search.sensitivity_factorizations, increments);
   long passes = 0;
@@ -190,11 +190,11 @@ Preconditioned preconditioned(const Scene& scene, const scenes::Solved& exact, d
   for (std::size_t i = 0; i < scene.responses.size(); ++i)
     for (std::size_t j = 0; j < scene.parameters.size(); ++j) {
       double scale = 0, error = 0;
-      for (std::size_t n = 0; n < exact.gradients.of.size(); ++n) {
+      for (std::size_t n = 0; n < exact.gradients.of_responses.size(); ++n) {
         const double response = exact.value(scene.responses[i].name, static_cast<int>(n));
-        scale = larger(scale, std::abs(exact.gradients.of[n](i, j)));
+        scale = larger(scale, std::abs(exact.gradients.of_responses[n](i, j)));
         scale = larger(scale, std::abs(response / scene.parameters[j].value));
-        error = larger(error, std::abs(s.gradients.of[n](i, j) - exact.gradients.of[n](i, j)));
+        error = larger(error, std::abs(s.gradients.of_responses[n](i, j) - exact.gradients.of_responses[n](i, j)));
       }
       if (scale != 0) out.error = larger(out.error, error / scale);
     }

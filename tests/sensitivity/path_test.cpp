@@ -118,7 +118,7 @@ TEST(Path, HasTheDerivativesOfItsPointsAtTheirLoads) {
       ASSERT_EQ(exact.cols(), static_cast<Eigen::Index>(s.trajectory.increments.size())) << name_of(method);
       for (Eigen::Index n = 0; n < exact.cols(); ++n)
         for (Eigen::Index i = 0; i < exact.rows(); ++i)
-          EXPECT_NEAR(s.gradients.of[n](i, j), exact(i, n), 1e-8 * std::max(1.0, largest_entry(exact.col(n))))
+          EXPECT_NEAR(s.gradients.of_responses[n](i, j), exact(i, n), 1e-8 * std::max(1.0, largest_entry(exact.col(n))))
               << name_of(method) << " " << n << " " << scene.responses[i].name << " " << scene.parameters[j].name;
     }
     scenes::ask_for_objectives(scene);

@@ -55,9 +55,10 @@ TEST(Plasticity, OfABarOnAWallHasTheForceOfTheClosedForm) {
       EXPECT_NEAR(s.value("force", n), force, 1e-9 * top) << name_of(method) << " at " << t;
       // by the yield stress: 1 - Et / E once it flows, and while contact lasts; then the gap left by plastic strain
       const bool flows = strain > yield / E || t > 1;
-      EXPECT_NEAR(s.gradients.of[n](0, 1), flows && force > 0 ? 1 - Et / E : 0, 1e-9) << name_of(method) << " at " << t;
+      EXPECT_NEAR(s.gradients.of_responses[n](0, 1), flows && force > 0 ? 1 - Et / E : 0, 1e-9)
+          << name_of(method) << " at " << t;
       if (t > 1 && force == 0) {
-        EXPECT_NEAR(s.gradients.of[n](1, 1), -(1 - Et / E) / E, 1e-12) << name_of(method) << " at " << t;
+        EXPECT_NEAR(s.gradients.of_responses[n](1, 1), -(1 - Et / E) / E, 1e-12) << name_of(method) << " at " << t;
       }
     }
     const Vector<double>& remembered = s.trajectory.increments.back().state.history.bodies;
@@ -100,7 +101,7 @@ TEST(Plasticity, OfABarFollowsAHardeningTable) {
         by_strain = k == 1 ? -x * slope : k == 2 ? -(1 - x) * slope : 0;
       }
       EXPECT_NEAR(s.value("force", n), force, 1e-9 * 13) << name_of(method) << " at " << strain;
-      const auto& gradient = s.gradients.of[n];
+      const auto& gradient = s.gradients.of_responses[n];
       EXPECT_NEAR(gradient(0, 0), by_yield, 1e-9) << name_of(method) << " at " << strain;
       EXPECT_NEAR(gradient(0, 1), by_strain, 1e-9 * E) << name_of(method) << " at " << strain;
       EXPECT_NEAR(gradient(0, 2), by_first, 1e-9) << name_of(method) << " at " << strain;

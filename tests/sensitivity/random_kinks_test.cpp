@@ -206,7 +206,7 @@ void check(const Scene& scene, const Method& method, const std::string& what, Ta
   const auto gradients = differentiate(model, slots, method, trajectory, workspace);
   const auto sides = one_sided_derivatives(model, slots, method, trajectory, workspace);
   const auto base = responses(scene, method, table);
-  if (gradients.of.size() != table.size() || base.size() == 0) {
+  if (gradients.of_responses.size() != table.size() || base.size() == 0) {
     ++tally.unsolved;
     return;
   }
@@ -220,10 +220,10 @@ void check(const Scene& scene, const Method& method, const std::string& what, Ta
         for (Eigen::Index i = 0; i < base.rows(); ++i) {
           const double scale = std::max(largest_entry(found->value.row(i)),
                                         largest_entry(base.row(i)) / kinks::size_of(scene.parameters[j]));
-          const auto& ties = k == 0 ? gradients.below : gradients.above;
+          const auto& ties = k == 0 ? gradients.from_below : gradients.from_above;
           const double given = sides             ? (k == 0 ? sides->backward : sides->forward)[n](i, j)
                                : ties.size() > n ? ties[n](i, j)
-                                                 : gradients.of[n](i, j);
+                                                 : gradients.of_responses[n](i, j);
           if (largest_entry(found->spread.row(i).head(n + 1)) > agreement * scale + noise) {
             ++tally.unclear;
             continue;
@@ -237,7 +237,7 @@ void check(const Scene& scene, const Method& method, const std::string& what, Ta
           if (++tally.wrong <= 20)
             ADD_FAILURE() << what << " " << scene.responses[i].name << "/" << scene.parameters[j].name << " side " << k
                           << " increment " << n << " of " << table.size() << ": " << given << " for "
-                          << found->value(i, n) << " (nominal " << gradients.of[n](i, j) << ", sides "
+                          << found->value(i, n) << " (nominal " << gradients.of_responses[n](i, j) << ", sides "
                           << sides.has_value() << ")";
         }
     }

@@ -42,7 +42,7 @@ TEST(CriticalFriction, LeavesNoDerivativeOfAnySize) {
       Workspace<double> workspace;
       const auto trajectory = solve(model, slots, method, {}, workspace);
       const auto gradients = differentiate(model, slots, method, trajectory, workspace);
-      for (const auto& of : gradients.of)  // a stick's, or of a spring: u is 0.4 at most, by a push of 20
+      for (const auto& of : gradients.of_responses)  // a stick's, or of a spring: u is 0.4 at most, by a push of 20
         EXPECT_LE(largest_entry(of), 1e3) << name_of(method) << push;
     }
   }

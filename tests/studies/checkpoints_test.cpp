@@ -86,9 +86,9 @@ TEST_P(LetGo, AndTheMemoryIsForetold) {
                                      {"adjoint_sensitivity", "states"},
                                      {"adjoint_sensitivity", "repeated_increments"}}) {
     const Amount before = amount_of(foretold, effect, name), after = amount_of(kept, effect, name);
-    ASSERT_GE(before.within, 1) << effect << name;
-    EXPECT_LE(after.value, before.value * before.within) << effect << name;
-    EXPECT_GE(after.value, before.value / before.within) << effect << name;
+    ASSERT_GE(before.spread, 1) << effect << name;
+    EXPECT_LE(after.value, before.value * before.spread) << effect << name;
+    EXPECT_GE(after.value, before.value / before.spread) << effect << name;
   }
   EXPECT_LT(memory_of(kept, "bodies", "states"), 0.6 * memory_of(ledger(all.result), "bodies", "states"));
   EXPECT_GT(memory_of(kept, "adjoint_sensitivity", "states"), 0);

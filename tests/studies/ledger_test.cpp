@@ -84,11 +84,11 @@ void expect_amounts_foretold(const std::vector<Amount>& foretold, const std::vec
     const Amount &before = foretold[i], &after = kept[i];
     const std::string what = where + " " + after.name;
     EXPECT_EQ(before.name, after.name) << what;
-    if (before.within == 0) continue;
-    EXPECT_GE(before.within, 1) << what;
+    if (before.spread == 0) continue;
+    EXPECT_GE(before.spread, 1) << what;
     constexpr double rounding = 1e-12;  // of the factor itself
-    EXPECT_LE(after.value, before.value * before.within * (1 + rounding)) << what;
-    EXPECT_GE(after.value, before.value / before.within * (1 - rounding)) << what;
+    EXPECT_LE(after.value, before.value * before.spread * (1 + rounding)) << what;
+    EXPECT_GE(after.value, before.value / before.spread * (1 - rounding)) << what;
   }
 }
 

@@ -35,7 +35,7 @@ inline std::vector<Method> finite_schemes() {
 inline void expect_derivatives_of_the_oracle(const Scene& scene, const Method& method) {
   const auto s = run(scene, method);
   ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
-  ASSERT_EQ(s.gradients.of.size(), s.trajectory.increments.size()) << s.gradients.message;
+  ASSERT_EQ(s.gradients.of_responses.size(), s.trajectory.increments.size()) << s.gradients.message;
   const double allowed =
       std::max(std::holds_alternative<UzawaAL>(method) ? 1e-9 : 1e-10, 50 * unit_roundoff * s.condition);
   const auto last = evaluate_responses(s.model, s.slots, s.trajectory.increments.back().state, s.model.times.back());
@@ -44,7 +44,7 @@ inline void expect_derivatives_of_the_oracle(const Scene& scene, const Method& m
     for (Eigen::Index r = 0; r < exact.rows(); ++r) {
       const double scale = std::max(largest_entry(exact.row(r)), std::abs(last[r] / s.model.scene.parameters[j].value));
       for (Eigen::Index n = 0; n < exact.cols(); ++n)
-        EXPECT_NEAR(s.gradients.of[n](r, j), exact(r, n), allowed * scale)
+        EXPECT_NEAR(s.gradients.of_responses[n](r, j), exact(r, n), allowed * scale)
             << name_of(method) << " " << s.model.scene.responses[r].name << " by " << s.model.scene.parameters[j].name
             << ", increment " << n;
     }

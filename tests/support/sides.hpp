@@ -71,8 +71,8 @@ inline int expect_sides(const Scene& scene, const Named& named) {
   const auto b = both(scene, named.method);
   const auto& s = b.solved;
   const std::size_t count = s.trajectory.increments.size();
-  EXPECT_EQ(s.gradients.of.size(), count) << s.gradients.message;
-  if (s.gradients.of.size() != count) return 0;
+  EXPECT_EQ(s.gradients.of_responses.size(), count) << s.gradients.message;
+  if (s.gradients.of_responses.size() != count) return 0;
   const double allowed = std::max({1e-9, 50 * unit_roundoff * s.condition, named.scheme});
   int kinks = 0;
   for (int j = 0; j < static_cast<int>(scene.parameters.size()); ++j) {
@@ -89,7 +89,7 @@ inline int expect_sides(const Scene& scene, const Named& named) {
         scale = larger(scale, std::abs(s.value(scene.responses[i].name, static_cast<int>(n))) /
                                   kinks::size_of(scene.parameters[j]));
       for (std::size_t n = 0; n < count; ++n) {
-        const double lower = (*exact[0])(i, n), upper = (*exact[1])(i, n), given = s.gradients.of[n](i, j);
+        const double lower = (*exact[0])(i, n), upper = (*exact[1])(i, n), given = s.gradients.of_responses[n](i, j);
         const auto what = [&] {
           return scene.responses[i].name + "/" + scene.parameters[j].name + " at " +
                  std::to_string(s.trajectory.increments[n].time);

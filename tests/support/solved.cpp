@@ -13,7 +13,7 @@ double Solved::value(const std::string& name, int n) const {
 
 double Solved::derivative(const std::string& name, const std::string& of, int n) const {
   for (std::size_t j = 0; j < model.scene.parameters.size(); ++j)
-    if (model.scene.parameters[j].name == of) return gradients.of.at(index(n))(response(name), j);
+    if (model.scene.parameters[j].name == of) return gradients.of_responses.at(index(n))(response(name), j);
   throw std::out_of_range(of);
 }
 

@@ -24,19 +24,19 @@ TEST(Reverse, GivesTheDerivativesOfDual) {
       const auto a = Reverse::leaf(x, tape), b = Reverse::leaf(y, tape);
       const auto f = everything(a, b);
       std::vector<double> by(tape.size());
-      by[f.at] = 1;
+      by[f.entry] = 1;
       tape.pull_back(by, 0);
       // a few dozen roundings, in another order
       EXPECT_NEAR(f.v, forward.v, 30 * epsilon * std::abs(forward.v));
-      EXPECT_NEAR(by[a.at], forward.d[0], 60 * epsilon * std::abs(forward.d[0]));
-      EXPECT_NEAR(by[b.at], forward.d[1], 60 * epsilon * std::abs(forward.d[1]));
+      EXPECT_NEAR(by[a.entry], forward.d[0], 60 * epsilon * std::abs(forward.d[0]));
+      EXPECT_NEAR(by[b.entry], forward.d[1], 60 * epsilon * std::abs(forward.d[1]));
     }
 }
 
 TEST(Reverse, ConstantsLeaveNothingOnTheTape) {
   Tape tape;
   const auto x = Reverse::leaf(2, tape);
-  EXPECT_EQ((Reverse(3) * Reverse(4) + sqrt(Reverse(2))).at, -1);
+  EXPECT_EQ((Reverse(3) * Reverse(4) + sqrt(Reverse(2))).entry, -1);
   EXPECT_EQ(tape.size(), 1);
   const auto y = x * Reverse(3);
   EXPECT_EQ(tape.size(), 2);
@@ -48,15 +48,15 @@ TEST(Tape, GathersWhatSeveralSweepsSeed) {
   const auto x = Reverse::leaf(2, tape), y = Reverse::leaf(5, tape);
   const auto product = x * y, sum = product + x;
   std::vector<double> by(tape.size());
-  by[product.at] = 1;
+  by[product.entry] = 1;
   tape.pull_back(by, 0);
-  EXPECT_EQ(by[x.at], 5);
-  EXPECT_EQ(by[y.at], 2);
-  EXPECT_EQ(by[product.at], 0);  // moved on, so that the next sweep does not move it again
-  by[sum.at] = 10;
+  EXPECT_EQ(by[x.entry], 5);
+  EXPECT_EQ(by[y.entry], 2);
+  EXPECT_EQ(by[product.entry], 0);  // moved on, so that the next sweep does not move it again
+  by[sum.entry] = 10;
   tape.pull_back(by, 0);
-  EXPECT_EQ(by[x.at], 5 + 10 * 6);
-  EXPECT_EQ(by[y.at], 2 + 10 * 2);
+  EXPECT_EQ(by[x.entry], 5 + 10 * 6);
+  EXPECT_EQ(by[y.entry], 2 + 10 * 2);
 }
 
 TEST(Tape, StopsWhereASweepIsToStopAndForgetsWhatIsRewound) {
@@ -66,14 +66,14 @@ TEST(Tape, StopsWhereASweepIsToStopAndForgetsWhatIsRewound) {
   const int start = tape.size();
   const auto cube = square * x;
   std::vector<double> by(tape.size());
-  by[cube.at] = 1;
+  by[cube.entry] = 1;
   tape.pull_back(by, start);
-  EXPECT_EQ(by[x.at], 4);
-  EXPECT_EQ(by[square.at], 2);
+  EXPECT_EQ(by[x.entry], 4);
+  EXPECT_EQ(by[square.entry], 2);
   tape.rewind(start);
   by.resize(start);
   tape.pull_back(by, 0);
-  EXPECT_EQ(by[x.at], 12);
+  EXPECT_EQ(by[x.entry], 12);
 }
 
 }  // namespace

@@ -48,8 +48,8 @@ TEST(Curve, WeightsSumToOneAndTheirSlopesAreDerivatives) {
         const auto c = detail::patch_weights<std::complex<double>>(patch, {xi, step});
         double sum = 0;
         for (int i = 0; i < 4; ++i) {
-          sum += w.at[i];
-          EXPECT_NEAR(w.slope[i], c.at[i].imag() / step, 1e-14);
+          sum += w.value[i];
+          EXPECT_NEAR(w.slope[i], c.value[i].imag() / step, 1e-14);
           EXPECT_NEAR(w.bend[i], c.slope[i].imag() / step, 1e-14);
         }
         EXPECT_NEAR(sum, 1, 1e-15);
@@ -68,7 +68,7 @@ TEST(Curve, SmoothPatchesMeetWithTheirNormalsAndSplinesWithTheirCurvatures) {
                 detail::on_patch<double>(patches[patch.next], b, ring.where()))
             .norm();
       };
-      EXPECT_LE(gap(end.at, start.at), 1e-15);
+      EXPECT_LE(gap(end.value, start.value), 1e-15);
       EXPECT_LE(gap(end.slope, start.slope), 1e-15);
       if (kind == Smoothing::b_spline) {
         EXPECT_LE(gap(end.bend, start.bend), 1e-15);
@@ -128,7 +128,7 @@ TEST(Curve, FeetAreAtRightAnglesAndDifferentiateThroughTheirDefinition) {
         ASSERT_NE(facing.patch, Patch::none);
         const Patch& patch = patches[facing.patch];
         const auto foot = foot_on_patch<double>(patch, facing.xi, x, ring.where());
-        EXPECT_NEAR((x - foot.at - foot.gap * foot.normal).norm(), 0, 1e-14);
+        EXPECT_NEAR((x - foot.place - foot.gap * foot.normal).norm(), 0, 1e-14);
         EXPECT_NEAR(foot.gap, radius - 1, 0.1);
         // by x: dg = n . dx; complex step through two Newton steps against a difference of feet found anew
         for (int i : {0, 1}) {

@@ -75,11 +75,12 @@ void expect_derivatives_of_flow(const J2Law<double>& law) {
   StateOfElement<n> state{0.05 * derivatives::arbitrary(2 * n, 10).reshaped(2, n),
                           derivatives::arbitrary(2 * n, 20).reshaped(2, n), 0.01 * derivatives::arbitrary(memory, 30),
                           derivatives::arbitrary(memory, 40)};
-  for (int m = 3; m < memory; m += 4) state.before[m] = std::abs(state.before[m]);
+  for (int m = 3; m < memory; m += 4) state.last_memory[m] = std::abs(state.last_memory[m]);
   const Mat<double, 2, n> X = some_element<Shape>();
   Vector<double> inputs(4 * n + 5 + memory);
   const auto numbers = law.numbers();
-  inputs << X.reshaped(), 0.7, numbers[0], numbers[1], numbers[2], numbers[3], state.motion.reshaped(), state.before;
+  inputs << X.reshaped(), 0.7, numbers[0], numbers[1], numbers[2], numbers[3], state.motion.reshaped(),
+      state.last_memory;
   const auto work = [&](const auto& x) {
     using T = typename std::decay_t<decltype(x)>::Scalar;
     const Mat<T, 2, n> coordinates = x.head(2 * n).reshaped(2, n), u = x.segment(2 * n + 5, 2 * n).reshaped(2, n);
@@ -96,7 +97,7 @@ void expect_derivatives_of_flow(const J2Law<double>& law) {
   const auto found = element_work<Shape, kinematics>(law, X, 0.7, {state});
   Matrix<double> derivative(1, inputs.size());
   derivative << found.coordinates.reshaped().transpose(), found.depth, found.law[0], found.law[1], found.law[2],
-      found.law[3], found.motion[0].reshaped().transpose(), found.before[0].transpose();
+      found.law[3], found.motion[0].reshaped().transpose(), found.last_memory[0].transpose();
   EXPECT_LE(derivatives::relative_difference(derivative, derivatives::by_complex_step(work, inputs)), 1e-12);
 }
 

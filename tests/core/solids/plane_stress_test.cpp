@@ -92,10 +92,10 @@ TEST_P(ThinRubber, HasTheStressOfItsEnergyAndDerivativesInAllScalars) {
     const Vector<Reverse> out = stress(leaf);
     for (int i = 0; i < 4; ++i) {
       std::vector<double> by(tape.size(), 0);
-      by[out[i].at] = 1;
+      by[out[i].entry] = 1;
       tape.pull_back(by, 0);
       for (int k = 0; k < 6; ++k)
-        EXPECT_NEAR(by[leaf[k].at], by_dual(i, k), allowed / (1 - 2 * nu()) * largest_entry(by_dual)) << i << k;
+        EXPECT_NEAR(by[leaf[k].entry], by_dual(i, k), allowed / (1 - 2 * nu()) * largest_entry(by_dual)) << i << k;
     }
   }
 }
