@@ -103,7 +103,10 @@ constexpr int component(int p, int q) { return p == 2 ? 4 : 2 * p + q; }
 
 /// A law whose tangent is the same at all displacements.
 template <class Law>
-concept IsLinear = !requires { Law::memory; } && !Law::is_finite;
+concept IsLinear = !requires {
+  Law::memory;
+}
+&&!Law::is_finite;
 
 /// dsigma/dH times a volume, component by component; of a law that remembers, with the flow from `before`.
 template <class T, int components, int rows, class Law>
@@ -195,7 +198,8 @@ Mat<T, 2 * Shape::nodes> element_tangent(const Law& law, const Mat<T, 2, Shape::
   });
   if constexpr (mirrors)
     for (int b = 1; b < n; ++b)
-      for (int a = 0; a < b; ++a) K.template block<2, 2>(2 * a, 2 * b) = K.template block<2, 2>(2 * b, 2 * a).transpose();
+      for (int a = 0; a < b; ++a)
+        K.template block<2, 2>(2 * a, 2 * b) = K.template block<2, 2>(2 * b, 2 * a).transpose();
   return K;
 }
 
