@@ -12,7 +12,7 @@ struct Piece {
   std::array<int, 2> slave{};               ///< nodes a -> b, solid on the left
   std::array<int, 2> master{{none, none}};  ///< nodes c -> d; none: the obstacle of the contact
   int facet = none;                         ///< of the master, by number
-  int first_end = start, last_end = end;               ///< ends of the piece: of the facet, or the master node projected there
+  int first_end = start, last_end = end;    ///< ends of the piece: of the facet, or the master node projected there
   int carrier = 0;                          ///< which of the two slave nodes carries the multiplier
   bool whole = false;                       ///< psi = 1: the other node carries none
   friend bool operator==(const Piece&, const Piece&) = default;
