@@ -29,12 +29,16 @@ constexpr bool prevents_penetration(const Penalty&) { return false; }
 namespace detail {
 
 /// Points, closed in `field`, whose constraints could contradict others. Left out is a point whose slave node belongs
-/// to no other point and is free to follow along the normal.
+/// to no other point and is free to follow along the normal. Points that are integrated where they are now share the
+/// nodes of their facets, which contradicts nothing.
 template <class T>
 std::vector<int> shared_points(const Model& model, const Slots<T>& slots, const ContactField<T>& field) {
   std::vector<int> users(model.node_count, 0);
-  for (std::size_t p = 0; p < model.points.size(); ++p)
-    for (int node : model.points[p].nodes) ++users[node];
+  for (const auto& point : model.points)
+    for (std::size_t n = 0; n < point.nodes.size(); ++n) {
+      const bool beside = n > 0 && static_cast<int>(n) < point.slave_nodes;
+      if (!beside || !model.effects.current_geometry) ++users[point.nodes[n]];
+    }
   std::vector<int> shared;
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     if (field.state[p] == ContactState::open) continue;
