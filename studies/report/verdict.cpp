@@ -334,14 +334,14 @@ std::string who_is_faster(const Measure& measure, const Column& column) {
   for (const Choice& choice : column.runs) {
     if (!choice.run) continue;
     if (is_fastest(column, measure, *choice.run))
-      faster.push_back(escape_sentence(choice.name() + ", " + seconds_in_words(measure.seconds(*choice.run))));
+      faster.push_back(escape_sentence(choice.row + ", " + seconds_in_words(measure.seconds(*choice.run))));
     if (is_least(column, measure, *choice.run) &&
         (!slowest || measure.seconds(*choice.run) > measure.seconds(*slowest->run)))
       slowest = &choice;
   }
   if (faster.empty()) return "";
   return fmt::format("; by the clock faster: {}, where {} took {}", enumerated(faster),
-                     escape_sentence(slowest->name()),
+                     escape_sentence(slowest->row),
                      escape_sentence(seconds_in_words(measure.seconds(*slowest->run))));
 }
 
