@@ -115,7 +115,8 @@ class Names {
     double most = -1;
     for (json* mark : marks_)
       if ((*mark)["part"] == part)
-        if (const double room = room_above(*mark) + room_beside(*mark) + 2 * room_of_names(*mark); room > most) {
+        if (const double room = room_above(*mark) + (is_crossed(*mark) ? 0 : 2) + 2 * room_of_names(*mark);
+            room > most) {
           most = room;
           best = mark;
         }
@@ -148,19 +149,25 @@ class Names {
     return room;
   }
   bool has_word_left(const json& mark) const { return high_.x - place_of(mark).x < word / 2 * (high_.x - low_.x); }
-  /// How far the curves of other parts are from the middle of a word beside the mark.
-  double room_beside(const json& mark) const {
+  /// Whether the curve of another part runs through a word that stands beside the mark and a little above it.
+  bool is_crossed(const json& mark) const {
+    constexpr double foot = 0.005, head = 0.06;  // of the word, as shares of the chart's height
     const Place at = place_of(mark);
-    const double middle = at.x + (has_word_left(mark) ? -1 : 1) * word / 2 * std::max(high_.x - low_.x, 1.0);
-    double room = 1;
-    for (const auto& [part, curve] : curves_)
-      for (std::size_t i = 1; i < curve.size() && part != mark["part"]; ++i) {
-        const Place &a = curve[i - 1], &b = curve[i];
-        if (middle < a.x || middle > b.x || a.x == b.x) continue;
-        const double y = a.y + (b.y - a.y) * (middle - a.x) / (b.x - a.x);
-        room = std::min(room, std::abs(y - at.y) / std::max(high_.y - low_.y, 1.0) / line);
+    const double length = (has_word_left(mark) ? -word : word) * std::max(high_.x - low_.x, 1.0);
+    const double height = std::max(high_.y - low_.y, 1.0);
+    const auto crosses = [&](const Place& a, const Place& b) {
+      for (const double share : {0.1, 0.25, 0.4, 0.55, 0.7}) {
+        const double x = at.x + share * length;
+        if (x < a.x || x > b.x || a.x == b.x) continue;
+        const double above = (a.y + (b.y - a.y) * (x - a.x) / (b.x - a.x) - at.y) / height;
+        if (above > foot && above < head) return true;
       }
-    return room;
+      return false;
+    };
+    return std::any_of(curves_.begin(), curves_.end(), [&](const auto& entry) {
+      const auto& [part, curve] = entry;
+      return part != mark["part"] && std::adjacent_find(curve.begin(), curve.end(), crosses) != curve.end();
+    });
   }
   double room_of_names(const json& mark) const {
     double room = 1;
