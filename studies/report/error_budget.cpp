@@ -103,7 +103,10 @@ class Names {
       const Place at = place_of(*mark);
       low_ = {std::min(low_.x, at.x), std::min(low_.y, at.y)};
       high_ = {std::max(high_.x, at.x), std::max(high_.y, at.y)};
+      curves_[(*mark)["part"]].push_back(at);
     }
+    for (auto& [part, curve] : curves_)
+      std::sort(curve.begin(), curve.end(), [](const Place& a, const Place& b) { return a.x < b.x; });
   }
 
   /// Names a part once: where it stands clear of the others above and below it, and of the names written before.
@@ -112,13 +115,14 @@ class Names {
     double most = -1;
     for (json* mark : marks_)
       if ((*mark)["part"] == part)
-        if (const double room = room_above(*mark) + 2 * room_of_names(*mark); room > most) {
+        if (const double room = room_above(*mark) + (is_crossed(*mark) ? 0 : 2) + 2 * room_of_names(*mark);
+            room > most) {
           most = room;
           best = mark;
         }
     if (!best) return;
     (*best)["tag"] = part;
-    (*best)["tag_at"] = high_.x - place_of(*best).x < word / 2 * (high_.x - low_.x) ? "left" : "right";
+    (*best)["tag_at"] = has_word_left(*best) ? "left" : "right";
     named_.push_back(best);
   }
 
@@ -144,6 +148,27 @@ class Names {
         room = std::min(room, apart(mark, *other).y / line);
     return room;
   }
+  bool has_word_left(const json& mark) const { return high_.x - place_of(mark).x < word / 2 * (high_.x - low_.x); }
+  /// Whether the curve of another part runs through a word that stands beside the mark and a little above it.
+  bool is_crossed(const json& mark) const {
+    constexpr double foot = 0.005, head = 0.06;  // of the word, as shares of the chart's height
+    const Place at = place_of(mark);
+    const double length = (has_word_left(mark) ? -word : word) * std::max(high_.x - low_.x, 1.0);
+    const double height = std::max(high_.y - low_.y, 1.0);
+    const auto crosses = [&](const Place& a, const Place& b) {
+      for (const double share : {0.1, 0.25, 0.4, 0.55, 0.7}) {
+        const double x = at.x + share * length;
+        if (x < a.x || x > b.x || a.x == b.x) continue;
+        const double above = (a.y + (b.y - a.y) * (x - a.x) / (b.x - a.x) - at.y) / height;
+        if (above > foot && above < head) return true;
+      }
+      return false;
+    };
+    return std::any_of(curves_.begin(), curves_.end(), [&](const auto& entry) {
+      const auto& [part, curve] = entry;
+      return part != mark["part"] && std::adjacent_find(curve.begin(), curve.end(), crosses) != curve.end();
+    });
+  }
   double room_of_names(const json& mark) const {
     double room = 1;
     for (const json* other : named_)
@@ -153,6 +178,7 @@ class Names {
 
   std::vector<json*> marks_;
   std::vector<const json*> named_;
+  std::map<std::string, std::vector<Place>> curves_;  ///< by part, from left to right
   Place low_{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   Place high_{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
 };
@@ -224,15 +250,24 @@ std::string dominant_part(const Study& study, const std::string& family, const s
     const json& error = at(budget, "error").is_number() ? at(budget, "error") : at(budget, "sum");
     return error.is_number() ? std::abs(error.get<double>()) : std::numeric_limits<double>::infinity();
   };
+  constexpr double alike = 1.001;  // what differs by less is the choice of rounding
+  const auto of_the_method = [&](const Cell& cell) {
+    return cell.family == family && cell.variant == study.main_variant && std::isfinite(off_by(cell));
+  };
   for (const auto& cell : study.cells)
-    if (cell.family == family && cell.variant == study.main_variant && std::isfinite(off_by(cell)))
-      if (!best || off_by(cell) < off_by(*best)) best = &cell;
+    if (of_the_method(cell) && (!best || off_by(cell) < off_by(*best))) best = &cell;
   if (!best) return {};
+  const bool all_alike = std::count_if(study.cells.begin(), study.cells.end(), of_the_method) > 1 &&
+                         std::all_of(study.cells.begin(), study.cells.end(), [&](const Cell& cell) {
+                           return !of_the_method(cell) || off_by(cell) <= alike * off_by(*best);
+                         });
   const json& budget = at(budgets_of(*best), quantity);
   const bool known = at(budget, "error").is_number();
   const double off = (known ? at(budget, "error") : at(budget, "sum")).get<double>();
-  std::string out = fmt::format("{} comes nearest of its method: off by {} in {}{}", series_of(*best, ""),
-                                signed_number(off), quantity_in_words(quantity), known ? "" : ", the sum of its parts");
+  const std::string who = all_alike ? family_name(family) + " is the same at every setting"
+                                    : series_of(*best, "") + " comes nearest of its method";
+  std::string out = fmt::format("{}: off by {} in {}{}", who, signed_number(off), quantity_in_words(quantity),
+                                known ? "" : ", the sum of its parts");
   const auto parts = parts_by_size(budget);
   if (parts.empty()) return out + "; no part is above what rounding leaves uncertain.";
   const auto& [part, value] = parts.front();

@@ -40,6 +40,7 @@
     ]);
     const copy = JSON.parse(JSON.stringify(spec), (key, value) => words.has(value) ? words.get(value) : value);
     copy.datasets = {rows};
+    placeGroundWords(copy, rows);
     for (const layer of copy.layer)
       for (const [name, room] of [['x', width - 110], ['y', copy.height]]) {
         const channel = layer.encoding?.[name];
@@ -87,6 +88,20 @@
     channel.axis.values = [ground, ...(channel.axis.values ?? []).filter((tick) => tick > 5 * ground)];
     channel.axis.labelExpr = `datum.value <= ${ground * 1.01} ? '0' : ${channel.axis.labelExpr}`;
     if (channel.scale.domain) channel.scale.domain = [ground, Math.max(...channel.scale.domain)];
+  }
+
+  /** Moves the words of the line of exact zeros to its right end, where a zero stands at the left one alone. */
+  function placeGroundWords(spec, rows) {
+    const words = spec.layer.flatMap((layer) => layer.layer ?? []).find((layer) => layer.mark.text === 'exactly 0');
+    const x = spec.layer.find((layer) => layer.encoding?.x?.scale)?.encoding.x;
+    if (!words || !x) return;
+    const place = (row) => x.scale.type === 'log' ? Math.log10(row[x.field]) : row[x.field];
+    const places = rows.map(place).filter(Number.isFinite);
+    const low = Math.min(...places), high = Math.max(...places);
+    const lacks = x.scale.type === 'log' ? Math.max(0, 1 - (high - low)) / 2 : 0;  // of the decade that is shown
+    const shares = rows.filter((row) => row.zero).map((row) => (place(row) - low + lacks) / (high - low + 2 * lacks));
+    if (shares.some((share) => share < 0.2) && !shares.some((share) => share > 0.75))
+      Object.assign(words.mark, {align: 'right', x: 'width', dx: -4});
   }
 
   /** Powers of ten around two exponents, thinned out to nine or so; over few decades also 2 and 5 times them. */

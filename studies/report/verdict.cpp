@@ -233,8 +233,8 @@ std::string entry(const Row& row, const Measure& measure, const Column& column, 
   std::string cost = "<span>work " + number(measure.work(*run), 2) + (least ? " &#9733;" : "") + "</span>";
   if (measure.seconds(*run) > 0)
     cost += " <span>&middot; " + escape(seconds_in_words(measure.seconds(*run))) + "</span>";
-  return cell(least ? "least" : "",
-              fmt::format("{}<br><small>{}{}</small>", unbroken(choice.setting()), cost, fastest ? "<br>fastest" : ""));
+  if (fastest) cost += " <span>&middot; fastest</span>";
+  return cell(least ? "least" : "", fmt::format("{}<br><small>{}</small>", unbroken(choice.setting()), cost));
 }
 
 /// "a and b"; of more than three "a, b and 4 others".
@@ -331,18 +331,19 @@ std::string what_others_take(const std::vector<const Choice*>& others, bool many
 std::string who_is_faster(const Measure& measure, const Column& column) {
   std::vector<std::string> faster;
   const Choice* slowest = nullptr;
+  const auto timed = [&](const Choice& choice) {
+    return escape_sentence(choice.row + " (" + seconds_in_words(measure.seconds(*choice.run)) + ")");
+  };
   for (const Choice& choice : column.runs) {
     if (!choice.run) continue;
-    if (is_fastest(column, measure, *choice.run))
-      faster.push_back(escape_sentence(choice.name() + ", " + seconds_in_words(measure.seconds(*choice.run))));
+    if (is_fastest(column, measure, *choice.run)) faster.push_back(timed(choice));
     if (is_least(column, measure, *choice.run) &&
         (!slowest || measure.seconds(*choice.run) > measure.seconds(*slowest->run)))
       slowest = &choice;
   }
   if (faster.empty()) return "";
-  return fmt::format("; by the clock faster: {}, where {} took {}", enumerated(faster),
-                     escape_sentence(slowest->name()),
-                     escape_sentence(seconds_in_words(measure.seconds(*slowest->run))));
+  return fmt::format("; by the clock {} {} {}", enumerated(faster), faster.size() == 1 ? "beats" : "beat",
+                     timed(*slowest));
 }
 
 /// "Penalty does not get there (best 2.4 %)" of rows that no choice stands for; "" where there is none.
