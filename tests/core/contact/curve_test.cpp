@@ -56,7 +56,7 @@ TEST(Curve, WeightsSumToOneAndTheirSlopesAreDerivatives) {
       }
 }
 
-TEST(Curve, SmoothPatchesMeetWithTheirNormalsAndSplinesWithTheirCurvatures) {
+TEST(Curve, SmoothPatchesMeetWithTheirNormalsAndSplinesWithTheirCurvatures) {  // C14
   const Ring ring(9);
   for (const Smoothing kind : {Smoothing::catmull_rom, Smoothing::b_spline}) {
     const auto patches = ring.patches(kind);
