@@ -233,7 +233,7 @@ std::string entry(const Row& row, const Measure& measure, const Column& column, 
   std::string cost = "<span>work " + number(measure.work(*run), 2) + (least ? " &#9733;" : "") + "</span>";
   if (measure.seconds(*run) > 0)
     cost += " <span>&middot; " + escape(seconds_in_words(measure.seconds(*run))) + "</span>";
-  if (fastest) cost += " <span>&middot; fastest</span>";
+  if (fastest) cost += ", <span>fastest</span>";
   return cell(least ? "least" : "", fmt::format("{}<br><small>{}</small>", unbroken(choice.setting()), cost));
 }
 
