@@ -30,7 +30,7 @@ void expect_forces_of_elements(const Model& model, ParameterBlock& block, bool m
   double force = 0;
   for (const auto& x : expected) {
     largest = largest.max(x.d.abs());
-    force = std::max(force, std::abs(x.v));
+    force = larger(force, std::abs(x.v));
   }
   // some hundred terms meet in a row, and stiffness times displacement cancels to strains: in a motion at random little
   constexpr double rounding = 1e-13;
