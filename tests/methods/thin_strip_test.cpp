@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/blocks.hpp"
+#include "tests/support/largest.hpp"
 
 namespace stickslip {
 namespace {
@@ -55,7 +56,7 @@ TEST(ThinStrip, TouchesItsOwnWallByEachOfItsFaces) {  // C25
       if (contact.state[p] == ContactState::open) continue;
       const auto X = s.model.points[p].nodes[0];
       EXPECT_LE(s.slots.points(1, X), 1e-12) << name_of(method);
-      first = std::min(first, s.slots.points(0, X));
+      first = smaller(first, s.slots.points(0, X));
     }
     EXPECT_NEAR(first, a, 0.03 * a + length / 100) << name_of(method);
   }
