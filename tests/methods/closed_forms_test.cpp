@@ -160,7 +160,7 @@ const std::vector<Method>& exact_methods() {
   return all;
 }
 
-TEST(Slider, FollowsItsCycleWithAnyNumberOfSteps) {
+TEST(Slider, FollowsItsCycleWithAnyNumberOfSteps) {  // (C16: one a leg)
   const double k = 100, mu = 0.3, N = 10, U0 = 0.1, lag = mu * N / k;
   for (const auto& method : exact_methods())
     for (int steps : {3, 30, 3000}) {

@@ -67,5 +67,51 @@ TEST(SlowShallowIroning, LiesWithinThePublishedCurvesWithoutARipple) {
   EXPECT_LE(most - least, 0.03 * along / down);
 }
 
+double last_of(const CaseResult& result, const std::string& name) {
+  const auto& responses = result.problem->model.scene.responses;
+  for (std::size_t r = 0; r < responses.size(); ++r)
+    if (responses[r].name == name) return result.steps.back().responses[static_cast<Eigen::Index>(r)];
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+TEST(SlowShallowIroning, InElevenStepsEndsWhereItDoesInMany) {  // C16
+  // One step presses it all the way down, each of the others draws it over ten facets.
+  std::array<double, 2> V;
+  for (const bool fine : {false, true}) {
+    auto scene = shallow_ironing();
+    scene["time"] = {{"legs", {{1, fine ? 10 : 1}, {2, fine ? 100 : 10}}}};
+    const auto result = cases::run(scene, {{"monolithic_al", json::object()}}, meshes / "shallow_ironing.json");
+    ASSERT_TRUE(is_converged(result.status())) << result.message();
+    EXPECT_EQ(result.trajectory.counters.cutbacks > 0, !fine);
+    V[fine] = last_of(result, "V");
+  }
+  EXPECT_NEAR(V[0], V[1], 0.03 * std::abs(V[1]));
+}
+
+/// A block with sharp corners, no finer than the slab that it is pressed into and drawn along.
+json coarse_die(const json& surface) {
+  auto scene = shallow_ironing();
+  scene["bodies"]["slab"]["mesh"] = {{"box", {{"min", {0, 0}}, {"max", {8, 2}}, {"cells", {48, 12}}}}};
+  scene["bodies"]["die"]["mesh"] = {{"quad", {{"corners", {{1, 2}, {2, 2}, {2, 2.8}, {1, 2.8}}}, {"cells", {8, 4}}}}};
+  scene["contacts"]["sole"]["slave"] = "die.bottom";
+  if (surface.is_null())
+    scene["contacts"]["sole"].erase("surface");
+  else
+    scene["contacts"]["sole"]["surface"] = surface;
+  scene["supports"][1]["move"] = {{"x", {{0, 0}, {1, 0}, {2, 4}}}, {"y", {{0, 0}, {1, -0.2}, {2, -0.2}}}};
+  scene["time"] = {{"legs", {{1, 5}, {2, 40}}}};
+  return scene;
+}
+
+TEST(SlowShallowIroning, EndsOnEverySurfaceInBoundedWork) {
+  for (const json& surface : {json("smooth"), json(nullptr)}) {
+    const auto result =
+        cases::run(coarse_die(surface), {{"monolithic_al", json::object()}}, meshes / "shallow_ironing.json");
+    ASSERT_FALSE(result.steps.empty());
+    EXPECT_TRUE(is_converged(result.status())) << surface << result.message();
+    EXPECT_LE(result.trajectory.counters.newton, 45 * 500) << surface;
+  }
+}
+
 }  // namespace
 }  // namespace stickslip
