@@ -29,8 +29,8 @@ constexpr bool prevents_penetration(const Penalty&) { return false; }
 namespace detail {
 
 /// Points, closed in `field`, whose constraints could contradict others: not those whose slave node belongs to no other
-/// point and is free to follow along the normal. (That points which are integrated where they are now share the nodes of
-/// their facets contradicts nothing.)
+/// point and is free to follow along the normal. (That points which are integrated where they are now share the nodes
+/// of their facets contradicts nothing.)
 template <class T>
 std::vector<int> shared_points(const Model& model, const Slots<T>& slots, const ContactField<T>& field) {
   std::vector<int> users(model.node_count, 0);
