@@ -87,6 +87,23 @@ bool is_sudden(const std::vector<Increment<T>>& before, double pace) {
   return !before.empty() && pace > sudden * before.back().pace;
 }
 
+/// Counts the solutions of an increment that was solved from `start` to its end, and looks for a jump to it where there
+/// may be one.
+template <class T, class E, class M>
+void look_beside(const M& method, Run<T, E>& run, const Trajectory<T>& trajectory, const std::vector<double>& factor,
+                 double start, Increment<T>& increment) {
+  const auto& before = trajectory.increments;
+  const State<T>& previous = before.empty() ? trajectory.initial : before.back().state;
+  count_solutions(method, run, previous, increment.time, increment);
+  const bool folded =
+      increment.reversed || !increment.others.empty() || (!before.empty() && !before.back().others.empty());
+  increment.pace =
+      pace_of(run.model, previous, increment.state, increment.time - (before.empty() ? 0 : before.back().time));
+  const bool sudden = is_sudden(before, increment.pace);
+  if ((increment.counted && folded) || sudden)
+    increment.jump = find_jump(method, run, previous, factor, start, increment.time, increment.state);
+}
+
 /// Advances the trajectory to `target`; false where it gave up (the failed increment is then the last).
 template <class T, class E, class M>
 bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double target, bool may_cut) {
@@ -118,14 +135,7 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
       increment.message = "the displacements are not finite";
     }
     if (increment.usable()) {
-      count_solutions(method, run, previous, next, increment);
-      const bool folded = increment.reversed || !increment.others.empty() ||
-                          (!trajectory.increments.empty() && !trajectory.increments.back().others.empty());
-      increment.pace =
-          pace_of(run.model, previous, increment.state, next - (increments.empty() ? 0 : increments.back().time));
-      const bool sudden = is_sudden(increments, increment.pace);
-      if ((increment.counted && folded) || sudden)
-        increment.jump = find_jump(method, run, previous, factor, reached, next, increment.state);
+      look_beside(method, run, trajectory, factor, reached, increment);
       trajectory.increments.push_back(std::move(increment));
       if (last) return true;
       reached = next;
