@@ -36,7 +36,9 @@ void expect_forces_of_elements(const Model& model, ParameterBlock& block, bool m
   constexpr double rounding = 1e-13;
   for (Eigen::Index i = 0; i < forces.size(); ++i) {
     for (int d = 0; d < directions; ++d) EXPECT_NEAR(forces[i].d[d], expected[i].d[d], rounding * largest[d]) << i;
-    if (!model.framed.empty()) EXPECT_NEAR(forces[i].v, expected[i].v, rounding * force) << i;
+    if (!model.framed.empty()) {
+      EXPECT_NEAR(forces[i].v, expected[i].v, rounding * force) << i;
+    }
   }
 }
 
