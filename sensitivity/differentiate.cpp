@@ -122,7 +122,7 @@ struct Derivatives::Progress {
 
   /// Differentiates the increments up to `end`, as many together as their columns fit into one solve; one by one where
   /// the bodies' share in one needs what they remember of the last.
-  /// `follows`: the engine has a factor that may serve the first of them.
+  /// `follows`: the engine has the factor of the last of them.
   void advance(const Trajectory<double>& trajectory, std::size_t end, bool follows) {
     if (blocks.empty()) begin();
     const std::size_t together = model.effects.plasticity ? 1 : std::max(1, columns_together / parameters());
@@ -130,17 +130,15 @@ struct Derivatives::Progress {
         [&](const auto& m) {
           std::visit(
               [&](auto& engine) {
-                while (done < end && !failed)
-                  follows = take(m, engine, trajectory, std::min(end, done + together), follows);
+                while (done < end && !failed) take(m, engine, trajectory, std::min(end, done + together), follows);
               },
               *workspace.engine);
         },
         method);
   }
 
-  /// Returns whether the engine has a factor that may serve the next increment.
   template <class M, class E>
-  bool take(const M& m, E& engine, const Trajectory<double>& trajectory, std::size_t end, bool follows) {
+  void take(const M& m, E& engine, const Trajectory<double>& trajectory, std::size_t end, bool follows) {
     Differentiation<E> problem{model, slots, engine, blocks, parameters(), {}};
     problem.follows = follows;
     const auto& increments = trajectory.increments;
@@ -170,7 +168,7 @@ struct Derivatives::Progress {
       }
     }
     gradients.counters += problem.counters;
-    if (unexpanded.empty()) return false;
+    if (unexpanded.empty()) return;
     auto& storage = gradients.storage;
     storage.loads = std::max(storage.loads, solve_bytes(unexpanded));
     const bool is_last = !failed && end == increments.size();
@@ -183,7 +181,6 @@ struct Derivatives::Progress {
     if (is_last)
       gradients.last_displacement = gather(
           blocks, parameters(), [&](auto&, int b) -> auto& { return reached.back()[b].displacement; });
-    return problem.follows;
   }
 
   /// Displacements of increments, expanded where a response reads them, and the last one's of the run.

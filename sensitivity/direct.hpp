@@ -107,7 +107,6 @@ LinearisedEquilibrium<E>::LinearisedEquilibrium(Differentiation<E>& problem, con
       unknown_(unknown) {
   unproven_ = problem.follows && reuse_factor(problem, primal_, at, unknown);
   valid_ = unproven_ || factorise_converged(problem, primal_, at, unknown, redundant_);
-  problem.follows = valid_ && !redundant_;
   if (!valid_) return;
   if (problem.prepared) {
     load_ = std::move(*problem.prepared);
@@ -133,7 +132,6 @@ bool LinearisedEquilibrium<E>::solve(std::vector<Vector<Direction>>& lambda,
     if (unproven_ && !rows.accurate) {
       if (std::exchange(solving_, Solving::refined) == Solving::unrefined) continue;
       valid_ = factorise_converged(problem_, primal_, at_, unknown_, redundant_);
-      problem_.follows = valid_ && !redundant_;
       if (!valid_) return false;
       unproven_ = false;
       continue;
