@@ -139,7 +139,7 @@ def names(work):
 
 
 def what_is_mistaken(work):
-    scene, study = write(work / "a.json", SCENE), write(work / "a.study.json", dict(STUDY, scene="a.json"))
+    scene, study = write(work / "one.json", SCENE), write(work / "one.study.json", dict(STUDY, scene="one.json"))
     run("runn", str(scene), code=2, says='there is no command "runn"; did you mean "run"?')
     run("run", str(study), code=2, says="is a study, not a scene; `stickslip study` runs it")
     run("study", str(scene), code=2, says="is a scene, not a study; `stickslip run` runs it")
