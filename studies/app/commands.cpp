@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "studies/app/exit_codes.hpp"
 #include "studies/app/schema.hpp"
 #include "studies/app/trace_table.hpp"
 #include "studies/input/method_options.hpp"
@@ -33,8 +34,6 @@ namespace stickslip {
 namespace {
 
 using nlohmann::json;
-
-constexpr int done = 0, bad_input = 2, not_solved = 3;
 
 /// None where the scene has a fault; everything known of it is then on standard error.
 std::optional<Simulation> load(const RunArguments& arguments) {

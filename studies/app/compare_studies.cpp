@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "studies/app/commands.hpp"
+#include "studies/app/exit_codes.hpp"
 #include "studies/io/input_fault.hpp"
 #include "studies/io/printing.hpp"
 
@@ -18,7 +19,6 @@ namespace stickslip {
 namespace {
 
 using nlohmann::json;
-constexpr int done = 0, not_solved = 3;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// What is not compared, and most of a row.

@@ -15,6 +15,7 @@
 #include "core/algebra/linear_solver.hpp"
 #include "core/algebra/memory.hpp"
 #include "studies/app/commands.hpp"
+#include "studies/app/exit_codes.hpp"
 #include "studies/io/input_fault.hpp"
 #include "studies/io/printing.hpp"
 #include "studies/io/provenance.hpp"
@@ -53,16 +54,16 @@ void add_scene(CLI::App& command, RunArguments& arguments) {
   command.add_flag("--json", arguments.json, "one JSON document on standard output and nothing else");
 }
 
-/// Exit code of a command, or 2 where what it printed was not taken: a full disk, a closed pipe.
+/// Exit code of a command, or bad_input where what it printed was not taken: a full disk, a closed pipe.
 int finished(int code) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.flush()) return code;
   std::cerr << "stickslip: standard output cannot be written\n";
-  return 2;
+  return bad_input;
 }
 
 int out_of_memory() {
   std::cerr << "stickslip: there is not enough memory; a coarser mesh, fewer steps or fewer parameters need less\n";
-  return 2;
+  return bad_input;
 }
 
 void add_run(CLI::App& command, RunArguments& run) {
@@ -155,7 +156,7 @@ int run_line(CLI::App& app, const Actions& actions, int argc, char** argv) {
   }
   for (const auto& [command, action] : actions)
     if (*command) return finished(action());
-  return 0;  // never: one is required
+  return done;  // never: one is required
 }
 
 }  // namespace
@@ -172,10 +173,10 @@ int main(int argc, char** argv) {
     return run_line(app, actions, argc, argv);
   } catch (const InputFault& fault) {
     std::cerr << printable_lines(fault.what()) << '\n';
-    return 2;
+    return bad_input;
   } catch (const std::system_error& error) {
     std::cerr << "stickslip: " << printable_lines(error.what()) << '\n';
-    return 2;
+    return bad_input;
   } catch (const std::bad_alloc&) {
     return out_of_memory();
   } catch (const std::length_error&) {  // a container beyond all memory
@@ -183,6 +184,6 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     std::cerr << "stickslip: " << printable_lines(error.what())
               << "\nthis is a bug of ours: please report it with the scene\n";
-    return 1;
+    return our_bug;
   }
 }

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "studies/app/commands.hpp"
+#include "studies/app/exit_codes.hpp"
 #include "studies/io/atomic_file.hpp"
 #include "studies/io/directory_lock.hpp"
 #include "studies/io/input_fault.hpp"
@@ -21,7 +22,6 @@ namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
-constexpr int done = 0, bad_input = 2, not_solved = 3;
 
 /// A directory to join: its study.json and rows.
 struct Part {

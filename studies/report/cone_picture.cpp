@@ -15,7 +15,7 @@ namespace {
 constexpr double side = 300, margin = 72, gap = 24, top = 64;
 
 /// Tractions onto pixels of a panel; the same scale on both axes, so that the cone has its angle.
-struct Panel {
+struct ConePanel {
   double left, zero, scale;
   double reach() const { return side / scale; }
   double x(double pressure) const { return left + margin + (pressure * scale); }
@@ -23,7 +23,7 @@ struct Panel {
 };
 
 /// Reach of a panel: a little beyond the largest traction that was kept, so that wild first trials do not shrink it.
-Panel panel_of(const ConePath& path, double left) {
+ConePanel panel_of(const ConePath& path, double left) {
   double pressure = 0, tangential = 0;
   for (const auto& i : path.iterates) {
     if (!i.last) continue;
@@ -45,7 +45,7 @@ std::vector<std::pair<double, double>> edge_of(const FrictionLaw<double>& law, d
   return edge;
 }
 
-void draw_cone(const ConePath& path, const Panel& at, Drawing& drawing) {
+void draw_cone(const ConePath& path, const ConePanel& at, Drawing& drawing) {
   const auto edge = edge_of(path.law, side / at.scale);
   Path cone;
   cone.move(at.x(0), at.y(0));
@@ -88,7 +88,7 @@ struct Label {
 
 /// Writes the times of the telling solutions beside their marks, each at the nearest place where it covers no mark and
 /// no other time, with a line to its mark; solutions in one place share a label, and one without room goes without.
-void draw_times(const ConePath& path, const Panel& at, Drawing& drawing) {
+void draw_times(const ConePath& path, const ConePanel& at, Drawing& drawing) {
   std::vector<std::pair<double, double>> marks;
   for (const auto& i : path.iterates)
     for (const auto& [p, t] : {std::pair{i.pressure, i.tangential}, {i.trial_pressure, i.trial_tangential}})
@@ -121,7 +121,7 @@ void draw_times(const ConePath& path, const Panel& at, Drawing& drawing) {
   }
 }
 
-void draw_iterates(const ConePath& path, const Panel& at, Drawing& drawing) {
+void draw_iterates(const ConePath& path, const ConePanel& at, Drawing& drawing) {
   for (const auto& i : path.iterates) {
     const double x0 = at.x(i.trial_pressure), y0 = at.y(i.trial_tangential), x1 = at.x(i.pressure),
                  y1 = at.y(i.tangential);
@@ -143,7 +143,7 @@ double tick_step(double reach) {
   return reach / 4 >= 5 * decade ? 5 * decade : reach / 4 >= 2 * decade ? 2 * decade : decade;
 }
 
-void draw_axes(const ConePath& path, const Panel& at, Drawing& drawing) {
+void draw_axes(const ConePath& path, const ConePanel& at, Drawing& drawing) {
   const double low = path.in_space ? at.zero : at.zero + side / 2;
   drawing.line(at.x(0), at.zero, at.x(0) + side, at.zero, {"ink", "", 1, {}});
   drawing.line(at.x(0), low, at.x(0), top, {"ink", "", 1, {}});
@@ -172,7 +172,7 @@ Drawing draw_cones(const std::vector<ConePath>& paths, const std::string& title)
   drawing.text(margin, 24, title, {Anchor::start, 15, "ink", false, true});
   double left = 0;
   for (const auto& path : paths) {
-    const Panel at = panel_of(path, left);
+    const ConePanel at = panel_of(path, left);
     drawing.clip(Path().rectangle(at.x(0) - 6, top - 6, side + 12, side + 12));
     draw_cone(path, at, drawing);
     draw_iterates(path, at, drawing);

@@ -8,9 +8,9 @@ namespace stickslip::report {
 namespace {
 
 /// Big-endian numbers of a table.
-class Table {
+class FontTable {
  public:
-  explicit Table(std::string_view bytes) : bytes_(bytes) {}
+  explicit FontTable(std::string_view bytes) : bytes_(bytes) {}
   unsigned u8(std::size_t at) const { return static_cast<unsigned char>(bytes_.at(at)); }
   unsigned u16(std::size_t at) const { return u8(at) << 8 | u8(at + 1); }
   int i16(std::size_t at) const { return static_cast<std::int16_t>(u16(at)); }
@@ -39,16 +39,16 @@ class Font {
   explicit Font(std::string_view file) : file_(file) {}
 
   /// Empty where there is none of this tag.
-  Table table(std::string_view tag) const {
+  FontTable table(std::string_view tag) const {
     for (std::size_t i = 0; i < file_.u16(4); ++i)
       if (const std::size_t entry = 12 + 16 * i; file_.bytes().substr(entry, 4) == tag)
-        return Table(file_.bytes().substr(file_.u32(entry + 8), file_.u32(entry + 12)));
-    return Table({});
+        return FontTable(file_.bytes().substr(file_.u32(entry + 8), file_.u32(entry + 12)));
+    return FontTable({});
   }
 
   /// 0, the sign for what is missing, of a character that the font lacks.
   unsigned glyph(unsigned character) const {
-    const Table cmap = table("cmap");
+    const FontTable cmap = table("cmap");
     for (std::size_t i = 0; i < cmap.u16(2); ++i) {
       const std::size_t entry = 4 + 8 * i, map = cmap.u32(entry + 4);
       if (cmap.u16(entry) != 3 || cmap.u16(entry + 2) != 1 || cmap.u16(map) != 4) continue;  // Unicode by segments
@@ -67,7 +67,7 @@ class Font {
   }
 
   std::string_view outline(unsigned glyph) const {
-    const Table loca = table("loca");
+    const FontTable loca = table("loca");
     const bool wide = table("head").i16(50) == 1;
     const auto place = [&](std::size_t i) { return wide ? loca.u32(4 * i) : 2 * loca.u16(2 * i); };
     return table("glyf").bytes().substr(place(glyph), place(glyph + 1) - place(glyph));
@@ -75,7 +75,7 @@ class Font {
 
   /// Advance and left bearing, as hmtx has them.
   std::array<unsigned, 2> metrics(unsigned glyph) const {
-    const Table hmtx = table("hmtx");
+    const FontTable hmtx = table("hmtx");
     const unsigned full = table("hhea").u16(34);
     if (glyph < full) return {hmtx.u16(4 * glyph), hmtx.u16(4 * glyph + 2)};
     return {hmtx.u16(4 * (full - 1)), hmtx.u16(4 * full + 2 * (glyph - full))};
@@ -84,13 +84,13 @@ class Font {
   int thousandths(int units) const { return static_cast<int>(std::lround(1000.0 * units / table("head").u16(18))); }
 
  private:
-  Table file_;
+  FontTable file_;
 };
 
 /// Where a composite outline names the glyphs it is made of.
 std::vector<std::size_t> component_places(std::string_view outline) {
   constexpr unsigned words = 0x1, scale = 0x8, more = 0x20, two_scales = 0x40, matrix = 0x80;
-  const Table glyph(outline);
+  const FontTable glyph(outline);
   std::vector<std::size_t> places;
   if (outline.empty() || glyph.i16(0) >= 0) return places;
   for (std::size_t at = 10;;) {
@@ -114,7 +114,7 @@ class Kept {
     old_.push_back(glyph);
     outlines_.emplace_back(font_.outline(glyph));
     for (const std::size_t place : component_places(outlines_[number])) {
-      const unsigned component = Table(outlines_[number]).u16(place);
+      const unsigned component = FontTable(outlines_[number]).u16(place);
       const std::size_t renumbered = add(component);  // may move outlines_
       replace16(outlines_[number], place, renumbered);
     }
@@ -211,7 +211,7 @@ FontSubset subset_of(std::string_view file, const std::set<unsigned char>& chara
   replace16(tables["hhea"], 34, kept.outlines().size());
   replace16(tables["maxp"], 4, kept.outlines().size());
   subset.file = font_file(tables);
-  const Table head = font.table("head"), hhea = font.table("hhea"), os2 = font.table("OS/2");
+  const FontTable head = font.table("head"), hhea = font.table("hhea"), os2 = font.table("OS/2");
   const auto thousandths = [&](int units) { return font.thousandths(units); };
   subset.left = thousandths(head.i16(36));
   subset.bottom = thousandths(head.i16(38));

@@ -14,8 +14,6 @@
 namespace stickslip {
 namespace {
 
-constexpr double not_apart = std::numeric_limits<double>::quiet_NaN();
-
 Condensed condensed_in(const CaseResult& result) {
   const std::string& engine = result.trajectory.engine;
   return engine.starts_with("condensed")                 ? Condensed::all

@@ -5,6 +5,7 @@
 /// rows, told before a run from counts alone, are studies/run/ledger_forecast.hpp.
 #pragma once
 
+#include <limits>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -20,6 +21,9 @@ struct Amount {
   double spread = 1;
 };
 
+/// Seconds of a row that the clock does not tell apart from those of others.
+inline constexpr double not_apart = std::numeric_limits<double>::quiet_NaN();
+
 /// A row of the ledger.
 struct LedgerRow {
   std::string effect;
@@ -27,7 +31,7 @@ struct LedgerRow {
   std::vector<Amount> unknowns;
   std::vector<Amount> memory;  ///< bytes; of the output, those of its files
   std::vector<Amount> counts;
-  double seconds = 0;  ///< NaN: not measured apart
+  double seconds = 0;
 };
 using Ledger = std::vector<LedgerRow>;
 

@@ -16,8 +16,7 @@ namespace stickslip {
 namespace {
 
 constexpr double exactly = 1, not_known = 0;
-constexpr double not_apart = std::numeric_limits<double>::quiet_NaN();
-constexpr double number = sizeof(double);
+constexpr double real_bytes = sizeof(double);
 
 /// Counts that a forecast is made of.
 struct Size {
@@ -89,8 +88,8 @@ LedgerRow bodies_row(const Problem& problem, const Size& n, double tangent_entri
           {{"displacements", n.free}},
           {{"mesh", mesh_bytes(model)},
            {"slots", static_cast<double>(slot_bytes(problem.slots).bodies)},
-           {"matrix", number * tangent_entries},
-           {"states", number * n.dofs * n.whole}},
+           {"matrix", real_bytes * tangent_entries},
+           {"states", real_bytes * n.dofs * n.whole}},
           {{"elements", element_count(model)}},
           not_apart};
 }
@@ -105,16 +104,16 @@ void add_contact_rows(const Problem& problem, const Size& n, const Amount& facto
        effects.contact,
        {{"normal", n.unknown ? n.points : 0}},
        {{"points", point_bytes(model, problem.slots) - bytes},
-        {"states", ((sizeof(ContactState) + 2 * number) * n.points + geometry_bytes<double>(n)) * n.states},
-        {"multipliers", number * n.points * n.states}},
+        {"states", ((sizeof(ContactState) + 2 * real_bytes) * n.points + geometry_bytes<double>(n)) * n.states},
+        {"multipliers", real_bytes * n.points * n.states}},
        {{"points", n.points}, {"evaluations", 0, effects.contact ? not_known : exactly}},
        not_apart});
   const bool spares = n.unsymmetric && !n.condensed;
   ledger.push_back({"friction",
                     effects.friction,
                     {{"tangential", n.unknown ? n.tangential : 0}},
-                    {{"history", number * (2 * n.tangential + n.feet + n.contacts) * n.states},
-                     {"multipliers", 2 * number * n.tangential * n.states},
+                    {{"history", real_bytes * (2 * n.tangential + n.feet + n.contacts) * n.states},
+                     {"multipliers", 2 * real_bytes * n.tangential * n.states},
                      {"factor", spares ? factor.value : 0, spares ? factor.spread : exactly}},
                     {{"unsymmetric_factorizations", 0, n.unsymmetric ? not_known : exactly}},
                     not_apart});
@@ -123,7 +122,7 @@ void add_contact_rows(const Problem& problem, const Size& n, const Amount& facto
   ledger.push_back({"plasticity",
                     effects.plasticity,
                     {},
-                    {{"history", number * model.memory_count * n.whole}},
+                    {{"history", real_bytes * model.memory_count * n.whole}},
                     {{"numbers", static_cast<double>(model.memory_count)}},
                     not_apart});
 }
@@ -161,7 +160,7 @@ LedgerRow direct_row(const Input& input, const Problem& problem, const Size& n) 
   const double state = dual * state_numbers(n) + sizeof(ContactState) * n.points + geometry_bytes<Direction>(n);
   const double eliminated = n.free - n.solved;
   const double inside = eliminated > 0 ? eliminated + n.condensed_dofs : 0;  // of a reduction
-  const double solve = blocks * dual * n.dofs + number * p * (inside + 2 * engine_rows);
+  const double solve = blocks * dual * n.dofs + real_bytes * p * (inside + 2 * engine_rows);
   return {"direct_sensitivity",
           on,
           {{"parameters", p}},
@@ -170,7 +169,7 @@ LedgerRow direct_row(const Input& input, const Problem& problem, const Size& n) 
            {"states", together * blocks * state, within},
            {"solves", together * solve, within},
            {"sweeps", 0, on && n.truncated ? not_known : exactly},
-           {"derivatives", number * p * ((ties ? 3 : 1) * n.steps * n.responses + n.dofs + n.objectives)}},
+           {"derivatives", real_bytes * p * ((ties ? 3 : 1) * n.steps * n.responses + n.dofs + n.objectives)}},
           derivative_counts(input.method, n, p, 2 * blocks),
           on ? not_apart : 0};
 }
@@ -181,7 +180,7 @@ LedgerRow adjoint_row(const Input& input, const Problem& problem, const Size& n)
   const double objectives = on ? n.objectives : 0;
   const bool any = objectives > 0;
   const double state =
-      number * state_numbers(n) + sizeof(ContactState) * n.points + geometry_bytes<double>(n);  // of the solution
+      real_bytes * state_numbers(n) + sizeof(ContactState) * n.points + geometry_bytes<double>(n);  // of the solution
   const double again = any ? n.together_again : 0;
   // weights of masters that deform are some more, of each point along a curve
   const double within = again == 0 ? exactly : n.truncated ? not_known : n.present > 0 ? 2 : exactly;
@@ -196,7 +195,7 @@ LedgerRow adjoint_row(const Input& input, const Problem& problem, const Size& n)
            {"tape", 0, any ? not_known : exactly},
            {"adjoints", 0, any ? not_known : exactly},
            {"sweeps", 0, any && n.truncated ? not_known : exactly},
-           {"derivatives", number * objectives * n.parameters}},
+           {"derivatives", real_bytes * objectives * n.parameters}},
           std::move(counts),
           on ? not_apart : 0};
 }
@@ -234,8 +233,8 @@ Factors condensed_factors(const Model& model, const Size& n) {
   const double rows = n.solved + multipliers(n);
   // multipliers of open points are left out
   const double within = n.solved > 0 ? std::pow(rows / n.solved, 2) : not_known;
-  out.tangent = {"factor", number * rows * rows, within};
-  if (n.free > n.solved) out.bodies = {"bodies_factor", number * bodies_factor(model).entries, of_library(n.free)};
+  out.tangent = {"factor", real_bytes * rows * rows, within};
+  if (n.free > n.solved) out.bodies = {"bodies_factor", real_bytes * bodies_factor(model).entries, of_library(n.free)};
   return out;
 }
 
@@ -244,12 +243,12 @@ Factors sparse_factors(const Model& model, const Size& n) {
   std::optional<MixedRows> mixed;
   if (n.mixed) mixed.emplace(model);
   const auto lists = tangent_rows(model, n.unknown, mixed ? &*mixed : nullptr);
-  if (mixed) out.bodies = {"bodies_factor", number * bodies_factor(model).entries, of_library(n.free)};
+  if (mixed) out.bodies = {"bodies_factor", real_bytes * bodies_factor(model).entries, of_library(n.free)};
   const auto pattern = make_pattern(static_cast<int>(n.solved + multipliers(n)), lists);
   out.tangent_entries = pattern->nonzeros();
   for (int k = lists.count() - static_cast<int>(model.points.size()); k < lists.count(); ++k)
     out.point_entries += std::pow(lists.start[k + 1] - lists.start[k], 2);
-  out.tangent = {"factor", number * predict_factor(pattern, 0).entries, of_library(pattern->size)};
+  out.tangent = {"factor", real_bytes * predict_factor(pattern, 0).entries, of_library(pattern->size)};
   return out;
 }
 
@@ -259,9 +258,9 @@ LedgerRow condensed_row(const Size& n, const Factors& factors) {
   const double unknown = n.condensed ? not_known : exactly;
   Amount matrix = n.condensed ? factors.tangent : Amount{}, factor = matrix, entries = matrix, stored = matrix;
   matrix.name = "matrix", factor.name = "factor", entries.name = "matrix_entries", stored.name = "factor_entries";
-  entries.value = stored.value = matrix.value / number;
+  entries.value = stored.value = matrix.value / real_bytes;
   row.unknowns[0].value = n.free - n.solved;
-  row.memory = {{"condensed", number * n.condensed_dofs * n.condensed_dofs},
+  row.memory = {{"condensed", real_bytes * n.condensed_dofs * n.condensed_dofs},
                 on ? factors.bodies : Amount{"bodies_factor"},
                 matrix,
                 factor,
@@ -283,21 +282,22 @@ LedgerRow sparse_row(const Size& n, const Factors& factors) {
   const double integers = on ? factors.tangent_entries + rows + 1 + factors.point_entries : 0;
   Amount factor = on ? factors.tangent : Amount{"factor"}, stored = factor;
   stored.name = "factor_entries";
-  stored.value = (n.unsymmetric ? 2 : 1) * factor.value / number;
-  return {"sparse_engine",
-          on,
-          {},
-          {{"matrix", number * factors.tangent_entries + sizeof(int) * integers}, factor, {"iterations", 0, unknown}},
-          {{"matrix_entries", factors.tangent_entries},
-           stored,
-           {"analyses", !on       ? 0.0
-                        : n.mixed ? 2.0
-                                  : 1.0},
-           {"factorizations", 0, unknown},
-           {"backsolves", 0, unknown},
-           {"iterations", 0, unknown},
-           {"augmentations", 0, n.uzawa ? unknown : exactly}},
-          on ? not_apart : 0};
+  stored.value = (n.unsymmetric ? 2 : 1) * factor.value / real_bytes;
+  return {
+      "sparse_engine",
+      on,
+      {},
+      {{"matrix", real_bytes * factors.tangent_entries + sizeof(int) * integers}, factor, {"iterations", 0, unknown}},
+      {{"matrix_entries", factors.tangent_entries},
+       stored,
+       {"analyses", !on       ? 0.0
+                    : n.mixed ? 2.0
+                              : 1.0},
+       {"factorizations", 0, unknown},
+       {"backsolves", 0, unknown},
+       {"iterations", 0, unknown},
+       {"augmentations", 0, n.uzawa ? unknown : exactly}},
+      on ? not_apart : 0};
 }
 
 /// Steps whose fields are written.
@@ -320,8 +320,8 @@ LedgerRow files_row(const Input& input, const Model& model, const Size& n) {
   const double files = field_steps(input.output, n.steps);
   const double a_node = 6 + (model.effects.contact ? 6 : 0), an_element = 8 + 6;
   const double bytes =
-      files * (head + base64 * number * (a_node * model.node_count + an_element * element_count(model))) +
-      base64 * number * 3 * n.parameters * model.node_count;
+      files * (head + base64 * real_bytes * (a_node * model.node_count + an_element * element_count(model))) +
+      base64 * real_bytes * 3 * n.parameters * model.node_count;
   return {"output", true, {}, {{"fields", bytes, within}, {"picture", 0}, {"trace", 0}}, {{"files", files + 1}},
           not_apart};
 }

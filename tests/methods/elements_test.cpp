@@ -2,6 +2,8 @@
 /// the press fit of two rings.
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "tests/support/solved.hpp"
 
 namespace stickslip {
@@ -9,7 +11,7 @@ namespace {
 
 using scenes::table;
 
-const double pi = std::acos(-1.0);
+using std::numbers::pi;
 
 /// Lame's ring, radii 1 and 2, E = 1000, under pressure 10 on its inner circle. Source: equilibrium of u = A r + B / r
 /// with its Hooke's law.

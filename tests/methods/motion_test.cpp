@@ -15,7 +15,7 @@ using scenes::coulomb_error;
 using scenes::relative;
 using Kind = Response::Kind;
 
-struct Run {
+struct MovedRun {
   Model model;
   Slots<double> slots;
   Trajectory<double> trajectory;
@@ -32,8 +32,8 @@ struct Run {
   }
 };
 
-Run solve_scene(const Scene& scene, const Method& method, RunOptions options = {}) {
-  Run r{make_model(scene), {}, {}};
+MovedRun solve_moving(const Scene& scene, const Method& method, RunOptions options = {}) {
+  MovedRun r{make_model(scene), {}, {}};
   r.slots = make_slots<double>(r.model, scene.as<double>());
   Workspace<double> workspace;
   r.trajectory = solve(r.model, r.slots, method, options, workspace);
@@ -41,7 +41,7 @@ Run solve_scene(const Scene& scene, const Method& method, RunOptions options = {
 }
 
 // Newton's tolerance of 1e-12, and Uzawa's of 1e-10, times condition numbers up to some hundred.
-constexpr double solved = 1e-8;
+constexpr double solved_motion = 1e-8;
 
 std::vector<Method> at_scales(const std::vector<double>& scales) {
   std::vector<Method> methods;
@@ -73,27 +73,27 @@ TEST(StronglyCoupledPoint, EndsInTheSameSolutionByEveryMethodFromEveryScale) {
   for (const auto& c : {Case{1, 0.5, 0, 0, 1}, Case{1, 1.5, 1, 0, 0.5}, Case{1, 2.5, 8.0 / 3, 1.0 / 3, 0},
                         Case{3, 1.9, 0, 0, 1}, Case{3, 2.5, 0, 0, 1}, Case{3, 3.5, 4, 1, 0}})
     for (const auto& method : at_scales({0.01, 0.1, 1, 10, 100})) {
-      const auto r = solve_scene(klarbring(c.mu, c.push), method);
+      const auto r = solve_moving(klarbring(c.mu, c.push), method);
       ASSERT_TRUE(is_converged(r.trajectory.status)) << name_of(method) << c.mu << " " << c.push;
-      EXPECT_NEAR(r.last().state.displacement[0], c.u_t, solved) << name_of(method) << c.mu << " " << c.push;
-      EXPECT_NEAR(r.last().state.displacement[1], c.u_n, solved);
-      EXPECT_NEAR(-r.last().state.contact.traction[0], c.p, solved);
+      EXPECT_NEAR(r.last().state.displacement[0], c.u_t, solved_motion) << name_of(method) << c.mu << " " << c.push;
+      EXPECT_NEAR(r.last().state.displacement[1], c.u_n, solved_motion);
+      EXPECT_NEAR(-r.last().state.contact.traction[0], c.p, solved_motion);
       EXPECT_EQ(r.trajectory.counters.cutbacks, 0);
     }
 }
 
 TEST(StronglyCoupledPoint, HasItsOtherSolutionsListed) {
   for (const auto& method : at_scales({0.1, 10})) {
-    const auto r = solve_scene(klarbring(3, 2.5), method);
+    const auto r = solve_moving(klarbring(3, 2.5), method);
     ASSERT_TRUE(r.last().counted);
     ASSERT_EQ(r.last().others.size(), 2u);
     std::vector<double> u_t;
     for (const auto& other : r.last().others) u_t.push_back(other.displacement[0]);
     std::sort(u_t.begin(), u_t.end());
-    EXPECT_NEAR(u_t[0], 1, solved) << "slip";
-    EXPECT_NEAR(u_t[1], 8.0 / 3, solved) << "open";
-    EXPECT_TRUE(solve_scene(klarbring(3, 1.9), method).last().others.empty());
-    EXPECT_FALSE(solve_scene(klarbring(1, 1.5), method).last().counted)
+    EXPECT_NEAR(u_t[0], 1, solved_motion) << "slip";
+    EXPECT_NEAR(u_t[1], 8.0 / 3, solved_motion) << "open";
+    EXPECT_TRUE(solve_moving(klarbring(3, 1.9), method).last().others.empty());
+    EXPECT_FALSE(solve_moving(klarbring(1, 1.5), method).last().counted)
         << "below the critical friction it is the only one";
   }
 }
@@ -105,7 +105,7 @@ TEST(StronglyCoupledPoint, HasTheOtherSolutionsOfThePenaltyMethodListed) {
   const Scene scene = klarbring(3, 2.5);
   const Model model = make_model(scene);
   const double rho = initial_regularisation(make_slots<double>(model, scene.as<double>()), penalty)[0].normal;
-  const auto r = solve_scene(scene, penalty);
+  const auto r = solve_moving(scene, penalty);
   ASSERT_TRUE(is_converged(r.trajectory.status));
   ASSERT_TRUE(r.last().counted);
   ASSERT_EQ(r.last().others.size(), 2u);
@@ -115,9 +115,9 @@ TEST(StronglyCoupledPoint, HasTheOtherSolutionsOfThePenaltyMethodListed) {
     if (other.contact.state[0] == ContactState::open) continue;
     ++closed;
     EXPECT_EQ(other.contact.state[0], ContactState::slip);
-    EXPECT_NEAR(-other.contact.traction[0], -rho * u_n, solved);
-    EXPECT_NEAR(u_t - 0.5 * u_n, 2.5 + 3 * rho * u_n, solved) << "friction holds back";
-    EXPECT_NEAR(-0.5 * u_t + u_n, -1 - rho * u_n, solved);
+    EXPECT_NEAR(-other.contact.traction[0], -rho * u_n, solved_motion);
+    EXPECT_NEAR(u_t - 0.5 * u_n, 2.5 + 3 * rho * u_n, solved_motion) << "friction holds back";
+    EXPECT_NEAR(-0.5 * u_t + u_n, -1 - rho * u_n, solved_motion);
   }
   EXPECT_EQ(closed, 1);
 }
@@ -130,7 +130,7 @@ TEST(StronglyCoupledPoint, IsSeenToJumpWhereItsBranchEnds) {
     scene.loads[0].history = scenes::ramp(1.0);
     scene.loads.push_back(scenes::force("point.node", {0.0, -1.0}));
     scene.legs = {{1, steps}};
-    const auto r = solve_scene(scene, MonolithicAL{});
+    const auto r = solve_moving(scene, MonolithicAL{});
     ASSERT_TRUE(is_converged(r.trajectory.status));
     int jumps = 0;
     for (const auto& increment : r.trajectory.increments)
@@ -140,7 +140,7 @@ TEST(StronglyCoupledPoint, IsSeenToJumpWhereItsBranchEnds) {
       }
     EXPECT_EQ(jumps, 1) << steps;
   }
-  for (const auto& increment : solve_scene(klarbring(3, 1.9), MonolithicAL{}).trajectory.increments)
+  for (const auto& increment : solve_moving(klarbring(3, 1.9), MonolithicAL{}).trajectory.increments)
     EXPECT_FALSE(increment.jump);
 }
 
@@ -176,10 +176,10 @@ void check_random_problems(int count, unsigned seed, std::size_t enumerated, Mak
       UzawaAL tight;
       if (const auto* uzawa = std::get_if<UzawaAL>(&method)) tight = *uzawa;
       tight.tolerance = 1e-12;
-      const auto r = solve_scene(scene, std::holds_alternative<UzawaAL>(method) ? Method(tight) : method);
+      const auto r = solve_moving(scene, std::holds_alternative<UzawaAL>(method) ? Method(tight) : method);
       ASSERT_TRUE(is_converged(r.trajectory.status))
           << "problem " << i << ", " << name_of(method) << ": " << r.trajectory.message;
-      EXPECT_LT(r.error(), solved) << "problem " << i << ", " << name_of(method);
+      EXPECT_LT(r.error(), solved_motion) << "problem " << i << ", " << name_of(method);
       if (r.model.dimension != 2 || r.model.points.size() > enumerated) continue;
       const auto all = scenes::every_solution(r.model, r.slots, 1);
       const double allowed = 1e-6 * scenes::free_motion(r.model, r.slots, 1);
@@ -192,7 +192,7 @@ void check_random_problems(int count, unsigned seed, std::size_t enumerated, Mak
       EXPECT_LT((*first - r.last().state.displacement).norm(), allowed)
           << "the same of " << all.size() << " solutions by every method: problem " << i << ", " << name_of(method);
     }
-    const auto soft = solve_scene(scene, Penalty{});
+    const auto soft = solve_moving(scene, Penalty{});
     EXPECT_TRUE(is_converged(soft.trajectory.status)) << "problem " << i << ", penalty: " << soft.trajectory.message;
   }
 }
@@ -239,12 +239,12 @@ void check_blocks(const std::vector<int>& cells, const std::vector<double>& fric
       for (double share : shares) {
         if (mu * share > 0.9) continue;
         for (const auto& method : scenes::all_methods()) {
-          const auto r = solve_scene(block_on_floor({4, 2}, {n, std::max(1, n / 2)}, mu, share * mu), method);
+          const auto r = solve_moving(block_on_floor({4, 2}, {n, std::max(1, n / 2)}, mu, share * mu), method);
           ASSERT_TRUE(is_converged(r.trajectory.status))
               << name_of(method) << ", " << n << " cells, mu " << mu << ", " << share << ": " << r.trajectory.message;
           EXPECT_EQ(r.trajectory.counters.cutbacks, 0);
           if (std::holds_alternative<Penalty>(method)) continue;
-          EXPECT_LT(r.error(), solved) << n << " " << mu << " " << share;
+          EXPECT_LT(r.error(), solved_motion) << n << " " << mu << " " << share;
         }
       }
 }
@@ -261,14 +261,14 @@ TEST(BlockOnFloor, HasNoEquilibriumBeyondSlipAndBeyondTipping) {
   for (const auto& method : scenes::all_methods())
     for (int n : {2, 8}) {
       for (double mu : {0.05, 0.3, 0.9}) {  // slip
-        const auto r = solve_scene(block_on_floor({4, 2}, {n, n / 2}, mu, 1.0001 * mu), method);
+        const auto r = solve_moving(block_on_floor({4, 2}, {n, n / 2}, mu, 1.0001 * mu), method);
         EXPECT_EQ(r.trajectory.status, Status::no_equilibrium) << name_of(method) << mu << r.trajectory.message;
         EXPECT_NE(r.trajectory.message.find("block"), std::string::npos);
       }
       // width 1, height 4: the load's line of action leaves the sole at a shear of 1/8 of the press
-      const auto tips = solve_scene(block_on_floor({1, 4}, {n, 4 * n}, 1, 0.126), method);
+      const auto tips = solve_moving(block_on_floor({1, 4}, {n, 4 * n}, 1, 0.126), method);
       EXPECT_EQ(tips.trajectory.status, Status::no_equilibrium) << name_of(method) << tips.trajectory.message;
-      const auto stands = solve_scene(block_on_floor({1, 4}, {n, 4 * n}, 1, 0.1), method);
+      const auto stands = solve_moving(block_on_floor({1, 4}, {n, 4 * n}, 1, 0.1), method);
       EXPECT_TRUE(is_converged(stands.trajectory.status)) << name_of(method) << stands.trajectory.message;
     }
 }
@@ -279,11 +279,11 @@ TEST(BlockOnFloor, IsSolvedInBothEngines) {
     for (const auto engine : {LinearAlgebra::Engine::sparse, LinearAlgebra::Engine::condensed}) {
       RunOptions options;
       options.linear_algebra.engine = engine;
-      const auto r = solve_scene(block_on_floor({4, 2}, {6, 3}, 0.1, 0.07), method, options);
+      const auto r = solve_moving(block_on_floor({4, 2}, {6, 3}, 0.1, 0.07), method, options);
       ASSERT_TRUE(is_converged(r.trajectory.status)) << name_of(method) << r.trajectory.message;
       shift.push_back(r.last().state.displacement.norm());
     }
-    EXPECT_NEAR(shift[0], shift[1], solved * shift[0]) << name_of(method);
+    EXPECT_NEAR(shift[0], shift[1], solved_motion * shift[0]) << name_of(method);
   }
 }
 
@@ -303,7 +303,7 @@ TEST(PullOut, IsSolvedWithoutACutFromEveryScale) {
       }
       for (auto method : methods) {
         if (auto* uzawa = std::get_if<UzawaAL>(&method)) uzawa->tolerance = 1e-12;
-        const auto r = solve_scene(scene, method);
+        const auto r = solve_moving(scene, method);
         ASSERT_TRUE(is_converged(r.trajectory.status)) << name_of(method) << n << " " << steps << r.trajectory.message;
         EXPECT_EQ(r.trajectory.counters.cutbacks, 0) << name_of(method);
         if (std::holds_alternative<Penalty>(method)) continue;
@@ -327,7 +327,7 @@ TEST(Penalty, AcceptsAnOverlapThatTheBodyCanLeaveOnlyAlongAnotherWall) {
   wedged.contacts.push_back(scenes::contact("above", "point.node", "roof"));
   Penalty method;
   method.stiffness = scenes::absolute(1000);
-  const auto r = solve_scene(wedged, method);
+  const auto r = solve_moving(wedged, method);
   ASSERT_TRUE(is_converged(r.trajectory.status)) << r.trajectory.message;
   const auto& contact = r.trajectory.increments.back().state.contact;
   EXPECT_NEAR(contact.gap[0], -0.005, 1e-12);  // floor and spring in series: 10 / (1000 + 1000)
@@ -346,7 +346,7 @@ TEST(Penalty, NamesAnOverlapThatGrowsAForceWithTheStiffness) {
     for (double stiffness : {1.0, 1e3, 1e6}) {  // softer, the load pushes the point through one wall alone
       Penalty method;
       method.stiffness = relative(stiffness);
-      const auto r = solve_scene(scene, method);
+      const auto r = solve_moving(scene, method);
       EXPECT_EQ(r.trajectory.status, Status::infeasible) << stiffness << r.trajectory.message;
       EXPECT_NE(r.trajectory.message.find("no stiffness removes"), std::string::npos) << r.trajectory.message;
     }
@@ -356,7 +356,7 @@ TEST(Penalty, NamesAnOverlapThatGrowsAForceWithTheStiffness) {
   for (double stiffness : {1e-2, 1.0, 1e3, 1e6}) {
     Penalty method;
     method.stiffness = relative(stiffness);
-    EXPECT_TRUE(is_converged(solve_scene(groove, method).trajectory.status)) << stiffness;
+    EXPECT_TRUE(is_converged(solve_moving(groove, method).trajectory.status)) << stiffness;
   }
 }
 

@@ -42,7 +42,7 @@ constexpr double same = 1e-8;
 
 class PullOut : public testing::TestWithParam<int> {};
 
-std::vector<Method> exact_methods() {
+std::vector<Method> enforcing_methods() {
   UzawaAL uzawa;
   uzawa.tolerance = 1e-12;
   return {MonolithicAL{}, uzawa};
@@ -51,7 +51,7 @@ std::vector<Method> exact_methods() {
 TEST_P(PullOut, IsExactUnderLoadForAnyStepCount) {
   const int n = GetParam();
   const Discrete exact(n, 1, P);
-  for (const auto& method : exact_methods())
+  for (const auto& method : enforcing_methods())
     for (int steps : {1, 4, 7}) {
       const auto s = run(pull_out(n, {0, 1}, steps), method);
       ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << " " << steps << s.trajectory.message;
@@ -67,7 +67,7 @@ TEST_P(PullOut, IsExactUnderLoadForAnyStepCount) {
 TEST_P(PullOut, LeavesTheExactResidualDisplacementWhenLetGo) {
   const int n = GetParam();
   const Discrete forth(n, 1, P), back(n, 2, P);
-  for (const auto& method : exact_methods())
+  for (const auto& method : enforcing_methods())
     for (int steps : {1, 4}) {
       const auto s = run(pull_out(n, {0, 1, 0}, steps), method);
       ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << " " << steps << s.trajectory.message;
@@ -80,7 +80,7 @@ TEST_P(PullOut, LeavesTheExactResidualDisplacementWhenLetGo) {
 TEST_P(PullOut, ClosesItsCycle) {
   const int n = GetParam();
   const Discrete forth(n, 1, P), reversed(n, 2, 2 * P);
-  for (const auto& method : exact_methods())
+  for (const auto& method : enforcing_methods())
     for (int steps : {1, 4}) {
       const auto s = run(pull_out(n, {0, 1, -1, 1}, steps), method);
       ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << " " << steps << s.trajectory.message;

@@ -19,10 +19,10 @@ struct Problem {
 };
 
 /// The solution in which the points that are not open in `states` have no gap: the states that it asks for.
-struct Solution {
+struct SequentialSolution {
   States wanted;
   std::vector<double> by;
-  Solution(const Problem& problem, const States& states) {
+  SequentialSolution(const Problem& problem, const States& states) {
     const Eigen::Index n = problem.g.size();
     std::vector<Eigen::Index> closed;
     for (Eigen::Index i = 0; i < n; ++i)
@@ -47,7 +47,7 @@ template <class Next>
 std::pair<int, States> settle(const Problem& problem, Next&& next) {
   States states(problem.g.size(), ContactState::slip);
   for (int count = 1; count <= 1000; ++count) {
-    const Solution at(problem, states);
+    const SequentialSolution at(problem, states);
     if (at.wanted == states) return {count, states};
     states = next(states, at);
   }
@@ -80,10 +80,11 @@ TEST(Pivoting, EndsWhereAllPointsChangingAtOnceCycle) {
   int cycles = 0;
   for (int trial = 0; trial < 300; ++trial) {
     const Problem problem = beam_between_stops(20, random);
-    const auto all = settle(problem, [](const States&, const Solution& at) { return at.wanted; });
+    const auto all = settle(problem, [](const States&, const SequentialSolution& at) { return at.wanted; });
     detail::Pivoting pivoting;
-    const auto careful = settle(
-        problem, [&](const States& taken, const Solution& at) { return pivoting.advance(taken, at.wanted, at.by); });
+    const auto careful = settle(problem, [&](const States& taken, const SequentialSolution& at) {
+      return pivoting.advance(taken, at.wanted, at.by);
+    });
     EXPECT_GT(careful.first, 0) << trial;
     EXPECT_FALSE(pivoting.repeats()) << trial;
     if (all.first < 0)
@@ -102,8 +103,8 @@ TEST(Pivoting, HardlyHangsOnTheOrderOfThePoints) {
     const Problem turned{problem.W.reverse(), problem.g.reverse()};
     const auto count = [](const Problem& p) {
       detail::Pivoting pivoting;
-      return settle(p,
-                    [&](const States& taken, const Solution& at) { return pivoting.advance(taken, at.wanted, at.by); })
+      return settle(p, [&](const States& taken,
+                           const SequentialSolution& at) { return pivoting.advance(taken, at.wanted, at.by); })
           .first;
     };
     others += count(problem) != count(turned);

@@ -30,7 +30,7 @@ struct Run {
 };
 
 /// `states`: whole ones that there is room for.
-Run run(const Scene& scene, const Method& method, RunOptions options, double states) {
+Run run_keeping(const Scene& scene, const Method& method, RunOptions options, double states) {
   const Model model = make_model(scene);
   const auto slots = make_slots<double>(model, scene.as<double>());
   options.state_memory = states * thinned_bytes(model);
@@ -49,7 +49,7 @@ std::size_t whole_states(const Trajectory<double>& trajectory) {
 Run expect_same_gradient(Scene scene, const Method& method, const RunOptions& options = {}) {
   scenes::ask_for_objectives(scene);
   const std::string what = scene.title + " " + std::string(name_of(method));
-  const Run all = run(scene, method, options, std::numeric_limits<double>::infinity());
+  const Run all = run_keeping(scene, method, options, std::numeric_limits<double>::infinity());
   EXPECT_TRUE(is_converged(all.trajectory.status)) << what << all.trajectory.message;
   EXPECT_GT(all.gradients.of_objectives.size(), 0) << what << all.gradients.message;
   EXPECT_EQ(all.gradients.repeated, 0) << what;
@@ -57,7 +57,7 @@ Run expect_same_gradient(Scene scene, const Method& method, const RunOptions& op
   EXPECT_EQ(whole_states(all.trajectory), count) << what;
   Run few;
   for (const double room : {6.0, 1.0}) {
-    few = run(scene, method, options, room);
+    few = run_keeping(scene, method, options, room);
     EXPECT_EQ(few.trajectory.increments.size(), count) << what;
     EXPECT_LT(whole_states(few.trajectory), count) << what;
     EXPECT_GT(few.gradients.repeated, 0) << what;
@@ -143,7 +143,7 @@ TEST(SlowCheckpoints, SpareTheMemoryOfAThousandSteps) {
   for (const Method& method : scenes::all_methods()) {
     const auto peak = [&](double states) {
       return peak_of([&] {
-        const auto done = run(scene, method, {}, states);
+        const auto done = run_keeping(scene, method, {}, states);
         if (done.gradients.of_objectives.size() == 0) std::_Exit(1);
       });
     };
@@ -155,8 +155,8 @@ TEST(SlowCheckpoints, SpareTheMemoryOfAThousandSteps) {
                    std::to_string(kept / 1e6) + " " + std::to_string(spared / 1e6));
   }
   for (const Method& method : scenes::all_methods()) {
-    const Matrix<double> all_kept = run(scene, method, {}, steps).gradients.of_objectives;
-    const Gradients few = run(scene, method, {}, 64).gradients;
+    const Matrix<double> all_kept = run_keeping(scene, method, {}, steps).gradients.of_objectives;
+    const Gradients few = run_keeping(scene, method, {}, 64).gradients;
     EXPECT_TRUE(few.of_objectives == all_kept) << name_of(method);
     EXPECT_EQ(few.repeated, plan_checkpoints(model.times.size(), 64)->repeated()) << name_of(method);
   }

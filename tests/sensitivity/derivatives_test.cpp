@@ -17,7 +17,8 @@ struct Differentiated {
   Gradients gradients;
 };
 
-Differentiated run(const Model& model, const Slots<double>& slots, const Method& method, Kind engine, bool follow) {
+Differentiated differentiated(const Model& model, const Slots<double>& slots, const Method& method, Kind engine,
+                              bool follow) {
   Differentiated out;
   Workspace<double> workspace;
   RunOptions options;
@@ -45,8 +46,8 @@ TEST(Derivatives, ThatFollowARunFactoriseNothing) {
     const auto scene = scenes::two_boxes(6, 4);
     const Model model = make_model(scene);
     const auto slots = make_slots<double>(model, scene.as<double>());
-    const auto following = run(model, slots, method, Kind::sparse, true);
-    const auto at_the_end = run(model, slots, method, Kind::sparse, false);
+    const auto following = differentiated(model, slots, method, Kind::sparse, true);
+    const auto at_the_end = differentiated(model, slots, method, Kind::sparse, false);
     ASSERT_TRUE(is_converged(following.trajectory.status)) << following.trajectory.message;
     ASSERT_TRUE(is_converged(following.gradients.status)) << following.gradients.message;
     EXPECT_EQ(following.gradients.counters.sensitivity_factorizations, 0) << name_of(method);
@@ -71,8 +72,8 @@ TEST(Derivatives, ThatFollowARunLoseNoMoreUnderAStiffPenalty) {
   const auto slots = make_slots<double>(model, scene.as<double>());
   for (const double stiffness : {1e5, 1e7}) {
     const Method method = Penalty{scenes::relative(stiffness)};
-    const auto following = run(model, slots, method, Kind::sparse, true);
-    const auto at_the_end = run(model, slots, method, Kind::sparse, false);
+    const auto following = differentiated(model, slots, method, Kind::sparse, true);
+    const auto at_the_end = differentiated(model, slots, method, Kind::sparse, false);
     ASSERT_TRUE(is_converged(following.trajectory.status)) << following.trajectory.message;
     ASSERT_TRUE(is_converged(following.gradients.status)) << following.gradients.message;
     // rounding times the stiffness, and a hundred terms in a row
@@ -156,7 +157,8 @@ TEST(Derivatives, OfContactResponsesNeedNoDisplacementsInside) {
   for (const Method& method : {Method(Penalty{}), Method(UzawaAL{}), Method(MonolithicAL{})}) {
     const auto differentiated = [&](const Scene& scene) {
       const Model model = make_model(scene);
-      return run(model, make_slots<double>(model, scene.as<double>()), method, Kind::condensed, false).gradients;
+      return differentiated(model, make_slots<double>(model, scene.as<double>()), method, Kind::condensed, false)
+          .gradients;
     };
     const auto found = differentiated(contact_alone), expected = differentiated(full);
     ASSERT_TRUE(is_converged(found.status)) << found.message;

@@ -19,7 +19,7 @@ using scenes::run;
 using scenes::table;
 using Kind = Response::Kind;
 
-Body rubber(Body body, Scene& s, const std::string& name, double E) {
+Body rubber_body(Body body, Scene& s, const std::string& name, double E) {
   body.material = NeoHookean{parameter(s, name, E), 0.3, NeoHookean::Volumetric::log};
   return body;
 }
@@ -42,11 +42,11 @@ const Table still = table({{0, 0.0}});
 
 // --- A13: two blocks, pressed on one another by any meshes ----------------------------------------------------------
 
-Scene stacked(double stretch, double mu, int slave, int master, Space space = Space::plane_strain) {
+Scene stacked_segments(double stretch, double mu, int slave, int master, Space space = Space::plane_strain) {
   Scene s = empty({{1, 4}});
   s.space = space;
-  s.bodies = {rubber(scenes::box_body("lower", {0, 0}, {2, 0.5}, {master, 2}), s, "E", 1000),
-              rubber(scenes::box_body("upper", {0, 0.5}, {2, 1}, {slave, 2}), s, "E_upper", 1000)};
+  s.bodies = {rubber_body(scenes::box_body("lower", {0, 0}, {2, 0.5}, {master, 2}), s, "E", 1000),
+              rubber_body(scenes::box_body("upper", {0, 0.5}, {2, 1}, {slave, 2}), s, "E_upper", 1000)};
   s.contacts = {joint(s, "upper.bottom", "lower.top", mu)};
   const Number down = parameter(s, "down", stretch - 1);
   s.supports = {scenes::support("lower.bottom", {{'y', still}}),
@@ -77,7 +77,7 @@ TEST(FiniteSegments, PassAUniformPressureBetweenAnyTwoMeshes) {
     for (const auto& [l1, l2, P1] : {std::array{0.9, 1.0449972898, -120.5210836}, {0.7, 1.1507960463, -458.4239232}})
       for (const double mu : {0.0, 0.2})  // (both sides stretch alike: nothing slips)
         for (const auto& method : patch_methods()) {
-          const auto s = run(stacked(l1, mu, slave, master), method);
+          const auto s = run(stacked_segments(l1, mu, slave, master), method);
           ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
           // equilibrium is solved to 1e-10 of the largest nodal force
           EXPECT_NEAR(s.value("most") / s.value("least"), 1, 1e-10) << slave << ":" << master << name_of(method);
@@ -94,7 +94,7 @@ TEST(FiniteSegments, PassAUniformPressureOfRevolutionAndInPlaneStress) {
   for (const Space space : {Space::axisymmetric, Space::plane_stress})
     for (const auto& [slave, master] : {std::pair{3, 4}, {7, 11}})
       for (const auto& method : patch_methods()) {
-        const auto s = run(stacked(0.8, 0.2, slave, master, space), method);
+        const auto s = run(stacked_segments(0.8, 0.2, slave, master, space), method);
         ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
         EXPECT_NEAR(s.value("most") / s.value("least"), 1, 1e-10) << slave << ":" << master << name_of(method);
       }
@@ -108,7 +108,7 @@ struct Ironing {
   bool segment = true, shaped = false;
 };
 
-Scene ironing(const Ironing& of = {}) {
+Scene ironing_segments(const Ironing& of = {}) {
   Scene s = empty({{1, 3}, {2, 5}});
   const double c = std::cos(of.turned), sn = std::sin(of.turned);
   const auto corner = [&](double x, double y) { return std::array<Number, 2>{c * x - sn * y, sn * x + c * y}; };
@@ -118,8 +118,8 @@ Scene ironing(const Ironing& of = {}) {
   const double x = of.from;
   die.corners = {corner(x + 0.1, 1.05), corner(x + 0.9, 1.0), corner(x + 1, 1.6), corner(x, 1.6)};
   die.cells = {4, 2};
-  s.bodies = {rubber({"slab", slab, LinearElastic{1.0, 0.0}, "", 1.0}, s, "E", 1),
-              rubber({"die", die, LinearElastic{1.0, 0.0}, "", 1.0}, s, "E_die", 5)};
+  s.bodies = {rubber_body({"slab", slab, LinearElastic{1.0, 0.0}, "", 1.0}, s, "E", 1),
+              rubber_body({"die", die, LinearElastic{1.0, 0.0}, "", 1.0}, s, "E_die", 5)};
   s.contacts = {joint(s, "die.bottom", "slab.top", of.mu)};
   s.contacts[0].segment = of.segment;
   const Number down = parameter(s, "down", -0.15), along = parameter(s, "along", of.along);
@@ -160,10 +160,10 @@ Scene ironing(const Ironing& of = {}) {
 TEST(FiniteSegments, MethodsAgreeOnADieThatCrossesFacets) {
   auto methods = finite_methods();
   std::get<Penalty>(methods[0]).stiffness = scenes::relative(100);
-  const auto exact = run(ironing(), methods[2]);
+  const auto exact = run(ironing_segments(), methods[2]);
   ASSERT_TRUE(is_converged(exact.trajectory.status)) << exact.trajectory.message;
   for (int m : {0, 1}) {
-    const auto s = run(ironing(), methods[m]);
+    const auto s = run(ironing_segments(), methods[m]);
     ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(methods[m]) << s.trajectory.message;
     for (const char* name : {"x", "y", "energy", "heat"})  // (a penalty's overlap is some 1 / 100 of the depth)
       EXPECT_NEAR(s.value(name), exact.value(name), (m == 0 ? 0.03 : 1e-9) * std::abs(exact.value("y")))
@@ -175,7 +175,7 @@ TEST(FiniteSegments, ForcesBalanceBetweenSlaveAndMaster) {
   // to what equilibrium is solved to, 1e-10 of the largest nodal force; over the end of the slab too
   for (const double from : {0.8, 2.7})
     for (const auto& method : finite_methods()) {
-      const auto s = run(ironing({0.3, 0, from}), method);
+      const auto s = run(ironing_segments({0.3, 0, from}), method);
       ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
       for (int n = 0; n < static_cast<int>(s.trajectory.increments.size()); ++n) {
         const double size = std::abs(s.value("y"));
@@ -189,7 +189,7 @@ TEST(FiniteSegments, ForcesBalanceBetweenSlaveAndMaster) {
 TEST(FiniteSegments, FrictionWorkAndStrainEnergyAddUpToTheWorkDone) {
   // 24 steps lose 0.1 % by their length, and 4 facets a second-order share of the work of the normal force
   for (const double mu : {0.0, 0.3}) {
-    Scene scene = ironing({mu});
+    Scene scene = ironing_segments({mu});
     scene.legs = {{1, 12}, {2, 12}};
     const auto s = run(scene, MonolithicAL{});
     ASSERT_TRUE(is_converged(s.trajectory.status)) << s.trajectory.message;
@@ -214,7 +214,7 @@ TEST(FiniteSegments, JumpNoMoreThanNodeToSegment) {
   const auto jump = [](bool segment) {
     Ironing of;
     of.segment = segment;
-    Scene scene = ironing(of);
+    Scene scene = ironing_segments(of);
     scene.legs = {{1, 3}, {2, 35}};
     const auto s = run(scene, MonolithicAL{});
     EXPECT_TRUE(is_converged(s.trajectory.status)) << s.trajectory.message;
@@ -233,8 +233,8 @@ TEST(FiniteSegments, JumpNoMoreThanNodeToSegment) {
 TEST(FiniteSegments, DoNotKnowDirectionsInSpace) {
   for (const double from : {0.8, 2.7})
     for (double turned : {0.5, 2.9}) {
-      const auto s = run(ironing({0.3, 0, from}), MonolithicAL{}),
-                 t = run(ironing({0.3, turned, from}), MonolithicAL{});
+      const auto s = run(ironing_segments({0.3, 0, from}), MonolithicAL{}),
+                 t = run(ironing_segments({0.3, turned, from}), MonolithicAL{});
       ASSERT_TRUE(is_converged(t.trajectory.status)) << t.trajectory.message;
       const double c = std::cos(turned), sn = std::sin(turned), size = std::abs(s.value("y"));
       EXPECT_NEAR(t.value("x"), c * s.value("x") - sn * s.value("y"), 1e-10 * size);
@@ -246,7 +246,7 @@ TEST(FiniteSegments, DoNotKnowDirectionsInSpace) {
 
 TEST(FiniteSegments, SmallStrainIsTheirLimit) {  // D3
   const auto press = [](bool finite, double down, double mu) {
-    Scene s = ironing({mu, 0, 0.8, 0});
+    Scene s = ironing_segments({mu, 0, 0.8, 0});
     s.finite_strain = finite;
     for (auto& body : s.bodies)
       if (!finite) body.material = LinearElastic{body.name == "die" ? 5.0 : 1.0, 0.3};
@@ -274,7 +274,7 @@ TEST(FiniteSegments, SmallStrainIsTheirLimit) {  // D3
 }
 
 TEST(FiniteSegments, TangentsAreTheComplexStepOfForcesAndRows) {
-  for (const Scene& scene : {ironing(), ironing({0.3, 0, 2.7}), stacked(0.7, 0.2, 3, 16)})
+  for (const Scene& scene : {ironing_segments(), ironing_segments({0.3, 0, 2.7}), stacked_segments(0.7, 0.2, 3, 16)})
     for (const Method& method : {Method(MonolithicAL{}), Method(Penalty{scenes::relative(100)})}) {
       const auto s = run(scene, method);
       ASSERT_TRUE(is_converged(s.trajectory.status)) << s.trajectory.message;
@@ -284,22 +284,22 @@ TEST(FiniteSegments, TangentsAreTheComplexStepOfForcesAndRows) {
 }
 
 TEST(FiniteSegments, DerivativesEqualTheComplexStepAndTheAdjoint) {
-  for (const Method& method : finite_schemes()) scenes::expect_derivatives_in_both_modes(ironing(), method);
+  for (const Method& method : finite_schemes()) scenes::expect_derivatives_in_both_modes(ironing_segments(), method);
   Ironing shaped;
   shaped.shaped = true;
   for (const Method& method : {Method(MonolithicAL{}), finite_schemes()[0]})
-    scenes::expect_derivatives_in_both_modes(ironing(shaped), method);
-  scenes::expect_derivatives_in_both_modes(ironing({0}), MonolithicAL{});
-  scenes::expect_derivatives_in_both_modes(ironing({0.3, 0, 2.7}), MonolithicAL{});
+    scenes::expect_derivatives_in_both_modes(ironing_segments(shaped), method);
+  scenes::expect_derivatives_in_both_modes(ironing_segments({0}), MonolithicAL{});
+  scenes::expect_derivatives_in_both_modes(ironing_segments({0.3, 0, 2.7}), MonolithicAL{});
   for (const Space space : {Space::axisymmetric, Space::plane_stress}) {
-    Scene blocks = stacked(0.8, 0.2, 3, 4, space);
+    Scene blocks = stacked_segments(0.8, 0.2, 3, 4, space);
     blocks.responses.resize(2);  // (the gap is rounding)
     scenes::expect_derivatives_in_both_modes(blocks, MonolithicAL{});
   }
 }
 
 TEST(FiniteSegments, TellWhereAnEndOfTheSlaveMeetsABendOfTheMaster) {
-  const auto s = run(ironing(), MonolithicAL{});
+  const auto s = run(ironing_segments(), MonolithicAL{});
   ASSERT_TRUE(is_converged(s.trajectory.status)) << s.trajectory.message;
   State<double> state = s.trajectory.increments.back().state;
   EXPECT_GT(integration_margin(s.model, s.slots, state), 1e-3);
@@ -321,7 +321,7 @@ TEST(FiniteSegments, TellWhereAnEndOfTheSlaveMeetsABendOfTheMaster) {
 /// A block pressed onto a floor by a load, which turns and moves; `round`: a disk.
 Scene on_floor(bool round, bool segment = true) {
   Scene s = empty({{1, 2}, {2, 5}});
-  s.bodies = {rubber(scenes::box_body("block", {-1, 0}, {1, 1}, {4, 2}), s, "E", 100)};
+  s.bodies = {rubber_body(scenes::box_body("block", {-1, 0}, {1, 1}, {4, 2}), s, "E", 100)};
   Obstacle floor{"floor", Plane{{0.0, 0.0}, {0.0, 1.0}}};
   if (round) floor.shape = Circle{{0.1, -3}, parameter(s, "R", 3)};
   floor.rotate = Rotation{{0.0, -2.0}, {}, table({{0, 0.0}, {1, 0.0}, {2, parameter(s, "angle", 6)}})};

@@ -156,17 +156,17 @@ TEST(FlowTies, AreNoneWhereNothingTies) {
 
 // --- continua, by the complex step on either side --------------------------------------------------------------------
 
-struct Setting {
+struct FlowSetting {
   Space space;
   bool finite;
   const char* element;
 };
 
-std::string text_of(const Setting& setting) {
+std::string text_of(const FlowSetting& setting) {
   return std::to_string(static_cast<int>(setting.space)) + (setting.finite ? " finite " : " small ") + setting.element;
 }
 
-Body metal(Scene& s, const Setting& setting, double yield_stress, const std::vector<HardeningRow>& rows) {
+Body metal(Scene& s, const FlowSetting& setting, double yield_stress, const std::vector<HardeningRow>& rows) {
   const double left = setting.space == Space::axisymmetric ? 1.0 : 0.0;
   BoxMesh box;
   box.min = {left, 0.0};
@@ -180,7 +180,7 @@ Body metal(Scene& s, const Setting& setting, double yield_stress, const std::vec
 
 /// A block under a pressure, in a state that is the same everywhere: up to a tie at the second increment, part of the
 /// way back, and beyond.
-Scene pressed_evenly(const Setting& setting, double yield_stress, const std::vector<HardeningRow>& rows) {
+Scene pressed_evenly(const FlowSetting& setting, double yield_stress, const std::vector<HardeningRow>& rows) {
   Scene s;
   s.space = setting.space;
   s.finite_strain = setting.finite;
@@ -196,7 +196,7 @@ Scene pressed_evenly(const Setting& setting, double yield_stress, const std::vec
 }
 
 /// A block that its top presses onto a rough disk and draws along it: one point of it is the first to flow.
-Scene pressed_on_a_disk(const Setting& setting, double yield_stress, const std::vector<HardeningRow>& rows) {
+Scene pressed_on_a_disk(const FlowSetting& setting, double yield_stress, const std::vector<HardeningRow>& rows) {
   Scene s;
   s.space = setting.space;
   s.finite_strain = setting.finite;
@@ -213,7 +213,7 @@ Scene pressed_on_a_disk(const Setting& setting, double yield_stress, const std::
   return s;
 }
 
-using Build = Scene (*)(const Setting&, double, const std::vector<HardeningRow>&);
+using Build = Scene (*)(const FlowSetting&, double, const std::vector<HardeningRow>&);
 
 /// The largest trial stress, and the largest plastic strain, of the second increment of a run.
 std::pair<double, double> reached(const Scene& scene, const Method& method) {
@@ -231,22 +231,22 @@ std::pair<double, double> reached(const Scene& scene, const Method& method) {
 }
 
 /// Whose first flow begins at the end of the second increment.
-Scene about_to_flow(Build build, const Setting& setting, const Method& method) {
+Scene about_to_flow(Build build, const FlowSetting& setting, const Method& method) {
   return build(setting, reached(build(setting, 1e30, {}), method).first, {});
 }
 /// Whose flow ends at a corner of the table then, behind which the bound rises more slowly.
-Scene at_a_corner(Build build, const Setting& setting, const Method& method) {
+Scene at_a_corner(Build build, const FlowSetting& setting, const Method& method) {
   const double begins = 1.5, strain = reached(build(setting, begins, {}), method).second;
   return build(setting, begins, {{strain, begins + 12 * strain}, {3 * strain, begins + 24 * strain}});
 }
 
 TEST(FlowTies, OfABlockThatYieldsEverywhereAtOnceHaveTheSidesOfTheRunByEveryScheme) {
-  const Setting setting{Space::plane_strain, false, "Q4_mean_dilatation"};
+  const FlowSetting setting{Space::plane_strain, false, "Q4_mean_dilatation"};
   for (const auto& scheme : schemes())
     EXPECT_GT(expect_sides(about_to_flow(pressed_evenly, setting, scheme.method), scheme), 3) << scheme.name;
 }
 
-class FlowTiesOfBlocks : public testing::TestWithParam<Setting> {};
+class FlowTiesOfBlocks : public testing::TestWithParam<FlowSetting> {};
 
 TEST_P(FlowTiesOfBlocks, HaveTheSidesOfTheRunAndOneOfThemInBothModes) {
   SCOPED_TRACE(text_of(GetParam()));
@@ -262,10 +262,10 @@ TEST_P(FlowTiesOfBlocks, HaveTheSidesOfTheRunAndOneOfThemInBothModes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(SlowSettings, FlowTiesOfBlocks,
-                         testing::Values(Setting{Space::plane_strain, false, "Q4_mean_dilatation"},
-                                         Setting{Space::plane_stress, false, "Q4"},
-                                         Setting{Space::plane_strain, true, "Q4_mean_dilatation"},
-                                         Setting{Space::axisymmetric, true, "T3"}));
+                         testing::Values(FlowSetting{Space::plane_strain, false, "Q4_mean_dilatation"},
+                                         FlowSetting{Space::plane_stress, false, "Q4"},
+                                         FlowSetting{Space::plane_strain, true, "Q4_mean_dilatation"},
+                                         FlowSetting{Space::axisymmetric, true, "T3"}));
 
 }  // namespace
 }  // namespace stickslip

@@ -43,7 +43,7 @@ TEST(FrictionLawDerivatives, BelongToThePieceThatHolds) {
 }
 
 /// A block whose top is drawn to and fro over the floor: points stick, slip and reach the limit, and turn.
-Scene block(const Law& law) {
+Scene sheared_block(const Law& law) {
   Scene s;
   s.legs = {{2, 6}};
   s.bodies = {scenes::box_body("block", {0, 0}, {4, 2}, {8, 4})};
@@ -66,7 +66,7 @@ Scene block(const Law& law) {
 TEST(FrictionLawDerivatives, EqualTheOracleInWhichEveryPieceOccurs) {
   for (const Law& law : {Law{0.4, 1.7}, Law{std::nullopt, 1.5}})
     for (const Method& method : methods()) {
-      const auto s = scenes::run(block(law), method);
+      const auto s = scenes::run(sheared_block(law), method);
       ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
       std::array<long, 4> met{};
       for (const auto& increment : s.trajectory.increments)
@@ -112,7 +112,7 @@ TEST(FrictionLawDerivatives, HaveBothSidesAtTheCorner) {
 }
 
 TEST(FrictionLawDerivatives, EqualTheAdjoint) {
-  Scene scene = block({0.4, 1.7});
+  Scene scene = sheared_block({0.4, 1.7});
   scenes::ask_for_objectives(scene);
   // iterated schemes end at 1e-10 of the largest; the rest is rounding
   for (const Method& method : methods()) EXPECT_LE(scenes::difference_of_modes(scene, method), 1e-9) << name_of(method);

@@ -14,13 +14,13 @@ using scenes::run;
 using scenes::table;
 using Kind = Response::Kind;
 
-Obstacle plane(const std::string& name, std::array<Number, 2> point) {
+Obstacle floor_plane(const std::string& name, std::array<Number, 2> point) {
   return {name, Plane{{point[0], point[1]}, {0.0, 1.0}}};
 }
 
 /// Half of a von Mises truss (A15) under a force at its top, followed by arc length; `floor`: where a stop ends the way
 /// of the top, from its start.
-Scene truss(double load, std::optional<double> floor, double length = 0.1) {
+Scene path_truss(double load, std::optional<double> floor, double length = 0.1) {
   Scene s;
   s.finite_strain = true;
   s.legs = {{1, 20}};
@@ -34,14 +34,14 @@ Scene truss(double load, std::optional<double> floor, double length = 0.1) {
   s.loads[0].history->goes_on = true;
   s.responses = {response("w", Kind::displacement, "bar.end", "y")};
   if (!floor) return s;
-  s.obstacles = {plane("floor", {0.0, 1 - *floor})};
+  s.obstacles = {floor_plane("floor", {0.0, 1 - *floor})};
   s.contacts = {contact("top", "bar.end", "floor")};
   s.responses.push_back(response("press", Kind::contact_force, "top", "normal"));
   return s;
 }
 
 /// Force that holds half of the truss at a depth w of its top, and its derivative.
-double truss_force(double w) {
+double force_of_truss(double w) {
   const double s = 1 - w;
   return 1e4 / std::pow(101, 1.5) * (s - s * s * s) / 2;
 }
@@ -55,13 +55,13 @@ std::vector<Method> path_methods() { return {MonolithicAL{}, Penalty{scenes::rel
 TEST(Path, FollowsATrussThroughBothLimitPointsToTheFullLoad) {
   constexpr double load = 2.5, most = 3.7919801295 / 2;
   for (const double length : {0.05, 0.1, 0.3}) {
-    const auto s = run(truss(load, {}, length), MonolithicAL{});
+    const auto s = run(path_truss(load, {}, length), MonolithicAL{});
     ASSERT_EQ(s.trajectory.status, Status::converged) << s.trajectory.message;
     double highest = 0, lowest = 0, before = 0, arc = 0;
     for (std::size_t n = 0; n < s.trajectory.increments.size(); ++n) {
       const auto& increment = s.trajectory.increments[n];
       const double w = -s.value("w", static_cast<int>(n));
-      EXPECT_NEAR(load * increment.time, truss_force(w), 1e-9 * most) << w;  // the tolerance of equilibrium is 1e-10
+      EXPECT_NEAR(load * increment.time, force_of_truss(w), 1e-9 * most) << w;  // the tolerance of equilibrium is 1e-10
       if (length == 0.05) {  // (of 0.1 the path bends within less than a step at its limit points)
         EXPECT_EQ(increment.cutbacks, 0) << w;
       }
@@ -92,24 +92,24 @@ TEST(Path, EndsOnAStopByAllMethods) {
   for (const auto& method : path_methods())
     for (const double load : {3.79 / 2, 3.80 / 2, 2.5}) {  // below the limit point, and beyond it
       // (between the two points at which the path has a load just below its limit lies a hundredth of a step of 0.1)
-      const auto s = run(truss(load, 1.2, 2 * load < 3.7919801295 ? 0.01 : 0.1), method);
+      const auto s = run(path_truss(load, 1.2, 2 * load < 3.7919801295 ? 0.01 : 0.1), method);
       const std::string what = std::string(name_of(method)) + " " + std::to_string(2 * load);
       ASSERT_TRUE(is_converged(s.trajectory.status)) << what << s.trajectory.message;
       EXPECT_EQ(s.trajectory.increments.back().time, 1) << what;
       if (2 * load < 3.7919801295) {
         EXPECT_LT(-s.value("w"), 0.4226497308) << what;
-        EXPECT_NEAR(truss_force(-s.value("w")), load, 1e-9 * load) << what;
+        EXPECT_NEAR(force_of_truss(-s.value("w")), load, 1e-9 * load) << what;
         continue;
       }
       const double overlap = std::holds_alternative<Penalty>(method) ? 1e-3 : 1e-9;
       EXPECT_NEAR(-s.value("w"), 1.2, overlap) << what;
-      EXPECT_NEAR(s.value("press"), load - truss_force(-s.value("w")), 1e-9 * load) << what;
+      EXPECT_NEAR(s.value("press"), load - force_of_truss(-s.value("w")), 1e-9 * load) << what;
     }
 }
 
 TEST(Path, HasTheDerivativesOfItsPointsAtTheirLoads) {
   for (const auto& method : path_methods()) {
-    Scene scene = truss(2.5, 1.2, 0.13);
+    Scene scene = path_truss(2.5, 1.2, 0.13);
     const auto s = run(scene, method);
     ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
     const auto repeat = repeating({}, s.model, s.trajectory);
@@ -127,7 +127,7 @@ TEST(Path, HasTheDerivativesOfItsPointsAtTheirLoads) {
 }
 
 /// A block of rubber that a force on its top pushes down, and over a rough floor.
-Scene block(bool finite) {
+Scene pushed_block(bool finite) {
   Scene s;
   s.finite_strain = finite;
   s.legs = {{1, 8}};
@@ -138,7 +138,7 @@ Scene block(bool finite) {
   else
     body.material = LinearElastic{100.0, 0.3};
   s.bodies = {body};
-  s.obstacles = {plane("floor", {0.0, 0.0})};
+  s.obstacles = {floor_plane("floor", {0.0, 0.0})};
   s.contacts = {contact("sole", "block.bottom", "floor")};
   s.contacts[0].friction = Number(0.4);
   s.supports = {scenes::support("block.left", {{'x', table({{0, 0.0}})}})};
@@ -155,7 +155,7 @@ TEST(Path, IsTheSameByBothEngines) {
     RunOptions sparse, condensed;
     sparse.linear_algebra.engine = LinearAlgebra::Engine::sparse;
     condensed.linear_algebra.engine = LinearAlgebra::Engine::condensed;
-    const auto a = run(block(false), method, sparse), b = run(block(false), method, condensed);
+    const auto a = run(pushed_block(false), method, sparse), b = run(pushed_block(false), method, condensed);
     ASSERT_TRUE(is_converged(a.trajectory.status)) << a.trajectory.message;
     ASSERT_EQ(a.trajectory.increments.size(), b.trajectory.increments.size()) << name_of(method);
     for (int n = 0; n < static_cast<int>(a.trajectory.increments.size()); ++n) {
@@ -171,7 +171,7 @@ TEST(Path, IsTheSameByBothEngines) {
 TEST(Path, PassesThroughWhatTheLoadAloneGives) {
   for (const bool finite : {false, true})
     for (const auto& method : path_methods()) {
-      Scene scene = block(finite);
+      Scene scene = pushed_block(finite);
       const auto found = run(scene, method);
       ASSERT_TRUE(is_converged(found.trajectory.status)) << found.trajectory.message;
       scene.arc_length.reset();
@@ -188,14 +188,14 @@ TEST(Path, PassesThroughWhatTheLoadAloneGives) {
 }
 
 TEST(Path, EndsWithItsStepsOrSaysWhereItCannotGoOn) {
-  Scene few = truss(2.5, {});
+  Scene few = path_truss(2.5, {});
   few.arc_length->max = 5;
   const auto s = run(few, MonolithicAL{});
   EXPECT_EQ(s.trajectory.status, Status::converged);
   EXPECT_EQ(s.trajectory.increments.size(), 5u);
   EXPECT_LT(s.trajectory.increments.back().time, 1);
   // what is held from the start on has no equilibrium: a support pushes the top into the floor
-  Scene impossible = truss(2.5, 1.2);
+  Scene impossible = path_truss(2.5, 1.2);
   impossible.supports[1].move['y'] = table({{0, -1.3}});
   for (const auto& method : path_methods()) {
     const auto lost = run(impossible, method);
@@ -277,10 +277,10 @@ TEST(Path, OfAnArchIsWhatASupportFinds) {
 
 /// In other units, and where the length is that of the scene's size by default.
 TEST(Path, IsTheSameInOtherUnits) {
-  Scene scene = truss(2.5, {}, 0);
+  Scene scene = path_truss(2.5, {}, 0);
   const auto s = run(scene, MonolithicAL{});
   ASSERT_TRUE(is_converged(s.trajectory.status));
-  Scene milli = truss(2.5, {}, 0);  // lengths by 1000; the force is EA times an angle cubed
+  Scene milli = path_truss(2.5, {}, 0);  // lengths by 1000; the force is EA times an angle cubed
   milli.bodies[0].mesh = LineMesh{{0.0, 0.0}, {1e4, 1e3}, 1};
   const auto m = run(milli, MonolithicAL{});
   ASSERT_EQ(m.trajectory.increments.size(), s.trajectory.increments.size());

@@ -211,7 +211,7 @@ TEST(PlaneStress, OfWhatFlowsTakesNoPressure) {
 // --- a block on a rough disk -----------------------------------------------------------------------------------------
 
 /// A block, thick at the start, pressed onto a rigid rough disk and drawn along it: it sticks, slips, and opens.
-Scene draped(const Material& material, const char* element, double size = 1) {
+Scene draped_sheet(const Material& material, const char* element, double size = 1) {
   Scene s;
   s.space = Space::plane_stress;
   s.finite_strain = true;
@@ -239,7 +239,7 @@ Scene draped(const Material& material, const char* element, double size = 1) {
 
 /// Its numbers are parameters too.
 Scene draped_rubber(Volumetric kind, const char* element) {
-  Scene s = draped(NeoHookean{}, element);
+  Scene s = draped_sheet(NeoHookean{}, element);
   s.bodies[0].material = NeoHookean{parameter(s, "E", 100), parameter(s, "nu", 0.35), kind};
   return s;
 }
@@ -262,7 +262,7 @@ TEST(PlaneStress, ConvergesWithTheOrderOfNewton) {
                                    Material(NeoHookean{100.0, 0.45}), Material(J2Plastic{100.0, 0.3, 4.0, 30.0})})
     for (const Method& method : {Method(penalty), Method(MonolithicAL{})})
       for (int steps : {1, 2, 3, 4, 5, 6}) {
-        Scene scene = draped(material, "Q4");
+        Scene scene = draped_sheet(material, "Q4");
         scene.legs = {{1, steps}, {2, steps}};
         const auto s = run(scene, method);
         ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
@@ -284,7 +284,7 @@ TEST(PlaneStress, ConvergesWithTheOrderOfNewton) {
 TEST(PlaneStress, IsThatOfSmallStrainToFirstOrder) {
   // a block that a rough floor holds, and a press that it sticks to
   const auto pressed = [](bool finite, bool metal, double strain) {
-    Scene s = draped(NeoHookean{100.0, 0.35}, "Q4");
+    Scene s = draped_sheet(NeoHookean{100.0, 0.35}, "Q4");
     s.finite_strain = finite;
     s.parameters.clear();
     if (!finite) s.bodies[0].material = LinearElastic{100.0, 0.35};
@@ -317,7 +317,7 @@ TEST(PlaneStress, OfAWholeSceneThatTurnsChangesNothing) {
   for (const Material& material :
        {Material(NeoHookean{100.0, 0.4, Volumetric::log}), Material(J2Plastic{100.0, 0.3, 5.0, 30.0})})
     for (const Method& method : scenes::exact_methods()) {
-      Scene s = draped(material, "Q4");
+      Scene s = draped_sheet(material, "Q4");
       s.parameters.clear();
       s.obstacles = {{"floor", Plane{{0.0, 0.0}, {0.0, 1.0}}}};
       s.contacts[0].master = "floor";
@@ -350,8 +350,8 @@ TEST(PlaneStress, OfAWholeSceneThatTurnsChangesNothing) {
 TEST(PlaneStress, KnowsNoUnit) {
   // forces in a unit 2^80 times as large: the same motion but for what Newton's method leaves
   for (const Volumetric kind : {Volumetric::quadratic, Volumetric::log}) {
-    const auto a = run(draped(NeoHookean{100.0, 0.35, kind}, "Q4"), MonolithicAL{});
-    const auto b = run(draped(NeoHookean{100 * 0x1p-80, 0.35, kind}, "Q4"), MonolithicAL{});
+    const auto a = run(draped_sheet(NeoHookean{100.0, 0.35, kind}, "Q4"), MonolithicAL{});
+    const auto b = run(draped_sheet(NeoHookean{100 * 0x1p-80, 0.35, kind}, "Q4"), MonolithicAL{});
     ASSERT_TRUE(is_converged(a.trajectory.status)) << a.trajectory.message;
     EXPECT_LE(largest_entry(a.trajectory.increments.back().state.displacement -
                             b.trajectory.increments.back().state.displacement),

@@ -208,7 +208,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Setting{Space::plane_strain, true, "Q4_mean_dilatation", true}));
 
 /// A truss of two bars, elastoplastic, pushed down on a stop that is rough.
-Scene truss(bool finite) {
+Scene plastic_truss(bool finite) {
   Scene s;
   s.finite_strain = finite;
   s.legs = {{1, 4}, {2, 4}};
@@ -232,7 +232,7 @@ Scene truss(bool finite) {
 TEST(Plasticity, OfBarsHasTheDerivativesOfTheWholeRun) {
   for (bool finite : {false, true})
     for (const Method& method : finite_schemes()) {
-      const Scene scene = truss(finite);
+      const Scene scene = plastic_truss(finite);
       const auto s = run(scene, method);
       ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
       EXPECT_GT(s.trajectory.increments.back().state.history.bodies[1], 1e-4) << finite;

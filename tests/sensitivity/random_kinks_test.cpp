@@ -95,7 +95,7 @@ Scene bar(Draw& draw) {
 }
 
 /// A block that a stamp brings down onto a floor, just so far that it touches, or further, and then drags.
-Scene block(Draw& draw) {
+Scene random_block(Draw& draw) {
   Scene s;
   s.legs = {{2, 2}};
   const Number mu = parameter(s, "mu", draw.of({0.2, 0.5})), E = parameter(s, "E", 100),
@@ -266,7 +266,7 @@ TEST(SlowRandomKinks, AreAllFlaggedAndRightOnBothSides) {
     const Scene scene = kind == 0   ? points(draw)
                         : kind == 1 ? point_in_space(draw)
                         : kind == 2 ? bar(draw)
-                        : kind == 3 ? block(draw)
+                        : kind == 3 ? random_block(draw)
                                     : matching(draw);
     const Method method = any_method(draw);
     check(scene, method,

@@ -41,7 +41,7 @@ Scene matching_blocks(Smoothing smoothing) {
   return s;
 }
 
-std::vector<Named> methods_that_enforce() {
+std::vector<Named> named_methods() {
   std::vector<Named> chosen;
   for (const auto& scheme : schemes())
     if (scheme.name == "monolithic" || scheme.name == "iterated") chosen.push_back(scheme);
@@ -50,7 +50,7 @@ std::vector<Named> methods_that_enforce() {
 
 TEST(VertexTies, OfFacetsInLineHaveTheSidesOfTheRun) {
   Scene scene = matching_blocks(Smoothing::none);
-  for (const auto& scheme : methods_that_enforce()) {
+  for (const auto& scheme : named_methods()) {
     SCOPED_TRACE(scheme.name);
     EXPECT_GT(expect_sides(scene, scheme), 1);
   }

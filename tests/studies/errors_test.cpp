@@ -11,7 +11,7 @@ namespace stickslip {
 namespace {
 
 /// A block of two cells over a floor: contact points with areas 1/2, 1 and 1/2.
-std::shared_ptr<const Problem> block() {
+std::shared_ptr<const Problem> block_problem() {
   Scene s;
   s.legs = {{2, 2}};
   const Number E = scenes::parameter(s, "E", 10.0);
@@ -38,10 +38,10 @@ CaseResult nothing(const std::shared_ptr<const Problem>& problem) {
   return result;
 }
 
-constexpr double exact = 1e-14;
+constexpr double rounding_of_errors = 1e-14;
 
 TEST(EnforcementErrors, AreTheLargestOfAllStepsOverTheLargestOfAllSteps) {
-  const auto problem = block();
+  const auto problem = block_problem();
   CaseResult reference = nothing(problem), result = nothing(problem);
   const auto set = [](CaseResult& of, int n, double response, double derivative) {
     of.steps[n].responses[0] = response;
@@ -52,12 +52,12 @@ TEST(EnforcementErrors, AreTheLargestOfAllStepsOverTheLargestOfAllSteps) {
   set(result, 0, -7, 5);    // off by 1 and 2
   set(result, 1, 4.5, -7);  // by 1/2 and 1
   const auto errors = enforcement_errors(result, reference);
-  EXPECT_NEAR(errors.at("response:u"), 1.0 / 8, exact);
-  EXPECT_NEAR(errors.at("sensitivity:u/E"), 2.0 / 6, exact);
+  EXPECT_NEAR(errors.at("response:u"), 1.0 / 8, rounding_of_errors);
+  EXPECT_NEAR(errors.at("sensitivity:u/E"), 2.0 / 6, rounding_of_errors);
 }
 
 TEST(EnforcementErrors, WeighTractionsByArea) {
-  const auto problem = block();
+  const auto problem = block_problem();
   CaseResult reference = nothing(problem), result = nothing(problem);
   auto& of = reference.trajectory.increments[1].state.contact.traction;
   of << -4, 1, -3, 2, -2, 1;
@@ -70,8 +70,8 @@ TEST(EnforcementErrors, WeighTractionsByArea) {
     reference.steps[n].increment = &reference.trajectory.increments[n];
   }
   const auto errors = enforcement_errors(result, reference);
-  EXPECT_NEAR(errors.at("field:normal_traction"), std::sqrt(0.5 / (0.5 * 16 + 9 + 0.5 * 4)), exact);
-  EXPECT_NEAR(errors.at("field:tangential_traction"), std::sqrt(1 / (0.5 * 1 + 4 + 0.5 * 1)), exact);
+  EXPECT_NEAR(errors.at("field:normal_traction"), std::sqrt(0.5 / (0.5 * 16 + 9 + 0.5 * 4)), rounding_of_errors);
+  EXPECT_NEAR(errors.at("field:tangential_traction"), std::sqrt(1 / (0.5 * 1 + 4 + 0.5 * 1)), rounding_of_errors);
 }
 
 TEST(ReferenceValues, TakeTheModulusOfBothBodies) {

@@ -23,7 +23,7 @@ using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::Pointwise;
 
-constexpr double exact = 1e-13;  // a few roundings of numbers of size ten
+constexpr double rounding_of_fields = 1e-13;  // a few roundings of numbers of size ten
 
 /// A result of one step whose state the test writes.
 struct Made {
@@ -78,12 +78,12 @@ TEST(Fields, StressOfALinearDisplacementIsHookesLaw) {
   Made made(block(Space::plane_strain));
   strain(made);
   // trace -0.01: 400 * -0.01 + 800 * strain, and out of the plane the first part alone
-  EXPECT_THAT(made.array("stress"), Pointwise(DoubleNear(exact), {4.0, -20.0, -4.0, 12.0, 0.0, 0.0}));
+  EXPECT_THAT(made.array("stress"), Pointwise(DoubleNear(rounding_of_fields), {4.0, -20.0, -4.0, 12.0, 0.0, 0.0}));
   const double mises = std::sqrt((24 * 24 + 16 * 16 + 8 * 8) / 2.0 + 3 * 12 * 12);
-  EXPECT_THAT(made.array("von_mises"), Pointwise(DoubleNear(exact), {mises}));
+  EXPECT_THAT(made.array("von_mises"), Pointwise(DoubleNear(rounding_of_fields), {mises}));
   EXPECT_THAT(made.array("body"), ElementsAre(0));
   EXPECT_THAT(made.array("TimeValue"), ElementsAre(0.5));
-  EXPECT_NEAR(picture_json(made.result)["von_mises"][0], mises, exact);
+  EXPECT_NEAR(picture_json(made.result)["von_mises"][0], mises, rounding_of_fields);
 }
 
 TEST(Fields, StressInPlaneStressHasNothingOutOfThePlane) {
@@ -92,14 +92,14 @@ TEST(Fields, StressInPlaneStressHasNothingOutOfThePlane) {
   // E / (1 - nu^2) = 1066.67: times (0.01 - 0.25 * 0.02), (-0.02 + 0.25 * 0.01)
   const double modulus = 1000 / (1 - 0.0625);
   EXPECT_THAT(made.array("stress"),
-              Pointwise(DoubleNear(exact), {modulus * 0.005, -modulus * 0.0175, 0.0, 12.0, 0.0, 0.0}));
+              Pointwise(DoubleNear(rounding_of_fields), {modulus * 0.005, -modulus * 0.0175, 0.0, 12.0, 0.0, 0.0}));
 }
 
 TEST(Fields, StressOfRevolutionHasTheHoopStressOutOfThePlane) {
   Made made(block(Space::axisymmetric));
   for (int n = 0; n < 4; ++n) made.state().displacement[2 * n] = 0.01 * made.result.problem->slots.points(0, n);
   // u_r = 0.01 r: hoop strain 0.01 too, trace 0.02
-  EXPECT_THAT(made.array("stress"), Pointwise(DoubleNear(exact), {16.0, 8.0, 16.0, 0.0, 0.0, 0.0}));
+  EXPECT_THAT(made.array("stress"), Pointwise(DoubleNear(rounding_of_fields), {16.0, 8.0, 16.0, 0.0, 0.0, 0.0}));
 }
 
 TEST(Fields, VonMisesOfHugeStressesIsFinite) {
@@ -107,7 +107,7 @@ TEST(Fields, VonMisesOfHugeStressesIsFinite) {
   made.state().displacement.setConstant(0);
   for (int n = 0; n < 4; ++n) made.state().displacement[2 * n] = 1e200 * made.result.problem->slots.points(0, n);
   // 1200, 400, 400 times 1e200
-  EXPECT_NEAR(made.array("von_mises")[0], 8e202, 8e202 * exact);
+  EXPECT_NEAR(made.array("von_mises")[0], 8e202, 8e202 * rounding_of_fields);
 }
 
 TEST(Fields, OfContactAreOfPresentAreasTooAtFiniteStrain) {
@@ -144,7 +144,7 @@ TEST(Fields, OfPlaneStressAtFiniteStrainAreOfThePresentThickness) {
       (h * h - 1 + std::log(1.5 * h) > 0 ? high : low) = h;
     }
     const double h = metal ? std::pow(1.5, -1.0 / 3) : low;
-    EXPECT_NEAR(made.array("thickness_stretch")[0], h, exact) << metal;
+    EXPECT_NEAR(made.array("thickness_stretch")[0], h, rounding_of_fields) << metal;
     // Cauchy's along x: rubber 400 (1.5^2 - h^2) over the volume 1.5 h, metal E / (1 - nu^2) ln 1.5 over it
     const double along = (metal ? 1000 / (1 - 0.0625) * std::log(1.5) : 400 * (2.25 - h * h)) / (1.5 * h);
     const auto stress = made.array("stress");
@@ -153,7 +153,7 @@ TEST(Fields, OfPlaneStressAtFiniteStrainAreOfThePresentThickness) {
     state.contact.state = {ContactState::slip, ContactState::open};
     state.contact.traction << -6, 3, 0, 0;
     const int node = made.model().side("block.bottom").nodes[0];
-    EXPECT_NEAR(made.array("contact_pressure_current")[node], 6 / (1.5 * h), exact) << metal;
+    EXPECT_NEAR(made.array("contact_pressure_current")[node], 6 / (1.5 * h), rounding_of_fields) << metal;
   }
   for (const bool finite : {false, true}) {  // where the thickness stays there is no such field
     Scene scene = block(finite ? Space::plane_strain : Space::plane_stress);
@@ -193,7 +193,7 @@ TEST(Fields, OfContactAreThoseOfTheSlaveNodes) {
   EXPECT_EQ(gap[nodes[1]], 0.25);
   // on the slave: pushed off the floor, and against the tangent (-1, 0)
   EXPECT_THAT(std::vector<double>(traction.begin() + 3 * nodes[0], traction.begin() + 3 * nodes[0] + 3),
-              Pointwise(DoubleNear(exact), {2.0, 6.0, 0.0}));
+              Pointwise(DoubleNear(rounding_of_fields), {2.0, 6.0, 0.0}));
   EXPECT_EQ(made.file().find("contact_state_sole"), std::string::npos) << "one contact alone needs no name";
 }
 
@@ -251,7 +251,7 @@ TEST(Fields, ANodeInTwoContactsKeepsBoth) {
       const auto traction = made.array("contact_traction");
       // floor: (2, 6); wall, whose tangent is (0, 1): (4, -1)
       EXPECT_THAT(std::vector<double>(traction.begin() + 3 * node, traction.begin() + 3 * node + 3),
-                  Pointwise(DoubleNear(exact), {6.0, 5.0, 0.0}));
+                  Pointwise(DoubleNear(rounding_of_fields), {6.0, 5.0, 0.0}));
     }
 }
 

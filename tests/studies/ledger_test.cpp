@@ -16,7 +16,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-const fs::path folder = fs::path(STICKSLIP_SOURCE_DIR) / "studies" / "scenes";
+const fs::path shipped_folder = fs::path(STICKSLIP_SOURCE_DIR) / "studies" / "scenes";
 
 /// A scene by one method and engine, before and after it ran.
 struct Book {
@@ -27,18 +27,18 @@ struct Book {
 Book book_of(json document, const json& method, const std::string& engine, const std::string& name) {
   document["method"] = method;
   document["linear_solver"]["engine"] = engine;
-  const Simulation simulation{cases::read(document, folder / (name + ".json")), nullptr};
+  const Simulation simulation{cases::read(document, shipped_folder / (name + ".json")), nullptr};
   const auto problem = std::make_shared<const Problem>(simulation.input.scene);
   Book book{forecast(simulation.input, *problem), {}, simulate({simulation.input, problem})};
   book.kept = ledger(book.result);
   return book;
 }
 
-json scene(const std::string& name) { return cases::load(folder / (name + ".json")); }
+json scene(const std::string& name) { return cases::load(shipped_folder / (name + ".json")); }
 
 const json penalty = {{"penalty", json::object()}}, uzawa = {{"uzawa_al", json::object()}},
            truncated = {{"uzawa_al", {{"sensitivity", "truncated"}}}}, monolithic = {{"monolithic_al", json::object()}};
-const std::vector<json> methods = {penalty, uzawa, truncated, monolithic};
+const std::vector<json> ledger_methods = {penalty, uzawa, truncated, monolithic};
 
 const LedgerRow& row(const Ledger& ledger, const std::string& effect) {
   for (const auto& each : ledger)
@@ -112,7 +112,7 @@ void expect_foretold(const Book& book, const std::string& where) {
 class LedgerOf : public testing::TestWithParam<std::string> {};
 
 TEST_P(LedgerOf, AShippedSceneIsForetoldAndAddsUp) {
-  for (const auto& method : methods)
+  for (const auto& method : ledger_methods)
     for (const std::string engine : {"condensed", "sparse"}) {
       const std::string where = GetParam() + " " + method.dump() + " " + engine;
       const Book book = book_of(scene(GetParam()), method, engine, GetParam());
@@ -134,7 +134,7 @@ TEST(Ledger, OfASceneWithoutAnEffectHasNothingOfIt) {
   json loose = plain;
   loose["contacts"] = json::object();
   loose["responses"] = json::object();
-  for (const auto& method : methods)
+  for (const auto& method : ledger_methods)
     for (const std::string engine : {"condensed", "sparse"}) {
       const std::string where = method.dump() + " " + engine;
       const Book with = book_of(scene("greco_plate"), method, engine, "greco_plate");
@@ -175,7 +175,7 @@ json with_objective(json document, const std::string& mode) {
 }
 
 TEST(Ledger, SaysWhichSensitivityTookWhat) {
-  for (const auto& method : methods)
+  for (const auto& method : ledger_methods)
     for (const std::string engine : {"condensed", "sparse"}) {
       const Book adjoint = book_of(with_objective(scene("slider"), "adjoint"), method, engine, "slider");
       const Book direct = book_of(with_objective(scene("slider"), "direct"), method, engine, "slider");
@@ -193,7 +193,7 @@ TEST(Ledger, SaysWhichSensitivityTookWhat) {
 
 /// Counts of the rows are those of `cost`, each in one row.
 TEST(Ledger, SharesOutTheCountsOfTheRun) {
-  for (const auto& method : methods) {
+  for (const auto& method : ledger_methods) {
     const Book book = book_of(scene("belt"), method, "condensed", "belt");
     const auto& engine = row(book.kept, "condensed_engine").counts;
     const json counts = cost_json(book.result)["counts"];
@@ -229,7 +229,7 @@ json punch_on_metal() {
 }
 
 TEST(Ledger, OfAMixedSceneHasWhatIsCondensedBesideTheSparseEngine) {
-  for (const auto& method : methods)
+  for (const auto& method : ledger_methods)
     for (const std::string engine : {"condensed", "sparse"}) {
       const std::string where = method.dump() + " " + engine;
       const Book book = book_of(punch_on_metal(), method, engine, "punch_on_metal");
@@ -257,7 +257,7 @@ TEST(Ledger, ExplainSaysWhatIsCondensedOfAMixedScene) {
     json document = punch_on_metal();
     document["method"] = penalty;
     document["linear_solver"]["engine"] = engine;
-    const Input input = cases::read(document, folder / "punch_on_metal.json");
+    const Input input = cases::read(document, shipped_folder / "punch_on_metal.json");
     return explain(input, Problem(input.scene));
   };
   using testing::HasSubstr;
@@ -273,7 +273,7 @@ TEST(Ledger, ExplainSaysWhatIsCondensedOfAMixedScene) {
 
 TEST(Ledger, CountsWhatIsWritten) {
   Diagnostics diagnostics;
-  const auto simulation = prepare((folder / "belt.json").string(), {}, std::nullopt, diagnostics);
+  const auto simulation = prepare((shipped_folder / "belt.json").string(), {}, std::nullopt, diagnostics);
   ASSERT_TRUE(simulation) << diagnostics.text();
   const fs::path directory = fs::path(testing::TempDir()) / "ledger_files";
   fs::remove_all(directory);

@@ -15,13 +15,13 @@ using made_states::one_point;
 using made_states::Point;
 using scenes::contact;
 
-constexpr double exact = 1e-14;  // a few roundings of numbers of size one
+constexpr double rounding_of_metrics = 1e-14;  // a few roundings of numbers of size one
 
 void expect_only(const KktError& e, double KktError::*component, double wanted) {
   for (double KktError::*each : {&KktError::equilibrium, &KktError::gap, &KktError::complementarity, &KktError::cone,
                                  &KktError::stick, &KktError::slip_direction})
-    EXPECT_NEAR(e.*each, each == component ? wanted : 0, exact * std::max(1.0, wanted));
-  EXPECT_NEAR(e.largest(), wanted, exact * std::max(1.0, wanted));
+    EXPECT_NEAR(e.*each, each == component ? wanted : 0, rounding_of_metrics * std::max(1.0, wanted));
+  EXPECT_NEAR(e.largest(), wanted, rounding_of_metrics * std::max(1.0, wanted));
 }
 
 TEST(Metrics, AreZeroOfABodyThatRests) {
@@ -36,7 +36,7 @@ TEST(Metrics, EquilibriumIsWhatNothingBalancesOverTheLargestForce) {
   // spring (3, -2), less the load (0, -10), contact (-2, -7): (1, 1) is left
   state.displacement << 0.03, -0.01, 0, 0;
   state.contact.traction << -7, 2;
-  EXPECT_NEAR(made.errors()[0].equilibrium, std::sqrt(2.0) / 10, exact);
+  EXPECT_NEAR(made.errors()[0].equilibrium, std::sqrt(2.0) / 10, rounding_of_metrics);
 }
 
 TEST(Metrics, EquilibriumCountsNoForceThatASupportTakes) {
@@ -46,7 +46,7 @@ TEST(Metrics, EquilibriumCountsNoForceThatASupportTakes) {
   auto& state = made.next();
   state.displacement << 0.03, -0.01, 0, 0;
   state.contact.traction << -7, 2;
-  EXPECT_NEAR(made.errors()[0].equilibrium, 1.0 / 10, exact);
+  EXPECT_NEAR(made.errors()[0].equilibrium, 1.0 / 10, rounding_of_metrics);
 }
 
 TEST(Metrics, EquilibriumTakesTheWorstNodeAndTheLoadOfItsTime) {
@@ -59,8 +59,8 @@ TEST(Metrics, EquilibriumTakesTheWorstNodeAndTheLoadOfItsTime) {
     state.displacement << 0, -0.04 * n, 0, 0, 0, 3, 0, 0;  // a misses (0, 2 n), b (0, 3)
   }
   const auto errors = made.errors();
-  EXPECT_NEAR(errors[0].equilibrium, 3.0 / 10, exact);
-  EXPECT_NEAR(errors[1].equilibrium, 4.0 / 20, exact);
+  EXPECT_NEAR(errors[0].equilibrium, 3.0 / 10, rounding_of_metrics);
+  EXPECT_NEAR(errors[1].equilibrium, 4.0 / 20, rounding_of_metrics);
 }
 
 TEST(Metrics, GapIsPenetrationOverTheLargestRelativeDisplacement) {
@@ -81,7 +81,7 @@ TEST(Metrics, GapIsMeasuredByTheElasticDisplacementOfTheTractionsToo) {
   Point made;
   auto& state = made.rest();
   state.contact.gap << -0.01;
-  EXPECT_NEAR(made.errors()[0].gap, 0.01 / (10.0 / 200), exact);
+  EXPECT_NEAR(made.errors()[0].gap, 0.01 / (10.0 / 200), rounding_of_metrics);
 }
 
 /// A bar along a floor, of two cells of length 1 and EA = 1000, hence areas 1/2, 1, 1/2 and stiffnesses (the mean of
@@ -98,17 +98,17 @@ Scene bar() {
 
 TEST(Metrics, WeighTractionsWithAreaAndStiffness) {
   Made made(bar());
-  EXPECT_NEAR(made.slots.geometry[0].area, 0.5, exact);
-  EXPECT_NEAR(made.slots.geometry[1].area, 1, exact);
+  EXPECT_NEAR(made.slots.geometry[0].area, 0.5, rounding_of_metrics);
+  EXPECT_NEAR(made.slots.geometry[1].area, 1, rounding_of_metrics);
   EXPECT_NEAR(made.slots.stiffness[0], 500, 1e-10);
   EXPECT_NEAR(made.slots.stiffness[1], 1000, 1e-10);
   auto& state = made.next();
   state.contact.traction << -20, 0, -8, 0, 0, 0;
   state.contact.gap << 0, 0, -0.001;
   const auto e = made.errors()[0];
-  EXPECT_NEAR(e.equilibrium, 1, exact);                 // nothing balances the force, 0.5 * 20
-  EXPECT_NEAR(e.gap, 0.001 / (0.5 * 20 / 500), exact);  // length: A t / k = 0.02
-  EXPECT_NEAR(e.complementarity, 0.001 * 500 / 0.5 / 20, exact);
+  EXPECT_NEAR(e.equilibrium, 1, rounding_of_metrics);                 // nothing balances the force, 0.5 * 20
+  EXPECT_NEAR(e.gap, 0.001 / (0.5 * 20 / 500), rounding_of_metrics);  // length: A t / k = 0.02
+  EXPECT_NEAR(e.complementarity, 0.001 * 500 / 0.5 / 20, rounding_of_metrics);
 }
 
 TEST(Metrics, ComplementarityIsTheSmallerOfGapAndPressureAsTractions) {
@@ -120,12 +120,12 @@ TEST(Metrics, ComplementarityIsTheSmallerOfGapAndPressureAsTractions) {
     state.contact.state[0] = normal < 0 ? ContactState::stick : ContactState::open;
     return made.errors()[0].complementarity;
   };
-  EXPECT_NEAR(of(0.01, -10), 2.0 / 10, exact);   // apart by 0.01 * 200, and pressed
-  EXPECT_NEAR(of(0.1, -10), 10.0 / 10, exact);   // pressed by less than 0.1 * 200
-  EXPECT_NEAR(of(-0.01, -10), 2.0 / 10, exact);  // a penetration
-  EXPECT_NEAR(of(0.1, 10), 10.0 / 10, exact);    // apart, and pulled
-  EXPECT_NEAR(of(-0.01, 1), 2.0 / 1, exact);     // a penetration that pulls
-  EXPECT_NEAR(of(0, 5), 5.0 / 5, exact);         // touching, and pulled
+  EXPECT_NEAR(of(0.01, -10), 2.0 / 10, rounding_of_metrics);   // apart by 0.01 * 200, and pressed
+  EXPECT_NEAR(of(0.1, -10), 10.0 / 10, rounding_of_metrics);   // pressed by less than 0.1 * 200
+  EXPECT_NEAR(of(-0.01, -10), 2.0 / 10, rounding_of_metrics);  // a penetration
+  EXPECT_NEAR(of(0.1, 10), 10.0 / 10, rounding_of_metrics);    // apart, and pulled
+  EXPECT_NEAR(of(-0.01, 1), 2.0 / 1, rounding_of_metrics);     // a penetration that pulls
+  EXPECT_NEAR(of(0, 5), 5.0 / 5, rounding_of_metrics);         // touching, and pulled
   EXPECT_EQ(of(0.1, 0), 0);
   EXPECT_EQ(of(0, -10), 0);
 }
@@ -135,13 +135,13 @@ TEST(Metrics, ConeIsTheTractionBeyondTheBound) {
   auto& state = made.rest();
   const double scale = std::hypot(10.0, 6.0);
   state.contact.traction << -10, 6;
-  EXPECT_NEAR(made.errors()[0].cone, 1.0 / scale, exact);
+  EXPECT_NEAR(made.errors()[0].cone, 1.0 / scale, rounding_of_metrics);
   state.contact.traction << -10, -6;
-  EXPECT_NEAR(made.errors()[0].cone, 1.0 / scale, exact);
+  EXPECT_NEAR(made.errors()[0].cone, 1.0 / scale, rounding_of_metrics);
   state.contact.traction << -10, 5;
   EXPECT_EQ(made.errors()[0].cone, 0);
   state.contact.traction << 10, 6;  // in tension there is no bound
-  EXPECT_NEAR(made.errors()[0].cone, 6.0 / scale, exact);
+  EXPECT_NEAR(made.errors()[0].cone, 6.0 / scale, rounding_of_metrics);
 }
 
 TEST(Metrics, StickIsTheSlipOfAllIncrementsInsideTheCone) {
@@ -163,11 +163,11 @@ TEST(Metrics, StickForgetsTheCreepWhereAPointSlipsOrOpens) {
     made.rest().contact.slip << 0.002;
     const auto errors = made.errors();
     const double length = 0.05;
-    EXPECT_NEAR(errors[0].stick, 0.003 / length, exact);
+    EXPECT_NEAR(errors[0].stick, 0.003 / length, rounding_of_metrics);
     EXPECT_EQ(errors[1].stick, 0) << opens;
     EXPECT_EQ(errors[1].slip_direction, 0) << opens;
     // (on the cone the traction is larger, and with it the run's length)
-    EXPECT_NEAR(errors[2].stick, 0.002 / (opens ? length : std::hypot(10.0, 5.0) / 200), exact) << opens;
+    EXPECT_NEAR(errors[2].stick, 0.002 / (opens ? length : std::hypot(10.0, 5.0) / 200), rounding_of_metrics) << opens;
   }
 }
 
@@ -194,7 +194,7 @@ TEST(Metrics, SlipDirectionIsNoMatterWhereNothingSlips) {
   state.contact.slip << -0.9e-9 * length;
   EXPECT_EQ(made.errors()[0].slip_direction, 0);
   state.contact.slip << -1.1e-9 * length;
-  EXPECT_NEAR(made.errors()[0].slip_direction, 2, exact);
+  EXPECT_NEAR(made.errors()[0].slip_direction, 2, rounding_of_metrics);
 }
 
 /// A point on a plane in space, friction 1/2, stiffness 10 each way, pressed by 100.
@@ -210,13 +210,13 @@ TEST(Metrics, InSpaceTangentialPartsAreVectors) {
   state.contact.traction << -100, 0.6 * bound, 0.8 * bound;
   const double c = 0.5, s = std::sqrt(3.0) / 2;
   state.contact.slip << 2 * (0.6 * c - 0.8 * s), 2 * (0.8 * c + 0.6 * s);
-  EXPECT_NEAR(made.errors()[0].slip_direction, 0.5, exact);
-  EXPECT_NEAR(made.errors()[0].cone, 0, exact);
+  EXPECT_NEAR(made.errors()[0].slip_direction, 0.5, rounding_of_metrics);
+  EXPECT_NEAR(made.errors()[0].cone, 0, rounding_of_metrics);
   state.contact.slip << -2 * 0.8, 2 * 0.6;  // across
-  EXPECT_NEAR(made.errors()[0].slip_direction, 1, exact);
+  EXPECT_NEAR(made.errors()[0].slip_direction, 1, rounding_of_metrics);
   // beyond the cone, whose radius each component alone is within
   state.contact.traction << -100, 48, 36;
-  EXPECT_NEAR(made.errors()[0].cone, 10 / std::sqrt(1e4 + 3600), exact);
+  EXPECT_NEAR(made.errors()[0].cone, 10 / std::sqrt(1e4 + 3600), rounding_of_metrics);
   // inside: creep is the length of the sum
   state.contact.traction << -100, 0.6 * bound * 0.9, 0;
   state.contact.slip << 0.03, 0;
@@ -225,7 +225,7 @@ TEST(Metrics, InSpaceTangentialPartsAreVectors) {
   more.contact.traction = made.trajectory.increments[0].state.contact.traction;
   more.contact.slip << 0, 0.04;
   const double first = made.trajectory.increments[0].state.contact.traction.norm() / 10;
-  EXPECT_NEAR(made.errors()[1].stick, 0.05 / first, exact);
+  EXPECT_NEAR(made.errors()[1].stick, 0.05 / first, rounding_of_metrics);
   EXPECT_LT(first, length);
 }
 
@@ -245,8 +245,8 @@ TEST(Metrics, EachContactHasItsOwnFrictionAndEachPointItsOwnCreep) {
   }
   const auto e = made.errors()[1];
   const double traction = std::hypot(10.0, 4.0);
-  EXPECT_NEAR(e.cone, 0.5 / traction, exact);
-  EXPECT_NEAR(e.stick, 0.002 / (traction / 200), exact);
+  EXPECT_NEAR(e.cone, 0.5 / traction, rounding_of_metrics);
+  EXPECT_NEAR(e.stick, 0.002 / (traction / 200), rounding_of_metrics);
   EXPECT_EQ(e.slip_direction, 0);
 }
 
@@ -260,11 +260,11 @@ TEST(Metrics, ScalesAreTheLargestOfTheRunSoFar) {
   weak.contact.gap << -0.01;
   weak.contact.traction << -1, 0;
   const auto errors = made.errors();
-  EXPECT_NEAR(errors[0].gap, 0.01 / 0.05, exact);
-  EXPECT_NEAR(errors[1].gap, 0.01 / 0.2, exact);
-  EXPECT_NEAR(errors[2].gap, 0.01 / 0.2, exact);
-  EXPECT_NEAR(errors[2].complementarity, 2.0 / 40, exact);
-  EXPECT_NEAR(errors[2].equilibrium, 9.0 / 40, exact);
+  EXPECT_NEAR(errors[0].gap, 0.01 / 0.05, rounding_of_metrics);
+  EXPECT_NEAR(errors[1].gap, 0.01 / 0.2, rounding_of_metrics);
+  EXPECT_NEAR(errors[2].gap, 0.01 / 0.2, rounding_of_metrics);
+  EXPECT_NEAR(errors[2].complementarity, 2.0 / 40, rounding_of_metrics);
+  EXPECT_NEAR(errors[2].equilibrium, 9.0 / 40, rounding_of_metrics);
 }
 
 TEST(Metrics, WhatIsNoNumberPassesForNoSmallOne) {
@@ -297,7 +297,7 @@ TEST(Metrics, WhatRoundingMakesOfDisplacementsPressesNothing) {
   EXPECT_EQ(e.slip_direction, 0);
   EXPECT_LT(e.largest(), 1e-3);
   state.contact.traction << -2e-3, 1e-4;
-  EXPECT_NEAR(made.errors()[0].stick, 1, exact);
+  EXPECT_NEAR(made.errors()[0].stick, 1, rounding_of_metrics);
 }
 
 /// Contact with an elastic layer: what is left once it has taken its share.
@@ -327,17 +327,17 @@ TEST(Metrics, ALayerTakesPenetrationAndElasticSlipOfItsOwnTractionAlone) {
   third.contact.traction << -4, 2;
   third.contact.slip << -along + 0.003;
   const auto points = left();
-  EXPECT_NEAR(points[0].penetration, 0, exact);
-  EXPECT_NEAR(points[0].complementarity, 0, 200 * exact);
-  EXPECT_NEAR(points[0].creep, 0, exact);
-  EXPECT_NEAR(points[1].penetration, 0.01, exact);
-  EXPECT_NEAR(points[1].complementarity, 0.01 * 200, 200 * exact);
-  EXPECT_NEAR(points[1].creep, 0.02, exact);
-  EXPECT_NEAR(points[2].turn, 0, exact);
-  EXPECT_NEAR(points[2].astray, 0, exact);
+  EXPECT_NEAR(points[0].penetration, 0, rounding_of_metrics);
+  EXPECT_NEAR(points[0].complementarity, 0, 200 * rounding_of_metrics);
+  EXPECT_NEAR(points[0].creep, 0, rounding_of_metrics);
+  EXPECT_NEAR(points[1].penetration, 0.01, rounding_of_metrics);
+  EXPECT_NEAR(points[1].complementarity, 0.01 * 200, 200 * rounding_of_metrics);
+  EXPECT_NEAR(points[1].creep, 0.02, rounding_of_metrics);
+  EXPECT_NEAR(points[2].turn, 0, rounding_of_metrics);
+  EXPECT_NEAR(points[2].astray, 0, rounding_of_metrics);
   // without it the same states penetrate, creep and slip against their traction
-  EXPECT_NEAR(made.errors()[0].gap, 0.01 / (std::hypot(10.0, 2.0) / 200), exact);
-  EXPECT_NEAR(made.errors()[2].slip_direction, 2, exact);
+  EXPECT_NEAR(made.errors()[0].gap, 0.01 / (std::hypot(10.0, 2.0) / 200), rounding_of_metrics);
+  EXPECT_NEAR(made.errors()[2].slip_direction, 2, rounding_of_metrics);
 }
 
 TEST(Metrics, SummariesAddUpTheForcesOfEachContact) {
@@ -352,12 +352,12 @@ TEST(Metrics, SummariesAddUpTheForcesOfEachContact) {
   ASSERT_EQ(all.size(), 2u);
   EXPECT_EQ((std::vector<int>{all[0].open, all[0].stick, all[0].slip}), (std::vector<int>{1, 1, 1}));
   EXPECT_EQ(all[0].penetration, 0.25);
-  EXPECT_NEAR(all[0].normal_force, 0.5 * 20 + 8, exact * 20);
+  EXPECT_NEAR(all[0].normal_force, 0.5 * 20 + 8, rounding_of_metrics * 20);
   // on the slave: against the traction's tangent (-1, 0)
-  EXPECT_NEAR(all[0].tangential_force[0], 0.5 * 6 - 2, exact);
-  EXPECT_NEAR(all[0].tangential_force[1], 0, exact);
+  EXPECT_NEAR(all[0].tangential_force[0], 0.5 * 6 - 2, rounding_of_metrics);
+  EXPECT_NEAR(all[0].tangential_force[1], 0, rounding_of_metrics);
   EXPECT_EQ(all[1].slip, 1);
-  EXPECT_NEAR(all[1].normal_force, 3, exact);  // the cross-section is 1
+  EXPECT_NEAR(all[1].normal_force, 3, rounding_of_metrics);  // the cross-section is 1
   EXPECT_TRUE(all[0].is_finite());
   state.contact.traction[0] = -std::numeric_limits<double>::infinity();
   EXPECT_FALSE(summarise(made.model, made.slots, state)[0].is_finite());

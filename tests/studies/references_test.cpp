@@ -18,7 +18,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-const fs::path folder = fs::path(STICKSLIP_SOURCE_DIR) / "tests" / "references";
+const fs::path reference_folder = fs::path(STICKSLIP_SOURCE_DIR) / "tests" / "references";
 
 /// Relative to the largest value of its kind in the run. Both programs solve to rounding; what is left is the
 /// conditioning of the scenes (1e3 to 1e6 times 1e-16), more in a penalised one, and the tolerance 1e-12 of Newton's
@@ -118,7 +118,7 @@ void compare(const CaseResult& result, const json& solution, const std::string& 
 class Reference : public testing::TestWithParam<std::string> {};
 
 TEST_P(Reference, AgreesWithEveryMethod) {
-  std::ifstream file(folder / (GetParam() + ".json"));
+  std::ifstream file(reference_folder / (GetParam() + ".json"));
   const json reference = json::parse(file);
   const auto& solutions = reference["solutions"];
   for (const json& scale : cases::scales_of(reference["scene"]))
@@ -133,7 +133,7 @@ TEST_P(Reference, AgreesWithEveryMethod) {
 
 std::vector<std::string> reference_names() {
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder))
+  for (const auto& entry : fs::directory_iterator(reference_folder))
     if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
   return names;

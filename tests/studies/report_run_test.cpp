@@ -19,14 +19,14 @@ using testing::HasSubstr;
 using testing::Not;
 namespace fs = std::filesystem;
 
-const fs::path scenes = fs::path(STICKSLIP_SOURCE_DIR) / "studies" / "scenes";
+const fs::path scene_files = fs::path(STICKSLIP_SOURCE_DIR) / "studies" / "scenes";
 
 class ReportOfARun : public recorded::StudyOnDisk {
  protected:
   /// What `run --report` leaves of a shipped scene, and its page without scripts.
   std::string page_of(const std::string& scene, bool with_picture = true) {
-    const auto document = cases::load(scenes / (scene + ".json"));
-    const auto result = cases::run(document, document["method"], scenes / (scene + ".json"));
+    const auto document = cases::load(scene_files / (scene + ".json"));
+    const auto result = cases::run(document, document["method"], scene_files / (scene + ".json"));
     std::ofstream(directory_ / "result.json") << result_json(result, "").dump();
     if (with_picture) {
       json drawn = picture_json(result);

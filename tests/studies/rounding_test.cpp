@@ -125,7 +125,7 @@ bool is_large(const std::string& name) {
   return std::any_of(large.begin(), large.end(), [&](const char* each) { return name == each; });
 }
 
-std::vector<fs::path> scenes(bool large) {
+std::vector<fs::path> scenes_by_size(bool large) {
   std::vector<fs::path> found;
   for (const auto& folder : {references, shipped})
     for (const auto& entry : fs::directory_iterator(folder)) {
@@ -146,11 +146,11 @@ std::string name_of_scene(const testing::TestParamInfo<fs::path>& info) {
 
 class Rounding : public testing::TestWithParam<fs::path> {};
 TEST_P(Rounding, DoesNotChooseTheAnswer) { expect_rounding_does_not_matter(GetParam()); }
-INSTANTIATE_TEST_SUITE_P(All, Rounding, testing::ValuesIn(scenes(false)), name_of_scene);
+INSTANTIATE_TEST_SUITE_P(All, Rounding, testing::ValuesIn(scenes_by_size(false)), name_of_scene);
 
 class SlowRounding : public testing::TestWithParam<fs::path> {};
 TEST_P(SlowRounding, DoesNotChooseTheAnswer) { expect_rounding_does_not_matter(GetParam()); }
-INSTANTIATE_TEST_SUITE_P(All, SlowRounding, testing::ValuesIn(scenes(true)), name_of_scene);
+INSTANTIATE_TEST_SUITE_P(All, SlowRounding, testing::ValuesIn(scenes_by_size(true)), name_of_scene);
 
 }  // namespace
 }  // namespace stickslip

@@ -26,12 +26,12 @@ namespace fs = std::filesystem;
 
 const fs::path scenes_folder = fs::path(STICKSLIP_SOURCE_DIR) / "studies" / "scenes";
 
-json parsed(const fs::path& path) {
+json parsed_file(const fs::path& path) {
   std::ifstream file(path);
   return json::parse(file, nullptr, true, true);  // with comments
 }
 
-std::vector<fs::path> shipped(bool studies) {
+std::vector<fs::path> shipped_files(bool studies) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(scenes_folder)) {
     const std::string name = entry.path().filename().string();
@@ -299,7 +299,7 @@ TEST(Schema, TakesEveryShippedFileAndRefusesUnknownKeysInIt) {
     const json schema = studies ? study_schema() : scene_schema();
     json valid = json::array(), invalid = json::array();
     std::vector<std::pair<std::string, json>> documents;
-    for (const auto& path : shipped(studies)) documents.emplace_back(path.filename().string(), parsed(path));
+    for (const auto& path : shipped_files(studies)) documents.emplace_back(path.filename().string(), parsed_file(path));
     ASSERT_GE(documents.size(), 7u);
     if (!studies)
       for (const json& scene : rich_scenes()) documents.emplace_back("rich", scene);

@@ -5,16 +5,16 @@
 namespace stickslip {
 namespace {
 
-BoxMesh box(int n) {
+BoxMesh box_of(int n) {
   BoxMesh mesh;
   mesh.cells = {n, n};
   return mesh;
 }
 
 TEST(SizeEstimate, CountsNodesBeforeTheyAreMade) {
-  EXPECT_NEAR(estimated_nodes(box(100), "Q4"), 101 * 101, 0.05 * 101 * 101);
-  EXPECT_NEAR(estimated_nodes(box(100), "Q8"), 3 * 101 * 101, 0.05 * 3 * 101 * 101);
-  EXPECT_NEAR(estimated_nodes(box(100), "T6"), 201 * 201, 0.05 * 201 * 201);
+  EXPECT_NEAR(estimated_nodes(box_of(100), "Q4"), 101 * 101, 0.05 * 101 * 101);
+  EXPECT_NEAR(estimated_nodes(box_of(100), "Q8"), 3 * 101 * 101, 0.05 * 3 * 101 * 101);
+  EXPECT_NEAR(estimated_nodes(box_of(100), "T6"), 201 * 201, 0.05 * 201 * 201);
 }
 
 /// Peaks that runs of a box on a floor had (MB, displacements, contact dofs, condensed).
@@ -35,7 +35,7 @@ TEST(SizeEstimate, IsWithinAFactorOfTwoOfWhatRunsTook) {
 }
 
 TEST(SizeEstimate, OfMillionsOfNodesIsBeyondASmallMachine) {
-  EXPECT_GT(estimated_bytes({2 * estimated_nodes(box(3000), "Q4")}), 30e9);
+  EXPECT_GT(estimated_bytes({2 * estimated_nodes(box_of(3000), "Q4")}), 30e9);
   EXPECT_EQ(too_much(4.5e10, 1.6e10), "some 45 GB of memory, and there are 16 GB for this process");
   EXPECT_GT(memory_limit(), 1e7);
 }

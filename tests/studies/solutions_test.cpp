@@ -17,7 +17,7 @@ const std::vector<json>& methods() {
   return all;
 }
 
-CaseResult run(const json& scene, const json& method) { return cases::run(scene, method, "scene.json"); }
+CaseResult solve(const json& scene, const json& method) { return cases::run(scene, method, "scene.json"); }
 
 bool warns(const CaseResult& result, WarningCode code) {
   const auto warnings = warnings_of(result);
@@ -55,7 +55,7 @@ TEST(SeveralSolutions, OfABodyThatAHingeLetsTurnAreTold) {
       {"on": "q.bottom & q.right", "force": [-1.479, -0.927], "history": [[0, 0], [1, 1]]},
       {"on": "q.top & q.right", "force": [1.719, -0.053], "history": [[0, 0], [1, 1]]}])"));
   for (const auto& method : methods()) {
-    const auto result = run(scene, method);
+    const auto result = solve(scene, method);
     ASSERT_TRUE(is_converged(result.status())) << method << result.message();
     EXPECT_TRUE(warns(result, WarningCode::non_unique)) << method;
     ASSERT_EQ(result.trajectory.increments[0].others.size(), 1u) << method;
@@ -69,7 +69,7 @@ TEST(SeveralSolutions, AreToldFromNone) {
                             {-0.1605035331190977, 0.987035265761202}, 1.8929690852885337, json::parse(R"([
       {"on": "q.bottom & q.left", "force": [-1.006, -0.382]}, {"on": "q.bottom & q.right", "force": [0.41, 0.308]},
       {"on": "q.top & q.right", "force": [1.078, -0.721]}])"));
-  for (const auto& method : methods()) EXPECT_EQ(run(scene, method).status(), Status::no_equilibrium) << method;
+  for (const auto& method : methods()) EXPECT_EQ(solve(scene, method).status(), Status::no_equilibrium) << method;
 }
 
 TEST(SeveralSolutions, AreChosenFromByNoMethodAndNoScale) {
@@ -86,9 +86,9 @@ TEST(SeveralSolutions, AreChosenFromByNoMethodAndNoScale) {
       {"on": "q.bottom & q.right", "force": [1.697, -0.215], "history": [[0, 0], [1, 1]]}])"));
   for (int steps : {1, 4}) {
     scene["time"]["steps"] = steps;
-    const auto expected = run(scene, methods().back());
+    const auto expected = solve(scene, methods().back());
     for (const auto& method : methods()) {
-      const auto result = run(scene, method);
+      const auto result = solve(scene, method);
       ASSERT_TRUE(is_converged(result.status())) << method << result.message();
       EXPECT_EQ(result.trajectory.increments.back().state.contact.state,
                 expected.trajectory.increments.back().state.contact.state)
@@ -116,7 +116,7 @@ TEST(SeveralSolutions, ThatAreNotTakenEndNoBranch) {
                                 {{"c", {{"slave", "p.node"}, {"master", "f"}, {"friction", 3}}}},
                                 json::parse(R"([{"on": "p.node", "force": [1.9, 1], "history": [[0, 0], [1, 1]]}])"));
   for (const double scale : {0.01, 0.1, 1.0, 100.0}) {
-    const auto result = run(scene, {{"uzawa_al", {{"scale", scale}}}});
+    const auto result = solve(scene, {{"uzawa_al", {{"scale", scale}}}});
     ASSERT_TRUE(is_converged(result.status())) << scale << result.message();
     EXPECT_FALSE(warns(result, WarningCode::branch_ends)) << scale;
     EXPECT_LT(std::abs(result.steps[0].responses[0]), 1e-9) << scale;  // of a motion of some 1, by the force alone
@@ -132,7 +132,7 @@ TEST(SeveralSolutions, OfTwoContactsOnOneNodeAreFoundFromEveryScale) {
                   {"c1", {{"slave", "p.node"}, {"master", "o1"}, {"friction", 5.406709638624458}}}},
                  json::parse(R"([{"on": "p.node", "force": [0.00013221898327745542, -7.458523069204335e-05]}])"));
   for (const double scale : {1.0, 10.0, 100.0, 808.5389260259483, 3000.0}) {
-    const auto result = run(scene, {{"uzawa_al", {{"scale", scale}}}});
+    const auto result = solve(scene, {{"uzawa_al", {{"scale", scale}}}});
     EXPECT_TRUE(is_converged(result.status())) << scale << result.message();
   }
 }
@@ -147,7 +147,7 @@ TEST(ContradictingWalls, AreInfeasibleForEveryStiffnessAlsoWhereOneAloneIsTouche
       if (friction)
         for (auto& contact : scene["contacts"]) contact["friction"] = 0.4;
       for (const double stiffness : {1.0, 1e3, 1e5, 1e7})
-        EXPECT_EQ(run(scene, {{"penalty", {{"stiffness", stiffness}}}}).status(), Status::infeasible)
+        EXPECT_EQ(solve(scene, {{"penalty", {{"stiffness", stiffness}}}}).status(), Status::infeasible)
             << force << " " << stiffness << " " << friction;
     }
 }
@@ -158,7 +158,7 @@ TEST(ContradictingWalls, AreToldFromWallsThatLeaveRoom) {
                  {{"c0", {{"slave", "p.node"}, {"master", "w0"}}}, {"c1", {{"slave", "p.node"}, {"master", "w1"}}}},
                  json::parse(R"([{"on": "p.node", "force": [-1000, 0]}])"));
   for (const double stiffness : {1.0, 1e3, 1e5, 1e7}) {
-    const auto result = run(scene, {{"penalty", {{"stiffness", stiffness}}}});
+    const auto result = solve(scene, {{"penalty", {{"stiffness", stiffness}}}});
     EXPECT_TRUE(is_converged(result.status())) << stiffness << result.message();
   }
 }

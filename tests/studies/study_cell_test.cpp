@@ -65,7 +65,7 @@ TEST_F(StudyCell, ALevelHalvesTheCellsOfEveryGenerator) {
 }
 
 /// A block that is pressed on a floor and pulled along it.
-json block() {
+json block_scene() {
   return {{"bodies",
            {{"block",
              {{"mesh", {{"box", {{"min", {0, 0}}, {"max", {4, 2}}, {"cells", {4, 2}}}}}},
@@ -79,9 +79,9 @@ json block() {
 }
 
 TEST_F(StudyCell, ErrorsAgainstAFinerMeshFallWithTheMesh) {
-  const auto [study, cells] = read(block(), {{"methods", {{{"monolithic_al", json::object()}}}},
-                                             {"refine", {0, 1, 2}},
-                                             {"reference", {{{"overkill", {{"refine", 2}}}}}}});
+  const auto [study, cells] = read(block_scene(), {{"methods", {{{"monolithic_al", json::object()}}}},
+                                                   {"refine", {0, 1, 2}},
+                                                   {"reference", {{{"overkill", {{"refine", 2}}}}}}});
   ASSERT_EQ(cells.size(), 3u);
   CellRunner runner(study, cells, meshes_);
   double last = 1;
@@ -98,7 +98,7 @@ TEST_F(StudyCell, ErrorsAgainstAFinerMeshFallWithTheMesh) {
 }
 
 TEST_F(StudyCell, RowsHoldTheWarningsOfTheirRun) {
-  json scene = block();
+  json scene = block_scene();
   scene["contacts"]["sole"]["friction"] = 50;
   const auto [study, cells] = read(scene, {{"methods", {{{"penalty", {{"stiffness", 100}}}}}}});
   ASSERT_EQ(cells.size(), 1u);
@@ -110,7 +110,7 @@ TEST_F(StudyCell, RowsHoldTheWarningsOfTheirRun) {
 
 TEST_F(StudyCell, HoldsObjectivesAndTheirGradientsAgainstAReferenceInEitherMode) {
   for (const char* mode : {"direct", "adjoint"}) {
-    json scene = block();
+    json scene = block_scene();
     scene["objectives"] = {{"J", {{"of", "shift"}, {"sum", true}}}};
     scene["sensitivity"] = {{"mode", mode}};
     const auto [study, cells] =
@@ -133,11 +133,11 @@ TEST_F(StudyCell, HoldsObjectivesAndTheirGradientsAgainstAReferenceInEitherMode)
 }
 
 TEST_F(StudyCell, KeepsTheErrorsOfEveryReferenceAndTheFirstOfEachName) {
-  const auto [study, cells] = read(block(), {{"methods", {{{"penalty", {{"stiffness", 100}}}}}},
-                                             {"reference",
-                                              {{{"values", {{"shift", 1}}}},
-                                               {{"overkill", {{"refine", 1}}}},
-                                               {{"method", {{"monolithic_al", json::object()}}}}}}});
+  const auto [study, cells] = read(block_scene(), {{"methods", {{{"penalty", {{"stiffness", 100}}}}}},
+                                                   {"reference",
+                                                    {{{"values", {{"shift", 1}}}},
+                                                     {{"overkill", {{"refine", 1}}}},
+                                                     {{"method", {{"monolithic_al", json::object()}}}}}}});
   ASSERT_EQ(cells.size(), 1u);
   CellRunner runner(study, cells, meshes_);
   const json errors = runner.row(0)["errors"];
@@ -149,7 +149,7 @@ TEST_F(StudyCell, KeepsTheErrorsOfEveryReferenceAndTheFirstOfEachName) {
 
 /// What a history is drawn from.
 TEST_F(StudyCell, RowsHoldTheResponsesOfEveryStep) {
-  const auto [study, cells] = read(block(), {{"methods", {{{"monolithic_al", json::object()}}}}});
+  const auto [study, cells] = read(block_scene(), {{"methods", {{{"monolithic_al", json::object()}}}}});
   const json row = CellRunner(study, cells, meshes_).row(0);
   ASSERT_GE(row["steps"].size(), 1u);
   for (const auto& step : row["steps"]) EXPECT_TRUE(step["responses"]["shift"].is_number());
@@ -177,7 +177,7 @@ TEST_F(StudyCell, TheBeltIsHeldAgainstItsClosedForm) {
 
 /// A radius that is a parameter is known when the cell is run.
 TEST_F(StudyCell, AClosedFormWithoutAnAnswerGivesNoErrors) {
-  json scene = block();
+  json scene = block_scene();
   scene["responses"]["press"] = {{"contact_force", {{"contact", "sole"}, {"component", "normal"}}}};
   scene["contacts"]["sole"]["offset"] = 0;
   scene["parameters"]["R"] = "/contacts/sole/offset";
@@ -193,7 +193,7 @@ TEST_F(StudyCell, AClosedFormWithoutAnAnswerGivesNoErrors) {
 /// A block that its weight presses on a floor of friction 1000 and its drive lifts at one end, on the sparse engine:
 /// the last factorisation of a run that ends without an answer fails.
 TEST_F(StudyCell, ARunThatEndsWithoutFactorsIsARow) {
-  json scene = block();
+  json scene = block_scene();
   scene["contacts"]["sole"]["friction"] = 1000;
   scene["loads"] = {{{"on", "block"}, {"body_force", {3, -1}}, {"history", {{0, 0}, {1, 1}}}}};
   scene["linear_solver"] = {{"engine", "sparse"}};
@@ -210,8 +210,8 @@ TEST_F(StudyCell, ARunThatEndsWithoutFactorsIsARow) {
 
 /// Whatever a cell throws is a row, and the cells after it run.
 TEST_F(StudyCell, ACellThatThrowsIsARow) {
-  auto [study, cells] = read(block(), {{"methods", {{{"penalty", {{"stiffness", {10, 1000}}}}}}},
-                                       {"vary", {{"/contacts/sole/friction", {0.3, 0.4}}}}});
+  auto [study, cells] = read(block_scene(), {{"methods", {{{"penalty", {{"stiffness", {10, 1000}}}}}}},
+                                             {"vary", {{"/contacts/sole/friction", {0.3, 0.4}}}}});
   ASSERT_EQ(cells.size(), 4u);
   cells[2].document.set("/bodies", 7, {"nowhere"});  // as of a fault in the program: no valid cell is like that
   CellRunner runner(study, cells, meshes_);
@@ -226,8 +226,8 @@ TEST_F(StudyCell, ACellThatThrowsIsARow) {
 
 /// A reference that throws leaves the cells their own results.
 TEST_F(StudyCell, AReferenceThatThrowsGivesNoErrors) {
-  auto [study, cells] =
-      read(block(), {{"methods", {{{"penalty", json::object()}}}}, {"reference", {{{"overkill", {{"refine", 1}}}}}}});
+  auto [study, cells] = read(
+      block_scene(), {{"methods", {{{"penalty", json::object()}}}}, {"reference", {{{"overkill", {{"refine", 1}}}}}}});
   study.references.front().method.options.push_back({"/no_such_option", {{1, {"nowhere"}}}});
   CellRunner runner(study, cells, meshes_);
   const json row = runner.row(0);
@@ -239,9 +239,9 @@ TEST_F(StudyCell, AReferenceThatThrowsGivesNoErrors) {
 /// What a worker of another process gives is what this one gives, so it must not depend on the cells before.
 TEST_F(StudyCell, ARowDoesNotDependOnWhatRanBefore) {
   const auto [study, cells] =
-      read(block(), {{"methods", {{{"penalty", {{"stiffness", {10, 1000}}}}}, {{"uzawa_al", json::object()}}}},
-                     {"vary", {{"/contacts/sole/friction", {0.1, 0.3}}}},
-                     {"reference", {{{"method", {{"monolithic_al", json::object()}}}}}}});
+      read(block_scene(), {{"methods", {{{"penalty", {{"stiffness", {10, 1000}}}}}, {{"uzawa_al", json::object()}}}},
+                           {"vary", {{"/contacts/sole/friction", {0.1, 0.3}}}},
+                           {"reference", {{{"method", {{"monolithic_al", json::object()}}}}}}});
   const auto row = [](CellRunner& runner, std::size_t cell) {
     json out = runner.row(cell);
     out.erase("provenance");
