@@ -10,6 +10,7 @@
 #include <random>
 
 #include "core/contact/segments.hpp"
+#include "tests/support/largest.hpp"
 
 namespace stickslip {
 namespace {
@@ -62,7 +63,7 @@ double least_distance(const Sides& s, const Vec<double, 2>& x) {
     const Vec<double, 2> c = s.points.col(facet[0]), tau = s.points.col(facet[1]) - s.points.col(facet[0]);
     const double eta = (x - c).dot(tau) / tau.squaredNorm();
     const double distance = (x - c - std::clamp(eta, 0.0, 1.0) * tau).norm();
-    if (distance < least) least = distance;
+    least = -larger(-least, -distance);
   }
   return least;
 }
