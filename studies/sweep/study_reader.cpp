@@ -23,7 +23,8 @@ std::optional<JsonDocument> scene_beside(const std::string& file, const JsonNode
   const std::filesystem::path path = (std::filesystem::path(file).parent_path() / *name).lexically_normal();
   std::error_code unreadable;
   if (!std::filesystem::is_regular_file(path, unreadable)) {
-    node->error("the scene file " + path.string() + " cannot be read");
+    node->error("the scene file " + path.string() + " cannot be read: it " +
+                (std::filesystem::exists(path, unreadable) ? "is no file" : "is not there"));
     return std::nullopt;
   }
   auto scene = JsonDocument::read(path.string(), diagnostics);
