@@ -292,9 +292,13 @@ std::optional<JsonDocument> JsonDocument::read(const std::string& file, Diagnost
     if (stream) text << stream.rdbuf();
     if (!stream || stream.bad()) fault = "cannot be read";
   }
-  if (fault.empty()) fault = is_no_json(text.str());
-  if (fault.empty()) return parse(text.str(), file, diagnostics);
-  diagnostics.error({{file}, "", fault});
+  Place place{file};
+  if (fault.empty()) {
+    fault = is_no_json(text.str());
+    if (fault.empty()) return parse(text.str(), file, diagnostics);
+    place = {file, 1, 1};
+  }
+  diagnostics.error({place, "", fault});
   return std::nullopt;
 }
 

@@ -81,8 +81,10 @@ class Chart {
   void mark(const json& row) {
     const Place at = place_of(row);
     taken_.push_back({at.x - half_marker, at.x + half_marker, at.y - half_marker, at.y + half_marker});
-    // The words beside the line of exact zeros, which stand at its left end.
-    if (row.value("zero", false)) taken_.push_back({0, 6 + width_of("exactly 0"), at.y, at.y + 4 + font});
+    if (!row.value("zero", false)) return;
+    const double words = 6 + width_of("exactly 0");  // they stand at one end of their line or at the other
+    taken_.push_back({0, words, at.y, at.y + 4 + font});
+    taken_.push_back({size_.width - words, size_.width, at.y, at.y + 4 + font});
   }
 
   void join(const Line& line) {

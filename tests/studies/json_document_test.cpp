@@ -124,10 +124,10 @@ TEST(JsonDocument, SaysThatAFileIsEmptyOrNoText) {
     EXPECT_FALSE(JsonDocument::read(file.string(), diagnostics).has_value());
     return diagnostics.text();
   };
-  EXPECT_EQ(fault_of(" \n"), file.string() + ": is empty; must be a JSON object, {...}\n");
+  EXPECT_EQ(fault_of(" \n"), file.string() + ":1:1: is empty; must be a JSON object, {...}\n");
   for (const std::string& content : {std::string("{\0}", 3), std::string("\xFF\xFE{")})
     EXPECT_EQ(fault_of(content),
-              file.string() + ": is no text, or not in UTF-8; must be a JSON object, {...}, in UTF-8\n");
+              file.string() + ":1:1: is no text, or not in UTF-8; must be a JSON object, {...}, in UTF-8\n");
   std::filesystem::remove(file);
 }
 
