@@ -49,7 +49,7 @@ constexpr std::array<Side, 4> sides = {
 struct Size {
   double width, height;
 };
-constexpr double of_two = 480, of_three = 290;  ///< wide is a chart beside others
+constexpr double of_two = 400, of_three = 290;  ///< wide is a chart beside others, at the narrowest
 constexpr Size on_paper{of_two, 220};           ///< page.js draws it so for print; those in files are larger
 constexpr double padding = 18;                  ///< between the outermost points and the border
 constexpr double font = 11, half_marker = 5, aside = 8;
