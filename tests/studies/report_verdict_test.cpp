@@ -101,8 +101,8 @@ TEST_F(ReportVerdict, CountsInTheSingularToo) {
 TEST_F(ReportVerdict, SpeaksOfTheFirstAccuracyThatIsReached) {
   json about = description();
   about["accuracy"] = {0.1, 1e-6};
-  const std::string verdict = verdict_of(
-      about, {cell("penalty", {{"stiffness", 10.0}}, 3e-3, 5), cell("uzawa_al", json::object(), 0.2, 5)});
+  const std::string verdict =
+      verdict_of(about, {cell("penalty", {{"stiffness", 10.0}}, 3e-3, 5), cell("uzawa_al", json::object(), 0.2, 5)});
   EXPECT_THAT(verdict, AllOf(HasSubstr("Response to 10&nbsp;%: cheapest by"),
                              HasSubstr("Uzawa AL (best 20&nbsp;%) does not get there.")));
 }
