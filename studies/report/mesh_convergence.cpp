@@ -64,8 +64,7 @@ struct Bundle {
   std::string name() const {
     if (curves.size() == 1) return curves.front().name;
     const std::string runs = is_of_one_method() ? family_name(curves.front().family) + " runs" : "runs";
-    return fmt::format("{} {}, {}", curves.size(), runs,
-                       spread() > 0 ? "within " + percent(spread()) : "alike");
+    return fmt::format("{} {}, {}", curves.size(), runs, spread() > 0 ? "within " + percent(spread()) : "alike");
   }
   std::string members() const {
     std::string out;
