@@ -66,7 +66,8 @@ bool begin_path(E& engine, const EquilibriumTask<T>& task, Evaluator<T, E>& eval
 template <class T, class E>
 bool predict(E& engine, const EquilibriumTask<T>& task, Evaluator<T, E>& evaluate, NewtonTangent<T, E>& tangent,
              Account& account, Unknowns<T>& unknowns) {
-  const auto& [model, slots] = std::tie(task.contact.model, task.contact.slots);
+  const Model& model = task.contact.model;
+  const auto& slots = task.contact.slots;
   if (!task.last_displacement) return false;
   if (task.arc) return task.arc->begins && begin_path(engine, task, evaluate, tangent, account, unknowns);
   if (model.effects.linear_bulk) return false;

@@ -1,8 +1,8 @@
 #include "core/model/faced_pieces.hpp"
 
-#include <limits>
 #include <map>
 
+#include "core/contact/facet_search.hpp"
 #include "core/contact/segments.hpp"
 
 namespace stickslip {
@@ -13,17 +13,6 @@ constexpr double least_share = 0.01;
 
 auto place_in(const Points<double>& points) {
   return [&points](int node) -> Vec<double, 2> { return points.col(node).head<2>(); };
-}
-
-double distance_to(const std::vector<std::vector<int>>& facets, const Points<double>& places, const Vec<double, 2>& x) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const auto& facet : facets) {
-    const Vec<double, 2> c = places.col(facet[0]).head<2>(), tau = places.col(facet[1]).head<2>() - c;
-    const double eta = (x - c).dot(tau) / tau.squaredNorm();
-    const double distance = (x - c - std::clamp(eta, 0.0, 1.0) * tau).norm();
-    if (distance < least) least = distance;
-  }
-  return least;
 }
 
 /// Share of a point's area that pieces are.
@@ -42,6 +31,7 @@ double share_of(const std::vector<Piece>& pieces, const ContactPoint& point, con
 void find_pieces(const Model& model, int curve, const Points<double>& points, const Points<double>& places,
                  std::vector<Facing>& found) {
   const auto& master = model.curves[curve];
+  const FacetSearch search(places, master.facets);
   std::map<std::array<int, 2>, std::vector<Piece>> of_facet;
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
@@ -49,7 +39,7 @@ void find_pieces(const Model& model, int curve, const Points<double>& points, co
     Facing facing;
     for (const Piece& facet : point.pieces) {
       const auto [entry, is_new] = of_facet.try_emplace(facet.slave);
-      if (is_new) entry->second = facing_pieces(places, facet.slave, master.facets, master.ends);
+      if (is_new) entry->second = search.facing(facet.slave, master.ends);
       for (Piece piece : entry->second) {
         piece.carrier = facet.carrier;
         piece.whole = facet.whole;
@@ -59,7 +49,7 @@ void find_pieces(const Model& model, int curve, const Points<double>& points, co
     if (!facing.pieces.empty() && !(share_of(facing.pieces, point, points, places) >= least_share))
       facing.pieces.clear();
     if (facing.pieces.empty())
-      facing.distance = distance_to(master.facets, places, places.col(point.nodes[0]).head<2>());
+      facing.distance = search.distance(places.col(point.nodes[0]).head<2>());
     else
       facing.patch = facing.pieces.front().facet;
     facing.nodes = nodes_of_pieces(point.nodes[0], point.pieces, facing.pieces);

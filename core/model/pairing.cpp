@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/contact/curve_search.hpp"
+#include "core/contact/facet_search.hpp"
 #include "core/contact/search.hpp"
 #include "core/contact/segments.hpp"
 #include "core/mesh/sides.hpp"
@@ -278,14 +279,14 @@ MasterCurve integrated_curve(const Model& model, const Points<double>& points, c
 /// The pieces of the slave facets that each node's multiplier acts on; `whole`: all facets, as they are, which face
 /// what they come to face.
 std::map<int, std::vector<Piece>> pieces_of_nodes(const Points<double>& points, const Pairing& pairing, bool whole) {
-  const auto& nodes = pairing.slave.nodes;
-  auto carries = [&](int node) { return std::find(nodes.begin(), nodes.end(), node) != nodes.end(); };
+  const std::set<int> nodes(pairing.slave.nodes.begin(), pairing.slave.nodes.end());
+  const auto carries = [&](int node) { return nodes.count(node) > 0; };
+  const FacetSearch search(points, pairing.master.facets);
   std::map<int, std::vector<Piece>> of_node;
   for (const auto& facet : pairing.slave.facets) {
     Piece whole_facet;
     whole_facet.slave = {facet[0], facet[1]};
-    const auto pieces =
-        whole ? std::vector<Piece>{whole_facet} : facing_pieces(points, whole_facet.slave, pairing.master.facets);
+    const auto pieces = whole ? std::vector<Piece>{whole_facet} : search.facing(whole_facet.slave);
     for (Piece piece : pieces)
       for (int end = 0; end < 2; ++end)
         if (carries(facet[end])) {

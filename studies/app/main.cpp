@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <exception>
 #include <functional>
@@ -159,6 +160,15 @@ int run_line(CLI::App& app, const Actions& actions, int argc, char** argv) {
   return done;  // never: one is required
 }
 
+/// What a user does about a file that cannot be written or read; "" where that hangs on the file.
+std::string what_helps(const std::error_code& code) {
+  if (code == std::errc::no_space_on_device || code == std::error_code(EDQUOT, std::generic_category()))
+    return "; make room there and run it again, a study with --resume";
+  if (code == std::errc::permission_denied || code == std::errc::read_only_file_system)
+    return "; take a directory that you may write to";
+  return "";
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -175,7 +185,7 @@ int main(int argc, char** argv) {
     std::cerr << printable_lines(fault.what()) << '\n';
     return bad_input;
   } catch (const std::system_error& error) {
-    std::cerr << "stickslip: " << printable_lines(error.what()) << '\n';
+    std::cerr << "stickslip: " << printable_lines(error.what()) << what_helps(error.code()) << '\n';
     return bad_input;
   } catch (const std::bad_alloc&) {
     return out_of_memory();

@@ -297,6 +297,12 @@ std::vector<std::string> method_names() {
   return names;
 }
 
+void check_option_names(const JsonNode& options, const std::string& method) {
+  for_each_method([&]<class M>(const M&) {
+    if (method == M::name) check_option_names(options, method, option_names<M>());
+  });
+}
+
 std::optional<Method> default_method(const std::string& name) {
   std::optional<Method> found;
   for_each_method([&](const auto& method) {

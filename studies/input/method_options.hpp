@@ -22,6 +22,9 @@ std::optional<Method> default_method(const std::string& name);
 /// The method an object with one key names; its numbers get slots. None where it is at fault.
 std::optional<Method> read_method(const JsonNode&, SceneReading&);
 
+/// Reports the keys among the options that are none of the method's, each with where it belongs.
+void check_option_names(const JsonNode& options, const std::string& method);
+
 /// Whether an option may be a list of values, as in the "methods" of a study.
 enum class OptionLists { refused, swept };
 

@@ -25,8 +25,10 @@ namespace fs = std::filesystem;
 /// An open file, closed at the end of the scope.
 class Descriptor {
  public:
-  Descriptor(const fs::path& path, int flags) : path_(path), number_(::open(path.c_str(), flags | O_CLOEXEC, 0644)) {
-    if (number_ < 0) fail(path, "cannot open");
+  /// `called`: its name in faults.
+  Descriptor(const fs::path& path, int flags, const fs::path& called)
+      : path_(called), number_(::open(path.c_str(), flags | O_CLOEXEC, 0644)) {
+    if (number_ < 0) fail(called, "cannot open");
   }
   ~Descriptor() { ::close(number_); }
   Descriptor(const Descriptor&) = delete;
@@ -85,8 +87,12 @@ void prepare_folder(const fs::path& folder) {
   check_folder(folder);
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw InputFault(folder.string() + ": cannot be made: " + error.message());
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) throw InputFault(folder.string() + ": cannot be written to");
+  const bool denied = error == std::errc::permission_denied || error == std::errc::read_only_file_system;
+  if (error)
+    throw InputFault(folder.string() + ": cannot be made: " + error.message() +
+                     (denied ? "; must be where you may write" : ""));
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    throw InputFault(folder.string() + ": cannot be written to; must be a directory that you may write to");
   for (const auto& entry : fs::directory_iterator(folder))
     if (entry.path().extension() == ".part" && is_orphan(entry.path())) fs::remove(entry.path());
 }
@@ -121,7 +127,7 @@ void write_file_atomically(const fs::path& path, std::string_view content) {
   temporary += "." + std::to_string(::getpid()) + ".part";
   try {
     {
-      const Descriptor file(temporary, O_WRONLY | O_CREAT | O_TRUNC);
+      const Descriptor file(temporary, O_WRONLY | O_CREAT | O_TRUNC, path);
       file.write(content);
       file.sync();
     }
@@ -136,7 +142,7 @@ void write_file_atomically(const fs::path& path, std::string_view content) {
 void append_line(const fs::path& path, std::string_view line) {
   if (line.find('\n') != std::string_view::npos) throw std::invalid_argument("append_line: a line holds no newline");
   make_folder_of(path);
-  const Descriptor file(path, O_RDWR | O_CREAT | O_APPEND);
+  const Descriptor file(path, O_RDWR | O_CREAT | O_APPEND, path);
   if (::ftruncate(file.number(), length_of_whole_lines(file, path)) != 0) fail(path, "cannot truncate");
   file.write(std::string(line) + "\n");
   file.sync();
@@ -148,7 +154,9 @@ std::string unreadable(const fs::path& path, std::uintmax_t most) {
   if (fs::is_directory(status)) return "is a directory; must be a file";
   if (fs::is_fifo(status) || fs::is_socket(status)) return "is a pipe; must be a file";
   if (fs::is_character_file(status) || fs::is_block_file(status)) return "is a device; must be a file";
-  if (!fs::is_regular_file(status) || ::access(path.c_str(), R_OK) != 0) return "cannot be read";
+  if (!fs::exists(status)) return "cannot be read: there is no such file";
+  if (::access(path.c_str(), R_OK) != 0) return "cannot be read: " + std::generic_category().message(errno);
+  if (!fs::is_regular_file(status)) return "cannot be read";
   const auto size = fs::file_size(path, error);
   if (error) return "cannot be read";
   if (size <= most) return "";

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <utility>
 
 #include "studies/io/atomic_file.hpp"
 #include "studies/io/printing.hpp"
+#include "studies/io/wording.hpp"
 
 namespace stickslip {
 
@@ -251,9 +253,37 @@ JsonDocument JsonDocument::of(json value, const std::string& source) {
   return document;
 }
 
+namespace {
+
+/// Files beside a missing one whose names are near to its; "" where there is none.
+std::string near_file(const std::filesystem::path& missing) {
+  std::vector<std::string> names;
+  std::error_code unreadable;
+  const auto folder = missing.has_parent_path() ? missing.parent_path() : std::filesystem::path(".");
+  for (std::filesystem::directory_iterator entry(folder, unreadable), end; !unreadable && entry != end;
+       entry.increment(unreadable))
+    if (entry->path().extension() == ".json" && entry->path().filename() != missing.filename())
+      names.push_back(entry->path().filename());
+  std::sort(names.begin(), names.end());
+  const std::string near = suggestion(missing.filename().string(), names);
+  return near.empty() ? "" : ";" + near;
+}
+
+/// What a file is in place of JSON; "" where a parser has to tell.
+std::string is_no_json(std::string_view content) {
+  if (content.find_first_not_of(" \t\r\n") == std::string_view::npos) return "is empty; must be a JSON object, {...}";
+  const bool utf_16 = content.starts_with("\xFF\xFE") || content.starts_with("\xFE\xFF");
+  if (utf_16 || content.find('\0') != std::string_view::npos)
+    return "is no text, or not in UTF-8; must be a JSON object, {...}, in UTF-8";
+  return "";
+}
+
+}  // namespace
+
 std::optional<JsonDocument> JsonDocument::read(const std::string& file, Diagnostics& diagnostics) {
   constexpr std::uintmax_t most = 32 << 20;  // the places of 16 million values, the most it can hold, take 3 GB
   std::string fault = unreadable(file, most);
+  if (std::error_code none; !fault.empty() && !std::filesystem::exists(file, none)) fault += near_file(file);
   std::ifstream stream;
   std::ostringstream text;
   if (fault.empty()) {
@@ -262,8 +292,13 @@ std::optional<JsonDocument> JsonDocument::read(const std::string& file, Diagnost
     if (stream) text << stream.rdbuf();
     if (!stream || stream.bad()) fault = "cannot be read";
   }
-  if (fault.empty()) return parse(text.str(), file, diagnostics);
-  diagnostics.error({{file}, "", fault});
+  Place place{file};
+  if (fault.empty()) {
+    fault = is_no_json(text.str());
+    if (fault.empty()) return parse(text.str(), file, diagnostics);
+    place = {file, 1, 1};
+  }
+  diagnostics.error({place, "", fault});
   return std::nullopt;
 }
 

@@ -90,109 +90,6 @@ json rows_of(const Study& study) {
   return rows;
 }
 
-std::string picture_of(const json& r) {
-  return r["panel"].get<std::string>() + '\n' + r["scene"].get<std::string>() + '\n' +
-         r["quantity"].get<std::string>() + '\n' + r["curve"].get<std::string>();
-}
-
-/// The marks that one picture shows, and the names of parts beside some of them.
-class Names {
- public:
-  explicit Names(std::vector<json*> marks) : marks_(std::move(marks)) {
-    for (const json* mark : marks_) {
-      const Place at = place_of(*mark);
-      low_ = {std::min(low_.x, at.x), std::min(low_.y, at.y)};
-      high_ = {std::max(high_.x, at.x), std::max(high_.y, at.y)};
-      curves_[(*mark)["part"]].push_back(at);
-    }
-    for (auto& [part, curve] : curves_)
-      std::sort(curve.begin(), curve.end(), [](const Place& a, const Place& b) { return a.x < b.x; });
-  }
-
-  /// Names a part once: where it stands clear of the others above and below it, and of the names written before.
-  void write(const std::string& part) {
-    json* best = nullptr;
-    double most = -1;
-    for (json* mark : marks_)
-      if ((*mark)["part"] == part)
-        if (const double room = room_above(*mark) + (is_crossed(*mark) ? 0 : 2) + 2 * room_of_names(*mark);
-            room > most) {
-          most = room;
-          best = mark;
-        }
-    if (!best) return;
-    (*best)["tag"] = part;
-    (*best)["tag_at"] = has_word_left(*best) ? "left" : "right";
-    named_.push_back(best);
-  }
-
- private:
-  struct Place {
-    double x, y;
-  };
-  static constexpr double word = 0.25, line = 0.08;  ///< of the chart's width and height; more room is no better
-
-  static Place place_of(const json& mark) {
-    return {std::log10(mark["option_value"].get<double>()), std::log10(mark["shown"].get<double>())};
-  }
-  /// Distance as shares of the chart.
-  Place apart(const json& a, const json& b) const {
-    const Place at = place_of(a), other = place_of(b);
-    return {std::abs(at.x - other.x) / std::max(high_.x - low_.x, 1.0),
-            std::abs(at.y - other.y) / std::max(high_.y - low_.y, 1.0)};
-  }
-  double room_above(const json& mark) const {
-    double room = 1;
-    for (const json* other : marks_)
-      if ((*other)["option_value"] == mark["option_value"] && (*other)["part"] != mark["part"])
-        room = std::min(room, apart(mark, *other).y / line);
-    return room;
-  }
-  bool has_word_left(const json& mark) const { return high_.x - place_of(mark).x < word / 2 * (high_.x - low_.x); }
-  /// Whether the curve of another part runs through a word that stands beside the mark and a little above it.
-  bool is_crossed(const json& mark) const {
-    constexpr double foot = 0.005, head = 0.06;  // of the word, as shares of the chart's height
-    const Place at = place_of(mark);
-    const double length = (has_word_left(mark) ? -word : word) * std::max(high_.x - low_.x, 1.0);
-    const double height = std::max(high_.y - low_.y, 1.0);
-    const auto crosses = [&](const Place& a, const Place& b) {
-      for (const double share : {0.1, 0.25, 0.4, 0.55, 0.7}) {
-        const double x = at.x + share * length;
-        if (x < a.x || x > b.x || a.x == b.x) continue;
-        const double above = (a.y + (b.y - a.y) * (x - a.x) / (b.x - a.x) - at.y) / height;
-        if (above > foot && above < head) return true;
-      }
-      return false;
-    };
-    return std::any_of(curves_.begin(), curves_.end(), [&](const auto& entry) {
-      const auto& [part, curve] = entry;
-      return part != mark["part"] && std::adjacent_find(curve.begin(), curve.end(), crosses) != curve.end();
-    });
-  }
-  double room_of_names(const json& mark) const {
-    double room = 1;
-    for (const json* other : named_)
-      room = std::min(room, std::max(apart(mark, *other).x / word, apart(mark, *other).y / line));
-    return room;
-  }
-
-  std::vector<json*> marks_;
-  std::vector<const json*> named_;
-  std::map<std::string, std::vector<Place>> curves_;  ///< by part, from left to right
-  Place low_{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  Place high_{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-};
-
-void tag_parts(json& rows) {
-  std::map<std::string, std::vector<json*>> pictures;
-  for (auto& r : rows)
-    if (r["shown"].is_number()) pictures[picture_of(r)].push_back(&r);
-  for (auto& [key, marks] : pictures) {
-    Names names(std::move(marks));
-    for (const auto& look : looks()) names.write(look.name);
-  }
-}
-
 std::vector<Series> series_of_parts() {
   std::vector<Series> out;
   for (const auto& look : looks())
@@ -316,14 +213,15 @@ std::optional<Figure> error_budget(const Study& study) {
       "than its noise, or exactly zero, is not drawn.";
   figure.rows = rows_of(study);
   if (figure.rows.empty()) return std::nullopt;
-  tag_parts(figure.rows);
+  name_lines(figure.rows, "option_value");
   figure.series = series_of_parts();
   const json tips = tooltip({{"label", "method"}, {"part", "part"}, {"value", "value"}, {"noise", "noise"}});
   for (const std::string& panel : distinct(figure.rows, "panel")) {
     json spec = curves(figure.title + ", " + panel, channel("option_value", "{axis}", true),
-                       channel("shown", "part of the relative error, its size", true), tips);
+                       channel("shown", "part of the relative error, its size", true), tips, tag_field("option_value"));
     spec["transform"] = only_if("isValid(datum.shown) && datum.panel == '" + panel + "'");
-    figure.panels.push_back({panel, spec, "option_value", "shown", true, true, panel, false});
+    figure.panels.push_back(
+        {panel, spec, "option_value", "shown", true, true, panel, false, tag_field("option_value")});
     offer(figure, "Setting", "curve", "", panel);
   }
   offer(figure, "Quantity", "quantity", quantity_in_words(first_quantity(study)));

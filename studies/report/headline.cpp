@@ -9,7 +9,6 @@
 
 #include "studies/io/wording.hpp"
 #include "studies/report/html.hpp"
-#include "studies/report/labels.hpp"
 #include "studies/report/look_up.hpp"
 
 namespace stickslip::report {
@@ -22,93 +21,6 @@ std::vector<const Cell*> main_cells(const Study& study) {
   std::vector<const Cell*> out;
   for (const auto& cell : study.cells)
     if (cell.variant == study.main_variant) out.push_back(&cell);
-  return out;
-}
-
-/// What one class of quantities needs to be compared: where its error is and what it costs.
-struct Measure {
-  std::string prefix, words;
-  double Cell::*work;
-  double Cell::*seconds;
-};
-
-/// Work and, where they were measured, seconds.
-std::string spent(const Cell& cell, const Measure& measure) {
-  std::string out = work_in_words(cell, measure.prefix == "sensitivity:" ? Of::sensitivities : Of::responses);
-  if (cell.*measure.seconds > 0) out += " (" + seconds_in_words(cell.*measure.seconds) + ")";
-  return out;
-}
-
-/// The accuracy to compare at: 1e-6, or the strictest power of ten some run reached.
-std::optional<double> target_of(const std::vector<const Cell*>& cells, const Measure& measure) {
-  std::optional<double> least;
-  for (const Cell* cell : cells)
-    if (const auto error = worst(cell->enforcement, measure.prefix); error && cell->converged)
-      least = std::min(least.value_or(*error), *error);
-  if (!least) return std::nullopt;
-  return *least <= 1e-6 ? 1e-6 : std::pow(10, std::ceil(std::log10(*least)));
-}
-
-std::string label_in_words(const Cell& cell) {
-  const std::string options = series_of(cell, "").substr(family_name(cell.family).size());
-  return family_name(cell.family) + (options.empty() ? "" : " (" + options.substr(1) + ")");
-}
-
-/// Whether a run takes less work than another or, of equals, is the default.
-bool is_cheaper(const Cell& cell, const Cell& other, const Measure& measure) {
-  constexpr double same = 1 + 1e-9;  // counts are whole: what differs, differs by more
-  const double work = cell.*measure.work, least = other.*measure.work;
-  return work * same < least || (work <= least * same && at(cell.record, "default") == true);
-}
-
-/// The cheapest converged cell of each method that reaches the target, and for the others how far they came.
-std::string cost_sentence(const Study& study, const Measure& measure) {
-  const auto cells = main_cells(study);
-  const auto target = target_of(cells, measure);
-  if (!target) return {};
-  struct Candidate {
-    const Cell* cheapest = nullptr;  // of those that reach the target
-    const Cell* nearest = nullptr;   // smallest error of all converged
-  };
-  std::map<std::string, Candidate> by_family;
-  for (const Cell* cell : cells) {
-    const auto error = worst(cell->enforcement, measure.prefix);
-    if (!error || !cell->converged) continue;
-    auto& [cheapest, nearest] = by_family[cell->family];
-    if (*error <= *target && (!cheapest || is_cheaper(*cell, *cheapest, measure))) cheapest = cell;
-    if (!nearest || *error < *worst(nearest->enforcement, measure.prefix)) nearest = cell;
-  }
-  std::vector<const Cell*> reached, missed;
-  for (const auto& [family, c] : by_family)
-    (c.cheapest ? reached : missed).push_back(c.cheapest ? c.cheapest : c.nearest);
-  std::sort(reached.begin(), reached.end(),
-            [&](const Cell* a, const Cell* b) { return a->*measure.work < b->*measure.work; });
-
-  std::string out = fmt::format("To bring every {} within {} of the exact contact conditions on the same mesh, ",
-                                measure.words, percent(*target));
-  const auto factor_of = [&](const Cell& cell) { return cell.*measure.work / (reached.front()->*measure.work); };
-  const bool one_wins = by_family.size() > 1 && (reached.size() < 2 || !(factor_of(*reached[1]) <= much_the_same));
-  for (std::size_t i = 0; i < reached.size(); ++i) {
-    const Cell& cell = *reached[i];
-    if (i == 0) {
-      out += fmt::format("{} needs{} {}", label_in_words(cell), one_wins ? " least:" : "", spent(cell, measure));
-    } else {
-      const double factor = factor_of(cell);
-      out += fmt::format("; {} needs {}", label_in_words(cell), spent(cell, measure));
-      if (std::isfinite(factor))
-        out +=
-            factor <= much_the_same ? ", about the same work" : fmt::format(", {} times the work", number(factor, 2));
-    }
-    if (*worst(cell.enforcement, measure.prefix) == 0) out += " (it agrees exactly with the reference)";
-  }
-  out += ".";
-  for (const Cell* cell : missed)
-    out += fmt::format(" {} did not get there: its best was {} with {}.", family_name(cell->family),
-                       percent(*worst(cell->enforcement, measure.prefix)), label_in_words(*cell));
-  for (const auto& family : study.families) {
-    const bool tried = std::any_of(cells.begin(), cells.end(), [&](const Cell* c) { return c->family == family; });
-    if (tried && by_family.count(family) == 0) out += " " + family_name(family) + " has no converged run here.";
-  }
   return out;
 }
 
@@ -271,10 +183,6 @@ std::vector<std::string> warning_sentences(const Study& study) {
 std::vector<std::string> headline(const Study& study) {
   if (study.cells.empty()) return {"The study has no results yet."};
   std::vector<std::string> out;
-  for (const Measure& measure :
-       {Measure{"response:", "response", &Cell::work, &Cell::seconds},
-        Measure{"sensitivity:", "sensitivity", &Cell::sensitivity_work, &Cell::sensitivity_seconds}})
-    out.push_back(cost_sentence(study, measure));
   out.push_back(penalty_sentence(study));
   out.push_back(mesh_sentence(study));
   out.push_back(reference_sentence(study));

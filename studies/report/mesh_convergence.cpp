@@ -1,6 +1,13 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
 
 #include "studies/report/chart_parts.hpp"
+#include "studies/report/headline.hpp"
+#include "studies/report/labels.hpp"
 #include "studies/report/look_up.hpp"
 
 namespace stickslip::report {
@@ -9,26 +16,141 @@ using nlohmann::json;
 
 namespace {
 
-/// Any cell of the main variant. pre: there are cells.
-const Cell& main_cell(const Study& study) {
-  return *std::find_if(study.cells.begin(), study.cells.end(),
-                       [&](const Cell& c) { return c.variant == study.main_variant; });
+constexpr double together = 0.1;    ///< curves that are nowhere further apart, relatively, are drawn as one
+constexpr double rounding = 1e-12;  ///< errors below it are equal
+const char* const worst_response = "worst response";
+
+/// One setting over the mesh levels.
+struct Curve {
+  std::string name, family;
+  std::map<int, double> errors;  ///< by level
+  double own = 0;                ///< worst enforcement error of its responses: what the method adds
+};
+
+/// How far apart two curves are at most, of the second; infinite where they have not the same levels.
+double distance(const Curve& curve, const Curve& other) {
+  if (curve.errors.size() != other.errors.size()) return INFINITY;
+  double most = 0;
+  for (const auto& [level, error] : other.errors) {
+    const auto found = curve.errors.find(level);
+    if (found == curve.errors.end()) return INFINITY;
+    if (std::max(found->second, error) > rounding) most = std::max(most, std::abs(found->second / error - 1));
+  }
+  return most;
 }
 
-/// Labels of up to three settings of each family in the main variant: the loosest, the middle one and the strictest.
-std::vector<std::string> spread_of_cells(const Study& study) {
-  std::vector<std::string> out;
-  for (const auto& family : study.families) {
-    std::vector<std::pair<double, std::string>> by_error;
-    for (const auto& cell : study.cells)
-      if (cell.family == family && cell.converged && cell.variant == study.main_variant)
-        by_error.emplace_back(worst(cell.enforcement, "response:").value_or(0), cell.label);
-    if (by_error.empty()) continue;
-    std::sort(by_error.begin(), by_error.end());
-    for (const std::size_t i : {by_error.size() - 1, by_error.size() / 2, std::size_t(0)})
-      if (std::find(out.begin(), out.end(), by_error[i].second) == out.end()) out.push_back(by_error[i].second);
+/// Curves that lie on each other; the first stands for them all.
+struct Bundle {
+  std::vector<Curve> curves;
+
+  /// How far the largest error of a mesh is from the least, relatively, where it is so most.
+  double spread() const {
+    double most = 0;
+    for (const auto& [level, unused] : curves.front().errors) {
+      double least = INFINITY, largest = rounding;
+      for (const Curve& curve : curves) {
+        least = std::min(least, std::max(curve.errors.at(level), rounding));
+        largest = std::max(largest, curve.errors.at(level));
+      }
+      most = std::max(most, largest / least - 1);
+    }
+    return most;
+  }
+  bool is_of_one_method() const {
+    return std::all_of(curves.begin(), curves.end(),
+                       [&](const Curve& curve) { return curve.family == curves.front().family; });
+  }
+  /// "Penalty stiffness=1"; "12 runs, within 0.9 %".
+  std::string name() const {
+    if (curves.size() == 1) return curves.front().name;
+    const std::string runs = is_of_one_method() ? family_name(curves.front().family) + " runs" : "runs";
+    return fmt::format("{} {}, {}", curves.size(), runs, spread() > 0 ? "within " + percent(spread()) : "alike");
+  }
+  std::string members() const {
+    std::string out;
+    for (const Curve& curve : curves) out += (out.empty() ? "" : ", ") + curve.name;
+    return out;
+  }
+};
+
+/// The curves of a quantity in bundles. The strictest begin, so that those that a loose setting bends away stand alone.
+std::vector<Bundle> bundled(std::vector<Curve> curves) {
+  std::stable_sort(curves.begin(), curves.end(), [](const Curve& a, const Curve& b) { return a.own < b.own; });
+  std::vector<Bundle> bundles;
+  for (Curve& curve : curves) {
+    const auto near = std::find_if(bundles.begin(), bundles.end(), [&](const Bundle& bundle) {
+      return distance(curve, bundle.curves.front()) <= together / 2;  // two of them are then no further apart than all
+    });
+    if (near == bundles.end()) {
+      bundles.push_back({{std::move(curve)}});
+    } else {
+      near->curves.push_back(std::move(curve));
+    }
+  }
+  return bundles;
+}
+
+/// The curves of each scene and quantity.
+std::map<std::pair<std::string, std::string>, std::vector<Curve>> curves_of(const Study& study) {
+  std::map<std::pair<std::string, std::string>, std::vector<Curve>> out;
+  for (const auto& cell : study.cells) {
+    if (!cell.converged) continue;
+    const double own = worst(cell.enforcement, "response:").value_or(0);
+    for (const auto& [quantity, error] :
+         quantities(cell.discretization, {"response:", "sensitivity:"}, worst_response)) {
+      auto& curves = out[{cell.scene, quantity}];
+      auto curve = std::find_if(curves.begin(), curves.end(), [&](const Curve& c) { return c.name == in_words(cell); });
+      if (curve == curves.end()) curve = curves.insert(curves.end(), {in_words(cell), cell.family, {}, 0});
+      curve->errors[cell.refine] = error;
+      curve->own = std::max(curve->own, own);
+    }
   }
   return out;
+}
+
+/// A curve a bundle, against the mesh level.
+void add_bundles(const Study& study, SeriesList& series, json& rows) {
+  for (auto& [choice, curves] : curves_of(study))
+    for (const Bundle& bundle : bundled(std::move(curves))) {
+      const std::string name = bundle.name(), &family = bundle.curves.front().family;
+      if (!bundle.is_of_one_method() && series.place(name) == series.list.size())
+        series.list.push_back({name, "$ink", "circle", {1, 0}, 60});
+      series.add(name, family);
+      for (const auto& [level, error] : bundle.curves.front().errors)
+        rows.push_back({{"panel", "level"},
+                        {"label", bundle.members()},
+                        {"family", family},
+                        {"failed", false},
+                        {"series", name},
+                        {"line", name},
+                        {"scene", choice.first},
+                        {"quantity", choice.second},
+                        {"error", error},
+                        {"level", level},
+                        {"order", level}});
+    }
+}
+
+/// A curve a setting, against seconds.
+void add_settings(const Study& study, SeriesList& series, json& rows) {
+  for (const auto& cell : study.cells) {
+    if (!(cell.sensitivity_seconds > 0)) continue;
+    const std::string name = in_words(cell);
+    for (const auto& [quantity, error] :
+         quantities(cell.discretization, {"response:", "sensitivity:"}, worst_response)) {
+      json r = row_of(cell);
+      r["panel"] = "seconds";
+      r["series"] = r["line"] = name;
+      r["of_cell"] = "yes";
+      r["scene"] = cell.scene;
+      r["quantity"] = quantity;
+      r["error"] = error;
+      r["level"] = r["order"] = cell.refine;
+      r["seconds"] = cell.sensitivity_seconds;
+      rows.push_back(r);
+      series.add(name, cell.family);
+    }
+  }
 }
 
 }  // namespace
@@ -39,45 +161,36 @@ std::optional<Figure> mesh_convergence(const Study& study) {
   SeriesList series(study);
   figure.id = "mesh";
   figure.title = "The same error as the mesh is refined";
-  figure.text =
-      "A curve joins the mesh levels of one setting; each level halves the elements. Counts are of unlike "
-      "matrices here, so cost is in seconds. Where a loose setting's curve levels off, its own error has "
-      "overtaken the mesh's. Shown at first are the loosest, a middle and the strictest setting of each "
-      "method.";
-  const auto shown = spread_of_cells(study);
+  const auto shown = telling_cells(study, Furthest::added);
   add_first(series, study, shown);
-  for (const auto& cell : study.cells) {
-    const std::string name = in_words(cell);
-    for (const auto& [quantity, error] :
-         quantities(cell.discretization, {"response:", "sensitivity:"}, "worst response")) {
-      json r = row_of(cell);
-      r["series"] = r["line"] = name;
-      r["of_cell"] = "yes";
-      r["scene"] = cell.scene;
-      r["quantity"] = quantity;
-      r["error"] = error;
-      r["level"] = r["order"] = cell.refine;
-      r["seconds"] = cell.sensitivity_seconds;
-      figure.rows.push_back(r);
-      series.add(name, cell.family);
-    }
-  }
+  add_bundles(study, series, figure.rows);
+  add_settings(study, series, figure.rows);
   if (figure.rows.empty()) return std::nullopt;
   show_zeros(figure.rows, "error");
   figure.series = series.list;
-  const json tips = tooltip({{"label", "method"}, {"level", "mesh level"}, {"error", "error"}, {"seconds", "seconds"}});
+  figure.text =
+      "Each level halves the elements. Against the level, runs that differ by less than 10 % on every mesh are one "
+      "curve. Where a loose setting's curve levels off, its own error has overtaken the mesh's. ";
   const json y = channel("shown", "relative error against " + discretization_reference(study), true);
   json x = channel("level", "mesh level", false);
   x["axis"]["tickMinStep"] = 1;
-  figure.panels.push_back(
-      {"against the mesh level", curves(figure.title, x, y, tips), "level", "shown", false, true, "", false});
-  if (std::any_of(figure.rows.begin(), figure.rows.end(), [](const json& r) { return r["seconds"] > 0; })) {
-    json spec = curves(figure.title + ", against seconds", channel("seconds", "seconds", true), y, tips);
-    spec["transform"] = only_if("datum.seconds > 0");
-    figure.panels.push_back({"against seconds", spec, "seconds", "shown", true, true, "", false});
+  const auto add = [&](const json& across, const std::string& title, const std::string& panel, const json& tips) {
+    json spec = curves(figure.title + ", against " + title, across, y, tips);
+    spec["transform"] = only_if("datum.panel == '" + panel + "'");
+    figure.panels.push_back({"against " + title, spec, panel, "shown", panel != "level", true, panel, false});
+  };
+  add(x, "the mesh level", "level", tooltip({{"label", "runs"}, {"level", "mesh level"}, {"error", "error"}}));
+  if (!distinct(figure.rows, "series", "seconds").empty()) {
+    figure.text +=
+        "Cost is in seconds, since counts are of unlike matrices; shown at first are the most accurate run of each "
+        "method and the one furthest off.";
+    add(channel("seconds", "seconds", true), "seconds", "seconds",
+        tooltip({{"label", "method"}, {"level", "mesh level"}, {"error", "error"}, {"seconds", "seconds"}}));
   }
-  offer(figure, "Quantity", "quantity", "worst response");
-  offer(figure, "Scene", "scene", main_cell(study).scene);
+  offer(figure, "Quantity", "quantity", worst_response);
+  const auto main =
+      std::find_if(study.cells.begin(), study.cells.end(), [&](auto& c) { return c.variant == study.main_variant; });
+  offer(figure, "Scene", "scene", main->scene);
   offer_cells(figure, shown);
   return figure;
 }

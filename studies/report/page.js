@@ -180,6 +180,9 @@
   const inBrief = (row) => Object.fromEntries(Object.entries(row).filter(
       ([field, entry]) => !field.startsWith('tag') || (entry.length <= 12 && Number.isNaN(Number(entry)))));
 
+  /** A row without words beside its point that have no room in the lower chart on paper. */
+  const onPaper = (row) => Object.fromEntries(Object.entries(row).filter(([field]) => !row[field + '_tall']));
+
   /** Draws a figure: as wide as its place, or as wide as paper is. */
   async function draw(figure, paper) {
     tellChosen(figure);
@@ -192,7 +195,7 @@
       if (panel.closest('details:not([open])')) continue;  // has no width yet; drawn when it is opened
       const only = spec.usermeta.panel;
       const own = (only ? rows.filter((row) => row.panel === only) : rows)
-          .map((row) => panel.clientWidth < 400 ? inBrief(row) : row);
+          .map((row) => paper ? onPaper(row) : panel.clientWidth < 400 ? inBrief(row) : row);
       panel.hidden = !all.some((row) => !only || row.panel === only);
       if (panel.hidden) continue;
       inPanels.push(...(only ? all.filter((row) => row.panel === only) : all));

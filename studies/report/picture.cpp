@@ -76,6 +76,8 @@ std::optional<Scene> lay_out(const json& picture) {
   scene.scale = true_scale ? 1 : scale_of(scene.mesh, extent);
   for (const auto& p : deformed(scene.mesh, scene.scale)) scene.whole.add(p);
   if (points_alone) scene.whole.add(scene.mesh.points.front());  // where they come from
+  for (const auto& track : scene.mesh.tracks)
+    for (const auto& p : track.places) scene.whole.add(p);
   if (!(std::max(scene.whole.width(), scene.whole.height()) > 0)) return std::nullopt;
   scene.whole = padded(scene.whole, points_alone ? 0.3 : 0.03);
   for (const double s : scene.mesh.stress) scene.peak = std::max(scene.peak, s);
@@ -103,8 +105,10 @@ std::string in_words(const Scene& scene, bool with_close_up) {
   return fmt::format(
       "At the last step: {}, {}; {}{}.{}", counted(std::ssize(elements), springs ? "spring" : "element"),
       counted(std::ssize(scene.contact), "contact point"), scale,
-      flow + (springs ? "; a cross is a spring's anchor" : "") + (scene.mesh.in_space ? "; seen along z" : ""),
-      scene.zooms && with_close_up ? " Right: the contact at true scale." : "");
+      flow + (springs ? "; a cross is a spring's anchor" : "") +
+          (scene.mesh.tracks.empty() ? "" : ", the line the path of the point, the dotted one of the anchor") +
+          (scene.mesh.in_space ? "; seen along z" : ""),
+      scene.zooms && with_close_up ? " In the frame: the contact at true scale." : "");
 }
 
 /// Nodes and contact points where they are drawn, and elements by their nodes.
@@ -118,6 +122,12 @@ json rows_of(const Scene& scene, const std::vector<Point>& nodes) {
     rows.push_back({{"what", "element"}, {"number", e}, {"nodes", corners}, {"stress", scene.mesh.stress[e]}});
     if (!scene.mesh.plastic.empty()) rows.back()["plastic_strain"] = scene.mesh.plastic[e];
   }
+  for (const auto& track : scene.mesh.tracks)
+    for (std::size_t i = 0; i < track.places.size(); ++i)
+      rows.push_back({{"what", track.of_anchor ? "path of the anchor" : "path of the point"},
+                      {"number", i},
+                      {"x", track.places[i].x},
+                      {"y", track.places[i].y}});
   const double scale = scene.zooms ? 1 : scene.scale;
   for (std::size_t i = 0; i < scene.contact.size(); ++i) {
     const Point p = scene.contact[i].enlarged(scale);
@@ -134,6 +144,7 @@ json rows_of(const Scene& scene, const std::vector<Point>& nodes) {
 void draw_bodies(const Scene& scene, const json& obstacles, double scale, const std::vector<Point>& nodes,
                  const Frame& frame, bool with_mesh, Drawing& drawing) {
   draw_obstacles(obstacles, scale, frame, drawing);
+  draw_tracks(scene.mesh, frame, drawing);
   draw_elements(scene.mesh, nodes, frame, scene.peak, with_mesh, drawing);
   draw_flowed(scene.mesh, nodes, frame, drawing);
   draw_outlines(scene.mesh, nodes, frame, drawing);

@@ -57,6 +57,39 @@ void draw_spring(const Frame& frame, Point from, Point to, Drawing& drawing) {
   drawing.path(std::move(anchor), {"ink", "", 2, {}});
 }
 
+/// Whether a path leaves the straight line from its first place to its furthest by a share of its length that shows.
+bool turns(const std::vector<Point>& places) {
+  constexpr double shows = 0.02;
+  if (places.empty()) return false;
+  const Point first = places.front();
+  const auto way = [&](const Point& p) { return std::hypot(p.x - first.x, p.y - first.y); };
+  const Point far = *std::max_element(places.begin(), places.end(), [&](auto& a, auto& b) { return way(a) < way(b); });
+  const double length = way(far);
+  return length > 0 && std::any_of(places.begin(), places.end(), [&](const Point& p) {
+           const double across = (far.x - first.x) * (p.y - first.y) - (far.y - first.y) * (p.x - first.x);
+           return std::abs(across) > shows * length * length;
+         });
+}
+
+/// The tracks of points that picture.json has, where one of them turns: of those that go to and fro a line says
+/// nothing.
+std::vector<Track> read_tracks(const json& picture, const std::vector<Point>& points,
+                               const std::vector<std::vector<int>>& elements) {
+  std::vector<Track> tracks;
+  for (const auto& path : array_at(picture, "paths")) {
+    const json& node = at(path, "node");
+    if (!node.is_number_integer() || node < 0 || node >= points.size()) continue;
+    const Point start = points[node.get<std::size_t>()];
+    Track track;
+    track.of_anchor = std::any_of(elements.begin(), elements.end(), [&](auto& nodes) { return nodes.back() == node; });
+    for (const auto& u : array_at(path, "displacement"))
+      if (const auto by = seen(u)) track.places.push_back({start.x + by->x, start.y + by->y});
+    tracks.push_back(std::move(track));
+  }
+  if (std::none_of(tracks.begin(), tracks.end(), [](const Track& track) { return turns(track.places); })) return {};
+  return tracks;
+}
+
 }  // namespace
 
 double extent_of(const Mesh& mesh) {
@@ -94,6 +127,7 @@ Mesh read_mesh(const json& picture) {
       mesh.plastic.push_back(e < plastic.size() && plastic[e].is_number() ? plastic[e].get<double>() : 0);
     mesh.body.push_back(e < body.size() && body[e].is_number_integer() ? body[e].get<int>() : 0);
   }
+  if (extent_of(mesh) == 0) mesh.tracks = read_tracks(picture, mesh.points, mesh.elements);
   return mesh;
 }
 
@@ -138,6 +172,16 @@ void draw_elements(const Mesh& mesh, const std::vector<Point>& at, const Frame& 
     // Without mesh lines a stroke of the fill's own colour closes the hairlines between neighbours.
     drawing.path(std::move(paths[i]), {mesh_lines ? "#5f6670" : colors[i], colors[i], 0.3, {}});
   drawing.path(std::move(lines), {"ink", "", 2, {}});
+}
+
+void draw_tracks(const Mesh& mesh, const Frame& frame, Drawing& drawing) {
+  for (const Track& track : mesh.tracks) {
+    Path path;
+    for (const Point& p : track.places)
+      path.empty() ? path.move(frame.x(p.x), frame.y(p.y)) : path.line(frame.x(p.x), frame.y(p.y));
+    const std::vector<double> dash = track.of_anchor ? std::vector<double>{2, 4} : std::vector<double>{};
+    drawing.path(std::move(path), {"soft", "", track.of_anchor ? 1.2 : 2, dash});
+  }
 }
 
 void draw_flowed(const Mesh& mesh, const std::vector<Point>& at, const Frame& frame, Drawing& drawing) {

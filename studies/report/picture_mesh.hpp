@@ -9,6 +9,12 @@
 
 namespace stickslip::report {
 
+/// Where a point on a spring, or its anchor, has been.
+struct Track {
+  std::vector<Point> places;
+  bool of_anchor = false;
+};
+
 struct Mesh {
   std::vector<Point> points;               ///< initial
   std::vector<Point> displacement;         ///< 0 where not recorded
@@ -16,6 +22,7 @@ struct Mesh {
   std::vector<double> stress;              ///< one an element, or empty
   std::vector<double> plastic;             ///< equivalent plastic strain, one an element; empty where nothing flows
   std::vector<int> body;                   ///< one an element, or empty
+  std::vector<Track> tracks;               ///< of points, where one of them turns
   bool in_space = false;                   ///< three coordinates, of which two are kept: seen along z
 };
 
@@ -38,6 +45,9 @@ std::vector<Point> deformed(const Mesh& mesh, double scale);
 /// Elements inside the frame's window, one path a colour: 20 000 elements stay a light page.
 void draw_elements(const Mesh& mesh, const std::vector<Point>& at, const Frame& frame, double peak, bool mesh_lines,
                    Drawing& drawing);
+
+/// Where points have been, and, dotted, their anchors.
+void draw_tracks(const Mesh& mesh, const Frame& frame, Drawing& drawing);
 
 /// A dot in the middle of each element that has flowed.
 void draw_flowed(const Mesh& mesh, const std::vector<Point>& at, const Frame& frame, Drawing& drawing);

@@ -119,12 +119,20 @@ void draw_axes(const Frame& frame, const json& spec, Drawing& drawing) {
 }
 
 /// The line on which exact zeros stand, where there are any.
-void draw_ground(const Frame& frame, Drawing& drawing) {
+void draw_ground(const Frame& frame, const Panel& panel, Drawing& drawing) {
   if (!frame.ground) return;
   const double y = frame.y(*frame.ground);
   drawing.line(left, y, right, y, {"ink", "", 1, {1, 3}});
   drawing.text(left - 6, y + 4, "0", {Anchor::end});
-  drawing.text(left + 4, y - 4, "exactly 0", {Anchor::start, 11});
+  const auto some_exact_in = [&](double from, double to) {
+    return std::any_of(frame.rows.begin(), frame.rows.end(), [&](const json* row) {
+      const double x = frame.x(number_of(*row, panel.x));
+      return row->value("zero", false) && x > from && x < to;
+    });
+  };
+  constexpr double words = 80;
+  const bool at_right = some_exact_in(left - words, left + words) && !some_exact_in(right - words, right + words);
+  drawing.text(at_right ? right - 4 : left + 4, y - 4, "exactly 0", {at_right ? Anchor::end : Anchor::start, 11});
 }
 
 /// Lines that theory gives.
@@ -243,7 +251,7 @@ std::optional<Drawing> draw_plot(const Figure& figure, const Panel& panel) {
   if (!frame) return std::nullopt;
   Drawing drawing(width, bottom, figure.title + (panel.title.empty() ? "" : ", " + panel.title), figure.text);
   draw_axes(*frame, panel.spec, drawing);
-  draw_ground(*frame, drawing);
+  draw_ground(*frame, panel, drawing);
   draw_guides(*frame, panel, drawing);
   double legend = bottom + 58;
   for (const auto& series : figure.series) {

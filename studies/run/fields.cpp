@@ -347,6 +347,30 @@ std::vector<std::string> field_files(const CaseResult& result, int every) {
   return files;
 }
 
+namespace {
+
+/// The displacements, step by step, of points on springs and of their anchors; of many steps some, the last among them.
+json paths_json(const CaseResult& result) {
+  constexpr std::size_t most = 200;  // of a path: more than a picture shows
+  const auto& model = result.problem->model;
+  const std::size_t stride = (result.steps.size() + most - 1) / most;
+  json paths = json::array();
+  for (const auto& body : model.bodies) {
+    const auto nodes = body.mesh.element_count() == 1 ? detail::element_nodes(body, 0) : std::vector<int>{};
+    const auto place = [&](int node) { return result.problem->slots.points.col(node); };
+    if (nodes.size() != 2 || place(nodes[0]) != place(nodes[1])) continue;
+    for (const int node : nodes) {
+      json displacement = json::array();
+      for (std::size_t n = (result.steps.size() - 1) % stride; n < result.steps.size(); n += stride)
+        displacement.push_back(point_json(nodal(model, result.steps[n].increment->state.displacement).col(node)));
+      paths.push_back({{"node", node}, {"displacement", displacement}});
+    }
+  }
+  return paths;
+}
+
+}  // namespace
+
 json picture_json(const CaseResult& result) {
   if (result.steps.empty()) return nullptr;
   const auto& problem = *result.problem;
@@ -354,6 +378,7 @@ json picture_json(const CaseResult& result) {
   const auto& last = *result.steps.back().increment;
   json picture = bodies_json(problem, last.state);
   picture["contact"] = contact_json(problem, last.state);
+  if (json paths = paths_json(result); !paths.empty()) picture["paths"] = std::move(paths);
   if (scene.finite_strain) picture["finite"] = true;  // it is drawn at true scale
   picture["obstacles"] = json::array();
   for (const auto& obstacle : scene.obstacles)

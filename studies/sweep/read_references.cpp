@@ -10,6 +10,8 @@ namespace {
 
 using nlohmann::json;
 
+// A scene that cannot be read is null: it has no names, and nothing is held against them.
+
 /// Keys of an object in the scene; none where there is no such object.
 std::vector<std::string> names_in(const json& scene, const char* part) {
   std::vector<std::string> names;
@@ -21,6 +23,7 @@ std::vector<std::string> names_in(const json& scene, const char* part) {
 /// Names that responses and objectives have in the scene, and their derivatives, "RESPONSE/PARAMETER"; in adjoint mode
 /// responses have none.
 std::vector<std::string> result_names(const json& scene) {
+  if (scene.is_null()) return {};
   const bool adjoint = scene.value("sensitivity", json::object()).value("mode", "") == "adjoint";
   std::vector<std::string> names, derivatives;
   for (const char* part : {"responses", "objectives"})
@@ -33,8 +36,9 @@ std::vector<std::string> result_names(const json& scene) {
   return names;
 }
 
-void check_result_name(const JsonNode& node, const std::string& name, const std::vector<std::string>& names) {
-  if (std::find(names.begin(), names.end(), name) == names.end())
+void check_result_name(const JsonNode& node, const std::string& name, const json& scene,
+                       const std::vector<std::string>& names) {
+  if (!scene.is_null() && std::find(names.begin(), names.end(), name) == names.end())
     node.error_at_key("the scene has no " + in_quotes(name) + ";" + suggestion(name, names) +
                       " allowed: " + listed(names));
 }
@@ -44,7 +48,7 @@ std::optional<std::set<std::string>> read_map(const JsonNode& map, const ClosedF
   std::set<std::string> given;
   bool sound = map.is_map("quantities by response");
   for (const auto& [response, quantity] : sound ? map.members() : std::vector<std::pair<std::string, JsonNode>>{}) {
-    check_result_name(quantity, response, names_in(scene, "responses"));
+    check_result_name(quantity, response, scene, names_in(scene, "responses"));
     const auto role = quantity.choice(form.quantities());
     sound = sound && role;
     if (role && form.has_input(*role) && !given.insert(*role).second)
@@ -57,7 +61,7 @@ std::optional<std::set<std::string>> read_map(const JsonNode& map, const ClosedF
 /// Adds the inputs that are given by a number, or as the parameter of the scene of this name.
 void read_inputs(const JsonNode& inputs, const ClosedForm& form, const json& scene, std::set<std::string>& given) {
   if (!inputs.is_map("numbers, or names of parameters, by input of the closed form")) return;
-  const json parameters = scene.value("parameters", json::object());
+  const json parameters = scene.is_null() ? json() : scene.value("parameters", json::object());
   for (const auto& [quantity, value] : inputs.members()) {
     const auto names = form.input_names();
     if (!form.has_input(quantity))
@@ -66,7 +70,7 @@ void read_inputs(const JsonNode& inputs, const ClosedForm& form, const json& sce
     else if (!given.insert(quantity).second)
       value.error_at_key("is given by the map too");
     const json& content = value.value();
-    if (content.is_string() && !parameters.contains(content.get<std::string>()))
+    if (content.is_string() && !scene.is_null() && !parameters.contains(content.get<std::string>()))
       value.error("is " + shown(content) + ", but the scene has no parameter of this name");
     else if (!content.is_string() && !content.is_number())
       value.must_be("a number, or the name of a parameter of the scene");
@@ -108,7 +112,7 @@ std::optional<Reference> read_reference(const JsonNode& node, const json& scene)
     reference.kind = Reference::Kind::values;
     if (value.is_map("numbers by response, or by RESPONSE/PARAMETER"))
       for (const auto& [result, number] : value.members()) {
-        check_result_name(number, result, result_names(scene));
+        check_result_name(number, result, scene, result_names(scene));
         number.number(any_number);
       }
     if (value.value().is_object() && value.value().empty()) value.error("is empty; must give a response its number");
@@ -174,7 +178,7 @@ std::vector<std::string> read_errors(const JsonNode& list, const json& scene) {
                        pattern->rfind("sensitivity:", 0) == 0 || pattern->rfind("field:", 0) == 0;
     if (!known)
       element.must_be("\"kkt\", or begin with response:, sensitivity: or field:, as in \"response:*\"");
-    else if (!matches_something(*pattern, names))
+    else if (!scene.is_null() && !matches_something(*pattern, names))
       element.error("is " + in_quotes(*pattern) + ", which matches nothing in the scene;" +
                     suggestion(*pattern, names) + " allowed: " + listed(names) + ", or one of them cut short by a *");
     patterns.push_back(*pattern);

@@ -54,12 +54,13 @@ std::string overlapping(const std::set<std::string>& pointers, const std::string
 std::optional<MethodSweep> read_method_sweep(const JsonNode& node, OptionLists lists) {
   const auto kind = node.kind(method_names());
   if (!kind || !kind->second.is_map("the options of " + kind->first)) return std::nullopt;
+  check_option_names(kind->second, kind->first);
   MethodSweep sweep{kind->first, kind->second.place(), {}};
   collect_options(kind->second, "", lists, sweep.options);
   return sweep;
 }
 
-std::vector<MethodSweep> read_methods(const JsonNode& study, const JsonNode& scene) {
+std::vector<MethodSweep> read_methods(const JsonNode& study, const std::optional<JsonNode>& scene) {
   std::vector<MethodSweep> methods;
   const auto add = [&](const JsonNode& method, OptionLists lists) {
     if (auto sweep = read_method_sweep(method, lists)) methods.push_back(*std::move(sweep));
@@ -69,9 +70,9 @@ std::vector<MethodSweep> read_methods(const JsonNode& study, const JsonNode& sce
       list->must_be("a list of methods, as in [{\"penalty\": {\"stiffness\": [10, 100]}}]");
     else
       for (const JsonNode& method : list->elements()) add(method, OptionLists::swept);
-  } else if (const auto method = scene.find("method")) {
+  } else if (const auto method = scene ? scene->find("method") : std::nullopt) {
     add(*method, OptionLists::refused);
-  } else {
+  } else if (scene) {
     study.error(R"(the key "methods" is missing, and the scene names no method)");
   }
   return methods;
@@ -84,9 +85,9 @@ std::vector<Knob> read_vary(const JsonNode& node, const json& scene) {
   for (const auto& [pointer, list] : node.members()) {
     if (pointer == "/method" || pointer.rfind("/method/", 0) == 0)
       list.error_at_key(R"(an option of a method is swept as a list in "methods")");
-    else if (const std::string fault = pointer_fault(scene, pointer); !fault.empty())
+    else if (const std::string fault = scene.is_null() ? "" : pointer_fault(scene, pointer); !fault.empty())
       list.error_at_key(fault);
-    else if (value_at(scene, pointer)->is_object())
+    else if (!scene.is_null() && value_at(scene, pointer)->is_object())
       list.error_at_key("names an object; must name a number, a text or an array");
     else if (const std::string other = overlapping(known, pointer); !other.empty())
       list.error_at_key("overlaps " + other + ", which is varied too: one would overwrite the other");

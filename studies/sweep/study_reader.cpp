@@ -23,7 +23,8 @@ std::optional<JsonDocument> scene_beside(const std::string& file, const JsonNode
   const std::filesystem::path path = (std::filesystem::path(file).parent_path() / *name).lexically_normal();
   std::error_code unreadable;
   if (!std::filesystem::is_regular_file(path, unreadable)) {
-    node->error("the scene file " + path.string() + " cannot be read");
+    node->error("the scene file " + path.string() + " cannot be read: it " +
+                (std::filesystem::exists(path, unreadable) ? "is no file" : "is not there"));
     return std::nullopt;
   }
   auto scene = JsonDocument::read(path.string(), diagnostics);
@@ -33,15 +34,15 @@ std::optional<JsonDocument> scene_beside(const std::string& file, const JsonNode
 }
 
 /// What is swept, and what the results are held against; each has its default where the study says nothing of it.
-void read_lists(const JsonNode& root, const JsonNode& scene, Study& study) {
+void read_lists(const JsonNode& root, const std::optional<JsonNode>& scene, Study& study) {
+  const json& known = scene ? scene->value() : json();
   study.methods = read_methods(root, scene);
-  if (const auto vary = root.find("vary")) study.vary = read_vary(*vary, scene.value());
+  if (const auto vary = root.find("vary")) study.vary = read_vary(*vary, known);
   const auto refine = root.find("refine");
   study.refine = refine ? read_levels(*refine) : std::vector<PlacedValue>{{0, root.place()}};
-  if (const auto references = root.find("reference")) study.references = read_references(*references, scene.value());
+  if (const auto references = root.find("reference")) study.references = read_references(*references, known);
   const auto errors = root.find("errors");
-  study.errors =
-      errors ? read_errors(*errors, scene.value()) : std::vector<std::string>{"response:*", "sensitivity:*", "kkt"};
+  study.errors = errors ? read_errors(*errors, known) : std::vector<std::string>{"response:*", "sensitivity:*", "kkt"};
 }
 
 /// The accuracies of the page's verdict; they stay in the study as given.
@@ -105,9 +106,8 @@ std::optional<Study> read_study(const std::string& file, Diagnostics& diagnostic
   if (const auto schema = root.find("$schema")) schema->text();
   if (const auto title = root.find("title")) study.title = title->text().value_or("");
   auto scene = scene_beside(file, root, diagnostics);
-  if (!scene) return std::nullopt;
-  study.scene = *std::move(scene);
-  read_lists(root, JsonNode(study.scene, diagnostics), study);
+  if (scene) study.scene = *std::move(scene);
+  read_lists(root, scene ? std::optional<JsonNode>(std::in_place, study.scene, diagnostics) : std::nullopt, study);
   if (const auto accuracy = root.find("accuracy")) check_accuracies(*accuracy);
   if (const auto timing = root.find("timing")) study.repeat = read_rounds(*timing);
   if (const auto budget = root.find("error_budget")) study.budget_copies = read_budget(*budget);

@@ -1,4 +1,5 @@
-/// The parts of the study reader. `scene` is the document of the scene that the study names.
+/// The parts of the study reader. `scene` is the document of the scene that the study names; null where it cannot be
+/// read: then the study is not held against it.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -18,7 +19,7 @@ inline constexpr int finest_level = 10;  ///< of meshes: a thousand times the ce
 std::optional<MethodSweep> read_method_sweep(const JsonNode&, OptionLists);
 
 /// The methods of a study; where it lists none, the one of its scene.
-std::vector<MethodSweep> read_methods(const JsonNode& study, const JsonNode& scene);
+std::vector<MethodSweep> read_methods(const JsonNode& study, const std::optional<JsonNode>& scene);
 std::vector<Knob> read_vary(const JsonNode&, const nlohmann::json& scene);
 std::vector<PlacedValue> read_levels(const JsonNode&);
 std::vector<Reference> read_references(const JsonNode&, const nlohmann::json& scene);

@@ -1,8 +1,12 @@
 #include "studies/io/json_document.hpp"
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 namespace stickslip {
@@ -112,10 +116,32 @@ TEST(JsonDocument, ReportsEveryKeyThatIsGivenTwice) {
 
 TEST(JsonDocument, AllowsAKeyInSeveralObjects) { parsed(R"([{"a": 1}, {"a": {"a": 2}}])"); }
 
+TEST(JsonDocument, SaysThatAFileIsEmptyOrNoText) {
+  const auto file = std::filesystem::path(testing::TempDir()) / fmt::format("stickslip_{}_no_text.json", ::getpid());
+  const auto fault_of = [&](const std::string& content) {
+    std::ofstream(file, std::ios::binary) << content;
+    Diagnostics diagnostics;
+    EXPECT_FALSE(JsonDocument::read(file.string(), diagnostics).has_value());
+    return diagnostics.text();
+  };
+  EXPECT_EQ(fault_of(" \n"), file.string() + ":1:1: is empty; must be a JSON object, {...}\n");
+  for (const std::string& content : {std::string("{\0}", 3), std::string("\xFF\xFE{")})
+    EXPECT_EQ(fault_of(content),
+              file.string() + ":1:1: is no text, or not in UTF-8; must be a JSON object, {...}, in UTF-8\n");
+  std::filesystem::remove(file);
+}
+
+TEST(JsonDocument, NamesTheFileBesideAMissingOne) {
+  Diagnostics diagnostics;
+  EXPECT_FALSE(JsonDocument::read(STICKSLIP_SOURCE_DIR "/studies/scenes/slidr.json", diagnostics).has_value());
+  EXPECT_EQ(diagnostics.text(), STICKSLIP_SOURCE_DIR
+            "/studies/scenes/slidr.json: cannot be read: there is no such file; did you mean \"slider.json\"?\n");
+}
+
 TEST(JsonDocument, ReportsAFileThatCannotBeRead) {
   Diagnostics diagnostics;
   EXPECT_FALSE(JsonDocument::read("no/such/file.json", diagnostics).has_value());
-  EXPECT_EQ(diagnostics.text(), "no/such/file.json: cannot be read\n");
+  EXPECT_EQ(diagnostics.text(), "no/such/file.json: cannot be read: there is no such file\n");
   Diagnostics of_directory;
   EXPECT_FALSE(JsonDocument::read(".", of_directory).has_value());
   EXPECT_EQ(of_directory.text(), ".: is a directory; must be a file\n");

@@ -263,11 +263,18 @@ class Figures(InFolder):
         axes = plots.work_precision(stickslip.load_study(self.out), of="sensitivity", against="discretization",
                                     work="seconds")
         (line,) = [line for line in axes.get_lines()
-                   if line.get_label() == "Penalty, /loads/0/force/0 = 25, refine = 0"]
+                   if line.get_label() == "Penalty, /loads/0/force/0 = 25"]
         penalty = [row for row in rows if row["method"] == "penalty" and row["/loads/0/force/0"] == 25]
         self.assertEqual(sorted(line.get_xdata()), sorted(row["sensitivity_seconds"] for row in penalty))
         self.assertEqual(sorted(line.get_ydata()),
                          sorted(row["discretization:sensitivity:press/F"] for row in penalty))
+
+    def test_curves_are_told_apart_by_what_varies(self):
+        rows = self.study()
+        for row in rows:
+            row["/contacts/stop/friction"] = row.pop("/loads/0/force/0")
+        labels = [line.get_label() for line in plots.work_precision(rows).get_lines()]
+        self.assertIn("Penalty, friction = 25", labels)
 
     def test_runs_that_did_not_converge_are_crosses(self):
         rows = self.study()

@@ -73,15 +73,11 @@ TEST_F(ReportNumbers, WeighsBackSolvesByTheirMeasuredCost) {
   EXPECT_NEAR(s.cells[0].seconds, 28 - 0.1, 1e-12);
 }
 
-TEST_F(ReportNumbers, HeadlineNamesTheCheapestRunOfEachMethodThatIsAccurateEnough) {
+TEST_F(ReportNumbers, HeadlineSaysHowThePenaltysErrorFallsAndLeavesTheCheapestToTheVerdict) {
   record(description(), three_methods());
   const std::string text = all_of(report::headline(study()));
-  EXPECT_THAT(text, HasSubstr("To bring every response within 1e-6"));
-  EXPECT_THAT(text, HasSubstr("Monolithic AL needs least: 10 factorisations and 20 back-solves"));
-  // Works of 12, 16.8 and 48; the Uzawa run of 24 is not accurate enough.
-  EXPECT_THAT(text, HasSubstr("Penalty (stiffness=1e7) needs 14 factorisations and 28 back-solves (28 s), 1.4 times"));
-  EXPECT_THAT(text, HasSubstr("Uzawa AL (tolerance=1e-8) needs 40 factorisations and 80 back-solves (80 s), 4 times"));
   EXPECT_THAT(text, HasSubstr("Penalty's error falls as stiffness to the power -1 down to 1e-9 at stiffness 1e9."));
+  EXPECT_THAT(text, Not(HasSubstr("factorisations")));
 }
 
 TEST_F(ReportNumbers, HeadlineSaysForWhichSceneThePenaltysErrorFallsAndWhereItFails) {
@@ -140,19 +136,6 @@ TEST_F(ReportNumbers, HeadlineTakesTheMeshsErrorOfTheRunThatEnforcesContactBest)
   EXPECT_EQ(report::own_error(study(), Of::responses), 0.01);
 }
 
-TEST_F(ReportNumbers, HeadlineNamesNoCheapestOfTwoThatTakeTheSame) {
-  std::vector<json> cells = {cell("penalty", {{"stiffness", 1e9}}, 1e-9, 10),
-                             cell("monolithic_al", {{"scale", 0.1}}, 0, 10),
-                             cell("monolithic_al", {{"scale", 1}}, 0, 10)};
-  cells[0]["cost"]["counts"]["backsolves"] = 22;
-  cells[2]["default"] = true;
-  record(description(), cells);
-  EXPECT_THAT(all_of(report::headline(study())),
-              AllOf(HasSubstr("Monolithic AL (scale=1) needs 10 factorisations and 20 back-solves (20 s) (it agrees "
-                              "exactly with the reference)"),
-                    HasSubstr("about the same work"), Not(HasSubstr("least"))));
-}
-
 TEST_F(ReportNumbers, FoldsAwayWhatIsExactForMostRuns) {
   auto cells = three_methods();
   for (auto& c : cells) c["errors"]["discretization"]["response:press"] = 1e-15;
@@ -194,11 +177,6 @@ TEST_F(ReportNumbers, OfAMergedStudySaysWhatTheCommandWas) {
   const std::string html = without_scripts(page());
   EXPECT_THAT(html, AllOf(HasSubstr("joined by:</p><pre>stickslip merge p1 p2 -o m"), HasSubstr("and merge again"),
                           Not(HasSubstr("This repeats the study")), Not(HasSubstr("the command at the end"))));
-}
-
-TEST_F(ReportNumbers, CountsInTheSingularToo) {
-  record(description(), {cell("monolithic_al", json::object(), 1e-9, 1)});
-  EXPECT_THAT(all_of(report::headline(study())), HasSubstr("1 factorisation and 2 back-solves"));
 }
 
 TEST_F(ReportNumbers, LeavesOutOfNamesWhatTellsNoRunsApart) {
@@ -322,18 +300,6 @@ TEST_F(ReportNumbers, ValuesAreATableForEachResponse) {
   };
   EXPECT_EQ(tables("Last step: press<"), 2);
   EXPECT_EQ(tables("Last step: pull<"), 1);
-}
-
-TEST_F(ReportNumbers, HeadlineSaysWhichMethodDoesNotReachTheAccuracy) {
-  auto cells = three_methods();
-  cells.erase(cells.begin() + 2, cells.begin() + 4);
-  record(description(), cells);
-  EXPECT_THAT(all_of(report::headline(study())), HasSubstr("Penalty did not get there: its best was 1e-5"));
-}
-
-TEST_F(ReportNumbers, HeadlineTakesTheStrictestDecadeThatWasReached) {
-  record(description(), {cell("penalty", {{"stiffness", 10}}, 3e-3, 5), cell("uzawa_al", json::object(), 0.2, 5)});
-  EXPECT_THAT(all_of(report::headline(study())), HasSubstr("within 1 % of"));
 }
 
 TEST_F(ReportNumbers, HeadlineSeesRoundingLiftThePenaltysError) {
@@ -530,9 +496,33 @@ TEST_F(ReportNumbers, JoinsMeshLevelsWhereThereAreSeveral) {
   const auto figure = report::mesh_convergence(study());
   ASSERT_TRUE(figure);
   std::map<std::string, std::set<double>> levels;
-  for (const auto& row : figure->rows) levels[row["line"]].insert(row["level"].get<double>());
+  for (const auto& row : figure->rows)
+    if (row["panel"] == "seconds") levels[row["line"]].insert(row["level"].get<double>());
   EXPECT_EQ(levels.size(), 7u);
   for (const auto& [line, found] : levels) EXPECT_EQ(found.size(), 2u) << line;
+}
+
+/// Curves that lie on each other are one, which says of how many runs it is and how near they are.
+TEST_F(ReportNumbers, DrawsRunsThatAreAlikeOnEveryMeshAsOneCurve) {
+  std::vector<json> cells;
+  for (const int level : {0, 1}) {
+    const double finer = level == 0 ? 1 : 0.25;
+    auto on_mesh = three_methods();
+    for (std::size_t i = 0; i < on_mesh.size(); ++i) {
+      on_mesh[i]["refine"] = level;
+      on_mesh[i]["errors"]["discretization"]["response:press"] = finer * (i == 0 ? 0.5 : i == 1 ? 0.0102 : 0.01);
+    }
+    cells.insert(cells.end(), on_mesh.begin(), on_mesh.end());
+  }
+  record(description(), cells);
+  const auto figure = report::mesh_convergence(study());
+  ASSERT_TRUE(figure);
+  std::map<std::string, std::set<double>> errors;
+  for (const auto& row : figure->rows)
+    if (row["panel"] == "level") errors[row["line"]].insert(row["error"].get<double>());
+  const std::map<std::string, std::set<double>> expected = {{"Penalty stiffness=1000", {0.125, 0.5}},
+                                                            {"6 runs, within 2 %", {0.0025, 0.01}}};
+  EXPECT_EQ(errors, expected);
 }
 
 TEST_F(ReportNumbers, DrawsTractionsWithPressurePositiveAndTheClosedForm) {

@@ -55,6 +55,28 @@ TEST(ReportPicture, DrawsContactPointsAtTheirEnlargedPlaces) {
     }
 }
 
+/// Of a point that goes straight, or to and fro, a line would say nothing.
+TEST(ReportPicture, DrawsThePathOfAPointThatTurns) {
+  json drawn = {{"points", {{0, 0}, {0, 0}}},
+                {"displacement", {{2, 1}, {3, 1}}},
+                {"elements", {{0, 1}}},
+                {"bodies", {0}},
+                {"von_mises", {0}},
+                {"contact", json::array()},
+                {"obstacles", json::array()},
+                {"paths",
+                 {{{"node", 0}, {"displacement", {{0, 0}, {2, 0}, {2, 1}}}},
+                  {{"node", 1}, {"displacement", {{1, 1}, {2, 1}, {3, 1}}}}}}};
+  const auto turning = report::draw_overview(drawn);
+  EXPECT_THAT(turning->text, HasSubstr("the line the path of the point, the dotted one of the anchor"));
+  std::string places;
+  for (const auto& row : turning->rows)
+    if (row["what"] == "path of the point") places += row["x"].dump() + "," + row["y"].dump() + " ";
+  EXPECT_EQ(places, "0.0,0.0 2.0,0.0 2.0,1.0 ");
+  drawn["paths"][0]["displacement"] = {{0, 0}, {2, 1}, {1, 0.5}};
+  EXPECT_THAT(report::draw_overview(drawn)->text, Not(HasSubstr("the path of the point")));
+}
+
 TEST(ReportPicture, DrawsObstaclesWhereTheyHaveMovedTo) {
   const auto svg = [](double y, const json& moved) {
     json drawn = picture();
@@ -119,7 +141,7 @@ json narrow_contact(int points) {
 TEST(ReportPicture, ShowsASmallContactLargerBesideTheWhole) {
   const auto overview = report::draw_overview(narrow_contact(9));
   ASSERT_TRUE(overview);
-  EXPECT_THAT(overview->text, HasSubstr("Right: the contact at true scale."));
+  EXPECT_THAT(overview->text, HasSubstr("In the frame: the contact at true scale."));
   const std::string svg = overview->drawing.inline_svg();
   EXPECT_NE(svg.find("the-scene-clip-2"), std::string::npos);                         // a window of its own
   EXPECT_THAT(report::draw_picture(narrow_contact(9))->folded, HasSubstr("larger"));  // it says the same again

@@ -276,7 +276,7 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenStudy{"value_twice", "[10, 1000]", "[10, @10]", "/methods/0/penalty/stiffness/1", "has already"},
         BrokenStudy{"bad_option_value", "[10, 1000]", "[10, @-1]", "/methods/0/penalty/stiffness/1",
                     "is -1; must be a number > 0"},
-        BrokenStudy{"unknown_option", R"("adapt": false)", R"("adpt": @false)", "/methods/1/uzawa_al/adpt",
+        BrokenStudy{"unknown_option", R"("adapt": false)", R"(@"adpt": false)", "/methods/1/uzawa_al/adpt",
                     R"(did you mean "adapt"?)"},
         BrokenStudy{"vary_nothing", R"("/contacts/sole/friction": [0, 0.3])", R"(@"/contacts/soul/friction": [0, 0.3])",
                     "/vary/~1contacts~1soul~1friction", R"(did you mean "sole"?)"},
@@ -349,6 +349,19 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenStudy{"accuracy", R"([0.05, 1e-3])", R"([0.05, @2])", "/accuracy/1", "must be a number > 0 and < 1"},
         BrokenStudy{"accuracies", R"([0.05, 1e-3])", R"(@[])", "/accuracy", "must be a list of up to six"}),
     [](const auto& info) { return std::string(info.param.name); });
+
+TEST_F(StudyReader, ListsAllFaultsOfAStudyWhoseSceneCannotBeRead) {
+  std::string text = edited(study_text, R"("scene.json")", R"("scen.json")");
+  text = edited(text, R"("adapt": false)", R"("adpt": false)");
+  text = edited(text, R"("refine": [0, 1])", R"("refine": [-1, 1])");
+  text = edited(text, R"("hertz_line")", R"("hertz_lin")");
+  text = edited(text, R"("repeat": 4)", R"("repeat": 0)");
+  EXPECT_FALSE(read(text));
+  EXPECT_EQ(diagnostics_.error_count(), 5u) << diagnostics_.text();  // and none of names that the scene would have
+  for (const char* fault :
+       {"/scene: ", "/methods/1/uzawa_al/adpt: ", "/refine/0: ", "/reference/0/analytic: ", "/timing/repeat: "})
+    EXPECT_THAT(diagnostics_.text(), HasSubstr(fault));
+}
 
 TEST_F(StudyReader, TakesAnOverkillReferenceFromAFinerMeshOfTheSameCell) {
   const auto text =

@@ -7,13 +7,16 @@ from typing import Any, Optional
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.ticker import LogFormatter
 
 from stickslip._scene import Result
 from stickslip._study import Table, rows_of
 
 STATES = ("open", "stick", "slip")
-COLOURS = {"penalty": "tab:blue", "uzawa_al": "tab:orange", "monolithic_al": "tab:green"}
+COLOURS = {"penalty": "#D55E00", "uzawa_al": "#0072B2", "monolithic_al": "#009E73"}
+"""Those of the report."""
 MARKERS = "os^Dv"
+DASHES = ("-", "--", ":", "-.")
 EXACT = 1e-16
 """Where an error of exactly 0 is drawn: below every error that rounding leaves."""
 
@@ -46,6 +49,16 @@ def tractions(result: Result, contact: Optional[str] = None, step: int = -1, ax:
     return ax
 
 
+def _names_of_what_varies(rows: list) -> dict:
+    """Words for each number that differs from row to row: the end of its pointer, or, where that is the number of a place
+    in a list or another's end too, the pointer."""
+    keys = [key for key in {key: None for row in rows for key in row} if key.startswith("/") or key == "refine"]
+    varied = [key for key in keys if len({str(row.get(key)) for row in rows}) > 1]
+    ends = [key.rsplit("/", 1)[-1] for key in varied]
+    words = [end if ends.count(end) == 1 and not end.isdigit() else key for key, end in zip(varied, ends)]
+    return dict(zip(varied, ("mesh level" if word == "refine" else word for word in words)))
+
+
 def work_precision(study: Table, of: str = "response", against: str = "enforcement", work: str = "work",
                    ax: Any = None) -> Any:
     """Error against work of the runs of a study: lower left is better.
@@ -71,8 +84,10 @@ def work_precision(study: Table, of: str = "response", against: str = "enforceme
     prefix = f"{against}:{of}" + ("" if ":" in of else ":")
     column = f"sensitivity_{work}" if of.startswith("sensitivity") and work in ("work", "seconds") else work
     curves: dict = {}
-    for row in rows_of(study):
-        variant = ", ".join(f"{name} = {row[name]}" for name in row if name.startswith("/") or name == "refine")
+    rows = rows_of(study)
+    varied = _names_of_what_varies(rows)
+    for row in rows:
+        variant = ", ".join(f"{words} = {row[name]}" for name, words in varied.items())
         names = [name for name in row if (name == prefix if ":" in of else name.startswith(prefix))]
         errors = [abs(row[name]) for name in names if np.isfinite(row[name])]
         if errors and row.get(column, 0) > 0:
@@ -80,19 +95,27 @@ def work_precision(study: Table, of: str = "response", against: str = "enforceme
                 (row["along"], row[column], max(max(errors), EXACT), row["converged"]))
     if not curves:
         raise ValueError(f"no row of the study has an error {prefix}... and {column}")
-    ax = plt.subplots()[1] if ax is None else ax
+    ax = plt.subplots(layout="constrained")[1] if ax is None else ax
     several = len({variant for _, _, variant in curves}) > 1
     drawn: dict = {}  # curves of each method, which share its colour
     for (method, name, variant), points in curves.items():
-        marker = MARKERS[drawn.setdefault(method, 0) % len(MARKERS)]
+        place = drawn.setdefault(method, 0)
         drawn[method] += 1
         name += f", {variant}" if several else ""
         along, cost, error, converged = (np.array(column) for column in zip(*sorted(points, key=lambda p: p[0])))
         converged = converged.astype(bool)
-        (line,) = ax.plot(cost[converged], error[converged], marker=marker, color=COLOURS.get(method), label=name)
+        (line,) = ax.plot(cost[converged], error[converged], linestyle=DASHES[place % len(DASHES)],
+                        marker=MARKERS[place % len(MARKERS)], color=COLOURS.get(method), label=name)
         ax.plot(cost[~converged], error[~converged], "x", color=line.get_color())
     units = {"work": "work (factorisations)", "seconds": "seconds"}
     ax.set(xscale="log", yscale="log", xlabel=units.get(work, work.replace("_", " ")),
            ylabel=f"relative error of the {of}", title=f"{against} error".capitalize())
-    ax.legend()
+    for which in (ax.xaxis.set_major_formatter, ax.xaxis.set_minor_formatter):
+        which(LogFormatter(labelOnlyBase=False, minor_thresholds=(2, 1)))
+    if any(error == EXACT for points in curves.values() for _, _, error, _ in points):
+        ax.axhline(EXACT, color="k", linestyle=":", linewidth=1)
+        ax.annotate("exactly 0", (0, EXACT), xycoords=("axes fraction", "data"), xytext=(4, 3),
+                    textcoords="offset points", fontsize="small")
+    most = 6  # curves beside whose names a chart has room for them
+    ax.legend(fontsize="small", **({"loc": "upper left", "bbox_to_anchor": (1, 1)} if len(curves) > most else {}))
     return ax

@@ -1,0 +1,110 @@
+#include "core/contact/facet_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/contact/search.hpp"
+#include "core/contact/segments.hpp"
+
+namespace stickslip {
+
+FacetSearch::FacetSearch(const Points<double>& points, const std::vector<std::vector<int>>& facets)
+    : points_(points), facets_(facets) {
+  std::vector<int> numbers;
+  for (int f = 0; f < static_cast<int>(facets.size()); ++f) {
+    const Vec<double, 2> a = end_of(f, 0), b = end_of(f, 1);
+    if (!a.allFinite() || !b.allFinite()) continue;  // of a trial out of bounds
+    numbers.push_back(f);
+    band_ = std::max(band_, at_facet_end * (b - a).norm());
+  }
+  boxes_.reserve(2 * numbers.size());
+  if (!numbers.empty()) add_boxes(numbers, 0, static_cast<int>(numbers.size()));
+}
+
+/// Adds the box of the facets `numbers` first to last - 1, and those of either half along its longer side.
+void FacetSearch::add_boxes(std::vector<int>& numbers, int first, int last) {
+  Box box{end_of(numbers[first], 0), end_of(numbers[first], 0)};
+  for (int n = first; n < last; ++n)
+    for (int end = 0; end < 2; ++end) {
+      box.low = box.low.cwiseMin(end_of(numbers[n], end));
+      box.high = box.high.cwiseMax(end_of(numbers[n], end));
+    }
+  const std::size_t at = boxes_.size();
+  boxes_.push_back(box);
+  if (last - first == 1) {
+    boxes_[at].facet = numbers[first];
+    return;
+  }
+  const int longer = box.high[0] - box.low[0] >= box.high[1] - box.low[1] ? 0 : 1, middle = (first + last) / 2;
+  const auto comes_first = [&](int f, int g) {
+    const double x = end_of(f, 0)[longer] + end_of(f, 1)[longer], y = end_of(g, 0)[longer] + end_of(g, 1)[longer];
+    return x != y ? x < y : f < g;
+  };
+  std::nth_element(numbers.begin() + first, numbers.begin() + middle, numbers.begin() + last, comes_first);
+  add_boxes(numbers, first, middle);
+  boxes_[at].right = static_cast<int>(boxes_.size());
+  add_boxes(numbers, middle, last);
+}
+
+std::vector<int> FacetSearch::across(const std::array<int, 2>& slave) const {
+  // A share of the slave facet: above rounding, and what it lets in too much faces nothing in facing_pieces().
+  constexpr double beside = 1e-6;
+  const Vec<double, 2> a = points_.col(slave[0]).head<2>(), tau = points_.col(slave[1]).head<2>() - a;
+  const auto is_beside = [&](const Box& box) {
+    const double middle = ((box.low + box.high) / 2 - a).dot(tau) / tau.squaredNorm();
+    const double half = ((box.high - box.low) / 2).dot(tau.cwiseAbs()) / tau.squaredNorm();
+    return middle + half < -beside || middle - half > 1 + beside;
+  };
+  std::vector<int> found;
+  const auto visit = [&](const auto& self, int at) -> void {
+    const Box& box = boxes_[at];
+    if (is_beside(box)) return;
+    if (box.facet >= 0) {
+      found.push_back(box.facet);
+      return;
+    }
+    self(self, at + 1);
+    self(self, box.right);
+  };
+  if (!boxes_.empty()) visit(visit, 0);
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::vector<Piece> FacetSearch::facing(const std::array<int, 2>& slave, const std::vector<int>& ends) const {
+  const auto numbers = across(slave);
+  std::vector<std::vector<int>> facets;
+  facets.reserve(numbers.size());
+  for (int f : numbers) facets.push_back(facets_[f]);
+  auto pieces = facing_pieces(points_, slave, facets, ends);
+  for (Piece& piece : pieces) piece.facet = numbers[piece.facet];
+  return pieces;
+}
+
+double FacetSearch::distance_of(int facet, const Vec<double, 2>& x) const {
+  const Vec<double, 2> c = end_of(facet, 0), tau = end_of(facet, 1) - c;
+  const double eta = (x - c).dot(tau) / tau.squaredNorm();
+  return (x - c - std::clamp(eta, 0.0, 1.0) * tau).norm();
+}
+
+double FacetSearch::distance(const Vec<double, 2>& x) const {
+  double least = std::numeric_limits<double>::infinity();
+  const auto from = [&](int at) { return (boxes_[at].low - x).cwiseMax(x - boxes_[at].high).cwiseMax(0.0).norm(); };
+  const auto visit = [&](const auto& self, int at) -> void {
+    const Box& box = boxes_[at];
+    if (from(at) > least + band_) return;
+    if (box.facet >= 0) {
+      const double distance = distance_of(box.facet, x);
+      if (distance < least) least = distance;
+      return;
+    }
+    const bool left_first = from(at + 1) <= from(box.right);
+    self(self, left_first ? at + 1 : box.right);
+    self(self, left_first ? box.right : at + 1);
+  };
+  if (!boxes_.empty()) visit(visit, 0);
+  return least;
+}
+
+}  // namespace stickslip
