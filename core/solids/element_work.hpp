@@ -7,6 +7,12 @@
 /// since a stress that has an energy has a symmetric tangent. Of all increments together follow the derivatives by B_q
 /// and the volume V_q, and from them those by the coordinates (core/solids/gradient_work.hpp).
 ///
+/// Of a law that is linear the states join in one matrix, however many they are:
+///
+///   W = 1/2 S : K,   S = sum_n (u_n a_n^T + a_n u_n^T)
+///
+/// so that each column of S is a motion, on half the unit displacement of its dof.
+///
 /// Of a law that remembers, P is that after the flow from the memory before, and the memory h after it joins the work
 /// with a weight b: W = sum_n sum_q (A_n : P V_q + b_n . h). It is differentiated by motion and memory too.
 #pragma once
@@ -166,6 +172,46 @@ auto averaged_work(const Law& law, const Mat<double, 2, Shape::nodes>& coordinat
   return out;
 }
 
+/// S = sum_n (u_n a_n^T + a_n u_n^T).
+template <int nodes>
+Mat<double, 2 * nodes> joined(const std::vector<StateOfElement<nodes>>& states) {
+  Mat<double, 2 * nodes> half = Mat<double, 2 * nodes>::Zero();
+  for (const auto& state : states) half += state.motion.reshaped() * state.weight.reshaped().transpose();
+  return half + half.transpose();
+}
+
+/// Adds what one point of a linear law makes of the columns of S: to `by`, over the volume but that by the volume
+/// itself, and to `by_law`, where that is wanted.
+template <class Shape, Kinematics kinematics, class Law, std::size_t count>
+void add_joined(const Law& law, const Gradient<double, Shape, kinematics>& gradient,
+                const Mat<double, 2 * Shape::nodes>& S, Wanted wanted, ByGradient<Shape, kinematics>& by,
+                std::array<double, count>& by_law) {
+  constexpr int rows = stress_dimension(kinematics);
+  using Probe = Dual<static_cast<int>(count)>;
+  std::array<Probe, count> numbers;
+  for (std::size_t m = 0; m < count; ++m) numbers[m] = Probe::seed(law.numbers()[m], static_cast<int>(m));
+  const auto probed = law.with(numbers);
+  for (int a = 0; a < Shape::nodes; ++a)
+    for (int i = 0; i < 2; ++i) {
+      const Mat<double, 2, Shape::nodes> motion = S.col(2 * a + i).reshaped(2, Shape::nodes);
+      const Mat<double, rows> H = gradient.of(motion), P = law.template stress<double, rows>(H);
+      const auto on_unit = [&](const auto& stress) {  // B e : stress
+        auto sum = 0.0 * stress(0, 0);
+        gradient.for_each(i, a, [&](int p, int r, double x) { sum += x * stress(p, r); });
+        return sum;
+      };
+      by.volume += 0.5 * on_unit(P);
+      by.dN.col(a) += P.template block<1, 2>(i, 0).transpose();
+      if constexpr (Gradient<double, Shape, kinematics>::revolved)
+        if (i == 0) by.hoop[a] += P(2, 2);
+      if constexpr (Gradient<double, Shape, kinematics>::averaged) by.exchange(i, a) += P.trace();
+      if (!wanted.law) continue;
+      const Mat<Probe, rows> with_numbers = probed.template stress<Probe, rows>(H.template cast<Probe>());
+      const Probe work = on_unit(with_numbers);
+      for (std::size_t m = 0; m < count; ++m) by_law[m] += 0.5 * gradient.volume * work.d[static_cast<int>(m)];
+    }
+}
+
 }  // namespace detail
 
 /// The derivatives of the work of one element. `law`: in double; `depth`: thickness of a plane body.
@@ -184,11 +230,16 @@ auto element_work(const Law& law, const Mat<double, 2, Shape::nodes>& coordinate
     }
   std::array<Gradient<double, Shape, kinematics>, points> gradients;
   std::array<detail::ByGradient<Shape, kinematics>, points> by;
+  const bool joins = detail::IsLinear<Law> && states.size() > n;  // a column takes half the time of a state
+  Mat<double, 2 * n> S;
+  if (joins) S = detail::joined(states);
   int q = 0;
   for_each_gradient<double, Shape, kinematics>(coordinates, depth, [&](const auto& gradient) {
     gradients[q] = gradient;
     auto& of_point = by[q];
-    for (std::size_t s = 0; s < states.size(); ++s) {
+    if constexpr (detail::IsLinear<Law>)
+      if (joins) detail::add_joined<Shape, kinematics>(law, gradient, S, wanted, of_point, out.law);
+    for (std::size_t s = 0; s < states.size() && !joins; ++s) {
       const auto& state = states[s];
       const Mat<double, rows> H = gradient.of(state.motion), A = gradient.of(state.weight);
       detail::PointWork<rows> work;

@@ -25,7 +25,7 @@ std::string reason(const std::string& pointer, const nlohmann::json& root, const
   return pointer + " is neither a physical nor a geometric number";
 }
 
-struct Reader {
+struct ParameterReader {
   const nlohmann::json& root;
   std::string method;
   bool drop_others;
@@ -163,7 +163,7 @@ struct Reader {
 std::vector<std::string> read_parameters(const JsonNode& node, const nlohmann::json& root, const std::string& method,
                                          bool drop_others, SceneReading& reading) {
   if (!node.is_map("parameters by name")) return {};
-  Reader reader{root, method, drop_others, reading};
+  ParameterReader reader{root, method, drop_others, reading};
   for (const auto& [name, parameter] : node.members()) reader.read(name, parameter);
   return reader.dropped;
 }

@@ -24,7 +24,7 @@ struct PartLooks {
 };
 
 /// In the order of the legend. Dashes tell them apart in grey print, and each line carries its name.
-const std::vector<PartLooks>& looks() {
+const std::vector<PartLooks>& part_looks() {
   static const std::vector<PartLooks> all = {{"error", "$ink", {1, 0}, ""},
                                              {"enforcement", "#D55E00", {7, 3}, "a stricter enforcement"},
                                              {"iteration", "#0072B2", {4, 2}, "a stricter tolerance"},
@@ -68,7 +68,7 @@ json rows_of(const Study& study) {
     const std::string knob = running_knob(study, cell.family);
     const Knob* const along = find_knob(cell, knob);
     for (const auto& [quantity, budget] : budgets_of(cell).items())
-      for (const auto& look : looks()) {
+      for (const auto& look : part_looks()) {
         const Entry entry = entry_of(budget, look.name);
         json r = row_of(cell);
         r["panel"] = family_name(cell.family);
@@ -92,7 +92,7 @@ json rows_of(const Study& study) {
 
 std::vector<Series> series_of_parts() {
   std::vector<Series> out;
-  for (const auto& look : looks())
+  for (const auto& look : part_looks())
     for (const double sign : {1.0, -1.0})
       out.push_back({series_name(look.name, sign), look.color, sign > 0 ? "triangle-up" : "triangle-down", look.dash,
                      look.name == "error" ? 130 : 60});
@@ -126,7 +126,7 @@ std::string signed_number(double value) { return (value > 0 ? "+" : "") + number
 /// The parts of a budget with a value above its noise, the largest first.
 std::vector<std::pair<std::string, double>> parts_by_size(const json& budget) {
   std::vector<std::pair<std::string, double>> parts;
-  for (const auto& look : looks())
+  for (const auto& look : part_looks())
     if (const Entry entry = entry_of(budget, look.name);
         look.name != "error" && look.name != "interaction" && entry.drawn())
       parts.emplace_back(look.name, entry.value.get<double>());
@@ -136,7 +136,8 @@ std::vector<std::pair<std::string, double>> parts_by_size(const json& budget) {
 }
 
 std::string remedy_of(const std::string& part) {
-  return std::find_if(looks().begin(), looks().end(), [&](const auto& look) { return look.name == part; })->remedy;
+  return std::find_if(part_looks().begin(), part_looks().end(), [&](const auto& look) { return look.name == part; })
+      ->remedy;
 }
 
 /// What makes the error of the method's best setting, and what would lessen it.

@@ -157,16 +157,16 @@ std::string results_table(const Study& study) {
 namespace {
 
 /// A number of a run by its place in the record, and the response or objective that it belongs to.
-struct Column {
+struct TableColumn {
   std::string of;
   std::vector<std::string> place;
   std::string title;
-  auto operator<=>(const Column&) const = default;
+  auto operator<=>(const TableColumn&) const = default;
 };
 
 /// Objectives and their gradients, responses and sensitivities of the last step.
-std::set<Column> value_columns(const json& record) {
-  std::set<Column> columns;
+std::set<TableColumn> value_columns(const json& record) {
+  std::set<TableColumn> columns;
   const auto add = [&](std::vector<std::string> place, const std::string& of, const std::string& name, const json& by) {
     for (const auto& [parameter, unused] : by.items()) {
       auto one = place;
@@ -186,16 +186,16 @@ std::set<Column> value_columns(const json& record) {
   return columns;
 }
 
-std::string value_of(const Cell& cell, const Column& column) {
+std::string value_of(const Cell& cell, const TableColumn& column) {
   const json* v = &cell.record;
   for (const auto& key : column.place) v = &at(*v, key);
   return v->is_number() ? number(v->get<double>(), 10) : plain(*v);
 }
 
 /// Columns in groups, each of one response or objective, and no wider than a sheet of paper.
-std::vector<std::vector<Column>> blocks_of(const std::set<Column>& columns) {
+std::vector<std::vector<TableColumn>> blocks_of(const std::set<TableColumn>& columns) {
   constexpr std::size_t widest = 6;
-  std::vector<std::vector<Column>> blocks;
+  std::vector<std::vector<TableColumn>> blocks;
   for (const auto& column : columns)
     if (blocks.empty() || blocks.back().front().of != column.of || blocks.back().size() == widest)
       blocks.push_back({column});
@@ -205,7 +205,7 @@ std::vector<std::vector<Column>> blocks_of(const std::set<Column>& columns) {
 }
 
 /// A block beside the names of the runs. Of one whose numbers are the same in all runs, the sentence that says so.
-std::string block_html(const Study& study, Table table, const std::vector<Column>& block) {
+std::string block_html(const Study& study, Table table, const std::vector<TableColumn>& block) {
   const std::size_t names = table.header.size();
   for (const auto& column : block) {
     table.header.push_back(column.title);
@@ -219,7 +219,7 @@ std::string block_html(const Study& study, Table table, const std::vector<Column
 }  // namespace
 
 std::string values_table(const Study& study) {
-  std::set<Column> columns;
+  std::set<TableColumn> columns;
   for (const auto& cell : study.cells) columns.merge(value_columns(cell.record));
   if (columns.empty()) return {};
   constexpr std::size_t most = 200;  // a table of more is read by programs alone, from results.jsonl

@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "tests/support/blocks.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/same_bits.hpp"
 #include "tests/support/solved.hpp"
@@ -11,13 +12,12 @@
 namespace stickslip {
 namespace {
 
+using scenes::all_methods;
 using scenes::run;
-
-std::vector<Method> default_methods() { return {Penalty{}, UzawaAL{}, MonolithicAL{}}; }
 
 std::vector<std::pair<Method, bool>> methods_and_discretisations() {
   std::vector<std::pair<Method, bool>> out;
-  for (const auto& method : default_methods())
+  for (const auto& method : all_methods())
     for (bool segment : {false, true}) out.emplace_back(method, segment);
   return out;
 }
@@ -98,7 +98,7 @@ Scene turned_block(double angle, double shift) {
 }
 
 TEST(Invariance, RotationAndTranslationChangeNeitherThePathNorTheAnswer) {
-  for (const auto& method : default_methods()) {
+  for (const auto& method : all_methods()) {
     const auto reference = run(turned_block(0, 0), method);
     for (const auto& [angle, shift] : {std::pair{37 * M_PI / 180, 0.0}, {-1.1, 0.0}, {37 * M_PI / 180, 2e3}}) {
       const auto s = run(turned_block(angle, shift), method);
@@ -116,7 +116,7 @@ TEST(Invariance, RotationAndTranslationChangeNeitherThePathNorTheAnswer) {
 }
 
 TEST(Invariance, FrictionZeroAndNoFrictionAgreeAndTheLatterHasFewerUnknowns) {
-  for (const auto& method : default_methods()) {
+  for (const auto& method : all_methods()) {
     auto without = scenes::two_boxes(6, 9);
     without.contacts[0].friction.reset();
     const auto zero = run(scenes::two_boxes(6, 9, "Q4", 0), method), none = run(without, method);
@@ -156,7 +156,7 @@ void renumber(Scene& scene, int body) {
 }
 
 TEST(Invariance, NumberingOfNodesElementsAndBodiesDoesNotMatter) {
-  for (const auto& method : default_methods()) {
+  for (const auto& method : all_methods()) {
     Scene other = scenes::two_boxes(6, 9);
     for (int body : {0, 1}) renumber(other, body);
     std::swap(other.bodies[0], other.bodies[1]);
@@ -176,7 +176,7 @@ TEST(Invariance, SparseAndCondensedEnginesAgree) {
   RunOptions sparse, condensed;
   sparse.linear_algebra.engine = LinearAlgebra::Engine::sparse;
   condensed.linear_algebra.engine = LinearAlgebra::Engine::condensed;
-  for (const auto& method : default_methods()) {
+  for (const auto& method : all_methods()) {
     const auto a = run(scenes::two_boxes(6, 9), method, sparse), b = run(scenes::two_boxes(6, 9), method, condensed);
     ASSERT_EQ(a.trajectory.increments.size(), b.trajectory.increments.size());
     for (const auto& response : a.model.scene.responses)
@@ -190,7 +190,7 @@ TEST(Invariance, SparseAndCondensedEnginesAgree) {
 }
 
 TEST(Invariance, TheSameInputGivesTheSameBits) {
-  for (const auto& method : default_methods()) {
+  for (const auto& method : all_methods()) {
     const auto a = run(scenes::two_boxes(6, 9), method), b = run(scenes::two_boxes(6, 9), method);
     expect_same_bits(a.trajectory, b.trajectory, std::string(name_of(method)));
     ASSERT_EQ(a.gradients.of_responses.size(), b.gradients.of_responses.size());

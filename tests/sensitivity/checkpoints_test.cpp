@@ -24,18 +24,18 @@ std::vector<Method> all_schemes() {
   return methods;
 }
 
-struct Run {
+struct KeptRun {
   Trajectory<double> trajectory;
   Gradients gradients;
 };
 
 /// `states`: whole ones that there is room for.
-Run run_keeping(const Scene& scene, const Method& method, RunOptions options, double states) {
+KeptRun run_keeping(const Scene& scene, const Method& method, RunOptions options, double states) {
   const Model model = make_model(scene);
   const auto slots = make_slots<double>(model, scene.as<double>());
   options.state_memory = states * thinned_bytes(model);
   Workspace<double> workspace;
-  Run out{solve(model, slots, method, options, workspace), {}};
+  KeptRun out{solve(model, slots, method, options, workspace), {}};
   out.gradients = adjoint(model, slots, method, out.trajectory, workspace);
   return out;
 }
@@ -46,16 +46,16 @@ std::size_t whole_states(const Trajectory<double>& trajectory) {
 }
 
 /// With room for few states and for more the gradient has the bits of that with all; returns the run with few.
-Run expect_same_gradient(Scene scene, const Method& method, const RunOptions& options = {}) {
+KeptRun expect_same_gradient(Scene scene, const Method& method, const RunOptions& options = {}) {
   scenes::ask_for_objectives(scene);
   const std::string what = scene.title + " " + std::string(name_of(method));
-  const Run all = run_keeping(scene, method, options, std::numeric_limits<double>::infinity());
+  const KeptRun all = run_keeping(scene, method, options, std::numeric_limits<double>::infinity());
   EXPECT_TRUE(is_converged(all.trajectory.status)) << what << all.trajectory.message;
   EXPECT_GT(all.gradients.of_objectives.size(), 0) << what << all.gradients.message;
   EXPECT_EQ(all.gradients.repeated, 0) << what;
   const std::size_t count = all.trajectory.increments.size();
   EXPECT_EQ(whole_states(all.trajectory), count) << what;
-  Run few;
+  KeptRun few;
   for (const double room : {6.0, 1.0}) {
     few = run_keeping(scene, method, options, room);
     EXPECT_EQ(few.trajectory.increments.size(), count) << what;

@@ -10,15 +10,15 @@
 namespace stickslip {
 namespace {
 
-using Kind = LinearAlgebra::Engine;
+using EngineKind = LinearAlgebra::Engine;
 
 struct Differentiated {
   Trajectory<double> trajectory;
   Gradients gradients;
 };
 
-Differentiated differentiated(const Model& model, const Slots<double>& slots, const Method& method, Kind engine,
-                              bool follow) {
+Differentiated direct_gradients(const Model& model, const Slots<double>& slots, const Method& method, EngineKind engine,
+                                bool follow) {
   Differentiated out;
   Workspace<double> workspace;
   RunOptions options;
@@ -46,8 +46,8 @@ TEST(Derivatives, ThatFollowARunFactoriseNothing) {
     const auto scene = scenes::two_boxes(6, 4);
     const Model model = make_model(scene);
     const auto slots = make_slots<double>(model, scene.as<double>());
-    const auto following = differentiated(model, slots, method, Kind::sparse, true);
-    const auto at_the_end = differentiated(model, slots, method, Kind::sparse, false);
+    const auto following = direct_gradients(model, slots, method, EngineKind::sparse, true);
+    const auto at_the_end = direct_gradients(model, slots, method, EngineKind::sparse, false);
     ASSERT_TRUE(is_converged(following.trajectory.status)) << following.trajectory.message;
     ASSERT_TRUE(is_converged(following.gradients.status)) << following.gradients.message;
     EXPECT_EQ(following.gradients.counters.sensitivity_factorizations, 0) << name_of(method);
@@ -72,8 +72,8 @@ TEST(Derivatives, ThatFollowARunLoseNoMoreUnderAStiffPenalty) {
   const auto slots = make_slots<double>(model, scene.as<double>());
   for (const double stiffness : {1e5, 1e7}) {
     const Method method = Penalty{scenes::relative(stiffness)};
-    const auto following = differentiated(model, slots, method, Kind::sparse, true);
-    const auto at_the_end = differentiated(model, slots, method, Kind::sparse, false);
+    const auto following = direct_gradients(model, slots, method, EngineKind::sparse, true);
+    const auto at_the_end = direct_gradients(model, slots, method, EngineKind::sparse, false);
     ASSERT_TRUE(is_converged(following.trajectory.status)) << following.trajectory.message;
     ASSERT_TRUE(is_converged(following.gradients.status)) << following.gradients.message;
     // rounding times the stiffness, and a hundred terms in a row
@@ -118,7 +118,7 @@ TEST(Derivatives, OfSeveralIncrementsAtOnceAreThoseOfOneAtATime) {
     const auto slots = make_slots<double>(model, scene.as<double>());
     Workspace<double> workspace;
     RunOptions options;
-    options.linear_algebra.engine = Kind::condensed;
+    options.linear_algebra.engine = EngineKind::condensed;
     const auto trajectory = solve(model, slots, method, options, workspace);
     const auto together = differentiate(model, slots, method, trajectory, workspace);
     ASSERT_TRUE(is_converged(together.status)) << together.message;
@@ -157,7 +157,8 @@ TEST(Derivatives, OfContactResponsesNeedNoDisplacementsInside) {
   for (const Method& method : {Method(Penalty{}), Method(UzawaAL{}), Method(MonolithicAL{})}) {
     const auto differentiated = [&](const Scene& scene) {
       const Model model = make_model(scene);
-      return differentiated(model, make_slots<double>(model, scene.as<double>()), method, Kind::condensed, false)
+      return direct_gradients(model, make_slots<double>(model, scene.as<double>()), method, EngineKind::condensed,
+                              false)
           .gradients;
     };
     const auto found = differentiated(contact_alone), expected = differentiated(full);

@@ -16,7 +16,7 @@ namespace {
 using Law = FrictionLaw<Number>;
 
 /// Block on a spring k = 1000 under N = 100, drawn to and fro by .5.
-Scene slider(double mu, double limit) {
+Scene limited_slider(double mu, double limit) {
   Scene s = scenes::slider({{0, 0}, {1, 0.5}, {2, -0.5}}, 8, 1000, mu, 100);
   const Number most = scenes::parameter(s, "limit", limit);
   s.contacts[0].friction->limit = most;
@@ -32,7 +32,8 @@ std::vector<Method> methods() {
 
 TEST(FrictionLawDerivatives, BelongToThePieceThatHolds) {
   for (const Method& method : scenes::exact_methods()) {
-    const auto limited = scenes::run(slider(0.3, 25), method), sloping = scenes::run(slider(0.3, 35), method);
+    const auto limited = scenes::run(limited_slider(0.3, 25), method),
+               sloping = scenes::run(limited_slider(0.3, 35), method);
     EXPECT_NEAR(limited.derivative("u", "limit", 3), -1e-3, 1e-9) << name_of(method);
     EXPECT_NEAR(limited.derivative("u", "mu", 3), 0, 1e-9);
     EXPECT_NEAR(limited.derivative("u", "N", 3), 0, 1e-9);
@@ -91,7 +92,7 @@ TEST(FrictionLawDerivatives, EqualTheOracleInWhichEveryPieceOccurs) {
 
 TEST(FrictionLawDerivatives, HaveBothSidesAtTheCorner) {
   for (const Method& method : scenes::exact_methods()) {
-    const Scene scene = slider(0.25, 25);  // mu N = limit
+    const Scene scene = limited_slider(0.25, 25);  // mu N = limit
     const Model model = make_model(scene);
     const auto slots = make_slots<double>(model, scene.as<double>());
     Workspace<double> workspace;

@@ -26,10 +26,10 @@ using testing::Pointwise;
 constexpr double rounding_of_fields = 1e-13;  // a few roundings of numbers of size ten
 
 /// A result of one step whose state the test writes.
-struct Made {
+struct WrittenFields {
   CaseResult result;
 
-  explicit Made(const Scene& scene) {
+  explicit WrittenFields(const Scene& scene) {
     result.problem = std::make_shared<const Problem>(scene);
     result.trajectory.increments.resize(1);
     state() = initial_state<double>(model(), result.problem->slots);
@@ -37,7 +37,7 @@ struct Made {
     result.steps.resize(1);
     result.steps[0].increment = &result.trajectory.increments[0];
   }
-  Made(const Made&) = delete;
+  WrittenFields(const WrittenFields&) = delete;
   const Model& model() const { return result.problem->model; }
   State<double>& state() { return result.trajectory.increments[0].state; }
   /// The .vtu of the step.
@@ -66,7 +66,7 @@ Scene block(Space space) {
 }
 
 /// u = (0.01 x + 0.03 y, -0.02 y): strains 0.01, -0.02, shear 0.03.
-void strain(Made& made) {
+void strain(WrittenFields& made) {
   const auto& points = made.result.problem->slots.points;
   for (Eigen::Index n = 0; n < points.cols(); ++n) {
     made.state().displacement[2 * n] = 0.01 * points(0, n) + 0.03 * points(1, n);
@@ -75,7 +75,7 @@ void strain(Made& made) {
 }
 
 TEST(Fields, StressOfALinearDisplacementIsHookesLaw) {
-  Made made(block(Space::plane_strain));
+  WrittenFields made(block(Space::plane_strain));
   strain(made);
   // trace -0.01: 400 * -0.01 + 800 * strain, and out of the plane the first part alone
   EXPECT_THAT(made.array("stress"), Pointwise(DoubleNear(rounding_of_fields), {4.0, -20.0, -4.0, 12.0, 0.0, 0.0}));
@@ -87,7 +87,7 @@ TEST(Fields, StressOfALinearDisplacementIsHookesLaw) {
 }
 
 TEST(Fields, StressInPlaneStressHasNothingOutOfThePlane) {
-  Made made(block(Space::plane_stress));
+  WrittenFields made(block(Space::plane_stress));
   strain(made);
   // E / (1 - nu^2) = 1066.67: times (0.01 - 0.25 * 0.02), (-0.02 + 0.25 * 0.01)
   const double modulus = 1000 / (1 - 0.0625);
@@ -96,14 +96,14 @@ TEST(Fields, StressInPlaneStressHasNothingOutOfThePlane) {
 }
 
 TEST(Fields, StressOfRevolutionHasTheHoopStressOutOfThePlane) {
-  Made made(block(Space::axisymmetric));
+  WrittenFields made(block(Space::axisymmetric));
   for (int n = 0; n < 4; ++n) made.state().displacement[2 * n] = 0.01 * made.result.problem->slots.points(0, n);
   // u_r = 0.01 r: hoop strain 0.01 too, trace 0.02
   EXPECT_THAT(made.array("stress"), Pointwise(DoubleNear(rounding_of_fields), {16.0, 8.0, 16.0, 0.0, 0.0, 0.0}));
 }
 
 TEST(Fields, VonMisesOfHugeStressesIsFinite) {
-  Made made(block(Space::plane_strain));
+  WrittenFields made(block(Space::plane_strain));
   made.state().displacement.setConstant(0);
   for (int n = 0; n < 4; ++n) made.state().displacement[2 * n] = 1e200 * made.result.problem->slots.points(0, n);
   // 1200, 400, 400 times 1e200
@@ -114,7 +114,7 @@ TEST(Fields, OfContactAreOfPresentAreasTooAtFiniteStrain) {
   Scene scene = block(Space::plane_strain);
   scene.finite_strain = true;
   scene.bodies[0].material = NeoHookean{1000, 0.25};
-  Made made(scene);
+  WrittenFields made(scene);
   auto& state = made.state();
   // half as wide again; areas of the start are 1 a node, 1.5 now
   for (int n = 0; n < 4; ++n) state.displacement[2 * n] = 0.5 * made.result.problem->slots.points(0, n);
@@ -133,7 +133,7 @@ TEST(Fields, OfPlaneStressAtFiniteStrainAreOfThePresentThickness) {
     scene.finite_strain = true;
     scene.bodies[0].material = NeoHookean{1000, 0.25, NeoHookean::Volumetric::log};
     if (metal) scene.bodies[0].material = J2Plastic{1000, 0.25, 1e6, 0.0};
-    Made made(scene);
+    WrittenFields made(scene);
     auto& state = made.state();
     // half as wide again: of metal that does not flow ln h = -nu / (1 - nu) ln 1.5, of rubber 400 (h^2 - 1) + 400
     // ln(1.5 h) = 0
@@ -159,13 +159,13 @@ TEST(Fields, OfPlaneStressAtFiniteStrainAreOfThePresentThickness) {
     Scene scene = block(finite ? Space::plane_strain : Space::plane_stress);
     scene.finite_strain = finite;
     if (finite) scene.bodies[0].material = NeoHookean{1000, 0.25};
-    Made made(scene);
+    WrittenFields made(scene);
     EXPECT_THROW(made.array("thickness_stretch"), std::runtime_error);
   }
 }
 
 TEST(Fields, OfContactAreThoseOfTheSlaveNodes) {
-  Made made(block(Space::plane_strain));
+  WrittenFields made(block(Space::plane_strain));
   auto& state = made.state();
   state.displacement << 1, 2, 3, 4, 5, 6, 7, 8;
   state.contact.state = {ContactState::slip, ContactState::open};
@@ -202,7 +202,7 @@ TEST(Fields, OfContactWithABodyAreNotThoseOfItsMaster) {
   scene.bodies.push_back({"base", BoxMesh{{0.0, -1.0}, {4.0, 0.0}, {1, 1}}, LinearElastic{1000, 0.25}, "", 1.0});
   scene.obstacles.clear();
   scene.contacts[0].master = "base.top";
-  Made made(scene);
+  WrittenFields made(scene);
   auto& state = made.state();
   state.contact.state = {ContactState::slip, ContactState::stick};
   state.contact.traction << -6, 2, -5, 1;
@@ -234,7 +234,7 @@ TEST(Fields, ANodeInTwoContactsKeepsBoth) {
   const int hold[] = {0, 2, 1};
   for (const int first : {0, 1, 2})
     for (const int second : {0, 1, 2}) {
-      Made made(corner());
+      WrittenFields made(corner());
       auto& state = made.state();
       state.contact.state = {states[first], states[second]};
       state.contact.traction << -6, 2, -4, 1;
@@ -315,7 +315,7 @@ TEST(Fields, ADiskBetweenTwoPlatesTouchesBoth) {
 }
 
 TEST(Fields, APictureHasPlacesStatesAndTractionsOfEachContact) {
-  Made made(corner());
+  WrittenFields made(corner());
   auto& state = made.state();
   state.displacement << 0.25, 0.5, 0, 0;
   state.contact.state = {ContactState::stick, ContactState::open};
