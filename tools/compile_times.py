@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Compiler time of a build from nothing, in CPU seconds: of the program, of its tests, and of the ten dearest files.
 
-    tools/compile_times.py [BUILD_DIR] [--target TARGET ...]     (default: build/compile_times, stickslip and all tests)
+    tools/compile_times.py [BUILD_DIR] [--target TARGET ...] [--each]
+                                                       (default: build/compile_times, stickslip and all tests)
 
-Builds with the ci preset's settings into a new directory and prints the tables of docs/development.md. CPU seconds of the
-compiler itself are counted, so other work on the machine matters little; a compiler cache is not used.
+Builds with the ci preset's settings into a new directory and prints the tables of docs/development.md. Sources are joined
+as the preset joins them, so the dearest are groups; --each compiles each by itself, so that they are files. CPU seconds
+of the compiler itself are counted; a compiler cache is not used.
 """
 import argparse
 import os
@@ -31,7 +33,8 @@ def source_of(output):
     parts = pathlib.PurePath(output).parts
     folder = next((i for i, part in enumerate(parts) if part.endswith(".dir")), -1)
     above = parts[: parts.index("CMakeFiles")] if "CMakeFiles" in parts else ()
-    name = "/".join(above + parts[folder + 1 :])
+    joined = (parts[folder][: -len(".dir")],) if "Unity" in parts else ()
+    name = "/".join(above + joined + parts[folder + 1 :])
     return name[:-2] if name.endswith(".o") else name
 
 
@@ -60,6 +63,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("build", nargs="?", default=str(ROOT / "build" / "compile_times"))
     parser.add_argument("--target", action="append", help="build this alone; may be repeated")
+    parser.add_argument("--each", action="store_true", help="compile each source by itself")
     arguments = parser.parse_args()
     build = pathlib.Path(arguments.build).resolve()
     if build.exists():
@@ -69,7 +73,8 @@ def main():
     launcher = ";".join([sys.executable, str(pathlib.Path(__file__).resolve()), "--launch", str(log)])
     environment = dict(os.environ, CCACHE_DISABLE="1")
     configure = ["cmake", "-S", str(ROOT), "-B", str(build), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
-                 "-DSTICKSLIP_BUILD_BENCH=OFF", f"-DCMAKE_CXX_COMPILER_LAUNCHER={launcher}"]
+                 "-DSTICKSLIP_BUILD_BENCH=OFF", f"-DCMAKE_UNITY_BUILD={'OFF' if arguments.each else 'ON'}",
+                 f"-DCMAKE_CXX_COMPILER_LAUNCHER={launcher}"]
     make = ["cmake", "--build", str(build), "--parallel", str(os.cpu_count() or 1)]
     if arguments.target:
         make += ["--target", *arguments.target]

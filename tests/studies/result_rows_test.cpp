@@ -110,7 +110,7 @@ TEST_F(ResultRows, GoWithRecordsThatAreWholeOrNamed) {
   EXPECT_EQ(fault("picture.json", "{}"), "");
   EXPECT_THAT(fault("picture.json", "{\"a\":\n1"), HasSubstr("picture.json:2:2: is not JSON"));
   EXPECT_THAT(fault("picture.json", "7"), HasSubstr("picture.json:1:1: is 7; must be an object"));
-  EXPECT_THAT(fault("study.json", ""), HasSubstr("study.json:1:1: is not JSON"));
+  EXPECT_THAT(fault("study.json", ""), HasSubstr("study.json:1:1: is empty; must be a JSON object"));
   EXPECT_THAT(fault("study.json", "{\n\"cells\": 5}"), HasSubstr("study.json:2:10: /cells: is 5; must be a list"));
   EXPECT_THAT(fault("study.json", "{\"program\": 5}"), HasSubstr("study.json:1:13: /program: is 5; must be a text"));
 }
