@@ -53,17 +53,25 @@ void pull_back_loads(AdjointProblem<E>& problem, const InteriorShare& of, const 
   const auto seed = [&](const Reverse& x, double derivative) {
     if (x.entry >= 0) by[x.entry] += derivative;
   };
-  const Vector<double> weight = into_frames(model, problem.slots.frames, Layout::all, a);
-  std::vector<char> touches(model.node_count, 0);
-  for (int node : model.contact_nodes) touches[node] = 1;
-  for (int dof : model.free_dofs)
-    if (!touches[dof / model.dimension]) seed(rows[dof], weight[dof]);
-  Vector<double> held = into_frames(model, problem.slots.frames, Layout::all,
-                                    tangent_times(model, problem.slots, {of.motion, of.last_memory, of.time, &of.flow},
-                                                  a, true, &problem.at_supports));
-  for (int dof : model.free_dofs) held[dof] = 0;
-  held = out_of_frames(model, problem.slots.frames, Layout::all, std::move(held));
-  for (Eigen::Index i = 0; i < held.size(); ++i) seed(prescribed[i], held[i]);
+  const auto is_on_tape = [](const Vector<Reverse>& all) {
+    return std::any_of(all.begin(), all.end(), [](const Reverse& x) { return x.entry >= 0; });
+  };
+  if (is_on_tape(rows)) {
+    const Vector<double> weight = into_frames(model, problem.slots.frames, Layout::all, a);
+    std::vector<char> touches(model.node_count, 0);
+    for (int node : model.contact_nodes) touches[node] = 1;
+    for (int dof : model.free_dofs)
+      if (!touches[dof / model.dimension]) seed(rows[dof], weight[dof]);
+  }
+  if (is_on_tape(prescribed)) {
+    Vector<double> held =
+        into_frames(model, problem.slots.frames, Layout::all,
+                    tangent_times(model, problem.slots, {of.motion, of.last_memory, of.time, &of.flow}, a, true,
+                                  &problem.at_supports));
+    for (int dof : model.free_dofs) held[dof] = 0;
+    held = out_of_frames(model, problem.slots.frames, Layout::all, std::move(held));
+    for (Eigen::Index i = 0; i < held.size(); ++i) seed(prescribed[i], held[i]);
+  }
   tape.pull_back(by, problem.slots_end);
 }
 

@@ -176,7 +176,10 @@ auto averaged_work(const Law& law, const Mat<double, 2, Shape::nodes>& coordinat
 template <int nodes>
 Mat<double, 2 * nodes> joined(const std::vector<StateOfElement<nodes>>& states) {
   Mat<double, 2 * nodes> half = Mat<double, 2 * nodes>::Zero();
-  for (const auto& state : states) half += state.motion.reshaped() * state.weight.reshaped().transpose();
+  for (const auto& state : states) {
+    const Eigen::Map<const Vec<double, 2 * nodes>> u(state.motion.data()), a(state.weight.data());
+    half += u.lazyProduct(a.transpose());
+  }
   return half + half.transpose();
 }
 
@@ -193,7 +196,7 @@ void add_joined(const Law& law, const Gradient<double, Shape, kinematics>& gradi
   const auto probed = law.with(numbers);
   for (int a = 0; a < Shape::nodes; ++a)
     for (int i = 0; i < 2; ++i) {
-      const Mat<double, 2, Shape::nodes> motion = S.col(2 * a + i).reshaped(2, Shape::nodes);
+      const Mat<double, 2, Shape::nodes> motion(S.col(2 * a + i).data());
       const Mat<double, rows> H = gradient.of(motion), P = law.template stress<double, rows>(H);
       const auto on_unit = [&](const auto& stress) {  // B e : stress
         auto sum = 0.0 * stress(0, 0);
