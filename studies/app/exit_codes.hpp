@@ -1,4 +1,4 @@
-/// What the program's commands return to the shell: interface of scripts, named in `stickslip --help`.
+/// What the commands of the program return to the shell, as docs/commands.md tells users.
 #pragma once
 
 namespace stickslip {
