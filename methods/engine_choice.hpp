@@ -19,7 +19,9 @@ EnginePrice predict_price(const Model& model, const Method& method, const Factor
 bool condenses(const Model& model, const Method& method, LinearAlgebra::Engine engine,
                const std::optional<FactorSize>& factor = std::nullopt);
 
-/// Builds the engine a run asks for: dense on the contact dofs where all bodies are condensed, else sparse.
+/// Builds the engine a run asks for: dense on the contact dofs where all bodies are condensed, else sparse. Bodies that
+/// the workspace has condensed already are paid for, by all methods that share them: these solve alike, and the price
+/// of condensing is not weighed again.
 template <class T>
 void make_engine(const Model& model, const Slots<T>& slots, const Method& method, const RunOptions& options,
                  Workspace<T>& workspace) {
@@ -29,8 +31,9 @@ void make_engine(const Model& model, const Slots<T>& slots, const Method& method
   std::shared_ptr<Condensation<T>> condensed;  // bodies among others
   if (can_condense(model) && engine != LinearAlgebra::Engine::sparse) {
     auto bodies = workspace.condensation;
+    const bool shared = bodies != nullptr;
     if (!bodies) bodies = std::make_shared<Condensation<T>>(model, options.backend);
-    if (condenses(model, method, engine, bodies->factor_size())) {
+    if (shared || condenses(model, method, engine, bodies->factor_size())) {
       if (!std::exchange(workspace.condensation, bodies)) bodies->factorise(slots);
       if (bodies->valid() && !model.effects.linear_bulk) condensed = bodies;
       if (bodies->valid() && model.effects.linear_bulk) {

@@ -49,6 +49,14 @@ RegularisationField<T> initial_regularisation(const Slots<T>& slots, const Monol
   return regularisation(slots, m.scale, MonolithicAL::automatic_multiple, T(1));
 }
 
+/// rho without derivatives: of a solution that does not depend on it.
+template <class T>
+RegularisationField<T> constant(const RegularisationField<double>& rho) {
+  RegularisationField<T> out;
+  for (const auto& r : rho) out.push_back({T(r.normal), T(r.tangential)});
+  return out;
+}
+
 /// rho after adaption, per point factors (empty: none).
 template <class T>
 RegularisationField<T> adapted(RegularisationField<T> rho, const std::vector<double>& factor) {

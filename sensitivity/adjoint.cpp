@@ -20,7 +20,8 @@ struct Recording {
   int points_end = 0;            ///< on the tape
   Slots<Reverse> slots;
 
-  explicit Recording(const Model& model) {
+  /// `stiffness`: make_slots.
+  Recording(const Model& model, const std::vector<double>* stiffness) {
     numbers = model.scene.as<Reverse>();
     for (const auto& parameter : model.scene.parameters)
       for (const auto& [slot, weight] : parameter.slots)
@@ -38,7 +39,7 @@ struct Recording {
       for (auto& x : of_body.reshaped()) x = Reverse::leaf(x.v, tape);
     }
     points_end = tape.size();
-    slots = make_slots(model, numbers, points);
+    slots = make_slots(model, numbers, points, stiffness);
   }
 
   /// Derivatives by all numbers of the scene out of those by the slots.
@@ -205,7 +206,8 @@ Gradients adjoint(const Model& model, const Slots<double>& slots, const Method& 
       taken = std::move(*found);
   }
   gradients.counters += gradients.search;
-  Recording recording(model);
+  const bool with_rho = std::visit([](const auto& m) { return reads_regularisation(m); }, method);
+  Recording recording(model, with_rho ? nullptr : &slots.stiffness);
   Tape& tape = recording.tape;
   std::vector<BackwardSweep> objectives(scene.objectives.size());
   const bool energies = reads_energies(scene);

@@ -24,12 +24,16 @@ bool differentiate_increment(const MonolithicAL& method, Differentiation<E>& pro
   return true;
 }
 
+/// Whether what the adjoint goes back through depends on rho: no.
+inline bool reads_regularisation(const MonolithicAL&) { return false; }
+
 template <class E>
 bool pull_back_increment(const MonolithicAL& method, AdjointProblem<E>& problem, const State<double>& previous,
                          const Increment<double>& increment) {
   problem.tape.rewind(problem.slots_end);
-  RecordedEquilibrium<E> recorded(problem, previous, increment.state, initial_regularisation(problem.recorded, method),
-                                  cone_radius(method), increment.time, true, increment.requested);
+  const auto rho = initial_regularisation(problem.slots, method);
+  RecordedEquilibrium<E> recorded(problem, previous, increment.state, constant<Reverse>(rho), cone_radius(method),
+                                  increment.time, true, increment.requested);
   if (!recorded.valid()) return false;
   for (int j = 0; j < static_cast<int>(problem.objectives.size()); ++j) {
     recorded.seed_outcome(j);

@@ -198,9 +198,8 @@ bool differentiate_preconditioned(const UzawaAL& method, Differentiation<E>& pro
   const auto own = adapted(initial_regularisation(problem.slots, method), increment.rho_factor);
   const double oversize = chosen_oversize(method, problem.slots, own, increment.contraction);
   const auto rho = adapted(own, std::vector<double>(own.size(), oversize));
-  RegularisationField<Direction> fixed;  // the fixed point does not depend on rho
-  for (const auto& r : rho) fixed.push_back({Direction(r.normal), Direction(r.tangential)});
-  const std::vector<RegularisationField<Direction>> blocks(problem.blocks.size(), fixed);
+  // (the fixed point does not depend on rho)
+  const std::vector<RegularisationField<Direction>> blocks(problem.blocks.size(), constant<Direction>(rho));
   const State<double> at = restated(problem.model, increment.state, rho);
   LinearisedEquilibrium<E> linearised(problem, at, rho, blocks, cone_radius(method), increment.time, false,
                                       previous.history);
@@ -370,14 +369,17 @@ bool pull_back_preconditioned(const UzawaAL& method, AdjointProblem<E>& problem,
   const auto rho = adapted(own, std::vector<double>(own.size(), oversize));
   const State<double> at = restated(problem.model, increment.state, rho);
   problem.tape.rewind(problem.slots_end);
-  RegularisationField<Reverse> fixed;
-  for (const auto& r : rho) fixed.push_back({Reverse(r.normal), Reverse(r.tangential)});
-  RecordedEquilibrium<E> recorded(problem, previous, at, fixed, cone_radius(method), increment.time, false,
-                                  increment.requested);
+  RecordedEquilibrium<E> recorded(problem, previous, at, constant<Reverse>(rho), cone_radius(method), increment.time,
+                                  false, increment.requested);
   return pull_back_fixed_point(problem, recorded, false, 0);
 }
 
 }  // namespace detail
+
+/// Whether what the adjoint goes back through depends on rho.
+inline bool reads_regularisation(const UzawaAL& method) {
+  return method.sensitivity != UzawaAL::Sensitivity::preconditioned;
+}
 
 template <class E>
 bool pull_back_increment(const UzawaAL& method, AdjointProblem<E>& problem, const State<double>& previous,

@@ -357,9 +357,11 @@ ElementLists inverted_elements(const Model& model, const Slots<double>& slots, c
 template <class T>
 Points<T> initial_points(const Model& model, const Numbers<T>& numbers);
 
-/// All slots of a model in the scalar of `numbers`; `points`: initial_points, or variables in their place.
+/// All slots of a model in the scalar of `numbers`; `points`: initial_points, or variables in their place. `stiffness`:
+/// k_i without derivatives, for what does not depend on rho; none: functions of the slots, like all else.
 template <class T>
-Slots<T> make_slots(const Model& model, const Numbers<T>& numbers, Points<T> points);
+Slots<T> make_slots(const Model& model, const Numbers<T>& numbers, Points<T> points,
+                    const std::vector<double>* stiffness = nullptr);
 template <class T>
 Slots<T> make_slots(const Model& model, const Numbers<T>& numbers);
 
@@ -372,21 +374,21 @@ namespace stickslip {
 
 /// The templates that take most time to compile, in a scalar: STICKSLIP_SLOTS(extern, T) in a header,
 /// STICKSLIP_SLOTS(, T) in one source.
-#define STICKSLIP_SLOTS(EXTERN, T)                                                                           \
-  EXTERN template Vector<T> bulk_forces(const Model&, const Slots<T>&, const Vector<T>&, const Vector<T>&,   \
-                                        const ElementLists*);                                                \
-  EXTERN template Vector<T> bulk_flow(const Model&, const Slots<T>&, const Vector<T>&, const Vector<T>&,     \
-                                      const FlowBranches&);                                                  \
-  EXTERN template T bulk_energy(const Model&, const Slots<T>&, const Vector<T>&, const Vector<T>&);          \
-  EXTERN template void for_each_plastic_strain(const Model&, const Slots<T>&, int, const Vector<T>&,         \
-                                               const std::function<void(const T&, const T&)>&);              \
-  EXTERN template void for_each_element_tangent(const Model&, const Slots<T>&, int, const std::vector<int>*, \
-                                                const ElementSink<T>&, const BodyMotion<T>*);                \
-  EXTERN template std::vector<ThicknessStretch<T>> edge_stretches(const Model&, const Slots<T>&, int,        \
-                                                                  const ElementEdge&, const Vector<T>&);     \
-  EXTERN template Vector<T> load_vector(const Model&, const Load&, const Slots<T>&);                         \
-  EXTERN template Points<T> initial_points(const Model&, const Numbers<T>&);                                 \
-  EXTERN template Slots<T> make_slots(const Model&, const Numbers<T>&, Points<T>);                           \
+#define STICKSLIP_SLOTS(EXTERN, T)                                                                             \
+  EXTERN template Vector<T> bulk_forces(const Model&, const Slots<T>&, const Vector<T>&, const Vector<T>&,     \
+                                        const ElementLists*);                                                  \
+  EXTERN template Vector<T> bulk_flow(const Model&, const Slots<T>&, const Vector<T>&, const Vector<T>&,       \
+                                      const FlowBranches&);                                                    \
+  EXTERN template T bulk_energy(const Model&, const Slots<T>&, const Vector<T>&, const Vector<T>&);            \
+  EXTERN template void for_each_plastic_strain(const Model&, const Slots<T>&, int, const Vector<T>&,           \
+                                               const std::function<void(const T&, const T&)>&);                \
+  EXTERN template void for_each_element_tangent(const Model&, const Slots<T>&, int, const std::vector<int>*,   \
+                                                const ElementSink<T>&, const BodyMotion<T>*);                  \
+  EXTERN template std::vector<ThicknessStretch<T>> edge_stretches(const Model&, const Slots<T>&, int,          \
+                                                                  const ElementEdge&, const Vector<T>&);       \
+  EXTERN template Vector<T> load_vector(const Model&, const Load&, const Slots<T>&);                           \
+  EXTERN template Points<T> initial_points(const Model&, const Numbers<T>&);                                   \
+  EXTERN template Slots<T> make_slots(const Model&, const Numbers<T>&, Points<T>, const std::vector<double>*); \
   EXTERN template Slots<T> make_slots(const Model&, const Numbers<T>&)
 
 STICKSLIP_SLOTS(extern, double);

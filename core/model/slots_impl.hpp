@@ -156,13 +156,17 @@ Slots<T> make_body_slots(const Model& model, const Numbers<T>& numbers, Points<T
 }
 
 template <class T>
-Slots<T> make_slots(const Model& model, const Numbers<T>& numbers, Points<T> points) {
+Slots<T> make_slots(const Model& model, const Numbers<T>& numbers, Points<T> points,
+                    const std::vector<double>* stiffness) {
   Slots<T> slots = make_body_slots(model, numbers, std::move(points));
   for (const auto& contact : model.scene.contacts)
     slots.friction.push_back(contact.friction ? contact.friction->template as<T>(numbers) : FrictionLaw<T>());
   for (const auto& point : model.points) slots.geometry.push_back(detail::initial_geometry(model, point, slots));
   for (const auto& framed : model.framed) slots.frames.push_back(nodal_frame(model.scene, framed, numbers));
-  slots.stiffness = contact_stiffness(model, slots);
+  if (stiffness)
+    slots.stiffness.assign(stiffness->begin(), stiffness->end());
+  else
+    slots.stiffness = contact_stiffness(model, slots);
   for (const auto& load : model.scene.loads) slots.loads.emplace_back(load_vector(model, load, slots));
   const auto& obstacles = model.scene.obstacles;
   const bool turns =

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "methods/engine_choice.hpp"
 #include "sensitivity/gradcheck.hpp"
 #include "tests/studies/cases.hpp"
 #include "tests/support/largest.hpp"
@@ -230,6 +231,35 @@ TEST(Case, AHeldBodyWithoutALoadRests) {
   const auto result = run_case(std::make_shared<const Problem>(scene), Penalty{}, {}, condensation);
   EXPECT_EQ(result.status(), Status::converged) << result.message();
   EXPECT_TRUE(result.steps.back().increment->state.displacement.isZero(0));
+}
+
+TEST(Case, MethodsThatShareACondensationSolveByIt) {
+  // the price of condensing is weighed by a run of its own; one that finds it paid does not factorise the bodies anew
+  Scene scene = scenes::greco_plate(30);
+  scene.contacts[0].friction.reset();
+  scene.supports = {scenes::support("plate.right", {{'x', scenes::table({{0, 0.0}})}})};
+  scene.responses.clear();
+  scene.parameters.clear();
+  scene.legs = {{1, 1}};
+  const auto problem = std::make_shared<const Problem>(scene);
+  ASSERT_FALSE(condenses(problem->model, MonolithicAL{}, LinearAlgebra::Engine::automatic));
+  std::shared_ptr<Condensation<double>> none;
+  const auto alone = run_case(problem, MonolithicAL{}, {}, none);
+  EXPECT_EQ(none, nullptr);
+  EXPECT_THAT(alone.trajectory.engine, testing::StartsWith("sparse"));
+
+  RunOptions condensed;
+  condensed.linear_algebra.engine = LinearAlgebra::Engine::condensed;
+  auto shared = condense(*problem, condensed);
+  ASSERT_NE(shared, nullptr);
+  const auto together = run_case(problem, MonolithicAL{}, {}, shared);
+  EXPECT_THAT(together.trajectory.engine, testing::StartsWith("condensed"));
+  const auto& u = alone.trajectory.increments.back().state.displacement;
+  const auto& v = together.trajectory.increments.back().state.displacement;
+  EXPECT_LE(largest_entry(u - v), 1e-10 * largest_entry(u));  // both to 1e-12 of the forces, and the plate's condition
+  RunOptions sparse;
+  sparse.linear_algebra.engine = LinearAlgebra::Engine::sparse;
+  EXPECT_THAT(run_case(problem, MonolithicAL{}, sparse, shared).trajectory.engine, testing::StartsWith("sparse"));
 }
 
 /// Blocks on matching meshes, the lower one moved along by `shift`: slave nodes face master nodes where it is 0.
