@@ -1,8 +1,6 @@
 #include "methods/engine_choice.hpp"
 
-#include "methods/monolithic.hpp"
-#include "methods/penalty.hpp"
-#include "methods/uzawa.hpp"
+#include "methods/all_methods.hpp"
 
 namespace stickslip {
 

@@ -18,12 +18,10 @@
 /// measured against others in core/README.md.
 #pragma once
 
-#include "methods/monolithic.hpp"
+#include "methods/all_methods.hpp"
 #include "methods/motion_pace.hpp"
-#include "methods/penalty.hpp"
 #include "methods/solutions.hpp"
 #include "methods/statics.hpp"
-#include "methods/uzawa.hpp"
 #include "methods/work_bound.hpp"
 
 namespace stickslip {

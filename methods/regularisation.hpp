@@ -35,18 +35,14 @@ RegularisationField<T> regularisation(const Slots<T>& slots, const Regularisatio
   return rho;
 }
 
-/// rho of a method's options before any adaption.
+/// rho of a method's options before any adaption, the same in all directions where the method says nothing else.
+template <class T, class M>
+RegularisationField<T> initial_regularisation(const Slots<T>& slots, M method) {
+  return regularisation(slots, method.regularisation(), M::automatic_multiple, T(1));
+}
 template <class T>
 RegularisationField<T> initial_regularisation(const Slots<T>& slots, const Penalty& m) {
   return regularisation(slots, m.stiffness, Penalty::automatic_multiple, slots.numbers(m.tangential_ratio));
-}
-template <class T>
-RegularisationField<T> initial_regularisation(const Slots<T>& slots, const UzawaAL& m) {
-  return regularisation(slots, m.scale, UzawaAL::automatic_multiple, T(1));
-}
-template <class T>
-RegularisationField<T> initial_regularisation(const Slots<T>& slots, const MonolithicAL& m) {
-  return regularisation(slots, m.scale, MonolithicAL::automatic_multiple, T(1));
 }
 
 /// rho without derivatives: of a solution that does not depend on it.

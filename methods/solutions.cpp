@@ -19,9 +19,8 @@ struct Branch {
 std::vector<Branch> branches_of(const ContactProblem::Point& point) {
   if (point.tangential < 0) return {{ContactState::open, 0}, {ContactState::slip, 0}};
   std::vector<Branch> branches{{ContactState::open, 0}, {ContactState::stick, 0}};
-  for (const auto& [state, is_there] : {std::pair(ContactState::slip, point.friction.coefficient.has_value()),
-                                        std::pair(ContactState::limited, point.friction.limit.has_value())})
-    if (is_there)
+  for (ContactState state : {ContactState::slip, ContactState::limited})
+    if (point.friction.has(state))
       for (double sign : {-1.0, 1.0}) branches.push_back({state, sign});
   return branches;
 }
@@ -74,9 +73,9 @@ System system_of(const ContactProblem& problem, const Relation& r, const std::ve
     system.matrix.col(n) = r.of_tau.col(n) + point.compliance_normal * r.of_g.col(n);
     if (t < 0) continue;
     if (state == ContactState::slip) {
-      system.matrix.col(n) -= sign * *point.friction.coefficient * r.of_tau.col(t);
+      system.matrix.col(n) -= sign * point.friction.slope_at_apex() * r.of_tau.col(t);
     } else if (state == ContactState::limited) {
-      system.right -= sign * *point.friction.limit * r.of_tau.col(t);
+      system.right -= sign * point.friction.bound(0, state) * r.of_tau.col(t);
     } else {
       system.matrix.col(t) = r.of_tau.col(t) + point.compliance_tangential * r.of_g.col(t);
       system.right += point.compliance_tangential * point.stored * r.of_g.col(t);
@@ -100,10 +99,8 @@ Outcome outcome_of(const ContactProblem& problem, const std::vector<Branch>& com
     out.tau[n] = x[n];
     out.g[n] = point.compliance_normal * x[n];
     if (t < 0) continue;
-    if (state == ContactState::slip) {
-      out.tau[t] = -sign * *point.friction.coefficient * x[n];
-    } else if (state == ContactState::limited) {
-      out.tau[t] = sign * *point.friction.limit;
+    if (is_slipping(state)) {
+      out.tau[t] = sign * point.friction.bound(-x[n], state);
     } else {
       out.tau[t] = x[t];
       out.g[t] = point.compliance_tangential * (x[t] - point.stored);
@@ -145,7 +142,7 @@ bool is_valid(const ContactProblem& problem, const std::vector<Branch>& combinat
     if (state == ContactState::open || point.tangential < 0) continue;
     const double tangential = at.tau[point.tangential];
     // (a slipping point is on the bound of its piece: whether that is the least one is asked where there are two)
-    const bool asked = state == ContactState::stick || point.friction.size() > 1;
+    const bool asked = state == ContactState::stick || point.friction.piece_count() > 1;
     if (asked && std::abs(tangential) > point.friction.bound(-normal) + traction) return false;
     const double plastic = at.g[point.tangential] - point.compliance_tangential * (tangential - point.stored);
     if (is_slipping(state) && sign * plastic < -length) return false;
@@ -166,8 +163,9 @@ bool can_try_all_branches(const Model& model) {
   long combinations = 1;
   for (const auto& point : model.points) {
     const auto& law = model.scene.contacts[point.contact].friction;
-    combinations *= point.tangents > 0 ? 2 + 2 * law->size() : 2;
-    if (combinations > most_combinations) return false;
+    combinations *= point.tangents > 0 ? 2 + 2 * law->piece_count() : 2;
+    const bool is_linear = point.tangents == 0 || law->is_piecewise_linear();
+    if (combinations > most_combinations || !is_linear) return false;
   }
   return model.dimension == 2 && model.effects.linear_bulk && model.effects.friction && !model.points.empty();
 }

@@ -57,7 +57,7 @@ struct BranchSolution {
   bool reversed = false;  ///< its combination has a negative determinant
 };
 
-/// Whether a model has few enough points for it (4096 combinations), in 2D, and friction.
+/// Whether a model has few enough points for it (4096 combinations), in 2D, and friction of linear pieces.
 bool can_try_all_branches(const Model& model);
 
 /// Whether some combination has a negative determinant: under some loads there are several solutions then. False where

@@ -67,12 +67,12 @@ RigidStatics rigid_statics(const Model& model, const Slots<T>& slots, double tim
       tangential.head<2>() = Vec<double, 2>(push(0, 1, -mu), push(1, 1, mu));
     else
       tangential = Vec<double, 3>(push(0, 1, 0), push(1, 0, -1), push(2, 0, 1));
-    if (!rough || !law.limit) continue;
+    if (!rough || !law.has(ContactState::limited)) continue;
     statics.tangential.conservativeResize(statics.tangential.rows() + 1, statics.pushes.cols());
     statics.tangential.bottomRows(1).setZero();
     statics.tangential.bottomRows(1).middleCols(3 * p, 3) = tangential.transpose();
     statics.limit.conservativeResize(statics.tangential.rows());
-    statics.limit[statics.limit.size() - 1] = value(*law.limit) * value(geometry.area);
+    statics.limit[statics.limit.size() - 1] = value(law.bound(T(0), ContactState::limited)) * value(geometry.area);
   }
   for (std::size_t k = 0; k < model.constraints.size(); ++k) {
     const int dof = model.constraints[k].dof, node = dof / 2;

@@ -2,11 +2,9 @@
 
 #include "core/model/objective.hpp"
 #include "core/model/storage.hpp"
-#include "sensitivity/monolithic.hpp"
+#include "sensitivity/all_methods.hpp"
 #include "sensitivity/one_sided.hpp"
-#include "sensitivity/penalty.hpp"
 #include "sensitivity/pull_back_bodies.hpp"
-#include "sensitivity/uzawa.hpp"
 
 namespace stickslip {
 namespace {

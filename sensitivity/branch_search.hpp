@@ -7,11 +7,9 @@
 #include <limits>
 #include <set>
 
+#include "sensitivity/all_methods.hpp"
 #include "sensitivity/branches.hpp"
 #include "sensitivity/flow_ties.hpp"
-#include "sensitivity/monolithic.hpp"
-#include "sensitivity/penalty.hpp"
-#include "sensitivity/uzawa.hpp"
 #include "sensitivity/vertex_ties.hpp"
 
 namespace stickslip {

@@ -71,16 +71,18 @@ struct BoundRate {
 };
 
 bool is_at_corner(const FrictionLaw<double>& law, double pressure) {
-  return law.corner() && law.distance_to_corner(pressure) <= weak_margin * *law.limit;
+  return law.corner() && law.distance_to_corner(pressure) <= weak_margin * law.bound(pressure, ContactState::limited);
 }
 
 /// `moved`: derivative of the pressure.
 BoundRate bound_rate(const FrictionLaw<Direction>& law, double pressure, double moved, double side) {
   constexpr double none = std::numeric_limits<double>::infinity();
-  const BoundRate sloping{
-      law.coefficient ? side * (law.coefficient->d[0] * pressure + law.coefficient->v * moved) : none,
-      ContactState::slip};
-  const BoundRate level{law.limit ? side * law.limit->d[0] : none, ContactState::limited};
+  Direction p(pressure);
+  p.d[0] = moved;
+  const auto rate_on = [&](ContactState piece) {
+    return BoundRate{law.has(piece) ? side * law.bound(p, piece).d[0] : none, piece};
+  };
+  const BoundRate sloping = rate_on(ContactState::slip), level = rate_on(ContactState::limited);
   if (is_at_corner(law.as<double>([](const Direction& x) { return x.v; }), pressure))
     return sloping.rate <= level.rate ? sloping : level;
   return law.piece(pressure) == ContactState::slip ? sloping : level;
@@ -174,11 +176,11 @@ std::vector<Branch> branches_of(const Model& model, const WeakPoint& weak) {
   const Branch open{ContactState::open, {}}, stick{ContactState::stick, {}}, slip{ContactState::slip, {}},
       limited{ContactState::limited, {}};
   const auto& law = model.scene.contacts[model.points[weak.point].contact].friction;
-  if (weak.tie == Tie::opens && (!law || law->coefficient)) return {slip, open};
+  if (weak.tie == Tie::opens && (!law || law->has(ContactState::slip))) return {slip, open};
   if (weak.tie == Tie::opens) return {stick, limited, open};
   std::vector<Branch> slips;
-  if (law->coefficient) slips.push_back(slip);
-  if (law->limit) slips.push_back(limited);
+  for (const Branch& piece : {slip, limited})
+    if (law->has(piece.state)) slips.push_back(piece);
   if (weak.tie == Tie::corner) return slips;
   std::vector<Branch> all{stick};
   if (weak.tie == Tie::slips) {

@@ -218,8 +218,7 @@ void place_contact_nodes(Model& model) {
 /// a body that flows where nothing is asked for, for they would lock.
 bool averages(const Scene& scene, const Body& body, ElementShape shape) {
   const bool may = shape == ElementShape::quad4 && scene.space != Space::plane_stress;
-  const bool flows = std::holds_alternative<J2Plastic>(body.material);
-  return has_mean_dilatation(body.element) || (body.element.empty() && may && flows);
+  return has_mean_dilatation(body.element) || (body.element.empty() && may && flows(body.material));
 }
 
 /// Gives the elements of a body their places in what bodies remember.
@@ -301,8 +300,7 @@ std::string space_fault(Space space, const Body& body) {
 }
 
 std::string pressure_fault(const Scene& scene, const Body& body) {
-  if (scene.space != Space::plane_stress || !scene.finite_strain || !std::holds_alternative<J2Plastic>(body.material))
-    return "";
+  if (scene.space != Space::plane_stress || !scene.finite_strain || !flows(body.material)) return "";
   return "flows, and in plane stress at finite strain a pressure on what flows is not known; use traction";
 }
 

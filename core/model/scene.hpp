@@ -322,8 +322,8 @@ inline int Scene::dimension() const { return space == Space::solid ? 3 : 2; }
 
 /// Whether the stiffness of all bodies is constant: strains are small, and nothing flows.
 inline bool has_constant_stiffness(const Scene& scene) {
-  const auto flows = [](const Body& body) { return std::holds_alternative<J2Plastic>(body.material); };
-  return !scene.finite_strain && std::none_of(scene.bodies.begin(), scene.bodies.end(), flows);
+  const auto remembers = [](const Body& body) { return flows(body.material); };
+  return !scene.finite_strain && std::none_of(scene.bodies.begin(), scene.bodies.end(), remembers);
 }
 
 }  // namespace stickslip

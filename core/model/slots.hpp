@@ -77,14 +77,14 @@ template <class T>
 Law<T> make_law(const Scene& scene, const Body& body, const Mesh& mesh, const Numbers<T>& numbers) {
   return std::visit(
       [&]<class M>(const M& material) -> Law<T> {
-        if constexpr (std::is_same_v<M, GroundedSpring>) {
+        if constexpr (HoldsPoint<M>) {
           return law_of<T>(material, numbers);
         } else {
-          if (mesh.shape == ElementShape::bar2) {
-            const BarLaw<T> bar{numbers(material.E) * numbers(body.area), numbers(body.area), scene.finite_strain};
-            if constexpr (std::is_same_v<M, LinearElastic>) return bar;
-            if constexpr (std::is_same_v<M, J2Plastic>) return bar_of<T>(material, bar, numbers);
-          }
+          if constexpr (FillsBars<M>)
+            if (mesh.shape == ElementShape::bar2) {
+              const BarLaw<T> bar{numbers(material.E) * numbers(body.area), numbers(body.area), scene.finite_strain};
+              return bar_of<T>(material, bar, numbers);
+            }
           return law_of<T>(material, scene.space, scene.finite_strain, numbers);
         }
       },

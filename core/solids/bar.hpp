@@ -4,7 +4,7 @@
 ///   Green strain   e = (A.d + d.d/2) / L^2,   force EA e (A + d) / L,   energy EA L e^2 / 2
 #pragma once
 
-#include "core/algebra/scalar.hpp"
+#include "core/solids/linear_elastic.hpp"
 
 namespace stickslip {
 
@@ -71,5 +71,11 @@ struct BarLaw {
     return axial * norm(axis) * strain * strain / T(2);
   }
 };
+
+/// The law of bars of a material, `elastic` being their law where they are elastic.
+template <class T>
+BarLaw<T> bar_of(const LinearElastic& /*material*/, const BarLaw<T>& elastic, const Numbers<T>& /*numbers*/) {
+  return elastic;
+}
 
 }  // namespace stickslip

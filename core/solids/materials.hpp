@@ -1,14 +1,21 @@
 /// The list of materials: what a scene may name, and the law that each becomes in a scalar T.
 ///
-/// A law of a continuum has a file of its own: its description for the scene, law_of() and the law, which says what it
-/// is made for (is_finite, is_made_for), which numbers it consists of (numbers, with; of more than one part: part,
-/// part_count) and gives stress, stretch and stress across the plane, and energy of a displacement gradient. What it
-/// lacks does not compile. A law of two nodes (bars, springs) gives force, stiffness and energy of their relative
+/// A material has a file of its own: its description for the scene, and what makes a law of it,
+///
+///   law_of(material, space, finite_strain, numbers)   where it fills a continuum
+///   bar_of(material, elastic, numbers)                where it fills bars too: elastic is the law of bars of its E
+///   law_of(material, numbers)                         where it holds a point
+///
+/// A law of a continuum says what it is made for (is_finite, is_made_for), which numbers it consists of (numbers, with;
+/// of more than one part: part, part_count) and gives stress, stretch and stress across the plane, and energy of a
+/// displacement gradient. A law of two nodes (bars, springs) gives force, stiffness and energy of their relative
 /// displacement.
 ///
 /// A law that remembers says how many numbers a point (memory), how a motion changes them (flow), what says which
 /// branch that takes (trial, hardening), the plastic strain in them, and the law that it is at the start (at_rest);
 /// stress, force and energy are then those at a memory. At the start all numbers are zero.
+///
+/// What is lacking does not compile.
 #pragma once
 
 #include <concepts>
@@ -84,13 +91,54 @@ concept TwoNodeLaw = (!Remembers<L> && detail::TwoNodeLawWith<L>) ||
                      (Remembers<L> && detail::TwoNodeLawWith<L, Vec<double, memory_of<L>()>> &&
                       detail::TwoNodesFlow<L>);
 
+template <class M>
+concept FillsContinuum = requires(const M& of, const Numbers<double>& numbers) {
+  law_of<double>(of, Space::plane_strain, false, numbers);
+};
+template <class M>
+concept FillsBars = requires(const M& of, const BarLaw<double>& elastic, const Numbers<double>& numbers) {
+  bar_of<double>(of, elastic, numbers);
+};
+template <class M>
+concept HoldsPoint = requires(const M& of, const Numbers<double>& numbers) {
+  law_of<double>(of, numbers);
+};
+
+/// The law of a continuum, and of bars, of a material.
+template <FillsContinuum M>
+using LawOf = decltype(law_of<double>(std::declval<const M&>(), Space::plane_strain, false, Numbers<double>{}));
+template <FillsBars M>
+using BarLawOf = decltype(bar_of<double>(std::declval<const M&>(), BarLaw<double>{}, Numbers<double>{}));
+
+namespace detail {
+
+template <class M>
+constexpr bool is_whole() {
+  static_assert(FillsContinuum<M> || HoldsPoint<M>, "a material lacks its law_of");
+  if constexpr (FillsContinuum<M>) {
+    static_assert(ContinuumLaw<LawOf<M>>, "the law of a material lacks something");
+    static_assert(std::is_constructible_v<Law<double>, LawOf<M>>, "the law of a material is not in the list of laws");
+  }
+  if constexpr (FillsBars<M>) {
+    static_assert(TwoNodeLaw<BarLawOf<M>>, "the law of bars of a material lacks something");
+    static_assert(std::is_constructible_v<Law<double>, BarLawOf<M>>, "a law of bars is not in the list of laws");
+  }
+  return true;
+}
+template <class... M>
+constexpr bool are_whole_materials(const std::variant<M...>*) {
+  return (is_whole<M>() && ...);
+}
+static_assert(are_whole_materials(static_cast<const Material*>(nullptr)));
+
+}  // namespace detail
+
 /// Why a material does not go with elements of a continuum, completing "MATERIAL ..."; empty where it does.
 inline const char* fault_of(const Material& material, Kinematics kinematics, bool finite_strain) {
   return std::visit(
-      [&]<class M>(const M& of) -> const char* {
-        if constexpr (requires { law_of(of, Space::plane_strain, false, Numbers<double>{}); }) {
-          using L = decltype(law_of(of, Space::plane_strain, false, Numbers<double>{}));
-          static_assert(ContinuumLaw<L>, "the law of a material lacks something");
+      [&]<class M>(const M&) -> const char* {
+        if constexpr (FillsContinuum<M>) {
+          using L = LawOf<M>;
           if (L::is_made_for(kinematics, finite_strain)) return "";
           if (!L::is_made_for(kinematics, !finite_strain)) return "is not made for this space and element";
           return finite_strain ? "is made for small strain" : "is made for finite strain";
@@ -102,12 +150,19 @@ inline const char* fault_of(const Material& material, Kinematics kinematics, boo
 
 /// Numbers that a point of a body of a material remembers. `bars`: it consists of them.
 inline int memory_of(const Material& material, bool bars) {
-  if (!std::holds_alternative<J2Plastic>(material)) return 0;
-  return bars ? memory_of<PlasticBarLaw<double>>() : memory_of<J2Law<double>>();
+  return std::visit(
+      [&]<class M>(const M&) {
+        if constexpr (FillsBars<M>)
+          if (bars) return memory_of<BarLawOf<M>>();
+        if constexpr (FillsContinuum<M>) return bars ? 0 : memory_of<LawOf<M>>();
+        return 0;
+      },
+      material);
 }
 
-static_assert(ContinuumLaw<LinearElasticLaw<double>> && ContinuumLaw<NeoHookeanLaw<double>>);
-static_assert(ContinuumLaw<J2Law<double>>);
-static_assert(TwoNodeLaw<BarLaw<double>> && TwoNodeLaw<PlasticBarLaw<double>> && TwoNodeLaw<SpringLaw<double>>);
+/// Whether bodies of a material remember how they flowed.
+inline bool flows(const Material& material) { return memory_of(material, false) > 0; }
+
+static_assert(TwoNodeLaw<SpringLaw<double>>);
 
 }  // namespace stickslip

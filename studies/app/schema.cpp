@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "studies/app/schema_texts.hpp"
+#include "studies/input/friction_laws.hpp"
 #include "studies/input/materials.hpp"
 #include "studies/input/method_options.hpp"
 #include "studies/input/obstacle_kinds.hpp"
@@ -95,6 +96,8 @@ Schema scene_schema() {
   definitions["method"] = method_schema(OptionLists::refused);
   Schema schema = document("stickslip scene", schema_texts::scene, {"bodies", "time"}, definitions);
   add_obstacle_kinds(schema["properties"]["obstacles"]["additionalProperties"]);
+  Schema& contact = schema["properties"]["contacts"]["additionalProperties"]["properties"];
+  for (Schema& law : friction_schemas()) contact["friction"]["anyOf"].push_back(std::move(law));
   return schema;
 }
 

@@ -94,15 +94,7 @@ const char* const scene = R"json({
         "friction": {
           "description": "Coulomb's coefficient mu, or another law; left out: frictionless, without tangential unknowns",
           "title": "number >= 0, or a law", "examples": [0.3],
-          "anyOf": [{"type": "number", "minimum": 0},
-            {"type": "object", "required": ["coulomb"], "additionalProperties": false, "properties": {
-              "coulomb": {"description": "coefficient mu: at most mu p tangentially, p the pressure",
-                "$ref": "#/$defs/not_negative", "examples": [0.3]},
-              "limit": {"description": "but no more than this (force per area)", "$ref": "#/$defs/not_negative",
-                "examples": [5]}}},
-            {"type": "object", "required": ["tresca"], "additionalProperties": false, "properties": {
-              "tresca": {"description": "alone: the tangential traction that a closed point bears (force per area)",
-                "$ref": "#/$defs/not_negative", "examples": [5]}}}]},
+          "anyOf": [{"type": "number", "minimum": 0}]},
         "offset": {"description": "added to the gap (length); negative: an interference", "type": "number",
           "default": 0, "examples": [-0.01]},
         "surface": {

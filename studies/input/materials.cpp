@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <type_traits>
 
 namespace stickslip {
 namespace {
@@ -139,21 +140,47 @@ constexpr const char* spring_schema = R"json({
       "title": "2 x 2 matrix (3 x 3 in space)", "type": "array", "items": {"$ref": "#/$defs/vector"},
       "minItems": 2, "maxItems": 3, "examples": [[[100, 0], [0, 100]]]}}})json";
 
+MaterialKind entry_of(std::type_identity<LinearElastic>) {
+  return {"linear_elastic", elastic_schema, "fills bars, and where strains are small all but points", read_elastic};
+}
+MaterialKind entry_of(std::type_identity<NeoHookean>) {
+  return {"neo_hookean", neo_hookean_schema, "fills all but bars and points where strains are finite",
+          read_neo_hookean};
+}
+MaterialKind entry_of(std::type_identity<J2Plastic>) {
+  return {"j2_plastic", j2_schema, "fills all but points", read_j2};
+}
+MaterialKind entry_of(std::type_identity<GroundedSpring>) {
+  return {"grounded_spring", spring_schema, "holds a point", read_spring};
+}
+
+template <class M>
+bool goes_with(Filling filling, bool finite_strain) {
+  if (filling == Filling::point) return HoldsPoint<M>;
+  if (filling == Filling::bars) return FillsBars<M>;
+  if constexpr (FillsContinuum<M>) return LawOf<M>::is_made_for(Kinematics::plane, finite_strain);
+  return false;
+}
+
+template <class M>
+MaterialKind material_kind() {
+  static_assert(
+      requires { entry_of(std::type_identity<M>()); },
+      "a material of core/solids/materials.hpp lacks its entry_of() in studies/input/materials.cpp");
+  MaterialKind kind = entry_of(std::type_identity<M>());
+  kind.goes_with = goes_with<M>;
+  return kind;
+}
+
+template <class... M>
+std::vector<MaterialKind> material_kinds_of(std::type_identity<std::variant<M...>>) {
+  return {material_kind<M>()...};
+}
+
 }  // namespace
 
 const std::vector<MaterialKind>& material_kinds() {
-  static const std::vector<MaterialKind> kinds{
-      {"linear_elastic", elastic_schema, "fills bars, and where strains are small all but points",
-       [](Filling filling, bool finite) {
-         return filling == Filling::bars || (filling == Filling::continuum && !finite);
-       },
-       read_elastic},
-      {"neo_hookean", neo_hookean_schema, "fills all but bars and points where strains are finite",
-       [](Filling filling, bool finite) { return filling == Filling::continuum && finite; }, read_neo_hookean},
-      {"j2_plastic", j2_schema, "fills all but points", [](Filling filling, bool) { return filling != Filling::point; },
-       read_j2},
-      {"grounded_spring", spring_schema, "holds a point",
-       [](Filling filling, bool) { return filling == Filling::point; }, read_spring}};
+  static const auto kinds = material_kinds_of(std::type_identity<Material>());
   return kinds;
 }
 

@@ -1,5 +1,8 @@
 #include "studies/input/obstacle_kinds.hpp"
 
+#include <concepts>
+#include <type_traits>
+
 #include "studies/io/json_pointer.hpp"
 
 namespace stickslip {
@@ -61,25 +64,19 @@ json values_json(const Vector& numbers) {
   return out;
 }
 
-json drawn_plane(const RigidSurface& surface) {
-  const auto* plane = std::get_if<Plane>(&surface);
-  if (!plane) return nullptr;
-  return {{"plane", {{"point", values_json(plane->point)}, {"normal", values_json(plane->normal)}}}};
+json as_drawn(const Plane& plane) {
+  return {{"plane", {{"point", values_json(plane.point)}, {"normal", values_json(plane.normal)}}}};
 }
 
-json drawn_circle(const RigidSurface& surface) {
-  const auto* circle = std::get_if<Circle>(&surface);
-  if (!circle) return nullptr;
-  return {{"circle",
-           {{"center", values_json(circle->center)}, {"radius", circle->radius.value}, {"inside", circle->inside}}}};
+json as_drawn(const Circle& circle) {
+  return {
+      {"circle", {{"center", values_json(circle.center)}, {"radius", circle.radius.value}, {"inside", circle.inside}}}};
 }
 
-json drawn_polyline(const RigidSurface& surface) {
-  const auto* polyline = std::get_if<Polyline>(&surface);
-  if (!polyline) return nullptr;
+json as_drawn(const Polyline& polyline) {
   json vertices = json::array();
-  for (const auto& x : polyline->points) vertices.push_back(values_json(x));
-  if (polyline->closed) vertices.push_back(vertices.front());
+  for (const auto& x : polyline.points) vertices.push_back(values_json(x));
+  if (polyline.closed) vertices.push_back(vertices.front());
   return {{"polyline", {{"points", vertices}}}};
 }
 
@@ -107,14 +104,38 @@ constexpr const char* polyline_schema = R"json({
       "title": "two or more [x, y]", "type": "array",
       "minItems": 2, "items": {"$ref": "#/$defs/pair"}, "examples": [[[5, 0], [0, 0], [0, 2]]]}}})json";
 
+ObstacleKind entry_of(std::type_identity<Plane>) { return {"plane", plane_schema, read_plane}; }
+ObstacleKind entry_of(std::type_identity<Circle>) { return {"circle", circle_schema, read_circle}; }
+ObstacleKind entry_of(std::type_identity<Polyline>) { return {"polyline", polyline_schema, read_polyline}; }
+
+template <class S>
+ObstacleKind obstacle_kind() {
+  static_assert(
+      requires(const S& surface) {
+        entry_of(std::type_identity<S>());
+        { as_drawn(surface) } -> std::same_as<json>;
+      },
+      "a surface of core/contact/rigid_surfaces.hpp lacks entry_of() or as_drawn() in "
+      "studies/input/obstacle_kinds.cpp");
+  ObstacleKind kind = entry_of(std::type_identity<S>());
+  kind.is_in_space = S::is_in_space;
+  return kind;
+}
+
+template <class... S>
+std::vector<ObstacleKind> obstacle_kinds_of(std::type_identity<std::variant<S...>>) {
+  return {obstacle_kind<S>()...};
+}
+
 }  // namespace
 
 const std::vector<ObstacleKind>& obstacle_kinds() {
-  static const std::vector<ObstacleKind> kinds{
-      {"plane", plane_schema, Plane::is_in_space, read_plane, drawn_plane},
-      {"circle", circle_schema, Circle::is_in_space, read_circle, drawn_circle},
-      {"polyline", polyline_schema, Polyline::is_in_space, read_polyline, drawn_polyline}};
+  static const auto kinds = obstacle_kinds_of(std::type_identity<RigidSurface>());
   return kinds;
+}
+
+json drawn(const RigidSurface& surface) {
+  return std::visit([](const auto& shape) { return as_drawn(shape); }, surface);
 }
 
 }  // namespace stickslip

@@ -3,6 +3,7 @@
 
 #include "core/mesh/generators.hpp"
 #include "core/mesh/sides.hpp"
+#include "studies/input/friction_laws.hpp"
 #include "studies/input/obstacle_kinds.hpp"
 
 namespace stickslip {
@@ -62,23 +63,6 @@ void check_master(const JsonNode& node, const std::optional<NamedSide>& slave, b
   if (std::any_of(master->side.nodes.begin(), master->side.nodes.end(), [&](int n) { return nodes.count(n) > 0; }))
     node.error("is " + shown(node.value()) +
                ", which shares nodes with the slave; a side that touches itself is both, the same expression");
-}
-
-/// A law of friction: a number, or an object that says which law it is.
-FrictionLaw<Number> friction_law(const JsonNode& node, SceneReading& reading) {
-  if (!node.value().is_object()) {
-    if (node.value().is_number()) return reading.number(node, not_negative);
-    node.must_be("a number >= 0, {\"coulomb\": mu, \"limit\": force per area} or {\"tresca\": force per area}");
-    return {};
-  }
-  if (const auto limit = node.find("tresca")) {
-    node.is_object({{"tresca"}});
-    return {std::nullopt, reading.number(*limit, not_negative)};
-  }
-  node.is_object({{"coulomb"}, {"limit"}});
-  FrictionLaw<Number> law = reading.required(node, "coulomb", not_negative);
-  if (const auto limit = node.find("limit")) law.limit = reading.number(*limit, not_negative);
-  return law;
 }
 
 /// How the facets of the master are smoothed.
@@ -214,7 +198,7 @@ void read_contact(const std::string& name, const JsonNode& node, SceneReading& r
     }
     contact.master = text.value_or("");
   }
-  if (const auto friction = node.find("friction")) contact.friction = friction_law(*friction, reading);
+  if (const auto friction = node.find("friction")) contact.friction = read_friction(*friction, reading);
   contact.offset = reading.optional(node, "offset", 0, any_number);
   if (const auto surface = node.find("surface")) read_surface(*surface, contact, reading);
   if (between) {

@@ -84,7 +84,7 @@ void read_flowing_body(const JsonNode& node, Response& response, SceneReading& r
   response.on = *name;
   std::vector<std::string> flowing;
   for (const Body& body : reading.scene.bodies)
-    if (std::holds_alternative<J2Plastic>(body.material)) flowing.push_back(body.name);
+    if (flows(body.material)) flowing.push_back(body.name);
   if (std::find(flowing.begin(), flowing.end(), *name) != flowing.end()) return;
   const auto& names = reading.body_names;
   if (flowing.empty())

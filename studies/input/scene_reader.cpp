@@ -30,9 +30,10 @@ void read_linear_solver(const JsonNode& node, const Scene& scene, Input& input) 
     const auto name = engine->choice({"auto", "sparse", "condensed"});
     if (name == "sparse") input.linear_algebra.engine = Engine::sparse;
     if (name == "condensed") input.linear_algebra.engine = Engine::condensed;
-    const auto flows = [](const Body& body) { return memory_of(body.material, false) > 0; };
+    const auto remembers = [](const Body& body) { return flows(body.material); };
     const bool none_constant =
-        scene.finite_strain || (!scene.bodies.empty() && std::all_of(scene.bodies.begin(), scene.bodies.end(), flows));
+        scene.finite_strain ||
+        (!scene.bodies.empty() && std::all_of(scene.bodies.begin(), scene.bodies.end(), remembers));
     if (name == "condensed" && none_constant)
       engine->error(
           R"(is "condensed", which needs a body of a constant stiffness; allowed where strains are finite or all bodies flow: auto, sparse)");

@@ -51,17 +51,10 @@ std::string count(const List& list, const std::string& noun) {
   return counted(static_cast<long>(list.size()), noun);
 }
 
-std::string law_in_words(const FrictionLaw<Number>& law) {
-  const auto coulomb = [&] { return "Coulomb friction " + exact_number(law.coefficient->value); };
-  switch (law.kind()) {
-    case FrictionKind::coulomb:
-      return coulomb();
-    case FrictionKind::limited_coulomb:
-      return coulomb() + ", limited to " + exact_number(law.limit->value);
-    case FrictionKind::tresca:
-      return "Tresca friction " + exact_number(law.limit->value);
-  }
-  return "";
+std::string law_in_words(const FrictionLaw<Number>& friction) {
+  std::string words;
+  friction.for_each_number([&](const auto& number, const Number& x) { words += number.words + exact_number(x.value); });
+  return words;
 }
 
 std::string contact_lines(const Model& model) {

@@ -255,10 +255,7 @@ std::string field_file(std::size_t step) { return fmt::format("fields_{:04}.vtu"
 /// The shape at the start, and what it moved by until `time`: a displacement, and where it rotates an angle in degrees
 /// about a center.
 json obstacle_json(const Obstacle& obstacle, double time, bool finite, const Numbers<double>& numbers) {
-  json shape;
-  for (const auto& kind : obstacle_kinds())
-    if (json drawn = kind.drawn(obstacle.shape); !drawn.is_null()) shape = std::move(drawn);
-  if (shape.is_null()) return shape;
+  json shape = drawn(obstacle.shape);
   json moved = {{"by", {0.0, 0.0}}};
   for (const auto& [axis, table] : obstacle.move)
     if (axis < 'z') moved["by"][axis == 'x' ? 0 : 1] = evaluate(table, time, numbers);

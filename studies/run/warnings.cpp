@@ -61,15 +61,10 @@ struct IdleNumber {
   std::string words;
 };
 
-IdleNumber idle_number(const FrictionLaw<double>& law) {
-  switch (law.kind()) {
-    case FrictionKind::coulomb:
-    case FrictionKind::limited_coulomb:
-      return {*law.coefficient, fmt::format("friction coefficient of {:.6g}", *law.coefficient)};
-    case FrictionKind::tresca:
-      return {*law.limit, fmt::format("limit of friction, {:.6g},", *law.limit)};
-  }
-  return {};
+IdleNumber idle_number(const FrictionLaw<double>& friction) {
+  const auto words = std::visit([](const auto& law) { return law.idle; }, friction.law);
+  const double first = friction.first_number();
+  return {first, fmt::format(fmt::runtime(words), first)};
 }
 
 void add_slips(const CaseResult& result, std::vector<Warning>& warnings) {

@@ -68,9 +68,9 @@ Quantities<D> inputs_of(const ClosedForm& form, const json& entry, const CaseRes
   if (scene.contacts.empty()) return in;
   const auto& contact = scene.contacts.front();
   if (form.has_input("modulus") && !in.count("modulus")) in["modulus"] = contact_modulus(scene, numbers, contact);
-  if (form.has_input("friction") && !in.count("friction") && contact.friction &&
-      contact.friction->kind() == FrictionKind::coulomb)
-    in["friction"] = numbers(*contact.friction->coefficient);
+  if (form.has_input("friction") && !in.count("friction") && contact.friction)
+    if (const auto* law = std::get_if<Coulomb<Number>>(&contact.friction->law); law && !law->limit)
+      in["friction"] = numbers(law->coefficient);
   return in;
 }
 

@@ -328,7 +328,7 @@ TEST(FiniteStrain, MeanDilatationDoesNotLock) {
     s.bodies = {{"block", box, NeoHookean{100.0, 0.4995}, element, 1.0}};
     s.obstacles = {plane("floor", {0.0, 0.0}, {0, 1})};
     s.contacts = {scenes::contact("sole", "block.bottom", "floor")};
-    s.contacts[0].friction = FrictionLaw<Number>{Number(50.0), {}};
+    s.contacts[0].friction = FrictionLaw<Number>(50.0);
     s.supports = {scenes::support("block.top", {{'x', table({{0, 0.0}})}, {'y', table({{0, 0.0}, {1, -0.2}})}})};
     s.responses = {response("press", Kind::reaction, "block.top", "y")};
     const auto r = run(s, MonolithicAL{});

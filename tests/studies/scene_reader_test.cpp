@@ -97,7 +97,7 @@ TEST(SceneReader, ReadsABlockOnAFloor) {
   EXPECT_EQ(plane.normal[1].value, 2);
   EXPECT_EQ(scene.contacts.at(0).slave, "block.bottom");
   EXPECT_EQ(scene.contacts[0].master, "floor");
-  EXPECT_EQ(scene.contacts[0].friction->coefficient->value, 0.3);
+  EXPECT_EQ(scene.contacts[0].friction->first_number().value, 0.3);
   EXPECT_EQ(scene.contacts[0].offset.value, 0);
   EXPECT_EQ(scene.supports.at(0).on, "block.left");
   const Table& move = scene.supports[0].move.at('x');
@@ -145,7 +145,7 @@ TEST(SceneReader, MakesAContactOfEachPairOfBodies) {
     EXPECT_EQ(contact.group, "pile");
     EXPECT_EQ(contact.smoothing, Smoothing::b_spline);
     EXPECT_EQ(contact.corner, 40);
-    EXPECT_EQ(contact.friction->coefficient->slot, scene.contacts[0].friction->coefficient->slot);
+    EXPECT_EQ(contact.friction->first_number().slot, scene.contacts[0].friction->first_number().slot);
   }
   // the finer body is the slave; of two alike the one that is named first
   EXPECT_THAT(names, ElementsAre("pile/b~a", "pile/a~c", "pile/b~c"));
@@ -342,11 +342,11 @@ TEST(SceneReader, ReadsEveryLawOfFriction) {
     return input ? *input->scene.contacts[0].friction : FrictionLaw<Number>();
   };
   const auto limited = law(R"({"coulomb": 0.4, "limit": 5})"), tresca = law(R"({"tresca": 6})");
-  EXPECT_EQ(limited.coefficient->value, 0.4);
-  EXPECT_EQ(limited.limit->value, 5);
-  EXPECT_GE(limited.limit->slot, 0) << "it can be a parameter";
-  EXPECT_FALSE(tresca.coefficient.has_value());
-  EXPECT_EQ(tresca.limit->value, 6);
+  const auto& coulomb = std::get<Coulomb<Number>>(limited.law);
+  EXPECT_EQ(coulomb.coefficient.value, 0.4);
+  EXPECT_EQ(coulomb.limit->value, 5);
+  EXPECT_GE(coulomb.limit->slot, 0) << "it can be a parameter";
+  EXPECT_EQ(std::get<Tresca<Number>>(tresca.law).limit.value, 6);
 }
 
 TEST(SceneReader, CarriesOutOverridesAndNamesThemInFaults) {
@@ -355,7 +355,7 @@ TEST(SceneReader, CarriesOutOverridesAndNamesThemInFaults) {
   Diagnostics diagnostics;
   const auto input = read_scene(path.string(), {"/contacts/sole/friction=0.4", "/time/steps=3"}, {}, diagnostics);
   ASSERT_TRUE(input.has_value()) << diagnostics.text();
-  EXPECT_EQ(input->scene.contacts[0].friction->coefficient->value, 0.4);
+  EXPECT_EQ(input->scene.contacts[0].friction->first_number().value, 0.4);
   EXPECT_EQ(input->scene.legs[0].steps, 3);
   EXPECT_FALSE(read_scene(path.string(), {"/contacts/sole/friction=-0.4", "/time/stops=3"}, {}, diagnostics));
   EXPECT_EQ(diagnostics.text(),

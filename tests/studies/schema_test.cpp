@@ -382,5 +382,60 @@ TEST(Schema, RefusesASampleOfWhatTheReaderRefuses) {
 }
 #endif
 
+/// A scene of one contact, with a law of friction as the file has it.
+json scene_with_friction(const json& law) {
+  json scene = json::parse(R"({
+    "bodies": {"mass": {"mesh": {"point": {"at": [0, 0]}}, "material": {"grounded_spring": {"stiffness": [[1, 0], [0, 1]]}}}},
+    "obstacles": {"floor": {"plane": {"point": [0, 0], "normal": [0, 1]}}},
+    "contacts": {"sole": {"slave": "mass.node", "master": "floor"}},
+    "time": {"end": 1, "steps": 1}, "method": {"penalty": {}}})");
+  scene["contacts"]["sole"]["friction"] = law;
+  return scene;
+}
+
+/// The description of law `i` of FrictionLaws, its schema and its reader, one against another.
+template <std::size_t i>
+void expect_law_agrees(const json& schemas) {
+  using Law = std::variant_alternative_t<i, FrictionLaws<Number>>;
+  const json& schema = schemas.at(1 + i);  // (behind the number alone)
+  json all = json::object(), required = json::array();
+  std::apply(
+      [&](const auto&... number) {
+        (all.emplace(number.key, schema["properties"][number.key]["examples"][0]), ...);
+        ((number.is_required ? required.push_back(number.key) : void()), ...);
+      },
+      Law::numbers());
+  EXPECT_EQ(schema["properties"].size(), all.size()) << schema;
+  EXPECT_EQ(schema["required"], required);
+  EXPECT_TRUE(faults(scene_with_friction(all)).empty()) << all;
+  for (const auto& [key, example] : all.items()) {
+    json lacking = all, negative = all;
+    lacking.erase(key);
+    negative[key] = -1;
+    const bool may_lack = std::find(required.begin(), required.end(), key) == required.end();
+    EXPECT_EQ(faults(scene_with_friction(lacking)).empty(), may_lack) << key;
+    EXPECT_FALSE(faults(scene_with_friction(negative)).empty()) << key;
+  }
+  json more = all;
+  more["unknown"] = 1;
+  EXPECT_FALSE(faults(scene_with_friction(more)).empty()) << more;
+}
+
+TEST(Schema, OfEachLawOfFrictionIsWhatItsReaderTakes) {
+  const json schema = scene_schema();
+  const json& friction = schema["properties"]["contacts"]["additionalProperties"]["properties"]["friction"]["anyOf"];
+  constexpr auto count = std::variant_size_v<FrictionLaws<Number>>;
+  ASSERT_EQ(friction.size(), 1 + count);
+  [&]<std::size_t... i>(std::index_sequence<i...>) { (expect_law_agrees<i>(friction), ...); }
+  (std::make_index_sequence<count>());
+}
+
+TEST(Schema, HasAKeyForEachMaterialAndSurface) {
+  const json schema = scene_schema();
+  EXPECT_EQ(schema["$defs"]["material"]["properties"].size(), std::variant_size_v<Material>);
+  EXPECT_EQ(schema["properties"]["obstacles"]["additionalProperties"]["oneOf"].size(),
+            std::variant_size_v<RigidSurface>);
+}
+
 }  // namespace
 }  // namespace stickslip

@@ -51,10 +51,21 @@ inline double free_motion(const Model& model, const Slots<double>& slots, double
   return lu.isInvertible() ? lu.solve(f).norm() : 0;
 }
 
+/// A law as the least of a multiple of the pressure and a constant; infinity: no such piece.
+struct LeastOf {
+  double coefficient, limit;
+};
+inline LeastOf pieces_of(const FrictionLaw<double>& friction) {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  if (const auto* tresca = std::get_if<Tresca<double>>(&friction.law)) return {none, tresca->limit};
+  const auto& coulomb = std::get<Coulomb<double>>(friction.law);
+  return {coulomb.coefficient, coulomb.limit.value_or(none)};
+}
+
 /// Tangential traction that a law of friction bears under a pressure.
 inline double most_friction(const FrictionLaw<double>& law, double pressure) {
-  constexpr double unlimited = std::numeric_limits<double>::infinity();
-  return std::min(law.coefficient ? *law.coefficient * pressure : unlimited, law.limit ? *law.limit : unlimited);
+  const auto [coefficient, limit] = pieces_of(law);
+  return std::min(std::isfinite(coefficient) ? coefficient * pressure : coefficient, limit);
 }
 
 /// All solutions of the first increment, every point with friction, supports held, obstacles at rest.
@@ -92,9 +103,9 @@ inline std::vector<FoundSolution> every_solution(const Model& model, const Slots
     for (int p = 0; p < n; ++p, rest /= 6) {
       branch.push_back(static_cast<int>(rest % 6));
       const int N = dofs + 2 * p, T = N + 1;
-      const auto& law = slots.friction[model.points[p].contact];
+      const auto law = pieces_of(slots.friction[model.points[p].contact]);
       const bool at_limit = branch[p] > 3;
-      exists &= branch[p] < 2 || (at_limit ? law.limit.has_value() : law.coefficient.has_value());
+      exists &= branch[p] < 2 || std::isfinite(at_limit ? law.limit : law.coefficient);
       if (!exists) break;
       if (branch[p] == 0)
         A(N, N) = 1;
@@ -107,9 +118,9 @@ inline std::vector<FoundSolution> every_solution(const Model& model, const Slots
       else
         A(T, T) = 1;
       if (at_limit)
-        b[T] = branch[p] == 4 ? -*law.limit : *law.limit;
+        b[T] = branch[p] == 4 ? -law.limit : law.limit;
       else if (branch[p] > 1)
-        A(T, N) = branch[p] == 2 ? -*law.coefficient : *law.coefficient;
+        A(T, N) = branch[p] == 2 ? -law.coefficient : law.coefficient;
     }
     if (!exists) continue;
     const Eigen::FullPivLU<Matrix<double>> lu(A);
