@@ -219,7 +219,8 @@ void check(const Scene& scene, const Method& method, const std::string& what, Ta
   const auto gradients = differentiate(model, slots, method, trajectory, workspace);
   const auto sides = one_sided_derivatives(model, slots, method, trajectory, workspace);
   const auto base = responses(scene, method, table);
-  const double stiffest = slots.stiffness.empty() ? 0 : *std::max_element(slots.stiffness.begin(), slots.stiffness.end());
+  const double stiffest =
+      slots.stiffness.empty() ? 0 : *std::max_element(slots.stiffness.begin(), slots.stiffness.end());
   if (gradients.of_responses.size() != table.size() || base.size() == 0) {
     ++tally.unsolved;
     return;
