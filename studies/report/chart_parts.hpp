@@ -72,6 +72,8 @@ nlohmann::json channel(const std::string& field, const std::string& title, bool 
 /// [{"filter": test}].
 nlohmann::json only_if(const std::string& test);
 nlohmann::json tooltip(const std::vector<std::pair<std::string, std::string>>& fields);
+/// Adds a panel that shows the rows of its own alone: those whose `panel` is panel.only.
+void add_panel(Figure&, Panel panel);
 
 /// Lines, markers, crosses for what failed, and the ground for exact zeros. Rows: series, line, order, shown, zero,
 /// failed, and in the field `tag` a word beside the marker, at the side that `tag`_at says: "right", "left", "right

@@ -153,11 +153,10 @@ std::optional<Figure> error_against_knob(const Study& study, const std::vector<s
     const json x = channel("option_value", knob_title(knobs), true);
     const json y =
         channel("shown", derivative ? "relative error of the sensitivity" : "relative error of the response", true);
-    json spec = with_guides(curves(figure.title + ", " + panel, x, y, tips), x, y);
-    spec["transform"] = only_if("datum.panel == '" + panel + "'");
+    const json spec = with_guides(curves(figure.title + ", " + panel, x, y, tips), x, y);
     const bool noise = !tells_apart(study, derivative ? Of::sensitivities : Of::responses) &&
                        tells_apart(study, derivative ? Of::responses : Of::sensitivities);
-    figure.panels.push_back({panel, spec, "option_value", "shown", true, true, panel, noise});
+    add_panel(figure, {panel, spec, "option_value", "shown", true, true, panel, noise});
     offer(figure, derivative ? "Sensitivity" : "Response", "quantity", "", panel);
   }
   offer(figure, "Scene", "scene", study.main_variant);
@@ -192,10 +191,9 @@ std::optional<Figure> iterations_against_knob(const Study& study, const std::vec
   for (const auto& [panel, unused] : counted_along_knobs) {
     const auto along_the_knob = [&](const json& r) { return r["panel"] == panel && !r.value("unmarked", false); };
     if (std::none_of(figure.rows.begin(), figure.rows.end(), along_the_knob)) continue;
-    json spec = curves(figure.title + ", " + panel, channel("option_value", knob_title(knobs), true),
-                       channel("count", panel, true), tips);
-    spec["transform"] = only_if("datum.panel == '" + panel + "'");
-    figure.panels.push_back({panel, spec, "option_value", "count", true, true, panel, false});
+    const json spec = curves(figure.title + ", " + panel, channel("option_value", knob_title(knobs), true),
+                             channel("count", panel, true), tips);
+    add_panel(figure, {panel, spec, "option_value", "count", true, true, panel, false});
   }
   if (figure.panels.empty()) return std::nullopt;
   offer(figure, "Scene", "scene", study.main_variant);
