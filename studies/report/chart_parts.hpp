@@ -88,11 +88,12 @@ std::string tag_field(const std::string& across);
 /// reader sees which way a line runs, and the name of its series, so that grey print needs no legend. A line that stays
 /// in one place, where the option does nothing, has its name alone. No word covers another, a marker or a curve: a name
 /// is tried on each side of each point, and is left to the legend where there is no room; then so are its values. Words
-/// that have no room in the lower chart on paper have the field `tag`_tall.
+/// that have no room in the lower chart on paper have the field `tag`_tall. What narrow screens show beside a point,
+/// names alone or what tells those of a method apart, is in `tag`_narrow and `tag`_narrow_at.
 void tag_lines(nlohmann::json& rows, const std::string& across, double height, const std::string& text_field);
 
 /// Writes the name of each line, its `line`, beside one of its points, where it has room in a chart that stands beside
-/// one other and in one beside two.
+/// one other and in one beside two; for narrow screens as tag_lines does.
 void name_lines(nlohmann::json& rows, const std::string& across);
 
 }  // namespace stickslip::report

@@ -68,7 +68,10 @@ void add_guides(json& rows) {
     const auto least = std::min_element(points.begin(), points.end(),
                                         [](const auto& a, const auto& b) { return a.second < b.second; });
     if (least - points.begin() < 2) continue;
-    const auto& middle = points[static_cast<std::size_t>(least - points.begin()) / 2];
+    // Below all points of the stiffer half, whether they follow it or not: its words stand below its end.
+    double product = least->first * least->second;
+    for (auto p = points.begin() + (least - points.begin()) / 2; p != least; ++p)
+      product = std::min(product, p->first * p->second);
     for (const auto& end : {points.front(), *least}) {
       json r = {{"panel", std::get<0>(key)}, {"quantity", std::get<1>(key)}, {"scene", std::get<2>(key)}};
       r["family"] = "penalty";
@@ -77,7 +80,7 @@ void add_guides(json& rows) {
       r["line"] = "guide " + std::get<3>(key);
       r["option_value"] = r["order"] = end.first;
       // Set off by a factor of 3, so that a curve that follows it is not hidden.
-      r["error"] = middle.second * middle.first / end.first / 3;
+      r["error"] = product / end.first / 3;
       r["guide_tag"] = end.first == least->first ? "slope -1" : "";
       rows.push_back(r);
     }
