@@ -96,7 +96,7 @@ json with_guides(json spec, const json& x, const json& y) {
            {{{"mark", {{"type", "line"}, {"strokeDash", {3, 3}}, {"strokeWidth", 1}, {"color", "$ink"}}}},
             {{"transform", only_if("datum.guide_tag != ''")},
              {"mark",
-              {{"type", "text"}, {"align", "right"}, {"dx", -6}, {"dy", 6}, {"color", "$ink"}, {"fontSize", 11}}},
+              {{"type", "text"}, {"align", "right"}, {"dx", -6}, {"dy", 13}, {"color", "$ink"}, {"fontSize", 11}}},
              {"encoding", {{"text", {{"field", "guide_tag"}}}}}}})}};
   spec["layer"].insert(spec["layer"].begin(), guide);
   return spec;
