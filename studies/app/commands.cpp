@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "studies/app/exit_codes.hpp"
+#include "studies/app/recorded.hpp"
 #include "studies/app/schema.hpp"
 #include "studies/app/trace_table.hpp"
 #include "studies/input/method_options.hpp"
@@ -286,6 +287,7 @@ int schema_command(const std::string& kind) {
 }
 
 int report_command(const std::string& directory) {
+  check_recorded(directory);
   const bool of_run = holds(directory, "result.json");
   if (!of_run && !holds(directory, "results.jsonl"))
     throw InputFault(directory + ": there are no results; run `stickslip study`, or `stickslip run` first");

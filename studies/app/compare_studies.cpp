@@ -12,6 +12,7 @@
 
 #include "studies/app/commands.hpp"
 #include "studies/app/exit_codes.hpp"
+#include "studies/app/recorded.hpp"
 #include "studies/io/input_fault.hpp"
 #include "studies/io/printing.hpp"
 
@@ -275,6 +276,7 @@ int compare_command(const CompareArguments& arguments) try {
   RowsById rows[2];
   const std::string directories[] = {arguments.before, arguments.after};
   for (int i = 0; i < 2; ++i) {
+    check_recorded(directories[i]);
     StoredRows stored = read_rows(directories[i], drop_curves);
     if (!stored.sound())
       std::cerr << printable("note: " + directories[i] + "/results.jsonl: " + stored.faults()) << '\n';

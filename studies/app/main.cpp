@@ -44,6 +44,16 @@ CLI::Option* names_something(CLI::Option* option) {
   return option->check(CLI::Validator(fault, ""));
 }
 
+/// Refuses what is no such number in the words of all other faults; `what` completes "must be ...".
+template <class Number>
+void is_number(CLI::Option* option, const char* what) {
+  const auto fault = [what](const std::string& text) {
+    Number number;
+    return CLI::detail::lexical_cast(text, number) ? std::string() : "is " + in_quotes(text) + "; must be " + what;
+  };
+  option->check(CLI::Validator(fault, ""));
+}
+
 void add_scene(CLI::App& command, RunArguments& arguments) {
   command.add_option("SCENE", arguments.scene, "scene file (JSON)")->required();
   command.add_option("-m,--method", arguments.method, "penalty, uzawa_al or monolithic_al in place of the scene's");
@@ -82,7 +92,9 @@ void add_study(CLI::App& command, StudyArguments& study) {
   auto& resume = *command.add_flag("--resume", study.resume, "keep the cells that are there and run what is missing");
   command.add_flag("--restart", study.restart, "delete the cells that are there and run all")->excludes(&resume);
   command.add_option("--shard", study.shard, "i/N: only every N-th cell, from the i-th on");
-  command.add_option("-j,--jobs", study.jobs, "processes that run cells at once; seconds are measured apart");
+  is_number<int>(
+      command.add_option("-j,--jobs", study.jobs, "processes that run cells at once; seconds are measured apart"),
+      "a whole number from 1 to 1024");
 }
 
 void add_merge(CLI::App& command, Arguments& given) {
@@ -93,8 +105,10 @@ void add_merge(CLI::App& command, Arguments& given) {
 void add_compare(CLI::App& command, CompareArguments& compare) {
   command.add_option("OLD", compare.before, "directory of a study")->required();
   command.add_option("NEW", compare.after, "directory of a study")->required();
-  command.add_option("--relative", compare.relative, "share of itself that an error may grow by");
-  command.add_option("--rounding", compare.rounding, "error that is put down to rounding");
+  is_number<double>(command.add_option("--relative", compare.relative, "share of itself that an error may grow by"),
+                    "a number >= 0");
+  is_number<double>(command.add_option("--rounding", compare.rounding, "error that is put down to rounding"),
+                    "a number >= 0");
   command.add_flag("--json", compare.json, "one JSON document on standard output and nothing else");
 }
 

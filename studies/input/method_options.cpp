@@ -303,6 +303,14 @@ void check_option_names(const JsonNode& options, const std::string& method) {
   });
 }
 
+void check_option_values(const JsonNode& options, const std::string& method, Diagnostics& diagnostics) {
+  MeshFiles none;
+  SceneReading reading(diagnostics, {}, none);
+  for_each_method([&]<class M>(M chosen) {
+    if (method == M::name) visit_options(chosen, Reader{options, reading});
+  });
+}
+
 std::optional<Method> default_method(const std::string& name) {
   std::optional<Method> found;
   for_each_method([&](const auto& method) {

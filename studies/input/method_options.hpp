@@ -10,6 +10,7 @@
 
 namespace stickslip {
 
+class Diagnostics;
 class JsonNode;
 struct SceneReading;
 
@@ -24,6 +25,9 @@ std::optional<Method> read_method(const JsonNode&, SceneReading&);
 
 /// Reports the keys among the options that are none of the method's, each with where it belongs.
 void check_option_names(const JsonNode& options, const std::string& method);
+
+/// Reports the values of options that are at fault, each by itself: nothing of how they go together.
+void check_option_values(const JsonNode& options, const std::string& method, Diagnostics&);
 
 /// Whether an option may be a list of values, as in the "methods" of a study.
 enum class OptionLists { refused, swept };

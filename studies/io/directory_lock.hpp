@@ -2,8 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 
 #include "studies/io/input_fault.hpp"
+#include "studies/io/interrupts.hpp"
 
 namespace stickslip {
 
@@ -12,9 +15,10 @@ struct DirectoryInUse : InputFault {
   using InputFault::InputFault;
 };
 
-/// Holds DIR/.lock, which is made where it is missing, until the end of the scope or of the process, however it ends:
-/// the kernel drops the lock of a process that is killed. A child made by fork() does not hold it. POSIX record lock,
-/// so it works over NFS too. Throws DirectoryInUse, or std::system_error where the disk refuses.
+/// Holds DIR/.lock until the end of the scope or of the process, however it ends: the kernel drops the lock of a
+/// process that is killed. The file is made where it is missing and taken away at the end, an interrupt's included;
+/// after SIGKILL it stays, and holds nothing. A child made by fork() does not hold the lock. POSIX record lock, so it
+/// works over NFS too. Throws DirectoryInUse, or std::system_error where the disk refuses.
 class DirectoryLock {
  public:
   explicit DirectoryLock(const std::filesystem::path& directory);
@@ -25,8 +29,10 @@ class DirectoryLock {
   DirectoryLock& operator=(const DirectoryLock&) = delete;
 
  private:
-  std::filesystem::path path_;  ///< of the file that is locked
+  bool is_there() const;
+  std::string path_;  ///< of the file that is locked
   int file_;
+  std::optional<AtInterrupt> at_interrupt_;
 };
 
 }  // namespace stickslip

@@ -223,6 +223,11 @@ json tooltip(const std::vector<std::pair<std::string, std::string>>& fields) {
   return out;
 }
 
+void add_panel(Figure& figure, Panel panel) {
+  panel.spec["transform"] = only_if("datum.panel == '" + panel.only + "'");
+  figure.panels.push_back(std::move(panel));
+}
+
 namespace {
 
 /// The point nearest to the pointer, wherever in the chart that is: its tooltip shows, and its marker stands out.

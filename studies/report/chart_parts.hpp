@@ -72,6 +72,8 @@ nlohmann::json channel(const std::string& field, const std::string& title, bool 
 /// [{"filter": test}].
 nlohmann::json only_if(const std::string& test);
 nlohmann::json tooltip(const std::vector<std::pair<std::string, std::string>>& fields);
+/// Adds a panel that shows the rows of its own alone: those whose `panel` is panel.only.
+void add_panel(Figure&, Panel panel);
 
 /// Lines, markers, crosses for what failed, and the ground for exact zeros. Rows: series, line, order, shown, zero,
 /// failed, and in the field `tag` a word beside the marker, at the side that `tag`_at says: "right", "left", "right
@@ -86,11 +88,12 @@ std::string tag_field(const std::string& across);
 /// reader sees which way a line runs, and the name of its series, so that grey print needs no legend. A line that stays
 /// in one place, where the option does nothing, has its name alone. No word covers another, a marker or a curve: a name
 /// is tried on each side of each point, and is left to the legend where there is no room; then so are its values. Words
-/// that have no room in the lower chart on paper have the field `tag`_tall.
+/// that have no room in the lower chart on paper have the field `tag`_tall. What narrow screens show beside a point,
+/// names alone or what tells those of a method apart, is in `tag`_narrow and `tag`_narrow_at.
 void tag_lines(nlohmann::json& rows, const std::string& across, double height, const std::string& text_field);
 
 /// Writes the name of each line, its `line`, beside one of its points, where it has room in a chart that stands beside
-/// one other and in one beside two.
+/// one other and in one beside two; for narrow screens as tag_lines does.
 void name_lines(nlohmann::json& rows, const std::string& across);
 
 }  // namespace stickslip::report

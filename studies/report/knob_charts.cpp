@@ -68,7 +68,10 @@ void add_guides(json& rows) {
     const auto least = std::min_element(points.begin(), points.end(),
                                         [](const auto& a, const auto& b) { return a.second < b.second; });
     if (least - points.begin() < 2) continue;
-    const auto& middle = points[static_cast<std::size_t>(least - points.begin()) / 2];
+    // Below all points of the stiffer half, whether they follow it or not: its words stand below its end.
+    double product = least->first * least->second;
+    for (auto p = points.begin() + (least - points.begin()) / 2; p != least; ++p)
+      product = std::min(product, p->first * p->second);
     for (const auto& end : {points.front(), *least}) {
       json r = {{"panel", std::get<0>(key)}, {"quantity", std::get<1>(key)}, {"scene", std::get<2>(key)}};
       r["family"] = "penalty";
@@ -77,7 +80,7 @@ void add_guides(json& rows) {
       r["line"] = "guide " + std::get<3>(key);
       r["option_value"] = r["order"] = end.first;
       // Set off by a factor of 3, so that a curve that follows it is not hidden.
-      r["error"] = middle.second * middle.first / end.first / 3;
+      r["error"] = product / end.first / 3;
       r["guide_tag"] = end.first == least->first ? "slope -1" : "";
       rows.push_back(r);
     }
@@ -93,7 +96,7 @@ json with_guides(json spec, const json& x, const json& y) {
            {{{"mark", {{"type", "line"}, {"strokeDash", {3, 3}}, {"strokeWidth", 1}, {"color", "$ink"}}}},
             {{"transform", only_if("datum.guide_tag != ''")},
              {"mark",
-              {{"type", "text"}, {"align", "right"}, {"dx", -6}, {"dy", 6}, {"color", "$ink"}, {"fontSize", 11}}},
+              {{"type", "text"}, {"align", "right"}, {"dx", -6}, {"dy", 13}, {"color", "$ink"}, {"fontSize", 11}}},
              {"encoding", {{"text", {{"field", "guide_tag"}}}}}}})}};
   spec["layer"].insert(spec["layer"].begin(), guide);
   return spec;
@@ -153,11 +156,10 @@ std::optional<Figure> error_against_knob(const Study& study, const std::vector<s
     const json x = channel("option_value", knob_title(knobs), true);
     const json y =
         channel("shown", derivative ? "relative error of the sensitivity" : "relative error of the response", true);
-    json spec = with_guides(curves(figure.title + ", " + panel, x, y, tips), x, y);
-    spec["transform"] = only_if("datum.panel == '" + panel + "'");
+    const json spec = with_guides(curves(figure.title + ", " + panel, x, y, tips), x, y);
     const bool noise = !tells_apart(study, derivative ? Of::sensitivities : Of::responses) &&
                        tells_apart(study, derivative ? Of::responses : Of::sensitivities);
-    figure.panels.push_back({panel, spec, "option_value", "shown", true, true, panel, noise});
+    add_panel(figure, {panel, spec, "option_value", "shown", true, true, panel, noise});
     offer(figure, derivative ? "Sensitivity" : "Response", "quantity", "", panel);
   }
   offer(figure, "Scene", "scene", study.main_variant);
@@ -192,10 +194,9 @@ std::optional<Figure> iterations_against_knob(const Study& study, const std::vec
   for (const auto& [panel, unused] : counted_along_knobs) {
     const auto along_the_knob = [&](const json& r) { return r["panel"] == panel && !r.value("unmarked", false); };
     if (std::none_of(figure.rows.begin(), figure.rows.end(), along_the_knob)) continue;
-    json spec = curves(figure.title + ", " + panel, channel("option_value", knob_title(knobs), true),
-                       channel("count", panel, true), tips);
-    spec["transform"] = only_if("datum.panel == '" + panel + "'");
-    figure.panels.push_back({panel, spec, "option_value", "count", true, true, panel, false});
+    const json spec = curves(figure.title + ", " + panel, channel("option_value", knob_title(knobs), true),
+                             channel("count", panel, true), tips);
+    add_panel(figure, {panel, spec, "option_value", "count", true, true, panel, false});
   }
   if (figure.panels.empty()) return std::nullopt;
   offer(figure, "Scene", "scene", study.main_variant);

@@ -175,9 +175,8 @@ std::optional<Figure> mesh_convergence(const Study& study) {
   json x = channel("level", "mesh level", false);
   x["axis"]["tickMinStep"] = 1;
   const auto add = [&](const json& across, const std::string& title, const std::string& panel, const json& tips) {
-    json spec = curves(figure.title + ", against " + title, across, y, tips);
-    spec["transform"] = only_if("datum.panel == '" + panel + "'");
-    figure.panels.push_back({"against " + title, spec, panel, "shown", panel != "level", true, panel, false});
+    add_panel(figure, {"against " + title, curves(figure.title + ", against " + title, across, y, tips), panel, "shown",
+                       panel != "level", true, panel, false});
   };
   add(x, "the mesh level", "level", tooltip({{"label", "runs"}, {"level", "mesh level"}, {"error", "error"}}));
   if (!distinct(figure.rows, "series", "seconds").empty()) {

@@ -176,9 +176,10 @@
     line.textContent = selects.map((select) => select.parentElement.firstChild.data + select.value).join('; ');
   }
 
-  /** A row without words beside its point that are too long for a narrow panel, or say nothing without a name. */
-  const inBrief = (row) => Object.fromEntries(Object.entries(row).filter(
-      ([field, entry]) => !field.startsWith('tag') || (entry.length <= 12 && Number.isNaN(Number(entry)))));
+  /** A row with the words beside its point that have room in a narrow panel, instead of the others. */
+  const inBrief = (row) => Object.fromEntries(Object.entries(row)
+      .filter(([field]) => !field.startsWith('tag') || field.includes('_narrow'))
+      .map(([field, entry]) => [field.replace('_narrow', ''), entry]));
 
   /** A row without words beside its point that have no room in the lower chart on paper. */
   const onPaper = (row) => Object.fromEntries(Object.entries(row).filter(([field]) => !row[field + '_tall']));

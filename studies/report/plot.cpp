@@ -143,7 +143,7 @@ void draw_guides(const Frame& frame, const Panel& panel, Drawing& drawing) {
     Path& path = lines[row->value("line", "")];
     path.empty() ? path.move(x, y) : path.line(x, y);
     if (const std::string tag = row->value("guide_tag", ""); !tag.empty())
-      drawing.text(x - 6, y + 6, tag, {Anchor::end, 11});
+      drawing.text(x - 6, y + 13, tag, {Anchor::end, 11});
   }
   for (const auto& [name, path] : lines) drawing.path(path, {"ink", "", 1, {3, 3}});
 }

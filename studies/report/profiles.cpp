@@ -120,9 +120,9 @@ std::optional<Figure> profiles(const Study& study, Of of) {
   figure.series = series.list;
   const auto panel = [&](const std::string& name, const std::string& title, const json& x) {
     const json tips = tooltip({{"series", "method"}, {"x", x["title"].get<std::string>()}, {"share", "share solved"}});
-    json spec = curves(figure.title + ", " + title, x, channel("share", "share of the problems solved", false), tips);
-    spec["transform"] = only_if("datum.panel == '" + name + "'");
-    figure.panels.push_back({title, spec, "x", "share", true, false, name, false});
+    const json share = channel("share", "share of the problems solved", false);
+    add_panel(figure,
+              {title, curves(figure.title + ", " + title, x, share, tips), "x", "share", true, false, name, false});
   };
   json factor = channel("x", "work over the least work for the problem", true);
   factor["scale"] = {{"type", "log"}, {"nice", false}, {"domainMin", 1}};  // nothing takes less than the least work

@@ -202,10 +202,9 @@ std::optional<Figure> response_histories(const Study& study) {
   const auto tips = [](const char* x, const char* title) {
     return tooltip({{"series", "run"}, {x, title}, {"value", "value"}});
   };
-  json over_time = curves("Response over time", channel("time", time_title(told), false),
-                          channel("value", "{response}", false), tips("time", "time"));
-  over_time["transform"] = only_if("datum.panel == 'time'");
-  figure.panels.push_back({"response over time", over_time, "time", "value", false, false, "time", false});
+  const json over_time = curves("Response over time", channel("time", time_title(told), false),
+                                channel("value", "{response}", false), tips("time", "time"));
+  add_panel(figure, {"response over time", over_time, "time", "value", false, false, "time", false});
   const bool has_path = !distinct(figure.rows, "path", "path").empty();
   figure.title =
       has_path ? "Histories: responses over time, and forces along displacements" : "Histories: responses over time";
@@ -213,11 +212,10 @@ std::optional<Figure> response_histories(const Study& study) {
   const std::string response = first_over_time(first, told);
   figure.text = in_words(told, first, response, has_path);
   if (has_path) {
-    json path = curves("Force along displacement", channel("displacement", "{against}", false),
-                       channel("value", "{force}", false), tips("displacement", "displacement"));
-    path["transform"] = only_if("datum.panel == 'path'");
-    figure.panels.push_back(
-        {"force along displacement", path, "displacement", "value", false, false, "path", is_level(told, first.force)});
+    const json path = curves("Force along displacement", channel("displacement", "{against}", false),
+                             channel("value", "{force}", false), tips("displacement", "displacement"));
+    add_panel(figure, {"force along displacement", path, "displacement", "value", false, false, "path",
+                       is_level(told, first.force)});
   }
   offer(figure, "Response", "response", response, "time");
   offer(figure, "Path", "path", first.words(), "path");

@@ -3,9 +3,11 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "studies/report/chart_parts.hpp"
+#include "studies/report/labels.hpp"
 
 namespace stickslip::report {
 
@@ -50,6 +52,7 @@ struct Size {
   double width, height;
 };
 constexpr double of_two = 400, of_three = 290;  ///< wide is a chart beside others, at the narrowest
+constexpr double of_phone = 260;                ///< on a screen of 360, the narrowest that names are placed for
 constexpr Size on_paper{of_two, 220};           ///< page.js draws it so for print; those in files are larger
 constexpr double padding = 18;                  ///< between the outermost points and the border
 constexpr double font = 11, half_marker = 5, aside = 8;
@@ -137,10 +140,11 @@ class Chart {
   std::vector<std::array<Place, 2>> curves_;
 };
 
-/// The same chart in each of the sizes that it is shown in: words stand where they have room in all of them.
+/// The same chart in each of the sizes that it is shown in: words stand where they have room in all of them, and in the
+/// rows' fields that begin with `field`.
 class Views {
  public:
-  Views(const std::string& across, const std::vector<Size>& sizes) : across_(across) {
+  Views(const std::string& across, std::string field, const std::vector<Size>& sizes) : field_(std::move(field)) {
     for (const Size& size : sizes) charts_.emplace_back(across, size);
   }
 
@@ -162,7 +166,7 @@ class Views {
   }
 
   bool apart(const json& a, const json& b) const { return charts_.front().apart(a, b); }
-  bool names(const json& row) const { return row.contains(tag_field(across_)); }
+  bool names(const json& row) const { return row.contains(field_); }
 
   /// Writes the text beside its point, where it has room; where only the first chart has, for that one.
   bool write(json& row, const std::string& text) {
@@ -175,7 +179,7 @@ class Views {
       if (!charts_.front().has_room(row, text, side, 0)) return false;
       charts_.front().take(row, text, side);
       tell(row, text, side);
-      row[tag_field(across_) + "_tall"] = true;
+      row[field_ + "_tall"] = true;
       return true;
     });
   }
@@ -191,11 +195,11 @@ class Views {
 
  private:
   void tell(json& row, const std::string& text, const Side& side) const {
-    row[tag_field(across_)] = text;
-    row[tag_field(across_) + "_at"] = side.name;
+    row[field_] = text;
+    row[field_ + "_at"] = side.name;
   }
 
-  std::string across_;
+  std::string field_;
   std::vector<Chart> charts_;
 };
 
@@ -223,7 +227,7 @@ void say_values(const Line& line, const std::string& text_field, Views& chart) {
 std::vector<std::vector<json*>> charts_of(json& rows, const std::string& across) {
   std::map<std::array<std::string, 4>, std::vector<json*>> shown;
   for (auto& row : rows) {
-    for (const char* part : {"", "_at", "_tall"}) row.erase(tag_field(across) + part);
+    for (const char* part : {"", "_at", "_tall", "_narrow", "_narrow_at"}) row.erase(tag_field(across) + part);
     if (row[across] > 0 && row["shown"].is_number())
       shown[{row.value("panel", ""), row.value("quantity", ""), row.value("scene", ""), row.value("curve", "")}]
           .push_back(&row);
@@ -233,12 +237,31 @@ std::vector<std::vector<json*>> charts_of(json& rows, const std::string& across)
   return out;
 }
 
+/// Names a line beside any of its points, so many pixels apart from all else, if it can.
+bool name_apart(const std::string& name, const Line& line, double around, Views& chart) {
+  for (const Side& side : sides)
+    for (auto row = line.rbegin(); row != line.rend(); ++row)
+      if (chart.write_at(**row, name, side, around)) return true;
+  return false;
+}
+
 /// Names a line beside any of its points, well apart from all else, if it can.
 void name_anywhere(const std::string& name, const Line& line, Views& chart) {
-  for (const double around : {4.0, 0.0})
-    for (const Side& side : sides)
-      for (auto row = line.rbegin(); row != line.rend(); ++row)
-        if (chart.write_at(**row, name, side, around)) return;
+  if (!name_apart(name, line, 4, chart)) name_apart(name, line, 0, chart);
+}
+
+/// Names the lines of a chart on a narrow screen, where there is no room for values: by what a line has beside its
+/// method's name, which the legend says, where there is no room for both.
+void name_on_phone(const std::vector<json*>& shown, const std::string& across, double height) {
+  constexpr double well_apart = 12, apart = 4;
+  Views chart(across, tag_field(across) + "_narrow", {{of_phone, height}});
+  for (const auto& [key, line] : chart.draw(shown)) {
+    const std::string series = line.front()->value("series", ""),
+                      brief = beside_method(series, line.front()->value("family", ""));
+    for (const auto& [name, around] :
+         {std::pair(series, well_apart), {brief, apart}, {series, apart}, {brief, 0.0}, {series, 0.0}})
+      if (name_apart(name, line, around, chart)) break;
+  }
 }
 
 }  // namespace
@@ -248,17 +271,20 @@ std::string tag_field(const std::string& across) { return "tag_" + across; }
 void tag_lines(json& rows, const std::string& across, double height, const std::string& text_field) {
   const Size on_screen{of_two, height};
   for (const auto& shown : charts_of(rows, across)) {
-    Views chart(across, {on_screen, {on_paper.width, std::min(on_paper.height, height)}});
+    Views chart(across, tag_field(across), {on_screen, {on_paper.width, std::min(on_paper.height, height)}});
     const auto lines = chart.draw(shown);
     for (const auto& [key, line] : lines) name(line, text_field, chart);
     for (const auto& [key, line] : lines) say_values(line, text_field, chart);
+    name_on_phone(shown, across, height);
   }
 }
 
 void name_lines(json& rows, const std::string& across) {
   for (const auto& shown : charts_of(rows, across)) {
-    Views chart(across, {{of_three, chart_height}, on_paper});
+    Views chart(across, tag_field(across), {{of_three, chart_height}, on_paper});
     for (const auto& [key, line] : chart.draw(shown)) name_anywhere(key, line, chart);
+    Views narrow(across, tag_field(across) + "_narrow", {{of_phone, chart_height}});
+    for (const auto& [key, line] : narrow.draw(shown)) name_anywhere(key, line, narrow);
   }
 }
 

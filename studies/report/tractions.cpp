@@ -206,10 +206,9 @@ void add_panels(Figure& figure) {
     if (std::none_of(figure.rows.begin(), figure.rows.end(),
                      [&](const json& r) { return r["panel"] == panel && r["value"] != 0; }))
       continue;
-    json spec = curves(figure.title + ": " + title, channel("s", "position along the interface", false),
-                       channel("shown", title, logarithmic), tips);
-    spec["transform"] = only_if("datum.panel == '" + panel + "'");
-    figure.panels.push_back({title, spec, "s", "shown", false, logarithmic, panel, is_level(figure.rows, panel)});
+    const json spec = curves(figure.title + ": " + title, channel("s", "position along the interface", false),
+                             channel("shown", title, logarithmic), tips);
+    add_panel(figure, {title, spec, "s", "shown", false, logarithmic, panel, is_level(figure.rows, panel)});
   }
   if (std::all_of(figure.panels.begin(), figure.panels.end(), [](const Panel& panel) { return panel.folded; }))
     for (Panel& panel : figure.panels) panel.folded = false;

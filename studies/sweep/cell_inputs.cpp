@@ -6,6 +6,9 @@
 #include <cmath>
 #include <set>
 
+#include "studies/input/method_options.hpp"
+#include "studies/io/json_node.hpp"
+
 namespace stickslip {
 namespace {
 
@@ -75,6 +78,26 @@ bool complete(CellInput& cell, const std::string& method, const std::string& pro
   return true;
 }
 
+/// Each value of each option by itself.
+void check_option_values(const MethodSweep& method, Diagnostics& diagnostics) {
+  for (const Knob& option : method.options)
+    for (const PlacedValue& value : option.values) {
+      CellInput cell;
+      cell.document = JsonDocument::of(json::object(), method.place.source);
+      set_method(cell, {method.method, method.place, {option}}, {&value});
+      check_option_values(*JsonNode(cell.document, diagnostics).find("method")->find(method.method), method.method,
+                          diagnostics);
+    }
+}
+
+/// Whether a fault follows from the method that a scene is read with, which is not the one of any cell.
+bool is_of_method(const Diagnostic& fault, const JsonDocument& scene) {
+  const auto names_method = [](const std::string& pointer) { return pointer.starts_with("/method"); };
+  if (names_method(fault.pointer)) return true;
+  const json* parameter = fault.pointer.starts_with("/parameters/") ? value_at(scene.root(), fault.pointer) : nullptr;
+  return parameter && parameter->dump().find("/method/") != std::string::npos;
+}
+
 }  // namespace
 
 std::string cell_id(const std::string& canonical, const std::string& program_version) {
@@ -125,6 +148,29 @@ Diagnostic in_study(const Study& study, Diagnostic fault) {
   return fault;
 }
 
+void check_parts(const Study& study, Diagnostics& all_faults, MeshFiles& mesh_files) {
+  Diagnostics diagnostics;
+  for (const MethodSweep& method : study.methods) check_option_values(method, diagnostics);
+  for (const Reference& reference : study.references) check_option_values(reference.method, diagnostics);
+  const auto check_scene = [&](const JsonDocument& scene) {
+    Diagnostics own;
+    read_scene(scene, std::string(method_names().front()), own, mesh_files);
+    for (const Diagnostic& fault : own.errors())
+      if (!is_of_method(fault, scene)) diagnostics.error(fault);
+  };
+  if (study.scene.root().is_object()) check_scene(study.scene);
+  for (const auto& [level, place] : study.refine)
+    if (JsonDocument scene = study.scene; scene.root().is_object() && level.is_number_integer() && level > 0)
+      refine_meshes(scene, 1, place, diagnostics);  // whether it can be
+  for (const Knob& knob : study.vary)
+    for (const PlacedValue& value : study.scene.root().is_object() ? knob.values : std::vector<PlacedValue>{}) {
+      JsonDocument scene = study.scene;
+      scene.set(knob.pointer, value.value, value.place);
+      check_scene(scene);
+    }
+  for (const Diagnostic& fault : diagnostics.errors()) all_faults.error(in_study(study, fault));
+}
+
 std::vector<CellInput> expand(const Study& study, const std::string& program_version, Diagnostics& all_faults,
                               MeshFiles& mesh_files) {
   Diagnostics diagnostics;
@@ -165,6 +211,7 @@ std::vector<CellInput> expand(const Study& study, const std::string& program_ver
           complete(cell, reference.method.method, program_version, diagnostics, mesh_files);
       }
   for (const Diagnostic& fault : diagnostics.errors()) all_faults.error(in_study(study, fault));
+  if (diagnostics.has_errors()) check_parts(study, all_faults, mesh_files);
   if (again > 0)
     all_faults.note(
         {{study.document.file()},

@@ -29,6 +29,10 @@ struct CellInput {
 /// were left out. Empty where there is a fault.
 std::vector<CellInput> expand(const Study&, const std::string& program_version, Diagnostics&, MeshFiles&);
 
+/// Reports what else is at fault where the study, or the file of its scene, is already, and so has no cells: values of
+/// methods' options, the scene, and each value that it takes in turn, one at a time.
+void check_parts(const Study&, Diagnostics&, MeshFiles&);
+
 /// A fault of a cell's scene as one of the study, where the study gives the value: with the pointer that it has there.
 Diagnostic in_study(const Study&, Diagnostic fault);
 

@@ -14,6 +14,7 @@
 #include "studies/io/atomic_file.hpp"
 #include "studies/io/directory_lock.hpp"
 #include "studies/io/input_fault.hpp"
+#include "studies/io/interrupts.hpp"
 #include "studies/io/printing.hpp"
 #include "studies/io/progress.hpp"
 #include "studies/io/result_rows.hpp"
@@ -281,36 +282,19 @@ bool is_described(const fs::path& directory, const json& described) {
   return there == ours;
 }
 
-/// Where Ctrl-C, or a scheduler, ends the study: says how to go on, while it lives. Workers, which are forked from it,
-/// are ended too, in silence.
+/// Says how to go on where Ctrl-C, or a scheduler, ends the study.
 class InterruptNote {
  public:
-  explicit InterruptNote(const std::string& command) {
-    text_ = "\ninterrupted: finished cells are kept; to go on:\n  " + command + " --resume\n";
-    owner_ = ::getpid();
-    struct sigaction action {
-    }, before{};
-    action.sa_handler = say;
-    action.sa_flags = SA_RESETHAND;
-    for (const int signal : {SIGINT, SIGTERM})
-      if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler == SIG_DFL)  // not of a job that ignores it
-        ::sigaction(signal, &action, nullptr);
-  }
-  ~InterruptNote() {
-    struct sigaction now {};
-    for (const int signal : {SIGINT, SIGTERM})
-      if (::sigaction(signal, nullptr, &now) == 0 && now.sa_handler == say) ::signal(signal, SIG_DFL);
-  }
-  InterruptNote(const InterruptNote&) = delete;
-  InterruptNote& operator=(const InterruptNote&) = delete;
+  explicit InterruptNote(const std::string& command)
+      : text_("\ninterrupted: finished cells are kept; to go on:\n  " + command + " --resume\n"),
+        at_interrupt_(say, text_.c_str()) {}
 
  private:
-  static void say(int signal) {  // only what a signal handler may call
-    if (::getpid() == owner_ && ::write(STDERR_FILENO, text_.data(), text_.size()) < 0) ::_exit(128 + signal);
-    ::raise(signal);
+  static void say(const char* text) {  // only what a signal handler may call
+    if (::write(STDERR_FILENO, text, std::strlen(text)) < 0) return;
   }
-  static inline std::string text_;
-  static inline pid_t owner_ = 0;
+  std::string text_;
+  AtInterrupt at_interrupt_;
 };
 
 StudyOutcome carry_out(const Plan& plan, const StudyArguments& arguments, const Listener& listener, MeshFiles& meshes) {

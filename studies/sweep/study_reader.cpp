@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "studies/sweep/cell_inputs.hpp"
 #include "studies/sweep/study_reading.hpp"
 
 namespace stickslip {
@@ -111,10 +112,14 @@ std::optional<Study> read_study(const std::string& file, Diagnostics& diagnostic
   if (const auto accuracy = root.find("accuracy")) check_accuracies(*accuracy);
   if (const auto timing = root.find("timing")) study.repeat = read_rounds(*timing);
   if (const auto budget = root.find("error_budget")) study.budget_copies = read_budget(*budget);
-  if (const double count = cell_count(study); count > most_cells)
+  if (const double count = cell_count(study); count > most_cells) {  // too many to look at each of their values
     root.error(fmt::format("makes {:.0f} cells of all its lists; allowed: {:.0f} at most", count, most_cells));
-  if (diagnostics.error_count() > faults) return std::nullopt;
-  return study;
+    return std::nullopt;
+  }
+  if (diagnostics.error_count() == faults) return study;
+  MeshFiles meshes;
+  check_parts(study, diagnostics, meshes);
+  return std::nullopt;
 }
 
 }  // namespace stickslip

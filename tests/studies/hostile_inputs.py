@@ -143,6 +143,11 @@ def what_is_mistaken(work):
     run("runn", str(scene), code=2, says='there is no command "runn"; did you mean "run"?')
     run("run", str(study), code=2, says="is a study, not a scene; `stickslip study` runs it")
     run("study", str(scene), code=2, says="is a scene, not a study; `stickslip run` runs it")
+    for command in (("report",), ("compare", str(work / "whole"))):
+        run(*command, str(work / "nowhere"), code=2, says="nowhere: there is no such directory; must be")
+        run(*command, str(scene), code=2, says="one.json: is a file; must be a directory")
+    run("study", str(study), "--jobs", "two", code=2, says='--jobs: is "two"; must be a whole number from 1 to 1024')
+    run("compare", str(work / "whole"), str(work / "whole"), "--relative", "a", code=2, says="must be a number >= 0")
     print("commands and files that are mistaken for others", flush=True)
 
 

@@ -131,7 +131,17 @@ def interrupted(study, work):
     said = process.communicate()[1]
     if process.returncode != -signal.SIGINT or said.count(f"stickslip study {study} -o {directory} --resume\n") != 1:
         sys.exit(f"interrupted: {process.returncode} {said}")
+    if (directory / ".lock").exists():
+        sys.exit("an interrupted study left its .lock behind")
     print("an interrupted study says how to go on", flush=True)
+    directory = work / "interrupted run"
+    process = subprocess.Popen([PROGRAM, "run", SOURCE / "studies" / "scenes" / "tractrix.json", "--set",
+                                "/time/steps=1000000", "-o", directory], stdout=subprocess.DEVNULL)
+    while process.poll() is None and not (directory / ".lock").exists():
+        time.sleep(0.005)
+    process.terminate()
+    if process.wait() != -signal.SIGTERM or any(directory.iterdir()):
+        sys.exit(f"an interrupted run: {process.returncode}, left: {list(directory.iterdir())}")
 
 
 def by_slurm(study, whole, work):

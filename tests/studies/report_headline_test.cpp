@@ -1,0 +1,141 @@
+/// The sentences of a report, and what it holds its errors against.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "studies/report/charts.hpp"
+#include "studies/report/headline.hpp"
+#include "studies/report/records.hpp"
+#include "studies/report/settings.hpp"
+#include "tests/studies/recorded_study.hpp"
+#include "tests/studies/report_page.hpp"
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+using recorded::all_of;
+using recorded::cell;
+using recorded::description;
+using recorded::three_methods;
+using recorded::without_scripts;
+using report::Against;
+using report::Of;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class ReportHeadline : public recorded::StudyOnDisk {};
+
+TEST_F(ReportHeadline, HeadlineSaysHowThePenaltysErrorFallsAndLeavesTheCheapestToTheVerdict) {
+  record(description(), three_methods());
+  const std::string text = all_of(report::headline(study()));
+  EXPECT_THAT(text, HasSubstr("Penalty's error falls as stiffness to the power -1 down to 1e-9 at stiffness 1e9."));
+  EXPECT_THAT(text, Not(HasSubstr("factorisations")));
+}
+
+TEST_F(ReportHeadline, HeadlineSaysForWhichSceneThePenaltysErrorFallsAndWhereItFails) {
+  auto cells = three_methods();
+  for (auto& c : cells) c["vary"] = {{"friction", 1}};
+  auto others = three_methods();
+  for (auto& c : others) c["vary"] = {{"friction", 0.3}};
+  others[3]["status"] = "cap";
+  cells.insert(cells.begin(), others.begin(), others.end());
+  record(description(), cells);
+  EXPECT_THAT(all_of(report::headline(study())),
+              HasSubstr("Penalty's error for friction = 1 falls as stiffness to the power -1 down to 1e-9 at stiffness "
+                        "1e9. It fails at 1e9 (cap) for friction = 0.3."));
+}
+
+TEST_F(ReportHeadline, NamesWhatTheDiscretisationErrorIsAgainst) {
+  json study_json = description();
+  const json method = {{"method", {{"monolithic_al", json::object()}}}}, fine = {{"overkill", {{"refine", 2}}}};
+  const json closed = {{"analytic", "hertz_line"}}, given = {{"values", {{"press", 9.9}}}};
+  for (const auto& [references, words] :
+       {std::pair{json{method, closed}, "the closed form"}, std::pair{json{method, fine}, "the finer mesh"},
+        std::pair{json{given}, "the given values"}, std::pair{json{closed, fine}, "the references"}}) {
+    study_json["reference"] = references;
+    record(study_json, three_methods());
+    EXPECT_EQ(report::discretization_reference(study()), words);
+    const auto figure = report::work_precision(study(), Against::discretization, Of::responses);
+    EXPECT_EQ(figure->title, std::string("Responses: error against ") + words);
+    EXPECT_THAT(all_of(report::headline(study())),
+                HasSubstr(std::string("Against ") + words + " the run that enforces contact best"));
+    EXPECT_THAT(page(), HasSubstr(std::string("response error to ") + words));
+  }
+}
+
+TEST_F(ReportHeadline, HeadlineSaysWhatTheDistanceFromAReferenceIs) {
+  auto cells = three_methods();
+  json told = description();
+  const auto said = [&](const json& reference) {
+    told["reference"] = {reference};
+    record(told, cells);
+    return all_of(report::headline(study()));
+  };
+  EXPECT_THAT(said({{"analytic", "hertz_line"}}), HasSubstr("1 % in its worst response: that is mesh and steps, and"));
+  EXPECT_THAT(said({{"overkill", {{"refine", 1}}}}), HasSubstr("worst response: that is the mesh, and"));
+  EXPECT_THAT(said({{"values", {{"press", 1}}}}), HasSubstr("that is mesh, steps or the references themselves, and"));
+  for (auto& c : cells) c["errors"]["discretization"]["response:press"] = 4e-16;
+  EXPECT_THAT(said({{"analytic", "hertz_line"}}),
+              AllOf(HasSubstr("off by 4e-16 in its worst response, which is rounding."), Not(HasSubstr("that is"))));
+}
+
+/// A run that is nearer by accident does not tell what the mesh is off by: the verdict does not name it either.
+TEST_F(ReportHeadline, HeadlineTakesTheMeshsErrorOfTheRunThatEnforcesContactBest) {
+  auto cells = three_methods();
+  cells[0]["errors"]["discretization"]["response:press"] = 1e-5;
+  record(description(), cells);
+  EXPECT_THAT(all_of(report::headline(study())), HasSubstr("is off by 1 % in its worst response"));
+  EXPECT_EQ(report::own_error(study(), Of::responses), 0.01);
+}
+
+TEST_F(ReportHeadline, FoldsAwayWhatIsExactForMostRuns) {
+  auto cells = three_methods();
+  for (auto& c : cells) c["errors"]["discretization"]["response:press"] = 1e-15;
+  cells[0]["errors"]["discretization"]["response:press"] = 0.5;
+  record(description(), cells);
+  EXPECT_EQ(report::work_precision(study(), Against::discretization, Of::responses)->folded,
+            "6 of 7 runs are exact to rounding");
+  for (std::size_t i = 0; i < 4; ++i)
+    cells[i]["errors"]["discretization"]["response:press"] = cells[i]["errors"]["enforcement"]["response:press"];
+  record(description(), cells);
+  EXPECT_EQ(report::work_precision(study(), Against::discretization, Of::responses)->folded,
+            "4 of 7 runs are off by what they enforce contact with, as above, 3 exact to rounding");
+}
+
+/// The KKT measures are no errors: nothing may be called accurate by them.
+TEST_F(ReportHeadline, OfAStudyWithoutReferencesSaysThatNoErrorWasMeasured) {
+  auto cells = three_methods();
+  for (auto& c : cells)
+    for (const char* kind : {"enforcement", "discretization"}) c["errors"][kind] = json::object();
+  record(description(), cells);
+  EXPECT_THAT(all_of(report::headline(study())), HasSubstr("No error was measured"));
+  const std::string html = without_scripts(page());
+  EXPECT_THAT(html, AllOf(Not(HasSubstr("accurate enough")), Not(HasSubstr("within 1e-6")), Not(HasSubstr("Profiles")),
+                          Not(HasSubstr("class=\"failed\""))));
+  record(description(), three_methods());
+  EXPECT_THAT(all_of(report::headline(study())), Not(HasSubstr("No error was measured")));
+}
+
+TEST_F(ReportHeadline, OfAMergedStudySaysWhatTheCommandWas) {
+  json merged = description();
+  merged["command"] = "stickslip merge p1 p2 -o m";
+  merged["cells"] = {"none"};
+  record(merged, three_methods());
+  const std::string html = without_scripts(page());
+  EXPECT_THAT(html, AllOf(HasSubstr("joined by:</p><pre>stickslip merge p1 p2 -o m"), HasSubstr("and merge again"),
+                          Not(HasSubstr("This repeats the study")), Not(HasSubstr("the command at the end"))));
+}
+
+TEST_F(ReportHeadline, HeadlineSeesRoundingLiftThePenaltysError) {
+  auto cells = three_methods();
+  cells.push_back(cell("penalty", {{"stiffness", 1e12}}, 3e-4, 14));
+  record(description(), cells);
+  EXPECT_THAT(all_of(report::headline(study())), HasSubstr("and rises again beyond it, to 3e-4 at 1e12"));
+}
+
+}  // namespace
+}  // namespace stickslip
