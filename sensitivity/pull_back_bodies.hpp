@@ -30,48 +30,83 @@ Matrix<double> weights_inside(AdjointProblem<E>& problem, const std::vector<Inte
   return all;
 }
 
-/// Moves weights `a` (all dofs, in the axes) inside the bodies to loads, frames and prescribed motion.
+/// Weights of the rows that are solved inside the bodies, in the frames of the nodes: zero where motion is prescribed,
+/// and at the contact, whose rows have been moved already.
+inline Vector<double> inside_alone(const Model& model, Vector<double> weights) {
+  const int D = model.dimension;
+  for (int node : model.contact_nodes) weights.segment(node * D, D).setZero();
+  for (Eigen::Index dof = 0; dof < weights.size(); ++dof)
+    if (model.free_index[dof] < 0) weights[dof] = 0;
+  return weights;
+}
+
+/// Moves weights of the rows less the loads, in the axes, to the forces of the loads and their factors.
+inline void pull_back_dead_forces(const Model& model, const Slots<Reverse>& slots, double time,
+                                  const Vector<double>& weights, std::vector<double>& by, Tape& tape) {
+  for (std::size_t l = 0; l < slots.loads.size(); ++l) {
+    const auto& history = model.scene.loads[l].history;
+    const Reverse factor = history ? evaluate(*history, time, slots.numbers) : Reverse(1);
+    const auto& load = slots.loads[l];
+    double work = 0;
+    for (std::size_t k = 0; k < load.dofs.size(); ++k) {
+      const double weight = weights[load.dofs[k]];
+      work += load.forces[k].v * weight;
+      if (load.forces[k].entry >= 0) by[load.forces[k].entry] -= factor.v * weight;
+    }
+    by.resize(tape.size(), 0);
+    if (factor.entry >= 0) by[factor.entry] -= work;
+  }
+}
+
+/// Whether the motion that supports prescribe is on the tape.
+inline bool moves_on_tape(const Model& model, const Slots<Reverse>& slots, double time) {
+  return !model.framed.empty() ||
+         std::any_of(model.constraints.begin(), model.constraints.end(), [&](const Constraint& constraint) {
+           const auto place = slots.points.col(constraint.dof / model.dimension);
+           return prescribed_value<Reverse>(model.scene, constraint, place, time, slots.numbers).entry >= 0;
+         });
+}
+
+/// Moves weights `a` (all dofs, in the axes) inside the bodies to loads, frames and prescribed motion. What no
+/// parameter touches is not put in reverse scalars: of a vector over all dofs these alone would cost as much as the
+/// elements.
 template <class E>
 void pull_back_loads(AdjointProblem<E>& problem, const InteriorShare& of, const Vector<double>& a,
                      std::vector<double>& by) {
   const Model& model = problem.model;
   const auto& slots = problem.recorded;
+  const auto& frames = problem.slots.frames;
   Tape& tape = problem.tape;
   tape.rewind(problem.slots_end);
+  by.resize(problem.slots_end);
   const auto constant = [](double x) { return Reverse(x); };
-  Vector<Reverse> prescribed = of.motion.unaryExpr(constant);
-  prescribe(model, slots, of.time, prescribed);
-  Vector<Reverse> rows = -dead_forces(model, slots, of.time);
+  const auto seed = [&](const Vector<Reverse>& rows, const Vector<double>& weights) {
+    by.resize(tape.size(), 0);
+    for (Eigen::Index i = 0; i < rows.size(); ++i)
+      if (rows[i].entry >= 0) by[rows[i].entry] += weights[i];
+  };
+  const Vector<double> in_frames = inside_alone(model, into_frames(model, frames, Layout::all, a));
+  const Vector<double> weights = out_of_frames(model, frames, Layout::all, Vector<double>(in_frames));
+  pull_back_dead_forces(model, slots, of.time, weights, by, tape);
   if (!model.followers.empty()) {
     const Vector<Reverse> still = of.motion.unaryExpr(constant);
-    rows -= follower_forces(model, slots, of.time, still);
+    seed(-follower_forces(model, slots, of.time, still), weights);
   }
-  if (of.forces.size() > 0) rows += of.forces.unaryExpr(constant);
-  rows = into_frames(model, slots.frames, Layout::all, std::move(rows));
-  by.resize(problem.slots_end);
-  by.resize(tape.size(), 0);
-  const auto seed = [&](const Reverse& x, double derivative) {
-    if (x.entry >= 0) by[x.entry] += derivative;
-  };
-  const auto is_on_tape = [](const Vector<Reverse>& all) {
-    return std::any_of(all.begin(), all.end(), [](const Reverse& x) { return x.entry >= 0; });
-  };
-  if (is_on_tape(rows)) {
-    const Vector<double> weight = into_frames(model, problem.slots.frames, Layout::all, a);
-    std::vector<char> touches(model.node_count, 0);
-    for (int node : model.contact_nodes) touches[node] = 1;
-    for (int dof : model.free_dofs)
-      if (!touches[dof / model.dimension]) seed(rows[dof], weight[dof]);
+  if (!model.framed.empty()) {
+    const Vector<double> forces = of.forces - external_forces(model, problem.slots, of.time, of.motion);
+    seed(into_frames(model, slots.frames, Layout::all, Vector<Reverse>(forces.unaryExpr(constant))), in_frames);
   }
-  if (is_on_tape(prescribed)) {
+  if (moves_on_tape(model, slots, of.time)) {
+    Vector<Reverse> prescribed = of.motion.unaryExpr(constant);
+    prescribe(model, slots, of.time, prescribed);
     Vector<double> held =
-        into_frames(model, problem.slots.frames, Layout::all,
+        into_frames(model, frames, Layout::all,
                     tangent_times(model, problem.slots, {of.motion, of.last_memory, of.time, &of.flow}, a, true,
                                   &problem.at_supports));
     for (int dof : model.free_dofs) held[dof] = 0;
-    held = out_of_frames(model, problem.slots.frames, Layout::all, std::move(held));
-    for (Eigen::Index i = 0; i < held.size(); ++i) seed(prescribed[i], held[i]);
+    seed(prescribed, out_of_frames(model, frames, Layout::all, std::move(held)));
   }
+  by.resize(tape.size(), 0);
   tape.pull_back(by, problem.slots_end);
 }
 

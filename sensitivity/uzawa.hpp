@@ -27,9 +27,17 @@
 
 #include "methods/uzawa.hpp"
 #include "sensitivity/direct.hpp"
+#include "sensitivity/progress.hpp"
 #include "sensitivity/pull_back.hpp"
 
 namespace stickslip {
+
+/// Whether a scheme depends on rho. The fixed point does not: Dg = 0 there, whatever rho is. (What the tolerance leaves
+/// of g, times D rho, is no derivative of it.)
+inline bool reads_regularisation(const UzawaAL& method) {
+  using Sensitivity = UzawaAL::Sensitivity;
+  return method.sensitivity == Sensitivity::truncated || method.sensitivity == Sensitivity::oversized;
+}
 
 namespace detail {
 
@@ -59,8 +67,10 @@ LinearisedEquilibrium<E> linearise(const UzawaAL& method, Differentiation<E>& pr
                                    RegularisationField<double>& rho) {
   for (double& f : factor) f *= oversize;
   rho = adapted(initial_regularisation(problem.slots, method), factor);
-  return LinearisedEquilibrium<E>(problem, at, rho, regularisation_blocks(method, problem, factor), cone_radius(method),
-                                  time, false, previous.history);
+  auto blocks = reads_regularisation(method) ? regularisation_blocks(method, problem, factor)
+                                             : std::vector(problem.blocks.size(), constant<Direction>(rho));
+  return LinearisedEquilibrium<E>(problem, at, rho, std::move(blocks), cone_radius(method), time, false,
+                                  previous.history);
 }
 
 /// kappa_s of the preconditioned scheme, from the contraction of the updates (0: not measured).
@@ -93,25 +103,6 @@ inline State<double> restated(const Model& model, State<double> at, const Regula
   }
   return at;
 }
-
-/// Watches whether a change falls fast enough to get to its end within `limit` passes.
-class Progress {
- public:
-  static constexpr int limit = 20000;
-  /// Whether there is no hope: at the rate of the last `window` passes, the passes left do not take `change` down to
-  /// `enough`. A linear iteration slows down, as its fast modes die out, and never speeds up.
-  bool is_hopeless(int pass, double change, double enough) {
-    if (pass % window != 0) return false;
-    const double before = std::exchange(last_, change);
-    if (!(before > 0) || !(enough > 0)) return false;
-    const double rate = std::log(change / before), wanted = std::log(enough / change);
-    return rate >= 0 || wanted / rate * window > limit - pass;
-  }
-
- private:
-  static constexpr int window = 500;
-  double last_ = 0;
-};
 
 /// Iterates D lambda <- D t, until all parameters have ended. With `change` the largest change of D lambda in a pass, q
 /// the ratio of the last two changes and `floors` what rounding of rho Dg makes of a change, a parameter ends where
@@ -198,8 +189,7 @@ bool differentiate_preconditioned(const UzawaAL& method, Differentiation<E>& pro
   const auto own = adapted(initial_regularisation(problem.slots, method), increment.rho_factor);
   const double oversize = chosen_oversize(method, problem.slots, own, increment.contraction);
   const auto rho = adapted(own, std::vector<double>(own.size(), oversize));
-  // (the fixed point does not depend on rho)
-  const std::vector<RegularisationField<Direction>> blocks(problem.blocks.size(), constant<Direction>(rho));
+  const std::vector blocks(problem.blocks.size(), constant<Direction>(rho));
   const State<double> at = restated(problem.model, increment.state, rho);
   LinearisedEquilibrium<E> linearised(problem, at, rho, blocks, cone_radius(method), increment.time, false,
                                       previous.history);
@@ -244,12 +234,14 @@ bool differentiate_increment(const UzawaAL& method, Differentiation<E>& problem,
 
 namespace detail {
 
-/// rho of the loop times `oversize`, recorded on the tape after it was rewound.
+/// rho of the loop times `oversize`; where the scheme depends on it, recorded on the tape, which is rewound.
 template <class E>
 RegularisationField<Reverse> recorded_regularisation(const UzawaAL& method, AdjointProblem<E>& problem,
                                                      std::vector<double> factor, double oversize) {
   for (double& f : factor) f *= oversize;
   problem.tape.rewind(problem.slots_end);
+  if (!reads_regularisation(method))
+    return constant<Reverse>(adapted(initial_regularisation(problem.slots, method), factor));
   return adapted(initial_regularisation(problem.recorded, method), factor);
 }
 
@@ -375,11 +367,6 @@ bool pull_back_preconditioned(const UzawaAL& method, AdjointProblem<E>& problem,
 }
 
 }  // namespace detail
-
-/// Whether what the adjoint goes back through depends on rho.
-inline bool reads_regularisation(const UzawaAL& method) {
-  return method.sensitivity != UzawaAL::Sensitivity::preconditioned;
-}
 
 template <class E>
 bool pull_back_increment(const UzawaAL& method, AdjointProblem<E>& problem, const State<double>& previous,

@@ -225,7 +225,7 @@ double predicted_contraction(const scenes::Solved& s, double rho) {
     const double sign = contact.traction[model.points[p].multiplier + 1] < 0 ? -1 : 1;
     constraints.push_back(normal);
     forces.push_back(area *
-                     (stick ? normal : Eigen::VectorXd(normal - *s.slots.friction[0].coefficient * sign * along)));
+                     (stick ? normal : Eigen::VectorXd(normal - s.slots.friction[0].slope_at_apex() * sign * along)));
     if (stick) {
       constraints.push_back(along);
       forces.push_back(area * along);

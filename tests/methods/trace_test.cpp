@@ -46,7 +46,7 @@ TEST(Trace, DoesNotChangeTheSolution) {
 
 TEST(Trace, ShowsTheTrialTractionAndItsProjection) {
   const Traced t(scenes::dragged_point({{0, 0, 0}, {1, 0, -0.6}, {2, 0.7, -0.6}}, 16, 0.3), MonolithicAL{});
-  const double mu = *t.slots.friction[0].coefficient;
+  const double mu = t.slots.friction[0].slope_at_apex();
   bool slipped = false, stuck = false;
   for (const auto& i : t.trace.iterates) {
     ASSERT_EQ(i.trial.size(), 3);
