@@ -17,7 +17,9 @@ double half_to_one(double size) { return size > 0 ? std::exp2(-std::floor(0.5 * 
 
 template <class T>
 void DenseFactor<T>::equilibrate(const Matrix<T>& A) {
-  row_ = A.cwiseAbs().rowwise().maxCoeff().unaryExpr(&to_one);
+  row_ = Vector<double>::Zero(A.rows());  // column by column, as A is stored: along its rows each entry is far away
+  for (Eigen::Index j = 0; j < A.cols(); ++j) row_ = row_.cwiseMax(A.col(j).cwiseAbs());
+  row_ = row_.unaryExpr(&to_one).eval();
   column_ = (row_.asDiagonal() * A.cwiseAbs()).colwise().maxCoeff().transpose().unaryExpr(&to_one);
 }
 

@@ -201,8 +201,8 @@ double size_of_terms(Response::Kind kind, const Matrix<double>& base, const Traj
   if (kind != Response::Kind::reaction && kind != Response::Kind::contact_force) return largest;
   double motion = 0;
   for (const auto& increment : trajectory.increments)
-    motion = std::max(motion, largest_entry(increment.state.displacement));
-  return std::max(largest, stiffest * motion);
+    motion = larger(motion, largest_entry(increment.state.displacement));
+  return larger(largest, stiffest * motion);
 }
 
 void check(const Scene& scene, const Method& method, const std::string& what, Tally& tally) {
