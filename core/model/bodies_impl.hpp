@@ -341,7 +341,6 @@ Vector<T> bulk_tangent_times(const Model& model, const Slots<T>& slots, const Bo
 
 template <class T>
 T bulk_energy(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& memory) {
-  if (model.effects.linear_bulk) return T(0.5) * dot(bulk_forces(model, slots, u, memory), u);
   T energy{};
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     const auto& body = model.bodies[b];
