@@ -43,8 +43,17 @@ void make_engine(const Model& model, const Slots<T>& slots, const Method& method
       }
     }
   }
+  std::shared_ptr<CondensedTangent<T>> tangent;
+  if constexpr (std::is_same_v<T, double>)
+    if (!condensed && can_condense_tangents(model) && engine != LinearAlgebra::Engine::sparse) {
+      const auto symmetry = detail::symmetry_of(model, unknown_multipliers, cone);
+      tangent = std::make_shared<CondensedTangent<T>>(model, slots, unknown_multipliers, symmetry, options.backend);
+      if (engine == LinearAlgebra::Engine::automatic &&
+          !prefers_condensed_tangents(tangent->factor_size(), tangent->dense_rows(), symmetry))
+        tangent.reset();
+    }
   workspace.engine.emplace(std::in_place_type<SparseEngine<T>>, model, slots, unknown_multipliers, cone,
-                           options.backend, std::move(condensed));
+                           options.backend, std::move(condensed), std::move(tangent));
 }
 
 }  // namespace stickslip

@@ -3,6 +3,7 @@
 
 #include "core/model/condensation_impl.hpp"
 #include "core/model/condensed_engine.hpp"
+#include "core/model/contact_system_impl.hpp"
 #include "core/model/loading.hpp"
 
 namespace stickslip {
@@ -14,15 +15,7 @@ CondensedEngine<T>::CondensedEngine(const Model& model, const Slots<T>& slots, b
       slots_(slots),
       unknown_multipliers_(unknown_multipliers),
       condensation_(std::move(condensation)),
-      symmetry_(detail::symmetry_of(model, unknown_multipliers, cone)) {
-  const int D = model.dimension;
-  for (int node : model.contact_nodes)
-    for (int i = 0; i < D; ++i) {
-      free_.push_back(model.free_index[node * D + i] >= 0);
-      free_place_.push_back(free_.back() ? static_cast<int>(free_list_.size()) : -1);
-      if (free_.back()) free_list_.push_back(static_cast<int>(free_.size()) - 1);
-    }
-}
+      system_(model, slots, unknown_multipliers, detail::symmetry_of(model, unknown_multipliers, cone)) {}
 
 template <class T>
 Vector<T> CondensedEngine<T>::begin(double time, const Vector<T>& displacement, const Vector<T>& /*before*/) {
@@ -97,103 +90,12 @@ Vector<T> CondensedEngine<T>::residual(const Vector<T>& u, const Vector<T>& cont
 }
 
 template <class T>
-std::vector<int> CondensedEngine<T>::point_rows(const ContactPoint& point) const {
-  const int D = model_.dimension;
-  std::vector<int> rows;
-  for (int n : point.places)
-    for (int i = 0; i < D; ++i) rows.push_back(free_place_[n * D + i]);
-  if (unknown_multipliers_)
-    for (int c = 0; c < point.components(); ++c) rows.push_back(place_[point.multiplier + c]);
-  return rows;
-}
-
-template <class T>
 bool CondensedEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters,
                                    const Vector<double>& hold) {
-  update_.clear();
-  if (valid_ && detail::same_values(hold, held_) && detail::same_tangents(tangents, factorised_)) return true;
-  const int D = model_.dimension, free = static_cast<int>(free_list_.size());
-  active_.clear();
-  place_.assign(model_.multiplier_count, -1);
-  open_diagonal_ = Vector<T>::Constant(model_.multiplier_count, T(1));
-  if (unknown_multipliers_)
-    for (std::size_t p = 0; p < tangents.size(); ++p) {
-      const bool open = detail::is_open(tangents[p]);
-      for (int c = 0; c < model_.points[p].components(); ++c) {
-        const int k = model_.points[p].multiplier + c;
-        if (open) {
-          open_diagonal_[k] = tangents[p].row_l(c, c);
-        } else {
-          place_[k] = free + static_cast<int>(active_.size());
-          active_.push_back(k);
-        }
-      }
-    }
-  Matrix<T>& K = matrix_;
-  K = Matrix<T>::Zero(free + active_.size(), free + active_.size());
-  const auto& S = condensation_->schur();
-  for (int j = 0; j < free; ++j)
-    for (int i = 0; i < free; ++i) K(i, j) = S(free_list_[i], free_list_[j]);
-  if (hold.size() > 0)
-    for (int i = 0; i < free; ++i) K(i, i) += T(hold[free_list_[i] / D]);
-  for (std::size_t p = 0; p < tangents.size(); ++p) {
-    const auto rows = point_rows(model_.points[p]);
-    auto add = [&](int row, int column, const T& x) {
-      if (rows[row] >= 0 && rows[column] >= 0) K(rows[row], rows[column]) += x;
-    };
-    detail::for_each_framed_entry(model_, slots_, static_cast<int>(p), tangents[p], unknown_multipliers_, add);
-  }
+  system_.drop_update();
+  if (system_.is_factor_of(tangents, hold)) return true;
   ++counters.assemblies;
-  factorised_ = tangents;
-  held_ = hold;
-  return valid_ = factor_.factorise(K, symmetry_ == Symmetry::positive_definite, counters.factorizations);
-}
-
-template <class T>
-bool CondensedEngine<T>::update(const std::vector<PointTangent<T>>& tangents, Counters& counters,
-                                const Vector<double>& hold) {
-  if (!valid_ || !detail::same_values(hold, held_)) return false;
-  if (unknown_multipliers_)  // the factor has no rows for the multipliers of what was open then
-    for (std::size_t p = 0; p < tangents.size(); ++p)
-      if (detail::is_open(factorised_[p]) && !detail::same_tangent(factorised_[p], tangents[p])) return false;
-  const auto rows = [&](std::size_t p) { return point_rows(model_.points[p]); };
-  const auto solve = [&](const Matrix<T>& b) { return factor_.solve(b); };
-  return detail::update_factor<T>(model_, slots_, factorised_, tangents, unknown_multipliers_, rows,
-                                  static_cast<Eigen::Index>(free_list_.size() + active_.size()), counters, solve,
-                                  update_);
-}
-
-template <class T>
-void CondensedEngine<T>::carry(const Carried& carried, Counters& counters) {
-  valid_ = false;
-  if (carried.valid) factorise(carried.tangents, counters, carried.hold);
-  update_ = carried.update;
-}
-
-template <class T>
-bool CondensedEngine<T>::reversed() const {
-  const int expected = active_.size() % 2 == 1 ? -1 : 1;  // each multiplier turns the sign
-  return (factor_.determinant_sign() != expected) != update_.turns_sign();
-}
-
-template <class T>
-BlockVector<T> CondensedEngine<T>::solve(const BlockVector<T>& rows, Solving how) {
-  const bool transposed = how == Solving::transposed;
-  const int free = static_cast<int>(free_list_.size());
-  const Eigen::Index columns = rows.u.cols();
-  Matrix<T> b(free + active_.size(), columns);
-  for (int i = 0; i < free; ++i) b.row(i) = rows.u.row(free_list_[i]);
-  for (std::size_t a = 0; a < active_.size(); ++a) b.row(free + a) = rows.l.row(active_[a]);
-  const Matrix<T> x = detail::solve_updated<T>(
-      update_, b, how, [&](const Matrix<T>& r) { return factor_.solve(r, transposed); },
-      [&](const Matrix<T>& y) { return transposed ? Matrix<T>(matrix_.transpose() * y) : Matrix<T>(matrix_ * y); });
-  BlockVector<T> out{Matrix<T>::Zero(free_.size(), columns), Matrix<T>::Zero(model_.multiplier_count, columns)};
-  for (int i = 0; i < free; ++i) out.u.row(free_list_[i]) = x.row(i);
-  if (unknown_multipliers_) {
-    for (int k = 0; k < model_.multiplier_count; ++k) out.l.row(k) = rows.l.row(k) / open_diagonal_[k];
-    for (std::size_t a = 0; a < active_.size(); ++a) out.l.row(active_[a]) = x.row(free + a);
-  }
-  return out;
+  return system_.factorise(condensation_->schur(), tangents, hold, counters.factorizations);
 }
 
 template <class T>
@@ -201,18 +103,18 @@ EngineHoldings CondensedEngine<T>::holdings() const {
   EngineHoldings held;
   held.condensed = static_cast<long>(condensation_->schur().size() * sizeof(T));
   held.bodies_factor = condensation_->factor_bytes();
-  held.matrix_entries = held.factor_entries = static_cast<long>(matrix_.size());
-  held.matrix = static_cast<long>(matrix_.size() * sizeof(T));
-  held.factor = factor_.bytes();
+  held.matrix_entries = held.factor_entries = system_.entries();
+  held.matrix = static_cast<long>(system_.entries() * sizeof(T));
+  held.factor = system_.factor_bytes();
   held.body_solves = condensation_->backsolves();
-  held.unsymmetric = symmetry_ == Symmetry::general;
+  held.unsymmetric = system_.symmetry() == Symmetry::general;
   return held;
 }
 
 template <class T>
 std::string CondensedEngine<T>::name() const {
   const std::string of_bodies = condensation_->name();  // empty where no body has an inside
-  return std::string("condensed, dense ") + (symmetry_ == Symmetry::positive_definite ? "LL^T" : "LU") +
+  return std::string("condensed, dense ") + (system_.symmetry() == Symmetry::positive_definite ? "LL^T" : "LU") +
          (of_bodies.empty() ? "" : " on " + of_bodies);
 }
 

@@ -26,6 +26,8 @@ constexpr double of_solve = 3, of_block_solve = 1.2, of_dense = 1.0 / 3;
 // assembly of the bodies cost half a factorisation, by either engine.
 constexpr double free_ordering = 0.8, lu = 2, setting_up = 0.5;
 constexpr int few_unknowns = 200;
+// Sets of branches that a tangent of bodies which change is solved in: 1 by Newton's method, 3 to 5 in sequence.
+constexpr double branches_a_tangent = 2;
 
 double kind_of(Symmetry symmetry) { return symmetry == Symmetry::general ? lu : 1; }
 
@@ -99,6 +101,12 @@ EnginePrice predict_price(const Model& model, bool unknown_multipliers, Symmetry
                     solves * 2 * rows * rows * of_solve +
                     increments * solve * (of_solve + derivatives * of_block_solve);
   return price;
+}
+
+bool prefers_condensed_tangents(const FactorSize& bodies, int dense_rows, Symmetry symmetry) {
+  const double dense_kind = symmetry == Symmetry::positive_definite ? 1 : lu, rows = dense_rows;
+  const double dense = of_dense * dense_kind * rows * rows * rows / 3;
+  return bodies.flops + branches_a_tangent * dense < branches_a_tangent * kind_of(symmetry) * free_ordering * bodies.flops;
 }
 
 bool prefers_condensed(const Model& model, const EnginePrice& price) {

@@ -25,6 +25,10 @@ FactorSize bodies_factor(const Model& model);
 /// `symmetry`: of the tangents; `factor`: of the bodies.
 EnginePrice predict_price(const Model& model, bool unknown_multipliers, Symmetry symmetry, const FactorSize& factor);
 
+/// Whether each tangent of bodies that change is to be condensed: `bodies`: their factor with the contact dofs last;
+/// `dense_rows`: of what is left; `symmetry`: of the whole tangent.
+bool prefers_condensed_tangents(const FactorSize& bodies, int dense_rows, Symmetry symmetry);
+
 /// Whether the bodies are to be condensed. Where all can be, and there are fewer than 200 unknowns, they always are:
 /// there calls cost more than operations.
 bool prefers_condensed(const Model& model, const EnginePrice& price);

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/model/condensed_part.hpp"
+#include "core/model/condensed_tangent.hpp"
 
 namespace stickslip {
 
@@ -18,13 +19,18 @@ RowLists tangent_rows(const Model& model, bool unknown_multipliers, const MixedR
 ///
 /// Where some bodies are of constant stiffness and others are not, the former may be condensed: a dense block each on
 /// their contact dofs. Entries of dofs inside them mean nothing in its vectors.
+///
+/// Where tangents change, each may be condensed (core/model/condensed_tangent.hpp), until one is not positive definite
+/// inside. The vectors are the same then, and the pattern is that of the bodies alone.
 template <class T>
 class SparseEngine {
  public:
   /// `unknown_multipliers`: the monolithic method's layout, [free dofs; multipliers]. `cone`: of all its systems.
   /// `condensation`: of the bodies of constant stiffness among others (has_mixed_bodies); null: none is condensed.
+  /// `tangent`: what condenses the tangents; null: nothing does.
   SparseEngine(const Model& model, const Slots<T>& slots, bool unknown_multipliers, ConeRadius cone, Backend backend,
-               std::shared_ptr<Condensation<T>> condensation = nullptr);
+               std::shared_ptr<Condensation<T>> condensation = nullptr,
+               std::shared_ptr<CondensedTangent<T>> tangent = nullptr);
 
   /// All dofs, prescribed values at `time` set. `before`: what bodies remember of the last increment.
   Vector<T> begin(double time, const Vector<T>& displacement, const Vector<T>& before);
@@ -74,9 +80,9 @@ class SparseEngine {
   /// of whose reduction `others` is. `wanted`: dofs that are read, ascending, where not all are.
   Matrix<T> expand(const Matrix<T>& u, Matrix<T> others, const std::vector<int>* wanted = nullptr);
   Matrix<T> scatter(const Matrix<T>& compact) const;  ///< compact rows -> engine rows
-  double condition_estimate() { return solver_.condition_estimate(); }
+  double condition_estimate() { return condenses_ ? tangent_->condition_estimate() : solver_.condition_estimate(); }
   std::string name() const;
-  const std::string& message() const { return solver_.message(); }
+  const std::string& message() const { return condenses_ ? tangent_->message() : solver_.message(); }
   int unknowns() const { return size_; }
   long nonzeros() const { return pattern_->nonzeros(); }
   EngineHoldings holdings() const;
@@ -86,9 +92,10 @@ class SparseEngine {
   struct Carried {
     std::vector<std::vector<int>> places;
     FactorRecipe<T> factor;
+    bool condenses = false;  ///< tangents
     long bytes() const { return factor.bytes(); }
   };
-  Carried carried() const { return {places_, model_.effects.linear_bulk ? recipe() : FactorRecipe<T>{}}; }
+  Carried carried() const { return {places_, model_.effects.linear_bulk ? recipe() : FactorRecipe<T>{}, condenses_}; }
   /// Goes back to it, by a factorisation where it had a factor: later solves have the same bits as they had then.
   void carry(const Carried& carried, Counters& counters);
 
@@ -99,6 +106,9 @@ class SparseEngine {
   const Slots<T>& slots_;
   bool unknown_multipliers_;
   std::optional<CondensedPart<T>> part_;
+  std::shared_ptr<CondensedTangent<T>> tangent_;
+  bool condenses_ = false;  ///< tangents
+  bool condensed_ = false;  ///< the last one
   Symmetry symmetry_;
   int size_;
   double time_ = 0;
@@ -107,13 +117,23 @@ class SparseEngine {
   std::shared_ptr<Pattern> pattern_;
   /// Makes the pattern of the bodies and of points with these places (Model::contact_nodes), and what hangs on it.
   void lay_out(const std::vector<std::vector<int>>& places);
+  /// Those of the points where nothing has slid.
+  std::vector<std::vector<int>> places_at_start() const;
   /// Places of a point whose tangent it is, with those of the patches around.
   std::vector<int> places_around(std::size_t p, const PointTangent<T>& tangent) const;
   /// Lays the pattern out anew where a tangent has places that it has not.
   void make_room(const std::vector<PointTangent<T>>& tangents);
   /// Row of each dof, -1: none, and the dofs of the rows.
-  const std::vector<int>& row_of_dof() const { return part_ ? part_->rows().row_of_dof : model_.free_index; }
-  const std::vector<int>& dofs() const { return part_ ? part_->rows().dofs : model_.free_dofs; }
+  const std::vector<int>& row_of_dof() const {
+    if (condenses_) return tangent_->rows().row_of_dof;
+    return part_ ? part_->rows().row_of_dof : model_.free_index;
+  }
+  const std::vector<int>& dofs() const {
+    if (condenses_) return tangent_->rows().dofs;
+    return part_ ? part_->rows().dofs : model_.free_dofs;
+  }
+  /// Condenses the last tangent, or from now on none where it cannot be.
+  void condense(Counters& counters);
   /// Rows of a point's entries.
   std::vector<int> rows_of(std::size_t p, const std::vector<int>& places) const;
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/model/condensed_part_impl.hpp"
+#include "core/model/condensed_tangent_impl.hpp"
 #include "core/model/sparse_engine.hpp"
 
 namespace stickslip {
@@ -18,17 +19,18 @@ std::vector<int> entries_of(const Pattern& pattern, const std::vector<int>& rows
 
 template <class T>
 SparseEngine<T>::SparseEngine(const Model& model, const Slots<T>& slots, bool unknown_multipliers, ConeRadius cone,
-                              Backend backend, std::shared_ptr<Condensation<T>> condensation)
+                              Backend backend, std::shared_ptr<Condensation<T>> condensation,
+                              std::shared_ptr<CondensedTangent<T>> tangent)
     : model_(model),
       slots_(slots),
       unknown_multipliers_(unknown_multipliers),
+      tangent_(std::move(tangent)),
+      condenses_(tangent_ != nullptr),
       symmetry_(detail::symmetry_of(model, unknown_multipliers, cone)),
       solver_(backend) {
   if (condensation) part_.emplace(model, slots, std::move(condensation));
   size_ = static_cast<int>(dofs().size()) + (unknown_multipliers ? model.multiplier_count : 0);
-  std::vector<std::vector<int>> places;
-  for (const auto& point : model.points) places.push_back(point.places);
-  lay_out(places);
+  lay_out(places_at_start());
   for (int i = 0; i < static_cast<int>(dofs().size()); ++i)
     stiffness_ = std::max(stiffness_, value(bulk_[locate(*pattern_, i, i)]));
 }
@@ -43,14 +45,25 @@ std::vector<int> SparseEngine<T>::rows_of(std::size_t p, const std::vector<int>&
 }
 
 template <class T>
+std::vector<std::vector<int>> SparseEngine<T>::places_at_start() const {
+  std::vector<std::vector<int>> places;
+  for (const auto& point : model_.points) places.push_back(point.places);
+  return places;
+}
+
+template <class T>
 void SparseEngine<T>::lay_out(const std::vector<std::vector<int>>& places) {
   auto lists = element_rows(model_, row_of_dof(), part_ ? BodyKind::changing : BodyKind::all);
-  if (part_) part_->rows().add_blocks(lists);
-  for (std::size_t p = 0; p < places.size(); ++p) lists.add(rows_of(p, places[p]));
-  pattern_ = make_pattern(size_, lists);
   point_map_.clear();
-  for (std::size_t p = 0; p < places.size() && !model_.slides_along_curves(); ++p)
-    point_map_.push_back(detail::entries_of(*pattern_, rows_of(p, places[p])));
+  if (condenses_) {
+    pattern_ = tangent_->rows().pattern;
+  } else {
+    if (part_) part_->rows().add_blocks(lists);
+    for (std::size_t p = 0; p < places.size(); ++p) lists.add(rows_of(p, places[p]));
+    pattern_ = make_pattern(size_, lists);
+    for (std::size_t p = 0; p < places.size() && !model_.slides_along_curves(); ++p)
+      point_map_.push_back(detail::entries_of(*pattern_, rows_of(p, places[p])));
+  }
   if (linearised_) {
     const BodyMotion<T> at{linearised_->displacement, linearised_->last_memory, linearised_->time,
                            &linearised_->branches};
@@ -119,7 +132,8 @@ void SparseEngine<T>::make_room(const std::vector<PointTangent<T>>& tangents) {
 template <class T>
 void SparseEngine<T>::linearise(const BodyMotion<T>& at) {
   assemble(*lists_, &at);
-  if (model_.slides_along_curves())
+  condensed_ = false;
+  if (model_.slides_along_curves() || condenses_)
     linearised_ = {at.displacement, at.last_memory, at.time, at.branches ? *at.branches : FlowBranches()};
   valid_ = false;
 }
@@ -231,6 +245,11 @@ bool SparseEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents, Co
   update_.clear();
   const bool same = detail::same_values(hold, held_) && detail::same_tangents(tangents, factorised_);
   if (valid_ && model_.effects.linear_bulk && same) return true;
+  if (condenses_ && !condensed_) condense(counters);
+  if (condenses_) {
+    ++counters.assemblies;
+    return valid_ = tangent_->factorise(tangents, hold);
+  }
   const bool along_curves = model_.slides_along_curves();
   if (along_curves) make_room(tangents);
   values_ = bulk_;
@@ -265,6 +284,12 @@ bool SparseEngine<T>::factorise(const std::vector<PointTangent<T>>& tangents, Co
 }
 
 template <class T>
+void SparseEngine<T>::condense(Counters& counters) {
+  condensed_ = condenses_ = tangent_->condense(bulk_, counters);
+  if (!condenses_) lay_out(places_at_start());
+}
+
+template <class T>
 bool SparseEngine<T>::update(const std::vector<PointTangent<T>>& tangents, Counters& counters,
                              const Vector<double>& hold) {
   if (!valid_ || !model_.effects.linear_bulk || !detail::same_values(hold, held_)) return false;
@@ -276,7 +301,10 @@ bool SparseEngine<T>::update(const std::vector<PointTangent<T>>& tangents, Count
 
 template <class T>
 void SparseEngine<T>::carry(const Carried& carried, Counters& counters) {
-  if (carried.places != places_) lay_out(carried.places);
+  if (carried.places != places_ || carried.condenses != condenses_) {
+    condenses_ = carried.condenses;
+    lay_out(carried.places.empty() ? places_at_start() : carried.places);
+  }
   valid_ = false;
   if (carried.factor.valid) factorise(carried.factor.tangents, counters, carried.factor.hold);
   update_ = carried.factor.update;
@@ -290,6 +318,7 @@ bool SparseEngine<T>::reversed() const {
 
 template <class T>
 BlockVector<T> SparseEngine<T>::solve(const BlockVector<T>& rows, Solving how) {
+  if (condenses_) return tangent_->solve(rows, how);
   const bool transposed = how == Solving::transposed;
   const int free = static_cast<int>(dofs().size());
   Matrix<T> b(size_, rows.u.cols());
@@ -343,6 +372,7 @@ EngineHoldings SparseEngine<T>::holdings() const {
   held.matrix_entries = static_cast<long>(pattern_->nonzeros());
   held.factor_entries = solver_.factor_nonzeros();
   held.unsymmetric = symmetry_ == Symmetry::general;
+  if (condenses_) tangent_->add_holdings(held);
   if (!part_) return held;
   held.condensed = static_cast<long>(part_->condensation().schur().size() * sizeof(T));
   held.bodies_factor = part_->condensation().factor_bytes();
@@ -352,6 +382,7 @@ EngineHoldings SparseEngine<T>::holdings() const {
 
 template <class T>
 std::string SparseEngine<T>::name() const {
+  if (condenses_) return "sparse, " + tangent_->name();
   std::string name = solver_.name().empty() ? "sparse" : "sparse, " + solver_.name();
   if (part_) name += ", bodies of constant stiffness condensed on " + part_->condensation().name();
   return name;
