@@ -230,10 +230,10 @@ std::optional<std::size_t> resting_solution(const ContactProblem& problem, const
   constexpr double rounding = 1e-9;  // of the largest solution
   if (all.empty()) return std::nullopt;
   if (all.size() == 1) return 0;
-  double reach = 0;
-  for (const auto& solution : all) reach = std::max(reach, solution.increment.norm());
+  double largest = 0;
+  for (const auto& solution : all) largest = std::max(largest, solution.increment.norm());
   Vector<double> v = Vector<double>::Zero(problem.load.size());
-  MotionPace pace(rounding * reach);
+  MotionPace pace(rounding * largest);
   while (pace.goes_on()) {
     const auto moved = all_solutions(problem, pace.alpha(), v);
     const BranchSolution* next = nullptr;

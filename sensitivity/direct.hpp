@@ -41,7 +41,7 @@ class LinearisedEquilibrium {
   bool solve(std::vector<Vector<Direction>>& lambda, std::vector<ContactField<Direction>>& fields);
 
   /// Completes the state of every block from the last solve, but for the displacements, which are left unexpanded.
-  void settle(const std::vector<ContactField<Direction>>& fields, const std::vector<Vector<Direction>>& lambda);
+  void store_state(const std::vector<ContactField<Direction>>& fields, const std::vector<Vector<Direction>>& lambda);
 
   /// Largest derivatives, by parameter: largest_motion() of the contact displacements, then and now; load() of the
   /// forces of bodies and loads on the unknowns, however much of these cancels.
@@ -210,8 +210,8 @@ typename LinearisedEquilibrium<E>::Rows LinearisedEquilibrium<E>::evaluate(
 }
 
 template <class E>
-void LinearisedEquilibrium<E>::settle(const std::vector<ContactField<Direction>>& fields,
-                                      const std::vector<Vector<Direction>>& lambda) {
+void LinearisedEquilibrium<E>::store_state(const std::vector<ContactField<Direction>>& fields,
+                                           const std::vector<Vector<Direction>>& lambda) {
   for (std::size_t b = 0; b < problem_.blocks.size(); ++b) {
     auto& block = problem_.blocks[b];
     block.current.multiplier = lambda[b];

@@ -28,10 +28,10 @@ Margins margins_of(const Model& model, const Slots<double>& slots, const State<d
   if (open || point.tangents == 0) return margin;
   const double bound = law.bound(pressure);
   if (!(bound > 0)) return margin;
-  const double reach = contact.state[p] == ContactState::stick
-                           ? bound - tangential(contact.traction, point.multiplier + 1)
-                           : elastic * tangential(contact.slip, tangential_offset(model, p));
-  margin.slip = reach / bound;
+  const double slip_distance = contact.state[p] == ContactState::stick
+                                   ? bound - tangential(contact.traction, point.multiplier + 1)
+                                   : elastic * tangential(contact.slip, tangential_offset(model, p));
+  margin.slip = slip_distance / bound;
   if (is_slipping(contact.state[p])) margin.slip = std::min(margin.slip, law.distance_to_corner(pressure) / bound);
   return margin;
 }

@@ -21,7 +21,7 @@ bool differentiate_increment(const Penalty& method, Differentiation<E>& problem,
   if (!linearised.valid()) return false;
   std::vector<ContactField<Direction>> fields;
   if (!linearised.solve(lambda, fields)) return false;
-  linearised.settle(fields, lambda);
+  linearised.store_state(fields, lambda);
   return true;
 }
 

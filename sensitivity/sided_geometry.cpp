@@ -10,15 +10,15 @@
 namespace stickslip {
 namespace {
 
-/// Whether what a point faces hangs on where it is at the start: at a vertex, or at the end of a piece.
+/// Whether what a point faces hangs on where it is at the start: at a vertex, or at the end of a segment.
 bool may_leave(const ContactPoint& point) {
   using Master = ContactPoint::Master;
-  if (point.master == Master::pieces) return point.obstacle < 0 && point.curve < 0;
+  if (point.master == Master::segments) return point.obstacle < 0 && point.curve < 0;
   return point.master == Master::facet || point.master == Master::vertex;
 }
 
 bool same_part(const ContactPoint& a, const ContactPoint& b) {
-  return a.master == b.master && a.nodes == b.nodes && a.of_polyline == b.of_polyline && a.pieces == b.pieces;
+  return a.master == b.master && a.nodes == b.nodes && a.of_polyline == b.of_polyline && a.segments == b.segments;
 }
 
 /// The point of the same slave node; nullptr where there is none.

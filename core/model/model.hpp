@@ -42,7 +42,7 @@ struct MasterCurve {
   std::vector<int> places;  ///< of these in Model::contact_nodes
   int vertex_count = 0;
   std::vector<Patch> patches;
-  /// Where it is integrated over, piece by piece: the nodes of each patch, and those at which the side ends.
+  /// Segment-integrated contact: the two nodes of each patch, and the nodes at which the side ends.
   std::vector<std::vector<int>> facets = {};
   std::vector<int> ends = {};
   bool is_integrated() const { return !facets.empty(); }
@@ -51,7 +51,7 @@ struct MasterCurve {
 /// One slave node and what it can touch. Fixed for small strain.
 struct ContactPoint {
   /// facet and vertex of a deformable side or a polyline; curve: patches, which points slide along at finite strain
-  enum class Master { obstacle, facet, vertex, pieces, curve };
+  enum class Master { obstacle, facet, vertex, segments, curve };
   Master master = Master::obstacle;
   int contact = 0;               ///< index in Scene::contacts
   int obstacle = -1;             ///< index in Scene::obstacles, -1 for a deformable master
@@ -68,9 +68,9 @@ struct ContactPoint {
   std::vector<std::pair<int, int>> area_facets;   ///< facets of the slave side at the node
   std::vector<std::pair<int, int>> facet_places;  ///< the same in Model::contact_nodes, of a solid body's along a curve
   std::vector<std::vector<int>> area_edges;  ///< sides of elements there, of which a share is tributary to the node
-  /// Segment-integrated: what the multiplier of nodes[0] acts on; at finite strain its whole facets, whose pieces are
-  /// found as they move (Facing)
-  std::vector<Piece> pieces;
+  /// Segment-integrated contact: the segments that the multiplier of nodes[0] acts on. At finite strain: its whole
+  /// slave facets, whose present segments are Facing::pieces.
+  std::vector<Segment> segments;
   bool area_of_bar = false;    ///< tributary area is the bar's cross-section; with no facets either: 1
   bool shares_normal = false;  ///< deformable continua on both sides: the normal is the bisector of the two
   int slave_body = 0;

@@ -70,7 +70,7 @@ template <class T>
 std::vector<int> places_of_tangent(const ContactInput<T>& input, int p, const Facing* facing, int& faced) {
   const auto& point = input.model.points[p];
   std::vector<int> places = {point.places[0]};
-  if (!point.pieces.empty()) {
+  if (!point.segments.empty()) {
     if (!facing) places = point.places;
     for (std::size_t n = 1; facing && n < facing->nodes.size(); ++n)
       places.push_back(input.model.place_of(facing->nodes[n]));
@@ -109,7 +109,7 @@ PointTangent<T> tangent_by_places(const ContactInput<T>& input, int p, const Fac
   const FixedInput<Probe, T, Tangents> fixed_input(input, p);
   for (int first = 0; first < count; first += at_once) {
     const Seeded seeded{first, std::min(at_once, count - first)};
-    const auto moved = [&](int place) {
+    const auto displacement = [&](int place) {
       const int k = 2 * static_cast<int>(std::find(places.begin(), places.end(), place) - places.begin()) - first;
       Vec<Probe, 2> u;
       for (int i = 0; i < 2; ++i) {
@@ -118,10 +118,10 @@ PointTangent<T> tangent_by_places(const ContactInput<T>& input, int p, const Fac
       }
       return u;
     };
-    const auto at = present_point<Probe, T, 2>(input, p, facing, moved);
+    const auto at = present_point<Probe, T, 2>(input, p, facing, displacement);
     const auto lambda = seeded_multiplier<Probe, T, Tangents>(input, p, multiplier, seeded.count);
-    const auto outcome = outcome_of<Probe, T, 2, Tangents>(input, at, lambda, fixed_input.placement, fixed_input.rho,
-                                                           fixed_input.friction, 0, &state);
+    const auto outcome = point_outcome<Probe, T, 2, Tangents>(input, at, lambda, fixed_input.placement, fixed_input.rho,
+                                                              fixed_input.friction, 0, &state);
     const Vec<Probe, 2> force = point_force<Probe, 2, Tangents>(at.geometry, outcome.traction);
     for (int n = 0; n < std::min(faced, static_cast<int>(at.geometry.weights.size())); ++n)
       for (int i = 0; i < 2; ++i) {
@@ -143,7 +143,7 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
   const auto& point = input.model.points[p];
   return detail::with_point(input.model, point, [&]<int D, int Tangents>() {
     if constexpr (D == 2)
-      if ((point.curve >= 0 || !point.pieces.empty()) && input.model.effects.current_geometry)
+      if ((point.curve >= 0 || !point.segments.empty()) && input.model.effects.current_geometry)
         return detail::tangent_by_places<T, Tangents>(input, p, point.curve >= 0 ? &facing[p] : nullptr, compact,
                                                       multiplier, state);
     constexpr int C = 1 + Tangents;
@@ -162,8 +162,8 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
     PointGeometry<Probe> geometry;
     if (present) {
       auto at = detail::moved_point<Probe, T, D>(input, p, w);
-      outcome = detail::outcome_of<Probe, T, D, Tangents>(input, at, lambda, fixed_input.placement, fixed_input.rho,
-                                                          fixed_input.friction, 0, &state);
+      outcome = detail::point_outcome<Probe, T, D, Tangents>(input, at, lambda, fixed_input.placement, fixed_input.rho,
+                                                             fixed_input.friction, 0, &state);
       geometry = std::move(at.geometry);
     } else {
       geometry = detail::promote<Probe>(input.slots.geometry[p]);

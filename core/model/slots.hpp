@@ -56,13 +56,13 @@ struct Slots {
                                            ///< one degree; empty where no obstacle rotates
 };
 
-/// Length up to which a point's gap may be rounding of the coordinates. Where its initial gap is exactly zero, it is
-/// rounding of displacements alone. Why: contacts that begin closed then have the same branches under every load,
-/// however small. `reach`: largest displacement of its nodes.
+/// Gap of a point, length, up to which it counts as zero. If the initial gap is not exactly zero: the rounding of the
+/// coordinates. If it is: the rounding of the displacements alone, so a contact that begins closed has the same
+/// branches under every load, however small. `largest_displacement`: of the point's nodes, length.
 template <class T>
-double tie_length(const ContactPoint& point, const PointGeometry<T>& geometry, double reach = 0) {
-  constexpr double terms = 256;  // that meet in a displacement, and some condition
-  return value(geometry.gap) == 0 ? terms * unit_roundoff * reach : point.tie_length;
+double tie_length(const ContactPoint& point, const PointGeometry<T>& geometry, double largest_displacement = 0) {
+  constexpr double terms = 256;  // terms summed in a displacement, times some condition number
+  return value(geometry.gap) == 0 ? terms * unit_roundoff * largest_displacement : point.tie_length;
 }
 
 namespace detail {
@@ -115,9 +115,9 @@ T tributary_area(const ContactPoint& point, const Slots<T>& slots) {
 /// segment-integrated.
 template <class T>
 T whole_area(const ContactPoint& point, const Slots<T>& slots) {
-  if (point.pieces.empty()) return tributary_area(point, slots);
+  if (point.segments.empty()) return tributary_area(point, slots);
   return area_of_facets<T>(
-      point.pieces, [&](int node) { return point2(slots.points, node); }, slots.depths[point.slave_body]);
+      point.segments, [&](int node) { return point2(slots.points, node); }, slots.depths[point.slave_body]);
 }
 
 /// Length at the start along an integrated curve, from where one facet begins to where another does; round a loop the
@@ -138,8 +138,8 @@ T length_between(const MasterCurve& curve, const Points<T>& points, int from, in
 /// What a segment-integrated point faces. `facing`: unread where that is an obstacle; `at(node)`: where a node is, in
 /// the scalar U built on T; `numbers`: those of the scene in it.
 template <class U, class T, class At, class Read>
-FacedPieces<U> faced_pieces(const Model& model, const ContactPoint& point, const Slots<T>& slots, const Facing& facing,
-                            At&& at, const Read& numbers) {
+SegmentKinematics<U> integrated_kinematics(const Model& model, const ContactPoint& point, const Slots<T>& slots,
+                                           const Facing& facing, At&& at, const Read& numbers) {
   const bool along_curve = point.curve >= 0;
   const auto of_start = [&](int node) { return Vec<U, 2>(U(slots.points(0, node)), U(slots.points(1, node))); };
   const auto rigid_foot = [&](const Vec<U, 2>& x) {
@@ -147,7 +147,7 @@ FacedPieces<U> faced_pieces(const Model& model, const ContactPoint& point, const
     Foot<U> foot;
     for (int i = 0; i < 2; ++i) {
       foot.normal[i] = g.normal[i];
-      foot.place[i] = x[i] - g.gap * g.normal[i];
+      foot.position[i] = x[i] - g.gap * g.normal[i];
     }
     return foot;
   };
@@ -155,15 +155,16 @@ FacedPieces<U> faced_pieces(const Model& model, const ContactPoint& point, const
     return along_curve ? U(length_between(model.curves[point.curve], slots.points, facing.patch, facet)) : U(0);
   };
   const auto& depth = slots.depths[point.slave_body];
-  return face_pieces<U>(along_curve ? facing.pieces : point.pieces, along_curve ? facing.nodes : point.nodes, at,
-                        of_start, Depth<U>{depth.of_revolution, U(depth.thickness)}, rigid_foot, begin, !along_curve);
+  return segment_kinematics<U>(along_curve ? facing.pieces : point.segments, along_curve ? facing.nodes : point.nodes,
+                               at, of_start, Depth<U>{depth.of_revolution, U(depth.thickness)}, rigid_foot, begin,
+                               !along_curve);
 }
 
 /// What a segment-integrated point faces at the start. pre: it faces something.
 template <class T>
-FacedPieces<T> pieces_of_start(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
+SegmentKinematics<T> initial_kinematics(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
   const auto at = [&](int node) { return point2(slots.points, node); };
-  return faced_pieces<T>(model, point, slots, point.facing, at, slots.numbers);
+  return integrated_kinematics<T>(model, point, slots, point.facing, at, slots.numbers);
 }
 
 /// Vertex of the polyline that a point faces, in the order of ContactPoint::of_polyline.
@@ -247,9 +248,9 @@ template <class T>
 PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
   const auto& numbers = slots.numbers;
   PointGeometry<T> geometry;
-  const bool integrated = point.master == ContactPoint::Master::pieces;
+  const bool integrated = point.master == ContactPoint::Master::segments;
   if (integrated && (point.curve < 0 || point.facing.patch != Patch::none)) {
-    geometry = pieces_of_start(model, point, slots).geometry;
+    geometry = initial_kinematics(model, point, slots).geometry;
   } else if (integrated) {
     geometry = facing_nothing(point, slots);
   } else if (point.master == ContactPoint::Master::curve) {
