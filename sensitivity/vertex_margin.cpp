@@ -15,7 +15,7 @@ using Place = Vec<double, 2>;
 
 bool is_facet(const Patch& patch) { return patch.smoothing == Smoothing::none; }
 
-/// The least way of a point at x to an end of what it faces, over its length. `place(vertex)`: where that is.
+/// Least distance of x from an end of the patch that it faces, over the length of the patch. `place(vertex)`: position.
 template <class Places>
 double least_way(const std::vector<Patch>& patches, int faced, const Place& x, Places&& place) {
   const auto along = [&](int patch) -> Place {
@@ -34,7 +34,7 @@ double least_way(const std::vector<Patch>& patches, int faced, const Place& x, P
   return least;
 }
 
-/// Nodes at which the slave side ends that is integrated over a curve.
+/// Nodes at which the slave side of an integrated curve ends.
 std::vector<int> ends_of_slave(const Model& model, int curve) {
   std::set<std::array<int, 2>> facets;
   for (const auto& point : model.points)
@@ -49,11 +49,11 @@ std::vector<int> ends_of_slave(const Model& model, int curve) {
   return ends;
 }
 
-/// Whether an integrated curve turns at one of its nodes, or its facets there are stretched unlike one another.
-/// `present(node)`, `of_start(node)`: where nodes are and were.
+/// Whether an integrated curve turns at a node, or its two facets there are stretched differently. `present(node)`,
+/// `of_start(node)`: present and initial position.
 template <class At, class OfStart>
 bool has_kink_at(const MasterCurve& curve, int node, At&& present, OfStart&& of_start) {
-  constexpr double straight = 1e-6;  // as of vertices that node-to-segment faces
+  constexpr double straight = 1e-6;  // as for vertices in node-to-segment contact
   const auto along = [&](int patch, const auto& where) -> Place {
     return where(curve.facets[patch][1]) - where(curve.facets[patch][0]);
   };
