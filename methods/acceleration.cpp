@@ -15,8 +15,8 @@ double contraction(const std::vector<Secant>& secants) {
   Vector<double> noise(m);
   Eigen::Index rank = 0;
   for (const Secant& secant : secants) {
-    const double length = secant.argument.norm();
-    Vector<double> direction = secant.argument / length, its_image = secant.image / length;
+    const double size = secant.argument.norm();
+    Vector<double> direction = secant.argument / size, its_image = secant.image / size;
     double squared = secant.noise * secant.noise;
     for (int twice = 0; twice < 2; ++twice) {
       const Vector<double> known = space.leftCols(rank).transpose() * direction;
@@ -37,20 +37,20 @@ double contraction(const std::vector<Secant>& secants) {
 
 Vector<double> anderson_weights(const Matrix<double>& differences, const Vector<double>& residual, double noise) {
   constexpr double worst_condition = 1e8;
-  const Vector<double> lengths = differences.colwise().norm();
-  Vector<double> gamma = Vector<double>::Zero(lengths.size());
+  const Vector<double> norms = differences.colwise().norm();
+  Vector<double> gamma = Vector<double>::Zero(norms.size());
   Eigen::Index dropped = 0;
-  for (Eigen::Index i = 0; i < lengths.size(); ++i)
-    if (lengths[i] <= noise) dropped = i + 1;
-  for (; dropped < lengths.size(); ++dropped) {
-    const Eigen::Index count = lengths.size() - dropped;
-    const Matrix<double> used = differences.rightCols(count) * lengths.tail(count).cwiseInverse().asDiagonal();
+  for (Eigen::Index i = 0; i < norms.size(); ++i)
+    if (norms[i] <= noise) dropped = i + 1;
+  for (; dropped < norms.size(); ++dropped) {
+    const Eigen::Index count = norms.size() - dropped;
+    const Matrix<double> used = differences.rightCols(count) * norms.tail(count).cwiseInverse().asDiagonal();
     const Eigen::HouseholderQR<Matrix<double>> qr(used);
     const Eigen::Index rank = std::min(used.rows(), count);
     const Matrix<double> R = qr.matrixQR().topRows(rank).triangularView<Eigen::Upper>();
     const auto singular = Eigen::JacobiSVD<Matrix<double>>(R).singularValues();
     if (rank < count || singular[0] > worst_condition * singular[rank - 1]) continue;
-    gamma.tail(count) = qr.solve(residual).cwiseQuotient(lengths.tail(count));
+    gamma.tail(count) = qr.solve(residual).cwiseQuotient(norms.tail(count));
     break;
   }
   return gamma;

@@ -1,17 +1,18 @@
-/// Acceleration of a fixed point iteration x <- f(x) from the values it has produced, and its contraction.
+/// Acceleration of a fixed point iteration x <- f(x), and its contraction, both from the values that it has produced.
 ///
 ///   r = f(x) - x
 ///   Aitken     x <- x + w r,  w <- -w r_last . (r - r_last) / |r - r_last|^2, kept in [0.1, 10]
 ///   Anderson   x <- f(x) - sum gamma_i (f_i+1 - f_i),  gamma: least squares of r - sum gamma_i (r_i+1 - r_i)  over the
-///              last m = 5 differences; QR, the oldest dropped while the condition of the scaled columns is above 1e8,
-///              or while one is rounding
+///              last m = 5 differences, by QR. The oldest difference is dropped while the condition number of the
+///              scaled columns exceeds 1e8, or while the difference is rounding
 ///
-/// Weights are numbers of the iteration, not of the scene: they are formed from the primal parts and not
-/// differentiated, and the fixed point does not depend on them. An extrapolated x is on trial. It is refused where its
-/// residual is not below 0.9 of the last one; where the contraction q is slower than 0.9, not below q of it. Then the
-/// plain step from the last x that was not refused takes its place. A refusal costs one evaluation. Two are free; each
-/// further one must be earned, by an extrapolation worth two plain steps. So an iteration is never much worse than a
-/// plain one. [IT69], [WN11]
+/// The weights w and gamma are formed from values alone and not differentiated. The fixed point does not depend on
+/// them.
+///
+/// An extrapolated x is on trial. It is refused unless its residual is below 0.9 of the last one, or below q of it if
+/// the contraction q exceeds 0.9. After a refusal the iteration takes the plain step from the last x that was not
+/// refused. A refusal costs one evaluation. Two refusals are free; each further one needs an earlier extrapolation that
+/// was worth two plain steps. So the iteration is never much worse than the plain one. [IT69], [WN11]
 #pragma once
 
 #include <vector>
@@ -25,28 +26,30 @@ namespace stickslip {
 /// Differences of two arguments of one map, and of their images.
 struct Secant {
   Vector<double> argument, image;
-  double noise = 0;  ///< of the image, over the length of the argument
+  double noise = 0;  ///< error of the image, over the norm of the argument
 };
 
-/// Contraction of a linear map A from some of its secants, in the order in which they were met: the spectral radius of
-/// A on the space of their arguments (Arnoldi, where they are successive). Each secant counts by the part of its
-/// argument that is new beside those before. It is left out where more than 2 % of the image of that part may be noise.
-/// Where fewer than two are left, the result is the ratio of the lengths of the last secant. pre: no argument is zero.
+/// Contraction of a linear map A from some of its secants, oldest first: the spectral radius of A on the space of their
+/// arguments (Arnoldi's method if they are successive). From each secant the part in the space of the earlier arguments
+/// is subtracted. A secant is left out if the noise may exceed 2 % of what remains. If fewer than two remain, the
+/// result is the norm of the last image over that of its argument. pre: no argument is zero.
 double contraction(const std::vector<Secant>& secants);
 
-/// Anderson's gamma: one weight a difference of successive residuals, the oldest first; zero for differences that are
-/// left out. `noise`: a length up to this is rounding.
+/// Anderson's gamma: one weight per difference of successive residuals, oldest first; 0 for a difference that is left
+/// out. `noise`: a difference of a norm up to this is rounding.
 Vector<double> anderson_weights(const Matrix<double>& differences, const Vector<double>& residual, double noise);
 
-/// What the next argument of an accelerated iteration is made from: the last evaluations of one map.
+/// Accelerated iteration: keeps the last evaluations of one map, and makes the next argument from them.
 template <class T>
 class Accelerator {
  public:
   explicit Accelerator(UzawaAL::Acceleration kind) : kind_(kind) {}
 
-  /// The next x after f(x) = image. `same_map`: f is what it was at the last call (otherwise the past is forgotten).
-  /// `contraction` of the plain iteration as known so far (0: unknown). `admissible(x)` puts an extrapolated x back
-  /// into the set that images lie in.
+  /// The next x after f(x) = image.
+  ///
+  ///   same_map       f is that of the last call; false: earlier evaluations are forgotten
+  ///   contraction    of the plain iteration; 0: not measured
+  ///   admissible(x)  projects an extrapolated x onto the set of images
   template <class Admissible>
   Vector<T> next(const Vector<T>& x, const Vector<T>& image, bool same_map, double contraction,
                  Admissible&& admissible) {
@@ -92,7 +95,7 @@ class Accelerator {
     for (Eigen::Index i = 0; i < differences.cols(); ++i)
       differences.col(i) = past_[i + 1].residual() - past_[i].residual();
     Vector<T> x = past_.back().image;
-    const double noise = 1e2 * unit_roundoff * values(x).norm();  // of a difference of residuals, and more
+    const double noise = 1e2 * unit_roundoff * values(x).norm();  // bound of the rounding of a difference of residuals
     const Vector<double> gamma = anderson_weights(differences, residual, noise);
     for (Eigen::Index i = 0; i < gamma.size(); ++i)
       if (gamma[i] != 0) x -= T(gamma[i]) * (past_[i + 1].image - past_[i].image);

@@ -1,5 +1,6 @@
-/// What a scalar carries beside its value. Once the value has converged, iterations go on for that. A double carries
-/// nothing. A scalar that carries a derivative through a whole run specialises it where it runs.
+/// What a scalar carries beside its value, for example a derivative through a whole run. Iterations continue after the
+/// value has converged until the carried part has. A double carries nothing. Other scalars specialise this template
+/// where they run.
 #pragma once
 
 #include "core/algebra/scalar.hpp"
@@ -8,9 +9,9 @@ namespace stickslip {
 
 template <class T>
 struct Carried {
-  static constexpr int newton_iterations = 0;         ///< after the one that has converged
-  static constexpr int augmentations = 1;             ///< factor on the number that the method allows
-  static double size(const Vector<T>&) { return 0; }  ///< of the largest entry's
+  static constexpr int newton_iterations = 0;         ///< iterations after the converged one
+  static constexpr int augmentations = 1;             ///< factor on max_augmentations
+  static double size(const Vector<T>&) { return 0; }  ///< largest size of a carried part
 };
 
 }  // namespace stickslip

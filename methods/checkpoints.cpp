@@ -15,7 +15,7 @@ std::size_t CheckpointPlan::whole() const {
 }
 
 std::size_t CheckpointPlan::repeated() const {
-  const bool ends_whole = thinned == steps && steps % stride != 0;  // (the last state is there)
+  const bool ends_whole = thinned == steps && steps % stride != 0;  // (the last state is whole)
   return thinned - thinned / stride - (ends_whole ? 1 : 0);
 }
 
@@ -32,7 +32,7 @@ std::optional<CheckpointPlan> plan_checkpoints(std::size_t steps, double room) {
 }
 
 std::optional<CheckpointPlan> plan_checkpoints(const Model& model, const RunOptions& options) {
-  if (model.scene.arc_length) return std::nullopt;     // (a path goes on from the two states before)
+  if (model.scene.arc_length) return std::nullopt;     // (a path continues from the two states before)
   if (options.output_every == 1) return std::nullopt;  // all are to stay
   const std::size_t steps = options.replay.empty() ? model.times.size() : options.replay.size();
   auto plan = plan_checkpoints(steps, options.state_memory / thinned_bytes(model));

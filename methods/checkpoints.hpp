@@ -1,14 +1,15 @@
-/// A run whose states would take more memory than they may: which of them stay whole, and how the others come back.
+/// Checkpoints: which states of a run stay whole if all of them would take too much memory, and how the others are
+/// restored.
 ///
-/// The displacement in a state, and what bodies remember, grow with the bodies; a state without them is thin. Of N
-/// steps the first n leave thin states behind, but for every s-th. Thin states come back a stretch at a time: its s - 1
-/// steps are solved again from the last whole state. With room for M whole states
+/// The displacement of a state and the memory of its bodies grow with the bodies; a state without them is thin. Of N
+/// steps the first n leave thin states, except every s-th. Thin states are restored one stretch at a time: the s - 1
+/// steps after a whole state are solved again. With room for M whole states
 ///
 ///   whole  N - n + n / s + (s - 1) <= M,      solved again  n - n / s
 ///
-/// s is the least that there is room for, so that hardly more steps are solved again than there is no room for. Where
-/// there is room for no s, s = sqrt(N) needs the least, 2 sqrt(N) states. A stretch begins with the scales and the
-/// factor that the run had there, and so comes out the same to the last bit. Compare [GW00].
+/// s is the least for which there is room. So hardly more steps are solved again than the memory requires. If there is
+/// room for no s, s = sqrt(N) needs the least memory, 2 sqrt(N) states. A stretch begins with the scales and the factor
+/// that the run had there, so its states come out the same, bit for bit. Compare [GW00].
 #pragma once
 
 #include <memory>
@@ -21,9 +22,10 @@
 
 namespace stickslip {
 
-/// Bytes of a whole state beyond those of a thin one.
+/// Bytes by which a whole state exceeds a thin one.
 double thinned_bytes(const Model& model);
 
+/// Which steps stay whole.
 struct CheckpointPlan {
   std::size_t steps = 0, thinned = 0, stride = 1;  ///< N, n, s
   std::size_t output_every = 0;                    ///< RunOptions::output_every
@@ -32,16 +34,16 @@ struct CheckpointPlan {
   bool keeps(std::size_t step) const {
     return step > thinned || step % stride == 0 || step == steps || (output_every > 0 && step % output_every == 0);
   }
-  std::size_t whole() const;     ///< steps that stay so
-  std::size_t repeated() const;  ///< steps that are solved again
+  std::size_t whole() const;     ///< number of steps whose states stay whole
+  std::size_t repeated() const;  ///< number of steps that are solved again
 };
 
-/// None where there is room for the states of all steps, or all are to stay. Made of counts alone, hence the same on
-/// every machine.
+/// Plan of a run; none if there is room for the states of all steps, or if all are to stay. It depends on counts alone,
+/// so it is the same on every machine. `room`: whole states that fit into memory.
 std::optional<CheckpointPlan> plan_checkpoints(const Model& model, const RunOptions& options);
 std::optional<CheckpointPlan> plan_checkpoints(std::size_t steps, double room);
 
-/// Increments that were solved again; `first`: place of the first of them in the trajectory.
+/// Increments that were solved again. `first`: index of the first in the trajectory.
 template <class T>
 struct Stretch {
   std::size_t first = 0;
@@ -50,23 +52,23 @@ struct Stretch {
 
 inline bool is_whole(const State<double>& state) { return state.displacement.size() > 0; }
 
-/// What a run with thin states leaves to solve some of its steps again.
+/// What is needed to solve steps of a run with thin states again.
 template <class T>
 class Checkpoints {
  public:
   using Carried = std::variant<typename SparseEngine<T>::Carried, typename CondensedEngine<T>::Carried>;
-  /// Where a stretch begins: the step before it, the account of the run after that, and its engine.
+  /// Beginning of a stretch: the step before it, and the account and the engine of the run after that step.
   struct Start {
     std::size_t step = 0;
     Account account;
     Carried engine;
   };
 
-  /// `times`: ends of the steps; `may_cut`: whether those that fail are taken in smaller ones.
+  /// `times`: ends of the steps; `may_cut`: whether a step that fails is cut.
   Checkpoints(CheckpointPlan plan, std::vector<double> times, bool may_cut)
       : plan_(plan), may_cut_(may_cut), times_(std::move(times)) {}
 
-  /// Takes in what a run is after another step, the first time before all; thins the states of the step before.
+  /// Records the run after each step, and once before the first. Thins the states of the previous step.
   template <class E>
   void pass(const Run<T, E>& run, Trajectory<T>& trajectory) {
     several_ = run.several;
@@ -87,18 +89,20 @@ class Checkpoints {
   bool may_cut() const { return may_cut_; }
   bool several() const { return several_; }
   const std::shared_ptr<Condensation<T>>& condensation() const { return condensation_; }
-  /// Increments up to the end of a step.
+  /// Number of increments up to the end of a step.
   std::size_t end(std::size_t step) const { return ends_[step]; }
-  /// Where the stretch that holds increment n, which is thin, begins.
+  /// Beginning of the stretch that contains the thin increment n.
   const Start& start_of(std::size_t n) const {
     std::size_t k = starts_.size();
     while (k > 1 && end(starts_[k - 1].step) > n) --k;
     return starts_[k - 1];
   }
+  /// Last step of a stretch.
   std::size_t last_step(const Start& start) const {
-    return std::min({start.step + plan_.stride - 1, plan_.thinned, ends_.size() - 2});  // (the last reached is whole)
+    return std::min(
+        {start.step + plan_.stride - 1, plan_.thinned, ends_.size() - 2});  // (the last step reached is whole)
   }
-  /// Of what is kept of the factors that stretches begin with.
+  /// Bytes of the factors that stretches begin with.
   long bytes() const {
     long sum = 0;
     for (const auto& start : starts_) sum += std::visit([](const auto& c) { return c.bytes(); }, start.engine);

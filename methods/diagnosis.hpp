@@ -16,7 +16,7 @@ namespace stickslip {
 
 namespace detail {
 
-/// First node of a body, and the one after its last.
+/// Nodes of a body: first <= node < end.
 struct NodeRange {
   int first, end;
   bool has(int node) const { return node >= first && node < end; }
@@ -26,8 +26,8 @@ inline NodeRange nodes_of_body(const Model& model, std::size_t b) {
   return {model.bodies[b].first_node, model.bodies[b].first_node + model.bodies[b].mesh.node_count};
 }
 
-/// How an elastic body can move as a whole although its supports and its contact points, in these states, hold it:
-/// "along (0, 1)" or "about (X, Y)"; empty where it cannot. In 2D. What it touches counts as fixed.
+/// Rigid motion of an elastic body that its supports and its contact points, in these states, leave free: "along (0,
+/// 1)" or "about (X, Y)"; empty if there is none. 2D only. What the body touches counts as fixed.
 template <class T>
 std::string free_motion(const Model& model, const Slots<T>& slots, std::size_t b,
                         const std::vector<ContactState>& states) {
@@ -38,7 +38,7 @@ std::string free_motion(const Model& model, const Slots<T>& slots, std::size_t b
   const auto own = points.middleCols(body.first, body.end - body.first);
   const Vec<double, 2> low = own.rowwise().minCoeff(), high = own.rowwise().maxCoeff(), centre = (low + high) / 2;
   const double size = (high - low).norm();
-  // columns: along x, along y, about the centre by one over the size
+  // Columns: translation along x, along y, rotation about the centre by 1 / size.
   const auto motions_at = [&](const Vec<double, 2>& x) {
     Eigen::Matrix<double, 2, 3> motions;
     motions << 1, 0, -(x[1] - centre[1]) / size, 0, 1, (x[0] - centre[0]) / size;
@@ -49,9 +49,9 @@ std::string free_motion(const Model& model, const Slots<T>& slots, std::size_t b
   std::vector<Matrix<double>> frames;
   for (const auto& frame : slots.frames) frames.push_back(frame.unaryExpr([](const T& x) { return value(x); }));
   nodal = into_frames(model, frames, Layout::all, std::move(nodal));
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();  // sum of what holds it: its null space is what is free
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();  // sum of the constraints; its null space is the free motions
   const auto hold = [&](const Eigen::RowVector3d& row) { squares += row.transpose() * row; };
-  if (model.scene.space == Space::axisymmetric) {  // only along the axis does a body of revolution move as a whole
+  if (model.scene.space == Space::axisymmetric) {  // a body of revolution moves rigidly along its axis only
     hold(Eigen::RowVector3d::Unit(0));
     hold(Eigen::RowVector3d::Unit(2));
   }
@@ -81,7 +81,7 @@ std::string free_motion(const Model& model, const Slots<T>& slots, std::size_t b
   return "";
 }
 
-/// The first element that a state inverts, in words; empty where none is.
+/// The first inverted element of a state, in words; empty if there is none.
 template <class T>
 std::string words_of_inversion(const Model& model, const Slots<T>& slots, const State<T>& state) {
   if constexpr (std::is_same_v<T, double>) {
@@ -96,7 +96,7 @@ std::string words_of_inversion(const Model& model, const Slots<T>& slots, const 
   return "";
 }
 
-/// Which body no forces balance, and how it can move.
+/// The body whose load no forces balance, and its free motion, in words; empty if there is none.
 template <class T>
 std::string words_of_imbalance(const Model& model, const Slots<T>& slots, double time,
                                const std::vector<ContactState>& states) {
@@ -113,7 +113,7 @@ std::string words_of_imbalance(const Model& model, const Slots<T>& slots, double
          ": neither its supports nor its contacts hold it, and " + load;
 }
 
-/// A body that has flowed in a state, in words; empty where none has.
+/// A body that flows plastically in a state, in words; empty if there is none.
 template <class T>
 std::string words_of_flow(const Model& model, const Slots<T>& slots, const State<T>& state) {
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
@@ -128,9 +128,9 @@ std::string words_of_flow(const Model& model, const Slots<T>& slots, const State
   return "";
 }
 
-/// Two causes. Supports may drive a point into its obstacle, against a method that `prevents_penetration`. A body may
-/// move without resistance where the tangent is singular: one without a support of which no contact point sticks, or
-/// one whose supports leave a motion free.
+/// Cause of a failure that supports explain, in words; empty if they do not. Either supports push a point into its
+/// obstacle, and the method `prevents_penetration`. Or the tangent is singular because a body can move: it has no
+/// support and no contact point sticks, or its supports leave a motion free.
 template <class T>
 void name_failure(const Model& model, const Slots<T>& slots, double time, bool prevents_penetration,
                   Increment<T>& failed) {
@@ -178,7 +178,7 @@ void name_failure(const Model& model, const Slots<T>& slots, double time, bool p
 
 }  // namespace detail
 
-/// Says why an increment failed.
+/// Appends the cause of a failure to the message of an increment.
 template <class T>
 void diagnose(const Model& model, const Slots<T>& slots, double time, bool prevents_penetration, Increment<T>& failed) {
   detail::name_failure(model, slots, time, prevents_penetration, failed);

@@ -6,29 +6,28 @@
 
 namespace stickslip {
 
-/// Whether multipliers are unknowns of a method's systems, and the radius of its cone. (Named unlike the methods' own
-/// cone_radius(): a method that lacks one would convert to Method.)
+/// Whether multipliers are unknowns of a method's systems. The radius of its cone has another name than the methods'
+/// cone_radius(): with the same name, a method without one would convert to Method and call itself.
 bool has_unknown_multipliers(const Method& method);
 ConeRadius cone_radius_of(const Method& method);
 
-/// Price of a run by each engine. `factor`: of the bodies (bodies_factor).
+/// Predicted price of a run by each engine. `factor`: of the bodies (bodies_factor).
 EnginePrice predict_price(const Model& model, const Method& method, const FactorSize& factor);
 
-/// Whether a run condenses the bodies, or those of a mixed scene that it can: where it is asked to, else where that is
-/// cheaper. `factor`: of the bodies; they are analysed where it is needed and not given.
+/// Whether a run condenses the bodies, or the condensable ones of a mixed scene: if it is asked to, or if that is
+/// cheaper. `factor`: of the bodies; if it is not given, they are analysed when it is needed.
 bool condenses(const Model& model, const Method& method, LinearAlgebra::Engine engine,
                const std::optional<FactorSize>& factor = std::nullopt);
 
-/// Builds the engine a run asks for: dense on the contact dofs where all bodies are condensed, else sparse. Bodies that
-/// the workspace has condensed already are paid for, by all methods that share them: these solve alike, and the price
-/// of condensing is not weighed again.
+/// Makes the engine of a run: dense on the contact dofs if all bodies are condensed, otherwise sparse. If the workspace
+/// has condensed bodies already, they are used: the price of condensing is then not counted again.
 template <class T>
 void make_engine(const Model& model, const Slots<T>& slots, const Method& method, const RunOptions& options,
                  Workspace<T>& workspace) {
   const bool unknown_multipliers = has_unknown_multipliers(method);
   const ConeRadius cone = cone_radius_of(method);
   const auto engine = options.linear_algebra.engine;
-  std::shared_ptr<Condensation<T>> condensed;  // bodies among others
+  std::shared_ptr<Condensation<T>> condensed;  // the condensable bodies of a mixed scene
   if (can_condense(model) && engine != LinearAlgebra::Engine::sparse) {
     auto bodies = workspace.condensation;
     const bool shared = bodies != nullptr;

@@ -1,4 +1,4 @@
-/// What one equilibrium is asked for, and what comes of it.
+/// Task and result of one equilibrium.
 #pragma once
 
 #include <span>
@@ -9,27 +9,27 @@
 
 namespace stickslip {
 
-/// Largest force, length and traction among the equilibria of the run so far. Iterates on the way do not count: a first
+/// Largest force, length and traction among the equilibria of the run so far. Iterates do not count, because a first
 /// iterate may overshoot by any factor.
 struct RunScales {
   double force = 0, length = 0, traction = 0;
 };
 
-/// What a run carries from solve to solve; owned by the caller.
+/// What a run carries from equilibrium to equilibrium. The caller owns it.
 struct Account {
   RunScales scales;
   Counters counters;
   Seconds seconds;
-  Trace* trace = nullptr;   ///< not owned; gathers every iterate where it is there
+  Trace* trace = nullptr;   ///< not owned; nullptr: iterates are not recorded
   bool sequential = false;  ///< whether equilibria are first sought in sequence (methods/sequential.hpp)
 };
 
-/// Springs between the contact nodes and a place, which join the equilibrium with their forces.
+/// Springs from the contact nodes to given displacements. Their forces are part of the equilibrium.
 template <class T>
 struct Anchor {
   Vector<double> stiffness;  ///< of each contact node, the same in all directions, force per length; empty: none
   Vector<T> place;           ///< compact displacements
-  /// Their forces at compact displacements.
+  /// Forces of the springs at compact displacements, compact.
   Vector<T> force(const Vector<T>& compact, int dimension) const {
     Vector<T> f = compact - place;
     for (Eigen::Index i = 0; i < f.size(); ++i) f[i] *= stiffness[i / dimension];
@@ -37,27 +37,27 @@ struct Anchor {
   }
 };
 
-/// Whether lambda stays as it is given, or is solved for.
+/// Whether lambda is given or an unknown.
 enum class Multipliers { given, unknown };
 
-/// Given multipliers, with tractions that are solved for, point by point. Why: of a stiff point any curvature changes
-/// the gap by many tractions over the stiffness, so an iterate of the traction is taken from the step and not from the
-/// gap. With
+/// Tractions as unknowns although multipliers are given. Why: at a stiff point a curvature changes the gap by many
+/// tractions over the stiffness, so the traction of an iterate must come from the linear step and not from the gap.
+/// With
 ///
 ///   t = P_mu(lambda + rho g~),   g~ = g - (lambda - given) / stiffness,   A (t - lambda) = 0
 ///
-/// the solution has lambda = P_mu(given + stiffness g), whatever rho is.
+/// the solution is lambda = P_mu(given + stiffness g) for any rho.
 template <class T>
 struct Compliance {
   Vector<T> given;  ///< the multipliers that are given
-  Vector<T> share;  ///< rho over the stiffness of the method, each component; 1: no traction is solved for
+  Vector<T> share;  ///< per component: rho over the stiffness of the method; 1: the traction is no unknown
   /// The part of the trial lambda + rho g~ that does not depend on the gap.
   Vector<T> seen(const Vector<T>& lambda) const { return lambda + share.cwiseProduct(given - lambda); }
 };
 
-/// Where a step of a path ends (methods/path.hpp): at an arc length from the state at its beginning,
+/// End of a step of a path (methods/path.hpp), at an arc length from its beginning:
 ///
-///   |u - u'|^2 / length^2 + (t - t')^2 / span^2 = 1        |u|: root mean square over the nodes that are free
+///   |u - u'|^2 / length^2 + (t - t')^2 / span^2 = 1        |u|: root mean square over the free nodes
 struct Arc {
   const Vector<double>& start;  ///< u', all dofs
   double time = 0;              ///< t'
@@ -66,7 +66,7 @@ struct Arc {
   bool begins = false;  ///< whether the start values are u' and t'
 };
 
-/// One equilibrium that is to be found. It refers to what its caller holds.
+/// One equilibrium to be found. Its references must outlive it.
 template <class T>
 struct EquilibriumTask {
   const ContactInput<T>& contact;
@@ -74,29 +74,28 @@ struct EquilibriumTask {
   const Anchor<T>& anchor;  ///< may be empty
   /// States of the last increment, for points that start on their cone (methods/assumed_branches.hpp); empty: for none.
   std::span<const ContactState> resumed = {};
-  /// Of a solve that is one of many: it may also end at this share of its first residual, while states still change. 0:
-  /// it does not.
+  /// Share of the first residual at which an inner solve may end, even while states change; 0: it may not.
   double forcing = 0;
-  /// Displacement of the last state, all dofs; nullptr: what supports prescribe stays what it is.
+  /// Displacement of the last state, all dofs; nullptr: the prescribed displacements do not change.
   const Vector<T>* last_displacement = nullptr;
-  /// Tractions that are solved for in place of given multipliers; nullptr: none are.
+  /// Tractions as unknowns at given multipliers; nullptr: there are none.
   const Compliance<T>* compliance = nullptr;
-  /// The arc that ends a step whose time is unknown; nullptr: the time is given.
+  /// Arc of a step whose time is an unknown; nullptr: the time is given.
   const Arc* arc = nullptr;
   /// Whether lambda is an unknown of the engine's systems.
   bool solves_for_multipliers() const { return multipliers == Multipliers::unknown; }
-  /// Whether an iterate has tractions that differ from those of its displacements.
+  /// Whether the rows A (t - lambda) are part of the residual.
   bool has_multiplier_rows() const { return solves_for_multipliers() || compliance; }
 };
 
-/// Displacement in engine dofs, and lambda; along a path the time too.
+/// Displacement in engine dofs, lambda, and along a path the time.
 template <class T>
 struct Unknowns {
   Vector<T> u, multiplier;
   double time = 0;
 };
 
-/// A step of Newton's method: of the engine's unknowns, and along a path of the time.
+/// A Newton step of the engine's unknowns, and along a path of the time.
 template <class T>
 struct NewtonStep : BlockVector<T> {
   double time = 0;
@@ -110,8 +109,8 @@ struct Equilibrium {
   ContactField<T> field;
   int iterations = 0;
   bool inexact = false;  ///< ended by `forcing`, short of the tolerance
-  /// Some tangent of the iterations had a determinant of the other sign (Engine::reversed): there may be other
-  /// solutions. It tells nothing of bodies whose tangent is not constant.
+  /// Some tangent had a determinant of the other sign (Engine::reversed), so there may be other solutions. Only
+  /// meaningful for bodies of constant tangent.
   bool reversed = false;
   std::vector<IterationRecord> history;
 };

@@ -2,11 +2,12 @@
 ///
 ///   t = P_mu(lambda + rho g),   R_u = f_int - f_ext + sum A t dg = 0,   R_l = A (t - lambda) = 0
 ///
-///   rho  scale, force per length cubed: it shapes the path of Newton's method, not the solution
-///   cone augmented: radius -mu z_N, z = lambda + rho g;  multiplier: radius -mu lambda_N. Same zeros, another path
+///   rho  scale, force per length cubed: it affects the iterates of Newton's method, not the solution
+///   cone augmented: radius -mu z_N, z = lambda + rho g;  multiplier: radius -mu lambda_N. The solutions are the
+///        same, the iterates differ
 ///
-/// At the solution lambda = t satisfies Signorini and Coulomb to rounding for every rho > 0. The only history is the
-/// slip placement; the last lambda is a mere start value. Options: methods/options.hpp. [AC91], [PC99]
+/// At the solution lambda = t satisfies the conditions of Signorini and Coulomb to rounding, for every rho > 0. The
+/// only history is the slip placement; the last lambda is a start value. Options: methods/options.hpp. [AC91], [PC99]
 #pragma once
 
 #include "methods/increment.hpp"
@@ -20,7 +21,7 @@ inline ConeRadius cone_radius(const MonolithicAL& method) {
 /// Whether a converged solution penetrates nothing.
 constexpr bool prevents_penetration(const MonolithicAL&) { return true; }
 
-/// Whether the motion of methods/motion.hpp stands in where an increment fails.
+/// Whether methods/motion.hpp continues where an increment fails.
 constexpr bool is_globalised(const MonolithicAL&) { return true; }
 
 template <class T, class E>

@@ -1,18 +1,19 @@
 /// Paths of equilibria under one load, followed by arc length past limit points, where no equilibrium is near under a
-/// little more load. The factor of the load, as the time of a step, is an unknown beside the displacements:
+/// slightly larger load. The factor of the load is an unknown beside the displacements. It is the time t of a step:
 ///
 ///   R(u, t) = 0        |u - u'|^2 / length^2 + (t - t')^2 / span^2 = 1        load: t / end times its value
 ///
-///   length  motion of a step in which the load stands still; |u| is the root mean square over the nodes that are free
-///   span    time of a step in which the bodies stand still, end over the steps asked for
+///   u', t'  displacement and time at the beginning of the step
+///   length  motion of a step at constant load; |u| is the root mean square over the free nodes
+///   span    time of a step without motion: end over the number of steps asked for
 ///
-/// so that neither a stop that holds the bodies nor a fold of the load ends the path. Newton's method solves for both
-/// by bordering: two solves with the tangent that every method has (NewtonTangent::step_along). A step begins in the
-/// direction of the last one. Where that fails or turns back, the bodies go on and the load returns, for a path bends
-/// like that at a contact that closes while the load falls. Where that fails too, half an arc is tried. The last step
-/// ends at the full load. Derivatives are those of the points found, each at its own load, as they are at times that
-/// are given.
-/// [R79], [C81]
+/// So neither a stop that holds the bodies nor a fold of the load ends the path. Newton's method solves for both
+/// unknowns by bordering: two solves with the tangent that every method has (NewtonTangent::step_along).
+///
+/// A step begins in the direction of the last one. If it fails or turns back, it is tried with the load reversed and
+/// the motion continued, because a path has such a corner where a contact closes while the load falls. If that fails
+/// too, half an arc is tried. The last step ends at the full load. Derivatives are those of the equilibria found, each
+/// at its own load, as at prescribed times. [R79], [C81]
 #pragma once
 
 #include "methods/diagnosis.hpp"
@@ -36,13 +37,13 @@ class Path {
                             [](int index) { return index >= 0; });
   }
 
-  /// Whether the full load is reached, or as many steps were made as are allowed.
+  /// Whether the full load, or the largest number of steps, is reached.
   bool ended() const {
     const auto& increments = trajectory_.increments;
     return !increments.empty() && (increments.back().time == end_ || made_ == run_.model.scene.arc_length->max);
   }
-  /// Goes one step on; false where the path could not be followed (the failed increment is then the last). The first
-  /// increment is at t = 0, where something is held from the start on.
+  /// Makes one step. False if the path could not be followed; the failed increment is then the last. If displacements
+  /// or tractions are not zero at t = 0, an increment at t = 0 comes first.
   bool advance() {
     if (trajectory_.increments.empty()) {
       WorkBound bound(run_.model, run_.account.counters, method_.newton.max_iterations);
@@ -83,7 +84,7 @@ class Path {
       ++run_.account.counters.cutbacks;
     }
   }
-  /// Repeats an increment at the time that it was found at. `guide`: displacements that each began with, or none.
+  /// Repeats an increment at its time. `guide`: start displacement of each increment; empty: none.
   bool repeat(double time, const std::vector<Vector<double>>& guide) {
     State<T> start = last();
     if (!guide.empty()) start.displacement = guide[trajectory_.increments.size()].template cast<T>();
@@ -96,7 +97,7 @@ class Path {
 
  private:
   static constexpr double smallest = 1.0 / 1024, regrowth = 1.5;
-  static constexpr int soon = 3;  // steps in a row that were not cut
+  static constexpr int soon = 3;  // successive uncut steps before the share grows
 
   const State<T>& last() const {
     return trajectory_.increments.empty() ? trajectory_.initial : trajectory_.increments.back().state;
@@ -105,7 +106,7 @@ class Path {
   std::vector<double> factor() const {
     return trajectory_.increments.empty() ? std::vector<double>{} : trajectory_.increments.back().rho_factor;
   }
-  /// State and time before the last; nullptr, and 0, where the path is about to begin.
+  /// The state before the last, and its time; nullptr and 0 at the beginning of the path.
   std::pair<const State<T>*, double> before_last() const {
     const auto& increments = trajectory_.increments;
     if (increments.empty() || increments.back().time == 0) return {nullptr, 0};
@@ -118,7 +119,7 @@ class Path {
   }
 
   enum class Heading { on, over_a_corner };
-  /// An increment along the arc, or to the full load where the arc goes beyond it.
+  /// An increment along the arc, or to the full load if the arc passes it.
   Increment<T> step_on(Heading heading) {
     const State<T>& previous = last();
     const auto [before, then] = before_last();
@@ -144,8 +145,8 @@ class Path {
   }
   static constexpr double nearly = 1e-9;  // of the full load
 
-  /// Whether a step was found that has not gone back to where the path came from, in motion and load alike. (One that
-  /// turns back within a short arc has met a corner.)
+  /// Whether the step converged and did not return along the path, in motion and load together. A return within a short
+  /// arc is a corner of the path, and counts as progress.
   bool goes_on(const Increment<T>& increment) const {
     constexpr double is_short = 1.0 / 64;  // of the arc
     const auto [before, then] = before_last();
@@ -161,8 +162,8 @@ class Path {
   Run<T, E>& run_;
   Trajectory<T>& trajectory_;
   double end_, length_, span_, nodes_ = 0;
-  double share_ = 1, last_share_ = 1;  ///< of the arc: of the next step, of the last
-  int made_ = 0, easy_ = 0;            ///< steps; those in a row that were not cut
+  double share_ = 1, last_share_ = 1;  ///< share of the arc: of the next step, of the last
+  int made_ = 0, easy_ = 0;            ///< number of steps; successive steps that were not cut
 };
 
 }  // namespace stickslip

@@ -1,11 +1,11 @@
-/// Penalty: the contact traction is a stiff spring on the penetration and on the elastic part of the slip.
+/// Penalty: the contact traction is that of stiff springs on the penetration and on the elastic part of the slip.
 ///
 ///   lambda = (0, t_T of the last increment),   t = P_mu(lambda + eps g),   R(u) = f_int - f_ext + sum A t dg = 0
 ///
 ///   eps  penalty, force per length cubed (stiffness); eps_T = tangential_ratio * eps
-///   t_T  stored tangential traction: the history, beside the slip placement
+///   t_T  stored tangential traction: history, together with the slip placement
 ///
-/// The constraint holds up to t/eps, so the error falls as 1/eps until rounding, which grows as eps, takes over.
+/// The constraint is violated by t/eps. So the error falls as 1/eps, until rounding, which grows as eps, exceeds it.
 /// Not differentiable where a point changes state. Options: methods/options.hpp. [SL92], [W06]
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace stickslip {
 
-/// The multiplier that history supplies: zero normal part, stored tangential traction of the last increment.
+/// The multiplier lambda of an increment: zero normal part, tangential traction of the last increment.
 template <class T>
 Vector<T> stored_traction(const Model& model, const State<T>& previous) {
   Vector<T> lambda = previous.contact.traction;
@@ -28,9 +28,9 @@ constexpr bool prevents_penetration(const Penalty&) { return false; }
 
 namespace detail {
 
-/// Points, closed in `field`, whose constraints could contradict others. Left out is a point whose slave node belongs
-/// to no other point and is free to follow along the normal. Points that are integrated where they are now share the
-/// nodes of their facets, which contradicts nothing.
+/// Indices of closed points whose constraints could contradict others. A point is left out if its slave node belongs to
+/// no other point and is free along the normal. Segment-integrated points with present geometry share the nodes of
+/// their slave facets; this sharing is no contradiction.
 template <class T>
 std::vector<int> shared_points(const Model& model, const Slots<T>& slots, const ContactField<T>& field) {
   std::vector<int> users(model.node_count, 0);
@@ -49,11 +49,12 @@ std::vector<int> shared_points(const Model& model, const Slots<T>& slots, const 
   return shared;
 }
 
-/// A point whose overlap no stiffness removes, in words; empty where there is none. It is found by one augmentation
-/// from the solution with 1e8 nodal stiffnesses: tangential tractions stay as they are, and points are closed and
-/// opened until their tractions and gaps agree. That leaves some 1e-8 of an overlap that bodies can yield to. An
-/// overlap that supports or other contacts prescribe stays, there or where it was pushed to: its force is stiffness
-/// times overlap. The augmentation is made only where points share a node or are held by supports.
+/// A point whose overlap no stiffness removes, in words; empty if there is none.
+///
+/// One augmentation from the solution finds it, with 1e8 nodal stiffnesses. Tangential tractions stay, and points are
+/// closed and opened until tractions and gaps agree. An overlap to which bodies can yield falls to some 1e-8 of itself.
+/// An overlap that supports or other contacts prescribe stays, there or elsewhere; its force is stiffness times
+/// overlap. The augmentation is skipped unless points share a node or are held by supports.
 template <class T, class E>
 std::string unyielding_point(Run<T, E>& run, const ContactInput<T>& found, const Equilibrium<T>& equilibrium) {
   constexpr double stiff = 1e8, left = 1e-5, negligible = 1e-9;
@@ -71,7 +72,7 @@ std::string unyielding_point(Run<T, E>& run, const ContactInput<T>& found, const
   RegularisationField<T> rho;
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const T nodal = T(stiff) * run.slots.stiffness[p] / run.slots.geometry[p].area;
-    rho.push_back({nodal, nodal / T(stiff * stiff)});  // across the normal a traction stays what it is
+    rho.push_back({nodal, nodal / T(stiff * stiff)});  // (so tangential tractions stay)
   }
   const ContactInput<T> input{model, run.slots, rho, found.previous, found.cone, found.time, &equilibrium.field.facing};
   const auto& traction = equilibrium.field.traction;
@@ -116,7 +117,7 @@ std::string unyielding_point(Run<T, E>& run, const ContactInput<T>& found, const
 
 }  // namespace detail
 
-/// Whether the motion of methods/motion.hpp stands in where an increment fails.
+/// Whether methods/motion.hpp continues where an increment fails.
 constexpr bool is_globalised(const Penalty&) { return true; }
 
 template <class T, class E>

@@ -1,9 +1,9 @@
-/// Residuals of one equilibrium, each relative to a scale of its own: the largest among the run's equilibria and the
-/// iterate at hand.
+/// Residuals of one equilibrium. Each is relative to a scale: the largest value among the run's equilibria so far and
+/// the present iterate.
 ///
-///   equilibrium   largest nodal |R_u|                / largest nodal force of any kind
-///   normal        closed: |t_N - lambda_N|/rho = |g_N| / largest of A|t|/k and of the relative displacement;
-///   tangential    stick: |dg_T| likewise; open and slip: |t - lambda| / largest traction
+///   equilibrium   largest nodal |R_u|, over the largest nodal force of any kind
+///   normal        closed: |t_N - lambda_N|/rho = |g_N|, over the largest of A|t|/k and of the relative displacement
+///   tangential    stick: |dg_T|, over the same; open and slip: |t - lambda|, over the largest traction
 #pragma once
 
 #include "methods/equilibrium.hpp"
@@ -12,16 +12,16 @@ namespace stickslip {
 
 namespace detail {
 
-inline constexpr double rounding_factor = 100;  // several hundred terms meet in a row; each rounds once
+inline constexpr double rounding_factor = 100;  // several hundred terms are summed in a row; each rounds once
 
-/// Relative size; nothing is small against a scale that is not finite.
+/// x / scale; 0 for x = 0. NaN if the scale is not finite, so that no residual passes as small.
 inline double ratio(double x, double scale) {
   return x == 0 ? 0 : std::isfinite(scale) ? x / scale : std::numeric_limits<double>::quiet_NaN();
 }
 
 struct Residuals {
   double equilibrium = 0, normal = 0, tangential = 0;
-  double floor_equilibrium = 0, floor_length = 0, floor_traction = 0;  ///< what rounding alone may leave of them
+  double floor_equilibrium = 0, floor_length = 0, floor_traction = 0;  ///< residuals that rounding alone may leave
   double largest() const { return larger(larger(equilibrium, normal), tangential); }
   bool finite() const { return std::isfinite(equilibrium) && std::isfinite(normal) && std::isfinite(tangential); }
   bool within(double tolerance) const { return finite() && largest() <= tolerance; }
@@ -32,12 +32,13 @@ struct Residuals {
   }
 };
 
-/// Whether a point faces another patch of its curve; integrated over them it has no kink there.
+/// Whether a point has come to face another patch of its curve. Never for segment-integrated points, which have no kink
+/// between patches.
 inline bool has_crossed(const Facing& before, const Facing& after) {
   return before.pieces.empty() && after.pieces.empty() && before.patch != after.patch;
 }
 
-/// How many closed points have crossed over to another patch of their curves since `last`.
+/// Number of closed points that face another patch than in `last`.
 template <class T>
 int count_crossings(const ContactField<T>& field, const std::vector<Facing>& last) {
   int crossed = 0;
@@ -46,25 +47,25 @@ int count_crossings(const ContactField<T>& field, const std::vector<Facing>& las
   return crossed;
 }
 
-/// One point of the Newton path, evaluated.
+/// Field, rows and residuals of one Newton iterate.
 template <class T>
 struct Evaluation {
   ContactField<T> field;
   Vector<T> rows_u, rows_l;
   Residuals residuals;
-  RunScales scales;  ///< of the run, and of this iterate
+  RunScales scales;  ///< largest values of the run and of this iterate
 };
 
-/// What the contact points say of stiffness, and of rounding.
+/// Extreme values over the contact points, for estimates of rounding.
 struct PointSizes {
   double area_times_rho = 0;                                 ///< largest A rho
-  double distance = 0;                                       ///< largest initial gap of a closed point, which rounds
+  double distance = 0;                                       ///< largest initial gap of a closed point, length
   double elastic = 0;                                        ///< largest k / A
-  double rho = 0;                                            ///< largest
+  double rho = 0;                                            ///< largest rho
   double softest = std::numeric_limits<double>::infinity();  ///< least k
 };
 
-/// Takes the sizes of length and traction at a field into the scales.
+/// Raises the scales of length and traction to those of a field, and returns the extreme values of its points.
 template <class T>
 PointSizes measure_points(const ContactInput<T>& input, const ContactField<T>& field, RunScales& scales) {
   PointSizes sizes;
@@ -94,7 +95,7 @@ PointSizes measure_points(const ContactInput<T>& input, const ContactField<T>& f
   return sizes;
 }
 
-/// Largest displacement that supports prescribe at a time.
+/// Largest nodal displacement, length, that supports prescribe at a time.
 template <class T>
 double prescribed_motion(const Model& model, const Slots<T>& slots, double time) {
   Vector<T> displacement = Vector<T>::Constant(model.dof_count(), T(0));
@@ -102,38 +103,39 @@ double prescribed_motion(const Model& model, const Slots<T>& slots, double time)
   return largest_nodal_norm(displacement, model.dimension);
 }
 
-/// Sizes of motions and places, lengths.
-struct Reach {
-  double moved = 0;       ///< largest displacement of a contact node
-  double placed = 0;      ///< what rounds in its gap: moved, and coordinates where geometry is the present one
-  double prescribed = 0;  ///< largest displacement that supports prescribe
+/// Largest values of an iterate, lengths.
+struct Magnitudes {
+  double displacement = 0;  ///< of a contact node
+  double position = 0;      ///< whose rounding appears in a gap: displacement; with present geometry plus coordinates
+  double prescribed = 0;    ///< displacement that supports prescribe
 };
 
-/// What rounding alone may leave of the residuals. `rounding`: of the bodies' forces.
-inline void set_floors(const PointSizes& sizes, const RunScales& scales, double rounding, const Reach& reach,
+/// Sets the residuals that rounding alone may leave. `rounding`: of the bodies' nodal forces, force.
+inline void set_floors(const PointSizes& sizes, const RunScales& scales, double rounding, const Magnitudes& magnitudes,
                        Residuals& residuals) {
-  // Rounding of this share of the forces means displacements 1e9 times those that the forces cause in the stiffest
-  // body. That is no equilibrium that rounding hides, but a body that drifts off on a nearly singular tangent; unless
-  // supports move it that far, or a softer body yields that far.
+  // A rounding of 1e-5 of the forces means displacements 1e9 times those that the forces cause in the stiffest body.
+  // Such a body drifts off on a nearly singular tangent, and has no equilibrium that rounding hides. Exceptions:
+  // supports prescribe a tenth of that motion, or a softer body yields that far under 1e3 times its force.
   constexpr double adrift = 1e-5, carried = 10, yielded = 1e3;
   const double bulk_floor = rounding_factor * ratio(rounding, scales.force);
-  if (bulk_floor <= adrift || reach.moved <= carried * reach.prescribed ||
-      sizes.softest * reach.moved <= yielded * scales.force)
-    residuals.floor_equilibrium = bulk_floor + rounding_factor * ratio(unit_roundoff * sizes.area_times_rho *
-                                                                           std::max(reach.placed, sizes.distance),
-                                                                       scales.force);
-  residuals.floor_length = rounding_factor * ratio(unit_roundoff * reach.placed, scales.length);
-  // in slip the bound turns the rounding of the pressure lambda_N + rho g_N into one of the tangential traction
-  residuals.floor_traction = rounding_factor * ratio(unit_roundoff * sizes.rho * reach.placed, scales.traction);
+  if (bulk_floor <= adrift || magnitudes.displacement <= carried * magnitudes.prescribed ||
+      sizes.softest * magnitudes.displacement <= yielded * scales.force)
+    residuals.floor_equilibrium =
+        bulk_floor +
+        rounding_factor *
+            ratio(unit_roundoff * sizes.area_times_rho * std::max(magnitudes.position, sizes.distance), scales.force);
+  residuals.floor_length = rounding_factor * ratio(unit_roundoff * magnitudes.position, scales.length);
+  // In slip the bound turns the rounding of the pressure lambda_N + rho g_N into one of the tangential traction.
+  residuals.floor_traction = rounding_factor * ratio(unit_roundoff * sizes.rho * magnitudes.position, scales.traction);
 }
 
-/// Takes in how far lambda is from the traction, point by point.
+/// Sets the normal and tangential residuals from t - lambda. `largest_displacement`: of a contact node, length.
 template <class T>
 void measure_multipliers(const ContactInput<T>& input, const Vector<T>& multiplier, const PointSizes& sizes,
-                         double reach, Evaluation<T>& at) {
+                         double largest_displacement, Evaluation<T>& at) {
   const Model& model = input.model;
-  // where a body slides and nothing presses, all tractions are what rounding makes of its displacements
-  const bool presses = at.scales.traction > rounding_factor * unit_roundoff * sizes.elastic * reach;
+  // Where a body slides without pressure, its tractions are the rounding of its displacements.
+  const bool presses = at.scales.traction > rounding_factor * unit_roundoff * sizes.elastic * largest_displacement;
   for (std::size_t p = 0; p < model.points.size(); ++p)
     for (int c = 0; c < model.points[p].components(); ++c) {
       const int k = model.points[p].multiplier + c;
@@ -165,29 +167,30 @@ class Evaluator {
     for (const auto& point : task.contact.model.points) longest_step_ = std::max(longest_step_, point.mesh_size);
   }
 
-  /// Field, rows and residuals, each point in the branch that it is in.
+  /// Field, rows and residuals at an iterate. Each point takes the branch of its trial traction.
   detail::Evaluation<T> operator()(const Unknowns<T>& unknowns);
-  /// The share of a step (engine dofs) that takes no contact node further than a facet; 1 where geometry is not the
-  /// present one.
+  /// Largest share <= 1 of a step (engine dofs) that moves no contact node farther than the largest facet; 1 with
+  /// initial geometry.
   double good_share(const Matrix<T>& step) const {
     if (longest_step_ == 0) return 1;
-    const double reach = largest_nodal_norm(engine_.compact(Vector<T>(step.col(0))), task_.contact.model.dimension);
-    return reach > longest_step_ ? longest_step_ / reach : 1;
+    const double largest = largest_nodal_norm(engine_.compact(Vector<T>(step.col(0))), task_.contact.model.dimension);
+    return largest > longest_step_ ? longest_step_ / largest : 1;
   }
-  /// Takes an evaluation for the next iterate; returns how many closed points came to another patch of their curves.
+  /// Accepts an evaluation as the next iterate. Returns the number of closed points that face another patch than
+  /// before.
   int accept(const detail::Evaluation<T>& at);
-  /// Lets points that went to and fro between patches that meet at a corner stay on theirs until the equilibrium is
-  /// found. At such a vertex two normals push a point to either side. False where no point did.
+  /// Keeps points that alternate between two patches at a corner on their present patch, until the equilibrium is
+  /// found. Why: at a corner the two normals push a point to either side for ever. False if no point alternates.
   bool keep_patches();
-  /// Whether points were kept on patches that they do not face.
+  /// Whether a closed point was kept on a patch that it does not face.
   bool keeps_wrong(const Unknowns<T>& unknowns, const ContactField<T>& field) const;
-  /// Lets all points face what they face again.
+  /// Ends the effect of keep_patches().
   void release();
-  /// The rows of an evaluation anew, in given branches.
+  /// Replaces the rows of an evaluation by those in given branches.
   void take_rows_in(const std::vector<ContactState>& branches, const Unknowns<T>& unknowns, detail::Evaluation<T>& at);
 
  private:
-  detail::Reach reach_of(const Vector<T>& compact) const {
+  detail::Magnitudes magnitudes_at(const Vector<T>& compact) const {
     const auto& [model, slots] = std::tie(task_.contact.model, task_.contact.slots);
     const double moved = largest_nodal_norm(compact, model.dimension);
     if (!model.effects.current_geometry) return {moved, moved, prescribed_};
@@ -207,14 +210,14 @@ class Evaluator {
   const EquilibriumTask<T>& task_;
   Account& account_;
   double prescribed_;                      ///< largest displacement that supports prescribe
-  double longest_step_ = 0;                ///< of a contact node: a facet; 0: any
-  std::vector<Facing> last_;               ///< of the last iterate, where points slide along curves
-  std::vector<std::vector<int>> visited_;  ///< patches, per point
-  std::vector<char> returned_;             ///< to one of them
-  std::vector<int> kept_;                  ///< patches that points stay on; empty: none does
+  double longest_step_ = 0;                ///< largest step of a contact node: the largest facet; 0: unlimited
+  std::vector<Facing> last_;               ///< of the last iterate; empty: no point slides along a curve
+  std::vector<std::vector<int>> visited_;  ///< per point: the patches that it has faced
+  std::vector<char> returned_;             ///< per point: whether it came back to one of them
+  std::vector<int> kept_;                  ///< per point: the patch that it is kept on, or none; empty: no point
 };
 
-/// Forces of contact, and of the anchor where there is one, on the contact nodes.
+/// Forces of contact and of the anchor, if any, on the contact nodes, compact.
 template <class T, class E>
 Vector<T> Evaluator<T, E>::contact_field_forces(const Vector<T>& compact, const ContactField<T>& field) const {
   const Model& model = task_.contact.model;
@@ -293,14 +296,14 @@ detail::Evaluation<T> Evaluator<T, E>::operator()(const Unknowns<T>& unknowns) {
   at.rows_u = engine_.residual(unknowns.u, contact_field_forces(compact, at.field), force);
   at.scales.force = force.force;
   const auto sizes = detail::measure_points(input, at.field, at.scales);
-  const detail::Reach reach = reach_of(compact);
+  const detail::Magnitudes magnitudes = magnitudes_at(compact);
   for (Eigen::Index row = 0; row < at.rows_u.size(); ++row)
     if (!engine_.is_free(row)) at.rows_u[row] = T(0);
   at.residuals.equilibrium = detail::ratio(largest_nodal_norm(at.rows_u, model.dimension), at.scales.force);
-  detail::set_floors(sizes, at.scales, force.rounding, reach, at.residuals);
+  detail::set_floors(sizes, at.scales, force.rounding, magnitudes, at.residuals);
   if (!task_.has_multiplier_rows()) return at;
   at.rows_l = multiplier_residual(model, input.slots, at.field.traction, unknowns.multiplier);
-  detail::measure_multipliers(input, unknowns.multiplier, sizes, reach.moved, at);
+  detail::measure_multipliers(input, unknowns.multiplier, sizes, magnitudes.displacement, at);
   return at;
 }
 

@@ -1,4 +1,4 @@
-/// What a run is given beside its method, and what it leaves.
+/// Options of a run apart from its method, and the workspace that it leaves.
 #pragma once
 
 #include <functional>
@@ -14,23 +14,23 @@
 
 namespace stickslip {
 
-/// How a run is carried out, apart from its method.
+/// Options of a run apart from its method.
 struct RunOptions {
   LinearAlgebra linear_algebra;
   Backend backend = Backend::automatic;
-  std::vector<double> replay;  ///< ends of the increments to repeat, without cutting; empty: the model's own steps
-  std::vector<Vector<double>> guide;  ///< displacements, all dofs, that increments repeated along a path begin with
+  std::vector<double> replay;         ///< ends of increments to repeat, uncut; empty: the model's own steps
+  std::vector<Vector<double>> guide;  ///< start displacements, all dofs, of the increments of a path that is repeated
   std::function<void()> on_step;      ///< called after each requested step; may be empty
-  Trace* trace = nullptr;             ///< not owned; gathers every iterate where it is there
-  /// Bytes for displacements and for what bodies remember, of all states; beyond them some are let go, and solved again
-  /// where an adjoint asks for them (methods/checkpoints.hpp).
+  Trace* trace = nullptr;             ///< not owned; nullptr: iterates are not recorded
+  /// Bytes for the displacements and the memory of the bodies in all states. Beyond it states are thinned, and solved
+  /// again when an adjoint asks for them (methods/checkpoints.hpp).
   double state_memory = std::numeric_limits<double>::infinity();
-  /// Then every so many steps a state stays nevertheless; 0: the last alone, which always does.
+  /// Every output_every-th state stays whole all the same; 0: the last state alone, which always does.
   int output_every = 0;
 };
 
-/// Options that repeat the increments of a run. Those of a path begin where they ended: under a load alone a step past
-/// a limit point would go back to where it came from.
+/// Options that repeat the increments of a run. The increments of a path start from their own displacements. Why: under
+/// the load alone, an increment past a limit point would return to the branch before it.
 inline RunOptions repeating(RunOptions options, const Model& model, const Trajectory<double>& trajectory) {
   options.replay = trajectory.step_table();
   options.guide.clear();
@@ -42,14 +42,13 @@ inline RunOptions repeating(RunOptions options, const Model& model, const Trajec
 template <class T>
 class Checkpoints;
 
-/// What a run allocates and leaves for its sensitivities: owned by the caller, the only mutable thing beside them.
-/// `condensation` may be handed on to another run on the same slots (a sweep over methods): it is reused if it is
-/// there.
+/// What a run allocates and leaves for its sensitivities. The caller owns it. A `condensation` that is set is reused; a
+/// sweep over methods passes it on between runs with the same slots.
 template <class T>
 struct Workspace {
   std::shared_ptr<Condensation<T>> condensation;
   std::optional<Engine<T>> engine;
-  std::shared_ptr<Checkpoints<T>> checkpoints = nullptr;  ///< where states were let go
+  std::shared_ptr<Checkpoints<T>> checkpoints = nullptr;  ///< set if states were thinned
 };
 
 }  // namespace stickslip

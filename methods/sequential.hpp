@@ -1,17 +1,19 @@
-/// Equilibria of bodies that are not linear, as a sequence of contact problems of linear ones.
+/// Equilibria of nonlinear bodies as a sequence of contact problems of linear bodies.
 ///
-/// Newton's method alone changes the bodies' tangent and the branches of the points at once. While the branches are
-/// wrong the bodies are far from where they will be (metal that a die presses flat for one iterate flows all through),
-/// and their tangent there tells nothing. Where it does not end soon, bodies and points take turns:
+/// Newton's method changes the bodies' tangent and the branches of the points at once. While the branches are wrong,
+/// the bodies are far from their solution, and their tangent says nothing about it. Example: metal that a die presses
+/// flat for one iterate flows as a whole. So if Newton's method does not converge soon, bodies and points are solved in
+/// turns:
 ///
-///   1. The bodies are linear about the last iterate u_k, with the forces and the tangent that they have there.
-///   2. The branches of their contact problem are found by pivoting; its solution is u_{k+1}.
-///   3. Once the branches stay what they are, each such step is one of Newton's.
+///   1. The bodies are linearised about the last iterate u_k.
+///   2. Pivoting finds the branches of their contact problem; its solution is u_{k+1}.
+///   3. Once the branches stay the same, each of these steps is a Newton step.
 ///
-/// Beside that two things keep curved surfaces from misleading it. The branch of a closed point follows from its
-/// traction alone, for its gap is what the curvature left. And where multipliers are given, the tractions of points are
-/// solved for one by one (Compliance): a step that slides by s over a radius R changes the gap by s^2/2R, which a stiff
-/// point would answer with many times its traction. The last solve is Newton's method on the task as it was given.
+/// Two more measures make this converge on curved surfaces. First, the branch of a closed point follows from its
+/// traction alone, because its gap is an error of the linearisation. Second, if multipliers are given, the tractions of
+/// points are unknowns (Compliance). Why: a step that slides by s over a radius R changes the gap by s^2/2R, and a
+/// stiff point would turn that into many times its traction. At the end Newton's method solves the task as it was
+/// given.
 ///
 /// Pivoting: J. J. Judice, F. M. Pires, Comput. Oper. Res. 21 (1994) 587-596. Tractions as unknowns of the iteration
 /// alone: D. Magisano, L. Leonetti, G. Garcea, Comput. Methods Appl. Mech. Engrg. 313 (2017) 829-850.
@@ -25,15 +27,16 @@ namespace stickslip {
 
 namespace detail {
 
-/// Which points change their branches at once: all that should, while their number falls. Where it has not fallen for
-/// three steps, those alone that are the furthest from where they belong; and once that repeats, the last of them
-/// alone, which ends for every P-matrix (Murty's rule) but hangs on the order of the points.
+/// Block pivoting: which points change their branches at once. As long as the number of wrong points falls: all of
+/// them. If it has not fallen for three steps: those with the largest error. If the branches then repeat: the last
+/// wrong point alone. This rule of Murty ends for every P-matrix, but depends on the order of the points.
 class Pivoting {
  public:
-  /// The branches to go on with, where those of the solution in `taken` are `wanted`. `by`: how far each point is off.
+  /// The next branches. `taken`: branches of the last solve; `wanted`: branches of its solution; `by`: error of each
+  /// point.
   std::vector<ContactState> advance(const std::vector<ContactState>& taken, const std::vector<ContactState>& wanted,
                                     const std::vector<double>& by) {
-    constexpr double as_far = 1 - 1e-6;  // what is symmetric changes together
+    constexpr double as_far = 1 - 1e-6;  // symmetric points change together
     int wrong = 0;
     std::size_t last = 0;
     double furthest = 0;
@@ -55,9 +58,9 @@ class Pivoting {
     met_.clear();
     return next;
   }
-  /// Whether not all points change that should.
+  /// Whether fewer points change than are wrong.
   bool is_careful() const { return left_ < 0; }
-  /// Whether nothing ends it.
+  /// Whether the branches repeat under the last rule too.
   bool repeats() const { return repeats_; }
 
  private:
@@ -80,14 +83,14 @@ class Sequence {
         tangent_(engine, task, account),
         unknowns_(std::move(start)) {}
 
-  /// Whether the equilibrium is found, but for what the tolerance of a task that gives multipliers asks for.
+  /// Runs the sequence. True if it converged; at given multipliers, to the tolerance of the compliant task.
   bool find() {
-    // Of 1200 that were found in the shipped scenes none took more than 2 and 3 of these. Where a die meets facets that
-    // are no finer, 8 and 12 find a few more, late, and take half as many iterations again in all.
+    // The 1200 equilibria found in the shipped scenes took at most 2 and 3 of these. For a die on facets of its own
+    // size, 8 and 12 find a few more, at half as many iterations again in all.
     constexpr int most_unsettled = 3, patience = 6;
     const int most = std::min(40, options_.max_iterations);
     double least_residual = std::numeric_limits<double>::infinity();
-    int waited = 0;  // steps since it last fell to its half
+    int waited = 0;  // steps since the least residual was halved
     Vector<T> about = unknowns_.u;
     if (task_.last_displacement)
       about = into_frames(task_.contact.model, task_.contact.slots.frames, Layout::all, *task_.last_displacement);
@@ -113,7 +116,7 @@ class Sequence {
       const bool falls = history_.size() < 2 || 2 * residual < history_[history_.size() - 2].residual;
       const bool near = at.residuals.within(std::sqrt(options_.tolerance));
       const bool solved = at.residuals.within_rounding(options_.tolerance);
-      // (Branches that repeat although nothing is left of the residuals are those of a tie.)
+      // (If branches repeat although the residuals are rounding, they are at a tie.)
       const bool is_tie = unsettled_ > unsettled_before;
       if ((solved && (before == branches_ || is_tie)) || (near && !falls && before == branches_)) return true;
       if (waited > patience || unsettled_ > most_unsettled) return false;
@@ -126,8 +129,8 @@ class Sequence {
   int iterations() const { return iterations_; }
 
  private:
-  /// Solves the contact problem of bodies that are linear about a displacement; `branches_`, where there are any, come
-  /// first. False where it has no solution.
+  /// Solves the contact problem of the bodies linearised about a displacement, starting from `branches_`, if there are
+  /// any. False if it has no solution.
   bool solve_linear(const Vector<T>& about) {
     const Vector<T> moved = engine_.spread(about);
     {
@@ -140,8 +143,8 @@ class Sequence {
     return solved;
   }
 
-  /// False where no branches give a tangent that is regular. Where they repeat, none are right (friction may have no
-  /// solution, or several): the next problem begins with the last.
+  /// False if all branches give a singular tangent. If branches repeat, none are right, since friction may have no
+  /// solution or several; then the next linear problem starts from the last branches.
   bool pivot() {
     constexpr int most = 100;
     Pivoting pivoting;
@@ -152,7 +155,7 @@ class Sequence {
     for (int i = 0; i < most; ++i) {
       tangent_.face(at.field);
       if (!pivoting.is_careful() || !tangent_.factorise_in(branches, unknowns_)) {
-        branches = wanted;  // (what changed alone may have held a body)
+        branches = wanted;  // (the points that changed may be all that held a body)
         if (!tangent_.factorise(unknowns_, branches)) return false;
       }
       if (branches != at.field.state) evaluate_.take_rows_in(branches, unknowns_, at);
@@ -174,7 +177,7 @@ class Sequence {
     return true;
   }
 
-  /// The branches of the points at an iterate that comes of a step in those of `directed`.
+  /// The branches of the points at an iterate after a step in the branches of `directed`.
   std::vector<ContactState> branches_in(ContactField<T> field, const Unknowns<T>& at, const ContactField<T>& directed) {
     const Vector<T> compact = engine_.compact(at.u), seen = seen_by_points(at.multiplier);
     if (!directed.state.empty() && task_.has_multiplier_rows())
@@ -189,12 +192,13 @@ class Sequence {
     return task_.compliance ? task_.compliance->seen(multiplier) : multiplier;
   }
 
-  /// How far points are from where `wanted` begins, of those that are not in `branches_` there: tractions.
+  /// Error of each point: distance, as a traction, from its present branch to `wanted`.
   std::vector<double> distances_to(const std::vector<ContactState>& wanted, const ContactField<T>& field) {
     std::vector<double> distances;
     const Vector<T> seen = seen_by_points(unknowns_.multiplier);
     for (std::size_t p = 0; p < wanted.size(); ++p) {
-      const auto from = task_.has_multiplier_rows() ? branches_[p] : ContactState::open;  // (gaps count)
+      const auto from =
+          task_.has_multiplier_rows() ? branches_[p] : ContactState::open;  // (open: distances are gaps times rho)
       const auto trial = trial_after(task_.contact, static_cast<int>(p), unknowns_.multiplier, seen, from, field);
       const bool opens = branches_[p] == ContactState::open || wanted[p] == ContactState::open;
       distances.push_back(std::abs(opens ? trial.pressure : trial.tangential - trial.bound));
@@ -209,13 +213,13 @@ class Sequence {
   Evaluator<T, E> evaluate_;
   NewtonTangent<T, E> tangent_;
   Unknowns<T> unknowns_;
-  Vector<T> prescribed_;                ///< displacement that has what supports prescribe
-  std::vector<ContactState> branches_;  ///< of the last linear problem; empty: not known yet
+  Vector<T> prescribed_;                ///< displacement with the prescribed values
+  std::vector<ContactState> branches_;  ///< of the last linear problem; empty before the first
   std::vector<IterationRecord> history_;
-  int iterations_ = 0, unsettled_ = 0;  ///< in all; linear problems whose branches repeated
+  int iterations_ = 0, unsettled_ = 0;  ///< number in all; number of linear problems whose branches repeated
 };
 
-/// rho no larger than the local stiffness of the bodies, so that one point weighs as much as another.
+/// rho, but at most the local stiffness k / A of each point. Why: points then have comparable weights.
 template <class T>
 RegularisationField<T> softened(const ContactInput<T>& input) {
   RegularisationField<T> rho = input.rho;
@@ -227,7 +231,7 @@ RegularisationField<T> softened(const ContactInput<T>& input) {
   return rho;
 }
 
-/// Tractions that are solved for with a rho of their own.
+/// Compliance for tractions that are unknowns with a regularisation `rho` of their own.
 template <class T>
 Compliance<T> compliance_of(const ContactInput<T>& input, const Vector<T>& given, const RegularisationField<T>& rho) {
   Compliance<T> compliance{given, Vector<T>(given.size())};
@@ -240,8 +244,7 @@ Compliance<T> compliance_of(const ContactInput<T>& input, const Vector<T>& given
   return compliance;
 }
 
-/// The equilibrium by a sequence of linear problems, and then by Newton's method from there; status cycle where the
-/// sequence finds none.
+/// The equilibrium by the sequence of linear problems and then Newton's method. Status cycle if the sequence fails.
 template <class T, class E>
 Equilibrium<T> solve_in_sequence(E& engine, const EquilibriumTask<T>& task, const Unknowns<T>& start,
                                  const NewtonOptions& options, Account& account) {
@@ -268,9 +271,9 @@ Equilibrium<T> solve_in_sequence(E& engine, const EquilibriumTask<T>& task, cons
 
 }  // namespace detail
 
-/// Solves one equilibrium from the start values: by Newton's method; where bodies or geometry are not linear and it
-/// does not end in 15 iterations, in sequence; and by Newton's method for as long as it may take where that finds none.
-/// A run in which the sequence found an equilibrium begins the next with it, until it fails.
+/// Solves one equilibrium from start values, in up to three attempts: Newton's method; if bodies or geometry are
+/// nonlinear and it does not converge in 15 iterations, the sequence; if that fails, Newton's method with all its
+/// iterations. After an equilibrium by the sequence, the run begins the next ones with it, until it fails.
 template <class T, class E>
 Equilibrium<T> find_equilibrium(E& engine, const EquilibriumTask<T>& task, Unknowns<T> start,
                                 const NewtonOptions& options, Account& account) {
@@ -281,7 +284,7 @@ Equilibrium<T> find_equilibrium(E& engine, const EquilibriumTask<T>& task, Unkno
     return newton(engine, task, std::move(start), options, account);
   const RunScales before = account.scales;
   Equilibrium<T> found;
-  const auto take = [&](Equilibrium<T> next) {  // with what was tried before it
+  const auto take = [&](Equilibrium<T> next) {  // adds the iterations of earlier attempts
     next.history.insert(next.history.begin(), found.history.begin(), found.history.end());
     next.iterations += found.iterations;
     found = std::move(next);

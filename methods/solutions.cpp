@@ -10,7 +10,7 @@ namespace {
 
 constexpr long most_combinations = 4096;  // six points with friction
 
-/// A branch of a point; `sign` of t_T in slip.
+/// A branch of a point. `sign`: s, that of t_T in slip.
 struct Branch {
   ContactState state = ContactState::open;
   double sign = 0;
@@ -57,7 +57,7 @@ std::optional<Relation> relation(const ContactProblem& problem, double alpha, co
   return r;
 }
 
-/// The linear system of a combination: its unknowns are g where a traction is given, tau elsewhere.
+/// The linear system of a combination. Its unknowns are g where tau is given, and tau elsewhere.
 struct System {
   Matrix<double> matrix;
   Vector<double> right;
@@ -84,7 +84,7 @@ System system_of(const ContactProblem& problem, const Relation& r, const std::ve
   return system;
 }
 
-/// g and tau of a combination from the unknowns of its system.
+/// g and tau of a combination.
 struct Outcome {
   Vector<double> g, tau;
 };
@@ -127,8 +127,8 @@ void for_each_combination(const ContactProblem& problem, F&& f) {
   }
 }
 
-/// Whether an outcome satisfies what its branches presume, up to rounding: a share of what there is, and what the
-/// motion without tractions leaves of forces and gaps that are zero.
+/// Whether an outcome satisfies the conditions of its branches up to rounding. Rounding is a share of the largest
+/// lengths and tractions, and the rounding of the motion without tractions in gaps and forces that are zero.
 bool is_valid(const ContactProblem& problem, const std::vector<Branch>& combination, const Outcome& at,
               const Relation& r, double rounding) {
   const double noise = 1e3 * unit_roundoff * r.moved.lpNorm<Eigen::Infinity>();
@@ -141,7 +141,7 @@ bool is_valid(const ContactProblem& problem, const std::vector<Branch>& combinat
     if (state == ContactState::open ? at.g[point.normal] < -length : normal > traction) return false;
     if (state == ContactState::open || point.tangential < 0) continue;
     const double tangential = at.tau[point.tangential];
-    // (a slipping point is on the bound of its piece: whether that is the least one is asked where there are two)
+    // (A slipping point is on the bound of its piece. If there are two pieces, it must be the least bound.)
     const bool asked = state == ContactState::stick || point.friction.piece_count() > 1;
     if (asked && std::abs(tangential) > point.friction.bound(-normal) + traction) return false;
     const double plastic = at.g[point.tangential] - point.compliance_tangential * (tangential - point.stored);
@@ -150,8 +150,8 @@ bool is_valid(const ContactProblem& problem, const std::vector<Branch>& combinat
   return true;
 }
 
-/// Whether a determinant is negative beyond rounding; two contacts on one node repeat one another, and leave some 1e-16
-/// of Hadamard's bound.
+/// Whether a determinant is negative beyond rounding. Example of rounding: two contacts at one node repeat one another,
+/// which leaves some 1e-16 of Hadamard's bound.
 bool is_reversed(const Matrix<double>& A) {
   constexpr double rounding = 1e-12;
   return A.determinant() < -rounding * A.colwise().norm().prod();
@@ -220,7 +220,8 @@ bool has_repeated_constraints(const ContactProblem& problem) {
 }
 
 bool is_feasible(const ContactProblem& problem) {
-  ContactProblem smooth = problem;  // its solutions minimise a strictly convex energy where there is any motion at all
+  ContactProblem smooth =
+      problem;  // frictionless: solutions minimise a strictly convex energy, if any motion is feasible
   for (auto& point : smooth.points) point = {point.normal};
   const auto solutions = all_solutions(smooth, 1, Vector<double>::Zero(problem.load.size()));
   return !solutions || !solutions->empty();
@@ -230,10 +231,10 @@ std::optional<std::size_t> resting_solution(const ContactProblem& problem, const
   constexpr double rounding = 1e-9;  // of the largest solution
   if (all.empty()) return std::nullopt;
   if (all.size() == 1) return 0;
-  double reach = 0;
-  for (const auto& solution : all) reach = std::max(reach, solution.increment.norm());
+  double largest = 0;
+  for (const auto& solution : all) largest = std::max(largest, solution.increment.norm());
   Vector<double> v = Vector<double>::Zero(problem.load.size());
-  MotionPace pace(rounding * reach);
+  MotionPace pace(rounding * largest);
   while (pace.goes_on()) {
     const auto moved = all_solutions(problem, pace.alpha(), v);
     const BranchSolution* next = nullptr;

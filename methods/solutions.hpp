@@ -1,25 +1,26 @@
-/// All solutions of one increment with few contact points, found by trying every branch of every point, in 2D, and
-/// which of them the bodies come to rest in.
+/// All solutions of one increment with few contact points in 2D, by trying every branch of every point; and the
+/// solution in which the bodies come to rest.
 ///
-/// With K the bodies' stiffness on the contact dofs, the columns of B what a unit of each component of w = (g_N, dg_T)
-/// does there, A the tributary areas and g_0 the components at a start, the increment v from there obeys
+/// K: stiffness of the bodies on the contact dofs; column of B: gradient of one component of g = (g_N, dg_T) by these
+/// dofs; A: tributary areas; g_0: g at the start. The increment v from the start satisfies
 ///
 ///   K v + B A t = f,   g = g_0 + B^T v
 ///
-/// Bodies may be free to move as a whole, so K + B W B^T is factorised (W: local stiffness of the points). It leaves a
-/// relation of g and of tractions as lengths, tau = A t / W:
+/// K may be singular, since bodies may be free to move rigidly. So K + B W B^T is factorised (W: local stiffness of the
+/// points). It gives a relation between g and the tractions as lengths, tau = A t / W:
 ///
 ///   (I - P) g + P tau = g_f,   P = B^T (K + B W B^T)^-1 B W
 ///
-/// Each combination of branches makes a linear system of it. y: compliance of a regularised constraint, 0 where it is
-/// exact; sigma: the tangential traction that it has stored.
+/// Each combination of branches turns it into a linear system. y: compliance of a regularised constraint, 0 if it is
+/// exact; sigma: its stored tangential traction, as a length.
 ///
 ///   open   tau_N = tau_T = 0                    valid where g_N >= 0
 ///   closed g_N = y tau_N                        valid where tau_N <= 0
 ///   stick  dg_T = y (tau_T - sigma)             valid where |tau_T| <= -mu tau_N
 ///   slip   tau_T = -s mu tau_N, s = -1 or 1     valid where s (dg_T - y (tau_T - sigma)) >= 0
-///   limited  tau_T = s limit, s = -1 or 1       likewise, and where -mu tau_N >= limit, as in slip <= and in stick
-///                                               |tau_T| <= limit (of a law of friction that has one)
+///   limited  tau_T = s limit, s = -1 or 1       as slip, and where -mu tau_N >= limit
+///
+/// With a limit, slip is also valid only where -mu tau_N <= limit, and stick only where |tau_T| <= limit.
 ///
 /// If no combination has a negative determinant, the piecewise linear map is coherently oriented and the solution
 /// unique under every load: S. M. Robinson, Math. Oper. Res. 17 (1992) 691-714.
@@ -32,11 +33,11 @@
 
 namespace stickslip {
 
-/// An increment on its free contact dofs.
+/// The contact problem of an increment on its free contact dofs.
 struct ContactProblem {
   struct Point {
-    int normal = 0, tangential = -1;                          ///< components; tangential -1: without friction
-    FrictionLaw<double> friction;                             ///< of tractions as lengths
+    int normal = 0, tangential = -1;                          ///< rows of g; tangential -1: frictionless
+    FrictionLaw<double> friction;                             ///< law for tractions as lengths
     double compliance_normal = 0, compliance_tangential = 0;  ///< y
     double stored = 0;                                        ///< sigma, length; read where y > 0
   };
@@ -50,44 +51,46 @@ struct ContactProblem {
   Vector<double> damping;          ///< D of methods/motion.hpp
 };
 
-/// One solution: branches, increments of the free dofs, g and tractions t.
+/// One solution: branches, increment v of the free dofs, g and tractions t.
 struct BranchSolution {
   std::vector<ContactState> state;
   Vector<double> increment, kinematics, traction;
   bool reversed = false;  ///< its combination has a negative determinant
 };
 
-/// Whether a model has few enough points for it (4096 combinations), in 2D, and friction of linear pieces.
+/// Whether a model is 2D, has at most 4096 combinations of branches, and piecewise linear friction laws.
 bool can_try_all_branches(const Model& model);
 
-/// Whether some combination has a negative determinant: under some loads there are several solutions then. False where
+/// Whether some combination has a negative determinant. Then there are several solutions under some loads. False if
 /// bodies can move although all points stick.
 bool may_have_several(const ContactProblem& problem);
 
-/// All solutions; those whose tractions differ by less than 1e-9 of the largest are one. Nothing where bodies can move
-/// although all points stick. `alpha`: adds alpha D (v - from) to the forces of the problem.
-/// `rounding`: share of lengths and of tractions by which a branch may be missed.
+/// All solutions. Two whose tractions differ by less than 1e-9 of the largest count as one. None if bodies can move
+/// although all points stick.
+///
+///   alpha, from  add the forces alpha D (v - from) to the problem
+///   rounding     share of lengths and of tractions by which a condition of a branch may be violated
 inline constexpr double rounding_of_branches = 1e-11;  // a dozen unknowns, condition numbers up to 1e4
 std::optional<std::vector<BranchSolution>> all_solutions(const ContactProblem& problem, double alpha = 0,
                                                          const Vector<double>& from = {},
                                                          double rounding = rounding_of_branches);
 
-/// Whether constraints repeat one another, as those of two contacts on one node do: where they hold together tractions
-/// are not unique, and such solutions are not among all_solutions().
+/// Whether constraints repeat one another, as those of two contacts at one node. If repeated constraints are active,
+/// their tractions are not unique, and all_solutions() does not contain this solution.
 bool has_repeated_constraints(const ContactProblem& problem);
 
 /// Whether some motion of the bodies violates no constraint.
 bool is_feasible(const ContactProblem& problem);
 
-/// Index of that one of all solutions in whose branches the overdamped motion from the start comes to rest; nothing
-/// where it comes to none. Each step of the motion is the solution nearest to the last one (methods/motion.hpp).
+/// Index of the solution in whose branches the overdamped motion from the start comes to rest; none if it does not.
+/// Each step of the motion takes the solution nearest to the last step (methods/motion.hpp).
 std::optional<std::size_t> resting_solution(const ContactProblem& problem, const std::vector<BranchSolution>& all);
 
-/// Whether mu of some point reaches k_t / |k_nt|, its slave node's stiffness with all other contact nodes held
-/// (`schur`: of the bodies on the contact dofs): in slip its tangent would have the other sign.
+/// Whether mu of some point reaches k_t / |k_nt|, beyond which its tangent in slip changes sign. k: stiffness of its
+/// slave node with all other contact nodes held. `schur`: stiffness of the bodies on the contact dofs.
 bool exceeds_critical_friction(const Model& model, const Slots<double>& slots, const Matrix<double>& schur);
 
-/// D of the contact nodes, force per length: the largest local stiffness of the points that a node belongs to.
+/// D per contact node, force per length: the largest local stiffness among its points.
 template <class T>
 Vector<double> damping(const Model& model, const Slots<T>& slots) {
   Vector<double> stiffness = Vector<double>::Zero(static_cast<Eigen::Index>(model.contact_nodes.size()));
@@ -96,9 +99,11 @@ Vector<double> damping(const Model& model, const Slots<T>& slots) {
   return stiffness;
 }
 
-/// An increment that starts from the displacements `from` (all dofs), whose loads and prescribed motions `engine` has
-/// begun: `u` is what its begin() returned. `stored`: tractions of the penalty's history; nullptr: exact constraints,
-/// of which rho is no part.
+/// The contact problem of an increment.
+///
+///   from    displacements at the start, all dofs
+///   engine  its begin() has applied loads and prescribed motions, and returned `u`
+///   stored  tractions of the penalty's history; nullptr: constraints are exact, and rho is not read
 template <class T>
 ContactProblem contact_problem(const ContactInput<T>& input, const CondensedEngine<T>& engine, const Vector<T>& u,
                                const Matrix<T>& schur, const Vector<T>* stored) {
@@ -154,7 +159,7 @@ ContactProblem contact_problem(const ContactInput<T>& input, const CondensedEngi
   return problem;
 }
 
-/// A solution as a state, apart from its dissipation; `u` as above.
+/// The state of a solution, without its dissipation. `u`: as above.
 template <class T>
 State<T> as_state(const ContactInput<T>& input, CondensedEngine<T>& engine, Vector<T> u, const ContactProblem& problem,
                   const BranchSolution& solution) {

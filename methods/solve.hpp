@@ -1,6 +1,6 @@
-/// From a model to its trajectory: increments in time, with step cutting and clean rollback, for any method and scalar.
-/// solve_in is the template (the oracle of the tests instantiates it in complex numbers); solve() in methods/method.hpp
-/// is its use in double.
+/// Time stepping for any method and scalar: increments in time, step cutting and rollback. solve_in() is the template,
+/// which the oracle of the tests instantiates in complex numbers. solve() of methods/method.hpp is solve_in() in
+/// double.
 #pragma once
 
 #include <stdexcept>
@@ -15,7 +15,7 @@ namespace stickslip {
 
 namespace detail {
 
-/// Looks for all solutions of an increment that was solved, where there may be several and points are few.
+/// Looks for all solutions of a solved increment, if there may be several and points are few.
 template <class T, class E, class M>
 void count_solutions(const M& method, Run<T, E>& run, const State<T>& previous, double time, Increment<T>& increment) {
   if (!run.several && !increment.reversed) return;
@@ -29,10 +29,10 @@ void count_solutions(const M& method, Run<T, E>& run, const State<T>& previous, 
   }
 }
 
-/// Where the branch of solutions that leads to an increment's solution ends, so that the solution jumps. It is the end
-/// of that thousandth of the increment in which at least a quarter of its motion falls, but not the first thousandth of
-/// a run. Two cases make one look for it: solutions were counted, and either end has several or a tangent on the way
-/// had a determinant of the other sign; or bodies that are not linear move suddenly.
+/// Time at which the solution jumps in an increment: the branch of solutions that leads there ends. It is the end of
+/// the thousandth of the increment that contains at least a quarter of its motion; never the first thousandth of a run.
+/// None if there is no jump. The search is made in two cases: solutions were counted, and either end has several or a
+/// tangent on the way had a determinant of the other sign; or nonlinear bodies move suddenly.
 template <class T, class E, class M>
 std::optional<double> find_jump(const M& method, Run<T, E>& run, const State<T>& previous,
                                 const std::vector<double>& factor, double start, double end, const State<T>& reached) {
@@ -104,12 +104,11 @@ void look_beside(const M& method, Run<T, E>& run, const Trajectory<T>& trajector
     increment.jump = find_jump(method, run, previous, factor, start, increment.time, increment.state);
 }
 
-/// Advances the trajectory to `target`; false where it gave up (the failed increment is then the last).
+/// Advances the trajectory to the time `target`. False if it gave up; the failed increment is then the last.
 template <class T, class E, class M>
 bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double target, bool may_cut) {
   constexpr double smallest = 1.0 / 1024, regrowth = 1.5;
-  constexpr double patient =
-      0.2;  // of the step: bodies that are not linear take less of it before they take the motion
+  constexpr double patient = 0.2;  // share of the step at which nonlinear bodies turn to the motion
   const std::size_t start_count = trajectory.increments.size();
   const double start = start_count ? trajectory.increments.back().time : 0;
   double reached = start, step = target - start;
@@ -130,7 +129,7 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
     increment.requested = last;
     increment.cutbacks = cutbacks;
     if (increment.usable() && !increment.state.displacement.allFinite()) {
-      increment.status = Status::not_finite;  // (engines eliminate what no residual sees)
+      increment.status = Status::not_finite;  // (an engine may eliminate dofs that no residual contains)
       increment.cut_off = false;
       increment.message = "the displacements are not finite";
     }
@@ -148,7 +147,7 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
     if (!failed) failed = std::move(increment);
     easy = 0;
     step = (next - reached) / 2;
-    const bool vanishes = !(reached + step > reached && reached + step < next);  // between neighbouring numbers
+    const bool vanishes = !(reached + step > reached && reached + step < next);  // no number lies between
     if (!may_cut || impossible || vanishes || bound.is_spent() || step < smallest * (target - start)) break;
     ++cutbacks;
     ++run.account.counters.cutbacks;
@@ -163,9 +162,9 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
   return false;
 }
 
-/// Whether increments may have several solutions, for all that can be told before the first. Friction may hold a body
-/// between surfaces. Of few points, some combination of branches has a negative determinant. Of many, a point could
-/// jump on its own: mu exceeds k_t / |k_nt| of its stiffness with all others held.
+/// Whether increments may have several solutions, as far as can be known before the first. Three criteria: friction may
+/// hold a body between surfaces; with few points, some combination of branches has a negative determinant; with many,
+/// mu of a point exceeds k_t / |k_nt| of its stiffness with all others held, so that it could jump on its own.
 template <class T, class E>
 bool may_have_several(Run<T, E>& run) {
   const Model& model = run.model;
@@ -211,14 +210,15 @@ void march(const M& method, const Model& model, const Slots<T>& slots, E& engine
   for (std::size_t n = 0; reached && !ended(n); ++n) {
     const std::size_t before = trajectory.increments.size();
     reached = step(n);
-    for (std::size_t k = before; k < trajectory.increments.size(); ++k) {  // the first that is not plainly converged
+    for (std::size_t k = before; k < trajectory.increments.size();
+         ++k) {  // status of the first increment that is not plainly converged
       const auto& increment = trajectory.increments[k];
       if (increment.status == Status::converged || (trajectory.status != Status::converged && reached)) continue;
       trajectory.status = increment.status;
       trajectory.message = increment.message;
     }
     if (options.on_step) {
-      double aside = 0;  // what follows a run is no part of it
+      double aside = 0;  // seconds of on_step, which are not those of the run
       {
         const Stopwatch clock(aside);
         options.on_step();
@@ -240,8 +240,8 @@ void march(const M& method, const Model& model, const Slots<T>& slots, E& engine
 
 }  // namespace detail
 
-/// Runs a method through a model into an empty trajectory, which grows step by step. `model` and `slots` must outlive
-/// the workspace's engine. Throws std::invalid_argument where the method's options do not go together (`conflict`).
+/// Solves a model by a method into an empty trajectory, which grows step by step. `model` and `slots` must outlive the
+/// workspace's engine. Throws std::invalid_argument if options of the method contradict each other (conflict()).
 template <class T>
 void solve_in(const Model& model, const Slots<T>& slots, const Method& method, const RunOptions& options,
               Workspace<T>& workspace, Trajectory<T>& trajectory) {

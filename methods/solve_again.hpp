@@ -1,5 +1,4 @@
-/// Increments whose states were let go (methods/checkpoints.hpp), solved again by the way that they were solved the
-/// first time.
+/// Thin increments (methods/checkpoints.hpp) solved again, in the same way as the first time.
 #pragma once
 
 #include <stdexcept>
@@ -10,15 +9,15 @@ namespace stickslip {
 
 namespace detail {
 
-/// Whether two states are of one solution, to the last bit of what a thin one holds.
+/// Whether two states agree, bit for bit, in what a thin one holds.
 template <class T>
 bool same_contact(const State<T>& a, const State<T>& b) {
   return a.contact.state == b.contact.state && a.contact.gap == b.contact.gap &&
          a.contact.traction == b.contact.traction && a.history.placement == b.history.placement;
 }
 
-/// The stretch that holds increment n, which is thin, as a run left it; the engine is afterwards what it was. Throws
-/// std::logic_error where it comes out otherwise.
+/// The stretch that contains the thin increment n, as the run left it. The engine is restored afterwards. Throws
+/// std::logic_error if the stretch differs from that of the run.
 template <class T, class E, class M>
 Stretch<T> solve_again(const M& method, const Model& model, const Slots<T>& slots, E& engine,
                        const Checkpoints<T>& checkpoints, const Trajectory<T>& trajectory, std::size_t n,
@@ -30,7 +29,7 @@ Stretch<T> solve_again(const M& method, const Model& model, const Slots<T>& slot
   Stretch<T> stretch{checkpoints.end(start.step), {}};
   Trajectory<T> part;
   part.initial = trajectory.initial;
-  const std::size_t before = stretch.first > 0 ? 1 : 0;  // increments before the first
+  const std::size_t before = stretch.first > 0 ? 1 : 0;  // number of increments before the stretch that it needs
   if (before > 0) part.increments.push_back(trajectory.increments[stretch.first - 1]);
   const std::size_t last = checkpoints.last_step(start);
   for (std::size_t step = start.step + 1; step <= last; ++step)

@@ -1,5 +1,5 @@
-/// Whether forces that contacts and supports can give balance the loads on the bodies as if these were rigid: necessary
-/// for any equilibrium of theirs, and what tells "cannot be solved" from "was not solved".
+/// Rigid statics: whether forces of contacts and supports can balance the loads on the bodies, taken as rigid. This is
+/// necessary for any equilibrium, and separates "cannot be solved" from "was not solved".
 #pragma once
 
 #include <string>
@@ -9,24 +9,24 @@
 
 namespace stickslip {
 
-/// Columns of forces that a body, or all bodies together, may be given: three rows a body, force along x and y and
+/// Forces that contacts and supports can exert, one per column. Three rows per body: force along x, force along y,
 /// moment about the origin over the size of the model.
 struct RigidStatics {
-  /// Columns of contact points, three a point, with factors >= 0: the edges n - mu e and n + mu e of its cone, and a
-  /// zero; where the law of friction has no cone, n, -e and e.
+  /// Three columns per contact point, with factors >= 0: the edges n - mu e and n + mu e of its cone, and zero. If its
+  /// friction law has no cone: n, -e and e.
   Matrix<double> pushes;
-  Matrix<double> holds;  ///< columns of supports, with factors of either sign
+  Matrix<double> holds;  ///< one column per constraint, with factors of either sign
   Vector<double> load;
-  Matrix<double> tangential;  ///< a row for each point whose law has a limit: its tangential force by those factors
-  Vector<double> limit;       ///< of their sizes (force)
+  Matrix<double> tangential;  ///< one row per point with a limited law: its tangential force per factor of `pushes`
+  Vector<double> limit;       ///< largest size of these tangential forces, force
 };
 
-/// Share of the load that no such forces balance: the least |load + pushes x + holds y| / |load| over x >= 0 and y with
-/// |tangential x| <= limit. Where the last cannot be met, what it is missed by counts in. 0 without load. Non-negative
+/// Share of the load that these forces cannot balance: the least |load + pushes x + holds y| / |load| over x >= 0 and y
+/// with |tangential x| <= limit; if the limit cannot be met, the excess counts too. 0 without load. By non-negative
 /// least squares [LH74].
 double unbalanced_share(const RigidStatics& statics);
 
-/// A body's column block in RigidStatics, at a time. pre: 2D, not of revolution.
+/// Rigid statics of a model at a time. pre: 2D, not axisymmetric.
 template <class T>
 RigidStatics rigid_statics(const Model& model, const Slots<T>& slots, double time) {
   const Matrix<double> X = slots.points.unaryExpr([](const T& x) { return value(x); });
@@ -88,14 +88,14 @@ RigidStatics rigid_statics(const Model& model, const Slots<T>& slots, double tim
   return statics;
 }
 
-/// What unbalanced_body returns of no body, and of several that only together have no balance.
+/// Results of unbalanced_body() that are no index: all bodies can be balanced; only several together cannot.
 inline constexpr int balanced = -1, a_group = -2;
 
-/// Index of a body whose load nothing balances; `balanced` where all can be, or where this cannot tell (space, bodies
-/// of revolution, places that are not those of the start).
+/// Index of a body whose load cannot be balanced. `balanced` if there is none, or if this is not known: in 3D, for
+/// bodies of revolution and at finite strain.
 template <class T>
 int unbalanced_body(const Model& model, const Slots<T>& slots, double time) {
-  constexpr double rounding = 1e-9;  // of the least squares: what is less may be balanced
+  constexpr double rounding = 1e-9;  // of the least squares: a smaller share counts as balanced
   if (model.dimension != 2 || model.scene.space == Space::axisymmetric || model.scene.finite_strain) return balanced;
   const RigidStatics all = rigid_statics(model, slots, time);
   if (!(unbalanced_share(all) > rounding)) return balanced;

@@ -1,4 +1,4 @@
-/// Every iterate of a run, kept where it is asked for (RunOptions::trace); otherwise nothing is done.
+/// Record of every iterate of a run, if RunOptions::trace asks for it.
 #pragma once
 
 #include <vector>
@@ -8,15 +8,15 @@
 namespace stickslip {
 
 struct Iterate {
-  double time = 0;            ///< that the increment ends at
-  int solve = 0, number = 0;  ///< equilibrium of the run, counted from 1; iterate in it, from 0
+  double time = 0;            ///< end of the increment
+  int solve = 0, number = 0;  ///< number of the equilibrium in the run, from 1; of the iterate in it, from 0
   IterationRecord record;
   std::vector<ContactState> state;             ///< per contact point, by classification
   Vector<double> multiplier, trial, traction;  ///< lambda, z and t, laid out as multipliers
 };
 
 struct Trace {
-  /// Tractions are kept of scenes with up to this many contact points.
+  /// Largest number of contact points for which tractions are recorded.
   static constexpr std::size_t most_points = 4;
   std::vector<Iterate> iterates;
 

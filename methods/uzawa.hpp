@@ -1,28 +1,29 @@
-/// Augmented Lagrangian with Uzawa updates: Newton with lambda frozen, then lambda <- t, until the update is small.
+/// Augmented Lagrangian with Uzawa updates: Newton's method at fixed lambda, then lambda <- t, until the update is
+/// small.
 ///
 ///   repeat  solve  R(u) = f_int - f_ext + sum A t dg = 0,   t = P_mu(lambda + rho g)     (lambda fixed)
-///           lambda <- t
+///           lambda <- t                                                                  (AugmentationLoop::update)
 ///
-///   rho           scale, force per length cubed; adapt: times 4 where an augmentation left more than 1/4 of the
-///                 violation
+///   rho           scale, force per length cubed. With `adapt`, rho of a point grows fourfold if an augmentation leaves
+///                 more than 1/4 of its violation
 ///   acceleration  lambda <- an extrapolation of the last t, put back onto the cone (methods/acceleration.hpp)
 ///   cone          augmented: radius -mu z_N; the tangent of slip is unsymmetric
-///                 frozen: radius -mu lambda_N of the last augmentation; the tangent is symmetric. The radius is a
-///                 fixed point iteration of its own: an augmentation multiplies its error by -mu/s, s the slope of the
+///                 frozen: radius -mu lambda_N of the last augmentation; the tangent is symmetric. The radius is then a
+///                 fixed point iteration of its own. An augmentation multiplies its error by -mu/s, s the slope of the
 ///                 load path (tangential over normal stiffness of the unloading). For mu > s it ends in a two-cycle
 ///
-/// An augmentation shrinks the error to 1/(1 + rho s_min) of itself, s_min the smallest compliance of the active
-/// constraints (S = B K^-1 B^T A). So a large rho needs few augmentations, of harder inner problems. Slip is always
-/// measured from the last converged increment, never from the last augmentation. lambda starts as the last increment's.
+/// An augmentation multiplies the error by 1/(1 + rho s_min), s_min the smallest compliance of the active constraints
+/// (S = B K^-1 B^T A). So a large rho needs few augmentations, but its inner problems are harder. Slip is measured from
+/// the last converged increment, never from the last augmentation. lambda starts as the last increment's.
 ///
-/// The loop ends where update, violation and states have settled to `tolerance`. It gives up where the updates undo
-/// each other (cycle), or where a gap does not answer to its multiplier (infeasible). Inner solves on the way end at a
-/// hundredth of the residual that they start from; the last is exact. The truncated scheme differentiates each of them,
-/// so there all are exact. Options: methods/options.hpp. The update lambda <- t is AugmentationLoop::update; its
-/// derivative is take_derivatives() of sensitivity/uzawa.hpp. [SL92]
+/// The loop ends when update and violation are within `tolerance` and the states repeat. It gives up when the updates
+/// undo each other (status cycle), or when a gap does not change with its multiplier (infeasible). An inner solve
+/// before the last ends at a hundredth of its first residual; the last one is exact. The truncated scheme
+/// differentiates every inner solve, so there all are exact. Options: methods/options.hpp. The derivative of the update
+/// lambda <- t is update_derivatives() of sensitivity/uzawa.hpp. [SL92]
 #pragma once
 
-#include "methods/augmentation.hpp"
+#include "methods/augmentation_progress.hpp"
 #include "methods/sequential.hpp"
 
 namespace stickslip {
@@ -32,14 +33,14 @@ inline ConeRadius cone_radius(const UzawaAL& method) {
 }
 /// Whether a converged solution penetrates nothing.
 constexpr bool prevents_penetration(const UzawaAL&) { return true; }
-/// Whether the motion of methods/motion.hpp stands in where an increment fails. A frozen cone is there to be studied as
-/// it is.
+/// Whether methods/motion.hpp continues where an increment fails. Not with a frozen cone: its failures are a subject of
+/// study.
 inline bool is_globalised(const UzawaAL& method) { return method.cone == UzawaAL::Cone::augmented; }
 
 namespace detail {
 
-/// Raises the factor of the points whose violation did not fall to a quarter, up to 1e3 nodal stiffnesses. True where
-/// one was raised.
+/// Raises rho_factor of each point whose violation did not fall to a quarter, fourfold, up to 1e3 nodal stiffnesses.
+/// `before`, `now`: violations per point, length; a violation up to `negligible` counts as zero. True if a factor rose.
 template <class T>
 bool adapt(const Slots<T>& slots, const RegularisationField<T>& initial, const std::vector<double>& before,
            const std::vector<double>& now, double negligible, std::vector<double>& factor) {
@@ -54,105 +55,118 @@ bool adapt(const Slots<T>& slots, const RegularisationField<T>& initial, const s
   return raised;
 }
 
-/// The nearest multiplier in the cones, along their axes: pressure kept, or none where it would be tension, and the
-/// tangential part cut down to the bound.
+/// The multiplier in the friction cones. Compression is kept and tension set to zero; the tangential part is shortened
+/// to the bound.
 template <class T>
-Vector<T> into_cones(const Model& model, const Slots<T>& slots, Vector<T> multiplier) {
+Vector<T> projected_multiplier(const Model& model, const Slots<T>& slots, Vector<T> multiplier) {
   for (const auto& point : model.points) {
     T& normal = multiplier[point.multiplier];
     if (value(normal) > 0) normal = T(0);
     if (point.tangents == 0) continue;
     auto tangential = multiplier.segment(point.multiplier + 1, point.tangents);
     const auto& law = slots.friction[point.contact];
-    const double bound = law.bound(-value(normal)), length = values(tangential).norm();
-    if (length > bound) tangential *= law.bound(T(-normal), law.piece(-value(normal))) / norm(tangential);
+    const double bound = law.bound(-value(normal)), magnitude = values(tangential).norm();
+    if (magnitude > bound) tangential *= law.bound(T(-normal), law.piece(-value(normal))) / norm(tangential);
   }
   return multiplier;
 }
 
-/// Where an inner solve may end while more augmentations follow, as a share of the residual that the last update of
-/// lambda left it with. An exact solve would change the states of points that hardly slip, down to rounding, each time
-/// anew. At a hundredth the augmentations do not notice, and the contraction that they show is off by a hundredth.
+/// Share of its first residual at which an inner solve may end while more augmentations follow. Why: an exact solve
+/// would change, by rounding, the states of points that hardly slip. A share of 0.01 does not slow the augmentations
+/// down, and changes the measured contraction by about 0.01 of itself.
 inline constexpr double forcing = 0.01;
 
-/// Newton's options of an inner solve. The last updates are 1 - q times the error that the outer tolerance allows, q
-/// the contraction. An inner residual above them would stall them, so the inner tolerance is a hundredth of them, if it
-/// is not smaller already; it goes down to 1e-15.
+/// Newton's options of an inner solve. Its tolerance is the least of its own option and 0.01 (1 - q) times the outer
+/// tolerance, but not below 1e-15; q: contraction. Why: the last updates are 1 - q times the error that the outer
+/// tolerance allows, and a larger inner residual would stall them.
 inline NewtonOptions inner_options(const UzawaAL& method, double contraction) {
   constexpr double least = 1e-15;
   NewtonOptions inner = method.newton;
-  const double rest = contraction < 1 ? 1 - contraction : 1;
+  const double complement = contraction < 1 ? 1 - contraction : 1;
   inner.tolerance =
-      std::max(std::min(inner.tolerance, 0.01 * method.tolerance * rest), std::min(inner.tolerance, least));
+      std::max(std::min(inner.tolerance, 0.01 * method.tolerance * complement), std::min(inner.tolerance, least));
   return inner;
 }
 
-/// Augmentations in a row that may change nothing but states, for points at a tie go to and fro for ever.
+/// Number of successive augmentations within the tolerance after which changing states no longer prolong the loop. Why:
+/// a point at a tie may alternate between two states for ever.
 inline constexpr int patience_at_ties = 4;
 
 inline constexpr const char* frozen_advice =
     ", as a frozen cone does where the friction coefficient exceeds the slope of the load path; use the augmented cone";
 
-/// How the augmentations stand. `done`: they end, with `status`.
-struct Standing {
-  Status status = Status::converged;
+/// Whether the augmentations have ended, and how.
+struct AugmentationStatus {
+  Status status = Status::converged;  ///< valid if `done`
   bool done = false;
-  bool within_tolerance = false;  ///< update and violation are within the tolerance, whatever the states do
+  bool within_tolerance = false;  ///< update and violation are within the tolerance; the states may still change
   std::string message;
-  double negligible = 0;  ///< a violation that counts as none: that of the tolerance, or of rounding
+  double negligible = 0;  ///< violation that counts as zero, length: the larger of tolerance and rounding
 };
 
-/// Where the augmentations stand after the last one. `reach`: largest displacement of a contact node. `noise`: nodal
-/// force that rounding left of the inner solve; 0: its tolerance ended it.
+/// Status after an augmentation.
 ///
-///   gap        what rounding of the displacements makes of a gap
-///   traction   what rounding makes of an update: rho gap, and rounding of the tractions; 1 + mu times that, because in
-///              slip the bound turns the rounding of the pressure into one of the tangential traction
-///   drowned    updates no longer fall, and ten times `noise` explains all that is left: a stiff body on a soft one
-///              rounds so, in tractions, and in gaps through the soft one
+///   largest_displacement  of a contact node, length
+///   noise                 nodal force that rounding left of the inner solve; 0: the solve ended by its tolerance
+///
+/// Estimates of rounding in its body:
+///
+///   gap       rounding of a gap, from that of the displacements
+///   traction  rounding of an update: rho gap, and rounding of the tractions, both times 1 + mu. In slip the bound
+///   turns
+///             the rounding of the pressure into one of the tangential traction
+///   drowned   updates no longer fall, and 10 `noise` explains every update and violation. Example: a stiff body on a
+///             soft one, whose rounding appears in tractions, and through the soft body in gaps
 template <class T>
-Standing judge(const UzawaAL& method, const Slots<T>& slots, const RegularisationField<T>& rho, double reach,
-               double noise, const RunScales& scales, const Augmentations<T>& progress) {
-  const double gap = 10 * unit_roundoff * reach, violation = method.tolerance * scales.length;
+AugmentationStatus augmentation_status(const UzawaAL& method, const Slots<T>& slots, const RegularisationField<T>& rho,
+                                       double largest_displacement, double noise, const RunScales& scales,
+                                       const AugmentationProgress<T>& progress) {
+  const double gap = 10 * unit_roundoff * largest_displacement, violation = method.tolerance * scales.length;
   double stiffest = 0, friction = 0;
   for (const auto& r : rho) stiffest = std::max(stiffest, value(r.normal));
   for (const auto& law : slots.friction) friction = std::max(friction, value(law.slope_at_apex()));
   const double traction = (1 + friction) * (stiffest * gap + 10 * unit_roundoff * scales.traction);
   const bool small = progress.error_left() <= method.tolerance * scales.traction;
-  const bool drowned = noise > 0 && progress.stalled() && progress.is_within(10 * noise);
-  // Rounding ends the augmentations in one of four cases: drowned; nothing falls, and violation and update are
-  // rounding; nothing has fallen for 50 augmentations, and the violation is within 1e3 roundings of a gap (a stiff body
-  // on a soft one); nothing has fallen for 50, of a map that contracts fast, and the violation is within its tolerance.
+  const bool drowned = noise > 0 && progress.is_stalled() && progress.is_within(10 * noise);
+  // Rounding ends the augmentations in one of four cases:
+  //   drowned
+  //   updates no longer fall, and violation and update are rounding
+  //   no update has fallen for 50 augmentations, and the violation is within 1e3 roundings of a gap (a stiff body on a
+  //   soft one)
+  //   no update has fallen for 50 augmentations of a map that contracts fast, and the violation is within its tolerance
   const bool at_roundoff = drowned ||
-                           (progress.stalled() && progress.violation() <= gap && progress.update() <= traction) ||
-                           (progress.exhausted() && progress.violation() <= 1e3 * gap) ||
-                           (progress.exhausted() && progress.converges() && progress.violation() <= violation);
-  Standing now;
-  now.negligible = std::max(violation, gap);
-  now.within_tolerance = small && progress.violation() <= now.negligible;
+                           (progress.is_stalled() && progress.violation() <= gap && progress.update() <= traction) ||
+                           (progress.is_exhausted() && progress.violation() <= 1e3 * gap) ||
+                           (progress.is_exhausted() && progress.contracts_fast() && progress.violation() <= violation);
+  AugmentationStatus result;
+  result.negligible = std::max(violation, gap);
+  result.within_tolerance = small && progress.violation() <= result.negligible;
   auto end = [&](Status status, std::string message = "") {
-    now.status = status;
-    now.done = true;
-    now.message = std::move(message);
-    return now;
+    result.status = status;
+    result.done = true;
+    result.message = std::move(message);
+    return result;
   };
-  if ((progress.settled() || progress.update() == 0) && ((small && progress.violation() <= violation) || at_roundoff))
+  if ((progress.has_same_states() || progress.update() == 0) &&
+      ((small && progress.violation() <= violation) || at_roundoff))
     return end(small ? Status::converged : Status::converged_at_roundoff);
-  if (progress.violation() <= gap) return now;
-  if (const std::string point = progress.unanswered(violation); !point.empty()) return end(Status::infeasible, point);
-  if (!progress.alternates()) return now;
+  if (progress.violation() <= gap) return result;
+  if (const std::string point = progress.infeasible_point(violation); !point.empty())
+    return end(Status::infeasible, point);
+  if (!progress.is_two_cycle()) return result;
   const std::string cycle = "the augmentations go to and fro between two multipliers";
   return end(Status::cycle, cycle + (is_globalised(method) ? "; try more steps" : frozen_advice));
 }
 
-/// Status and message as things stand: the outer tolerance decides, not the stricter one of the inner solves.
+/// Sets status and message of the increment, if the augmentations are done or their number is at its limit. The outer
+/// tolerance decides, not the stricter one of the inner solves.
 template <class T>
-void conclude(const Standing& now, bool at_limit, Increment<T>& increment) {
-  if (!now.done && !at_limit) return;
-  increment.status = now.done ? now.status : Status::cap;
-  increment.cut_off = !now.done;
+void conclude(const AugmentationStatus& outer, bool at_limit, Increment<T>& increment) {
+  if (!outer.done && !at_limit) return;
+  increment.status = outer.done ? outer.status : Status::cap;
+  increment.cut_off = !outer.done;
   increment.message =
-      now.done ? now.message : "max_augmentations reached; try a larger scale, adapt, or an acceleration";
+      outer.done ? outer.message : "max_augmentations reached; try a larger scale, adapt, or an acceleration";
 }
 
 /// The augmentations of one increment.
@@ -172,8 +186,8 @@ class AugmentationLoop {
         progress_(run.model, run.slots, method.acceleration),
         accelerator_(method.acceleration) {
     increment_.rho_factor = std::move(rho_factor);
-    // (the truncated scheme's derivative begins with the last increment's lambda: so does the loop that it
-    // differentiates)
+    // (The truncated scheme differentiates the loop from the lambda of the last increment on, so the loop begins
+    // there.)
     const State<T>& with_lambda = truncated_ && !start.is_step() ? previous : start.state;
     unknowns_ = {run.engine.begin(time, start.state.displacement, previous.history.bodies),
                  with_lambda.contact.traction, time};
@@ -193,7 +207,7 @@ class AugmentationLoop {
   }
 
  private:
-  /// The inner solve: lambda stays as it is.
+  /// Inner solve at fixed lambda.
   Equilibrium<T> balance(const ContactInput<T>& input) {
     inexact_ &= increment_.augmentations + 1 < limit_;
     const bool first = increment_.augmentations == 0;
@@ -214,47 +228,51 @@ class AugmentationLoop {
     return equilibrium;
   }
 
-  /// Whether the increment ends with this inner solve, as solved or given up; its status and message then stand.
+  /// Whether the increment ends with this inner solve, as converged or as failed. If so, its status and message are
+  /// set.
   bool ends_with(const ContactInput<T>& input, const Equilibrium<T>& equilibrium) {
     if (truncated_ && run_.model.effects.sensitivity)
       increment_.augmented.push_back(
           {settle(run_, input, equilibrium.unknowns, equilibrium.field), increment_.rho_factor});
-    const double reach = largest_nodal_norm(run_.engine.compact(equilibrium.unknowns.u), run_.model.dimension);
+    const double largest_displacement =
+        largest_nodal_norm(run_.engine.compact(equilibrium.unknowns.u), run_.model.dimension);
     const double first = equilibrium.history.front().residual, rest = equilibrium.history.back().residual;
     const double noise = equilibrium.status == Status::converged_at_roundoff
                              ? equilibrium.history.back().equilibrium * run_.account.scales.force
                              : 0;
-    progress_.record(unknowns_.multiplier, equilibrium.field, reach, first > 0 ? rest / first : 0);
+    progress_.record(unknowns_.multiplier, equilibrium.field, largest_displacement, first > 0 ? rest / first : 0);
     increment_.contraction = progress_.contraction();
-    now_ = judge(method_, run_.slots, input.rho, reach, noise, run_.account.scales, progress_);
-    times_within_ = now_.within_tolerance && !equilibrium.inexact ? times_within_ + 1 : 0;
-    inexact_ &= !now_.within_tolerance;
-    now_.done |= times_within_ >= patience_at_ties;  // the states that still change are those of a tie
+    status_ = augmentation_status(method_, run_.slots, input.rho, largest_displacement, noise, run_.account.scales,
+                                  progress_);
+    times_within_ = status_.within_tolerance && !equilibrium.inexact ? times_within_ + 1 : 0;
+    inexact_ &= !status_.within_tolerance;
+    status_.done |= times_within_ >= patience_at_ties;  // only states at a tie still change
     const bool at_limit = increment_.augmentations >= limit_;
-    conclude(now_, at_limit, increment_);
-    const bool over = now_.done && !equilibrium.inexact;
-    return at_limit || (over && (!is_converged(now_.status) || truncated_ || !progress_.carried_moves()));
+    conclude(status_, at_limit, increment_);
+    const bool over = status_.done && !equilibrium.inexact;
+    return at_limit || (over && (!is_converged(status_.status) || truncated_ || !progress_.has_carried_updates()));
   }
 
-  /// The update lambda <- t, or an extrapolation of it; rho is adapted. Its derivative D lambda <- D t is
-  /// take_derivatives() of sensitivity/uzawa.hpp.
+  /// The Uzawa update: lambda <- t, or an extrapolation of it. First rho is adapted. The derivative D lambda <- D t is
+  /// update_derivatives() of sensitivity/uzawa.hpp.
   void update(const Equilibrium<T>& equilibrium) {
-    inexact_ &= !now_.done;
-    const bool raised = method_.adapt && progress_.settled() && !now_.done &&
+    inexact_ &= !status_.done;
+    const bool raised = method_.adapt && progress_.has_same_states() && !status_.done &&
                         adapt(run_.slots, initial_, progress_.last_violations(), progress_.violations(),
-                              now_.negligible, increment_.rho_factor);
-    if (raised) {  // it is another map now
+                              status_.negligible, increment_.rho_factor);
+    if (raised) {  // another rho is another map
       accelerator_ = Accelerator<T>(method_.acceleration);
       progress_.change_map();
     }
     resumed_ = {};
-    const auto cones = [&](Vector<T> x) { return into_cones(run_.model, run_.slots, std::move(x)); };
+    const auto cones = [&](Vector<T> x) { return projected_multiplier(run_.model, run_.slots, std::move(x)); };
     const Vector<T>& traction = equilibrium.field.traction;
     unknowns_.u = equilibrium.unknowns.u;
     unknowns_.time = equilibrium.unknowns.time;
-    unknowns_.multiplier = raised || now_.done ? traction
-                                               : accelerator_.next(unknowns_.multiplier, traction, progress_.settled(),
-                                                                   progress_.contraction(), cones);
+    unknowns_.multiplier = raised || status_.done
+                               ? traction
+                               : accelerator_.next(unknowns_.multiplier, traction, progress_.has_same_states(),
+                                                   progress_.contraction(), cones);
   }
 
   const UzawaAL& method_;
@@ -265,14 +283,15 @@ class AugmentationLoop {
   const bool truncated_ = method_.sensitivity == UzawaAL::Sensitivity::truncated;
   const int limit_ = method_.max_augmentations * (truncated_ ? 1 : Carried<T>::augmentations);
   const RegularisationField<T> initial_;
-  const RunScales before_;                 ///< at the increment's start: an extrapolated lambda may overshoot
-  std::span<const ContactState> resumed_;  ///< at the first augmentation
+  const RunScales
+      before_;  ///< of each augmentation's start. Why: an extrapolated lambda may overshoot, which must not raise them
+  std::span<const ContactState> resumed_;  ///< states assumed by the first augmentation
   Unknowns<T> unknowns_;
-  Augmentations<T> progress_;
+  AugmentationProgress<T> progress_;
   Accelerator<T> accelerator_;
-  Standing now_;
+  AugmentationStatus status_;
   bool inexact_ = !truncated_;  ///< whether the next inner solve may end short of its tolerance
-  int times_within_ = 0;        ///< augmentations in a row that were within the tolerance
+  int times_within_ = 0;        ///< successive augmentations within the tolerance
   Increment<T> increment_;
 };
 

@@ -1,9 +1,9 @@
-/// Bound on the work of a step: a solution that is sought in vain is given up, instead of being sought for ever.
+/// Bound on the work of a step, after which a solution is no longer sought.
 ///
-/// A step is cut to a thousandth, a part of it may take turns of contact and bodies (methods/sequential.hpp) and then
-/// hundreds of steps of the motion (methods/motion.hpp): all of these together would end after days. What counts are
-/// iterations of Newton's method, equal on every machine. It is asked between equilibria, so that one of them may
-/// follow. Where neither bodies nor geometry change an iteration is cheap, no turns are taken, and nothing is bounded.
+/// Why: a step is cut down to a thousandth, and each part may take the sequence (methods/sequential.hpp) and then
+/// hundreds of steps of the motion (methods/motion.hpp). All of these together would take days. The work is counted in
+/// iterations of Newton's method, which are the same on every machine. It is checked between equilibria, so one more
+/// may follow. If bodies and geometry are linear, an iteration is cheap and there is no bound.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 
 namespace stickslip {
 
-/// Iterations that the attempts at a step take in vain: all of those that fail, and of one that does not those beyond
-/// max_iterations for each of its equilibria. Parts of a step that go as they should cost nothing, however many.
+/// Counts iterations in vain of the attempts at a step: all iterations of an attempt that fails, and, of one that
+/// succeeds, those beyond max_iterations per equilibrium. So parts of a step that converge as they should cost nothing.
 class WorkBound {
  public:
   /// `counters`: of the run; must outlive it.
@@ -27,12 +27,12 @@ class WorkBound {
   }
 
   void begin() { before_ = counters_.newton; }
-  /// Ends the attempt. `equilibria`: those of its solution; 0 where there is none.
+  /// Ends an attempt. `equilibria`: number of its equilibria; 0: it failed.
   void end(int equilibria) {
     vain_ += std::max(0L, counters_.newton - before_ - equilibria * each_);
     begin();
   }
-  /// Whether the attempt that goes on, and those before it, took all that may be taken.
+  /// Whether the present attempt and those before it have used up the bound.
   bool is_spent() const { return vain_ + counters_.newton - before_ >= most_; }
   std::string in_words() const {
     return "given up after " + std::to_string(vain_) +
@@ -41,9 +41,9 @@ class WorkBound {
   }
 
  private:
-  /// What was seen to succeed at last took the iterations of 20; those of 50 take minutes of 8000 displacements.
+  /// Bound in units of max_iterations. Steps that succeeded took up to 20; 50 take minutes at 8000 displacements.
   static constexpr long equilibria_in_vain = 50;
-  static constexpr long least_each = 100;  // (of a smaller max_iterations, which is there to have steps cut)
+  static constexpr long least_each = 100;  // for a small max_iterations, which is chosen to have steps cut
   const Counters& counters_;
   long each_, most_ = 0, vain_ = 0, before_ = 0;
 };

@@ -1,6 +1,8 @@
-/// The branches that an increment takes at ties along one direction: found by flipping what is contradicted, all at
-/// once, then one by one, and where few points are weak by trying all (sensitivity/branches.hpp, of the bodies
-/// sensitivity/flow_ties.hpp).
+/// Search for the branches that an increment takes at its ties, for a derivative on one side of a parameter.
+///
+/// First all contradicted branches are changed at once, then one by one; if few points are at ties, all combinations
+/// are tried. Verdicts: of contact points sensitivity/branches.hpp, of bodies sensitivity/flow_ties.hpp, of patches
+/// sensitivity/vertex_ties.hpp.
 #pragma once
 
 #include <functional>
@@ -15,13 +17,13 @@
 namespace stickslip {
 namespace detail {
 
-/// What the branches depend on of a method's scheme: the equilibrium that it differentiates, its cone, and its factor
-/// on rho.
+/// Whether the scheme of a method differentiates each augmentation.
 template <class M>
 constexpr bool is_truncated(const M&) {
   return false;
 }
 inline bool is_truncated(const UzawaAL& method) { return method.sensitivity == UzawaAL::Sensitivity::truncated; }
+/// Factor kappa_s on rho of the scheme of a method.
 template <class M>
 constexpr double oversize_of(const M&) {
   return 1;
@@ -31,6 +33,7 @@ inline double oversize_of(const UzawaAL& method) {
   return oversized ? method.oversize.value_or(UzawaAL::automatic_oversize) : 1;
 }
 
+/// rho of the equilibrium that a scheme differentiates.
 template <class M>
 RegularisationField<double> own_rho(const M& method, const Slots<double>& slots, const std::vector<double>& factor) {
   return adapted(initial_regularisation(slots, method), factor);
@@ -38,11 +41,11 @@ RegularisationField<double> own_rho(const M& method, const Slots<double>& slots,
 
 }  // namespace detail
 
-/// Search for the branches of one equilibrium along one direction, the first of the first block.
+/// Search for the branches of one equilibrium. The derivative is that of the first direction of the first block.
 template <class M, class E>
 class BranchSearch {
  public:
-  /// `increment`: what is differentiated; `at`: its equilibrium, whose branches change.
+  /// `increment`: to be differentiated; `at`: its equilibrium, whose branches the search changes.
   BranchSearch(const M& method, Differentiation<E>& problem, const State<double>& previous,
                const Increment<double>& increment, State<double>& at, const std::vector<double>& factor,
                const SideDirection& along)
@@ -61,13 +64,13 @@ class BranchSearch {
     rho_ = regularisation_blocks(method, problem, stiffened)[0];
   }
 
-  /// Leaves the derivative with the branches that it confirms in the block, and them in `at`.
+  /// Runs the search. True if a derivative confirms all of its branches; it is then in the block, its branches in `at`.
   bool run() {
     if (weak_.empty() && flows_.empty() && vertices_.empty()) return follow_branches();
-    take_values(problem_.model, flows_, at_);
+    set_computed_branches(problem_.model, flows_, at_);
     const State<double> found = at_;
     if (by_flipping()) return true;
-    if (!unsettled_) {
+    if (!diverged_) {
       at_ = found;
       hold();
       if (by_flipping() || by_enumeration()) return true;
@@ -75,24 +78,26 @@ class BranchSearch {
     return at_rounding();
   }
 
-  /// Takes that branch of each weak point that holds most, so that a body which only friction, or a contact about to
-  /// open, holds has a regular tangent.
+  /// Gives each point at a tie the branch that holds most. Why: a body that is held by friction alone, or by a contact
+  /// about to open, then has a regular tangent.
   void hold() {
-    for (const auto& w : weak_) take_branch(problem_.model, w.point, branches_of(problem_.model, w).front(), at_);
-    take_values(problem_.model, flows_, at_);
+    for (const auto& w : weak_) set_branch(problem_.model, w.point, branches_of(problem_.model, w).front(), at_);
+    set_computed_branches(problem_.model, flows_, at_);
     for (const auto& tie : flows_) at_.flow[tie.memory] = tie.branches.front();
   }
 
  private:
-  struct Standing {
+  /// Verdict on all branches of one choice.
+  struct Consistency {
     bool possible = true;
-    std::vector<std::function<void(State<double>&)>> contradicted;  ///< each takes the branch that is pointed to
+    std::vector<std::function<void(State<double>&)>>
+        contradicted;  ///< each sets the branch that the derivative points to
     double severity = 0;
     bool is_confirmed() const { return possible && contradicted.empty(); }
   };
 
-  /// Differentiates with the branches in `at`. The bodies' pseudo-load depends on the branches of their flows alone, so
-  /// one serves all choices of the others.
+  /// Differentiates with the branches in `at`. The pseudo-load of the bodies depends on the branches of their flows
+  /// alone, so it is kept while these stay.
   bool follow_branches() {
     if (load_.empty() || load_flow_ != at_.flow) {
       load_.assign(1, pseudo_load(problem_, at_, increment_.time));
@@ -101,57 +106,57 @@ class BranchSearch {
     }
     problem_.prepared = load_[0];
     const bool done = differentiate_alone(method_, problem_, previous_, increment_);
-    problem_.prepared.reset();  // (a tangent without a factor leaves it there)
+    problem_.prepared.reset();  // (unused if the tangent is singular)
     return done;
   }
 
-  std::optional<Standing> differentiate() {
+  std::optional<Consistency> differentiate() {
     problem_.status = Status::singular;
     if (!follow_branches()) {
-      unsettled_ |= problem_.status == Status::cap;
+      diverged_ |= problem_.status == Status::cap;
       return std::nullopt;
     }
-    Standing standing;
+    Consistency consistency;
     for (const auto& w : weak_) {
-      auto verdict = judge(problem_.model, problem_.slots, problem_.blocks[0], rho_, own_, cone_radius(method_), w, at_,
-                           direction_);
-      standing.possible &= verdict.possible;
-      standing.severity = std::max(standing.severity, verdict.severity);
+      auto verdict = branch_verdict(problem_.model, problem_.slots, problem_.blocks[0], rho_, own_,
+                                    cone_radius(method_), w, at_, direction_);
+      consistency.possible &= verdict.possible;
+      consistency.severity = std::max(consistency.severity, verdict.severity);
       if (!verdict.contradicts) continue;
-      standing.contradicted.push_back(
-          [this, p = w.point, branch = *verdict.contradicts](auto& at) { take_branch(problem_.model, p, branch, at); });
+      consistency.contradicted.push_back(
+          [this, p = w.point, branch = *verdict.contradicts](auto& at) { set_branch(problem_.model, p, branch, at); });
     }
-    judge_flows(standing);
-    judge_vertices(standing);
-    if (standing.possible && standing.severity < least_) {
-      least_ = standing.severity;
+    add_flow_verdicts(consistency);
+    add_vertex_verdicts(consistency);
+    if (consistency.possible && consistency.severity < least_) {
+      least_ = consistency.severity;
       best_ = at_;
     }
-    return standing;
+    return consistency;
   }
 
-  void judge_flows(Standing& standing) const {
-    const auto verdicts = judge(problem_.model, problem_.blocks[0], flows_, at_, direction_);
+  void add_flow_verdicts(Consistency& consistency) const {
+    const auto verdicts = flow_verdicts(problem_.model, problem_.blocks[0], flows_, at_, direction_);
     for (std::size_t k = 0; k < flows_.size(); ++k) {
-      standing.severity = std::max(standing.severity, verdicts[k].severity);
+      consistency.severity = std::max(consistency.severity, verdicts[k].severity);
       if (!verdicts[k].contradicts) continue;
-      standing.contradicted.push_back(
+      consistency.contradicted.push_back(
           [at_memory = flows_[k].memory, branch = *verdicts[k].contradicts](auto& at) { at.flow[at_memory] = branch; });
     }
   }
 
-  void judge_vertices(Standing& standing) const {
+  void add_vertex_verdicts(Consistency& consistency) const {
     for (const auto& tie : vertices_) {
-      const auto verdict = judge(problem_.model, problem_.blocks[0], tie, at_, increment_.time, direction_);
+      const auto verdict = vertex_verdict(problem_.model, problem_.blocks[0], tie, at_, increment_.time, direction_);
       if (!verdict.contradicts) continue;
-      standing.severity = std::max(standing.severity, verdict.severity);
-      standing.possible &= tie.crosses;
-      standing.contradicted.push_back(
-          [this, &tie, patch = *verdict.contradicts](auto& at) { take_patch(problem_.model, tie, patch, at); });
+      consistency.severity = std::max(consistency.severity, verdict.severity);
+      consistency.possible &= tie.crosses;
+      consistency.contradicted.push_back(
+          [this, &tie, patch = *verdict.contradicts](auto& at) { set_patch(problem_.model, tie, patch, at); });
     }
   }
 
-  /// What tells one choice from another: the branches, and in the plane the directions of slip.
+  /// Identity of a choice: its branches, and in 2D the directions of slip.
   std::vector<int> key() const {
     std::vector<int> key;
     for (const auto& w : weak_) {
@@ -164,28 +169,28 @@ class BranchSearch {
     return key;
   }
 
-  /// Flips all that is contradicted at once; where that choice was tried before, only the first.
+  /// Changes all contradicted branches at once; if that choice was tried before, only the first of them.
   bool by_flipping() {
     const std::size_t limit = 40 + 4 * (weak_.size() + flows_.size() + vertices_.size());
     std::set<std::vector<int>> tried;
     for (std::size_t round = 0; round < limit; ++round) {
       const auto before = key();
       tried.insert(before);
-      const auto standing = differentiate();
-      if (!standing) return false;
-      if (!standing->possible) return false;
-      if (standing->is_confirmed()) return true;
+      const auto consistency = differentiate();
+      if (!consistency) return false;
+      if (!consistency->possible) return false;
+      if (consistency->is_confirmed()) return true;
       const State<double> start = at_;
-      for (const auto& take : standing->contradicted) take(at_);
+      for (const auto& take : consistency->contradicted) take(at_);
       const auto after = key();
-      if (after == before || !tried.count(after)) continue;  // (the same: a direction in space is being found)
+      if (after == before || !tried.count(after)) continue;  // (equal keys: a slip direction in 3D converges)
       at_ = start;
-      standing->contradicted.front()(at_);
+      consistency->contradicted.front()(at_);
     }
     return false;
   }
 
-  /// Tries all branches of few points.
+  /// Tries all combinations of branches, if there are at most 256.
   bool by_enumeration() {
     constexpr std::size_t most = 256;
     const Model& model = problem_.model;
@@ -193,7 +198,7 @@ class BranchSearch {
     for (const auto& w : weak_) {
       auto& branches = of_point.emplace_back();
       for (const auto& branch : branches_of(model, w))
-        branches.push_back([&model, &w, branch](auto& at) { take_branch(model, w.point, branch, at); });
+        branches.push_back([&model, &w, branch](auto& at) { set_branch(model, w.point, branch, at); });
     }
     for (const auto& tie : flows_) {
       auto& branches = of_point.emplace_back();
@@ -203,27 +208,28 @@ class BranchSearch {
       if (!tie.crosses) continue;
       auto& patches = of_point.emplace_back();
       for (int patch : {tie.first, tie.second})
-        patches.push_back([&model, &tie, patch](auto& at) { take_patch(model, tie, patch, at); });
+        patches.push_back([&model, &tie, patch](auto& at) { set_patch(model, tie, patch, at); });
     }
     std::size_t count = 1;
     for (const auto& branches : of_point)
       if ((count *= branches.size()) > most) return false;
-    for (std::size_t choice = 0; choice < count && !unsettled_; ++choice) {
+    for (std::size_t choice = 0; choice < count && !diverged_; ++choice) {
       std::size_t rest = choice;
       for (const auto& branches : of_point) {
         branches[rest % branches.size()](at_);
         rest /= branches.size();
       }
-      const auto standing = differentiate();
-      if (standing && standing->is_confirmed()) return true;
+      const auto consistency = differentiate();
+      if (consistency && consistency->is_confirmed()) return true;
     }
     return false;
   }
 
-  /// Where both branches of a point are contradicted, that is by what the solution's tolerance leaves of the tie. Takes
-  /// the branches that were contradicted least.
+  /// Takes the choice with the least contradiction. Both branches of a point can be contradicted only by what the
+  /// tolerance of the solution leaves of the tie.
   bool at_rounding() {
-    constexpr double most = 1e3;  // 1e-7 of the derivatives: a point is weak up to 1e-8, as its derivative then is
+    constexpr double most =
+        1e3;  // 1e-7 of the derivatives: a tie is recognised to 1e-8, and its derivative errs as much
     if (!(least_ <= most)) return false;
     at_ = best_;
     return follow_branches();
@@ -240,16 +246,15 @@ class BranchSearch {
   std::vector<FlowTie> flows_;
   std::vector<VertexTie> vertices_;
   SideDirection direction_;
-  double least_ = std::numeric_limits<double>::infinity();  ///< least_, best_: of the choices tried, the one
-                                                            ///< that was contradicted least
-  State<double> best_;
-  std::vector<PseudoLoad> load_;  ///< of the bodies, once it is asked for
-  FlowBranches load_flow_;        ///< the branches that it is of
-  bool unsettled_ = false;        ///< a scheme's passes did not settle: all that it takes, for each choice again
+  double least_ = std::numeric_limits<double>::infinity();  ///< least severity of a choice
+  State<double> best_;                                      ///< that choice
+  std::vector<PseudoLoad> load_;                            ///< of the bodies; empty before the first use
+  FlowBranches load_flow_;                                  ///< the branches of `load_`
+  bool diverged_ = false;  ///< the passes of the scheme did not converge, nor will they for another choice
 };
 
-/// Differentiates one increment along one direction; its branches at ties become those that are confirmed. Where none
-/// are: false; or, with `held`, the branches that hold most, with their derivative.
+/// Differentiates one increment on one side of a parameter, with the branches that the derivative confirms. If no
+/// choice is confirmed: false; with `held` the derivative of the branches that hold most.
 template <class M, class E>
 bool differentiate_side(const M& method, Differentiation<E>& problem, const State<double>& previous,
                         Increment<double>& increment, const SideDirection& along, bool held = false) {
@@ -261,7 +266,7 @@ bool differentiate_side(const M& method, Differentiation<E>& problem, const Stat
     return differentiate_alone(method, problem, previous, of);
   };
   if (!detail::is_truncated(method)) return search(increment, increment.state, increment.rho_factor);
-  // each augmentation starts from the derivative that the one before left
+  // Each augmentation starts from the derivative of the one before.
   auto& block = problem.blocks[0];
   const State<Direction> start = block.previous;
   bool found = true;

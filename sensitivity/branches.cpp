@@ -9,11 +9,12 @@ namespace {
 
 using Tie = WeakPoint::Tie;
 
+/// k / A of a point: traction per displacement of its node.
 double elastic_traction(const Slots<double>& slots, std::size_t p) {
   return slots.stiffness[p] / slots.geometry[p].area;
 }
 
-/// Trial traction of a point from a state: values or derivatives.
+/// Trial traction lambda + rho g of point p, 1 + tangents components, force per area.
 template <class T>
 Vector<T> trial(const Model& model, const State<T>& state, const PointRegularisation<T>& rho, int p) {
   const auto& point = model.points[p];
@@ -25,21 +26,25 @@ Vector<T> trial(const Model& model, const State<T>& state, const PointRegularisa
   return z;
 }
 
-/// Derivatives below this are zero. It is a share of the derivatives of all points, as tractions and as motions times k
-/// / A; of what a rigid motion leaves of these; and of the tractions over the parameter. `multiple`: rho over k / A,
-/// which magnifies the rounding of a motion.
+/// Size of a derivative of a traction up to which it counts as zero: 1e-10 of the largest of
+///
+///   the derivatives of all tractions, and of all motions times k / A
+///   1e-3 of k / A times the largest derivative of a displacement: what a rigid motion leaves of these
+///   the largest traction of the run, over the size of the parameter
+///
+/// `multiple`: rho over k / A, which magnifies the rounding of a motion.
 double negligible(const Model& model, const Slots<double>& slots, const ParameterBlock& block, double multiple,
                   const SideDirection& along) {
   constexpr double share = 1e-10, rigid = 1e-3, roundings = 64;
-  double size = along.parameter > 0 ? along.largest_so_far / along.parameter : 0, reach = 0;
-  for (const auto& u : block.current.displacement) reach = std::max(reach, std::abs(u.d[0]));
+  double size = along.parameter > 0 ? along.largest_so_far / along.parameter : 0, largest_motion = 0;
+  for (const auto& u : block.current.displacement) largest_motion = std::max(largest_motion, std::abs(u.d[0]));
   const auto& now = block.current.contact;
   const auto& placement = block.current.history.placement;
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     const auto& point = model.points[p];
     const double elastic = elastic_traction(slots, p);
     const int offset = tangential_offset(model, p);
-    size = std::max({size, elastic * std::abs(now.gap[p].d[0]), rigid * elastic * reach});
+    size = std::max({size, elastic * std::abs(now.gap[p].d[0]), rigid * elastic * largest_motion});
     for (int c = 0; c < point.components(); ++c)
       size = std::max(size, std::abs(now.traction[point.multiplier + c].d[0]));
     for (int a = 0; a < point.tangents; ++a) size = std::max(size, elastic * std::abs(placement[offset + a].d[0]));
@@ -47,15 +52,16 @@ double negligible(const Model& model, const Slots<double>& slots, const Paramete
   return std::max(share, roundings * unit_roundoff * multiple) * size;
 }
 
-/// s Dz, the derivative of a trial, and the size up to which it is negligible. `kinematic`: k / A over rho, for a
-/// motion.
-struct Judged {
+/// Derivative s Dz of a trial traction along one side, and the size up to which it counts as zero. `kinematic_normal`,
+/// `kinematic`: k / A over rho, normal and tangential; they turn a rate of rho g into that of k / A times g.
+struct TrialRates {
   double normal;
   Vector<double> tangential;
   double negligible, kinematic_normal, kinematic;
 };
 
-Branch slip_along(const Judged& d, double normal, ContactState piece) {
+/// Slip in the direction of the trial's derivative, with normal part `normal`.
+Branch slip_along(const TrialRates& d, double normal, ContactState piece) {
   Branch branch{piece, Vector<double>(1 + d.tangential.size())};
   branch.ray << normal, d.tangential;
   branch.ray /= branch.ray.cwiseAbs().maxCoeff();
@@ -64,7 +70,7 @@ Branch slip_along(const Judged& d, double normal, ContactState piece) {
 
 Verdict contradicted(Branch by_branch, double by) { return {true, std::move(by_branch), by}; }
 
-/// Derivative of the bound of friction along a direction, and its piece. At a corner it is the lesser derivative.
+/// Derivative s D bound of the friction bound, and the piece that it belongs to. At a corner: the lesser derivative.
 struct BoundRate {
   double rate;
   ContactState piece;
@@ -74,11 +80,11 @@ bool is_at_corner(const FrictionLaw<double>& law, double pressure) {
   return law.corner() && law.distance_to_corner(pressure) <= weak_margin * law.bound(pressure, ContactState::limited);
 }
 
-/// `moved`: derivative of the pressure.
-BoundRate bound_rate(const FrictionLaw<Direction>& law, double pressure, double moved, double side) {
+/// `pressure_rate`: derivative of the pressure along the parameter.
+BoundRate bound_rate(const FrictionLaw<Direction>& law, double pressure, double pressure_rate, double side) {
   constexpr double none = std::numeric_limits<double>::infinity();
   Direction p(pressure);
-  p.d[0] = moved;
+  p.d[0] = pressure_rate;
   const auto rate_on = [&](ContactState piece) {
     return BoundRate{law.has(piece) ? side * law.bound(p, piece).d[0] : none, piece};
   };
@@ -88,8 +94,9 @@ BoundRate bound_rate(const FrictionLaw<Direction>& law, double pressure, double 
   return law.piece(pressure) == ContactState::slip ? sloping : level;
 }
 
-/// Of a closed point without a trial of its own. `bound`: derivative of its bound, on `piece`.
-Verdict judge_from_apex(const Judged& d, double bound, ContactState piece, const Branch& now) {
+/// Verdict on a closed point whose tangential trial is zero. `bound`: derivative of its bound, on `piece`; `now`: its
+/// branch.
+Verdict apex_verdict(const TrialRates& d, double bound, ContactState piece, const Branch& now) {
   const Branch stick{ContactState::stick, {}};
   const double length = d.tangential.norm(), excess = length - bound;
   const Branch slip = length > 0 ? slip_along(d, std::min(d.normal, 0.0), piece) : stick;
@@ -142,7 +149,7 @@ std::vector<WeakPoint> weak_points(const Model& model, const Slots<double>& slot
       continue;
     }
     const double excess = tangential - bound;
-    // with a small rho, (|z_T| - bound) / rho is rounding long before the slip itself is
+    // At a small rho, (|z_T| - bound) / rho is rounding although the slip itself is not.
     const double slip = state.contact.slip.segment(tangential_offset(model, p), point.tangents).norm();
     const double beyond = elastic * std::min(excess / rho[p].tangential, slip), inside = -excess;
     if ((excess > 0 ? beyond : inside) <= weak_margin * bound)
@@ -160,7 +167,7 @@ Branch branch_of(const Model& model, const State<double>& at, int point) {
   return branch;
 }
 
-void take_branch(const Model& model, int point, const Branch& branch, State<double>& at) {
+void set_branch(const Model& model, int point, const Branch& branch, State<double>& at) {
   at.contact.state[point] = branch.state;
   auto& ray = at.contact.ray;
   if (ray.size() == 0 && branch.ray.size() == 0) return;
@@ -197,16 +204,17 @@ std::vector<Branch> branches_of(const Model& model, const WeakPoint& weak) {
   return all;
 }
 
-Verdict judge(const Model& model, const Slots<double>& slots, const ParameterBlock& block,
-              const RegularisationField<Direction>& rho, const RegularisationField<double>& own, ConeRadius cone,
-              const WeakPoint& weak, const State<double>& at, const SideDirection& direction) {
+Verdict branch_verdict(const Model& model, const Slots<double>& slots, const ParameterBlock& block,
+                       const RegularisationField<Direction>& rho, const RegularisationField<double>& own,
+                       ConeRadius cone, const WeakPoint& weak, const State<double>& at,
+                       const SideDirection& direction) {
   const int p = weak.point;
   const double side = direction.side;
   const auto& point = model.points[p];
   const double elastic = elastic_traction(slots, p);
   const Vector<Direction> z = trial(model, block.current, rho[p], p);
-  Judged d{side * z[0].d[0], Vector<double>(point.tangents), 0, elastic / rho[p].normal.v,
-           elastic / rho[p].tangential.v};
+  TrialRates d{side * z[0].d[0], Vector<double>(point.tangents), 0, elastic / rho[p].normal.v,
+               elastic / rho[p].tangential.v};
   for (int a = 0; a < point.tangents; ++a) d.tangential[a] = side * z[1 + a].d[0];
   d.negligible = negligible(model, slots, block, rho[p].normal.v / elastic, direction);
   const Branch now = branch_of(model, at, p);
@@ -226,7 +234,7 @@ Verdict judge(const Model& model, const Slots<double>& slots, const ParameterBlo
     if (open && !(closing > 1)) return {};
     Verdict verdict;
     if (weak.tie == Tie::apex)
-      verdict = judge_from_apex(d, -law.slope_at_apex().v * std::min(d.normal, 0.0), ContactState::slip, now);
+      verdict = apex_verdict(d, -law.slope_at_apex().v * std::min(d.normal, 0.0), ContactState::slip, now);
     else if (jumps && open)
       verdict = contradicted({ContactState::stick, {}}, 0);
     else if (!jumps && now.state != ContactState::slip)
@@ -237,15 +245,15 @@ Verdict judge(const Model& model, const Slots<double>& slots, const ParameterBlo
   }
   const bool augmented = cone == ConeRadius::augmented;
   const double pressure = augmented ? -found[0] : -at.multiplier[point.multiplier];
-  const double moved = augmented ? -z[0].d[0] : -block.current.multiplier[point.multiplier].d[0];
-  const auto [bound, piece] = bound_rate(law, pressure, moved, side);
+  const double pressure_rate = augmented ? -z[0].d[0] : -block.current.multiplier[point.multiplier].d[0];
+  const auto [bound, piece] = bound_rate(law, pressure, pressure_rate, side);
   if (weak.tie == Tie::line) {
-    Verdict verdict = judge_from_apex(d, std::max(bound, 0.0), piece, now);
+    Verdict verdict = apex_verdict(d, std::max(bound, 0.0), piece, now);
     verdict.possible = bound >= 0;
     return verdict;
   }
   if (is_slipping(now.state) && now.state != piece) {
-    const double other = bound_rate(law, pressure, moved, -side).rate;
+    const double other = bound_rate(law, pressure, pressure_rate, -side).rate;
     const double apart = std::abs(bound + other) / d.negligible;
     if (apart > 1) return contradicted({piece, {}}, apart);
   }

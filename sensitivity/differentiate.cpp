@@ -9,8 +9,8 @@ namespace stickslip {
 
 namespace {
 
-/// Derivatives of an increment. Responses that can tie get the derivative of one side, where it differs by more than
-/// rounding of the motion.
+/// Derivatives of an increment. A response that is a largest or smallest value at a tie gets the derivative of one
+/// side, if the sides differ by more than the rounding of the motion.
 Matrix<double> with_ties(const Model& model, const std::vector<ParameterBlock>& blocks,
                          const std::vector<State<Direction>>& at, Matrix<double> of, Ties side) {
   constexpr double rounding = 1e-9;
@@ -18,7 +18,7 @@ Matrix<double> with_ties(const Model& model, const std::vector<ParameterBlock>& 
   for (int i = 0; i < static_cast<int>(responses.size()); ++i) {
     if (!can_tie(responses[i])) continue;
     const bool is_length = responses[i].kind != Response::Kind::contact_pressure;
-    double per_length = is_length ? 1 : 0;  // what a length makes of the response
+    double per_length = is_length ? 1 : 0;  // response per length
     for (std::size_t p = 0; !is_length && p < model.points.size(); ++p) {
       const auto& slots = blocks.front().slots;
       per_length = std::max(per_length, value(slots.stiffness[p]) / value(slots.geometry[p].area));
@@ -36,15 +36,15 @@ Matrix<double> with_ties(const Model& model, const std::vector<ParameterBlock>& 
   return of;
 }
 
-/// Whether the tangents that a scheme solves with are those of the method's last iterations. (Truncated Uzawa solves
-/// with one for each augmentation.)
+/// Whether the tangent of a scheme is that of the method's last iteration. Not for truncated Uzawa, which has one per
+/// augmentation.
 template <class M>
 constexpr bool keeps_tangents(const M&) {
   return true;
 }
 bool keeps_tangents(const UzawaAL& method) { return method.sensitivity == UzawaAL::Sensitivity::iterated; }
 
-/// Dofs outside the contact whose displacements responses read, ascending; nothing where all are read.
+/// Dofs outside the contact whose displacements responses read, ascending; none if all are read.
 std::optional<std::vector<int>> dofs_read_inside(const Model& model) {
   std::vector<char> read(model.node_count, false);
   for (std::size_t i = 0; i < model.scene.responses.size(); ++i) {
@@ -76,7 +76,7 @@ constexpr bool has_costly_factors(const SparseEngine<T>&) {
   return true;
 }
 
-/// Bytes of pseudo-loads and solutions.
+/// Bytes of the pseudo-loads and solutions of increments.
 long solve_bytes(const std::vector<Unexpanded>& increments) {
   long bytes = 0;
   for (const auto& [load, increment] : increments) {
@@ -103,9 +103,9 @@ struct Derivatives::Progress {
   const std::optional<std::vector<int>> read_inside = dofs_read_inside(model);
   Gradients gradients = {};
   std::vector<ParameterBlock> blocks = {};
-  std::size_t done = 0;    ///< increments
-  double largest = 0;      ///< traction_scale of those
-  bool postponed = false;  ///< what is left needs the whole run
+  std::size_t done = 0;    ///< number of increments differentiated
+  double largest = 0;      ///< traction_scale() of those
+  bool postponed = false;  ///< the remaining increments need the whole run
   bool failed = false;
 
   int parameters() const { return static_cast<int>(model.scene.parameters.size()); }
@@ -120,9 +120,8 @@ struct Derivatives::Progress {
     }
   }
 
-  /// Differentiates the increments up to `end`, as many together as their columns fit into one solve; one by one where
-  /// the bodies' share in one needs what they remember of the last.
-  /// `follows`: the engine has the factor of the last of them.
+  /// Differentiates the increments up to `end`. As many are solved together as fit into one solve; one by one if the
+  /// memory of the bodies links them. `follows`: the engine has the factor of the last of them.
   void advance(const Trajectory<double>& trajectory, std::size_t end, bool follows) {
     if (blocks.empty()) begin();
     const std::size_t together = model.effects.plasticity ? 1 : std::max(1, columns_together / parameters());
@@ -143,7 +142,7 @@ struct Derivatives::Progress {
     problem.follows = follows;
     const auto& increments = trajectory.increments;
     std::vector<PseudoLoad> loads;
-    if (!detail::is_truncated(m)) {  // (which has one for each augmentation)
+    if (!detail::is_truncated(m)) {  // (truncated Uzawa has a pseudo-load per augmentation)
       for (std::size_t n = done; n < end; ++n)
         loads.push_back(pseudo_load(problem, increments[n].state, increments[n].time));
       reduce(problem, loads);
@@ -183,7 +182,7 @@ struct Derivatives::Progress {
           blocks, parameters(), [&](auto&, int b) -> auto& { return reached.back()[b].displacement; });
   }
 
-  /// Displacements of increments, expanded where a response reads them, and the last one's of the run.
+  /// Expands the displacements of increments that a response reads, and of the last increment of the run.
   template <class E>
   std::vector<std::vector<Vector<Direction>>> displacements_of(Differentiation<E>& problem,
                                                                std::vector<Unexpanded> increments, bool is_last) {
@@ -224,7 +223,7 @@ Derivatives::Derivatives(const Model& model, const Slots<double>& slots, const M
 Derivatives::~Derivatives() = default;
 
 void Derivatives::follow(const Trajectory<double>& trajectory) {
-  if (!progress_ || progress_->postponed) return;  // no parameters: there is nothing to differentiate
+  if (!progress_ || progress_->postponed) return;  // without parameters there is nothing to differentiate
   Progress& now = *progress_;
   const Stopwatch time(now.gradients.seconds);
   const bool worthwhile =

@@ -1,5 +1,5 @@
-/// What direct differentiation carries, and the bodies' share in it, which may be had for several increments at once:
-/// the engine solves many right-hand sides for little more than one.
+/// State of direct differentiation, and the bodies' part of it. That part can be computed for several increments at
+/// once, because the engine solves many right-hand sides for little more than one.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace stickslip {
 
-/// Numbers of the scene with up to `directions` parameters seeded, each in a direction of its own.
+/// Numbers of the scene with up to `directions` parameters seeded, one direction each.
 inline Numbers<Direction> seeded(const Scene& scene, const std::vector<int>& parameters) {
   auto numbers = scene.as<Direction>();
   for (std::size_t d = 0; d < parameters.size(); ++d)
@@ -18,33 +18,33 @@ inline Numbers<Direction> seeded(const Scene& scene, const std::vector<int>& par
   return numbers;
 }
 
-/// Elements whose forces a parameter touches, body by body: by material, thickness, shape or prescribed motion. A
-/// pseudo-load comes from these alone. Where nodes have frames, whose derivatives turn the forces themselves, these are
-/// all elements; of a body that remembers too.
+/// Elements, per body, whose forces depend on a parameter by material, thickness, shape or prescribed motion. The
+/// pseudo-load comes from these alone. All elements are returned if nodes have frames, whose derivatives turn the
+/// forces, and for a body with memory.
 ElementLists touched_elements(const Model& model, const Slots<Direction>& slots);
 
-/// Parameters in groups of up to `directions`, by their place in the scene: those that touch material, thickness or
-/// shape of bodies first, so that few sweeps visit elements.
+/// Indices of the parameters in groups of up to `directions`. Those that change material, thickness or shape of bodies
+/// come first, so that few sweeps visit elements.
 std::vector<std::vector<int>> parameter_groups(const Model& model);
 
-/// Whether the stiffness of linear bodies is kept with its derivatives. A run of two steps or less would save nothing.
-/// With more parameters than go into one solve it would double the memory of that.
+/// Whether the stiffness of linear bodies is kept with its derivatives. Not for runs of up to two steps, which would
+/// save nothing; nor with more parameters than fit into one solve, whose memory it would double.
 inline bool keeps_stiffness(const Model& model) {
   return model.times.size() > 2 && static_cast<int>(model.scene.parameters.size()) <= columns_together;
 }
 
-/// Bytes of the stiffness that parameter_blocks() would keep.
+/// Bytes of the stiffness that parameter_blocks() keeps.
 long kept_stiffness_bytes(const Model& model);
 
-/// Slots and running state of up to `directions` parameters.
+/// Slots and present derivatives of up to `directions` parameters.
 struct ParameterBlock {
-  std::vector<int> parameters;  ///< by direction
+  std::vector<int> parameters;  ///< index of the parameter, per direction
   Slots<Direction> slots;
   State<Direction> previous, current;
-  ElementLists touched;                                   ///< those whose forces are differentiated in each increment
-  std::optional<DualStiffness> stiffness = std::nullopt;  ///< of the others that parameters touch
+  ElementLists touched;  ///< elements whose forces are differentiated in each increment
+  std::optional<DualStiffness> stiffness = std::nullopt;  ///< of the elements taken out of `touched`
 
-  /// At the initial state.
+  /// Block at the initial state.
   ParameterBlock(const Model& model, std::vector<int> seeds, Slots<Direction> of)
       : parameters(std::move(seeds)),
         slots(std::move(of)),
@@ -52,11 +52,11 @@ struct ParameterBlock {
         current(previous),
         touched(touched_elements(model, slots)) {}
 
-  /// Takes the elements of linear bodies out of `touched`, into `stiffness`.
+  /// Moves the elements of linear bodies from `touched` to `stiffness`.
   void keep_stiffness(const Model& model);
 };
 
-/// Blocks of all the scene's parameters, at the initial state.
+/// Blocks of all parameters of the scene, at the initial state.
 inline std::vector<ParameterBlock> parameter_blocks(const Model& model) {
   std::vector<ParameterBlock> blocks;
   for (const auto& group : parameter_groups(model)) {
@@ -66,21 +66,21 @@ inline std::vector<ParameterBlock> parameter_blocks(const Model& model) {
   return blocks;
 }
 
-/// What parameters and prescribed motions do to the bodies' balance in an increment while its free displacements are
-/// held. It depends on the derivative of what bodies remember, and on no other derivative so far.
+/// Pseudo-load of the bodies in an increment: derivative of their balance by parameters and prescribed motion at fixed
+/// free displacements. It depends on the derivative of the bodies' memory, and on no other earlier derivative.
 struct PseudoLoad {
   std::vector<Vector<Direction>> displacement;  ///< per block, with the derivative of prescribed motion
-  Matrix<double> rows;                          ///< a column a parameter, all dofs; until it is reduced
-  Reduction<double> reduced;                    ///< to the engine's rows
+  Matrix<double> rows;                          ///< one column per parameter, all dofs; empty after the reduction
+  Reduction<double> reduced;                    ///< its reduction to the engine's rows
 };
 
-/// Derivatives of an increment's displacements, to be expanded from the engine's dofs.
+/// Derivatives of the displacements of an increment on the engine's dofs, to be expanded to all dofs.
 struct Unexpanded {
   PseudoLoad load;
   Matrix<double> increment;  ///< engine dofs
 };
 
-/// Everything a scheme reads to differentiate one increment.
+/// What a scheme reads and writes to differentiate one increment.
 template <class E>
 struct Differentiation {
   const Model& model;
@@ -89,11 +89,11 @@ struct Differentiation {
   std::vector<ParameterBlock>& blocks;
   int parameters = 0;
   Counters counters;
-  Status status = Status::singular;  ///< where a scheme fails: that it could not factorise, or cap
+  Status status = Status::singular;  ///< of a failure: singular tangent, or cap
   std::string message = {};
-  bool follows = false;                                 ///< the engine has a factor that may serve (reuse_factor)
+  bool follows = false;                                 ///< the engine has a factor that reuse_factor() may use
   std::optional<SchemeRecord> record = std::nullopt;    ///< of the last increment
-  std::optional<PseudoLoad> prepared = std::nullopt;    ///< of the next increment; empty: the scheme makes it
+  std::optional<PseudoLoad> prepared = std::nullopt;    ///< of the next increment; none: the scheme computes it
   std::optional<Unexpanded> unexpanded = std::nullopt;  ///< of the last increment, for expand()
 };
 
@@ -102,7 +102,7 @@ inline Vector<Direction> lift(const Vector<double>& v) {
   return v.unaryExpr([](double x) { return Direction(x); });
 }
 
-/// Columns of derivatives, one a parameter, out of the blocks, and back. `pick` selects the dual vector of a block.
+/// Derivatives as columns, one per parameter, from the blocks. `pick(block, index)`: the dual vector of a block.
 template <class Pick>
 Matrix<double> gather(std::vector<ParameterBlock>& blocks, int parameters, Pick&& pick) {
   Matrix<double> out;
@@ -114,13 +114,14 @@ Matrix<double> gather(std::vector<ParameterBlock>& blocks, int parameters, Pick&
   }
   return out;
 }
+/// Adds columns of derivatives, one per parameter, to a dual vector of a block.
 inline void add_derivatives(Vector<Direction>& v, const Eigen::Ref<const Matrix<double>>& columns,
                             const ParameterBlock& block) {
   for (std::size_t d = 0; d < block.parameters.size(); ++d)
     for (Eigen::Index i = 0; i < v.size(); ++i) v[i].d[d] += columns(i, block.parameters[d]);
 }
 
-/// The pseudo-load of the bodies at a state, not yet reduced.
+/// The pseudo-load of the bodies at a state, before its reduction.
 template <class E>
 PseudoLoad pseudo_load(const Differentiation<E>& problem, const State<double>& at, double time) {
   const Model& model = problem.model;
@@ -143,7 +144,7 @@ PseudoLoad pseudo_load(const Differentiation<E>& problem, const State<double>& a
   return load;
 }
 
-/// Reduces several pseudo-loads in one solve.
+/// Reduces several pseudo-loads by one solve.
 template <class E>
 void reduce(Differentiation<E>& problem, std::vector<PseudoLoad>& loads) {
   const int parameters = problem.parameters, count = static_cast<int>(loads.size());
@@ -156,7 +157,8 @@ void reduce(Differentiation<E>& problem, std::vector<PseudoLoad>& loads) {
   }
 }
 
-/// Displacements of all dofs with their derivatives. Inside condensed bodies they are without, which saves the solve.
+/// Displacements of all dofs with their derivatives, per block. Inside condensed bodies derivatives are left out, which
+/// saves a solve.
 template <class E>
 std::vector<Vector<Direction>> without_inside(const Differentiation<E>& problem, Unexpanded increment) {
   const Matrix<double> all = problem.engine.spread(increment.increment);
@@ -165,8 +167,8 @@ std::vector<Vector<Direction>> without_inside(const Differentiation<E>& problem,
   return displacements;
 }
 
-/// Displacements of all dofs with their derivatives, per increment and block, in one solve. `wanted`: dofs that are
-/// read, where not all are (Condensation::expand).
+/// Displacements of all dofs with their derivatives, per increment and block, by one solve. `wanted`: dofs that are
+/// read; nullptr: all (Condensation::expand).
 template <class E>
 std::vector<std::vector<Vector<Direction>>> expand(Differentiation<E>& problem, std::vector<Unexpanded> increments,
                                                    const std::vector<int>* wanted = nullptr) {

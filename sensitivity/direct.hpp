@@ -1,13 +1,13 @@
-/// Direct differentiation, what all schemes share.
+/// Direct differentiation: the part that all schemes share.
 ///
-/// A State<Direction> carries the derivative of a state along `directions` parameters. At the converged state of an
-/// increment, with p = u (and lambda where it is an unknown) and everything else as seeds,
+/// A State<Direction> carries the derivative of a state by `directions` parameters. At the converged state of an
+/// increment
 ///
-///   K Dp = -r,     r = directional derivative of R along parameters, history and prescribed motion, p held fixed
+///   K Dp = -r,     r = directional derivative of R by parameters, history and prescribed motion at fixed p
 ///
-/// comes from one sweep of the solver's own residual in dual numbers; a second sweep with Dp gives the local unknowns,
-/// which are the next increment's history. The schemes differ, as the methods do, in who supplies D lambda.
-/// [MTV94], [SLK10]
+/// p is u, and lambda too where it is an unknown. One sweep of the solver's own residual in dual numbers gives r. A
+/// second sweep with Dp gives the derivatives of the local unknowns, which are the history of the next increment. The
+/// schemes differ, as the methods do, in what they pass for D lambda. [MTV94], [SLK10]
 #pragma once
 
 #include "sensitivity/differentiation.hpp"
@@ -15,7 +15,7 @@
 
 namespace stickslip {
 
-/// rho of a method with its derivatives, per block; `factor`: adaption, empty for none.
+/// rho of a method with its derivatives, per block. `factor`: adaption of rho per point; empty: none.
 template <class M, class E>
 std::vector<RegularisationField<Direction>> regularisation_blocks(const M& method, const Differentiation<E>& problem,
                                                                   const std::vector<double>& factor = {}) {
@@ -24,27 +24,32 @@ std::vector<RegularisationField<Direction>> regularisation_blocks(const M& metho
   return rho;
 }
 
-/// One equilibrium with its derivative problem: factorised tangent and the bodies' part of the pseudo-load, which do
-/// not change while D lambda is iterated.
+/// Derivative problem of one equilibrium: factorised tangent and the bodies' part of the pseudo-load. Neither changes
+/// while D lambda is iterated.
 template <class E>
 class LinearisedEquilibrium {
  public:
-  /// `at`: the state (its multiplier is the lambda of its equilibrium); `rho`, per block and in double.
-  /// `unknown`: lambda is part of p.
+  ///   at          the state; its multiplier is the lambda of the equilibrium
+  ///   rho         in double; rho_blocks: per block
+  ///   unknown     lambda is part of p
+  ///   previous    history of the last increment
   LinearisedEquilibrium(Differentiation<E>& problem, const State<double>& at, const RegularisationField<double>& rho,
                         std::vector<RegularisationField<Direction>> rho_blocks, ConeRadius cone, double time,
                         bool unknown, const History<double>& previous);
 
+  /// False if the tangent is singular.
   bool valid() const { return valid_; }
-  /// Solves for the derivative. `lambda`: D lambda, per block, given as a seed; an unknown one is given as zero, and
-  /// its D lambda is added. `fields`: t_hat with all derivatives in. False where the tangent turns out to be singular.
+  /// Solves for the derivative. False if the tangent is singular.
+  ///
+  ///   lambda  per block: D lambda as a seed. If lambda is unknown, pass D lambda = 0; its solution is added
+  ///   fields  result, per block: local unknowns with all derivatives
   bool solve(std::vector<Vector<Direction>>& lambda, std::vector<ContactField<Direction>>& fields);
 
-  /// Completes the state of every block from the last solve, but for the displacements, which are left unexpanded.
-  void settle(const std::vector<ContactField<Direction>>& fields, const std::vector<Vector<Direction>>& lambda);
+  /// Stores the derivatives of the last solve in the current state of every block. Displacements remain unexpanded.
+  void store_state(const std::vector<ContactField<Direction>>& fields, const std::vector<Vector<Direction>>& lambda);
 
-  /// Largest derivatives, by parameter: largest_motion() of the contact displacements, then and now; load() of the
-  /// forces of bodies and loads on the unknowns, however much of these cancels.
+  /// Largest derivatives, per parameter. largest_motion(): of contact displacements in this increment and of placements
+  /// in the last, length. load(): of the forces of bodies and loads in the engine's rows, before they cancel.
   Vector<double> largest_motion() const {
     const Matrix<double> then = gather(
         problem_.blocks,
@@ -64,7 +69,8 @@ class LinearisedEquilibrium {
     std::vector<ContactField<Direction>> fields;
     bool accurate = true;
   };
-  /// One solve by the factor: adds to the increment, to the compact displacements and, where unknown, to lambda.
+  /// One solve with the factor. Adds its result to the increment, to the compact displacements and, if unknown, to
+  /// lambda.
   void improve(const Rows& rows, std::vector<Vector<Direction>>& compact, std::vector<Vector<Direction>>& lambda);
   Rows evaluate(const std::vector<Vector<Direction>>& compact, const std::vector<Vector<Direction>>& lambda);
   ContactInput<Direction> input(int block) const {
@@ -85,9 +91,9 @@ class LinearisedEquilibrium {
   ConeRadius cone_;
   double time_;
   bool unknown_, valid_ = false;
-  bool redundant_ = false;                ///< constraints repeat one another: the tangent is used twice
-  bool unproven_ = false;                 ///< the factor is Newton's last; not yet seen to solve these rows
-  Solving solving_ = Solving::unrefined;  ///< as long as that solves the first rows
+  bool redundant_ = false;                ///< constraints repeat one another: one more solve is needed
+  bool unproven_ = false;                 ///< the factor is Newton's last, and not yet checked on these rows
+  Solving solving_ = Solving::unrefined;  ///< unrefined as long as that is accurate
   PseudoLoad load_;
   Matrix<double> increment_, compact_;
 };
@@ -165,9 +171,9 @@ void LinearisedEquilibrium<E>::improve(const Rows& rows, std::vector<Vector<Dire
   }
 }
 
-/// Rows of the derivative problem at the derivatives reached so far. `accurate`: the displacement rows are rounding,
-/// measured by the derivatives of the forces that should balance in them. A large rho magnifies the rounding of Dg, and
-/// then they are more. Another pass takes the defect up where lambda is unknown; where it is given, none can.
+/// Rows of the derivative problem at the present derivatives. `accurate`: the displacement rows are rounding, compared
+/// with the derivatives of the forces that balance in them. A large rho magnifies the rounding of Dg and so the rows;
+/// if lambda is unknown, another solve removes them; if it is given, none can.
 template <class E>
 typename LinearisedEquilibrium<E>::Rows LinearisedEquilibrium<E>::evaluate(
     const std::vector<Vector<Direction>>& compact, const std::vector<Vector<Direction>>& lambda) {
@@ -196,8 +202,8 @@ typename LinearisedEquilibrium<E>::Rows LinearisedEquilibrium<E>::evaluate(
   rows.u += internal;
   for (Eigen::Index i = 0; i < rows.u.rows(); ++i)
     if (!problem_.engine.is_free(i)) rows.u.row(i).setZero();
-  constexpr double rounding = 100 * unit_roundoff;  // several hundred terms meet in a row; each rounds once
-  double stiffest = 0;                              // contact, force per length
+  constexpr double rounding = 100 * unit_roundoff;  // several hundred terms are summed in a row; each rounds once
+  double stiffest = 0;                              // largest A rho, force per length
   for (std::size_t p = 0; p < rho_.size() && !unknown_; ++p)
     stiffest = std::max(stiffest, problem_.slots.geometry[p].area * std::max(rho_[p].normal, rho_[p].tangential));
   for (Eigen::Index j = 0; j < rows.u.cols() && rows.u.rows() > 0; ++j) {
@@ -210,8 +216,8 @@ typename LinearisedEquilibrium<E>::Rows LinearisedEquilibrium<E>::evaluate(
 }
 
 template <class E>
-void LinearisedEquilibrium<E>::settle(const std::vector<ContactField<Direction>>& fields,
-                                      const std::vector<Vector<Direction>>& lambda) {
+void LinearisedEquilibrium<E>::store_state(const std::vector<ContactField<Direction>>& fields,
+                                           const std::vector<Vector<Direction>>& lambda) {
   for (std::size_t b = 0; b < problem_.blocks.size(); ++b) {
     auto& block = problem_.blocks[b];
     block.current.multiplier = lambda[b];
@@ -219,19 +225,19 @@ void LinearisedEquilibrium<E>::settle(const std::vector<ContactField<Direction>>
     block.current.history = next_history(input(static_cast<int>(b)), block.current.contact, lambda[b]);
   }
   if (problem_.model.effects.plasticity) {
-    const auto displacement = without_inside(problem_, {load_, increment_});  // (what remembers is not condensed)
+    const auto displacement = without_inside(problem_, {load_, increment_});  // (bodies with memory are not condensed)
     for (std::size_t b = 0; b < problem_.blocks.size(); ++b) {
       auto& block = problem_.blocks[b];
       auto& bodies = block.current.history.bodies;
       bodies = bulk_flow(problem_.model, block.slots, displacement[b], block.previous.history.bodies, at_.flow);
-      if (!at_.flow.empty())  // (what is left of a tie moves the values of a branch that is prescribed)
+      if (!at_.flow.empty())  // (a prescribed branch at a tie moves the values by the tolerance)
         for (Eigen::Index k = 0; k < bodies.size(); ++k) bodies[k].v = at_.history.bodies[k];
     }
   }
   problem_.unexpanded = {std::move(load_), increment_};
 }
 
-/// Differentiates one increment by itself: its state, displacements included, is then in the blocks.
+/// Differentiates one increment and expands its displacements. The blocks then have its complete state.
 template <class M, class E>
 bool differentiate_alone(const M& method, Differentiation<E>& problem, const State<double>& previous,
                          const Increment<double>& increment) {

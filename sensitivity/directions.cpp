@@ -1,4 +1,4 @@
-/// The slots and bodies in the scalar of direct differentiation, and which elements it touches.
+/// Slots and bodies in the scalar of direct differentiation, and the elements that parameters touch.
 #include <numeric>
 
 #include "core/model/body_matrix.hpp"
@@ -10,13 +10,13 @@ STICKSLIP_SLOTS(, Direction);
 
 namespace {
 
-/// Whether numbers of a law carry derivatives, where it tells.
+/// Whether the numbers of a law have no derivative; false if the law does not list them.
 const auto has_no_derivative = []<class L>(const L& law) {
   if constexpr (!Remembers<L> && requires { law.numbers(); }) return detail::is_constant(law.numbers());
   return false;
 };
 
-/// Takes those of linear bodies out of lists of elements.
+/// Removes the elements of linear bodies from lists, and returns them.
 ElementLists take_linear(const Model& model, ElementLists& lists) {
   ElementLists linear(lists.size());
   for (std::size_t b = 0; b < lists.size(); ++b)
@@ -24,7 +24,7 @@ ElementLists take_linear(const Model& model, ElementLists& lists) {
   return linear;
 }
 
-/// The parameters, of those given, that touch elements; all of them, where a law does not tell.
+/// Those of the given parameters that touch elements; all, if a law does not list its numbers.
 std::vector<int> touching_elements(const Model& model, const std::vector<int>& parameters) {
   const auto numbers = seeded(model.scene, parameters);
   const auto slots = make_body_slots(model, numbers, initial_points(model, numbers));

@@ -1,8 +1,8 @@
-/// The stiffness of linear bodies with its derivatives along the parameters of a block, kept element by element.
+/// Stiffness of linear bodies with its derivatives by the parameters of a block, stored element by element.
 ///
 ///   f = K u,   Df = DK u + K Du
 ///
-/// A linear body has one K in all increments, so geometry and law are differentiated once, and the forces of an
+/// K of a linear body is the same in all increments. So geometry and law are differentiated once, and the forces of an
 /// increment are products of small matrices.
 #pragma once
 
@@ -12,29 +12,29 @@ namespace stickslip {
 
 class DualStiffness {
  public:
-  /// Of the elements in `lists`, which are of bodies of constant stiffness.
+  /// `lists`: elements per body; only of bodies with constant stiffness.
   DualStiffness(const Model& model, const Slots<Direction>& slots, const ElementLists& lists);
 
-  /// Adds the forces of its elements at displacements of all dofs: their derivatives, and where nodes have frames,
-  /// whose derivatives turn the forces, their values.
+  /// Adds the derivatives of the forces of its elements at displacements of all dofs. If nodes have frames, their
+  /// derivatives turn the forces, and the values are added too.
   void add_forces(const Vector<Direction>& u, Vector<Direction>& forces) const;
 
   long bytes() const;
-  /// The same before it is made.
+  /// Bytes that it would take.
   static long bytes_of(const Model& model, const ElementLists& lists);
 
  private:
   void add_element(const std::vector<int>& nodes, int dimension, const Eigen::Ref<const Matrix<Direction>>& K);
-  /// The same of one element with so many dofs.
+  /// add_forces() of one element with `count` dofs.
   template <int count>
   void add_products(const int* dofs, const double* value, const double* gradient, const Vector<Direction>& u,
                     Vector<Direction>& forces) const;
 
-  bool turns_;                     ///< nodes have frames
-  std::vector<int> dofs_;          ///< of all elements, one after another
-  std::vector<int> start_ = {0};   ///< where those of each begin
-  std::vector<double> values_;     ///< lower triangles, column by column
-  std::vector<double> gradients_;  ///< `directions` for each of them
+  bool turns_;                     ///< some nodes have frames
+  std::vector<int> dofs_;          ///< dofs of all elements in sequence
+  std::vector<int> start_ = {0};   ///< first entry of each element in dofs_
+  std::vector<double> values_;     ///< lower triangles of the element matrices, by columns
+  std::vector<double> gradients_;  ///< `directions` derivatives per value
 };
 
 }  // namespace stickslip

@@ -13,11 +13,11 @@ namespace {
 constexpr double relative_steps[] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7};
 constexpr double base_tolerance = 1e-8;
 
-/// What is checked: the responses, then the objectives, which have a value in the last column alone.
+/// Values of one run. Rows: responses, then objectives, which have a value in the last column alone.
 struct Path {
-  Matrix<double> values;  ///< one column an increment
+  Matrix<double> values;  ///< one column per increment
   std::vector<std::vector<ContactState>> states;
-  std::vector<std::vector<bool>> flowing;  ///< numbers that bodies remember: whether the increment changed them
+  std::vector<std::vector<bool>> flowing;  ///< per number of the bodies' memory: whether the increment changed it
   bool usable = false;
 };
 
@@ -45,7 +45,7 @@ Path run(const Model& model, const Numbers<double>& numbers, const Method& metho
   return path;
 }
 
-/// Size of a parameter: its value, or where that is zero the change that would move a response by its own size.
+/// Size of a parameter: its absolute value. If that is zero: the change that would change a response by its own size.
 double parameter_size(const Parameter& parameter, const Matrix<double>& largest_response,
                       const Matrix<double>& largest_derivative, int j) {
   if (parameter.value != 0) return std::abs(parameter.value);
@@ -62,21 +62,21 @@ struct Differences {
   std::vector<Matrix<double>> values;
 };
 
-/// Best extrapolated derivative and its error estimate out of a sweep of one entry.
+/// Best extrapolated derivative of one entry, and its error estimate.
 struct Extrapolated {
   double value = 0, estimate = std::numeric_limits<double>::infinity(), step = 0;
 };
 
 Extrapolated extrapolate(const Differences& differences, Eigen::Index i, Eigen::Index n, double rounding) {
-  std::vector<double> values;  // the h^2 term taken away from each pair of neighbouring steps
+  std::vector<double> values;  // extrapolated from each pair of neighbouring steps
   for (std::size_t k = 0; k + 1 < differences.step.size(); ++k) {
     const double ratio = differences.step[k] / differences.step[k + 1], r2 = ratio * ratio;
     values.push_back((r2 * differences.values[k + 1](i, n) - differences.values[k](i, n)) / (r2 - 1));
   }
   Extrapolated best;
   for (std::size_t k = 0; k < values.size(); ++k) {
-    // what truncation (large steps) and the solver's noise (small ones) leave shows in the distance to the neighbours;
-    // a pair without neighbours has only the term it took away to tell
+    // The distance to the neighbouring values shows the truncation error (large steps) and the noise of the solver
+    // (small steps). A pair without neighbours has only its own correction as an estimate.
     double spread = values.size() == 1 ? std::abs(values[k] - differences.values[k + 1](i, n)) : 0;
     if (k > 0) spread = larger(spread, std::abs(values[k] - values[k - 1]));
     if (k + 1 < values.size()) spread = larger(spread, std::abs(values[k] - values[k + 1]));
@@ -86,8 +86,8 @@ Extrapolated extrapolate(const Differences& differences, Eigen::Index i, Eigen::
   return best;
 }
 
-/// What the solver's noise leaves in response i: it makes neighbouring differences disagree by noise / step, beside
-/// their truncation, so the least of all pairs of steps, each at its worst increment, is an upper bound.
+/// Upper bound of the solver's noise in response i. Two neighbouring differences disagree by noise / step and by
+/// truncation. The bound is the least disagreement times step over all pairs, each at its worst increment.
 double noise(const Differences& differences, Eigen::Index i) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k + 1 < differences.step.size(); ++k) {
@@ -118,8 +118,8 @@ Method as_claimed(const Method& method) {
 
 namespace {
 
-/// Derivatives laid out as Path::values, a matrix of values x parameters an increment; those of the responses are zero
-/// where the mode does not give them. Empty where it failed.
+/// Computed derivatives: per increment a matrix, rows of Path::values x parameters. Those of responses are zero in the
+/// adjoint mode. Empty after a failure.
 std::vector<Matrix<double>> computed_derivatives(const Model& model, const Slots<double>& slots, const Method& method,
                                                  const Trajectory<double>& trajectory, Workspace<double>& workspace,
                                                  GradientCheck& check) {
@@ -142,7 +142,7 @@ std::vector<Matrix<double>> computed_derivatives(const Model& model, const Slots
   return computed;
 }
 
-/// Central differences of parameter j at the steps whose runs pass through the states of the base run.
+/// Central differences by parameter j, at the steps whose runs have the states of the base run.
 Differences difference(const Model& model, const Method& method, const RunOptions& replay, const Path& base, int j,
                        double size, const std::function<void(int, int)>& progress, GradientCheck& check) {
   const Parameter& parameter = model.scene.parameters[j];
@@ -171,7 +171,7 @@ Differences difference(const Model& model, const Method& method, const RunOption
   return differences;
 }
 
-/// Holds row i against its differences at those increments that count for it; the worst is the entry's.
+/// Compares row i with its differences at its increments, and records the worst.
 void compare(const Differences& differences, const std::vector<Matrix<double>>& computed, int i, int j,
              const std::vector<double>& times, double size, double largest, double scheme,
              GradientCheck::Entry& worst) {
@@ -183,7 +183,7 @@ void compare(const Differences& differences, const std::vector<Matrix<double>>& 
     const double scale = worst.scale > 0 ? worst.scale : 1;
     const double error = std::abs(computed[n](i, j) - best.value) / scale, estimate = best.estimate / scale;
     const double allowed = std::max(scheme, estimate);
-    if (std::isnan(excess) || error / allowed <= excess) continue;  // one that is no number is the worst of all
+    if (std::isnan(excess) || error / allowed <= excess) continue;  // NaN counts as the worst
     excess = error / allowed;
     worst.time = times[n];
     worst.computed = computed[n](i, j);
@@ -192,7 +192,7 @@ void compare(const Differences& differences, const std::vector<Matrix<double>>& 
     worst.estimate = estimate;
     worst.allowed = allowed;
     worst.step = best.step / size;
-    // differences that tell a derivative to less than three digits check nothing
+    // a difference of less than three digits checks nothing
     worst.verdict = estimate > 1e-3    ? GradientCheck::Verdict::not_checked
                     : error <= allowed ? GradientCheck::Verdict::agrees
                                        : GradientCheck::Verdict::differs;

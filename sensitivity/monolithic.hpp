@@ -1,7 +1,7 @@
-/// Monolithic augmented Lagrangian: exact and not iterative. lambda is part of p, so one back-solve a parameter with
-/// the tangent of the converged state gives Du and D lambda together, all parameters in one block. The only history is
-/// the slip placement; the last lambda is a start value and is not differentiated. The derivative with respect to rho
-/// vanishes at the solution. Adjoint: one transposed solve. [SLK10]
+/// Monolithic augmented Lagrangian: exact and not iterative. lambda is part of p, so Du and D lambda come from one
+/// back-solve per parameter with the tangent of the converged state, all parameters in one block. The only history is
+/// the slip placement; the last lambda is a start value and is not differentiated. The derivative by rho vanishes at
+/// the solution. Adjoint: one transposed solve. [SLK10]
 #pragma once
 
 #include "methods/monolithic.hpp"
@@ -20,11 +20,11 @@ bool differentiate_increment(const MonolithicAL& method, Differentiation<E>& pro
   if (!linearised.valid()) return false;
   std::vector<ContactField<Direction>> fields;
   if (!linearised.solve(lambda, fields)) return false;
-  linearised.settle(fields, lambda);
+  linearised.store_state(fields, lambda);
   return true;
 }
 
-/// Whether what the adjoint goes back through depends on rho: no.
+/// Whether the scheme depends on rho. It does not: rho does not affect the solution.
 inline bool reads_regularisation(const MonolithicAL&) { return false; }
 
 template <class E>

@@ -28,15 +28,15 @@ Margins margins_of(const Model& model, const Slots<double>& slots, const State<d
   if (open || point.tangents == 0) return margin;
   const double bound = law.bound(pressure);
   if (!(bound > 0)) return margin;
-  const double reach = contact.state[p] == ContactState::stick
-                           ? bound - tangential(contact.traction, point.multiplier + 1)
-                           : elastic * tangential(contact.slip, tangential_offset(model, p));
-  margin.slip = reach / bound;
+  const double slip_distance = contact.state[p] == ContactState::stick
+                                   ? bound - tangential(contact.traction, point.multiplier + 1)
+                                   : elastic * tangential(contact.slip, tangential_offset(model, p));
+  margin.slip = slip_distance / bound;
   if (is_slipping(contact.state[p])) margin.slip = std::min(margin.slip, law.distance_to_corner(pressure) / bound);
   return margin;
 }
 
-/// Largest traction scale of the run up to each increment.
+/// Per increment: largest traction_scale() of the run up to it.
 std::vector<double> traction_scales(const Model& model, const Slots<double>& slots,
                                     const Trajectory<double>& trajectory) {
   std::vector<double> scales;
@@ -60,12 +60,12 @@ bool has_ties_of(const M& method, const Model& model, const Slots<double>& slots
                      [&](const auto& sweep) { return weak(sweep.state, sweep.rho_factor); });
 }
 
-/// Index of the first increment with ties; their number where none has.
+/// Index of the first increment with ties; the number of increments if there is none.
 std::size_t first_tie(const Model& model, const Slots<double>& slots, const Method& method,
                       const Trajectory<double>& trajectory, WholeStates& states) {
   const auto scales = traction_scales(model, slots, trajectory);
   const auto has = [&](std::size_t n) {
-    if (!model.effects.plasticity && !model.slides_along_curves())  // (contact tells, of thin states too)
+    if (!model.effects.plasticity && !model.slides_along_curves())  // (contact alone decides, and thin states have it)
       return has_ties(model, slots, method, trajectory.initial, trajectory.increments[n], scales[n]);
     const auto& increment = states.increment(n);
     return has_ties(model, slots, method, states.before(n), increment, scales[n]);
@@ -75,12 +75,12 @@ std::size_t first_tie(const Model& model, const Slots<double>& slots, const Meth
   return n;
 }
 
-/// A pressure that is about to begin widens a contact of one point, or of none, at an infinite rate.
+/// Whether a width has an infinite derivative: at most one point is closed, and another is about to close.
 bool widens_at_once(const Model& model, const Slots<double>& slots, const State<double>& state, const Response& asked) {
   if (asked.kind != Response::Kind::contact_half_width) return false;
   const double largest = traction_scale(model, slots, state);
   const bool rings = model.scene.space == Space::axisymmetric;
-  int wide = 0, weak = 0;  // points that make a width; those that are about to
+  int wide = 0, weak = 0;  // closed points; points about to close
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     if (!model.is_of_contact(model.points[p].contact, asked.on)) continue;
     const bool is_weak = margins_of(model, slots, state, p, largest).open <= weak_margin;
@@ -91,7 +91,7 @@ bool widens_at_once(const Model& model, const Slots<double>& slots, const State<
   return weak > 0 && wide < (rings ? 1 : 2);
 }
 
-/// Derivatives along a single direction, carried from increment to increment.
+/// Derivative on one side of a parameter, carried from increment to increment.
 template <class M, class E>
 struct SideRun {
   const M& method;
@@ -110,8 +110,9 @@ struct SideRun {
     blocks.emplace_back(model, std::vector<int>{0}, std::move(seeded_slots));
   }
 
-  /// Increments first .. last - 1; `on_increment(n, increment)` after each, with the derivative in blocks[0].current
-  /// and the branches taken in increment. False where one was not found (`held`: differentiate_side).
+  /// Differentiates the increments first .. last - 1. After each, on_increment(n, increment) is called with the
+  /// derivative in blocks[0].current and the branches in `increment`. False if one has no derivative. `held`: as in
+  /// differentiate_side().
   template <class F>
   bool run(std::size_t first, std::size_t last, double side, F&& on_increment, bool held = false) {
     Differentiation<E> problem{model, slots, engine, blocks, 1, {}};
@@ -129,7 +130,7 @@ struct SideRun {
   }
 };
 
-/// Which points carry a force at some time, or are about to.
+/// Per point: whether it carries a force at some time of the run, or is about to.
 std::vector<char> engaged_points(const Model& model, const Slots<double>& slots, const Trajectory<double>& trajectory) {
   std::vector<char> engaged(model.points.size(), 0);
   for (const auto& increment : trajectory.increments) {
@@ -141,11 +142,11 @@ std::vector<char> engaged_points(const Model& model, const Slots<double>& slots,
   return engaged;
 }
 
-/// What the slave nodes face if a parameter falls, and if it grows.
+/// What the slave nodes face if a parameter decreases, and if it increases.
 using Pairings = std::array<SidedPairing, 2>;
 
-/// Both sides of the derivatives with respect to one parameter, as column `parameter`. `first`: the first increment
-/// with ties.
+/// Both sides of the derivatives by one parameter, in column `parameter`. `first`: index of the first increment with
+/// ties.
 template <class M, class E>
 void run_sides(const M& method, E& engine, const Model& model, const Slots<double>& slots,
                const Trajectory<double>& trajectory, WholeStates& states, std::size_t first, int parameter,
@@ -183,8 +184,8 @@ void run_sides(const M& method, E& engine, const Model& model, const Slots<doubl
   sides.counters += start.counters;
 }
 
-/// Numbers of the scene with one seed: all parameters grow together, each by a share of its value. The shares differ,
-/// so that two parameters do not cancel here.
+/// Numbers of the scene with one seed, along which all parameters grow, each by its own share of its value. The shares
+/// differ, so that no two parameters cancel.
 Numbers<Direction> all_growing(const Scene& scene) {
   constexpr double golden = 0.6180339887498949;
   auto numbers = scene.as<Direction>();

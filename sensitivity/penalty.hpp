@@ -1,7 +1,7 @@
-/// Penalty: one linear solve a parameter, as for elastoplasticity. D lambda = (0, D t_T of the last increment): the
-/// stored traction is history, so its derivative travels from increment to increment. Exact for the penalised problem.
-/// Adjoint: one transposed solve; the derivative by lambda_T goes to the stored traction.
-/// [MTV94], [SLK10 sec. 3]
+/// Penalty: one linear solve per parameter, as in elastoplasticity. D lambda = (0, D t_T of the last increment): the
+/// stored traction is history, and its derivative is carried from increment to increment. Exact for the penalised
+/// problem. Adjoint: one transposed solve; the derivative by lambda_T is added to that by the stored traction. [MTV94],
+/// [SLK10 sec. 3]
 #pragma once
 
 #include "methods/penalty.hpp"
@@ -21,11 +21,11 @@ bool differentiate_increment(const Penalty& method, Differentiation<E>& problem,
   if (!linearised.valid()) return false;
   std::vector<ContactField<Direction>> fields;
   if (!linearised.solve(lambda, fields)) return false;
-  linearised.settle(fields, lambda);
+  linearised.store_state(fields, lambda);
   return true;
 }
 
-/// Whether what the adjoint goes back through depends on rho: yes, the penetration does.
+/// Whether the scheme depends on rho. It does: the penetration is t / rho.
 inline bool reads_regularisation(const Penalty&) { return true; }
 
 template <class E>

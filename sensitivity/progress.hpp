@@ -1,4 +1,4 @@
-/// Whether a linear iteration will get to its end.
+/// Prediction whether a linear iteration converges within its limit of passes.
 #pragma once
 
 #include <cmath>
@@ -6,12 +6,12 @@
 
 namespace stickslip::detail {
 
-/// Watches whether a change falls fast enough to get to its end within `limit` passes.
+/// Observes the change per pass of a linear iteration.
 class Progress {
  public:
   static constexpr int limit = 20000;
-  /// Whether there is no hope: at the rate of the last `window` passes, the passes left do not take `change` down to
-  /// `enough`. A linear iteration slows down, as its fast modes die out, and never speeds up.
+  /// Whether, at the rate of the last `window` passes, `change` will not fall to `enough` in the remaining passes. A
+  /// linear iteration slows down as its fast modes decay, and never speeds up.
   bool is_hopeless(int pass, double change, double enough) {
     if (pass % window != 0) return false;
     const double before = std::exchange(last_, change);

@@ -1,18 +1,19 @@
-/// Points at the apex of their cone, z = 0. There the projection has no tangent, but a directional derivative:
+/// Derivatives of points at the apex of their cone, z = 0. The projection has no tangent there, but a directional
+/// derivative:
 ///
 ///   Dt = 0  if Dz_N > 0,  else  Dt_N = Dz_N,  Dt_T = Dz_T  or  bound Dz_T / |Dz_T|,  bound = -mu Dz_N
 ///
-/// It is positively homogeneous. So where the point slips, Dt is the tangent of the projection at any place of the ray
-/// Dz, applied to Dz. The tangent is therefore taken at a place of the ray (ContactField::ray), while the traction
-/// stays zero. Where mu = 0 the cone is a line: the pressure is what it is, and the ray is the direction of Dz_T.
-/// Source: core/README.md.
+/// It is positively homogeneous. So for a slipping point Dt is the tangent of the projection at any positive multiple
+/// of Dz, applied to Dz. The tangent is therefore taken at the trial ContactField::ray, a multiple of Dz, while the
+/// traction stays zero. If mu = 0 the cone is a line: the pressure keeps its value, and the ray is the direction of
+/// Dz_T. Source: core/README.md.
 #pragma once
 
 #include "core/model/contact_assembly.hpp"
 
 namespace stickslip {
 
-/// Whether a point has a ray.
+/// Whether point p slips from the apex of its cone. `ray`: ContactField::ray.
 inline bool has_ray(const Model& model, const Vector<double>& ray, std::size_t p) {
   const auto& point = model.points[p];
   return ray.size() > 0 && ray.segment(point.multiplier, point.components()).cwiseAbs().maxCoeff() > 0;
@@ -20,8 +21,8 @@ inline bool has_ray(const Model& model, const Vector<double>& ray, std::size_t p
 
 namespace detail {
 
-/// The traction with derivatives as they are where the trial z is moved to `ray` (units of traction, any size), and
-/// with its value at the apex.
+/// Traction with its value at the apex and the derivatives of the projection at the trial `ray` (a traction of any
+/// size).
 template <class T, int Tangents>
 Traction<T, Tangents> traction_on_ray(const Traction<T, Tangents>& z, const Vector<double>& ray,
                                       const FrictionLaw<T>& friction) {
@@ -41,7 +42,7 @@ Traction<T, Tangents> traction_on_ray(const Traction<T, Tangents>& z, const Vect
 
 }  // namespace detail
 
-/// Replaces the tractions of the points that have a ray. `multiplier`: the lambda that the field was evaluated with.
+/// Replaces the tractions of the points with a ray by traction_on_ray(). `multiplier`: lambda of the field.
 template <class T>
 void take_rays(const ContactInput<T>& input, const Vector<T>& multiplier, const Vector<double>& ray,
                ContactField<T>& field) {
@@ -62,8 +63,8 @@ void take_rays(const ContactInput<T>& input, const Vector<T>& multiplier, const 
   }
 }
 
-/// The multiplier at which a tangent is taken. It takes the trial of each point that has a ray onto the ray, so far
-/// from the apex that the rounding of rho g does not count.
+/// The multiplier at which a tangent is taken. For each point with a ray it puts the trial on the ray, so far from the
+/// apex that the rounding of rho g is negligible.
 inline Vector<double> multiplier_on_rays(const ContactInput<double>& input, const State<double>& at) {
   Vector<double> multiplier = at.multiplier;
   const auto& ray = at.contact.ray;

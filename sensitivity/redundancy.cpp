@@ -7,10 +7,11 @@
 namespace stickslip {
 namespace {
 
-/// Below this share of its length a row is the others' sum: coordinates round at 1e-16, and angles differ by more.
+/// Share of its norm below which the independent part of a row counts as zero. Coordinates are rounded at 1e-16, and
+/// angles of distinct constraints differ by more.
 constexpr double independent = 1e-8;
 
-/// Constraint rows of a closed point over the free dofs (node * D + i, along the axes of the support).
+/// Constraint rows of a closed point over the free dofs (node * D + i, in the frame of a support).
 std::vector<std::map<int, double>> rows_of(const Model& model, const Slots<double>& slots,
                                            const ContactField<double>& field, int p, const std::vector<int>& nodes,
                                            const std::vector<char>& decided) {
@@ -34,7 +35,7 @@ std::vector<std::map<int, double>> rows_of(const Model& model, const Slots<doubl
   return rows;
 }
 
-/// Whether rows are independent of one another on the dofs that `counts` lets in.
+/// Whether rows are linearly independent on the dofs with counts(dof).
 template <class Counts>
 bool are_independent(const std::vector<std::map<int, double>>& rows, Counts&& counts) {
   std::map<int, int> column;
@@ -59,7 +60,8 @@ bool are_independent(const std::vector<std::map<int, double>>& rows, Counts&& co
 
 bool constraints_repeat(const Model& model, const Slots<double>& slots, const ContactField<double>& field,
                         const std::vector<char>& decided) {
-  constexpr std::size_t most = 500;  // rows of a dense factorisation; beyond, constraints count as repeated
+  constexpr std::size_t most =
+      500;  // largest number of rows of a dense factorisation; with more, constraints count as repeated
   std::vector<int> left, users(model.node_count, 0);
   std::vector<std::vector<std::map<int, double>>> rows(model.points.size());
   std::vector<std::vector<int>> nodes(model.points.size());
@@ -70,7 +72,7 @@ bool constraints_repeat(const Model& model, const Slots<double>& slots, const Co
     left.push_back(p);
     for (int node : nodes[p]) ++users[node];
   }
-  // Rows that are independent on nodes of their own depend on no others: they go, and may leave others alone.
+  // Rows that are independent on nodes of their own depend on no others. They are removed, repeatedly.
   const auto stands_alone = [&](int p) {
     return are_independent(rows[p], [&](int dof) { return users[dof / model.dimension] == 1; });
   };

@@ -1,9 +1,8 @@
-/// Whether the closed constraints of a state repeat one another: a question of nodes and supports alone.
+/// Redundancy: whether the closed constraints of a state repeat one another. It depends on nodes and supports alone.
 ///
-/// The tangent of a solution with multipliers is singular for two reasons. Where constraints repeat one another, as of
-/// a node in two contacts, their forces are not unique, and displacements have derivatives all the same. Where they do
-/// not, the state is about to lose its balance, as at the critical friction coefficient: nothing has a derivative
-/// there.
+/// The tangent of a solution with multipliers is singular for one of two reasons. If constraints repeat one another, as
+/// those of a node in two contacts, their forces are not unique, but displacements have derivatives. If not, the
+/// equilibrium is about to become unstable, as at the critical friction coefficient, and nothing has a derivative.
 #pragma once
 
 #include <vector>
@@ -12,8 +11,8 @@
 
 namespace stickslip {
 
-/// True where the rows of closed points, and of the sticking ones along their tangents, depend on one another on the
-/// free dofs. `decided`: multipliers that supports decide, which do not count; may be empty.
+/// Whether the normal rows of closed points and the tangential rows of sticking points are linearly dependent on the
+/// free dofs. `decided`: per multiplier, whether supports decide it, so that its row is left out; may be empty.
 bool constraints_repeat(const Model& model, const Slots<double>& slots, const ContactField<double>& field,
                         const std::vector<char>& decided);
 

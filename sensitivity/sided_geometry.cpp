@@ -10,18 +10,18 @@
 namespace stickslip {
 namespace {
 
-/// Whether what a point faces hangs on where it is at the start: at a vertex, or at the end of a piece.
+/// Whether a point may come to face another part of its master: it is at a vertex, or its segment ends there.
 bool may_leave(const ContactPoint& point) {
   using Master = ContactPoint::Master;
-  if (point.master == Master::pieces) return point.obstacle < 0 && point.curve < 0;
+  if (point.master == Master::segments) return point.obstacle < 0 && point.curve < 0;
   return point.master == Master::facet || point.master == Master::vertex;
 }
 
 bool same_part(const ContactPoint& a, const ContactPoint& b) {
-  return a.master == b.master && a.nodes == b.nodes && a.of_polyline == b.of_polyline && a.pieces == b.pieces;
+  return a.master == b.master && a.nodes == b.nodes && a.of_polyline == b.of_polyline && a.segments == b.segments;
 }
 
-/// The point of the same slave node; nullptr where there is none.
+/// The point with the same slave node; nullptr if there is none.
 const ContactPoint* counterpart(const std::vector<ContactPoint>& points, const ContactPoint& of) {
   const auto found = std::find_if(points.begin(), points.end(), [&](const ContactPoint& point) {
     return point.contact == of.contact && point.nodes[0] == of.nodes[0];
@@ -29,7 +29,7 @@ const ContactPoint* counterpart(const std::vector<ContactPoint>& points, const C
   return found == points.end() ? nullptr : &*found;
 }
 
-/// The contact points where all nodes and obstacles are moved to one side.
+/// The contact points of the model with all nodes and obstacles moved to one side.
 std::vector<ContactPoint> paired_beside(const Model& model, const Points<Direction>& points,
                                         const Numbers<Direction>& numbers, double step) {
   Model beside;
@@ -44,7 +44,7 @@ std::vector<ContactPoint> paired_beside(const Model& model, const Points<Directi
   return beside.points;
 }
 
-/// Largest velocity of a contact node, or a number of an obstacle, over the mesh size of the slave.
+/// Largest derivative of a contact node or of a number of an obstacle, over the mesh size of the slave.
 double speed(const Model& model, const Points<Direction>& points, const Numbers<Direction>& numbers) {
   double fastest = 0, size = std::numeric_limits<double>::infinity();
   for (const auto& point : model.points) {
@@ -65,7 +65,8 @@ double speed(const Model& model, const Points<Direction>& points, const Numbers<
   return std::isfinite(size) ? fastest / size : 0;
 }
 
-/// The geometry of a point of the side with its weights in the order of `nodes`; nothing where another node has one.
+/// The geometry of a point with its weights in the order of `nodes`; none if a node that is not in `nodes` has a
+/// weight.
 std::optional<PointGeometry<Direction>> on_nodes(PointGeometry<Direction> geometry, const std::vector<int>& of,
                                                  const std::vector<int>& nodes) {
   constexpr double negligible = 1e-12;
@@ -82,7 +83,7 @@ std::optional<PointGeometry<Direction>> on_nodes(PointGeometry<Direction> geomet
   return geometry;
 }
 
-/// Whether two geometries of the same nodes are the same in value, to the tolerance of a tie.
+/// Whether two geometries of the same nodes have the same values, to the tolerance of a tie.
 bool meets(const PointGeometry<Direction>& a, const PointGeometry<Direction>& b, double size) {
   constexpr double tie = 1e-6;
   return (values(a.normal) - values(b.normal)).cwiseAbs().maxCoeff() <= tie &&
@@ -93,7 +94,7 @@ bool meets(const PointGeometry<Direction>& a, const PointGeometry<Direction>& b,
 }  // namespace
 
 SidedPairing sided_pairing(const Model& model, int parameter, double side) {
-  constexpr double step = 1e-7, beyond_end = 2e-6;  // a tie is 1e-9 wide (core/contact/search.hpp), a free end 1e-6
+  constexpr double step = 1e-7, beyond_end = 2e-6;  // widths: a vertex 1e-9 (core/contact/search.hpp), a free end 1e-6
   SidedPairing out;
   if (std::none_of(model.points.begin(), model.points.end(), may_leave)) return out;
   const auto numbers = seeded(model.scene, {parameter});
@@ -122,7 +123,7 @@ SidedPairing sided_pairing(const Model& model, int parameter, double side) {
 bool take_side(const Model& model, const SidedPairing& pairing, const std::vector<char>& engaged,
                Slots<Direction>& slots) {
   bool continuous = std::none_of(pairing.leaving.begin(), pairing.leaving.end(), [&](int p) { return engaged[p]; });
-  Model sided = model;  // what the points face; their nodes stay
+  Model sided = model;  // with what the points face on the side, at the unmoved nodes
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
     const auto* other = counterpart(pairing.points, point);
@@ -138,7 +139,7 @@ bool take_side(const Model& model, const SidedPairing& pairing, const std::vecto
     sided.points[p].master = other->master;
     sided.points[p].of_polyline = other->of_polyline;
   }
-  for (const auto& other : pairing.points)  // that face the master on this side alone
+  for (const auto& other : pairing.points)  // points that face the master on this side alone
     if (!counterpart(model.points, other))
       for (std::size_t p = 0; p < model.points.size(); ++p)
         continuous &= !(engaged[p] && model.points[p].contact == other.contact);

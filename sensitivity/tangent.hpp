@@ -1,4 +1,4 @@
-/// The factorised tangent of a converged increment: what direct and adjoint differentiation start from.
+/// Factorised tangent of a converged increment, from which direct and adjoint differentiation start.
 #pragma once
 
 #include "core/model/engine.hpp"
@@ -8,7 +8,7 @@
 
 namespace stickslip {
 
-/// Tangents of all points at a converged state, in its branches.
+/// Tangents of all contact points at a converged state, in its branches.
 inline std::vector<PointTangent<double>> converged_tangents(const ContactInput<double>& input,
                                                             const State<double>& at) {
   const Vector<double> compact = to_compact(input.model, at.displacement);
@@ -19,9 +19,13 @@ inline std::vector<PointTangent<double>> converged_tangents(const ContactInput<d
   return tangents;
 }
 
-/// Prepares the engine to solve with the tangent at a converged state. `problem`: where engine, counters and message
-/// are. `unknown`: lambda is part of p. `redundant`: constraints repeat one another, so that the tangent yields and a
-/// solution takes a pass more. False, with the message, where it is singular for another reason.
+/// Factorises the tangent of the engine at a converged state. False, with a message in `problem`, if it is singular and
+/// constraints do not repeat one another.
+///
+///   problem    has engine, counters and message
+///   unknown    lambda is part of p
+///   redundant  result: constraints repeat one another; the tangent is then regularised, and a solution needs one more
+///   pass
 template <class Problem>
 bool factorise_converged(Problem& problem, const ContactInput<double>& input, const State<double>& at, bool unknown,
                          bool& redundant) {
@@ -45,9 +49,9 @@ bool factorise_converged(Problem& problem, const ContactInput<double>& input, co
   return valid;
 }
 
-/// The same with the factor that the engine has. It may be of Newton's last iteration, whose tangent is that of the
-/// converged state, but for directions in space; or of an increment beside this one. It is used as it is, or updated.
-/// False where that cannot be. The caller must check, or refine, what it solves.
+/// The same with the present factor of the engine, which is used as it is, or updated. It may be that of Newton's last
+/// iteration, whose tangent is that of the converged state except for slip directions in 3D, or that of a neighbouring
+/// increment. False if it cannot be used. The caller must check or refine its solutions.
 template <class Problem>
 bool reuse_factor(Problem& problem, const ContactInput<double>& input, const State<double>& at, bool unknown) {
   if (unknown && !decided_elsewhere(problem.model, problem.slots, &at.contact).empty()) return false;

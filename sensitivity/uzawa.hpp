@@ -1,28 +1,28 @@
-/// Uzawa: the derivative of  lambda <- t(u(lambda), lambda)  mirrors the updates.
+/// Uzawa: derivatives of the fixed point of the update  lambda <- t(u(lambda), lambda).
 ///
-///   iterated        (two-phase) lambda first converges, then  D lambda <- D t(Du(D lambda), D lambda)  is repeated
-///                   until settled, with one factorisation, and a back-solve a parameter and pass. After m passes the
+///   iterated        (two-phase) lambda has converged; then  D lambda <- D t(Du(D lambda), D lambda)  is repeated until
+///                   D lambda converges. One factorisation, and a back-solve per parameter and pass. After m passes the
 ///                   error is q^m, q the contraction of the updates. rho is a constant: Dg = 0 at the fixed point
-///   truncated       (piggyback) one pass per augmentation that was performed, with its own tangent: the exact
-///                   derivative of the truncated algorithm, for a loop that was cut off or stopped at a coarse
-///                   tolerance
-///   oversized       one pass with kappa_s rho in place of rho, states frozen: error O(1/kappa_s), no iteration [SZ00]
-///   preconditioned  the iterated scheme with kappa_s rho in place of rho. Its fixed point is that of rho: Dg = 0 and
-///                   D t_T = D(bound m) hold there, and rho stands in neither. A pass shrinks the error to
-///                   1 / (1 + kappa_s rho s_min) of itself: four to six passes reach rounding, whatever q was
+///   truncated       (piggyback) one pass per augmentation that was performed, with its own tangent. It is the exact
+///                   derivative of a loop that was cut off, or that stopped at a coarse tolerance
+///   oversized       one pass with kappa_s rho in place of rho, states frozen. Error O(1/kappa_s), no iteration [SZ00]
+///   preconditioned  the iterated scheme with kappa_s rho in place of rho. Both have the same fixed point: there Dg = 0
+///                   and D t_T = D(bound m), which do not contain rho. A pass multiplies the error by
+///                   1 / (1 + kappa_s rho s_min), so four to six passes reach rounding for any q
 ///
-/// The repeated step D lambda <- D t is take_derivatives(). It is the derivative of the update lambda <- t of
-/// methods/uzawa.hpp (AugmentationLoop::update). iterate_back() is its transpose.
+/// The step D lambda <- D t is update_derivatives(): the derivative of AugmentationLoop::update (methods/uzawa.hpp).
+/// Its transpose is iterate_back().
 ///
-/// kappa_s is `oversize`. Where it is automatic, the oversized scheme takes 1e3. The preconditioned one takes q / ((1 -
-/// q) 5e-4): that turns the measured contraction q into one of 5e-4. It takes at least 300 nodal stiffnesses, for
-/// directions that the updates did not excite, and at most 1e5. Why these numbers: rounding of D lambda grows as
-/// kappa_s rho, and passes fall with it. They give four to six passes and errors below 1e-10 up to q = 0.995. With
-/// 1e-4, 1e3 and 1e6 in their place there is one pass less, and an error of 4e-10.
+/// kappa_s is the option `oversize`. Its automatic value is 1e3 for the oversized scheme. For the preconditioned scheme
+/// it is q / ((1 - q) 5e-4), which turns a measured contraction q into 5e-4; but kappa_s rho is at least 300 nodal
+/// stiffnesses, for directions that the updates did not excite, and at most 1e5. Why these numbers: the rounding of
+/// D lambda grows as kappa_s rho, and the number of passes falls with it. They give four to six passes and errors below
+/// 1e-10 up to q = 0.995. With 1e-4, 1e3 and 1e6 in their place there is one pass less, and an error of 4e-10.
 ///
-/// All schemes begin with D lambda of the last increment as D lambda^0. Adjoint: the same maps transposed. The
-/// derivative by t goes to lambda and back,  l <- l D t/D lambda,  until nothing is left (iterated; accelerated, as a
-/// fixed point), augmentation by augmentation (truncated), or once. [SLK10 sec. 1], [CD20]
+/// All schemes start from D lambda of the last increment. The adjoint transposes the same maps: the derivative l by t
+/// is carried to lambda and back,  l <- l D t/D lambda.  The iterated and preconditioned schemes repeat this until the
+/// rest vanishes, as a fixed point iteration with Anderson's acceleration; the truncated scheme does it once per
+/// augmentation, the oversized one once. [SLK10 sec. 1], [CD20]
 #pragma once
 
 #include "methods/uzawa.hpp"
@@ -32,8 +32,9 @@
 
 namespace stickslip {
 
-/// Whether a scheme depends on rho. The fixed point does not: Dg = 0 there, whatever rho is. What the tolerance leaves
-/// of g, times D rho, is left out: at a tolerance of 1e-5 up to 2e-9 of the derivative (docs/methods.md), as in u.
+/// Whether a scheme depends on rho. The iterated and preconditioned schemes do not, since Dg = 0 at their fixed point.
+/// They neglect g D rho, g being what the tolerance leaves of the gap: at a tolerance of 1e-5 up to 2e-9 of the
+/// derivative (docs/methods.md).
 inline bool reads_regularisation(const UzawaAL& method) {
   using Sensitivity = UzawaAL::Sensitivity;
   return method.sensitivity == Sensitivity::truncated || method.sensitivity == Sensitivity::oversized;
@@ -43,7 +44,7 @@ namespace detail {
 
 inline constexpr std::string_view other_scheme = ", or the preconditioned scheme";
 
-/// D lambda of the last increment on the value of `multiplier`.
+/// Per block: the value of `multiplier` with D lambda of the last increment as its derivative.
 template <class E>
 std::vector<Vector<Direction>> carried_multiplier(Differentiation<E>& problem, const Vector<double>& multiplier) {
   std::vector<Vector<Direction>> lambda;
@@ -54,9 +55,9 @@ std::vector<Vector<Direction>> carried_multiplier(Differentiation<E>& problem, c
   return lambda;
 }
 
-/// D lambda <- D t of `fields`: the derivative of the update lambda <- t in methods/uzawa.hpp. Values stay.
-inline void take_derivatives(std::vector<Vector<Direction>>& lambda,
-                             const std::vector<ContactField<Direction>>& fields) {
+/// Derivative of the Uzawa update lambda <- t: sets D lambda to D t of `fields`, per block. Values stay.
+inline void update_derivatives(std::vector<Vector<Direction>>& lambda,
+                               const std::vector<ContactField<Direction>>& fields) {
   for (std::size_t b = 0; b < lambda.size(); ++b)
     for (Eigen::Index k = 0; k < lambda[b].size(); ++k) lambda[b][k].d = fields[b].traction[k].d;
 }
@@ -73,10 +74,10 @@ LinearisedEquilibrium<E> linearise(const UzawaAL& method, Differentiation<E>& pr
                                   previous.history);
 }
 
-/// kappa_s of the preconditioned scheme, from the contraction of the updates (0: not measured).
+/// kappa_s of the preconditioned scheme. `contraction`: of the updates; 0: not measured.
 inline double chosen_oversize(const UzawaAL& method, const Slots<double>& slots, const RegularisationField<double>& rho,
                               double contraction) {
-  constexpr double target = 5e-4, least = 300, most = 1e5;  // contraction; the others are nodal stiffnesses
+  constexpr double target = 5e-4, least = 300, most = 1e5;  // target: a contraction; least, most: nodal stiffnesses
   if (method.oversize) return *method.oversize;
   double smallest = std::numeric_limits<double>::infinity(), largest = 0;
   for (std::size_t p = 0; p < rho.size(); ++p) {
@@ -89,8 +90,9 @@ inline double chosen_oversize(const UzawaAL& method, const Slots<double>& slots,
   return std::max(1.0, std::min(std::max(measured, least / smallest), most / largest));
 }
 
-/// The state with another multiplier: the one whose trial, with kappa_s rho, is the traction that was found. In slip
-/// the trial is on the edge of the cone. Why: kappa_s rho would magnify the violation that the augmentations left.
+/// The state `at` with the multiplier whose trial at kappa_s rho is the traction t that was found: lambda = t - kappa_s
+/// rho g. In slip that trial is on the edge of the cone. Why: with lambda of the loop, kappa_s rho would magnify the
+/// violation that the augmentations left.
 inline State<double> restated(const Model& model, State<double> at, const RegularisationField<double>& rho) {
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     if (at.contact.state[p] == ContactState::open) continue;
@@ -104,17 +106,18 @@ inline State<double> restated(const Model& model, State<double> at, const Regula
   return at;
 }
 
-/// Iterates D lambda <- D t, until all parameters have ended. With `change` the largest change of D lambda in a pass, q
-/// the ratio of the last two changes and `floors` what rounding of rho Dg makes of a change, a parameter ends where
+/// Iterates D lambda <- D t until each parameter has ended. False if the passes reach their limit, or if a tangent is
+/// singular. `change`: largest change of D lambda in a pass; q: ratio of the last two changes; `floors`: what rounding
+/// of rho Dg makes of a change. A parameter ends in one of three cases:
 ///
 ///   left <= enough   left = change q / (1 - q), the sum of all changes to come; enough: `tolerance` of D lambda
-///   stalled          change <= floors, or the rounding of D lambda
-///   drifts           constraints that repeat one another push each other's multiplier for ever by what rounding left
-///                    between them: changes of 1e-11 that do not fall. A slow mode would need more than `limit` passes
-///                    at such a q, and would not start at so small a change
+///   stalled          change <= floors, or change <= rounding of D lambda
+///   drifts           changes below 1e-11 of D lambda do not fall. Cause: constraints that repeat one another, whose
+///                    multipliers drift by the rounding between them. It is no slow mode: at such a q a slow mode would
+///                    begin with larger changes
 ///
-/// Dg is rounded as its terms are, and as the forces are that balance in it. Example: tractions do not depend on a
-/// thickness, so of its Dg nothing but that rounding is left.
+/// The rounding of Dg is that of its terms, and that of the forces that balance in it. Example: tractions do not depend
+/// on a thickness, so its Dg is this rounding alone.
 template <class E>
 bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, const RegularisationField<double>& rho,
              std::vector<Vector<Direction>>& lambda, std::vector<ContactField<Direction>>& fields, double tolerance) {
@@ -131,16 +134,16 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
     const Matrix<double> before = columns([&](auto&, int b) -> auto& { return lambda[b]; });
     if (!linearised.solve(lambda, fields)) return false;
     const Matrix<double> after = columns([&](auto&, int b) -> auto& { return fields[b].traction; });
-    take_derivatives(lambda, fields);
+    update_derivatives(lambda, fields);
     const Vector<double> floors =
         8 * unit_roundoff * (stiffest * linearised.largest_motion() + rho_over_k * linearised.load());
-    bool settled = true;
+    bool converged = true;
     double slowest = 0;  // largest change / enough of a parameter that has not ended
     record = {pass, 1, 0};
     for (int j = 0; j < problem.parameters && after.rows() > 0; ++j) {
       const double change = (after.col(j) - before.col(j)).cwiseAbs().maxCoeff();
       const double size = after.col(j).cwiseAbs().maxCoeff();
-      // (of a zero derivative, the size of what the last increment left tells how small that is)
+      // (A zero derivative has no size of its own; that of the last increment stands in.)
       if (pass == 1) carried[j] = before.col(j).cwiseAbs().maxCoeff();
       const double q = last[j] > 0 ? change / last[j] : 1;
       const double left = q < 1 ? change * q / (1 - q) : change;
@@ -149,11 +152,11 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
       const double enough = std::max(tolerance * size, floors[j]);
       const bool ended = change == 0 || stalled || drifts || (q < 1 && pass > 2 && left <= enough);
       if (!ended) slowest = std::max(slowest, change / enough);
-      settled &= ended;
+      converged &= ended;
       if (last[j] > 0 && change > floors[j]) record.contraction = std::max(record.contraction, q);
       last[j] = change;
     }
-    if (settled) return true;
+    if (converged) return true;
     if (progress.is_hopeless(pass, slowest, 1)) break;
   }
   problem.status = Status::cap;
@@ -161,7 +164,7 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
   return false;
 }
 
-/// One pass for each augmentation that was performed.
+/// The truncated scheme: one pass per augmentation that was performed.
 template <class E>
 bool differentiate_augmentations(const UzawaAL& method, Differentiation<E>& problem, const State<double>& previous,
                                  const Increment<double>& increment) {
@@ -175,14 +178,14 @@ bool differentiate_augmentations(const UzawaAL& method, Differentiation<E>& prob
       for (Eigen::Index k = 0; k < lambda[b].size(); ++k) lambda[b][k].v = augmented.state.multiplier[k];
     std::vector<ContactField<Direction>> fields;
     if (!linearised.solve(lambda, fields)) return false;
-    linearised.settle(fields, lambda);
-    take_derivatives(lambda, fields);
+    linearised.store_state(fields, lambda);
+    update_derivatives(lambda, fields);
   }
   problem.record = {static_cast<int>(increment.augmented.size()), 1, 0};
   return true;
 }
 
-/// The fixed point of the recursion, with the factor of kappa_s rho.
+/// The preconditioned scheme: the fixed point of D lambda <- D t with the factor at kappa_s rho.
 template <class E>
 bool differentiate_preconditioned(const UzawaAL& method, Differentiation<E>& problem, const State<double>& previous,
                                   const Increment<double>& increment) {
@@ -196,10 +199,10 @@ bool differentiate_preconditioned(const UzawaAL& method, Differentiation<E>& pro
   if (!linearised.valid()) return false;
   auto lambda = carried_multiplier(problem, at.multiplier);
   std::vector<ContactField<Direction>> fields;
-  // (a pass divides the error by some thousand, so that 1e-12 is enough where other schemes ask for 1e-13)
+  // (A pass divides the error by some thousand, so 1e-12 suffices; the iterated scheme needs 1e-13.)
   if (!iterate(problem, linearised, rho, lambda, fields, 1e-12)) return false;
   problem.record->oversize = oversize;
-  linearised.settle(fields, lambda);
+  linearised.store_state(fields, lambda);
   return true;
 }
 
@@ -228,13 +231,13 @@ bool differentiate_increment(const UzawaAL& method, Differentiation<E>& problem,
     if (problem.status == Status::cap) problem.message += detail::other_scheme;
     return false;
   }
-  linearised.settle(fields, lambda);
+  linearised.store_state(fields, lambda);
   return true;
 }
 
 namespace detail {
 
-/// rho of the loop times `oversize`; where the scheme depends on it, recorded on the tape, which is rewound.
+/// rho of the loop times `oversize`. The tape is rewound to the slots. If the scheme depends on rho, rho is recorded.
 template <class E>
 RegularisationField<Reverse> recorded_regularisation(const UzawaAL& method, AdjointProblem<E>& problem,
                                                      std::vector<double> factor, double oversize) {
@@ -245,15 +248,18 @@ RegularisationField<Reverse> recorded_regularisation(const UzawaAL& method, Adjo
   return adapted(initial_regularisation(problem.recorded, method), factor);
 }
 
-/// Moves the derivative by lambda back through all updates. c: that derivative, as the outcome asks for it; A: the
-/// linearised update. Finds x = c + A^T x, and moves x. Anderson's extrapolation takes half the passes of the series
-/// sum (A^T)^k c, or less. What the last pass moved stays moved; what the passes before it moved is put back.
+/// Carries the derivative by lambda back through all updates: finds x = c + A^T x and seeds the tractions with x. c:
+/// the derivative by lambda that the outcome asks for; A: the linearised update. Anderson's extrapolation needs half
+/// the passes of the series sum (A^T)^k c, or fewer. Derivatives that earlier passes have gathered are restored, so
+/// those of the last pass alone remain. False if the passes reach their limit.
 ///
-///   left         c + A^T x - x: the derivative by the lambda that the increment began with. It settles at zero, but
-///                for the multiplier of a constraint that supports decide: that keeps the last increment's
-///   plain        x is the last image, not an extrapolation: `left` is then the next term of the series, so that its
-///                changes tell whether it has settled or stalled
-///   contraction  of A, as far as it is known (0: not), for changes under Anderson's extrapolation hide it
+///   left         c + A^T x - x: the derivative by the lambda that the increment began with. It converges to zero,
+///   except
+///                for the multiplier of a constraint that supports decide, which keeps its value of the last increment
+///   plain        x is the last image, not an extrapolation. Then `left` is the next term of the series, and its
+///   changes
+///                tell whether the series has converged or stalled
+///   contraction  of A; 0: not measured. Anderson's extrapolation hides it from the changes
 template <class E>
 bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, int objective, double contraction,
                   Vector<double>& left) {
@@ -281,9 +287,9 @@ bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, 
     const double q = last > 0 ? change / last : 1;
     const double enough = tolerance * (1 - std::max(q, contraction < 1 ? contraction : 0.0)) * largest;
     const double negligible = std::max(enough, 4 * unit_roundoff * largest);
-    const bool settled = change <= (pass > 2 ? negligible : 4 * unit_roundoff * largest);
+    const bool converged = change <= (pass > 2 ? negligible : 4 * unit_roundoff * largest);
     const bool stalled = q >= 1 && pass > 2 && change <= noise * scale;
-    if (left.cwiseAbs().maxCoeff() <= negligible || (plain && (settled || stalled))) return true;
+    if (left.cwiseAbs().maxCoeff() <= negligible || (plain && (converged || stalled))) return true;
     if (progress.is_hopeless(pass, left.cwiseAbs().maxCoeff(), negligible)) break;
     last = change;
     recorded.restore(objective, start);
@@ -295,7 +301,7 @@ bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, 
   return false;
 }
 
-/// Goes back through all augmentations that were performed, the last one first.
+/// Adjoint of the truncated scheme: goes back through all augmentations that were performed, the last one first.
 template <class E>
 bool pull_back_augmentations(const UzawaAL& method, AdjointProblem<E>& problem, const State<double>& previous,
                              const Increment<double>& increment) {
@@ -332,7 +338,7 @@ bool pull_back_augmentations(const UzawaAL& method, AdjointProblem<E>& problem, 
   return true;
 }
 
-/// The fixed point, or one pass, from an equilibrium recorded with a scheme's rho.
+/// Adjoint of the iterated scheme, or one pass (`once`), on an equilibrium recorded with the scheme's rho.
 template <class E>
 bool pull_back_fixed_point(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, bool once,
                            double contraction) {
@@ -352,7 +358,7 @@ bool pull_back_fixed_point(AdjointProblem<E>& problem, RecordedEquilibrium<E>& r
   return true;
 }
 
-/// The fixed point with the factor of kappa_s rho, which is a constant: the fixed point does not depend on rho.
+/// Adjoint of the preconditioned scheme. rho is a constant, since the fixed point does not depend on it.
 template <class E>
 bool pull_back_preconditioned(const UzawaAL& method, AdjointProblem<E>& problem, const State<double>& previous,
                               const Increment<double>& increment) {
@@ -381,9 +387,9 @@ bool pull_back_increment(const UzawaAL& method, AdjointProblem<E>& problem, cons
   RecordedEquilibrium<E> recorded(problem, previous, increment.state,
                                   detail::recorded_regularisation(method, problem, increment.rho_factor, oversize),
                                   cone_radius(method), increment.time, false, increment.requested);
-  const bool settled = detail::pull_back_fixed_point(problem, recorded, oversized, increment.contraction);
-  if (!settled && problem.status == Status::cap) problem.message += detail::other_scheme;
-  return settled;
+  const bool converged = detail::pull_back_fixed_point(problem, recorded, oversized, increment.contraction);
+  if (!converged && problem.status == Status::cap) problem.message += detail::other_scheme;
+  return converged;
 }
 
 }  // namespace stickslip

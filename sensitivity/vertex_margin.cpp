@@ -15,7 +15,7 @@ using Place = Vec<double, 2>;
 
 bool is_facet(const Patch& patch) { return patch.smoothing == Smoothing::none; }
 
-/// The least way of a point at x to an end of what it faces, over its length. `place(vertex)`: where that is.
+/// Least distance of x from an end of the patch that it faces, over the length of the patch. `place(vertex)`: position.
 template <class Places>
 double least_way(const std::vector<Patch>& patches, int faced, const Place& x, Places&& place) {
   const auto along = [&](int patch) -> Place {
@@ -34,12 +34,12 @@ double least_way(const std::vector<Patch>& patches, int faced, const Place& x, P
   return least;
 }
 
-/// Nodes at which the slave side ends that is integrated over a curve.
+/// Nodes at which the slave side of an integrated curve ends.
 std::vector<int> ends_of_slave(const Model& model, int curve) {
   std::set<std::array<int, 2>> facets;
   for (const auto& point : model.points)
     if (point.curve == curve)
-      for (const auto& facet : point.pieces) facets.insert(facet.slave);
+      for (const auto& facet : point.segments) facets.insert(facet.slave);
   std::map<int, int> count;
   for (const auto& facet : facets)
     for (int node : facet) ++count[node];
@@ -49,11 +49,11 @@ std::vector<int> ends_of_slave(const Model& model, int curve) {
   return ends;
 }
 
-/// Whether an integrated curve turns at one of its nodes, or its facets there are stretched unlike one another.
-/// `present(node)`, `of_start(node)`: where nodes are and were.
+/// Whether an integrated curve turns at a node, or its two facets there are stretched differently. `present(node)`,
+/// `of_start(node)`: present and initial position.
 template <class At, class OfStart>
 bool has_kink_at(const MasterCurve& curve, int node, At&& present, OfStart&& of_start) {
-  constexpr double straight = 1e-6;  // as of vertices that node-to-segment faces
+  constexpr double straight = 1e-6;  // as for vertices in node-to-segment contact
   const auto along = [&](int patch, const auto& where) -> Place {
     return where(curve.facets[patch][1]) - where(curve.facets[patch][0]);
   };
@@ -86,12 +86,12 @@ double integration_margin(const Model& model, const Slots<double>& slots, const 
     };
     for (std::size_t p = 0; p < model.points.size(); ++p) {
       if (model.points[p].curve != c || state.contact.state[p] == ContactState::open) continue;
-      for (const auto& piece : state.contact.facing[p].pieces)
+      for (const auto& segment : state.contact.facing[p].pieces)
         for (int side : {0, 1})
-          for (int node : piece.master) {
-            if (!is_end(ends, piece.slave[side]) || !has_kink_at(curve, node, present, of_start)) continue;
-            const Place a = present(piece.slave[0]), tau = present(piece.slave[1]) - a;
-            least = std::min(least, std::abs(detail::place_along<double>(node, present, a, tau) - side));
+          for (int node : segment.master) {
+            if (!is_end(ends, segment.slave[side]) || !has_kink_at(curve, node, present, of_start)) continue;
+            const Place a = present(segment.slave[0]), tau = present(segment.slave[1]) - a;
+            least = std::min(least, std::abs(detail::end_coordinate<double>(node, present, a, tau) - side));
           }
     }
   }
@@ -111,7 +111,7 @@ double vertex_margin(const Model& model, const Slots<double>& slots, const State
   const RegularisationField<double> unread_rho;
   const ContactInput<double> input{model, slots, unread_rho, state.history, ConeRadius::augmented, time, nullptr};
   const Vector<double> compact = to_compact(model, state.displacement);
-  const auto moved = detail::displacement_in(compact);
+  const auto moved = detail::nodal_displacement(compact);
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
     if (point.curve < 0 || state.contact.state[p] == ContactState::open) continue;
@@ -121,7 +121,7 @@ double vertex_margin(const Model& model, const Slots<double>& slots, const State
     if (faced == Patch::none || !is_facet(curve.patches[faced])) continue;
     const Place x = slots.points.col(point.nodes[0]).head<2>() + moved(point.places[0]);
     least = std::min(least, least_way(curve.patches, faced, x, [&](int vertex) {
-                       return detail::vertex_of<double, double>(input, curve, vertex, moved);
+                       return detail::vertex_position<double, double>(input, curve, vertex, moved);
                      }));
   }
   return least;

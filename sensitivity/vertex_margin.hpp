@@ -1,7 +1,8 @@
-/// How far points that slide along facets are from where these meet.
+/// Distance of points that slide along facets from the vertices of these facets.
 ///
-/// Two facets part at the line through their vertex v that halves their tangents t, t': a point x faces the second
-/// where (x - v) . (t + t') > 0. Where that vanishes, derivatives are those with the facet that it faces.
+/// Two facets are separated by the line through their vertex v perpendicular to t + t', t and t' their unit tangents: a
+/// point x faces the second facet if (x - v) . (t + t') > 0. On the line itself, derivatives are those with the facet
+/// that x faces.
 #pragma once
 
 #include "core/model/slots.hpp"
@@ -9,17 +10,17 @@
 
 namespace stickslip {
 
-/// Whether some point slides along facets, and there are vertices at which its master bends.
+/// Whether a point slides along facets whose master has a vertex with a turn.
 bool slides_along_facets(const Model& model);
 
-/// Of segment integration at finite strain: the way of a node at which the master turns, or its facets are stretched
-/// unlike one another, to an end of the slave side that touches it, over the length of the slave facet. Where that
-/// vanishes, what the points integrate has two slopes, elsewhere one: an end of the master that passes by, which
-/// carries no kink within 1e-6, aside. Infinity where there is none.
+/// Margin of segment integration at finite strain: least distance, along a slave facet and over its length, between an
+/// end of the slave side and a master node with a kink. At such a node the master turns, or its two facets are
+/// stretched differently. At margin 0 the integrals have two slopes; elsewhere one. Ends of the master are left out:
+/// they have no kink within 1e-6. Infinity if there is no such pair.
 double integration_margin(const Model& model, const Slots<double>& slots, const State<double>& state);
 
-/// The way of the nearest closed point to a vertex, over the length of the facet that it faces; free ends aside; or
-/// integration_margin(). Infinity where no closed point slides along facets.
+/// Least distance of a closed point from a vertex, over the length of the facet that it faces, free ends left out; or
+/// integration_margin(), if that is less. Infinity if no closed point slides along facets.
 double vertex_margin(const Model& model, const Slots<double>& slots, const State<double>& state, double time);
 
 }  // namespace stickslip

@@ -9,56 +9,56 @@
 namespace stickslip {
 namespace {
 
-/// How a point stands to the line at which two patches of its curve part.
+/// A contact point near the vertex of two patches.
 template <class T>
-struct AtVertex {
-  T overshoot;    ///< way past it, over the length of the first patch's facet
+struct VertexGeometry {
+  T overshoot;    ///< distance past the line that separates the patches, over the length of the first facet
   double turn;    ///< sine of the angle between the tangents
   double bend;    ///< jump of the curvature, times the length
-  double length;  ///< of that facet
+  double length;  ///< of the first facet
 };
 
 double cross(const Vec<double, 2>& a, const Vec<double, 2>& b) { return a[0] * b[1] - a[1] * b[0]; }
 
 /// `compact`: displacements of the contact nodes.
 template <class T>
-AtVertex<T> at_vertex(const Model& model, const Slots<T>& slots, const Vector<T>& compact, double time, int p,
-                      int first, int second) {
+VertexGeometry<T> vertex_geometry(const Model& model, const Slots<T>& slots, const Vector<T>& compact, double time,
+                                  int p, int first, int second) {
   const auto& point = model.points[p];
   const auto& curve = model.curves[point.curve];
   const RegularisationField<T> unread_rho;
   const History<T> unread_history;
   const ContactInput<T> input{model, slots, unread_rho, unread_history, ConeRadius::augmented, time, nullptr};
-  const auto moved = detail::displacement_in(compact);
-  const auto place = [&](int vertex) { return detail::vertex_of<T, T>(input, curve, vertex, moved); };
-  const auto at_end = [&](int patch, double end) {
+  const auto displacement = detail::nodal_displacement(compact);
+  const auto position = [&](int vertex) { return detail::vertex_position<T, T>(input, curve, vertex, displacement); };
+  const auto end_geometry = [&](int patch, double end) {
     const auto weights = detail::patch_weights<T>(curve.patches[patch], T(end));
-    const Vec<T, 2> slope = detail::on_patch<T>(curve.patches[patch], weights.slope, place),
-                    bend = detail::on_patch<T>(curve.patches[patch], weights.bend, place);
+    const Vec<T, 2> slope = detail::on_patch<T>(curve.patches[patch], weights.slope, position),
+                    bend = detail::on_patch<T>(curve.patches[patch], weights.bend, position);
     const double speed = value(norm(slope));
     const Vec<T, 2> tangent = slope / norm(slope);
     return std::pair(tangent, cross(values(slope), values(bend)) / (speed * speed * speed));
   };
   const auto& ends = curve.patches[first].vertices;
-  const Vec<T, 2> vertex = place(ends[2]), facet = vertex - place(ends[1]);
-  Vec<T, 2> x = moved(point.places[0]);
+  const Vec<T, 2> vertex = position(ends[2]), facet = vertex - position(ends[1]);
+  Vec<T, 2> x = displacement(point.places[0]);
   for (int i = 0; i < 2; ++i) x[i] += slots.points(i, point.nodes[0]);
-  const auto [before, bend_before] = at_end(first, 1);
-  const auto [after, bend_after] = at_end(second, 0);
+  const auto [before, bend_before] = end_geometry(first, 1);
+  const auto [after, bend_after] = end_geometry(second, 0);
   const Vec<T, 2> along = before + after;
   const T length = norm(facet);
   return {dot((x - vertex).eval(), along) / (norm(along) * length), std::abs(cross(values(before), values(after))),
           std::abs(bend_after - bend_before) * value(length), value(length)};
 }
 
-/// Whether patches may have a kink where they meet: none where a B-spline goes on.
+/// Whether two patches may have a kink at their vertex: not where they join as one B-spline.
 bool has_kink(const Patch& first) { return first.smoothing != Smoothing::b_spline || !first.goes_on_after(); }
 
-/// Calls f(first, second) with the patches that part at the ends of what a point faces.
+/// Calls f(first, second) for both ends of the patch that point p faces, if another patch joins there.
 template <class F>
 void for_each_vertex(const Model& model, const State<double>& state, int p, F&& f) {
   const auto& point = model.points[p];
-  if (point.curve < 0 || !point.pieces.empty() || state.contact.facing.empty()) return;
+  if (point.curve < 0 || !point.segments.empty() || state.contact.facing.empty()) return;
   const auto& patches = model.curves[point.curve].patches;
   const int now = state.contact.facing[p].patch;
   if (now == Patch::none) return;
@@ -78,7 +78,7 @@ bool reads_gaps(const Scene& scene) {
 
 std::vector<VertexTie> vertex_ties(const Model& model, const Slots<double>& slots, const State<double>& state,
                                    double time, double largest) {
-  constexpr double straight = 1e-6;  // a turn that is none, as of the geometry at the start (sided_geometry.cpp)
+  constexpr double straight = 1e-6;  // sine up to which a turn is none, as in sided_geometry.cpp
   std::vector<VertexTie> ties;
   if (!model.slides_along_curves()) return ties;
   const bool all = reads_gaps(model.scene);
@@ -91,8 +91,8 @@ std::vector<VertexTie> vertex_ties(const Model& model, const Slots<double>& slot
     if (open && !touches && !all) continue;
     const bool bears = -state.contact.traction[point.multiplier] > weak_margin * largest;
     for_each_vertex(model, state, p, [&](int first, int second) {
-      const auto at = at_vertex(model, slots, compact, time, p, first, second);
-      // (splines share their tangent, whose derivative jumps with the curvature alone)
+      const auto at = vertex_geometry(model, slots, compact, time, p, first, second);
+      // (Splines share the tangent at a vertex. Its derivative jumps only where the curvature does.)
       const auto& patch = model.curves[point.curve].patches[first];
       if (patch.smoothing != Smoothing::none && patch.goes_on_after() && at.bend <= straight) return;
       if (std::abs(at.overshoot) <= weak_margin) ties.push_back({p, first, second, !bears || at.turn <= straight});
@@ -101,18 +101,18 @@ std::vector<VertexTie> vertex_ties(const Model& model, const Slots<double>& slot
   return ties;
 }
 
-void take_patch(const Model& model, const VertexTie& tie, int patch, State<double>& at) {
+void set_patch(const Model& model, const VertexTie& tie, int patch, State<double>& at) {
   const double xi = patch == tie.first ? 1 : 0;
   at.contact.facing[tie.point] = {patch, xi, 0};
   at.history.patch[tie.point] = patch;
   if (const int foot = model.points[tie.point].foot; foot >= 0) at.history.foot[foot] = xi;
 }
 
-VertexVerdict judge(const Model& model, const ParameterBlock& block, const VertexTie& tie, const State<double>& at,
-                    double time, const SideDirection& along) {
-  constexpr double share = 1e-10, rigid = 1e-3;  // as of contact points (sensitivity/branches.cpp)
-  const auto found = at_vertex(model, block.slots, to_compact(model, block.current.displacement), time, tie.point,
-                               tie.first, tie.second);
+VertexVerdict vertex_verdict(const Model& model, const ParameterBlock& block, const VertexTie& tie,
+                             const State<double>& at, double time, const SideDirection& along) {
+  constexpr double share = 1e-10, rigid = 1e-3;  // as for contact points (sensitivity/branches.cpp)
+  const auto found = vertex_geometry(model, block.slots, to_compact(model, block.current.displacement), time, tie.point,
+                                     tie.first, tie.second);
   double motion = 0;
   for (const auto& u : block.current.displacement) motion = std::max(motion, std::abs(u.d[0]));
   for (Eigen::Index k = 0; k < block.slots.points.size(); ++k)

@@ -7,13 +7,13 @@
 ///   g_N  = g_0 + n . w           normal gap (length; negative is penetration)
 ///   s    = e_a . w               tangential placement; the only history of the augmented Lagrangian methods
 ///   dg_T = s - s_previous        slip increment since the last converged increment
-///   z    = lambda + rho (g_N, (rho_T/rho) dg_T),   t = P_mu(z)        core/contact/friction.hpp
+///   z    = lambda + rho (g_N, (rho_T/rho) dg_T),   t = P_mu(z)        core/contact/friction_cone.hpp
 ///
 /// and the nodal forces of the residual: slave +A (t_N n + t_a e_a), master node i  -N_i A (t_N n + t_a e_a).
 /// The methods differ only in who supplies lambda. Source: theory of [AC91], [PC99], [SL92].
 #pragma once
 
-#include "core/contact/friction.hpp"
+#include "core/contact/friction_cone.hpp"
 #include "core/contact/point_geometry.hpp"
 
 namespace stickslip {
@@ -78,19 +78,19 @@ PointOutcome<T, Tangents> evaluate_point(const PointGeometry<T>& geometry, const
   return point;
 }
 
-/// Evaluates the point in its present geometry. `foot`: the place that it faces, in the frame of the obstacle, which
-/// carries the friction along. `way`: vector to this place from that of the last increment, both where the obstacle
-/// stands now. The slip is the tangential part of `way`: on a curved obstacle the chord, O(slip^3) off the arc.
+/// Outcome of a point with its present geometry. `foot`: as History::foot stores it. `foot_motion`: vector from the
+/// foot of the last increment to this one, both on the present master, length. The slip is the tangential part of
+/// `foot_motion`. On a curved obstacle this is the chord, which differs from the arc by O(slip^3).
 template <class T, int D, int Tangents>
 PointOutcome<T, Tangents> evaluate_moved_point(const PointGeometry<T>& geometry, const Vec<T, D>& foot,
-                                               const Vec<T, D>& way, const Traction<T, Tangents>& multiplier,
+                                               const Vec<T, D>& foot_motion, const Traction<T, Tangents>& multiplier,
                                                const Vec<T, Tangents>& previous_placement,
                                                const PointRegularisation<T>& rho, const FrictionLaw<T>& friction,
                                                ConeRadius cone, double tie_length, const ContactState* state) {
   PointOutcome<T, Tangents> point;
   point.gap = geometry.gap;
   for (int a = 0; a < Tangents; ++a) {
-    point.slip[a] = dot(geometry.tangents.col(a).template head<D>(), way);
+    point.slip[a] = dot(geometry.tangents.col(a).template head<D>(), foot_motion);
     point.placement[a] = previous_placement[a] + point.slip[a];
   }
   if constexpr (Tangents > 0) point.foot = foot;

@@ -11,7 +11,7 @@
 namespace stickslip {
 
 std::vector<Patch> make_patches(const std::vector<std::vector<int>>& facets, Smoothing smoothing, double corner,
-                                const Eigen::Matrix2Xd& places) {
+                                const Eigen::Matrix2Xd& positions) {
   std::vector<Patch> patches(facets.size());
   std::map<int, int> starts;  // vertex -> the patch that starts there
   for (std::size_t f = 0; f < facets.size(); ++f) {
@@ -27,7 +27,7 @@ std::vector<Patch> make_patches(const std::vector<std::vector<int>>& facets, Smo
     before.next = found->second;
     after.previous = static_cast<int>(f);
     const auto direction = [&](const Patch& patch) {
-      return (places.col(patch.vertices[2]) - places.col(patch.vertices[1])).normalized().eval();
+      return (positions.col(patch.vertices[2]) - positions.col(patch.vertices[1])).normalized().eval();
     };
     if (smoothing == Smoothing::none || direction(before).dot(direction(after)) < least_cosine) continue;
     before.vertices[3] = after.vertices[2];
@@ -36,29 +36,29 @@ std::vector<Patch> make_patches(const std::vector<std::vector<int>>& facets, Smo
   return patches;
 }
 
-OwnVertex own_vertex(const std::vector<Patch>& patches, const Eigen::Matrix2Xd& places, int vertex,
+OwnVertex own_vertex(const std::vector<Patch>& patches, const Eigen::Matrix2Xd& positions, int vertex,
                      const Vec<double, 2>& outward, double mesh_size) {
   const auto cross = [](const Vec<double, 2>& a, const Vec<double, 2>& b) { return a[0] * b[1] - a[1] * b[0]; };
-  const Vec<double, 2> x = places.col(vertex), inward = -outward.normalized();
-  double through = std::numeric_limits<double>::infinity();
+  const Vec<double, 2> x = positions.col(vertex), inward = -outward.normalized();
+  double thickness = std::numeric_limits<double>::infinity();
   for (const auto& patch : patches) {
     if (patch.vertices[1] == vertex || patch.vertices[2] == vertex) continue;
-    const Vec<double, 2> a = places.col(patch.vertices[1]) - x, b = places.col(patch.vertices[2]) - x;
+    const Vec<double, 2> a = positions.col(patch.vertices[1]) - x, b = positions.col(patch.vertices[2]) - x;
     const double side_a = cross(inward, a), side_b = cross(inward, b);
     if (side_a * side_b > 0 || side_a == side_b) continue;
     const double depth = (a + side_a / (side_a - side_b) * (b - a)).dot(inward);
-    if (depth > 0) through = std::min(through, depth);
+    if (depth > 0) thickness = std::min(thickness, depth);
   }
-  OwnVertex own{vertex, std::max(mesh_size, through), std::vector<char>(patches.size(), 0)};
-  if (!std::isfinite(through)) return own;  // the side is not closed
-  const Vec<double, 2> out = x + through * inward;
+  OwnVertex own{vertex, std::max(mesh_size, thickness), std::vector<char>(patches.size(), 0)};
+  if (!std::isfinite(thickness)) return own;  // the side is not closed
+  const Vec<double, 2> exit = x + thickness * inward;
   for (std::size_t p = 0; p < patches.size(); ++p) {
-    const Vec<double, 2> a = places.col(patches[p].vertices[1]), tau = places.col(patches[p].vertices[2]) - a;
+    const Vec<double, 2> a = positions.col(patches[p].vertices[1]), tau = positions.col(patches[p].vertices[2]) - a;
     const auto distance = [&](const Vec<double, 2>& from) {
       return (from - a - std::clamp((from - a).dot(tau) / tau.squaredNorm(), 0.0, 1.0) * tau).norm();
     };
-    const bool behind = cross(x - a, tau) < -at_facet_end * tau.squaredNorm();
-    own.wall[p] = behind && std::min(distance(x), distance(out)) < 2 * through + tau.norm();
+    const bool is_behind = cross(x - a, tau) < -at_facet_end * tau.squaredNorm();
+    own.wall[p] = is_behind && std::min(distance(x), distance(exit)) < 2 * thickness + tau.norm();
   }
   return own;
 }

@@ -1,13 +1,15 @@
-/// Master curves of the plane that points slide along: patches from vertex to vertex, each linear in the places of its
-/// vertices, so that their forces and derivatives go to all of them by the same weights.
+/// Master curves in the plane, along which points slide. A curve consists of patches from vertex to vertex. The
+/// position on a patch is linear in the positions of its vertices, so forces and derivatives have the weights N_i:
 ///
 ///   y(xi) = sum N_i(xi) y_i,   0 <= xi <= 1, the solid on the left      foot of x:  (x - y(xi)) . y'(xi) = 0
 ///
-///   facets        N of the two ends
-///   Catmull-Rom   cubic through both ends, slope (y_next - y_previous)/2 at each: normals go on
-///   B-spline      uniform, cubic; the vertices are its control points: curvatures go on; off the vertices by O(h^2)
+///   facets        N_i of the two ends
+///   Catmull-Rom   cubic through both ends, slope (y_next - y_previous)/2 at each: the normal is continuous
+///   B-spline      uniform cubic, the vertices are its control points: the curvature is continuous; the curve misses
+///   the
+///                 vertices by O(h^2)
 ///
-/// At a free end, and at a corner that is to stay one, a smooth patch continues its facet straight: y_0 = 2 y_1 - y_2.
+/// At a free end, and at a corner that is kept, a smooth patch extends its facet straight: y_0 = 2 y_1 - y_2.
 /// Source of the smoothings: core/README.md.
 #pragma once
 
@@ -15,8 +17,8 @@
 #include <array>
 #include <vector>
 
-#include "core/contact/piece.hpp"
 #include "core/contact/point_geometry.hpp"
+#include "core/contact/segment.hpp"
 
 namespace stickslip {
 
@@ -24,21 +26,22 @@ enum class Smoothing { none, catmull_rom, b_spline };
 
 struct Patch {
   static constexpr int none = -1;
-  /// Vertices before, start, end, after; `none` of the outer two: the patch goes on straight there.
+  /// Vertex before the patch, its start, its end, vertex after it. `none` for an outer one: the facet is extended
+  /// straight there.
   std::array<int, 4> vertices{{none, none, none, none}};
-  int previous = none, next = none;  ///< patches that meet it at its ends
+  int previous = none, next = none;  ///< patches that share its start, its end; none: free end
   Smoothing smoothing = Smoothing::none;
-  bool goes_on_before() const { return vertices[0] != none; }  ///< without a corner
-  bool goes_on_after() const { return vertices[3] != none; }
+  bool goes_on_before() const { return vertices[0] != none; }  ///< whether it joins `previous` without a corner
+  bool goes_on_after() const { return vertices[3] != none; }   ///< whether it joins `next` without a corner
 };
 
-/// A point that is a vertex of the curve that it faces: a side in contact with itself. It faces only patches that come
-/// after it on the curve, so that of two places that meet one is the slave. It never faces a patch that it shapes, nor
-/// one of its own wall.
+/// A contact point that is a vertex of the curve that it faces: a side in contact with itself. It faces only patches
+/// that come after it on the curve, so of two positions that touch exactly one is the slave. It never faces a patch
+/// that it is a vertex of, nor a patch of its own wall.
 struct OwnVertex {
   int vertex = Patch::none;
-  double reach = 0;             ///< length: deeper than this it counts as inside of no patch
-  std::vector<char> wall = {};  ///< per patch: whether it belongs to the point's own wall
+  double max_depth = 0;         ///< length: beyond this depth it is not inside of a patch
+  std::vector<char> wall = {};  ///< per patch: whether it belongs to the wall of the vertex (own_vertex())
 
   bool may_face(const std::vector<Patch>& patches, int p) const {
     const auto& vertices = patches[p].vertices;
@@ -51,20 +54,20 @@ struct OwnVertex {
   }
 };
 
-/// Place on a curve.
+/// What a contact point faces: a place on a curve, or segments of it.
 struct Facing {
-  int patch = Patch::none;  ///< none: nothing of the curve is faced
-  double xi = 0;
-  double distance = 0;  ///< where nothing is faced: to the nearest facet
-  /// Segment-integrated: what of the curve is faced, from whose facet `patch` lengths along the curve are measured.
-  std::vector<Piece> pieces = {};
-  std::vector<int> nodes = {};  ///< of the slave's facets and these pieces, in the order of the weights
+  int patch = Patch::none;  ///< none: the point faces nothing of the curve
+  double xi = 0;            ///< coordinate of the foot on the patch
+  double distance = 0;      ///< where nothing is faced: to the nearest facet, length
+  /// Segment-integrated contact: the segments. `patch` is then the origin of arc lengths along the curve.
+  std::vector<Segment> pieces = {};
+  std::vector<int> nodes = {};  ///< of the slave facets and of these segments, in the order of the weights
   friend bool operator==(const Facing&, const Facing&) = default;
 };
 
 namespace detail {
 
-/// N_i and their first two derivatives at a place of a patch.
+/// N_i and their first two derivatives by xi at one place of a patch.
 template <class T>
 struct PatchWeights {
   std::array<T, 4> value, slope, bend;
@@ -93,7 +96,7 @@ PatchWeights<T> patch_weights(const Patch& patch, const T& s) {
     w.slope = {-half * r * r, half * s * (T(3) * s - T(4)), half * (one + s * (T(2) - T(3) * s)), half * s * s};
     w.bend = {r, T(3) * s - T(2), one - T(3) * s, s};
   }
-  for (auto* order : {&w.value, &w.slope, &w.bend}) {  // what stands in for a vertex that is not there
+  for (auto* order : {&w.value, &w.slope, &w.bend}) {  // a missing outer vertex is 2 y_1 - y_2
     auto& n = *order;
     if (!patch.goes_on_before()) {
       n[1] += T(2) * n[0];
@@ -109,57 +112,57 @@ PatchWeights<T> patch_weights(const Patch& patch, const T& s) {
   return w;
 }
 
-/// sum of n_i y_i. `place(vertex)`: y_i.
-template <class T, class Place>
-Vec<T, 2> on_patch(const Patch& patch, const std::array<T, 4>& n, Place&& place) {
+/// Sum of n_i y_i. `position(vertex)`: y_i.
+template <class T, class Position>
+Vec<T, 2> on_patch(const Patch& patch, const std::array<T, 4>& n, Position&& position) {
   Vec<T, 2> sum = Vec<T, 2>::Constant(T(0));
   for (int i = 0; i < 4; ++i)
-    if (patch.vertices[i] != Patch::none) sum += n[i] * place(patch.vertices[i]);
+    if (patch.vertices[i] != Patch::none) sum += n[i] * position(patch.vertices[i]);
   return sum;
 }
 
 }  // namespace detail
 
-/// Place of a curve.
-template <class T, class Place>
-Vec<T, 2> place_on(const Patch& patch, const T& xi, Place&& place) {
-  return detail::on_patch<T>(patch, detail::patch_weights<T>(patch, xi).value, place);
+/// Position y(xi) on a patch. `position(vertex)`: y_i.
+template <class T, class Position>
+Vec<T, 2> curve_position(const Patch& patch, const T& xi, Position&& position) {
+  return detail::on_patch<T>(patch, detail::patch_weights<T>(patch, xi).value, position);
 }
 
-/// The foot of a point on a patch and what belongs to it.
+/// The foot of a point on a patch.
 template <class T>
 struct CurveFoot {
-  T xi{}, gap{};
-  Vec<T, 2> place, normal;  ///< place and unit normal out of the solid
-  std::array<T, 4> weights;
+  T xi{}, gap{};               ///< coordinate on the patch; distance along the normal, length, negative inside
+  Vec<T, 2> position, normal;  ///< normal: unit, out of the solid
+  std::array<T, 4> weights;    ///< N_i(xi)
 };
 
-/// Geometry of x against a patch. `xi`: the foot in double, found by the search. Steps of Newton's method from there,
-/// in T, give its derivatives: one step the first, two the second. `place(vertex)`: where a vertex is.
-template <class T, class Place>
-CurveFoot<T> foot_on_patch(const Patch& patch, double xi, const Vec<T, 2>& x, Place&& place) {
+/// Foot of x on a patch. `xi`: the foot in double, found by the search; `position(vertex)`: of the vertices. Newton
+/// steps from xi in the scalar T carry its derivatives: one step the first, two steps the second.
+template <class T, class Position>
+CurveFoot<T> foot_on_patch(const Patch& patch, double xi, const Vec<T, 2>& x, Position&& position) {
   CurveFoot<T> foot;
   foot.xi = T(xi);
   const int steps = patch.smoothing == Smoothing::none ? 1 : 2;
   for (int step = 0; step < steps; ++step) {
     const auto w = detail::patch_weights<T>(patch, foot.xi);
-    const Vec<T, 2> slope = detail::on_patch<T>(patch, w.slope, place),
-                    bend = detail::on_patch<T>(patch, w.bend, place);
-    const Vec<T, 2> off = x - detail::on_patch<T>(patch, w.value, place);
+    const Vec<T, 2> slope = detail::on_patch<T>(patch, w.slope, position),
+                    bend = detail::on_patch<T>(patch, w.bend, position);
+    const Vec<T, 2> off = x - detail::on_patch<T>(patch, w.value, position);
     foot.xi += dot(off, slope) / (dot(slope, slope) - dot(off, bend));
   }
   const auto w = detail::patch_weights<T>(patch, foot.xi);
   foot.weights = w.value;
-  foot.place = detail::on_patch<T>(patch, w.value, place);
-  const Vec<T, 2> slope = detail::on_patch<T>(patch, w.slope, place);
+  foot.position = detail::on_patch<T>(patch, w.value, position);
+  const Vec<T, 2> slope = detail::on_patch<T>(patch, w.slope, position);
   const T length = norm(slope);
   foot.normal << slope[1] / length, -slope[0] / length;
-  foot.gap = dot((x - foot.place).eval(), foot.normal);
+  foot.gap = dot((x - foot.position).eval(), foot.normal);
   return foot;
 }
 
-/// Weights of displacements in w: 1 of the slave node, -N_i of the vertices that a patch has. Where these are `rigid`
-/// they have none.
+/// Weights of the displacements in w: 1 for the slave node, then -N_i for each vertex of the patch. On a rigid curve: 1
+/// alone.
 template <class T>
 auto foot_weights(const Patch& patch, const std::array<T, 4>& n, bool rigid) {
   const auto vertices = rigid ? 0 : 4 - std::count(patch.vertices.begin(), patch.vertices.end(), Patch::none);
@@ -171,21 +174,22 @@ auto foot_weights(const Patch& patch, const std::array<T, 4>& n, bool rigid) {
   return weights;
 }
 
-/// What a vertex of a side that touches itself may face.
+/// OwnVertex of a vertex of a side in contact with itself, from initial positions.
 ///
-///   through  how far a ray from the vertex, straight into the solid, runs until it comes out
-///   reach    through, and at least the mesh size
-///   wall     patches on the other face of the solid that the vertex itself is on. A patch belongs to it where the
-///            vertex is behind the patch, and the distance to the patch, from the vertex or from where the ray comes
-///            out, is less than 2 through plus the length of the patch
+///   positions  of the vertices, 2 x vertices, length
+///   outward    outward normal of the side at the vertex, any length
+///   mesh_size  at the vertex, length
 ///
-/// All are of the start. `places`: of the vertices; `outward`: normal of the side at the vertex; `mesh_size`: there.
-OwnVertex own_vertex(const std::vector<Patch>& patches, const Eigen::Matrix2Xd& places, int vertex,
+/// The thickness is the length of the ray from the vertex along -outward until it leaves the solid. max_depth is the
+/// larger of thickness and mesh size. The wall consists of the patches on the opposite face of the same wall. A patch
+/// belongs to it if the vertex is behind the patch, and the patch is nearer than 2 thickness plus its own length to the
+/// vertex or to the end of the ray.
+OwnVertex own_vertex(const std::vector<Patch>& patches, const Eigen::Matrix2Xd& positions, int vertex,
                      const Vec<double, 2>& outward, double mesh_size);
 
-/// Patches from facets (vertex pairs, solid on their left). `places`: of the vertices at the start, by number. Facets
-/// that turn by more than `corner` degrees keep their corner.
+/// Patches from facets, one each. `facets`: two vertices each, the solid on their left; `positions`: initial, of the
+/// vertices, 2 x vertices. Two facets that turn by more than `corner` degrees keep their corner.
 std::vector<Patch> make_patches(const std::vector<std::vector<int>>& facets, Smoothing smoothing, double corner,
-                                const Eigen::Matrix2Xd& places);
+                                const Eigen::Matrix2Xd& positions);
 
 }  // namespace stickslip

@@ -14,7 +14,7 @@ FacetSearch::FacetSearch(const Points<double>& points, const std::vector<std::ve
   std::vector<int> numbers;
   for (int f = 0; f < static_cast<int>(facets.size()); ++f) {
     const Vec<double, 2> a = end_of(f, 0), b = end_of(f, 1);
-    if (!a.allFinite() || !b.allFinite()) continue;  // of a trial out of bounds
+    if (!a.allFinite() || !b.allFinite()) continue;  // Newton tried an iterate that overflows
     numbers.push_back(f);
     band_ = std::max(band_, at_facet_end * (b - a).norm());
   }
@@ -22,7 +22,8 @@ FacetSearch::FacetSearch(const Points<double>& points, const std::vector<std::ve
   if (!numbers.empty()) add_boxes(numbers, 0, static_cast<int>(numbers.size()));
 }
 
-/// Adds the box of the facets `numbers` first to last - 1, and those of either half along its longer side.
+/// Adds the box of the facets numbers[first] to numbers[last - 1], then the boxes of its two halves. The box is halved
+/// along its longer side.
 void FacetSearch::add_boxes(std::vector<int>& numbers, int first, int last) {
   Box box{end_of(numbers[first], 0), end_of(numbers[first], 0)};
   for (int n = first; n < last; ++n)
@@ -47,19 +48,20 @@ void FacetSearch::add_boxes(std::vector<int>& numbers, int first, int last) {
   add_boxes(numbers, middle, last);
 }
 
-std::vector<int> FacetSearch::across(const std::array<int, 2>& slave) const {
-  // A share of the slave facet: above rounding, and what it lets in too much faces nothing in facing_pieces().
-  constexpr double beside = 1e-6;
+std::vector<int> FacetSearch::candidates(const std::array<int, 2>& slave) const {
+  // Share of the slave facet by which the strip is widened, far above rounding. A facet that is found only because of
+  // it gives no segment in facing_segments().
+  constexpr double margin = 1e-6;
   const Vec<double, 2> a = points_.col(slave[0]).head<2>(), tau = points_.col(slave[1]).head<2>() - a;
-  const auto is_beside = [&](const Box& box) {
+  const auto is_outside = [&](const Box& box) {
     const double middle = ((box.low + box.high) / 2 - a).dot(tau) / tau.squaredNorm();
     const double half = ((box.high - box.low) / 2).dot(tau.cwiseAbs()) / tau.squaredNorm();
-    return middle + half < -beside || middle - half > 1 + beside;
+    return middle + half < -margin || middle - half > 1 + margin;
   };
   std::vector<int> found;
   const auto visit = [&](const auto& self, int at) -> void {
     const Box& box = boxes_[at];
-    if (is_beside(box)) return;
+    if (is_outside(box)) return;
     if (box.facet >= 0) {
       found.push_back(box.facet);
       return;
@@ -72,17 +74,17 @@ std::vector<int> FacetSearch::across(const std::array<int, 2>& slave) const {
   return found;
 }
 
-std::vector<Piece> FacetSearch::facing(const std::array<int, 2>& slave, const std::vector<int>& ends) const {
-  const auto numbers = across(slave);
+std::vector<Segment> FacetSearch::facing(const std::array<int, 2>& slave, const std::vector<int>& ends) const {
+  const auto numbers = candidates(slave);
   std::vector<std::vector<int>> facets;
   facets.reserve(numbers.size());
   for (int f : numbers) facets.push_back(facets_[f]);
-  auto pieces = facing_pieces(points_, slave, facets, ends);
-  for (Piece& piece : pieces) piece.facet = numbers[piece.facet];
-  return pieces;
+  auto segments = facing_segments(points_, slave, facets, ends);
+  for (Segment& segment : segments) segment.facet = numbers[segment.facet];
+  return segments;
 }
 
-double FacetSearch::distance_of(int facet, const Vec<double, 2>& x) const {
+double FacetSearch::facet_distance(int facet, const Vec<double, 2>& x) const {
   const Vec<double, 2> c = end_of(facet, 0), tau = end_of(facet, 1) - c;
   const double eta = (x - c).dot(tau) / tau.squaredNorm();
   return (x - c - std::clamp(eta, 0.0, 1.0) * tau).norm();
@@ -95,7 +97,7 @@ double FacetSearch::distance(const Vec<double, 2>& x) const {
     const Box& box = boxes_[at];
     if (from(at) > least + band_) return;
     if (box.facet >= 0) {
-      const double distance = distance_of(box.facet, x);
+      const double distance = facet_distance(box.facet, x);
       if (distance < least) least = distance;
       return;
     }

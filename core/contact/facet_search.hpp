@@ -1,45 +1,48 @@
-/// Which facets of a side a slave facet, or a point, may face: by a tree of boxes over the side.
+/// Search, by a tree of bounding boxes, for the facets of a side that a slave facet or a point may face.
 ///
-/// A slave facet faces what lies in the strip across it. A box that does not reach into the strip is passed over as a
-/// whole, so that a search takes about log n boxes. The tree is split by place: facets may come in any order. What is
-/// found is what a comparison with all facets finds, to the last bit.
+/// A slave facet faces only what reaches into the strip perpendicular to it. The search skips each box outside of this
+/// strip, so it visits about log n boxes of n facets. The tree splits by position, so facets may come in any order. The
+/// results equal those of a comparison with all facets, bit for bit.
 #pragma once
 
 #include <array>
 #include <vector>
 
-#include "core/contact/piece.hpp"
+#include "core/contact/segment.hpp"
 #include "core/mesh/mesh.hpp"
 
 namespace stickslip {
 
-/// Search among the facets (node pairs) of one side, where its nodes are now.
+/// Search among the facets of one side at given nodal positions.
 class FacetSearch {
  public:
-  /// Both must outlive it. A facet whose ends are not finite is never found.
+  /// `points`: nodal positions, D x nodes; `facets`: two nodes each. Both must outlive the search. A facet with a
+  /// position that is not finite is never found.
   FacetSearch(const Points<double>& points, const std::vector<std::vector<int>>& facets);
 
-  /// The facets that reach into the strip across a slave facet, by number: all that it may face, and few others.
-  std::vector<int> across(const std::array<int, 2>& slave) const;
-  /// facing_pieces() of all facets.
-  std::vector<Piece> facing(const std::array<int, 2>& slave, const std::vector<int>& ends = {}) const;
-  /// Distance from the nearest facet; infinity where there is none.
+  /// Numbers, ascending, of the facets that reach into the strip perpendicular to a slave facet: all that it may face,
+  /// and few others.
+  std::vector<int> candidates(const std::array<int, 2>& slave) const;
+  /// Segments of a slave facet, as facing_segments() finds them among all facets.
+  std::vector<Segment> facing(const std::array<int, 2>& slave, const std::vector<int>& ends = {}) const;
+  /// Distance of x to the nearest facet, length; infinity where there is no facet.
   double distance(const Vec<double, 2>& x) const;
 
  private:
-  /// The left child is the next box. `right`: index of the other child. `facet`: of a box without children.
+  /// The left child of boxes_[k] is boxes_[k + 1]. `right`: index of the right child. `facet`: number of the facet of
+  /// a leaf; -1: the box has children.
   struct Box {
     Vec<double, 2> low, high;
     int right = 0, facet = -1;
   };
   Vec<double, 2> end_of(int facet, int end) const { return points_.col(facets_[facet][end]).head<2>(); }
   void add_boxes(std::vector<int>& numbers, int first, int last);
-  double distance_of(int facet, const Vec<double, 2>& x) const;
+  double facet_distance(int facet, const Vec<double, 2>& x) const;
 
   const Points<double>& points_;
   const std::vector<std::vector<int>>& facets_;
-  std::vector<Box> boxes_;  ///< the whole side first
-  double band_ = 0;         ///< above what rounding makes of distances
+  std::vector<Box> boxes_;  ///< boxes_[0]: the whole side
+  double band_ = 0;         ///< length above the rounding of a distance
 };
 
 }  // namespace stickslip

@@ -1,8 +1,8 @@
-/// Geometry of one contact point: gap, unit normal out of the master, frame, weights of displacements, area. Closed
-/// forms of coordinates give it, so any scalar differentiates it.
+/// Geometry of one contact point: gap, unit normal out of the master, tangent frame, weights of displacements, area. It
+/// is a closed form of coordinates, so dual, complex and reverse scalars differentiate it.
 ///
-/// In 2D the frame is e = (-n_y, n_x): a facet directed a -> b with the solid on its left has n = (tau_y, -tau_x) and
-/// e = tau.
+/// In 2D the tangent is e = (-n_y, n_x). A facet with the unit tangent tau and the solid on its left has the normal
+/// n = (tau_y, -tau_x), so e = tau.
 #pragma once
 
 #include "core/algebra/scalar.hpp"
@@ -11,17 +11,18 @@ namespace stickslip {
 
 template <class T>
 struct PointGeometry {
-  T gap{};                                                             ///< normal gap, with the offset of the contact
+  T gap{};  ///< normal gap with the offset of the contact, length; negative: penetration
   Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> normal;                 ///< unit, out of the master
-  Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 2> tangents;  ///< orthonormal frame, one column each
-  Eigen::Matrix<T, Eigen::Dynamic, 1>
-      weights;  ///< of the nodes' displacements in w: slave nodes sum to 1, master to -1
-  T area{};     ///< tributary area of the slave node
+  Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 2> tangents;  ///< D x (D-1), orthonormal columns
+  /// Weights of the nodal displacements in the relative displacement w. Those of slave nodes sum to 1, those of master
+  /// nodes to -1.
+  Eigen::Matrix<T, Eigen::Dynamic, 1> weights;
+  T area{};  ///< tributary area of the slave node
 };
 
 namespace detail {
 
-/// Orthonormal frame of the plane normal to n (unit), D x (D-1).
+/// Orthonormal tangents, D x (D-1), of the plane whose unit normal is n.
 template <class T, class Normal>
 auto tangent_frame(const Normal& n) {
   decltype(PointGeometry<T>::tangents) frame(n.size(), n.size() - 1);
@@ -30,7 +31,7 @@ auto tangent_frame(const Normal& n) {
     frame(1, 0) = n[0];
     return frame;
   }
-  int smallest = 0;  // the axis furthest from n
+  int smallest = 0;  // coordinate axis with the largest angle to n
   for (int i = 1; i < 3; ++i)
     if (std::abs(value(n[i])) < std::abs(value(n[smallest]))) smallest = i;
   Vec<T, 3> first;
@@ -45,7 +46,7 @@ auto tangent_frame(const Normal& n) {
   return frame;
 }
 
-/// Against a place that is rigid: nothing but the slave node moves in w.
+/// Geometry against a rigid surface: w is the displacement of the slave node alone. The area is left to the caller.
 template <class T>
 PointGeometry<T> rigid(const T& gap, const Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1>& normal) {
   PointGeometry<T> g;
@@ -57,7 +58,7 @@ PointGeometry<T> rigid(const T& gap, const Eigen::Matrix<T, Eigen::Dynamic, 1, 0
   return g;
 }
 
-/// Of a point that faces nothing: of its slave's nodes, `count`, its own alone moves in w.
+/// Geometry of a point that faces no master. Of the `count` slave nodes, w has the displacement of the first alone.
 template <class T>
 PointGeometry<T> alone(const T& gap, const Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1>& normal, int count) {
   PointGeometry<T> g = rigid(gap, normal);

@@ -7,23 +7,25 @@
 namespace stickslip {
 namespace {
 
+/// Closest point of one facet. `xi`: unclamped coordinate of the projection; `position`: of the closest point.
 struct Foot {
   double xi, distance;
-  Vec<double, 2> place;
+  Vec<double, 2> position;
 };
 
-/// Decides between feet at the same distance by geometry alone: inside a facet before at its end, then by place.
-bool before(const Foot& a, const Foot& b) {
+/// Whether foot a precedes foot b at the same distance. The order depends on geometry alone: a projection inside its
+/// facet precedes one at an end; then the lesser x, then the lesser y, precedes.
+bool precedes(const Foot& a, const Foot& b) {
   const bool a_inside = a.xi >= 0 && a.xi <= 1, b_inside = b.xi >= 0 && b.xi <= 1;
   if (a_inside != b_inside) return a_inside;
-  return a.place[0] < b.place[0] || (a.place[0] == b.place[0] && a.place[1] < b.place[1]);
+  return a.position[0] < b.position[0] || (a.position[0] == b.position[0] && a.position[1] < b.position[1]);
 }
 
 Foot project(const Points<double>& points, const std::vector<int>& facet, const Vec<double, 2>& x) {
   const Vec<double, 2> a = points.col(facet[0]).head<2>(), tau = points.col(facet[1]).head<2>() - a;
   const double xi = (x - a).dot(tau) / tau.squaredNorm();
-  const Vec<double, 2> at = a + std::clamp(xi, 0.0, 1.0) * tau;
-  return {xi, (x - at).norm(), at};
+  const Vec<double, 2> closest = a + std::clamp(xi, 0.0, 1.0) * tau;
+  return {xi, (x - closest).norm(), closest};
 }
 
 }  // namespace
@@ -36,7 +38,7 @@ std::optional<ClosestPoint> closest_point(const Points<double>& points, const st
     const Foot candidate = project(points, facets[f], x);
     const double band = at_facet_end * (points.col(facets[f][1]) - points.col(facets[f][0])).norm();
     const bool tie = best >= 0 && std::abs(candidate.distance - foot.distance) <= band;
-    if (tie ? before(candidate, foot) : candidate.distance < foot.distance) {
+    if (tie ? precedes(candidate, foot) : candidate.distance < foot.distance) {
       foot = candidate;
       best = static_cast<int>(f);
     }

@@ -1,68 +1,77 @@
-/// Segment-wise integrated contact (mortar): gap and slip of the multiplier of a slave node, weighted by its shape
-/// function and integrated exactly over the pieces of the slave facets that face one master facet each.
+/// Segment-wise integrated (mortar) contact: gap and slip of the multiplier of one slave node, as integrals over mortar
+/// segments. A segment is the part of a slave facet that faces one master facet. The shape function psi_j of slave node
+/// j weighs the integrals, which are exact:
 ///
 ///   A_j = int psi_j dA      w_j = (1/A_j) int psi_j (u_s - u_m) dA      g_j = n_j . (1/A_j) int psi_j (x_s - y) dA
 ///   n_j parallel to int psi_j (n_m - n_s) dA
 ///
-/// y is the foot of x_s on the master along the normal of the slave facet, psi_j the linear shape function of the node
-/// on the slave side (1 on a facet whose other node carries no multiplier), so that sum A_j t_j . w_j is the work of
-/// the traction field sum psi_j t_j: a uniform pressure passes between any two meshes. What comes out is a
-/// PointGeometry like that of node-to-segment contact, with more nodes and other weights; nothing else knows.
+///   psi_j   linear on the slave facets of node j; 1 on a facet whose other node carries no multiplier
+///   x_s, y  point of the slave facet, and its foot on the master along the normal of the slave facet
 ///
-/// At finite strain x, y, the normals and the pieces are those of the present, found anew wherever the points move, and
-/// dA stays that of the start, so that tractions are nominal. What a node faces has the mean tangent m_j, per length of
-/// the start, and n_j is across it; slip is |m_j| times the change of the mean place Z_j along the master in that
-/// length (S, and S_s along the slave from the node):
+/// The traction field is sum psi_j t_j, and its work is sum A_j t_j . w_j. So a uniform pressure passes between any two
+/// meshes. The result is a PointGeometry, as in node-to-segment contact, with more nodes and other weights. The kernel,
+/// the methods and their derivatives do not distinguish the two.
+///
+/// At finite strain x, y, the normals and the segments are present ones: they are found anew at each iterate. dA is the
+/// initial one, so tractions are nominal. Per initial length S of the master, y has the mean tangent m_j, and n_j is
+/// perpendicular to m_j. Z_j is the mean of the foot's initial arc length S(y) along the master; S_s is the signed
+/// initial length along the slave from node j. The slip is |m_j| times the change of Z_j since the last increment:
 ///
 ///   m_j = (1/A_j) int psi_j dy/dS dA      Z_j = (1/A_j) int psi_j (S(y) + S_s) dA      dg_T = |m_j| (Z_j - last Z_j)
 ///
-/// so that to first order n_j does no work as points slide, and slip is that of w_j; it turns with no rigid motion.
-/// [PL04]; core/README.md.
+/// To first order n_j then does no work as points slide, and dg_T is the tangential part of the change of w_j. A rigid
+/// motion of both bodies causes no slip. Source: [PL04]; theory: core/README.md.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <vector>
 
-#include "core/contact/piece.hpp"
+#include "core/contact/segment.hpp"
 #include "core/contact/surfaces.hpp"
 #include "core/mesh/mesh.hpp"
 #include "core/solids/edges.hpp"
 
 namespace stickslip {
 
-/// The pieces of a slave facet (node pair), in order along it: on each the nearest of the master facets that it faces.
-/// Parts that face none are left out. `carrier` and `whole` are left to the caller. `ends`: nodes at which the master
-/// ends; one that is next to an end of the slave facet is at it.
-std::vector<Piece> facing_pieces(const Points<double>& points, const std::array<int, 2>& slave,
-                                 const std::vector<std::vector<int>>& masters, const std::vector<int>& ends = {});
+/// The segments of a slave facet, in order along it. Where the slave facet faces several master facets, the nearest
+/// counts. Parts that face no master facet have no segment. The caller sets `carrier` and `sole_carrier`.
+///
+///   points   nodal positions, 2 x nodes, length
+///   slave    the two nodes of the slave facet
+///   masters  the two nodes of each master facet
+///   ends     nodes at which the master ends. Such a node counts as projected to an end of the slave facet where it is
+///            within 1e-6 of the facet's length of it
+std::vector<Segment> facing_segments(const Points<double>& points, const std::array<int, 2>& slave,
+                                     const std::vector<std::vector<int>>& masters, const std::vector<int>& ends = {});
 
 namespace detail {
 
-/// Place along the slave facet (0 at a, 1 at b) of an end of a piece. `at(node)`: where a node is.
-template <class T, class At>
-T place_along(int piece_end, At&& at, const Vec<T, 2>& a, const Vec<T, 2>& tau) {
-  if (piece_end == Piece::start) return T(0);
-  if (piece_end == Piece::end) return T(1);
-  const Vec<T, 2> m = at(piece_end);
+/// Coordinate of a segment's end along the slave facet: 0 at its first node a, 1 at its second. `tau`: vector from a to
+/// the second node. `position(node)`: present position.
+template <class T, class Position>
+T end_coordinate(int segment_end, Position&& position, const Vec<T, 2>& a, const Vec<T, 2>& tau) {
+  if (segment_end == Segment::start) return T(0);
+  if (segment_end == Segment::end) return T(1);
+  const Vec<T, 2> m = position(segment_end);
   return dot((m - a).eval(), tau) / dot(tau, tau);
 }
 
-/// Foot of a point on a master: position, unit normal out of the master, and its weights on the piece's master nodes.
+/// Foot of a slave point on its master.
 template <class T>
 struct Foot {
-  Vec<T, 2> place, normal;
-  std::array<T, 2> weights{};
+  Vec<T, 2> position, normal;  ///< normal: unit, out of the master
+  std::array<T, 2> weights{};  ///< shape functions of the two master nodes of the segment
 };
 
-/// On the line through the master facet c -> d along the direction nu.
+/// Foot of x along the direction nu, on the line through the master facet c -> d.
 template <class T>
 Foot<T> foot_on_facet(const Vec<T, 2>& x, const Vec<T, 2>& nu, const Vec<T, 2>& c, const Vec<T, 2>& d) {
   const Vec<T, 2> tau = d - c;
   const T length = norm(tau);
   const T eta = ((x[0] - c[0]) * nu[1] - (x[1] - c[1]) * nu[0]) / (tau[0] * nu[1] - tau[1] * nu[0]);
   Foot<T> foot;
-  for (int i = 0; i < 2; ++i) foot.place[i] = c[i] + eta * tau[i];
+  for (int i = 0; i < 2; ++i) foot.position[i] = c[i] + eta * tau[i];
   foot.normal = Vec<T, 2>(tau[1] / length, -tau[0] / length);
   foot.weights = {T(1) - eta, eta};
   return foot;
@@ -70,24 +79,24 @@ Foot<T> foot_on_facet(const Vec<T, 2>& x, const Vec<T, 2>& nu, const Vec<T, 2>& 
 
 }  // namespace detail
 
-/// A place of integration.
+/// A Gauss point of a segment.
 template <class T>
-struct PiecePlace {
-  T along{};         ///< place along the slave facet: 0 at its first node, 1 at its second
-  T slave_length{};  ///< of the slave facet at the start
-  T area{};          ///< psi dA
+struct IntegrationPoint {
+  T xi{};            ///< coordinate along the slave facet: 0 at its first node, 1 at its second
+  T slave_length{};  ///< initial length of the slave facet
+  T area{};          ///< psi dA times the Gauss weight
   detail::Foot<T> foot;
 };
 
-/// Integrals over the pieces of a point.
+/// Integrals over the segments of one contact point.
 template <class T>
-struct PieceSums {
-  T area{};
-  decltype(PointGeometry<T>::weights) weights;
-  Vec<T, 2> gap = Vec<T, 2>::Constant(T(0)), normal = gap;  ///< of x - y, and of the bisectors
+struct SegmentIntegrals {
+  T area{};                                                 ///< A_j
+  decltype(PointGeometry<T>::weights) weights;              ///< A_j times the weights of w_j
+  Vec<T, 2> gap = Vec<T, 2>::Constant(T(0)), normal = gap;  ///< int psi (x - y) dA, and int psi (n_m - n_s) dA
 
-  /// The geometry with a normal, of any length.
-  PointGeometry<T> across(const Vec<T, 2>& n) const {
+  /// Geometry of the contact point with the normal n / |n|.
+  PointGeometry<T> geometry(const Vec<T, 2>& n) const {
     PointGeometry<T> g;
     g.area = area;
     g.weights = weights;
@@ -101,99 +110,113 @@ struct PieceSums {
   }
 };
 
-/// Integrals over the pieces that are given, on a slave body of this depth. `at(node)`: where a node is;
-/// `of_start(node)`: where it was, for the areas; `nodes`: its nodes, in the order of the weights wanted; `rigid_foot`:
-/// x -> Foot on the obstacle, called for pieces that have no master facet; `visit(piece, PiecePlace)`: called at each
-/// place of integration.
-template <class T, class At, class OfStart, class RigidFoot, class Visit>
-PieceSums<T> integrate_pieces(const std::vector<Piece>& pieces, const std::vector<int>& nodes, At&& at,
-                              OfStart&& of_start, const Depth<T>& depth, RigidFoot&& rigid_foot, Visit&& visit) {
+/// Integrals over segments.
+///
+///   nodes                   nodes of the contact point, in the order of the weights that are returned
+///   position(node)          present position
+///   initial_position(node)  initial position, for dA
+///   depth                   of the slave body
+///   rigid_foot(x)           Foot of x on the obstacle; called for segments that have no master facet
+///   visit(segment, IntegrationPoint)  called at each Gauss point
+template <class T, class Position, class InitialPosition, class RigidFoot, class Visit>
+SegmentIntegrals<T> integrate_segments(const std::vector<Segment>& segments, const std::vector<int>& nodes,
+                                       Position&& position, InitialPosition&& initial_position, const Depth<T>& depth,
+                                       RigidFoot&& rigid_foot, Visit&& visit) {
   static constexpr double gauss[3] = {-0.7745966692414834, 0, 0.7745966692414834};  // exact to degree 5; 3 is needed
   static constexpr double weight[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
-  PieceSums<T> sums;
+  SegmentIntegrals<T> sums;
   sums.weights = decltype(sums.weights)::Constant(static_cast<Eigen::Index>(nodes.size()), T(0));
   auto share = [&](int node, const T& w) {
     sums.weights[std::find(nodes.begin(), nodes.end(), node) - nodes.begin()] += w;
   };
-  for (const auto& piece : pieces) {
-    const Vec<T, 2> a = at(piece.slave[0]), tau = at(piece.slave[1]) - a;
-    const Vec<T, 2> A = of_start(piece.slave[0]), Tau = of_start(piece.slave[1]) - A;
+  for (const auto& segment : segments) {
+    const Vec<T, 2> a = position(segment.slave[0]), tau = position(segment.slave[1]) - a;
+    const Vec<T, 2> A = initial_position(segment.slave[0]), Tau = initial_position(segment.slave[1]) - A;
     const T length = norm(tau);
     const Vec<T, 2> nu(tau[1] / length, -tau[0] / length);
-    const T from = detail::place_along<T>(piece.first_end, at, a, tau),
-            to = detail::place_along<T>(piece.last_end, at, a, tau);
-    PiecePlace<T> place;
-    place.slave_length = norm(Tau);
+    const T from = detail::end_coordinate<T>(segment.first_end, position, a, tau),
+            to = detail::end_coordinate<T>(segment.last_end, position, a, tau);
+    IntegrationPoint<T> point;
+    point.slave_length = norm(Tau);
     for (int q = 0; q < 3; ++q) {
-      const T s = place.along = from + (to - from) * T(0.5 * (1 + gauss[q]));
+      const T s = point.xi = from + (to - from) * T(0.5 * (1 + gauss[q]));
       const Vec<T, 2> x(a[0] + s * tau[0], a[1] + s * tau[1]);
-      const bool rigid = piece.master[0] == Piece::none;
-      const detail::Foot<T>& foot = place.foot =
-          rigid ? rigid_foot(x) : detail::foot_on_facet<T>(x, nu, at(piece.master[0]), at(piece.master[1]));
-      const T psi = piece.whole ? T(1) : piece.carrier == 0 ? T(1) - s : s;
-      const T dA = place.area = psi * (to - from) * place.slave_length * T(weight[q]) * depth.at(T(A[0] + s * Tau[0]));
+      const bool rigid = segment.master[0] == Segment::none;
+      const detail::Foot<T>& foot = point.foot =
+          rigid ? rigid_foot(x)
+                : detail::foot_on_facet<T>(x, nu, position(segment.master[0]), position(segment.master[1]));
+      const T psi = segment.sole_carrier ? T(1) : segment.carrier == 0 ? T(1) - s : s;
+      const T dA = point.area = psi * (to - from) * point.slave_length * T(weight[q]) * depth.at(T(A[0] + s * Tau[0]));
       sums.area += dA;
-      share(piece.slave[0], dA * (T(1) - s));
-      share(piece.slave[1], dA * s);
+      share(segment.slave[0], dA * (T(1) - s));
+      share(segment.slave[1], dA * s);
       if (!rigid)
-        for (int m = 0; m < 2; ++m) share(piece.master[m], -dA * foot.weights[m]);
+        for (int m = 0; m < 2; ++m) share(segment.master[m], -dA * foot.weights[m]);
       for (int i = 0; i < 2; ++i) {
-        sums.gap[i] += dA * (x[i] - foot.place[i]);
+        sums.gap[i] += dA * (x[i] - foot.position[i]);
         sums.normal[i] += dA * (foot.normal[i] - (rigid ? T(0) : nu[i]));
       }
-      visit(piece, place);
+      visit(segment, point);
     }
   }
   return sums;
 }
 
-/// Nodes of a point: its own, the other slave nodes of its whole facets, then the masters' of its pieces.
-std::vector<int> nodes_of_pieces(int own, const std::vector<Piece>& facets, const std::vector<Piece>& pieces);
+/// Nodes of a contact point, each once, in this order: `own`, the other slave nodes of `facets`, the master nodes of
+/// `segments`.
+std::vector<int> nodes_of_segments(int own, const std::vector<Segment>& facets, const std::vector<Segment>& segments);
 
-/// What a point that moves faces: its geometry, and what friction remembers of it.
+/// Geometry of a contact point that moves, and the foot from which the next increment measures slip.
 template <class T>
-struct FacedPieces {
+struct SegmentKinematics {
   PointGeometry<T> geometry;
-  /// Mean foot on an obstacle; on facets the mean place along them, length of the start, and 0. A place that the slave
-  /// node does not face itself is taken back to it along the slave, so that what of its facets faces the master does
-  /// not count as slip.
+  /// On an obstacle: the mean foot. On facets: (Z_j, 0), Z_j the mean initial arc length along the master. Each Gauss
+  /// point contributes its foot's arc length plus S_s, its own distance from the slave node. So Z_j does not depend on
+  /// which part of the slave facets faces the master.
   Vec<T, 2> foot = Vec<T, 2>::Constant(T(0));
-  Vec<T, 2> tangent = foot;  ///< mean of that of the facets, per length of the start; 0 on an obstacle
+  Vec<T, 2> tangent = foot;  ///< m_j: mean tangent of the master facets, per initial length; 0 on an obstacle
 };
 
-/// Arguments as of integrate_pieces(); `begin(facet)`: place along the master at which a facet begins, length.
-/// `bisects`: the normal is the mean bisector of both sides, in place of that of the mean tangent.
-template <class T, class At, class OfStart, class RigidFoot, class Begin>
-FacedPieces<T> face_pieces(const std::vector<Piece>& pieces, const std::vector<int>& nodes, At&& at, OfStart&& of_start,
-                           const Depth<T>& depth, RigidFoot&& rigid_foot, Begin&& begin, bool bisects) {
-  FacedPieces<T> faced;
-  const auto remember = [&](const Piece& piece, const PiecePlace<T>& place) {
-    if (piece.master[0] == Piece::none) {
-      for (int i = 0; i < 2; ++i) faced.foot[i] += place.area * place.foot.place[i];
+/// Kinematics of a contact point. Arguments as in integrate_segments(), and
+///
+///   arc_length(facet)  initial arc length along the master at which a master facet begins
+///   bisects            true: the normal is that of the mean bisector; false: it is perpendicular to the mean tangent
+template <class T, class Position, class InitialPosition, class RigidFoot, class ArcLength>
+SegmentKinematics<T> segment_kinematics(const std::vector<Segment>& segments, const std::vector<int>& nodes,
+                                        Position&& position, InitialPosition&& initial_position, const Depth<T>& depth,
+                                        RigidFoot&& rigid_foot, ArcLength&& arc_length, bool bisects) {
+  SegmentKinematics<T> kinematics;
+  const auto accumulate = [&](const Segment& segment, const IntegrationPoint<T>& point) {
+    if (segment.master[0] == Segment::none) {
+      for (int i = 0; i < 2; ++i) kinematics.foot[i] += point.area * point.foot.position[i];
       return;
     }
-    const auto along = [&](auto&& where) { return Vec<T, 2>(where(piece.master[1]) - where(piece.master[0])); };
-    const T of_facet = norm(along(of_start)), back = piece.carrier == 0 ? place.along : T(place.along - T(1));
-    faced.foot[0] += place.area * (begin(piece.facet) + place.foot.weights[1] * of_facet + back * place.slave_length);
-    const Vec<T, 2> tau = along(at);
-    for (int i = 0; i < 2; ++i) faced.tangent[i] += place.area * tau[i] / of_facet;
+    const auto facet_vector = [&](auto&& at_node) {
+      return Vec<T, 2>(at_node(segment.master[1]) - at_node(segment.master[0]));
+    };
+    const T facet_length = norm(facet_vector(initial_position)),
+            offset = segment.carrier == 0 ? point.xi : T(point.xi - T(1));
+    kinematics.foot[0] +=
+        point.area * (arc_length(segment.facet) + point.foot.weights[1] * facet_length + offset * point.slave_length);
+    const Vec<T, 2> tau = facet_vector(position);
+    for (int i = 0; i < 2; ++i) kinematics.tangent[i] += point.area * tau[i] / facet_length;
   };
-  const auto sums = integrate_pieces<T>(pieces, nodes, at, of_start, depth, rigid_foot, remember);
+  const auto sums = integrate_segments<T>(segments, nodes, position, initial_position, depth, rigid_foot, accumulate);
   for (int i = 0; i < 2; ++i) {
-    faced.foot[i] /= sums.area;
-    faced.tangent[i] /= sums.area;
+    kinematics.foot[i] /= sums.area;
+    kinematics.tangent[i] /= sums.area;
   }
-  faced.geometry = sums.across(bisects ? sums.normal : Vec<T, 2>(faced.tangent[1], -faced.tangent[0]));
-  return faced;
+  kinematics.geometry = sums.geometry(bisects ? sums.normal : Vec<T, 2>(kinematics.tangent[1], -kinematics.tangent[0]));
+  return kinematics;
 }
 
-/// Area that whole facets have for a multiplier, whatever they face.
-template <class T, class OfStart>
-T area_of_facets(const std::vector<Piece>& facets, OfStart&& of_start, const Depth<T>& depth) {
+/// Initial area A_j of a multiplier over whole slave facets, whether they face a master or not.
+template <class T, class InitialPosition>
+T area_of_facets(const std::vector<Segment>& facets, InitialPosition&& initial_position, const Depth<T>& depth) {
   std::vector<int> nodes;
   for (const auto& facet : facets) nodes.insert(nodes.end(), facet.slave.begin(), facet.slave.end());
   const auto here = [](const Vec<T, 2>& x) { return detail::Foot<T>{x, Vec<T, 2>(T(0), T(1)), {}}; };
-  return integrate_pieces<T>(facets, nodes, of_start, of_start, depth, here, [](auto&&...) {}).area;
+  return integrate_segments<T>(facets, nodes, initial_position, initial_position, depth, here, [](auto&&...) {}).area;
 }
 
 }  // namespace stickslip

@@ -1,4 +1,5 @@
-/// Geometry of a slave point against facets and vertices, and the normal that two deformable sides share.
+/// Geometry of a slave node against facets and vertices, and the normal that two deformable sides share. `x`: position
+/// of the slave node. The area is left to the caller.
 #pragma once
 
 #include "core/contact/point_geometry.hpp"
@@ -6,7 +7,7 @@
 
 namespace stickslip {
 
-/// Against the facet a -> b (solid on its left); the projection lies on the facet.
+/// Geometry against the facet a -> b with the solid on its left. pre: x projects onto the facet.
 template <class T>
 PointGeometry<T> against_facet(const Vec<T, 2>& x, const Vec<T, 2>& a, const Vec<T, 2>& b) {
   const Vec<T, 2> tau = b - a;
@@ -22,15 +23,15 @@ PointGeometry<T> against_facet(const Vec<T, 2>& x, const Vec<T, 2>& a, const Vec
   return g;
 }
 
-/// The geometry of a facet or vertex that is rigid: nothing but the slave node moves in w.
+/// The same geometry against a rigid facet or vertex: w is the displacement of the slave node alone.
 template <class T>
 PointGeometry<T> fixed(PointGeometry<T> geometry) {
   geometry.weights.conservativeResize(1);
   return geometry;
 }
 
-/// Against the vertex v between the facets before -> v and v -> after: the normal is the bisector of the two, so that
-/// it depends neither on the numbering nor on the order of the facets.
+/// Geometry against the vertex v between the facets before -> v and v -> after. before = v, or after = v: there is no
+/// such facet. The normal bisects the normals of both facets. It does not depend on the order of the facets.
 template <class T>
 PointGeometry<T> against_vertex(const Vec<T, 2>& x, const Vec<T, 2>& before, const Vec<T, 2>& v,
                                 const Vec<T, 2>& after) {
@@ -52,9 +53,10 @@ PointGeometry<T> against_vertex(const Vec<T, 2>& x, const Vec<T, 2>& before, con
   return g;
 }
 
-/// Gives a projection that lies just at the end v of the facet v -> `to` half the slope of one that slides along it. On
-/// one side of v it does slide along the facet; on the other it rests, or slides along another facet. Half the slope is
-/// the mean of both derivatives.
+/// Adds to the geometry against vertex v half the weights by which the projection of x slides along the facet v ->
+/// `to`. Why: x projects to the end v of that facet. If x moves to one side of v, its projection slides along the
+/// facet; if it moves to the other, the projection stays at v or slides along the next facet. Half the weights give the
+/// mean of both derivatives.
 template <class T>
 void slide_off(PointGeometry<T>& geometry, const Vec<T, 2>& x, const Vec<T, 2>& v, const Vec<T, 2>& to) {
   const Vec<T, 2> tau = to - v;
@@ -64,7 +66,8 @@ void slide_off(PointGeometry<T>& geometry, const Vec<T, 2>& x, const Vec<T, 2>& 
   geometry.weights[geometry.weights.size() - 1] = -half;
 }
 
-/// Outward normal of the slave side at its node: sum over its facets (solid on their left), weighted by length.
+/// Outward normal of the slave side at a node, length: sum over the node's facets (solid on their left) of unit normal
+/// times facet length.
 template <class T>
 Vec<T, 2> slave_normal(const std::vector<std::pair<int, int>>& facets, const Points<T>& points) {
   Vec<T, 2> n = Vec<T, 2>::Constant(T(0));
@@ -75,12 +78,14 @@ Vec<T, 2> slave_normal(const std::vector<std::pair<int, int>>& facets, const Poi
   return n;
 }
 
-/// Turns the frame of a point half-way to its slave side: n becomes the bisector of the master normal and the reversed
-/// slave normal. `outward`: the slave normal, of any length. Why: with contact geometry fixed at the start, the tangent
-/// plane that the two surfaces are about to share is known only up to the angle between them. The bisector is right to
-/// second order in that angle and treats both bodies alike. The master normal of a curved pair would turn part of the
-/// closing motion into slip: of two cylinders at b/R = 0.085, 3/4 of the slip that friction is to see. The gap is left
-/// to the caller: it is that of slave and master place along the new normal.
+/// Sets the normal to the bisector of the master normal and the reversed slave normal, and the tangents to match.
+/// `slave_normal`: outward, of any length. The gap is left to the caller: it is the distance between slave node and
+/// master point along the new normal.
+///
+/// Why: geometry is fixed at the start, and the common tangent plane of the closed contact is known only up to the
+/// angle between the two surfaces. The bisector is right to second order in that angle and treats both bodies alike.
+/// The master normal alone would count part of the closing motion as slip. Example: two cylinders with the ratio of
+/// contact width to radius b/R = 0.085, where that part is 3/4 of the slip.
 template <class T>
 void share_normal(PointGeometry<T>& geometry, const Vec<T, 2>& slave_normal) {
   const T length = norm(slave_normal);

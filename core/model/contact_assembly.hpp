@@ -1,7 +1,7 @@
-/// Contact points of a model: their local unknowns, nodal forces, multiplier rows and tangents.
+/// Contact evaluation of a whole model: local unknowns of its contact points, nodal forces, multiplier rows, history.
 ///
-/// Displacements enter, and forces leave, as compact vectors over Model::contact_nodes (D per node). The multiplier
-/// lambda is an argument: the methods differ only in who supplies it.
+/// Displacements are arguments and forces are results, both as compact vectors over Model::contact_nodes (D per node).
+/// The multiplier lambda is an argument too: the methods differ only in what they pass for it.
 #pragma once
 
 #include "core/model/frames.hpp"
@@ -9,7 +9,8 @@
 
 namespace stickslip {
 
-/// What history begins with: no slip, no work; where geometry is the present one, the feet of the points at the start.
+/// History before the first increment: zero slip and work. Where the present geometry is used, it holds the initial
+/// feet.
 template <class T>
 History<T> initial_history(const Model& model, const Slots<T>& slots) {
   const auto zeros = [](std::size_t n) { return Vector<T>::Constant(static_cast<Eigen::Index>(n), T(0)).eval(); };
@@ -21,8 +22,8 @@ History<T> initial_history(const Model& model, const Slots<T>& slots) {
     if (point.curve >= 0 && !history.patch.empty()) history.patch[p] = point.facing.patch;
     if (point.foot < 0) continue;
     if (point.curve >= 0 && point.facing.patch == Patch::none) continue;
-    if (!point.pieces.empty()) {
-      const auto foot = detail::pieces_of_start(model, point, slots).foot;
+    if (!point.segments.empty()) {
+      const auto foot = detail::initial_kinematics(model, point, slots).foot;
       history.foot.segment(point.foot, point.curve >= 0 ? 1 : 2) = foot.head(point.curve >= 0 ? 1 : 2);
       continue;
     }
@@ -32,12 +33,12 @@ History<T> initial_history(const Model& model, const Slots<T>& slots) {
     }
     const Vector<T> at = slots.points.col(point.nodes[0]);
     history.foot.segment(point.foot, model.dimension) =
-        detail::foot_on<T>(model.scene.obstacles[point.obstacle], at, slots.numbers);
+        detail::obstacle_foot<T>(model.scene.obstacles[point.obstacle], at, slots.numbers);
   }
   return history;
 }
 
-/// State before the first increment: nothing has moved, no traction.
+/// State before the first increment: zero displacements and tractions, all points open.
 template <class T>
 State<T> initial_state(const Model& model, const Slots<T>& slots) {
   State<T> state;
@@ -57,7 +58,7 @@ State<T> initial_state(const Model& model, const Slots<T>& slots) {
 
 namespace detail {
 
-/// Calls f.template operator()<D, Tangents>() for a point.
+/// Result of f.template operator()<D, Tangents>() with the dimension and the tangents of a point.
 template <class F>
 decltype(auto) with_point(const Model& model, const ContactPoint& point, F&& f) {
   return with_dimension(model.dimension, [&]<int D>() {
@@ -65,7 +66,7 @@ decltype(auto) with_point(const Model& model, const ContactPoint& point, F&& f) 
   });
 }
 
-/// Rigid displacement of the obstacle of a point, at the place that the point faces.
+/// Displacement, D, of the obstacle of point p at the initial foot; zero without an obstacle. Linear in the angle.
 template <class T, int D>
 Vec<T, D> obstacle_displacement(const ContactInput<T>& input, int p) {
   const auto& point = input.model.points[p];
@@ -80,6 +81,7 @@ Vec<T, D> obstacle_displacement(const ContactInput<T>& input, int p) {
   return u;
 }
 
+/// Traction of one point. `field`: laid out as multipliers; `offset`: ContactPoint::multiplier.
 template <class T, int Tangents>
 Traction<T, Tangents> gather_traction(const Vector<T>& field, int offset) {
   Traction<T, Tangents> t;
@@ -88,7 +90,7 @@ Traction<T, Tangents> gather_traction(const Vector<T>& field, int offset) {
   return t;
 }
 
-/// Relative displacement w of a point from compact displacements.
+/// Relative displacement w, D, of point p with initial geometry. `compact`: displacements of the contact nodes.
 template <class T, int D>
 Vec<T, D> relative_displacement(const ContactInput<T>& input, int p, const Vector<T>& compact) {
   const auto& point = input.model.points[p];
@@ -98,6 +100,7 @@ Vec<T, D> relative_displacement(const ContactInput<T>& input, int p, const Vecto
   return w;
 }
 
+/// Tangential placement s of point p after the last increment, length.
 template <class T, int Tangents>
 Vec<T, Tangents> previous_placement(const ContactInput<T>& input, int p) {
   Vec<T, Tangents> s;
@@ -105,7 +108,7 @@ Vec<T, Tangents> previous_placement(const ContactInput<T>& input, int p) {
   return s;
 }
 
-/// The geometry of a point with the scalar U built on T.
+/// The same geometry in the scalar U built on T, without weights.
 template <class U, class T>
 PointGeometry<U> promote(const PointGeometry<T>& g) {
   PointGeometry<U> out;
@@ -117,60 +120,63 @@ PointGeometry<U> promote(const PointGeometry<T>& g) {
   return out;
 }
 
-/// tie_length() of a point at compact displacements.
+/// Gap of point p, length, up to which it counts as zero: tie_length() at compact displacements.
 template <class T>
 double tie_at(const ContactInput<T>& input, int p, const Vector<T>& compact) {
   const auto& point = input.model.points[p];
   const int D = input.model.dimension;
-  double reach = 0;
+  double largest = 0;
   for (int place : point.places)
-    for (int i = 0; i < D; ++i) reach = std::max(reach, std::abs(value(compact[place * D + i])));
-  // (present places round as coordinates do, wherever they began)
-  if (input.model.effects.current_geometry) return point.tie_length + 8 * unit_roundoff * reach;
-  return tie_length(point, input.slots.geometry[p], reach);
+    for (int i = 0; i < D; ++i) largest = std::max(largest, std::abs(value(compact[place * D + i])));
+  // (present positions round as coordinates do, also where the initial gap is exactly zero)
+  if (input.model.effects.current_geometry) return point.tie_length + 8 * unit_roundoff * largest;
+  return tie_length(point, input.slots.geometry[p], largest);
 }
 
-/// A point where it is now. `facing`: what of a curve is faced; `moved(place)`: displacement of a contact node, in the
-/// scalar U built on T.
-template <class U, class T, int D, class Moved>
-MovedPoint<U, D> present_point(const ContactInput<T>& input, int p, const Facing* facing, Moved&& moved) {
+/// Present geometry of point p. `facing`: what it faces of its curve, not read against an obstacle;
+/// `displacement(place)`: of the contact node Model::contact_nodes[place], in the scalar U built on T.
+template <class U, class T, int D, class Displacement>
+MovedPoint<U, D> present_point(const ContactInput<T>& input, int p, const Facing* facing, Displacement&& displacement) {
   const auto& point = input.model.points[p];
   if constexpr (D == 2)
-    if (!point.pieces.empty()) return moved_on_pieces<U, T>(input, p, facing, moved);
+    if (!point.segments.empty()) return moved_on_segments<U, T>(input, p, facing, displacement);
   if constexpr (D == 2)
-    if (point.curve >= 0) return moved_on_curve<U, T>(input, p, *facing, moved);
-  return moved_point<U, T, D>(input, p, moved(point.places[0]));
+    if (point.curve >= 0) return moved_on_curve<U, T>(input, p, *facing, displacement);
+  return moved_point<U, T, D>(input, p, displacement(point.places[0]));
 }
 
-/// Takes a point where it is now to its traction. Where it faces nothing it is open.
+/// Outcome of a point with present geometry `at`. If it faces no master, it is open.
 template <class U, class T, int D, int Tangents>
-PointOutcome<U, Tangents> outcome_of(const ContactInput<T>& input, const MovedPoint<U, D>& at,
-                                     const Traction<U, Tangents>& multiplier, const Vec<U, Tangents>& previous,
-                                     const PointRegularisation<U>& rho, const FrictionLaw<U>& friction,
-                                     double tie_length, const ContactState* state) {
+PointOutcome<U, Tangents> point_outcome(const ContactInput<T>& input, const MovedPoint<U, D>& at,
+                                        const Traction<U, Tangents>& multiplier, const Vec<U, Tangents>& previous,
+                                        const PointRegularisation<U>& rho, const FrictionLaw<U>& friction,
+                                        double tie_length, const ContactState* state) {
   constexpr ContactState open = ContactState::open;
-  return evaluate_moved_point<U, D, Tangents>(at.geometry, at.foot, at.way, multiplier, previous, rho, friction,
-                                              input.cone, tie_length, at.faces ? state : &open);
+  return evaluate_moved_point<U, D, Tangents>(at.geometry, at.foot, at.foot_motion, multiplier, previous, rho, friction,
+                                              input.cone, tie_length, at.faces_master ? state : &open);
 }
 
-/// Evaluates a point where it is now, which sets `geometry`.
+/// Outcome of point p with its present geometry, which is stored in `geometry`.
 template <class T, int D, int Tangents>
 PointOutcome<T, Tangents> evaluate_present(const ContactInput<T>& input, int p, const Vector<T>& compact,
                                            const Facing* facing, const Traction<T, Tangents>& multiplier,
                                            const ContactState* state, PointGeometry<T>& geometry) {
   auto at = present_point<T, T, D>(input, p, facing,
                                    [&](int place) -> Vec<T, D> { return compact.template segment<D>(place * D); });
-  const auto outcome = outcome_of<T, T, D, Tangents>(input, at, multiplier, previous_placement<T, Tangents>(input, p),
-                                                     input.rho[p], input.slots.friction[input.model.points[p].contact],
-                                                     tie_at<T>(input, p, compact), state);
+  const auto outcome = point_outcome<T, T, D, Tangents>(
+      input, at, multiplier, previous_placement<T, Tangents>(input, p), input.rho[p],
+      input.slots.friction[input.model.points[p].contact], tie_at<T>(input, p, compact), state);
   geometry = std::move(at.geometry);
   return outcome;
 }
 
 }  // namespace detail
 
-/// Local unknowns of all points. `compact`: displacements of the contact nodes; `multiplier`: lambda; `states`: the
-/// branches to take, or nullptr to classify.
+/// Local unknowns of all points.
+///
+///   compact     displacements of the contact nodes, D per node, length
+///   multiplier  lambda, force per area, laid out by ContactPoint::multiplier
+///   states      branch of the projection per point; nullptr: each point is classified by its trial traction
 template <class T>
 ContactField<T> evaluate_contact(const ContactInput<T>& input, const Vector<T>& compact, const Vector<T>& multiplier,
                                  const std::vector<ContactState>* states) {
@@ -215,7 +221,8 @@ ContactField<T> evaluate_contact(const ContactInput<T>& input, const Vector<T>& 
   return field;
 }
 
-/// Nodal contact forces of the residual, compact, of the tractions of a field.
+/// Nodal contact forces of the residual, compact (D per contact node), force. They follow from the tractions of
+/// `field`.
 template <class T>
 Vector<T> contact_forces(const Model& model, const Slots<T>& slots, const ContactField<T>& field) {
   const int D = model.dimension;
@@ -234,7 +241,7 @@ Vector<T> contact_forces(const Model& model, const Slots<T>& slots, const Contac
   return forces;
 }
 
-/// Multiplier rows of the monolithic method, A (t - lambda) per component (force).
+/// Multiplier rows of the monolithic method: A (t - lambda) per component, force. A is the initial area.
 template <class T>
 Vector<T> multiplier_residual(const Model& model, const Slots<T>& slots, const Vector<T>& traction,
                               const Vector<T>& multiplier) {
@@ -247,11 +254,12 @@ Vector<T> multiplier_residual(const Model& model, const Slots<T>& slots, const V
   return rows;
 }
 
-/// Frictional work of the increment, added to that before, per contact: sum A t_T . plastic slip, where
-/// the elastic part (t - lambda)/rho of a regularised slip does no work that is lost.
+/// Frictional work per contact: `before` plus that of the increment, sum A t_T . (dg_T - (t_T - lambda_T)/rho_T) over
+/// slipping points. The subtracted part of a regularised slip is elastic and dissipates nothing. t_T has the direction
+/// of dg_T, so the work is positive or zero.
 template <class T>
-Vector<T> dissipated(const ContactInput<T>& input, const ContactField<T>& field, const Vector<T>& multiplier,
-                     const Vector<T>& before) {
+Vector<T> frictional_work(const ContactInput<T>& input, const ContactField<T>& field, const Vector<T>& multiplier,
+                          const Vector<T>& before) {
   Vector<T> work = before;
   for (std::size_t p = 0; p < input.model.points.size(); ++p) {
     const auto& point = input.model.points[p];
@@ -266,11 +274,11 @@ Vector<T> dissipated(const ContactInput<T>& input, const ContactField<T>& field,
   return work;
 }
 
-/// The history that an increment leaves at its contacts: takes placement and feet out of its field. `multiplier`:
-/// lambda. (That of the bodies is bulk_flow.)
+/// History of the contacts after an increment. Placement and feet are moved out of `field`. `multiplier`: lambda. The
+/// history of the bodies is bulk_flow().
 template <class T>
 History<T> next_history(const ContactInput<T>& input, ContactField<T>& field, const Vector<T>& multiplier) {
-  Vector<T> work = dissipated(input, field, multiplier, input.previous.work);
+  Vector<T> work = frictional_work(input, field, multiplier, input.previous.work);
   std::vector<int> patch;
   for (const auto& facing : field.facing) patch.push_back(facing.patch);
   return {std::move(field.placement), std::move(field.foot), std::move(work), {}, std::move(patch)};

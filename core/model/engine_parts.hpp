@@ -207,7 +207,8 @@ Matrix<T> solve_updated(const TangentUpdate& update, const Matrix<T>& b, Solving
 
 /// Whether some contact is segment-integrated.
 inline bool integrates(const Model& model) {
-  return std::any_of(model.points.begin(), model.points.end(), [](const auto& point) { return !point.pieces.empty(); });
+  return std::any_of(model.points.begin(), model.points.end(),
+                     [](const auto& point) { return !point.segments.empty(); });
 }
 
 /// Slip couples the normal into the tangential rows, and not the other way round: the tangent is unsymmetric. It is

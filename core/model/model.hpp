@@ -1,5 +1,5 @@
-/// Model: what a scene becomes once its meshes are made and its contact pairs are found. It holds everything that does
-/// not depend on a number (nodes, dofs, contact points, active effects); what does is in Slots<T>. Immutable.
+/// Model: a scene with its meshes made and its contact pairs found. It holds what does not depend on a number (nodes,
+/// dofs, contact points, active effects). What depends on numbers is in Slots<T>. Immutable.
 #pragma once
 
 #include <algorithm>
@@ -17,98 +17,100 @@
 
 namespace stickslip {
 
-/// A scene that cannot become a model; what() says why in the user's words, `pointer` which entry of the scene it is
-/// about, as a JSON pointer ("" where it is about none).
+/// Error of a scene that cannot become a model. what(): the reason in the user's words; `pointer`: JSON pointer of the
+/// entry of the scene, "" if it concerns none.
 struct ModelError : std::runtime_error {
   explicit ModelError(const std::string& message, std::string where = "")
       : std::runtime_error(message), pointer(std::move(where)) {}
   std::string pointer;
 };
 
-/// Mesh of a body with its place in the numbering of all nodes.
+/// Mesh of a body and its range in the numbering of all nodes.
 struct BodyMesh {
   Mesh mesh;
   int first_node = 0;
   Kinematics kinematics = Kinematics::plane;
-  int memory = 0;        ///< numbers that an element remembers, point by point
-  int first_memory = 0;  ///< where those of the body begin in History::bodies
+  int memory = 0;        ///< size of the memory of an element, over all of its quadrature points
+  int first_memory = 0;  ///< first entry of the body in History::bodies
 };
 
-/// A side of a body, or a rigid polyline, that points face by patches (core/contact/curve.hpp).
+/// A side of a body, or a rigid polyline, as a curve of patches (core/contact/curve.hpp).
 struct MasterCurve {
   int contact = 0;
-  int obstacle = -1;        ///< index in Scene::obstacles of a polyline; -1: of nodes
-  std::vector<int> nodes;   ///< of the vertices; empty for a polyline, whose vertices are its points
-  std::vector<int> places;  ///< of these in Model::contact_nodes
+  int obstacle = -1;        ///< index of the polyline in Scene::obstacles; -1: a side of a body
+  std::vector<int> nodes;   ///< per vertex: node; empty for a polyline
+  std::vector<int> places;  ///< index of these nodes in Model::contact_nodes
   int vertex_count = 0;
   std::vector<Patch> patches;
-  /// Where it is integrated over, piece by piece: the nodes of each patch, and those at which the side ends.
+  /// Segment-integrated contact: the two nodes of each patch, and the nodes at which the side ends.
   std::vector<std::vector<int>> facets = {};
   std::vector<int> ends = {};
   bool is_integrated() const { return !facets.empty(); }
 };
 
-/// One slave node and what it can touch. Fixed for small strain.
+/// One slave node and its master. At small strain it does not change.
 struct ContactPoint {
-  /// facet and vertex of a deformable side or a polyline; curve: patches, which points slide along at finite strain
-  enum class Master { obstacle, facet, vertex, pieces, curve };
+  /// Kind of master. facet, vertex: of a deformable side or a polyline; curve: patches of a MasterCurve; segments:
+  /// mortar segments.
+  enum class Master { obstacle, facet, vertex, segments, curve };
   Master master = Master::obstacle;
   int contact = 0;               ///< index in Scene::contacts
-  int obstacle = -1;             ///< index in Scene::obstacles, -1 for a deformable master
-  int curve = -1;                ///< index in Model::curves; -1: it faces none
-  Facing facing = {};            ///< the place of the curve that it faces at the start
-  OwnVertex own = {};            ///< of the curve, where its slave is its master
-  int foot = -1;                 ///< offset of its foot's place in History::foot; -1: it has none
-  std::vector<int> nodes;        ///< slave, then master nodes (facet: its two; vertex: itself, then the far ends of the
-                                 ///< facets at whose very end the projection lies; curve: of the patch of the start)
-  int slave_nodes = 1;           ///< how many of `nodes` are the slave's, the first; several if segment-integrated
-  std::vector<int> places;       ///< of `nodes` in Model::contact_nodes
+  int obstacle = -1;             ///< index in Scene::obstacles; -1: deformable master
+  int curve = -1;                ///< index in Model::curves; -1: its master is no curve
+  Facing facing = {};            ///< what it faces of the curve at the start
+  OwnVertex own = {};            ///< set if the slave side is its own master
+  int foot = -1;                 ///< offset of its foot in History::foot; -1: it has none
+  std::vector<int> nodes;        ///< slave nodes, then master nodes. facet: its two; vertex: itself, then the far ends
+                                 ///< of the facets whose end the projection is; curve: of the initial patch
+  int slave_nodes = 1;           ///< number of slave nodes in `nodes`; more than 1 if segment-integrated
+  std::vector<int> places;       ///< index of `nodes` in Model::contact_nodes
   std::vector<int> neighbours;   ///< vertex: the vertices before and after it, whose facets share the normal
   std::vector<int> of_polyline;  ///< points of the polyline: the facet's two, or the vertex between its neighbours
-  std::vector<std::pair<int, int>> area_facets;   ///< facets of the slave side at the node
-  std::vector<std::pair<int, int>> facet_places;  ///< the same in Model::contact_nodes, of a solid body's along a curve
-  std::vector<std::vector<int>> area_edges;  ///< sides of elements there, of which a share is tributary to the node
-  /// Segment-integrated: what the multiplier of nodes[0] acts on; at finite strain its whole facets, whose pieces are
-  /// found as they move (Facing)
-  std::vector<Piece> pieces;
-  bool area_of_bar = false;    ///< tributary area is the bar's cross-section; with no facets either: 1
+  std::vector<std::pair<int, int>> area_facets;  ///< facets of the slave side at the node
+  std::vector<std::pair<int, int>>
+      facet_places;  ///< the same as indices in Model::contact_nodes; for solid bodies along a curve
+  std::vector<std::vector<int>> area_edges;  ///< element edges at the node, a share of which is its tributary area
+  /// Segment-integrated contact: the segments that the multiplier of nodes[0] acts on. At finite strain: its whole
+  /// slave facets, whose present segments are Facing::pieces.
+  std::vector<Segment> segments;
+  bool area_of_bar = false;    ///< tributary area is the cross-section of the bar; else, without facets, 1
   bool shares_normal = false;  ///< deformable continua on both sides: the normal is the bisector of the two
   int slave_body = 0;
-  double mesh_size = 0;   ///< local size of the slave side, 0 for a lumped point
-  double tie_length = 0;  ///< an initial gap up to this may be rounding of the coordinates
+  double mesh_size = 0;   ///< mean length of the slave facets at the node; 0: no facets
+  double tie_length = 0;  ///< length up to which an initial gap may be rounding of the coordinates
   int multiplier = 0;     ///< offset of its components in the multiplier vector
   int tangents = 0;       ///< 0 (frictionless) or D - 1
   int components() const { return 1 + tangents; }
 };
 
-/// A dof whose displacement is prescribed, by supports[support] along an axis, or by its inclined direction where the
-/// axis is `inclined`; zero where support < 0 (the anchor of a spring that nobody moves).
+/// A prescribed dof. supports[support] prescribes it along an axis, or along its inclined direction if axis ==
+/// inclined. support < 0: prescribed as zero (the anchor of a spring that no support moves).
 struct Constraint {
   static constexpr char inclined = 'n';
   int dof = 0, support = -1;
   char axis = 'x';
 };
 
-/// A node that a support holds in an inclined direction. Its D dofs are not the axes but the vectors of a frame
-/// (Slots::frames): the prescribed directions, orthonormalised in this order, then those across them.
+/// A node with an inclined support. Its D dofs are components along a frame (Slots::frames) and not along the axes. The
+/// frame consists of the prescribed directions, orthonormalised in this order, and of those perpendicular to them.
 struct FramedNode {
   int node = 0;
-  int place = -1;                      ///< in Model::contact_nodes, or -1
+  int place = -1;                      ///< index in Model::contact_nodes, or -1
   std::vector<Constraint> prescribed;  ///< of dofs node D, node D + 1, ...
 };
 
-/// The physical effects that a scene calls for; what is off has no unknown, no storage and no code path.
+/// The physical effects of a scene. An effect that is off has no unknown, no storage and no code path.
 struct Effects {
   bool contact = false;
   bool friction = false;
-  bool coupled_friction = false;  ///< its bound depends on the pressure somewhere
+  bool coupled_friction = false;  ///< the bound of some contact depends on the pressure
   bool deformable_master = false;
-  bool smoothing = false;   ///< of some master's facets
-  bool plasticity = false;  ///< a body flows, and remembers
+  bool smoothing = false;   ///< some master has smooth patches
+  bool plasticity = false;  ///< some body has memory
   bool sensitivity = false;
   /// The internal forces are linear in the displacements: the tangent of the bodies is constant.
   bool linear_bulk = true;
-  bool current_geometry = false;  ///< gap, normal and slip are those of the points where they are now
+  bool current_geometry = false;  ///< gap, normal and slip have present geometry (finite strain)
 };
 
 /// Nodes and facets of a side expression, in the numbering of the model.
@@ -119,24 +121,24 @@ struct SideSet {
   std::vector<std::vector<int>> edges;  ///< Side::edges
 };
 
-/// The element behind an edge, in its body, and its corner at which the edge starts.
+/// The element of an edge, by its number in its body, and the corner at which the edge starts.
 struct ElementEdge {
   int element = 0, corner = 0;
 };
 
-/// A pressure that follows the side that it acts on, as at finite strain.
+/// A pressure that follows its side at finite strain.
 struct Follower {
   int load = 0;  ///< index in Scene::loads
   SideSet side = {};
-  std::vector<ElementEdge> backing = {};  ///< per edge of the side, whose thickness changes; empty where none does
+  std::vector<ElementEdge> backing = {};  ///< per edge: its element; empty if the thickness is constant
 };
 
-/// Where a response is taken that names a point: nodes and weights of the element that holds it (fixed: the point is
-/// convected with the shape parameters), or the nearest contact point.
+/// Place of a response that names a point: nodes and weights of the element that contains it, or the nearest contact
+/// point. The point moves with the shape parameters, so nodes and weights are constant.
 struct ResponsePlace {
   std::vector<std::pair<int, double>> nodes;
   int contact_point = -1;
-  std::vector<int> bodies = {};  ///< that hold the point; the nodes are of the first
+  std::vector<int> bodies = {};  ///< bodies that contain the point; `nodes` are of the first
 };
 
 /// Elements of each body.
@@ -160,50 +162,51 @@ struct Model {
   std::vector<int> contact_nodes;              ///< ascending; all nodes of all contact points
   std::vector<DesignVelocity> velocities;      ///< one per shape motion
   std::vector<ResponsePlace> response_places;  ///< per response
-  ElementLists at_reactions;                   ///< with a node of a side whose reaction is asked for; empty: none is
-  std::vector<double> times;                   ///< ends of the increments, breakpoints of every table included
+  ElementLists at_reactions;  ///< elements at sides whose reactions are responses; empty: no reaction is
+  std::vector<double> times;  ///< ends of the increments, including the breakpoints of all tables
   Effects effects;
 
-  Model();  // (these are defined once, in model.cpp, as those of Scene are)
+  Model();  // (defined in model.cpp, so that they are compiled once)
   Model(const Model&);
   Model(Model&&) noexcept;
   Model& operator=(const Model&);
   Model& operator=(Model&&) noexcept;
   ~Model();
 
-  /// Steps that a run asks for, or may take along a path.
+  /// Number of steps of a run; along a path the largest number.
   long most_steps() const { return scene.arc_length ? scene.arc_length->max : static_cast<long>(times.size()); }
   int dof_count() const { return dimension * node_count; }
-  /// Place of a contact node in `contact_nodes`.
+  /// Index of a node in `contact_nodes`. pre: it is a contact node.
   int place_of(int node) const {
     return static_cast<int>(std::lower_bound(contact_nodes.begin(), contact_nodes.end(), node) - contact_nodes.begin());
   }
-  /// Whether points face other places of their curves as they move.
+  /// Whether points slide along curves.
   bool slides_along_curves() const { return effects.current_geometry && !curves.empty(); }
   /// The nodes and facets of "body.side", "body.a & body.b", "body.a - body.b". Throws ModelError.
   SideSet side(const std::string& expression) const;
   int contact_index(const std::string& name) const;
-  /// Whether a contact has this name, or is one of its pairs.
+  /// Whether a contact has this name, or belongs to a group of this name.
   bool is_of_contact(int contact, const std::string& name) const {
     return scene.contacts[contact].name == name || scene.contacts[contact].group == name;
   }
-  /// Whether a node lies on the axis of revolution, to the rounding of the coordinates: it is held there.
+  /// Whether a node lies on the axis of revolution, to the rounding of the coordinates. Such a node is held on the
+  /// axis.
   bool is_on_axis(const Points<double>& points, int node) const;
 };
 
-/// What is wrong with a body in this space, apart from its mesh; "" if nothing.
+/// Fault of a body in this space, apart from its mesh; "": none.
 std::string space_fault(Space space, const Body& body);
-/// What is wrong with a pressure on a body, completing "BODY ..."; "" if nothing.
+/// Fault of a pressure on a body, in words that complete "BODY ..."; "": none.
 std::string pressure_fault(const Scene& scene, const Body& body);
-/// What is wrong with where its nodes lie in this space; "" if nothing. `points`: of the whole model.
+/// Fault of the positions of the nodes of a body in this space; "": none. `points`: of the whole model.
 std::string radius_fault(Space space, const Points<double>& points, const BodyMesh& body);
 
-/// Makes meshes, finds contact pairs, numbers the dofs. Throws ModelError where the scene makes no sense as a whole
-/// (what a single entry may hold was checked when it was read). `spent` gets the seconds of the contact search.
+/// Makes meshes, finds contact pairs and numbers dofs. Throws ModelError if entries of the scene contradict each other;
+/// each entry by itself was checked when it was read. `spent`: result, seconds of the contact search.
 Model make_model(const Scene& scene);
 Model make_model(const Scene& scene, Seconds& spent);
 
-/// "a.b - a.c" resolved on the meshes of a scene; used by make_model and by the scene reader's checks.
+/// Nodes and facets of a side expression such as "a.b - a.c" on the meshes of a scene. Throws ModelError.
 SideSet resolve_side(const Scene& scene, const std::vector<BodyMesh>& bodies, const std::string& expression);
 
 /// Index of a node in Model::framed, or -1.
@@ -213,13 +216,13 @@ inline int framed_index(const Model& model, int node) {
   return found == model.framed.end() || found->node != node ? -1 : static_cast<int>(found - model.framed.begin());
 }
 
-/// A node of what a point faces, or may come to face; of an obstacle the slave node itself.
+/// A node of the master that a point faces or may come to face; against an obstacle the slave node.
 inline int master_node(const Model& model, const ContactPoint& point) {
   if (point.curve < 0 || point.obstacle >= 0) return point.nodes.back();
   return model.curves[point.curve].nodes.front();
 }
 
-/// Calls f with the space dimension as a compile-time constant: f.template operator()<D>().
+/// Result of f.template operator()<D>() with the space dimension D.
 template <class F>
 decltype(auto) with_dimension(int dimension, F&& f) {
   return dimension == 3 ? f.template operator()<3>() : f.template operator()<2>();

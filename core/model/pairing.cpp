@@ -10,11 +10,12 @@
 #include "core/contact/search.hpp"
 #include "core/contact/segments.hpp"
 #include "core/mesh/sides.hpp"
-#include "core/model/faced_pieces.hpp"
+#include "core/model/segment_search.hpp"
 
 namespace stickslip {
 namespace {
 
+/// Vertices of a polyline, 2 x vertices, length.
 Eigen::Matrix2Xd vertices_of(const Polyline& polyline, const Numbers<double>& numbers) {
   Eigen::Matrix2Xd vertices(2, static_cast<Eigen::Index>(polyline.points.size()));
   for (Eigen::Index v = 0; v < vertices.cols(); ++v)
@@ -22,7 +23,7 @@ Eigen::Matrix2Xd vertices_of(const Polyline& polyline, const Numbers<double>& nu
   return vertices;
 }
 
-/// Reversed: those of a search have the solid on their left.
+/// Facets of a polyline as vertex pairs, the solid on their left. A polyline has it on its right, so they are reversed.
 std::vector<std::vector<int>> facets_of(const Polyline& polyline) {
   const int count = static_cast<int>(polyline.points.size());
   std::vector<std::vector<int>> facets;
@@ -30,7 +31,7 @@ std::vector<std::vector<int>> facets_of(const Polyline& polyline) {
   return facets;
 }
 
-/// Finds the facet or vertex of a polyline that a slave node faces; false where it lies past a free end.
+/// Sets the facet or vertex of a polyline that a slave node faces. False if the node lies past a free end.
 bool find_on_polyline(const Points<double>& points, const Polyline& polyline, const Numbers<double>& numbers,
                       ContactPoint& point) {
   const Points<double> vertices = vertices_of(polyline, numbers);
@@ -44,7 +45,7 @@ bool find_on_polyline(const Points<double>& points, const Polyline& polyline, co
   return true;
 }
 
-/// Finds the master of a slave node; false where it faces none.
+/// Sets the facet or vertex of a deformable master that a slave node faces. False if it faces none.
 bool find_master(const Points<double>& points, const SideSet& master, ContactPoint& point) {
   const Vec<double, 2> x = points.col(point.nodes[0]).head<2>();
   const auto closest = closest_point(points, master.facets, x);
@@ -52,7 +53,7 @@ bool find_master(const Points<double>& points, const SideSet& master, ContactPoi
   const auto& facet = master.facets[closest->facet];
   const Vec<double, 2> tau = points.col(facet[1]).head<2>() - points.col(facet[0]).head<2>();
   if (point.shares_normal && slave_normal(point.area_facets, points).dot(Vec<double, 2>(tau[1], -tau[0])) >= 0)
-    return false;  // looks the same way
+    return false;  // the facet does not oppose the slave side
   if (closest->second < 0) {
     point.master = ContactPoint::Master::facet;
     point.nodes.insert(point.nodes.end(), {facet[0], facet[1]});
@@ -70,8 +71,8 @@ bool find_master(const Points<double>& points, const SideSet& master, ContactPoi
   return true;
 }
 
-/// Finds what a slave node faces of its obstacle; false where it faces nothing. Throws ModelError where every place of
-/// it is as near as any other.
+/// Sets what a slave node faces of its obstacle. False if it faces nothing. Throws ModelError if all places of the
+/// obstacle are equally near.
 bool find_on_obstacle(const Points<double>& points, const Scene& scene, ContactPoint& point) {
   const Obstacle& obstacle = scene.obstacles[point.obstacle];
   const auto numbers = scene.as<double>();
@@ -89,19 +90,21 @@ int obstacle_index(const Scene& scene, const std::string& name) {
   return -1;
 }
 
-/// Local size of the slave side: mean length of the facets at the node.
+/// Mean length of the facets at a slave node; 0 without facets.
 double local_size(const Points<double>& points, const std::vector<std::pair<int, int>>& facets) {
   double size = 0;
   for (const auto& [a, b] : facets) size += (points.col(a) - points.col(b)).norm() / facets.size();
   return size;
 }
 
-/// What all points of a contact have in common.
+/// One contact while its points are made.
 struct Pairing {
-  int index, obstacle;  ///< in Scene::contacts, Scene::obstacles (-1: deformable master)
+  int index;     ///< in Scene::contacts
+  int obstacle;  ///< in Scene::obstacles; -1: deformable master
   SideSet slave, master;
 };
 
+/// Appends a point, numbers its multiplier and sets its effects.
 void add_point(Model& model, ContactPoint point) {
   model.effects.contact = true;
   model.effects.friction |= point.tangents > 0;
@@ -112,7 +115,7 @@ void add_point(Model& model, ContactPoint point) {
   model.points.push_back(std::move(point));
 }
 
-/// A point at a slave node, still without a master.
+/// Contact point of a slave node. The caller sets its master.
 ContactPoint slave_point(const Model& model, const Points<double>& points, const Pairing& pairing, int node) {
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
   ContactPoint point;
@@ -127,13 +130,13 @@ ContactPoint slave_point(const Model& model, const Points<double>& points, const
   point.area_of_bar = shape == ElementShape::bar2 && pairing.slave.nodes.size() == 1 && point.area_facets.empty();
   point.mesh_size = local_size(points, point.area_facets);
   point.tie_length = 8 * unit_roundoff * (point.mesh_size + points.col(node).cwiseAbs().maxCoeff());
-  // what is on the axis of revolution cannot slide
+  // a node on the axis of revolution cannot slide
   const bool slides = model.scene.contacts[pairing.index].friction && !model.is_on_axis(points, node);
   point.tangents = slides ? model.dimension - 1 : 0;
   return point;
 }
 
-/// Node-to-segment: each slave node against the closest point of its master.
+/// Node-to-segment contact: each slave node against the closest point of its master.
 void pair_nodes(Model& model, const Points<double>& points, const Pairing& pairing) {
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
   for (int node : pairing.slave.nodes) {
@@ -146,10 +149,11 @@ void pair_nodes(Model& model, const Points<double>& points, const Pairing& pairi
   }
 }
 
-/// The facets of a side that touches itself, or is integrated over, one behind the other; which place is its first
-/// hangs on no numbering: of a loop the furthest from its middle, of these the one furthest to the left, and below;
-/// longer loops come first.
-std::vector<std::vector<int>> in_order(const std::vector<std::vector<int>>& facets, const Points<double>& points) {
+/// The facets of a side in contact with itself, or of a segment-integrated one, in order along the side. The order does
+/// not depend on numbering. Longer chains of facets come first. A closed chain starts at the vertex farthest from its
+/// mean vertex; among equally far ones at the one with least x, then least y.
+std::vector<std::vector<int>> ordered_facets(const std::vector<std::vector<int>>& facets,
+                                             const Points<double>& points) {
   std::map<int, int> starting;
   std::set<int> ends;
   for (std::size_t f = 0; f < facets.size(); ++f) {
@@ -198,7 +202,7 @@ std::vector<std::vector<int>> in_order(const std::vector<std::vector<int>>& face
   return ordered;
 }
 
-/// The curve that a contact's master is, with the places of its vertices.
+/// Master curve of a contact, and the initial positions of its vertices, 2 x vertices.
 std::pair<MasterCurve, Eigen::Matrix2Xd> make_curve(const Model& model, const Points<double>& points,
                                                     const Pairing& pairing) {
   const Contact& contact = model.scene.contacts[pairing.index];
@@ -212,7 +216,7 @@ std::pair<MasterCurve, Eigen::Matrix2Xd> make_curve(const Model& model, const Po
     places = vertices_of(polyline, model.scene.as<double>());
     facets = facets_of(polyline);
   } else {
-    if (contact.is_of_itself() || contact.segment) facets = in_order(facets, points);
+    if (contact.is_of_itself() || contact.segment) facets = ordered_facets(facets, points);
     std::map<int, int> number;
     for (auto& facet : facets)
       for (int& node : facet) {
@@ -229,7 +233,8 @@ std::pair<MasterCurve, Eigen::Matrix2Xd> make_curve(const Model& model, const Po
   return {std::move(curve), std::move(places)};
 }
 
-/// Each slave node against the place of a curve that it faces; at finite strain also those that face none yet.
+/// Contact along a curve: each slave node against the place of the curve that it faces. At finite strain a node that
+/// faces nothing yet is a point too.
 void pair_along_curve(Model& model, const Points<double>& points, const Pairing& pairing) {
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
   auto [curve, places] = make_curve(model, points, pairing);
@@ -264,7 +269,7 @@ void pair_along_curve(Model& model, const Points<double>& points, const Pairing&
   model.curves.push_back(std::move(curve));
 }
 
-/// The curve that points are integrated over as they slide along it.
+/// Master curve of segment-integrated contact at finite strain.
 MasterCurve integrated_curve(const Model& model, const Points<double>& points, const Pairing& pairing) {
   MasterCurve curve = make_curve(model, points, pairing).first;
   for (const auto& patch : curve.patches) {
@@ -276,55 +281,56 @@ MasterCurve integrated_curve(const Model& model, const Points<double>& points, c
   return curve;
 }
 
-/// The pieces of the slave facets that each node's multiplier acts on; `whole`: all facets, as they are, which face
-/// what they come to face.
-std::map<int, std::vector<Piece>> pieces_of_nodes(const Points<double>& points, const Pairing& pairing, bool whole) {
+/// Segments that the multiplier of each slave node acts on. `whole`: one segment per whole slave facet, without a
+/// master, because what it faces is found later.
+std::map<int, std::vector<Segment>> segments_of_nodes(const Points<double>& points, const Pairing& pairing,
+                                                      bool whole) {
   const std::set<int> nodes(pairing.slave.nodes.begin(), pairing.slave.nodes.end());
   const auto carries = [&](int node) { return nodes.count(node) > 0; };
   const FacetSearch search(points, pairing.master.facets);
-  std::map<int, std::vector<Piece>> of_node;
+  std::map<int, std::vector<Segment>> of_node;
   for (const auto& facet : pairing.slave.facets) {
-    Piece whole_facet;
+    Segment whole_facet;
     whole_facet.slave = {facet[0], facet[1]};
-    const auto pieces = whole ? std::vector<Piece>{whole_facet} : search.facing(whole_facet.slave);
-    for (Piece piece : pieces)
+    const auto segments = whole ? std::vector<Segment>{whole_facet} : search.facing(whole_facet.slave);
+    for (Segment segment : segments)
       for (int end = 0; end < 2; ++end)
         if (carries(facet[end])) {
-          piece.carrier = end;
-          piece.whole = !carries(facet[1 - end]);
-          of_node[facet[end]].push_back(piece);
+          segment.carrier = end;
+          segment.sole_carrier = !carries(facet[1 - end]);
+          of_node[facet[end]].push_back(segment);
         }
   }
   return of_node;
 }
 
-/// Segment-integrated: the multiplier of each slave node on the pieces of its facets.
+/// Segment-integrated contact: the multiplier of each slave node on the segments of its facets.
 void pair_segments(Model& model, const Points<double>& points, const Pairing& pairing) {
   const bool slides = model.scene.finite_strain && pairing.obstacle < 0;
-  auto of_node = pieces_of_nodes(points, pairing, slides || pairing.obstacle >= 0);
+  auto of_node = segments_of_nodes(points, pairing, slides || pairing.obstacle >= 0);
   const int curve = slides ? static_cast<int>(model.curves.size()) : -1;
   if (slides) model.curves.push_back(integrated_curve(model, points, pairing));
   const std::size_t first = model.points.size();
   for (int node : pairing.slave.nodes) {
     if (of_node[node].empty()) continue;
     ContactPoint point = slave_point(model, points, pairing, node);
-    point.master = ContactPoint::Master::pieces;
+    point.master = ContactPoint::Master::segments;
     point.curve = curve;
-    point.pieces = of_node[node];
-    point.slave_nodes = static_cast<int>(nodes_of_pieces(node, point.pieces, {}).size());
-    point.nodes = nodes_of_pieces(node, point.pieces, point.pieces);
+    point.segments = of_node[node];
+    point.slave_nodes = static_cast<int>(nodes_of_segments(node, point.segments, {}).size());
+    point.nodes = nodes_of_segments(node, point.segments, point.segments);
     add_point(model, std::move(point));
   }
   if (!slides) return;
   std::vector<Facing> found(model.points.size());
-  find_pieces(model, curve, points, points, found);
+  find_segments(model, curve, points, points, found);
   for (std::size_t p = first; p < model.points.size(); ++p) {
     model.points[p].facing = found[p];
     model.points[p].nodes = found[p].nodes;
   }
 }
 
-/// Finds the points of one contact.
+/// Makes the points of the contact Scene::contacts[index].
 void pair_contact(Model& model, const Points<double>& points, int index) {
   const Contact& contact = model.scene.contacts[index];
   const std::string where = "/contacts/" + contact.name;

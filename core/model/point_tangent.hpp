@@ -1,24 +1,25 @@
-/// Tangents of contact points: dual numbers through the kernel that the residual is made of.
+/// Tangents of contact points, by dual numbers through the kernel of the residual.
 #pragma once
 
 #include "core/model/contact_assembly.hpp"
 
 namespace stickslip {
 
-/// Tangent of one point with respect to a displacement and to its scaled multiplier l = lambda / rho. The displacement
-/// is w, the relative one. Where the point faces an obstacle as that is now, it is that of the slave node, which turns
-/// normal and frame. Along a curve, or integrated where it is now, it is those of all `places` that the point depends
-/// on, node-major.
+/// Tangent of one point by displacements and by its scaled multiplier l = lambda / rho. The displacements are
+///
+///   initial geometry                        w, the relative displacement
+///   present geometry against an obstacle    that of the slave node, which also turns normal and tangents
+///   along a curve, or segment-integrated    those of all nodes in `places`, node-major
 template <class T>
 struct PointTangent {
-  Matrix<T> force_w, force_l;    ///< D x D, D x components; with `places`: a row, or a column, for each dof of these
-  Matrix<T> row_w, row_l;        ///< of A (t - lambda): components x D, components x components
-  std::vector<int> places = {};  ///< in Model::contact_nodes; empty: those of the weights
+  Matrix<T> force_w, force_l;    ///< force: D x D, D x components; with `places` D is the number of their dofs
+  Matrix<T> row_w, row_l;        ///< rows A (t - lambda): components x D, components x components
+  std::vector<int> places = {};  ///< indices in Model::contact_nodes; empty: those of the weights
 };
 
 namespace detail {
 
-/// lambda / rho as variables behind `first` others.
+/// The multiplier of a point, seeded by lambda / rho from direction `first` on.
 template <class Probe, class T, int Tangents>
 Traction<Probe, Tangents> seeded_multiplier(const ContactInput<T>& input, int p, const Vector<T>& multiplier,
                                             int first) {
@@ -33,7 +34,7 @@ Traction<Probe, Tangents> seeded_multiplier(const ContactInput<T>& input, int p,
   return seeded;
 }
 
-/// What of a point's input does not vary, in the scalar of its variables.
+/// Constant input of a point, in the dual scalar.
 template <class Probe, class T, int Tangents>
 struct FixedInput {
   FixedInput(const ContactInput<T>& input, int p)
@@ -48,12 +49,12 @@ struct FixedInput {
   Vec<Probe, Tangents> placement;
 };
 
-/// Displacements that are seeded at once, in front of the multipliers.
+/// Range of displacements seeded in one sweep, before the multipliers.
 struct Seeded {
   int first, count;
 };
 
-/// Rows of A (t - lambda) by the seeded displacements, and by multipliers.
+/// Sets the derivatives of the rows A (t - lambda) by the seeded displacements and by multipliers. `area`: A.
 template <class T, class Probe, int Tangents>
 void take_rows(const Traction<Probe, Tangents>& traction, const Traction<Probe, Tangents>& lambda, const T& area,
                Seeded seeded, PointTangent<T>& tangent) {
@@ -65,12 +66,12 @@ void take_rows(const Traction<Probe, Tangents>& traction, const Traction<Probe, 
   }
 }
 
-/// The places that the tangent of a point has columns for: first those that its forces are on, `faced` of them.
+/// Indices in Model::contact_nodes of the columns of a tangent. The first `faced` of them also have forces.
 template <class T>
 std::vector<int> places_of_tangent(const ContactInput<T>& input, int p, const Facing* facing, int& faced) {
   const auto& point = input.model.points[p];
   std::vector<int> places = {point.places[0]};
-  if (!point.pieces.empty()) {
+  if (!point.segments.empty()) {
     if (!facing) places = point.places;
     for (std::size_t n = 1; facing && n < facing->nodes.size(); ++n)
       places.push_back(input.model.place_of(facing->nodes[n]));
@@ -90,11 +91,11 @@ std::vector<int> places_of_tangent(const ContactInput<T>& input, int p, const Fa
   return places;
 }
 
-/// `facing`: what a point faces of its curve; nullptr against an obstacle, which a point is integrated over.
+/// Tangent by the displacements of all nodes. `facing`: what the point faces of its curve; nullptr against an obstacle.
 template <class T, int Tangents>
 PointTangent<T> tangent_by_places(const ContactInput<T>& input, int p, const Facing* facing, const Vector<T>& compact,
                                   const Vector<T>& multiplier, ContactState state) {
-  // (along a curve all at once: the slave, and four vertices each of this patch and of the last)
+  // (18 dofs in one sweep: the slave node and four vertices each of this patch and of the last)
   constexpr int C = 1 + Tangents, at_once = 18;
   using Probe = Dual<at_once + C, T>;
   PointTangent<T> tangent;
@@ -109,7 +110,7 @@ PointTangent<T> tangent_by_places(const ContactInput<T>& input, int p, const Fac
   const FixedInput<Probe, T, Tangents> fixed_input(input, p);
   for (int first = 0; first < count; first += at_once) {
     const Seeded seeded{first, std::min(at_once, count - first)};
-    const auto moved = [&](int place) {
+    const auto displacement = [&](int place) {
       const int k = 2 * static_cast<int>(std::find(places.begin(), places.end(), place) - places.begin()) - first;
       Vec<Probe, 2> u;
       for (int i = 0; i < 2; ++i) {
@@ -118,10 +119,10 @@ PointTangent<T> tangent_by_places(const ContactInput<T>& input, int p, const Fac
       }
       return u;
     };
-    const auto at = present_point<Probe, T, 2>(input, p, facing, moved);
+    const auto at = present_point<Probe, T, 2>(input, p, facing, displacement);
     const auto lambda = seeded_multiplier<Probe, T, Tangents>(input, p, multiplier, seeded.count);
-    const auto outcome = outcome_of<Probe, T, 2, Tangents>(input, at, lambda, fixed_input.placement, fixed_input.rho,
-                                                           fixed_input.friction, 0, &state);
+    const auto outcome = point_outcome<Probe, T, 2, Tangents>(input, at, lambda, fixed_input.placement, fixed_input.rho,
+                                                              fixed_input.friction, 0, &state);
     const Vec<Probe, 2> force = point_force<Probe, 2, Tangents>(at.geometry, outcome.traction);
     for (int n = 0; n < std::min(faced, static_cast<int>(at.geometry.weights.size())); ++n)
       for (int i = 0; i < 2; ++i) {
@@ -136,14 +137,14 @@ PointTangent<T> tangent_by_places(const ContactInput<T>& input, int p, const Fac
 
 }  // namespace detail
 
-/// `facing`: what the points face of their curves; unread where none slides along one.
+/// Tangent of point p in the branch `state`. `facing`: per point; not read if no point slides along a curve.
 template <class T>
 PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<T>& compact,
                               const Vector<T>& multiplier, ContactState state, const std::vector<Facing>& facing = {}) {
   const auto& point = input.model.points[p];
   return detail::with_point(input.model, point, [&]<int D, int Tangents>() {
     if constexpr (D == 2)
-      if ((point.curve >= 0 || !point.pieces.empty()) && input.model.effects.current_geometry)
+      if ((point.curve >= 0 || !point.segments.empty()) && input.model.effects.current_geometry)
         return detail::tangent_by_places<T, Tangents>(input, p, point.curve >= 0 ? &facing[p] : nullptr, compact,
                                                       multiplier, state);
     constexpr int C = 1 + Tangents;
@@ -162,8 +163,8 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
     PointGeometry<Probe> geometry;
     if (present) {
       auto at = detail::moved_point<Probe, T, D>(input, p, w);
-      outcome = detail::outcome_of<Probe, T, D, Tangents>(input, at, lambda, fixed_input.placement, fixed_input.rho,
-                                                          fixed_input.friction, 0, &state);
+      outcome = detail::point_outcome<Probe, T, D, Tangents>(input, at, lambda, fixed_input.placement, fixed_input.rho,
+                                                             fixed_input.friction, 0, &state);
       geometry = std::move(at.geometry);
     } else {
       geometry = detail::promote<Probe>(input.slots.geometry[p]);

@@ -1,6 +1,6 @@
-/// Slots: every number a residual reads, in the scalar T: nodal coordinates, material numbers, initial contact
-/// geometry, friction, loads. double for the solver, Dual<N> for dslots/dparameters (the pseudo-loads), complex for the
-/// oracle.
+/// Slots: every number that a residual reads, in the scalar T: nodal coordinates, material numbers, initial contact
+/// geometry, friction, loads. T is double in the solver, Dual<N> for derivatives by parameters (pseudo-loads), complex
+/// in the oracle.
 #pragma once
 
 #include <functional>
@@ -21,7 +21,7 @@
 
 namespace stickslip {
 
-/// Nodal forces of a load at history = 1, of the dofs on which it acts.
+/// Nodal forces of a load at history = 1, on the dofs on which it acts.
 template <class T>
 struct NodalLoad {
   std::vector<int> dofs;  ///< ascending
@@ -49,20 +49,20 @@ struct Slots {
   std::vector<Depth<T>> depths;            ///< per body
   std::vector<PointGeometry<T>> geometry;  ///< per contact point
   std::vector<T> stiffness;                ///< per contact point: local nodal stiffness k_i (force per length)
-  std::vector<FrictionLaw<T>> friction;    ///< per contact; unread where frictionless
+  std::vector<FrictionLaw<T>> friction;    ///< per contact; not read if frictionless
   std::vector<NodalLoad<T>> loads;         ///< per load
-  std::vector<Matrix<T>> frames;           ///< per framed node: its frame, one vector a column
-  std::vector<Vector<T>> spins;            ///< per contact point: displacement of its obstacle there when it rotates by
-                                           ///< one degree; empty where no obstacle rotates
+  std::vector<Matrix<T>> frames;           ///< per framed node: D x D, frame vectors as columns
+  std::vector<Vector<T>> spins;            ///< per contact point: displacement of its obstacle per degree of rotation,
+                                           ///< length; empty: no obstacle rotates
 };
 
-/// Length up to which a point's gap may be rounding of the coordinates. Where its initial gap is exactly zero, it is
-/// rounding of displacements alone. Why: contacts that begin closed then have the same branches under every load,
-/// however small. `reach`: largest displacement of its nodes.
+/// Gap of a point, length, up to which it counts as zero. If the initial gap is not exactly zero: the rounding of the
+/// coordinates. If it is: the rounding of the displacements alone, so a contact that begins closed has the same
+/// branches under every load, however small. `largest_displacement`: of the point's nodes, length.
 template <class T>
-double tie_length(const ContactPoint& point, const PointGeometry<T>& geometry, double reach = 0) {
-  constexpr double terms = 256;  // that meet in a displacement, and some condition
-  return value(geometry.gap) == 0 ? terms * unit_roundoff * reach : point.tie_length;
+double tie_length(const ContactPoint& point, const PointGeometry<T>& geometry, double largest_displacement = 0) {
+  constexpr double terms = 256;  // terms summed in a displacement, times some condition number
+  return value(geometry.gap) == 0 ? terms * unit_roundoff * largest_displacement : point.tie_length;
 }
 
 namespace detail {
@@ -72,7 +72,7 @@ Vec<T, 2> point2(const Points<T>& points, int node) {
   return {points(0, node), points(1, node)};
 }
 
-/// The law of a body: of its material, or of bars of it.
+/// Law of a body: that of its material, or that of bars made of it.
 template <class T>
 Law<T> make_law(const Scene& scene, const Body& body, const Mesh& mesh, const Numbers<T>& numbers) {
   return std::visit(
@@ -91,7 +91,7 @@ Law<T> make_law(const Scene& scene, const Body& body, const Mesh& mesh, const Nu
       body.material);
 }
 
-/// Cross-section of bars.
+/// Cross-section of bars, area.
 template <class T>
 T area_of(const Law<T>& bars) {
   if (const auto* plastic = std::get_if<PlasticBarLaw<T>>(&bars)) return plastic->elastic.area;
@@ -111,17 +111,17 @@ T tributary_area(const ContactPoint& point, const Slots<T>& slots) {
   return area;
 }
 
-/// Area that a point has, whatever of it faces something. pre: geometry is not fixed at the start, or the point is not
+/// Initial area of a point, whether all of it faces the master or not. pre: present geometry, or the point is not
 /// segment-integrated.
 template <class T>
 T whole_area(const ContactPoint& point, const Slots<T>& slots) {
-  if (point.pieces.empty()) return tributary_area(point, slots);
+  if (point.segments.empty()) return tributary_area(point, slots);
   return area_of_facets<T>(
-      point.pieces, [&](int node) { return point2(slots.points, node); }, slots.depths[point.slave_body]);
+      point.segments, [&](int node) { return point2(slots.points, node); }, slots.depths[point.slave_body]);
 }
 
-/// Length at the start along an integrated curve, from where one facet begins to where another does; round a loop the
-/// shorter way.
+/// Initial arc length along an integrated curve from the beginning of facet `from` to that of facet `to`; negative
+/// backwards. On a closed curve: along the shorter way.
 template <class T>
 T length_between(const MasterCurve& curve, const Points<T>& points, int from, int to) {
   const int count = static_cast<int>(curve.facets.size());
@@ -135,11 +135,11 @@ T length_between(const MasterCurve& curve, const Points<T>& points, int from, in
   return from < to ? length : T(-length);
 }
 
-/// What a segment-integrated point faces. `facing`: unread where that is an obstacle; `at(node)`: where a node is, in
-/// the scalar U built on T; `numbers`: those of the scene in it.
+/// Kinematics of a segment-integrated point, in the scalar U built on T. `facing`: its segments, not read against an
+/// obstacle; `at(node)`: present position; `numbers`: of the scene.
 template <class U, class T, class At, class Read>
-FacedPieces<U> faced_pieces(const Model& model, const ContactPoint& point, const Slots<T>& slots, const Facing& facing,
-                            At&& at, const Read& numbers) {
+SegmentKinematics<U> integrated_kinematics(const Model& model, const ContactPoint& point, const Slots<T>& slots,
+                                           const Facing& facing, At&& at, const Read& numbers) {
   const bool along_curve = point.curve >= 0;
   const auto of_start = [&](int node) { return Vec<U, 2>(U(slots.points(0, node)), U(slots.points(1, node))); };
   const auto rigid_foot = [&](const Vec<U, 2>& x) {
@@ -147,7 +147,7 @@ FacedPieces<U> faced_pieces(const Model& model, const ContactPoint& point, const
     Foot<U> foot;
     for (int i = 0; i < 2; ++i) {
       foot.normal[i] = g.normal[i];
-      foot.place[i] = x[i] - g.gap * g.normal[i];
+      foot.position[i] = x[i] - g.gap * g.normal[i];
     }
     return foot;
   };
@@ -155,18 +155,19 @@ FacedPieces<U> faced_pieces(const Model& model, const ContactPoint& point, const
     return along_curve ? U(length_between(model.curves[point.curve], slots.points, facing.patch, facet)) : U(0);
   };
   const auto& depth = slots.depths[point.slave_body];
-  return face_pieces<U>(along_curve ? facing.pieces : point.pieces, along_curve ? facing.nodes : point.nodes, at,
-                        of_start, Depth<U>{depth.of_revolution, U(depth.thickness)}, rigid_foot, begin, !along_curve);
+  return segment_kinematics<U>(along_curve ? facing.pieces : point.segments, along_curve ? facing.nodes : point.nodes,
+                               at, of_start, Depth<U>{depth.of_revolution, U(depth.thickness)}, rigid_foot, begin,
+                               !along_curve);
 }
 
-/// What a segment-integrated point faces at the start. pre: it faces something.
+/// Kinematics of a segment-integrated point at the start. pre: it faces its master.
 template <class T>
-FacedPieces<T> pieces_of_start(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
+SegmentKinematics<T> initial_kinematics(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
   const auto at = [&](int node) { return point2(slots.points, node); };
-  return faced_pieces<T>(model, point, slots, point.facing, at, slots.numbers);
+  return integrated_kinematics<T>(model, point, slots, point.facing, at, slots.numbers);
 }
 
-/// Vertex of the polyline that a point faces, in the order of ContactPoint::of_polyline.
+/// Position of vertex k of ContactPoint::of_polyline.
 template <class T>
 Vec<T, 2> polyline_vertex(const Model& model, const ContactPoint& point, int k, const Numbers<T>& numbers) {
   const auto& x = std::get<Polyline>(model.scene.obstacles[point.obstacle].shape).points[point.of_polyline[k]];
@@ -181,7 +182,7 @@ PointGeometry<T> against_polyline(const Model& model, const ContactPoint& point,
   return against_vertex<T>(x, vertex(0), vertex(1), vertex(2));
 }
 
-/// The foot of a point on its curve at the start. pre: it faces a place of it.
+/// Foot of a point on its curve at the start. pre: it faces the curve.
 template <class T>
 CurveFoot<T> foot_of_start(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
   const auto& curve = model.curves[point.curve];
@@ -194,8 +195,8 @@ CurveFoot<T> foot_of_start(const Model& model, const ContactPoint& point, const 
   return foot_on_patch<T>(curve.patches[point.facing.patch], point.facing.xi, x, place);
 }
 
-/// Geometry of a point that faces nothing of its curve at the start: gap and normal are such that it neither presses
-/// nor weighs, its distance, and against its own side.
+/// Initial geometry of a point that faces nothing of its curve. The gap is its distance; the normal is opposite to the
+/// normal of its own side. So it transmits no force.
 template <class T>
 PointGeometry<T> facing_nothing(const ContactPoint& point, const Slots<T>& slots) {
   decltype(PointGeometry<T>::normal) normal(2);
@@ -208,7 +209,7 @@ PointGeometry<T> facing_nothing(const ContactPoint& point, const Slots<T>& slots
   return alone<T>(T(point.facing.distance), normal, point.slave_nodes);
 }
 
-/// Geometry against the place of a curve that a point faces at the start.
+/// Initial geometry of a point against its curve.
 template <class T>
 PointGeometry<T> against_curve(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
   if (point.facing.patch == Patch::none) return facing_nothing(point, slots);
@@ -222,8 +223,8 @@ PointGeometry<T> against_curve(const Model& model, const ContactPoint& point, co
   return geometry;
 }
 
-/// Displacement of the obstacle at the place that a point faces (the mean one, where it is segment-integrated) when it
-/// rotates by one degree; zero where it does not.
+/// Displacement of the obstacle at the initial foot of point p per degree of rotation, length; zero if it does not
+/// rotate. If the point is segment-integrated: at its mean foot.
 template <class T>
 Vector<T> spin(const Model& model, int p, const Slots<T>& slots) {
   const auto& point = model.points[p];
@@ -247,9 +248,9 @@ template <class T>
 PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
   const auto& numbers = slots.numbers;
   PointGeometry<T> geometry;
-  const bool integrated = point.master == ContactPoint::Master::pieces;
+  const bool integrated = point.master == ContactPoint::Master::segments;
   if (integrated && (point.curve < 0 || point.facing.patch != Patch::none)) {
-    geometry = pieces_of_start(model, point, slots).geometry;
+    geometry = initial_kinematics(model, point, slots).geometry;
   } else if (integrated) {
     geometry = facing_nothing(point, slots);
   } else if (point.master == ContactPoint::Master::curve) {
@@ -282,53 +283,54 @@ PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point,
 
 }  // namespace detail
 
-/// How bodies move in an increment: where to, and what they remember of the last one (History::bodies).
+/// Motion of the bodies in an increment: displacements at its end, and the bodies' memory at its start
+/// (History::bodies).
 template <class T>
 struct BodyMotion {
-  const Vector<T>& displacement;  ///< all dofs, in the axes
+  const Vector<T>& displacement;  ///< all dofs, along the axes
   const Vector<T>& last_memory;
-  double time = 0;  ///< at its end; of the pressures that follow it
+  double time = 0;  ///< at its end, for pressures that follow the sides
   const FlowBranches* branches = nullptr;
 };
 
-/// What bodies remember at displacements of all dofs, of what they did `before`; empty where none does.
+/// Memory of the bodies (History::bodies) at displacements of all dofs; empty if there is none. `before`: at the start
+/// of the increment.
 template <class T>
 Vector<T> bulk_flow(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& before,
                     const FlowBranches& branches = {});
 
-/// Internal nodal forces of all bodies, dof-wise. u: all dofs; `memory`: what they remember there. `only`: elements
-/// that are visited, per body; nullptr: all.
+/// Internal nodal forces of all bodies, all dofs. `u`: all dofs; `memory`: at u; `only`: elements to visit, per body;
+/// nullptr: all.
 template <class T>
 Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& memory,
                       const ElementLists* only = nullptr);
 
-/// Nodal forces of a load at history = 1, all dofs; zero of a pressure that follows its side.
+/// Nodal forces of a load at history = 1, all dofs; zero for a pressure that follows its side.
 template <class T>
 Vector<T> load_vector(const Model& model, const Load& load, const Slots<T>& slots);
 
-/// Takes the nodes of an element and its tangent, node-major. (No template parameter: the elements of all shapes and
-/// laws are compiled once a scalar, not once a caller.)
+/// Receives the nodes of an element and its tangent, node-major. It is a function and no template parameter, so that
+/// elements of all shapes and laws are compiled once per scalar, and not once per caller.
 template <class T>
 using ElementSink = std::function<void(const std::vector<int>& nodes, const Eigen::Ref<const Matrix<T>>& K)>;
 
-/// Calls sink(nodes, K) for each element of body b, or those listed in `only`. `at`: a motion, whose flow the tangent
-/// takes in (pre: T is a scalar that is solved in, double or complex); nullptr: of the start, as for bodies whose
-/// tangent is constant.
+/// Calls sink(nodes, K) for each element of body b, or for those in `only`. `at`: motion at which the tangent is taken,
+/// with its plastic flow (pre: T is double or complex); nullptr: tangent of the start, for bodies of constant tangent.
 template <class T>
 void for_each_element_tangent(const Model& model, const Slots<T>& slots, int b, const std::vector<int>* only,
                               const std::type_identity_t<ElementSink<T>>& sink, const BodyMotion<T>* at = nullptr);
 
-/// The bodies' tangent at a motion times a vector, all dofs. `only`: as of bulk_forces.
+/// The bodies' tangent at a motion times a vector, all dofs. `only`: as in bulk_forces().
 template <class T>
 Vector<T> bulk_tangent_times(const Model& model, const Slots<T>& slots, const BodyMotion<T>& at,
                              const Vector<T>& vector, const ElementLists* only = nullptr);
 
-/// Strain energy of all bodies at displacements of all dofs, and what they remember there.
+/// Strain energy of all bodies at displacements of all dofs with the memory there.
 template <class T>
 T bulk_energy(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& memory);
 
-/// How far the nearest point of the bodies is from beginning to flow, or ceasing to: least FlowTrial::margin of a
-/// motion. Infinity where no body flows.
+/// Least FlowTrial::margin of a motion: distance of the nearest material point from the change between elastic and
+/// plastic. Infinity if no body is plastic.
 double yield_margin(const Model& model, const Slots<double>& slots, const BodyMotion<double>& at);
 
 /// Stretch of the thickness of plane stress at finite strain, and its derivatives by the displacements of the nodes of

@@ -1,4 +1,4 @@
-/// State of a model at one time, and the trajectory of states that a run leaves: plain values in any scalar.
+/// State of a model at one time, and the trajectory of states of a run, in any scalar.
 #pragma once
 
 #include <optional>
@@ -13,39 +13,39 @@
 
 namespace stickslip {
 
-/// Local unknowns of all contact points. Normal quantities: one per point; tangential ones: `tangents` per point at
-/// tangential_offset(); tractions: 1 + tangents per point at ContactPoint::multiplier. Frictionless: nothing
-/// tangential.
+/// Local unknowns of all contact points. Normal quantities: one per point. Tangential quantities: `tangents` per point,
+/// from tangential_offset(). Tractions: 1 + tangents per point, from ContactPoint::multiplier. Frictionless points have
+/// no tangential quantities.
 template <class T>
 struct ContactField {
   std::vector<ContactState> state;
   Vector<T> gap;
-  Vector<T> placement;  ///< s, the slip since the start; empty in a State, whose history holds it
-  Vector<T> foot;       ///< places on obstacles, as History::foot; empty in a State likewise
-  Vector<T> slip;       ///< dg_T of this increment
-  Vector<T> traction;   ///< t; compression negative
-  /// Geometry of each point where it is now; empty where it stays that of the start (Slots::geometry).
+  Vector<T> placement;  ///< s, slip since the start, length; empty in a State, see History::placement
+  Vector<T> foot;       ///< as History::foot; empty in a State
+  Vector<T> slip;       ///< dg_T of this increment, length
+  Vector<T> traction;   ///< t, force per area; normal: compression negative
+  /// Present geometry of each point; empty at small strain, where Slots::geometry holds.
   std::vector<PointGeometry<T>> moved;
-  /// What each point faces of its curve; empty where no point slides along one.
+  /// What each point faces of its curve; empty if no point slides along a curve.
   std::vector<Facing> facing;
-  /// For derivatives alone (sensitivity/branches.hpp), laid out as traction: the direction in which the trial of a
-  /// slipping point leaves the apex of its cone. Zero for other points; empty where no point is at an apex.
+  /// For derivatives alone (sensitivity/rays.hpp), laid out as traction: direction in which the trial of a slipping
+  /// point leaves the apex of its cone. Zero for other points; empty if no point is at an apex.
   Vector<double> ray;
 };
 
-/// Geometry that a point has in a field.
+/// Geometry of point p in a field.
 template <class S, class T>
 const PointGeometry<T>& geometry_in(const ContactField<T>& field, const S& slots, std::size_t p) {
   return field.moved.empty() ? slots.geometry[p] : field.moved[p];
 }
 
-/// Area that the tractions of a point act on in a field, in the measure of the start.
+/// Initial area on which the traction of point p acts in a field.
 template <class S, class T>
 const T& area_in(const ContactField<T>& field, const S& slots, std::size_t p) {
   return geometry_in(field, slots, p).area;
 }
 
-/// Calls f(n, place) for each n: weights[n] of geometry_in() belongs to the node Model::contact_nodes[place].
+/// Calls f(n, place) for each n. weights[n] of geometry_in() belongs to the node Model::contact_nodes[place].
 template <class T, class F>
 void for_each_place(const Model& model, const ContactField<T>& field, std::size_t p, F&& f) {
   const auto& point = model.points[p];
@@ -75,19 +75,19 @@ std::vector<int> nodes_in(const Model& model, const ContactField<T>& field, std:
   return nodes;
 }
 
-/// Where the tangential quantities of point p stand (each earlier point has exactly one normal component).
+/// Offset of the tangential quantities of point p. Each earlier point has exactly one normal component.
 inline int tangential_offset(const Model& model, int p) { return model.points[p].multiplier - p; }
 
 template <class T>
 struct State {
   Vector<T> displacement;  ///< all dofs
-  Vector<T> multiplier;    ///< lambda as the increment's last equilibrium used it, laid out as traction
+  Vector<T> multiplier;    ///< lambda of the increment's last equilibrium, laid out as traction
   ContactField<T> contact;
-  History<T> history;      ///< for the next increment
-  FlowBranches flow = {};  ///< for derivatives alone: of points at a tie (sensitivity/flow_ties.hpp)
+  History<T> history;      ///< at the end of the increment
+  FlowBranches flow = {};  ///< for derivatives alone: branches of ties (sensitivity/flow_ties.hpp)
 };
 
-/// Uzawa: the equilibrium after one augmentation; kept only where the truncated sensitivity asks for it.
+/// Uzawa: equilibrium after one augmentation. Kept only for the truncated scheme.
 template <class T>
 struct AugmentedState {
   State<T> state;
@@ -97,27 +97,27 @@ struct AugmentedState {
 template <class T>
 struct Increment {
   double time = 0;
-  bool requested = true;  ///< an end of step the scene asked for; false: a sub-step from step cutting
+  bool requested = true;  ///< ends a step of the scene; false: a sub-step from step cutting
   Status status = Status::converged;
   std::string message;
   State<T> state;
-  std::vector<double> rho_factor;  ///< adaption of the regularisation, per contact point
+  std::vector<double> rho_factor;  ///< adaption of rho, per contact point
   int newton = 0, augmentations = 0, cutbacks = 0;
-  double pace = 0;         ///< largest motion of a node over the increment's time; 0 where all bodies are linear
+  double pace = 0;         ///< largest nodal motion over time of the increment; 0 if all bodies are linear
   double contraction = 0;  ///< Uzawa: last measured ratio of multiplier updates; 0 if not measured
   std::vector<IterationRecord> history;
   std::vector<AugmentedState<T>> augmented;
-  /// Some tangent of Newton's method had a determinant of the other sign (Engine::reversed): the increment may have
-  /// other solutions.
+  /// Some tangent of Newton's method had a determinant of the other sign (Engine::reversed). Then there may be other
+  /// solutions.
   bool reversed = false;
-  bool counted = false;  ///< all solutions of the increment were looked for
-  /// Solutions that were found and not taken. Their dissipation is that of the taken one.
+  bool counted = false;  ///< whether all solutions of the increment were sought
+  /// Other solutions. Their dissipation is that of the one taken.
   std::vector<State<T>> others;
-  /// Time at which the branch of solutions ended that led here, so that the solution jumped; none: it did not.
+  /// Time at which the solution jumped, because its branch ended; none: it did not jump.
   std::optional<double> jump;
-  /// max_augmentations ended the increment, as the scene asked (status cap). Each of its equilibria was found.
+  /// max_augmentations ended the increment (status cap). Each of its equilibria converged.
   bool cut_off = false;
-  /// Good enough to go on from.
+  /// Whether the run can continue from this increment.
   bool usable() const { return is_converged(status) || cut_off; }
 };
 
@@ -130,8 +130,8 @@ struct Trajectory {
   Counters counters;
   Seconds seconds;
   std::string engine;        ///< "sparse, MUMPS ..." or "condensed, ..."
-  int reduced_unknowns = 0;  ///< size of the systems Newton solved
-  /// Ends of all increments, sub-steps included: replaying them repeats the discrete path.
+  int reduced_unknowns = 0;  ///< number of unknowns of Newton's systems
+  /// Ends of all increments, sub-steps included. A run with these times repeats the discrete path.
   std::vector<double> step_table() const {
     std::vector<double> times;
     for (const auto& increment : increments) times.push_back(increment.time);

@@ -221,7 +221,7 @@ std::optional<Material> read_material(const JsonNode& node, const MeshDescriptio
   if (mesh && std::find(allowed.begin(), allowed.end(), name) == allowed.end())
     material.error_at_key(in_quotes(name) + " does not go with this mesh at " + (finite ? "finite" : "small") +
                           " strain; allowed: " + listed(allowed) + " (" + places + ")");
-  const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return name == k.key; });
+  const auto kind = std::find_if(kinds.begin(), kinds.end(), [&name = name](const auto& k) { return name == k.key; });
   return kind->read(material, reading);
 }
 

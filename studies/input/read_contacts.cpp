@@ -29,7 +29,7 @@ void read_obstacle(const std::string& name, const JsonNode& node, SceneReading& 
   obstacle.name = name;
   if (const auto move = node.find("move")) obstacle.move = reading.move(*move);
   if (const auto rotate = node.find("rotate")) obstacle.rotate = reading.rotation(*rotate);
-  const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return key == k.key; });
+  const auto kind = std::find_if(kinds.begin(), kinds.end(), [&key = key](const auto& k) { return key == k.key; });
   if (reading.dimension() == 3 && !kind->is_in_space) {
     shape.error_at_key("a " + key + " needs a plane space; allowed in the space solid: " + listed(in_space));
   } else {

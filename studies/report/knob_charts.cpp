@@ -192,7 +192,9 @@ std::optional<Figure> iterations_against_knob(const Study& study, const std::vec
   const json tips =
       tooltip({{"label", "method"}, {"option_value", "value of the option"}, {"count", "count"}, {"status", "status"}});
   for (const auto& [panel, unused] : counted_along_knobs) {
-    const auto along_the_knob = [&](const json& r) { return r["panel"] == panel && !r.value("unmarked", false); };
+    const auto along_the_knob = [&panel = panel](const json& r) {
+      return r["panel"] == panel && !r.value("unmarked", false);
+    };
     if (std::none_of(figure.rows.begin(), figure.rows.end(), along_the_knob)) continue;
     const json spec = curves(figure.title + ", " + panel, channel("option_value", knob_title(knobs), true),
                              channel("count", panel, true), tips);

@@ -204,7 +204,7 @@ void add_panels(Figure& figure) {
         std::tuple{std::string("tangential traction"), "tangential traction q", false},
         std::tuple{std::string("difference"), "difference / largest traction", true}}) {
     if (std::none_of(figure.rows.begin(), figure.rows.end(),
-                     [&](const json& r) { return r["panel"] == panel && r["value"] != 0; }))
+                     [&panel = panel](const json& r) { return r["panel"] == panel && r["value"] != 0; }))
       continue;
     const json spec = curves(figure.title + ": " + title, channel("s", "position along the interface", false),
                              channel("shown", title, logarithmic), tips);

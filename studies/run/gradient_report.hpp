@@ -1,4 +1,4 @@
-/// Derivatives of a scene held against differences, and what came out as JSON and in words.
+/// Comparison of the derivatives of a scene with differences, and its result as JSON and in words.
 #pragma once
 
 #include <functional>
@@ -10,8 +10,8 @@
 
 namespace stickslip {
 
-/// Checks every derivative of the scene; `progress(done, total)` is called after each run, and what it throws ends the
-/// check. Throws InputFault, which names the scene by `name`, where it has no parameters or no responses.
+/// Checks every derivative of the scene. `progress(done, total)` is called after each run; an exception from it ends
+/// the check. Throws InputFault, with `name` for the scene, if the scene has no parameters or no responses.
 GradientCheck check_gradients(const Simulation& simulation, const std::string& name,
                               const std::function<void(int, int)>& progress = {});
 
@@ -19,10 +19,10 @@ GradientCheck check_gradients(const Simulation& simulation, const std::string& n
 /// ...}]}.
 nlohmann::json check_json(const GradientCheck& check);
 
-/// How many runs it took, a line an entry, and what error and allowed are relative to.
+/// Text: number of runs, one line per entry, and the scales of `error` and `allowed`.
 std::string check_table(const GradientCheck& check);
 
-/// Why it did not pass, in one or two lines; "" where it did.
+/// Why the check did not pass, in one or two lines; "": it passed.
 std::string check_faults(const GradientCheck& check);
 
 }  // namespace stickslip

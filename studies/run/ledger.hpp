@@ -1,8 +1,8 @@
-/// The ledger of a run: what each effect of the scene added to it in unknowns, memory, counts and seconds.
+/// Ledger of a run: unknowns, memory, counts and seconds that each effect of the scene added.
 ///
-/// Amounts are taken where they arise: sizes of the arrays that are there, entries and bytes that the libraries tell,
-/// counts of what was done. What is off is looked up as what is on is; that it comes to nothing is a result. The same
-/// rows, told before a run from counts alone, are studies/run/ledger_forecast.hpp.
+/// Amounts are measured where they arise: sizes of arrays, entries and bytes that libraries report, counts of work. An
+/// effect that is off is measured like one that is on, so its zero is a result. The forecast of the same rows before a
+/// run is studies/run/ledger_forecast.hpp.
 #pragma once
 
 #include <limits>
@@ -14,14 +14,14 @@
 
 namespace stickslip {
 
-/// A number of a row. `spread`: of a forecast, the factor that it holds to; 1: exactly; 0: not known before the run.
+/// A number of a row. `spread`: factor by which a forecast may be wrong; 1: exact; 0: not known before the run.
 struct Amount {
   std::string name;
   double value = 0;
   double spread = 1;
 };
 
-/// Seconds of a row that the clock does not tell apart from those of others.
+/// Seconds of a row that are not measured separately from those of other rows.
 inline constexpr double not_apart = std::numeric_limits<double>::quiet_NaN();
 
 /// A row of the ledger.
@@ -29,7 +29,7 @@ struct LedgerRow {
   std::string effect;
   bool on = false;
   std::vector<Amount> unknowns;
-  std::vector<Amount> memory;  ///< bytes; of the output, those of its files
+  std::vector<Amount> memory;  ///< bytes; for the output, of its files
   std::vector<Amount> counts;
   double seconds = 0;
 };
@@ -50,11 +50,12 @@ nlohmann::json ledger_json(const Ledger& ledger);
 /// The same without seconds, which no two runs share.
 nlohmann::json repeatable_ledger_json(const Ledger& ledger);
 
-/// A line for each effect that is on, and one that names the others. "~": about; "?": not known before the run.
+/// One line per effect that is on, and one line with the names of the others. "~": about; "?": not known before the
+/// run.
 std::string ledger_table(const Ledger& ledger);
 /// "12 elements", "1 analysis"; of an amount that is not exact "~2.1e5 factor entries".
 std::string amount_in_words(const Amount& amount);
-/// What is on of a recorded ledger in one line: unknowns, memory, and seconds from a tenth on.
+/// One line of a recorded ledger with the effects that are on: unknowns, memory, and seconds from 0.1 on.
 std::string ledger_line(const nlohmann::json& ledger);
 
 }  // namespace stickslip

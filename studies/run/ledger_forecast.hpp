@@ -1,4 +1,4 @@
-/// The ledger of a run before it: from counts alone, each amount with the factor that it holds to.
+/// Forecast of the ledger of a run, from counts alone. Each amount has the factor by which it may be wrong.
 #pragma once
 
 #include "studies/input/scene_reader.hpp"
@@ -6,8 +6,8 @@
 
 namespace stickslip {
 
-/// Rows and names are those of ledger(). It supposes that no step is cut, that each increment has one solution, and
-/// that no more is written than `run SCENE` does. What hangs on the path is not known: `within` is 0.
+/// Rows and names are those of ledger(). Assumptions: no step is cut, each increment has one solution, and the output
+/// is that of `run SCENE`. An amount that depends on the path is not known; its spread is 0.
 Ledger forecast(const Input& input, const Problem& problem);
 
 }  // namespace stickslip

@@ -1,4 +1,4 @@
-/// What the ledger of a run and its forecast both look up in the model.
+/// Amounts that the ledger of a run and its forecast share.
 #pragma once
 
 #include "studies/run/ledger.hpp"
@@ -10,12 +10,12 @@ double mesh_bytes(const Model& model);
 /// Bytes of the contact points and of their slots.
 double point_bytes(const Model& model, const Slots<double>& slots);
 double element_count(const Model& model);
-/// What of the bodies is condensed: nothing, what can be of a mixed scene, or all.
+/// Which bodies are condensed: none, the condensable ones of a mixed scene, or all.
 enum class Condensed { nothing, part, all };
-/// Displacements in the systems that an engine solves.
+/// Number of displacements in the systems of an engine.
 double solved_displacements(const Model& model, Condensed condensed);
 
-/// Nodes of deformable masters, and bytes that the contact points keep of them: weight, node and its place.
+/// Number of nodes of deformable masters, and bytes that contact points store for them (weight, node, index).
 struct Masters {
   double nodes = 0, bytes = 0;
 };

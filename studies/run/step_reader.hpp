@@ -1,4 +1,4 @@
-/// What is read of a run's states while it goes, before it may let them go (methods/checkpoints.hpp).
+/// Reads the states of a run while they are whole, before the run may thin them (methods/checkpoints.hpp).
 #pragma once
 
 #include <optional>
@@ -9,11 +9,11 @@
 
 namespace stickslip {
 
-/// Of the state of a step.
+/// What is read of the state of a step.
 struct StepReading {
   Margins margins;
   Vector<double> responses;
-  std::vector<BodyMeasures> bodies;  ///< where the state may be let go; else empty
+  std::vector<BodyMeasures> bodies;  ///< empty unless the state may be thinned
 };
 
 class StepReader {
@@ -22,9 +22,9 @@ class StepReader {
   StepReader(const Problem& problem, const Method& method)
       : problem_(problem), accuracy_(problem.model, problem.slots, method) {}
 
-  /// Reads what has come since the last call. `lets_go`: the run may let states go.
+  /// Reads the increments since the last call. `lets_go`: the run may thin states.
   void follow(const Trajectory<double>& trajectory, bool lets_go);
-  /// Per increment; none of sub-steps.
+  /// Per increment; none for sub-steps.
   const std::vector<std::optional<StepReading>>& steps() const { return steps_; }
   const Accuracy& accuracy() const { return accuracy_.accuracy(); }
 

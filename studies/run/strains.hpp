@@ -1,4 +1,4 @@
-/// Strains and stresses of a solution, where a picture or a check wants them.
+/// Strains and stresses of a solution at quadrature points, for pictures and checks.
 #pragma once
 
 #include <Eigen/LU>
@@ -7,10 +7,11 @@
 
 namespace stickslip {
 
-/// Calls f(e, H, volume, memory) at each quadrature point of each element of body b; nothing where it is no continuum.
-/// H: displacement gradient (of mean dilatation the averaged one), 2 x 2, or 3 x 3 where a component out of the plane
-/// matters. `volume`: of a unit thickness.
-/// `memory`: what the point remembers; nullptr where it does not.
+/// Calls f(e, H, volume, memory) at each quadrature point of each element of body b; not for bodies that are no
+/// continuum.
+///
+///   H       displacement gradient (with mean dilatation the averaged one): 2 x 2, or 3 x 3 if out-of-plane components
+///   matter volume  of the point at unit thickness memory  of the point; nullptr: it has none
 template <class F>
 void for_each_strain(const Problem& problem, const State<double>& state, std::size_t b, F&& f) {
   const auto& body = problem.model.bodies[b];
@@ -32,7 +33,7 @@ void for_each_strain(const Problem& problem, const State<double>& state, std::si
   });
 }
 
-/// Stress of a displacement gradient at what its point remembers, xx yy zz xy; Cauchy's at finite strain.
+/// Stress (xx, yy, zz, xy) at a displacement gradient and the memory of its point; Cauchy stress at finite strain.
 template <int rows>
 std::array<double, 4> stress_of(const Law<double>& law, const Mat<double, rows>& H, const double* memory) {
   return std::visit(
@@ -61,7 +62,7 @@ std::array<double, 4> stress_of(const Law<double>& law, const Mat<double, rows>&
       law);
 }
 
-/// Stretch of the thickness at a displacement gradient in the plane, and what its point remembers.
+/// Stretch of the thickness at an in-plane displacement gradient and the memory of its point.
 inline double thickness_stretch(const Law<double>& law, const Mat<double, 2>& H, const double* memory) {
   return std::visit(
       [&]<class L>(const L& of) -> double {

@@ -1,6 +1,5 @@
-/// What a user should know of a result beside its status: effects that the scene leaves out and that its own solution
-/// shows to matter, discretisations that this solution is not to be trusted on, and steps that are not those that were
-/// asked for.
+/// Warnings of a result beside its status: effects that the scene leaves out although its solution shows that they
+/// matter, discretisations that are not reliable for this solution, and steps that differ from those asked for.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -16,16 +15,17 @@ namespace stickslip {
 ///   large_strain, large_rotation   above 5 % or 5 degrees in an element
 ///   large_sliding  slip of a closed point along a master that is deformable or curved, above half a slave element
 ///   idle_friction  none of the points of a contact with friction has slipped in any step
-///   held_on_facet  closed points beyond the end of their facet, at a vertex of which neither has an equilibrium
-///   cut_steps      with friction: steps that were taken in smaller ones, which is another discrete path
-///   locking        Q4 or T3, nu near 1/2: pressures that differ within and between elements as no smooth field does
-///   single_node    a side of several nodes one of which carries nearly all of the contact's force
-///   shared_place   a response at a point that several bodies hold, and that names none of them
-///   non_unique     a body that nothing holds and no load moves; increments with several solutions, or tangents of
-///                  problems of which some have several
-///   path_goes_on   a path by arc length used its steps up before it came to the full load
-///   branch_ends    where solutions were counted: the one that leads on from the last increment ceases to be
-/// Empty where nothing of it is found, and where nothing converged.
+///   held_on_facet  closed points beyond the end of their facet, at a vertex where neither facet has an equilibrium
+///   cut_steps      with friction: steps that were cut, which gives another discrete path
+///   locking        Q4 or T3, nu near 1/2: pressures that oscillate within and between elements
+///   single_node    a side of several nodes, one of which carries nearly all of the contact force
+///   shared_place   a response at a point that belongs to several bodies, and names none of them
+///   non_unique     a body that nothing holds and no load moves; increments with several solutions, or with tangents
+///   that
+///                  allow several
+///   path_goes_on   a path by arc length used up its steps before the full load
+///   branch_ends    where solutions were counted: the branch from the last increment ends
+/// Empty if there is none, or if nothing converged.
 std::vector<Warning> warnings_of(const CaseResult& result);
 
 BodyMeasures measures_of_body(const Problem& problem, const State<double>& state, std::size_t body);
@@ -33,13 +33,12 @@ BodyMeasures measures_of_body(const Problem& problem, const State<double>& state
 /// [{"code", "where", "value", "remedy", "text"}].
 nlohmann::json warnings_json(const CaseResult& result);
 
-/// A body that no support holds and no contact point touches: nothing determines where it is. nullptr where all are
-/// held.
+/// A body without supports and contact points, whose position is undetermined; nullptr: there is none.
 const Body* loose_body(const Model& model);
 
-/// What locking does to a body: the root mean square, over its volume, of the pressure that is left once the dilatation
-/// has been averaged over the elements around each node, relative to that of the stress. 0 where the body is no Q4
-/// without mean dilatation and no T3, or the space is plane stress.
+/// Measure of locking of a body: root mean square over its volume of the pressure that remains after the dilatation is
+/// averaged over the elements around each node, over that of the stress. 0 unless the body is of Q4 without mean
+/// dilatation or of T3; 0 in plane stress.
 double spurious_pressure(const Problem& problem, const State<double>& state, std::size_t body);
 
 }  // namespace stickslip

@@ -84,7 +84,7 @@ TEST(SelfContact, FacesTheOtherArmAndNotThroughTheWall) {
       const Facing across = faced(k, {0, 1}, {0, 0});
       ASSERT_NE(across.patch, Patch::none) << k;
       const auto place = [&](int vertex) -> Vec<double, 2> { return fold.places.col(vertex); };
-      const Vec<double, 2> foot = place_on<double>(fold.patches[across.patch], across.xi, place);
+      const Vec<double, 2> foot = curve_position<double>(fold.patches[across.patch], across.xi, place);
       EXPECT_NEAR(foot[1], 2.5, 1e-12);
       EXPECT_NEAR(foot[0], fold.places(0, k), 1e-9);
       EXPECT_EQ(faced(k, {0, 1}, {0, 1.7}).patch, across.patch) << "0.2 inside";

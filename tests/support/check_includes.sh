@@ -75,7 +75,7 @@ self_test() {
   done <<'CASES'
 core/algebra #include "core/mesh/mesh.hpp"
 core/mesh #include "core/model/model.hpp"
-core/solids #include "core/contact/friction.hpp"
+core/solids #include "core/contact/friction_cone.hpp"
 core/contact #  include "core/model/state.hpp"
 core/model #include "methods/options.hpp"
 core/model #include <nlohmann/json.hpp>

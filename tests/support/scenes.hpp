@@ -59,7 +59,7 @@ void shape(Scene& scene, const std::string& name, ShapeMotion motion);
 /// two_boxes whose sides move: the slave surface as a whole and node by node, and a side away from the contact.
 Scene shaped_boxes(int slave, int master, const std::string& element, bool segment);
 
-/// two_boxes with segment-integrated contact; `edge`, the right end of the slave, moves the pieces.
+/// two_boxes with segment-integrated contact; `edge`, the right end of the slave, moves the segments.
 Scene segment_boxes(int slave, int master, double mu = 0.3);
 
 /// Two half disks of radii 1 and `radius`, pressed by 0.04 and then moved sideways; `cells` along a quarter.

@@ -28,7 +28,7 @@ struct Ring {
   std::vector<Patch> patches(Smoothing smoothing, double corner = 180) const {
     return make_patches(facets, smoothing, corner, places);
   }
-  Place at(const Patch& patch, double xi) const { return place_on<double>(patch, xi, where()); }
+  Place at(const Patch& patch, double xi) const { return curve_position<double>(patch, xi, where()); }
   std::function<Place(int)> where() const {
     return [this](int v) -> Place { return places.col(v); };
   }
@@ -103,7 +103,7 @@ TEST(Curve, GoesStraightAtFreeEndsAndKeepsCorners) {
   for (const Smoothing kind : {Smoothing::catmull_rom, Smoothing::b_spline}) {
     for (const Patch& patch : make_patches(facets, kind, 60, square))  // straight sides stay as they are
       for (double xi : {0.0, 0.4, 1.0}) {
-        const Place at = place_on<double>(patch, xi, where);
+        const Place at = curve_position<double>(patch, xi, where);
         const Place a = square.col(patch.vertices[1]), b = square.col(patch.vertices[2]);
         EXPECT_NEAR(std::abs((at - a)[0] * (b - a)[1] - (at - a)[1] * (b - a)[0]), 0, 1e-15);
       }
@@ -128,7 +128,7 @@ TEST(Curve, FeetAreAtRightAnglesAndDifferentiateThroughTheirDefinition) {
         ASSERT_NE(facing.patch, Patch::none);
         const Patch& patch = patches[facing.patch];
         const auto foot = foot_on_patch<double>(patch, facing.xi, x, ring.where());
-        EXPECT_NEAR((x - foot.place - foot.gap * foot.normal).norm(), 0, 1e-14);
+        EXPECT_NEAR((x - foot.position - foot.gap * foot.normal).norm(), 0, 1e-14);
         EXPECT_NEAR(foot.gap, radius - 1, 0.1);
         // by x: dg = n . dx; complex step through two Newton steps against a difference of feet found anew
         for (int i : {0, 1}) {
@@ -140,7 +140,7 @@ TEST(Curve, FeetAreAtRightAnglesAndDifferentiateThroughTheirDefinition) {
           const auto xi_at = [&](double h) {
             Place y = x;
             y[i] += h;
-            return foot_on_patch<double>(patch, search.stay(facing.patch, y).xi, y, ring.where()).xi;
+            return foot_on_patch<double>(patch, search.foot_on(facing.patch, y).xi, y, ring.where()).xi;
           };
           EXPECT_NEAR(c.xi.imag() / step, (xi_at(1e-5) - xi_at(-1e-5)) / 2e-5, 1e-7);  // 1e-10 f''' and rounding
         }

@@ -71,7 +71,7 @@ double least_distance(const Sides& s, const Vec<double, 2>& x) {
 TEST(FacetSearch, FindsWhatAComparisonWithAllFacetsFinds) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(-2, 2);
-  std::size_t pieces = 0;
+  std::size_t segments = 0;
   for (int trial = 0; trial < 100; ++trial) {
     const Sides s = loop_in_ring(3 + trial, 5 + trial / 2, random);
     const FacetSearch search(s.points, s.master);
@@ -79,15 +79,15 @@ TEST(FacetSearch, FindsWhatAComparisonWithAllFacetsFinds) {
     for (const auto& facet : s.slave) {
       const std::array<int, 2> slave{facet[0], facet[1]};
       const auto found = search.facing(slave, ends);
-      EXPECT_EQ(found, facing_pieces(s.points, slave, s.master, ends)) << trial;
-      pieces += found.size();
+      EXPECT_EQ(found, facing_segments(s.points, slave, s.master, ends)) << trial;
+      segments += found.size();
     }
     for (int k = 0; k < 20; ++k) {
       const Vec<double, 2> x(uniform(random), uniform(random));
       EXPECT_EQ(search.distance(x), least_distance(s, x)) << trial;
     }
   }
-  EXPECT_GT(pieces, 5000u);
+  EXPECT_GT(segments, 5000u);
 }
 
 TEST(FacetSearch, ComparesPairsInProportionToTheFacets) {
@@ -95,7 +95,7 @@ TEST(FacetSearch, ComparesPairsInProportionToTheFacets) {
     const Sides s = waves(n);
     const FacetSearch search(s.points, s.master);
     std::size_t pairs = 0;
-    for (const auto& facet : s.slave) pairs += search.across({facet[0], facet[1]}).size();
+    for (const auto& facet : s.slave) pairs += search.candidates({facet[0], facet[1]}).size();
     EXPECT_GE(pairs, s.slave.size()) << n;
     // The strip across a slave facet leans by 2 : 1 at most, so that it meets the waves three times at most, and each
     // time three facets.

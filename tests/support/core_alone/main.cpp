@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "core/algebra/linear_solver.hpp"
-#include "core/contact/friction.hpp"
+#include "core/contact/friction_cone.hpp"
 
 int main() {
   using namespace stickslip;

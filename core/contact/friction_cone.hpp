@@ -1,13 +1,14 @@
-/// Unilateral contact with friction as one projection: the kernel that every method shares.
+/// Friction cone: unilateral contact with friction as one projection. Every method uses it, and no other.
 ///
 ///     trial  z = lambda + rho g        traction  t = P_mu(z)
 ///
-///   z = (z_N, z_T)   trial traction, force per area; compression is negative
+///   z = (z_N, z_T)   trial traction, force per area; z_N < 0: compression
 ///   open:  z_N > 0                    t = 0
 ///   stick: z_N <= 0, |z_T| <= bound   t = z
 ///   slip:  z_N <= 0, |z_T| >  bound   t_N = z_N,  t_T = bound z_T/|z_T|,     bound: core/contact/friction_law.hpp
 ///
-/// Not differentiable at z_N = 0 and at |z_T| = bound; there the branch that classify() names is differentiated.
+/// Signs: t_N <= 0. t_T has the direction of the slip dg_T, because it enters the residual R = f_int - f_ext + sum A t
+/// dg. Not differentiable at z_N = 0 and at |z_T| = bound; there the branch that classify() returns is differentiated.
 /// Source: [AC91], [SL92]; theory of the projection: core/README.md.
 #pragma once
 
@@ -15,18 +16,22 @@
 
 namespace stickslip {
 
-/// Normal part and tangential components in the frame of the point. Tangents = 0: frictionless.
+/// Normal traction and tangential components in the frame of a point, force per area. Tangents = 0: frictionless.
 template <class T, int Tangents>
 struct Traction {
   T normal{};
   Vec<T, Tangents> tangential = Vec<T, Tangents>::Zero();
 };
 
-/// Relative width of the band in which a tie is decided by rule and not by rounding.
+/// Share of the bound within which |z_T| counts as equal to it. Why: a rule and not rounding must decide a tie.
 inline constexpr double tie_band = 1e-12;
 
-/// The branch of a trial traction. `bound`: friction bound >= 0; `tie_normal`: z_N up to this counts as closed.
-/// Ties: a body that just rests is closed; a point on the cone sticks; a point whose bound is zero slips.
+/// Branch of a trial traction.
+///
+///   bound       friction bound >= 0, force per area
+///   tie_normal  z_N up to this counts as closed, force per area
+///
+/// Ties: z_N = 0 is closed; |z_T| = bound > 0 sticks; bound = 0 slips.
 template <class T, int Tangents>
 ContactState classify(const Traction<T, Tangents>& trial, double bound, double tie_normal) {
   if (value(trial.normal) > tie_normal) return ContactState::open;
@@ -35,7 +40,7 @@ ContactState classify(const Traction<T, Tangents>& trial, double bound, double t
   return ContactState::slip;
 }
 
-/// P_mu in the branch `state`. `bound` is the friction bound of a slipping point (not read otherwise).
+/// Traction P_mu(trial) in the branch `state`, force per area. `bound`: friction bound, read in slip only.
 template <class T, int Tangents>
 Traction<T, Tangents> project_onto_cone(const Traction<T, Tangents>& trial, const T& bound, ContactState state) {
   Traction<T, Tangents> t;
@@ -44,9 +49,9 @@ Traction<T, Tangents> project_onto_cone(const Traction<T, Tangents>& trial, cons
   if constexpr (Tangents > 0) {
     if (state == ContactState::stick) {
       t.tangential = trial.tangential;
-    } else if (values(trial.tangential).norm() > 0) {  // at the apex no direction exists, and no traction
-      const T length = norm(trial.tangential);
-      for (int a = 0; a < Tangents; ++a) t.tangential[a] = bound * trial.tangential[a] / length;
+    } else if (values(trial.tangential).norm() > 0) {  // z_T = 0 has no direction: t_T = 0
+      const T magnitude = norm(trial.tangential);
+      for (int a = 0; a < Tangents; ++a) t.tangential[a] = bound * trial.tangential[a] / magnitude;
     }
   }
   return t;

@@ -1,6 +1,6 @@
 /// The projection on the friction cone, with one and two tangents: what makes it a projection, ties, and the derivative
 /// of each branch.
-#include "core/contact/friction.hpp"
+#include "core/contact/friction_cone.hpp"
 
 #include <gtest/gtest.h>
 

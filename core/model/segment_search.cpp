@@ -1,0 +1,61 @@
+#include "core/model/segment_search.hpp"
+
+#include <map>
+
+#include "core/contact/facet_search.hpp"
+#include "core/contact/segments.hpp"
+
+namespace stickslip {
+namespace {
+
+/// Share of its area below which a point faces nothing. Why: a traction is force over area, and would grow without
+/// bound.
+constexpr double least_share = 0.01;
+
+auto position_in(const Points<double>& points) {
+  return [&points](int node) -> Vec<double, 2> { return points.col(node).head<2>(); };
+}
+
+/// Area of segments as a share of the area of the whole slave facets of their point.
+double area_share(const std::vector<Segment>& segments, const ContactPoint& point, const Points<double>& points,
+                  const Points<double>& positions) {
+  const auto nodes = nodes_of_segments(point.nodes[0], point.segments, segments);
+  const auto not_read = [](const Vec<double, 2>& x) { return detail::Foot<double>{x, x, {}}; };
+  const double area = integrate_segments<double>(segments, nodes, position_in(positions), position_in(points),
+                                                 Depth<double>{}, not_read, [](auto&&...) {})
+                          .area;
+  return area / area_of_facets<double>(point.segments, position_in(points), Depth<double>{});
+}
+
+}  // namespace
+
+void find_segments(const Model& model, int curve, const Points<double>& points, const Points<double>& positions,
+                   std::vector<Facing>& found) {
+  const auto& master = model.curves[curve];
+  const FacetSearch search(positions, master.facets);
+  std::map<std::array<int, 2>, std::vector<Segment>> of_facet;
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const auto& point = model.points[p];
+    if (point.curve != curve) continue;
+    Facing facing;
+    for (const Segment& facet : point.segments) {
+      const auto [entry, is_new] = of_facet.try_emplace(facet.slave);
+      if (is_new) entry->second = search.facing(facet.slave, master.ends);
+      for (Segment segment : entry->second) {
+        segment.carrier = facet.carrier;
+        segment.sole_carrier = facet.sole_carrier;
+        facing.pieces.push_back(segment);
+      }
+    }
+    if (!facing.pieces.empty() && !(area_share(facing.pieces, point, points, positions) >= least_share))
+      facing.pieces.clear();
+    if (facing.pieces.empty())
+      facing.distance = search.distance(positions.col(point.nodes[0]).head<2>());
+    else
+      facing.patch = facing.pieces.front().facet;
+    facing.nodes = nodes_of_segments(point.nodes[0], point.segments, facing.pieces);
+    found[p] = std::move(facing);
+  }
+}
+
+}  // namespace stickslip
