@@ -30,8 +30,6 @@ namespace stickslip {
 inline ConeRadius cone_radius(const UzawaAL& method) {
   return method.cone == UzawaAL::Cone::augmented ? ConeRadius::augmented : ConeRadius::multiplier;
 }
-/// Whether a converged solution penetrates nothing.
-constexpr bool prevents_penetration(const UzawaAL&) { return true; }
 /// Whether the motion of methods/motion.hpp stands in where an increment fails. A frozen cone is there to be studied as
 /// it is.
 inline bool is_globalised(const UzawaAL& method) { return method.cone == UzawaAL::Cone::augmented; }

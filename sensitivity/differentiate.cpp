@@ -36,14 +36,6 @@ Matrix<double> with_ties(const Model& model, const std::vector<ParameterBlock>& 
   return of;
 }
 
-/// Whether the tangents that a scheme solves with are those of the method's last iterations. (Truncated Uzawa solves
-/// with one for each augmentation.)
-template <class M>
-constexpr bool keeps_tangents(const M&) {
-  return true;
-}
-bool keeps_tangents(const UzawaAL& method) { return method.sensitivity == UzawaAL::Sensitivity::iterated; }
-
 /// Dofs outside the contact whose displacements responses read, ascending; nothing where all are read.
 std::optional<std::vector<int>> dofs_read_inside(const Model& model) {
   std::vector<char> read(model.node_count, false);
@@ -143,7 +135,7 @@ struct Derivatives::Progress {
     problem.follows = follows;
     const auto& increments = trajectory.increments;
     std::vector<PseudoLoad> loads;
-    if (!detail::is_truncated(m)) {  // (which has one for each augmentation)
+    if (!m.scheme().of_each_augmentation) {  // (which has one for each augmentation)
       for (std::size_t n = done; n < end; ++n)
         loads.push_back(pseudo_load(problem, increments[n].state, increments[n].time));
       reduce(problem, loads);
@@ -228,7 +220,7 @@ void Derivatives::follow(const Trajectory<double>& trajectory) {
   Progress& now = *progress_;
   const Stopwatch time(now.gradients.seconds);
   const bool worthwhile =
-      std::visit([](const auto& m) { return keeps_tangents(m); }, now.method) &&
+      scheme_of(now.method).keeps_tangents &&
       std::visit([](const auto& engine) { return has_costly_factors(engine); }, *now.workspace.engine);
   const auto& increments = trajectory.increments;
   for (std::size_t n = now.done; n < increments.size() && increments[n].usable(); ++n) {

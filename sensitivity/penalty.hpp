@@ -25,9 +25,6 @@ bool differentiate_increment(const Penalty& method, Differentiation<E>& problem,
   return true;
 }
 
-/// Whether what the adjoint goes back through depends on rho: yes, the penetration does.
-inline bool reads_regularisation(const Penalty&) { return true; }
-
 template <class E>
 bool pull_back_increment(const Penalty& method, AdjointProblem<E>& problem, const State<double>& previous,
                          const Increment<double>& increment) {

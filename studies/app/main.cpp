@@ -17,6 +17,7 @@
 #include "core/algebra/memory.hpp"
 #include "studies/app/commands.hpp"
 #include "studies/app/exit_codes.hpp"
+#include "studies/input/method_options.hpp"
 #include "studies/io/input_fault.hpp"
 #include "studies/io/printing.hpp"
 #include "studies/io/provenance.hpp"
@@ -56,7 +57,10 @@ void is_number(CLI::Option* option, const char* what) {
 
 void add_scene(CLI::App& command, RunArguments& arguments) {
   command.add_option("SCENE", arguments.scene, "scene file (JSON)")->required();
-  command.add_option("-m,--method", arguments.method, "penalty, uzawa_al or monolithic_al in place of the scene's");
+  std::string methods;
+  for (const auto names = method_names(); const auto& name : names)
+    methods += (methods.empty() ? "" : &name == &names.back() ? " or " : ", ") + name;
+  command.add_option("-m,--method", arguments.method, methods + " in place of the scene's");
   command.add_option("--set", arguments.overrides, "change a number of the scene; may be given again")
       ->type_name("POINTER=VALUE")
       ->expected(1)

@@ -332,7 +332,7 @@ std::optional<Method> read_method(const JsonNode& node, SceneReading& reading) {
         visit_options(chosen, Reader{options, reading});
         if (reading.diagnostics.error_count() > faults) return;
         if constexpr (std::is_same_v<M, UzawaAL>) check_oversize(options, chosen);
-        if (const auto [option, reason] = conflict(chosen); !option.empty())
+        if (const auto [option, reason] = chosen.conflict(); !option.empty())
           options.find(std::string(option))->error(std::string(reason));
       },
       method);
