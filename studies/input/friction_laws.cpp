@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "studies/input/described.hpp"
+
 namespace stickslip {
 namespace {
 
@@ -36,10 +38,11 @@ FrictionLaw<Number> read_law(const JsonNode& node, SceneReading& reading) {
       [&](const auto& number) { (number.is_required ? keys.required : keys.optional).push_back(number.key); });
   node.is_object(keys);
   for_each_description<Law>([&](const auto& number) {
+    const Rule rule = rule_of(number.range);
     if (number.is_required)
-      law.*number.member = reading.required(node, number.key, not_negative);
+      law.*number.member = reading.required(node, number.key, rule);
     else if (const auto given = node.find(number.key))
-      law.*number.member = reading.number(*given, not_negative);
+      law.*number.member = reading.number(*given, rule);
   });
   return law;
 }
@@ -49,12 +52,10 @@ Schema schema_of() {
   Schema required = Schema::array(), properties = Schema::object();
   for_each_description<Law>([&](const auto& number) {
     const std::string unit = number.unit == FrictionUnit::stress ? " (force per area)" : "";
-    const auto whole = static_cast<long>(number.example);
-    const Schema example = number.example == static_cast<double>(whole) ? Schema(whole) : Schema(number.example);
     if (number.is_required) required.push_back(number.key);
-    properties[number.key] = {{"description", number.description + unit},
-                              {"$ref", "#/$defs/not_negative"},
-                              {"examples", Schema::array({example})}};
+    Schema& own = properties[number.key] = {{"description", number.description + unit}};
+    own.update(schema_of(number.range));
+    own["examples"] = Schema::array({detail::as_json(number.example)});
   });
   return {{"type", "object"}, {"required", required}, {"additionalProperties", false}, {"properties", properties}};
 }
