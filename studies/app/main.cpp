@@ -58,8 +58,8 @@ void is_number(CLI::Option* option, const char* what) {
 void add_scene(CLI::App& command, RunArguments& arguments) {
   command.add_option("SCENE", arguments.scene, "scene file (JSON)")->required();
   std::string methods;
-  for (const auto names = method_names(); const auto& name : names)
-    methods += (methods.empty() ? "" : &name == &names.back() ? " or " : ", ") + name;
+  for (const auto& name : method_names())
+    methods += (methods.empty() ? "" : &name == &method_names().back() ? " or " : ", ") + name;
   command.add_option("-m,--method", arguments.method, methods + " in place of the scene's");
   command.add_option("--set", arguments.overrides, "change a number of the scene; may be given again")
       ->type_name("POINTER=VALUE")

@@ -63,14 +63,14 @@ Schema schema_of() {
 /// A law without its type.
 struct FrictionKind {
   const char* key;
-  std::string form;
-  Schema schema;
+  std::string (*form)();
+  Schema (*schema)();
   FrictionLaw<Number> (*read)(const JsonNode&, SceneReading&);
 };
 
 template <class... Law>
 std::vector<FrictionKind> friction_kinds_of(std::type_identity<std::variant<Law...>>) {
-  return {{key_of<Law>(), form_of<Law>(), schema_of<Law>(), read_law<Law>}...};
+  return {{key_of<Law>(), form_of<Law>, schema_of<Law>, read_law<Law>}...};
 }
 
 const std::vector<FrictionKind>& friction_kinds() {
@@ -81,7 +81,7 @@ const std::vector<FrictionKind>& friction_kinds() {
 /// a number >= 0, FORM, ... or FORM
 std::string all_forms() {
   std::string text = "a number >= 0";
-  for (const auto& kind : friction_kinds()) text += (&kind == &friction_kinds().back() ? " or " : ", ") + kind.form;
+  for (const auto& kind : friction_kinds()) text += (&kind == &friction_kinds().back() ? " or " : ", ") + kind.form();
   return text;
 }
 
@@ -100,7 +100,7 @@ FrictionLaw<Number> read_friction(const JsonNode& node, SceneReading& reading) {
 
 std::vector<Schema> friction_schemas() {
   std::vector<Schema> schemas;
-  for (const auto& kind : friction_kinds()) schemas.push_back(kind.schema);
+  for (const auto& kind : friction_kinds()) schemas.push_back(kind.schema());
   return schemas;
 }
 

@@ -90,7 +90,8 @@ std::optional<Material> read_spring(const JsonNode& node, SceneReading& reading)
   return spring;
 }
 
-constexpr const char* j2_schema = R"json({
+Schema j2_schema() {
+  return Schema::parse(R"json({
   "description": "elastoplastic, of all but points: J2 (von Mises) with isotropic hardening", "type": "object",
   "examples": [{"E": 1000, "nu": 0.3, "yield": 10, "hardening": 100}],
   "required": ["E", "nu", "hardening"], "if": {"properties": {"hardening": {"type": "number"}}},
@@ -103,37 +104,42 @@ constexpr const char* j2_schema = R"json({
     "hardening": {"description": "rise of that stress with the equivalent plastic strain, 0: perfect plasticity (force per area); or a table [[plastic strain, stress], ...], straight between its rows and constant behind the last",
       "title": "number >= 0, or [[plastic strain, stress], ...]", "examples": [100, [[0, 10], [0.02, 14], [0.1, 18]]],
       "anyOf": [{"type": "number", "minimum": 0}, {"type": "array", "minItems": 1, "items": {"type": "array",
-        "minItems": 2, "maxItems": 2, "items": {"type": "number", "minimum": 0}}}]}}})json";
+        "minItems": 2, "maxItems": 2, "items": {"type": "number", "minimum": 0}}}]}}})json");
+}
 
-constexpr const char* spring_schema = R"json({
+Schema spring_schema() {
+  return Schema::parse(R"json({
   "description": "of a point: the spring to its anchor", "type": "object",
   "examples": [{"stiffness": [[100, 0], [0, 100]]}], "required": ["stiffness"],
   "additionalProperties": false, "properties": {
     "stiffness": {"description": "symmetric and positive definite (force per length)",
       "title": "2 x 2 matrix (3 x 3 in space)", "type": "array", "items": {"$ref": "#/$defs/vector"},
-      "minItems": 2, "maxItems": 3, "examples": [[[100, 0], [0, 100]]]}}})json";
+      "minItems": 2, "maxItems": 3, "examples": [[[100, 0], [0, 100]]]}}})json");
+}
 
 // Materials that say no keys(), for what they hold are not numbers and words alone.
 
 MaterialKind entry_of(std::type_identity<J2Plastic>) {
-  return {"j2_plastic", Schema::parse(j2_schema), "fills all but points", read_j2};
+  return {"j2_plastic", j2_schema, "fills all but points", read_j2};
 }
 MaterialKind entry_of(std::type_identity<GroundedSpring>) {
-  return {"grounded_spring", Schema::parse(spring_schema), "holds a point", read_spring};
+  return {"grounded_spring", spring_schema, "holds a point", read_spring};
 }
 
 template <Described M>
-MaterialKind described_material() {
+Schema material_schema() {
   const auto keys = schema_of_keys<M>();
-  const Schema schema{{"description", M::about},
-                      {"type", "object"},
-                      {"examples", Schema::array({keys.example})},
-                      {"required", keys.required},
-                      {"additionalProperties", false},
-                      {"properties", keys.properties}};
-  return {M::key, schema, M::place, [](const JsonNode& node, SceneReading& reading) -> std::optional<Material> {
-            return read_described<M>(node, reading);
-          }};
+  return {{"description", M::about},
+          {"type", "object"},
+          {"examples", Schema::array({keys.example})},
+          {"required", keys.required},
+          {"additionalProperties", false},
+          {"properties", keys.properties}};
+}
+
+template <Described M>
+std::optional<Material> read_described_material(const JsonNode& node, SceneReading& reading) {
+  return read_described<M>(node, reading);
 }
 
 template <class M>
@@ -151,7 +157,7 @@ MaterialKind material_kind() {
       "a material of core/solids/materials.hpp lacks its keys(), or entry_of() in studies/input/materials.cpp");
   MaterialKind kind;
   if constexpr (Described<M>)
-    kind = described_material<M>();
+    kind = {M::key, material_schema<M>, M::place, read_described_material<M>};
   else
     kind = entry_of(std::type_identity<M>());
   kind.goes_with = goes_with<M>;

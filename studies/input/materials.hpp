@@ -14,7 +14,7 @@ enum class Filling { point, bars, continuum };
 
 struct MaterialKind {
   const char* key;                                                               ///< of {"KEY": {...}}
-  nlohmann::ordered_json schema;                                                 ///< JSON Schema of what it holds
+  nlohmann::ordered_json (*schema)();                                            ///< JSON Schema of what it holds
   const char* place;                                                             ///< what it is for, a verb first
   std::optional<Material> (*read)(const JsonNode& node, SceneReading& reading);  ///< none where it is at fault
   bool (*goes_with)(Filling filling, bool finite_strain) = nullptr;

@@ -291,10 +291,13 @@ void check_oversize(const JsonNode& options, const UzawaAL& method) {
 
 }  // namespace
 
-std::vector<std::string> method_names() {
-  std::vector<std::string> names;
-  for_each_method([&](const auto& method) { names.emplace_back(method.name); });
-  return names;
+const std::vector<std::string>& method_names() {
+  static const auto all = [] {
+    std::vector<std::string> names;
+    for_each_method([&](const auto& method) { names.emplace_back(method.name); });
+    return names;
+  }();
+  return all;
 }
 
 void check_option_names(const JsonNode& options, const std::string& method) {

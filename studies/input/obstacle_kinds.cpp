@@ -64,26 +64,28 @@ json as_drawn(const Polyline& polyline) {
   return {{"polyline", {{"points", vertices}}}};
 }
 
-constexpr const char* polyline_schema = R"json({
+Schema polyline_schema() {
+  return Schema::parse(R"json({
   "description": "straight facets; not in space", "type": "object", "required": ["points"],
   "examples": [{"points": [[5, 0], [0, 0], [0, 2]]}], "additionalProperties": false, "properties": {
     "points": {
       "description": "the solid is on the right of the way along them; the first once more closes it (length)",
       "title": "two or more [x, y]", "type": "array",
-      "minItems": 2, "items": {"$ref": "#/$defs/pair"}, "examples": [[[5, 0], [0, 0], [0, 2]]]}}})json";
-
-ObstacleKind entry_of(std::type_identity<Polyline>) {
-  return {"polyline", Schema::parse(polyline_schema), read_polyline};
+      "minItems": 2, "items": {"$ref": "#/$defs/pair"}, "examples": [[[5, 0], [0, 0], [0, 2]]]}}})json");
 }
+
+ObstacleKind entry_of(std::type_identity<Polyline>) { return {"polyline", polyline_schema, read_polyline}; }
 template <Described S>
-ObstacleKind described_surface() {
+Schema surface_schema() {
   const auto keys = schema_of_keys<S>();
-  const Schema schema{{"description", S::about},       {"type", "object"},
-                      {"required", keys.required},     {"examples", Schema::array({keys.example})},
-                      {"additionalProperties", false}, {"properties", keys.properties}};
-  return {S::key, schema, [](const JsonNode& node, SceneReading& reading) -> std::optional<RigidSurface> {
-            return read_described<S>(node, reading);
-          }};
+  return {{"description", S::about},       {"type", "object"},
+          {"required", keys.required},     {"examples", Schema::array({keys.example})},
+          {"additionalProperties", false}, {"properties", keys.properties}};
+}
+
+template <Described S>
+std::optional<RigidSurface> read_described_surface(const JsonNode& node, SceneReading& reading) {
+  return read_described<S>(node, reading);
 }
 
 template <class S>
@@ -96,7 +98,7 @@ ObstacleKind obstacle_kind() {
                 "studies/input/obstacle_kinds.cpp");
   ObstacleKind kind;
   if constexpr (Described<S>)
-    kind = described_surface<S>();
+    kind = {S::key, surface_schema<S>, read_described_surface<S>};
   else
     kind = entry_of(std::type_identity<S>());
   kind.is_in_space = S::is_in_space;

@@ -11,7 +11,7 @@ namespace stickslip {
 
 struct ObstacleKind {
   const char* key;                                                                   ///< of {"KEY": {...}}
-  nlohmann::ordered_json schema;                                                     ///< JSON Schema of what it holds
+  nlohmann::ordered_json (*schema)();                                                ///< JSON Schema of what it holds
   std::optional<RigidSurface> (*read)(const JsonNode& node, SceneReading& reading);  ///< none where it is at fault
   bool is_in_space = false;                                                          ///< or in the plane alone
 };

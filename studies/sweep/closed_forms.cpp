@@ -64,12 +64,14 @@ Curve hertz_tractions(const Quantities<double>& all, double) {
   return symmetric_curve(1.3 * all.at("half_width"), [&](double x) { return std::pair{hertz_pressure(all, x), 0.0}; });
 }
 
-const ClosedForm hertz_line_form{"hertz_line",
-                                 "two cylinders pressed together [J85 4.2]",
-                                 {force, radius, modulus},
-                                 {half_width, peak},
-                                 hertz_line,
-                                 hertz_tractions};
+ClosedForm hertz_line_form() {
+  return {"hertz_line",
+          "two cylinders pressed together [J85 4.2]",
+          {force, radius, modulus},
+          {half_width, peak},
+          hertz_line,
+          hertz_tractions};
+}
 
 Out cattaneo_mindlin(const In& in, Space space) {
   Out out = hertz_line(in, space);
@@ -88,17 +90,18 @@ Curve cattaneo_tractions(const Quantities<double>& all, double) {
   });
 }
 
-const ClosedForm cattaneo_mindlin_form{
-    "cattaneo_mindlin",
-    "then sheared until the rim slips [J85 7.2]",
-    {force,
-     {"tangential_force", "shearing force per length, less than friction times force"},
-     radius,
-     modulus,
-     friction},
-    {half_width, peak, {"stick_half_width", "half the width of what sticks"}},
-    cattaneo_mindlin,
-    cattaneo_tractions};
+ClosedForm cattaneo_mindlin_form() {
+  return {"cattaneo_mindlin",
+          "then sheared until the rim slips [J85 7.2]",
+          {force,
+           {"tangential_force", "shearing force per length, less than friction times force"},
+           radius,
+           modulus,
+           friction},
+          {half_width, peak, {"stick_half_width", "half the width of what sticks"}},
+          cattaneo_mindlin,
+          cattaneo_tractions};
+}
 
 Out flat_punch(const In& in, Space) {
   const D &P = in.at("force"), &a = in.at("half_width");
@@ -112,12 +115,14 @@ Curve flat_punch_tractions(const Quantities<double>& all, double) {
   });
 }
 
-const ClosedForm flat_punch_form{"flat_punch",
-                                 "rigid flat punch on a half plane [J85 2.8]",
-                                 {force, {"half_width", "half the width of the punch", positive}},
-                                 {{"centre_pressure", "pressure at the middle"}, {"mean_pressure", "force over width"}},
-                                 flat_punch,
-                                 flat_punch_tractions};
+ClosedForm flat_punch_form() {
+  return {"flat_punch",
+          "rigid flat punch on a half plane [J85 2.8]",
+          {force, {"half_width", "half the width of the punch", positive}},
+          {{"centre_pressure", "pressure at the middle"}, {"mean_pressure", "force over width"}},
+          flat_punch,
+          flat_punch_tractions};
+}
 
 Out press_fit(const In& in, Space space) {
   const Plane2D m(in, space);
@@ -137,23 +142,25 @@ Curve press_fit_tractions(const Quantities<double>& all, double length) {
   return {{0, all.at("pressure"), 0}, {length, all.at("pressure"), 0}};
 }
 
-const ClosedForm press_fit_form{"press_fit",
-                                "ring pressed into a ring of the same material [Lame]",
-                                {{"inner", "bore of the inner ring", positive},
-                                 {"interface", "radius where they meet", positive},
-                                 {"outer", "rim of the outer ring", positive},
-                                 {"interference", "how much too large the inner one is", positive},
-                                 E,
-                                 nu,
-                                 {"friction", "coefficient", not_negative, false}},
-                                {{"pressure", "between the rings"},
-                                 {"u_outer", "radial displacement of the outer ring's bore"},
-                                 {"u_inner", "of the inner ring's outside"},
-                                 {"u_rim", "of the outer ring's rim"},
-                                 {"slip_torque", "per length, at which all slips (with friction)"}},
-                                press_fit,
-                                press_fit_tractions,
-                                ClosedForm::Over::arc};
+ClosedForm press_fit_form() {
+  return {"press_fit",
+          "ring pressed into a ring of the same material [Lame]",
+          {{"inner", "bore of the inner ring", positive},
+           {"interface", "radius where they meet", positive},
+           {"outer", "rim of the outer ring", positive},
+           {"interference", "how much too large the inner one is", positive},
+           E,
+           nu,
+           {"friction", "coefficient", not_negative, false}},
+          {{"pressure", "between the rings"},
+           {"u_outer", "radial displacement of the outer ring's bore"},
+           {"u_inner", "of the inner ring's outside"},
+           {"u_rim", "of the outer ring's rim"},
+           {"slip_torque", "per length, at which all slips (with friction)"}},
+          press_fit,
+          press_fit_tractions,
+          ClosedForm::Over::arc};
+}
 
 Out belt(const In& in, Space) {
   const D &mu = in.at("friction"), angle = in.at("angle") * D(pi / 180);
@@ -183,19 +190,21 @@ Curve belt_tractions(const Quantities<double>& all, double length) {
   return curve;
 }
 
-const ClosedForm belt_form{"belt",
-                           "belt on a drum, about to slip [Euler, Eytelwein]",
-                           {{"slack", "tension of the slack end", positive},
-                            friction,
-                            {"angle", "wrapped, degrees", positive},
-                            {"nodes", "of a polygonal belt [a smooth one]", positive, false},
-                            {"radius", "of the drum, for the tractions along it", positive, false}},
-                           {{"tight", "tension of the tight end"},
-                            {"tight_reaction", "minus that: of a support that pulls the end down"},
-                            {"ratio", "tight over slack"}},
-                           belt,
-                           belt_tractions,
-                           ClosedForm::Over::arc};
+ClosedForm belt_form() {
+  return {"belt",
+          "belt on a drum, about to slip [Euler, Eytelwein]",
+          {{"slack", "tension of the slack end", positive},
+           friction,
+           {"angle", "wrapped, degrees", positive},
+           {"nodes", "of a polygonal belt [a smooth one]", positive, false},
+           {"radius", "of the drum, for the tractions along it", positive, false}},
+          {{"tight", "tension of the tight end"},
+           {"tight_reaction", "minus that: of a support that pulls the end down"},
+           {"ratio", "tight over slack"}},
+          belt,
+          belt_tractions,
+          ClosedForm::Over::arc};
+}
 
 Out pull_out(const In& in, Space) {
   const D &P = in.at("force"), &EA = in.at("stiffness"), &f = in.at("friction_per_length");
@@ -207,17 +216,19 @@ Out pull_out(const In& in, Space) {
           {"cycle_dissipation", D(4) * work}};
 }
 
-const ClosedForm pull_out_form{"pull_out",
-                               "bar drawn against friction along it",
-                               {{"force", "at the end", positive},
-                                {"stiffness", "Young's modulus times cross-section", positive},
-                                {"friction_per_length", "limit of the friction", positive}},
-                               {{"slip_length", "that slips under the force"},
-                                {"end_displacement", "under the force"},
-                                {"dissipation", "of the first loading"},
-                                {"residual_displacement", "of the end, force taken away"},
-                                {"cycle_dissipation", "of a full cycle to the force either way"}},
-                               pull_out};
+ClosedForm pull_out_form() {
+  return {"pull_out",
+          "bar drawn against friction along it",
+          {{"force", "at the end", positive},
+           {"stiffness", "Young's modulus times cross-section", positive},
+           {"friction_per_length", "limit of the friction", positive}},
+          {{"slip_length", "that slips under the force"},
+           {"end_displacement", "under the force"},
+           {"dissipation", "of the first loading"},
+           {"residual_displacement", "of the end, force taken away"},
+           {"cycle_dissipation", "of a full cycle to the force either way"}},
+          pull_out};
+}
 
 D bending_stiffness(const In& in, Space space) {
   const D& H = in.at("height");
@@ -233,12 +244,13 @@ Out cantilever_stop(const In& in, Space space) {
   return {{"free_tip", tip}, {"stiffness", k}, {"reaction", touches ? k * (tip - in.at("gap")) : D(0)}};
 }
 
-const ClosedForm cantilever_stop_form{
-    "cantilever_stop",
-    "loaded cantilever whose tip meets a stop [Timoshenko]",
-    {load, gap, {"length", "of the beam", positive}, height, E, nu},
-    {{"reaction", "of the stop"}, {"free_tip", "deflection without it"}, {"stiffness", "of the tip"}},
-    cantilever_stop};
+ClosedForm cantilever_stop_form() {
+  return {"cantilever_stop",
+          "loaded cantilever whose tip meets a stop [Timoshenko]",
+          {load, gap, {"length", "of the beam", positive}, height, E, nu},
+          {{"reaction", "of the stop"}, {"free_tip", "deflection without it"}, {"stiffness", "of the tip"}},
+          cantilever_stop};
+}
 
 Out cantilever_floor(const In& in, Space space) {
   const D& q = in.at("load");
@@ -246,19 +258,20 @@ Out cantilever_floor(const In& in, Space space) {
   return {{"lift_off", a}, {"line_reaction", q * a / D(3)}};
 }
 
-const ClosedForm cantilever_floor_form{
-    "cantilever_floor",
-    "loaded cantilever that comes to lie on a floor [Euler, Bernoulli]",
-    {load, gap, height, E, nu},
-    {{"lift_off", "distance from the clamp to where it touches"}, {"line_reaction", "force there"}},
-    cantilever_floor};
+ClosedForm cantilever_floor_form() {
+  return {"cantilever_floor",
+          "loaded cantilever that comes to lie on a floor [Euler, Bernoulli]",
+          {load, gap, height, E, nu},
+          {{"lift_off", "distance from the clamp to where it touches"}, {"line_reaction", "force there"}},
+          cantilever_floor};
+}
 
 }  // namespace
 
 const std::vector<ClosedForm>& closed_forms() {
   static const std::vector<ClosedForm> all = {
-      hertz_line_form, cattaneo_mindlin_form, flat_punch_form,      press_fit_form,
-      belt_form,       pull_out_form,         cantilever_stop_form, cantilever_floor_form};
+      hertz_line_form(), cattaneo_mindlin_form(), flat_punch_form(),      press_fit_form(),
+      belt_form(),       pull_out_form(),         cantilever_stop_form(), cantilever_floor_form()};
   return all;
 }
 

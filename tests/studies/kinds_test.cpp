@@ -17,7 +17,7 @@ auto example_of(const Kind& kind, Numbers<double>& numbers) {
   Diagnostics diagnostics;
   MeshFiles none;
   SceneReading reading(diagnostics, {}, none);
-  const auto document = JsonDocument::of(kind.schema["examples"][0], "example");
+  const auto document = JsonDocument::of(kind.schema()["examples"][0], "example");
   const auto read = kind.read(JsonNode(document, diagnostics), reading);
   EXPECT_TRUE(read && !diagnostics.has_errors()) << kind.key;
   numbers.at_slot = reading.scene.numbers;
