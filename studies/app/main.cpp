@@ -55,12 +55,21 @@ void is_number(CLI::Option* option, const char* what) {
   option->check(CLI::Validator(fault, ""));
 }
 
+/// a, b or c in place of the scene's
+const std::string& about_method() {
+  static const std::string text = [] {
+    std::string words;
+    words.reserve(100);
+    for (const auto& name : method_names())
+      words.append(words.empty() ? "" : &name == &method_names().back() ? " or " : ", ").append(name);
+    return words.append(" in place of the scene's");
+  }();
+  return text;
+}
+
 void add_scene(CLI::App& command, RunArguments& arguments) {
   command.add_option("SCENE", arguments.scene, "scene file (JSON)")->required();
-  std::string methods;
-  for (const auto& name : method_names())
-    methods += (methods.empty() ? "" : &name == &method_names().back() ? " or " : ", ") + name;
-  command.add_option("-m,--method", arguments.method, methods + " in place of the scene's");
+  command.add_option("-m,--method", arguments.method, about_method());
   command.add_option("--set", arguments.overrides, "change a number of the scene; may be given again")
       ->type_name("POINTER=VALUE")
       ->expected(1)

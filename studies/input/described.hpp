@@ -84,6 +84,7 @@ void for_each_key(F&& f) {
 template <Described S>
 std::optional<S> read_described(const JsonNode& node, SceneReading& reading) {
   Keys keys;
+  keys.required.reserve(std::tuple_size_v<decltype(S::keys())>);
   detail::for_each_key<S>([&]<class O, class M, class How>(const Key<O, M, How>& key) {
     (detail::HasExample<How> ? keys.required : keys.optional).push_back(key.key);
   });

@@ -294,6 +294,7 @@ void check_oversize(const JsonNode& options, const UzawaAL& method) {
 const std::vector<std::string>& method_names() {
   static const auto all = [] {
     std::vector<std::string> names;
+    names.reserve(std::variant_size_v<Method>);
     for_each_method([&](const auto& method) { names.emplace_back(method.name); });
     return names;
   }();
