@@ -18,8 +18,6 @@ namespace stickslip {
 inline ConeRadius cone_radius(const MonolithicAL& method) {
   return method.cone == MonolithicAL::Cone::augmented ? ConeRadius::augmented : ConeRadius::multiplier;
 }
-/// Whether a converged solution penetrates nothing.
-constexpr bool prevents_penetration(const MonolithicAL&) { return true; }
 
 /// Whether methods/motion.hpp continues where an increment fails.
 constexpr bool is_globalised(const MonolithicAL&) { return true; }

@@ -96,7 +96,7 @@ std::optional<Solutions<T>> try_all_branches(const M& method, Run<T, E>& run, co
   const ContactInput<T> input{run.model, run.slots, rho, previous.history, ConeRadius::augmented, time};
   const Vector<T> u = engine.begin(time, previous.displacement, {}), stored = stored_traction(run.model, previous);
   const ContactProblem problem =
-      contact_problem(input, engine, u, run.condensation->schur(), prevents_penetration(method) ? nullptr : &stored);
+      contact_problem(input, engine, u, run.condensation->schur(), method.prevents_penetration ? nullptr : &stored);
   const auto all = all_solutions(problem);
   if (!all) return std::nullopt;
   Solutions<T> solutions;
@@ -216,7 +216,7 @@ Increment<T> find_increment(const M& method, Run<T, E>& run, const State<T>& pre
   const bool several = run.several || direct.reversed;
   const bool prescribed =
       direct.status == Status::infeasible &&
-      (!prevents_penetration(method) || !prescribed_penetration(run.model, run.slots, direct.state).empty());
+      (!method.prevents_penetration || !prescribed_penetration(run.model, run.slots, direct.state).empty());
   const bool final = prescribed || (solved && (!several || direct.cut_off)) || (!solved && bound.is_spent());
   if (final || run.model.points.empty() || !is_globalised(method) || (!solved && !may_move)) return direct;
   if (!solved && unbalanced_body(run.model, run.slots, time) != balanced) {

@@ -1,9 +1,23 @@
-/// Options of the methods, with their defaults, meaning and range. One struct a method; `Method` is the closed set.
+/// Options of the methods, with their defaults, meaning and range, and what all else asks of a method. One struct a
+/// method; `Method` is the closed set. What a struct lacks does not compile (WholeMethod). Beside its options it says
 ///
-/// Each says its name; the option that rho is made from (regularisation), with its name and the multiple of the local
-/// stiffness that "auto" stands for (automatic_multiple); and whether multipliers are unknowns of the systems solved.
+///   name, title, idea         key in files; its name on pages; how it works, in a sentence or two behind its title
+///   regularisation()          the option that rho is made from; regularisation_name; and automatic_multiple, the
+///                             multiple of the local stiffness that "auto" stands for
+///   tangential_share()        tangential over normal rho
+///   has_unknown_multipliers   whether multipliers are unknowns of the systems solved
+///   prevents_penetration      whether a solution penetrates nothing. Else it is judged as contact with a layer of
+///                             compliance 1/rho (studies/run/accuracy.hpp)
+///   contact_tolerance()       error that its options leave in gaps, slips and tractions, relative
+///   tighten(to, most)         has its iterations end no earlier than at the tolerance `to`, and at no fewer than
+///   `most`
+///                             augmentations
+///   conflict()                its options that do not go together
+///   scheme()                  what its derivatives are
 #pragma once
 
+#include <algorithm>
+#include <concepts>
 #include <optional>
 #include <string_view>
 #include <variant>
@@ -17,6 +31,7 @@ struct NewtonOptions {
   double tolerance = 1e-12;  ///< relative, each residual to its own scale (methods/residuals.hpp); 0 < tolerance < 1
   int max_iterations = 100;  ///< per solve; >= 1. A front of slip may pass one node an iteration
   bool line_search = true;   ///< backtracking where a full step stays in its active set and the residual does not fall
+  void tighten(double to) { tolerance = std::min(tolerance, to); }
 };
 
 /// Regularisation rho (force per length cubed) of each contact point. `relative` is a multiple of the local nodal
@@ -27,22 +42,69 @@ struct Regularisation {
   Number value = 1.0;  ///< > 0; not used where automatic
 };
 
+/// Options of a method that do not go together: the name of the one to change, and why; empty where all do.
+struct OptionConflict {
+  std::string_view option, reason;
+};
+
+/// A member that has no default: what leaves it out does not compile.
+template <class T>
+struct Required {
+  T value;
+  Required(T given) : value(given) {}   // NOLINT: it stands for the value
+  operator T() const { return value; }  // NOLINT
+};
+
+/// What the derivatives of a method are, for all that serves every scheme.
+struct Scheme {
+  Required<bool> reads_regularisation;  ///< what its adjoint goes back through depends on rho
+  Required<bool> of_each_augmentation;  ///< differentiates Increment::augmented one by one; else the last equilibrium
+  Required<bool> keeps_tangents;        ///< solves with the tangents that the method's iterations ended with
+  Required<bool> iterates;              ///< how many solves it takes is not known before
+  Required<double> oversize;            ///< of what it solves: factor on rho
+  Required<double> error;               ///< relative, that it is allowed; 0: rounding alone
+};
+
 struct Penalty {
   static constexpr std::string_view name = "penalty";
+  static constexpr std::string_view title = "Penalty";
+  static constexpr std::string_view idea =
+      "puts stiff springs between the bodies. One solve, but they sink in a little; stiffer springs err less and make "
+      "the equations harder to solve accurately.";
   static constexpr double automatic_multiple = 1e3;
   static constexpr std::string_view regularisation_name = "stiffness";
   static constexpr bool has_unknown_multipliers = false;
+  static constexpr bool prevents_penetration = false;
   Regularisation stiffness;
   Number tangential_ratio = 1.0;  ///< tangential over normal penalty; > 0
   NewtonOptions newton;
+
+  const Regularisation& regularisation() const { return stiffness; }
   Regularisation& regularisation() { return stiffness; }
+  Number tangential_share() const { return tangential_ratio; }
+  double contact_tolerance() const { return newton.tolerance; }
+  void tighten(double to, int /*most*/) { newton.tighten(to); }
+  OptionConflict conflict() const { return {}; }
+  Scheme scheme() const {
+    return {.reads_regularisation = true,  // the penetration does
+            .of_each_augmentation = false,
+            .keeps_tangents = true,
+            .iterates = false,
+            .oversize = 1,
+            .error = 0};
+  }
 };
 
 struct UzawaAL {
   static constexpr std::string_view name = "uzawa_al";
+  static constexpr std::string_view title = "Uzawa AL";
+  static constexpr std::string_view idea =
+      "(augmented Lagrangian) solves with soft springs, adds the force that was missing, and repeats until nothing is "
+      "missing: exact in the limit, at the price of repetition.";
   static constexpr double automatic_multiple = 10;
   static constexpr std::string_view regularisation_name = "scale";
   static constexpr bool has_unknown_multipliers = false;
+  static constexpr bool prevents_penetration = true;
   static constexpr double automatic_oversize = 1e3;  ///< of the oversized scheme
   enum class Acceleration { none, aitken, anderson };
   enum class Cone { augmented, frozen };
@@ -56,49 +118,112 @@ struct UzawaAL {
   Sensitivity sensitivity = Sensitivity::iterated;
   std::optional<double> oversize;  ///< kappa_s of the oversized and the preconditioned scheme, > 1; none: automatic
   NewtonOptions newton;
+
+  const Regularisation& regularisation() const { return scale; }
   Regularisation& regularisation() { return scale; }
+  Number tangential_share() const { return 1.0; }
+  double contact_tolerance() const { return tolerance; }
+  void tighten(double to, int most) {
+    newton.tighten(to);
+    tolerance = std::min(tolerance, to);
+    max_augmentations = std::max(max_augmentations, most);
+  }
+  OptionConflict conflict() const;
+  /// The fixed point does not depend on rho: Dg = 0 there, whatever rho is. What the tolerance leaves of g, times D
+  /// rho, is left out: at a tolerance of 1e-5 up to 2e-9 of the derivative (docs/methods.md), as in u.
+  Scheme scheme() const {
+    const bool truncated = sensitivity == Sensitivity::truncated, oversized = sensitivity == Sensitivity::oversized;
+    const double factor = oversized ? oversize.value_or(automatic_oversize) : 1;
+    return {.reads_regularisation = truncated || oversized,
+            .of_each_augmentation = truncated,
+            .keeps_tangents = sensitivity == Sensitivity::iterated,
+            .iterates = true,
+            .oversize = factor,
+            .error = oversized ? 10 / factor : 0};
+  }
 };
 
-/// Options of a method that do not go together: the name of the one to change, and why; empty where all do.
-struct OptionConflict {
-  std::string_view option, reason;
-};
-inline OptionConflict conflict(const UzawaAL& m) {
-  using Sensitivity = UzawaAL::Sensitivity;
-  if (m.acceleration != UzawaAL::Acceleration::none && m.sensitivity == Sensitivity::truncated)
+inline OptionConflict UzawaAL::conflict() const {
+  if (acceleration != Acceleration::none && sensitivity == Sensitivity::truncated)
     return {
         "sensitivity",
         "is \"truncated\", which differentiates every update as it was made; the weights of an acceleration are not "
         "differentiated; allowed with it: iterated, oversized, preconditioned"};
-  const bool stiffened = m.sensitivity == Sensitivity::oversized || m.sensitivity == Sensitivity::preconditioned;
-  if (m.cone == UzawaAL::Cone::frozen && stiffened)
+  const bool stiffened = sensitivity == Sensitivity::oversized || sensitivity == Sensitivity::preconditioned;
+  if (cone == Cone::frozen && stiffened)
     return {"sensitivity",
             "relies on a stiffer factor, which leaves the error of a frozen cone as it is (it shrinks by mu/s a pass "
             "whatever the scale); allowed with it: iterated, truncated"};
   return {};
 }
-template <class M>
-OptionConflict conflict(const M&) {
-  return {};
-}
 
 struct MonolithicAL {
   static constexpr std::string_view name = "monolithic_al";
+  static constexpr std::string_view title = "Monolithic AL";
+  static constexpr std::string_view idea =
+      "makes the contact forces unknowns of the same equations: exact at once, with a larger and less friendly system.";
   static constexpr double automatic_multiple = 1;
   static constexpr std::string_view regularisation_name = "scale";
   static constexpr bool has_unknown_multipliers = true;
+  static constexpr bool prevents_penetration = true;
   enum class Cone { augmented, multiplier };
   Regularisation scale;
   Cone cone = Cone::augmented;  ///< radius -mu z_N (augmented) or -mu lambda_N (multiplier): same zeros, another path
   NewtonOptions newton;
+
+  const Regularisation& regularisation() const { return scale; }
   Regularisation& regularisation() { return scale; }
+  Number tangential_share() const { return 1.0; }
+  double contact_tolerance() const { return newton.tolerance; }
+  void tighten(double to, int /*most*/) { newton.tighten(to); }
+  OptionConflict conflict() const { return {}; }
+  Scheme scheme() const {
+    return {.reads_regularisation = false,
+            .of_each_augmentation = false,
+            .keeps_tangents = true,
+            .iterates = false,
+            .oversize = 1,
+            .error = 0};
+  }
 };
 
 /// The closed set: what is missing in a visit over it does not compile.
 using Method = std::variant<Penalty, UzawaAL, MonolithicAL>;
 
+template <class M>
+concept WholeMethod = std::copyable<M> && requires(const M& method, M& changed) {
+  { M::name } -> std::convertible_to<std::string_view>;
+  { M::title } -> std::convertible_to<std::string_view>;
+  { M::idea } -> std::convertible_to<std::string_view>;
+  { M::automatic_multiple } -> std::convertible_to<double>;
+  { M::regularisation_name } -> std::convertible_to<std::string_view>;
+  { M::has_unknown_multipliers } -> std::convertible_to<bool>;
+  { M::prevents_penetration } -> std::convertible_to<bool>;
+  { method.regularisation() } -> std::same_as<const Regularisation&>;
+  { changed.regularisation() } -> std::same_as<Regularisation&>;
+  { method.tangential_share() } -> std::same_as<Number>;
+  { method.contact_tolerance() } -> std::same_as<double>;
+  { changed.tighten(1e-12, 1) } -> std::same_as<void>;
+  { method.conflict() } -> std::same_as<OptionConflict>;
+  { method.scheme() } -> std::same_as<Scheme>;
+  { method.newton } -> std::convertible_to<NewtonOptions>;
+};
+
+namespace detail {
+
+template <class... M>
+constexpr bool are_whole_methods(const std::variant<M...>*) {
+  return (WholeMethod<M> && ...);
+}
+static_assert(are_whole_methods(static_cast<const Method*>(nullptr)), "the options of a method lack something");
+
+}  // namespace detail
+
 inline std::string_view name_of(const Method& method) {
   return std::visit([](const auto& m) { return std::string_view(m.name); }, method);
+}
+inline Scheme scheme_of(const Method& method) {
+  return std::visit([](const auto& m) { return m.scheme(); }, method);
 }
 
 /// Which linear algebra carries the run; both give the same solution (scene key "linear_solver", results name what was

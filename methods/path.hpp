@@ -53,7 +53,7 @@ class Path {
       if (!held.usable() || held.state.displacement != trajectory_.initial.displacement ||
           held.state.contact.traction != trajectory_.initial.contact.traction) {
         const bool usable = held.usable();
-        if (!usable) diagnose(run_.model, run_.slots, 0, prevents_penetration(method_), held);
+        if (!usable) diagnose(run_.model, run_.slots, 0, method_.prevents_penetration, held);
         take(std::move(held));
         if (!usable) return false;
       }

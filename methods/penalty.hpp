@@ -23,8 +23,6 @@ Vector<T> stored_traction(const Model& model, const State<T>& previous) {
 }
 
 inline ConeRadius cone_radius(const Penalty&) { return ConeRadius::augmented; }
-/// Whether a converged solution penetrates nothing.
-constexpr bool prevents_penetration(const Penalty&) { return false; }
 
 namespace detail {
 

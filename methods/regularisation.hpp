@@ -35,14 +35,11 @@ RegularisationField<T> regularisation(const Slots<T>& slots, const Regularisatio
   return rho;
 }
 
-/// rho of a method's options before any adaption, the same in all directions where the method says nothing else.
-template <class T, class M>
-RegularisationField<T> initial_regularisation(const Slots<T>& slots, M method) {
-  return regularisation(slots, method.regularisation(), M::automatic_multiple, T(1));
-}
-template <class T>
-RegularisationField<T> initial_regularisation(const Slots<T>& slots, const Penalty& m) {
-  return regularisation(slots, m.stiffness, Penalty::automatic_multiple, slots.numbers(m.tangential_ratio));
+/// rho of a method's options before any adaption.
+template <class T, WholeMethod M>
+RegularisationField<T> initial_regularisation(const Slots<T>& slots, const M& method) {
+  return regularisation(slots, method.regularisation(), M::automatic_multiple,
+                        slots.numbers(method.tangential_share()));
 }
 
 /// rho without derivatives: of a solution that does not depend on it.

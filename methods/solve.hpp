@@ -143,7 +143,7 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
     }
     const bool impossible = increment.status == Status::no_equilibrium
                                 ? unbalanced_body(run.model, run.slots, next) != balanced
-                                : increment.status == Status::infeasible && !prevents_penetration(method);
+                                : increment.status == Status::infeasible && !method.prevents_penetration;
     if (!failed) failed = std::move(increment);
     easy = 0;
     step = (next - reached) / 2;
@@ -152,7 +152,7 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
     ++cutbacks;
     ++run.account.counters.cutbacks;
   }
-  diagnose(run.model, run.slots, target, prevents_penetration(method), *failed);
+  diagnose(run.model, run.slots, target, method.prevents_penetration, *failed);
   if (bound.is_spent()) failed->message += (failed->message.empty() ? "" : "; ") + bound.in_words();
   trajectory.increments.resize(start_count);
   failed->time = target;
@@ -245,7 +245,7 @@ void march(const M& method, const Model& model, const Slots<T>& slots, E& engine
 template <class T>
 void solve_in(const Model& model, const Slots<T>& slots, const Method& method, const RunOptions& options,
               Workspace<T>& workspace, Trajectory<T>& trajectory) {
-  const auto [option, reason] = std::visit([](const auto& m) { return conflict(m); }, method);
+  const auto [option, reason] = std::visit([](const auto& m) { return m.conflict(); }, method);
   if (!option.empty())
     throw std::invalid_argument(std::string(name_of(method)) + ": " + std::string(option) + " " + std::string(reason));
   const Stopwatch total(trajectory.seconds.total);

@@ -31,8 +31,6 @@ namespace stickslip {
 inline ConeRadius cone_radius(const UzawaAL& method) {
   return method.cone == UzawaAL::Cone::augmented ? ConeRadius::augmented : ConeRadius::multiplier;
 }
-/// Whether a converged solution penetrates nothing.
-constexpr bool prevents_penetration(const UzawaAL&) { return true; }
 /// Whether methods/motion.hpp continues where an increment fails. Not with a frozen cone: its failures are a subject of
 /// study.
 inline bool is_globalised(const UzawaAL& method) { return method.cone == UzawaAL::Cone::augmented; }

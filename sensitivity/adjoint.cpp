@@ -204,7 +204,7 @@ Gradients adjoint(const Model& model, const Slots<double>& slots, const Method& 
       taken = std::move(*found);
   }
   gradients.counters += gradients.search;
-  const bool with_rho = std::visit([](const auto& m) { return reads_regularisation(m); }, method);
+  const bool with_rho = scheme_of(method).reads_regularisation;
   Recording recording(model, with_rho ? nullptr : &slots.stiffness);
   Tape& tape = recording.tape;
   std::vector<BackwardSweep> objectives(scene.objectives.size());

@@ -17,22 +17,6 @@
 namespace stickslip {
 namespace detail {
 
-/// Whether the scheme of a method differentiates each augmentation.
-template <class M>
-constexpr bool is_truncated(const M&) {
-  return false;
-}
-inline bool is_truncated(const UzawaAL& method) { return method.sensitivity == UzawaAL::Sensitivity::truncated; }
-/// Factor kappa_s on rho of the scheme of a method.
-template <class M>
-constexpr double oversize_of(const M&) {
-  return 1;
-}
-inline double oversize_of(const UzawaAL& method) {
-  const bool oversized = method.sensitivity == UzawaAL::Sensitivity::oversized;
-  return oversized ? method.oversize.value_or(UzawaAL::automatic_oversize) : 1;
-}
-
 /// rho of the equilibrium that a scheme differentiates.
 template <class M>
 RegularisationField<double> own_rho(const M& method, const Slots<double>& slots, const std::vector<double>& factor) {
@@ -60,7 +44,7 @@ class BranchSearch {
         vertices_(vertex_ties(problem.model, problem.slots, at, increment.time, along.largest_so_far)),
         direction_(along) {
     std::vector<double> stiffened = factor;
-    for (double& f : stiffened) f *= detail::oversize_of(method);
+    for (double& f : stiffened) f *= method.scheme().oversize;
     rho_ = regularisation_blocks(method, problem, stiffened)[0];
   }
 
@@ -265,7 +249,7 @@ bool differentiate_side(const M& method, Differentiation<E>& problem, const Stat
     branches.hold();
     return differentiate_alone(method, problem, previous, of);
   };
-  if (!detail::is_truncated(method)) return search(increment, increment.state, increment.rho_factor);
+  if (!method.scheme().of_each_augmentation) return search(increment, increment.state, increment.rho_factor);
   // Each augmentation starts from the derivative of the one before.
   auto& block = problem.blocks[0];
   const State<Direction> start = block.previous;

@@ -36,14 +36,6 @@ Matrix<double> with_ties(const Model& model, const std::vector<ParameterBlock>& 
   return of;
 }
 
-/// Whether the tangent of a scheme is that of the method's last iteration. Not for truncated Uzawa, which has one per
-/// augmentation.
-template <class M>
-constexpr bool keeps_tangents(const M&) {
-  return true;
-}
-bool keeps_tangents(const UzawaAL& method) { return method.sensitivity == UzawaAL::Sensitivity::iterated; }
-
 /// Dofs outside the contact whose displacements responses read, ascending; none if all are read.
 std::optional<std::vector<int>> dofs_read_inside(const Model& model) {
   std::vector<char> read(model.node_count, false);
@@ -142,7 +134,7 @@ struct Derivatives::Progress {
     problem.follows = follows;
     const auto& increments = trajectory.increments;
     std::vector<PseudoLoad> loads;
-    if (!detail::is_truncated(m)) {  // (truncated Uzawa has a pseudo-load per augmentation)
+    if (!m.scheme().of_each_augmentation) {  // (truncated Uzawa has a pseudo-load per augmentation)
       for (std::size_t n = done; n < end; ++n)
         loads.push_back(pseudo_load(problem, increments[n].state, increments[n].time));
       reduce(problem, loads);
@@ -227,7 +219,7 @@ void Derivatives::follow(const Trajectory<double>& trajectory) {
   Progress& now = *progress_;
   const Stopwatch time(now.gradients.seconds);
   const bool worthwhile =
-      std::visit([](const auto& m) { return keeps_tangents(m); }, now.method) &&
+      scheme_of(now.method).keeps_tangents &&
       std::visit([](const auto& engine) { return has_costly_factors(engine); }, *now.workspace.engine);
   const auto& increments = trajectory.increments;
   for (std::size_t n = now.done; n < increments.size() && increments[n].usable(); ++n) {

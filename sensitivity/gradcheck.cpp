@@ -107,12 +107,17 @@ bool GradientCheck::passed() const {
 }
 
 Method as_claimed(const Method& method) {
+  constexpr double tightest = 1e-14;
+  constexpr int most_augmentations = 20'000;
   Method claimed = method;
-  std::visit([](auto& m) { m.newton.tolerance = std::min(m.newton.tolerance, 1e-14); }, claimed);
-  if (auto* uzawa = std::get_if<UzawaAL>(&claimed); uzawa && uzawa->sensitivity != UzawaAL::Sensitivity::truncated) {
-    uzawa->tolerance = std::min(uzawa->tolerance, 1e-14);
-    uzawa->max_augmentations = std::max(uzawa->max_augmentations, 20000);
-  }
+  std::visit(
+      [](auto& m) {
+        if (m.scheme().of_each_augmentation)  // these are part of what it differentiates
+          m.newton.tighten(tightest);
+        else
+          m.tighten(tightest, most_augmentations);
+      },
+      claimed);
   return claimed;
 }
 
@@ -224,9 +229,7 @@ GradientCheck check_gradients(const Model& model, const Method& given, const Run
   for (std::size_t n = 0; n < ends.size(); ++n)
     if (trajectory.increments[n].requested) ends[n] = trajectory.increments[n].time;
   last.back() = ends.back();
-  const auto* uzawa = std::get_if<UzawaAL>(&method);
-  const bool approximate = uzawa && uzawa->sensitivity == UzawaAL::Sensitivity::oversized;
-  const double scheme = approximate ? 10 / uzawa->oversize.value_or(UzawaAL::automatic_oversize) : base_tolerance;
+  const double allowed = scheme_of(method).error, scheme = allowed > 0 ? allowed : base_tolerance;
   const int responses = static_cast<int>(scene.responses.size());
   for (int j = 0; j < static_cast<int>(scene.parameters.size()); ++j) {
     const double size = parameter_size(scene.parameters[j], largest_value, largest_derivative, j);

@@ -24,9 +24,6 @@ bool differentiate_increment(const MonolithicAL& method, Differentiation<E>& pro
   return true;
 }
 
-/// Whether the scheme depends on rho. It does not: rho does not affect the solution.
-inline bool reads_regularisation(const MonolithicAL&) { return false; }
-
 template <class E>
 bool pull_back_increment(const MonolithicAL& method, AdjointProblem<E>& problem, const State<double>& previous,
                          const Increment<double>& increment) {

@@ -55,7 +55,7 @@ bool has_ties_of(const M& method, const Model& model, const Slots<double>& slots
            !flow_ties(model, slots, at.displacement, previous.history.bodies).empty() ||
            !vertex_ties(model, slots, at, increment.time, largest).empty();
   };
-  if (!detail::is_truncated(method)) return weak(increment.state, increment.rho_factor);
+  if (!method.scheme().of_each_augmentation) return weak(increment.state, increment.rho_factor);
   return std::any_of(increment.augmented.begin(), increment.augmented.end(),
                      [&](const auto& sweep) { return weak(sweep.state, sweep.rho_factor); });
 }

@@ -25,9 +25,6 @@ bool differentiate_increment(const Penalty& method, Differentiation<E>& problem,
   return true;
 }
 
-/// Whether the scheme depends on rho. It does: the penetration is t / rho.
-inline bool reads_regularisation(const Penalty&) { return true; }
-
 template <class E>
 bool pull_back_increment(const Penalty& method, AdjointProblem<E>& problem, const State<double>& previous,
                          const Increment<double>& increment) {

@@ -32,14 +32,6 @@
 
 namespace stickslip {
 
-/// Whether a scheme depends on rho. The iterated and preconditioned schemes do not, since Dg = 0 at their fixed point.
-/// They neglect g D rho, g being what the tolerance leaves of the gap: at a tolerance of 1e-5 up to 2e-9 of the
-/// derivative (docs/methods.md).
-inline bool reads_regularisation(const UzawaAL& method) {
-  using Sensitivity = UzawaAL::Sensitivity;
-  return method.sensitivity == Sensitivity::truncated || method.sensitivity == Sensitivity::oversized;
-}
-
 namespace detail {
 
 inline constexpr std::string_view other_scheme = ", or the preconditioned scheme";
@@ -68,8 +60,8 @@ LinearisedEquilibrium<E> linearise(const UzawaAL& method, Differentiation<E>& pr
                                    RegularisationField<double>& rho) {
   for (double& f : factor) f *= oversize;
   rho = adapted(initial_regularisation(problem.slots, method), factor);
-  auto blocks = reads_regularisation(method) ? regularisation_blocks(method, problem, factor)
-                                             : std::vector(problem.blocks.size(), constant<Direction>(rho));
+  auto blocks = method.scheme().reads_regularisation ? regularisation_blocks(method, problem, factor)
+                                                     : std::vector(problem.blocks.size(), constant<Direction>(rho));
   return LinearisedEquilibrium<E>(problem, at, rho, std::move(blocks), cone_radius(method), time, false,
                                   previous.history);
 }
@@ -217,7 +209,7 @@ bool differentiate_increment(const UzawaAL& method, Differentiation<E>& problem,
   if (method.sensitivity == Sensitivity::preconditioned)
     return detail::differentiate_preconditioned(method, problem, previous, increment);
   const bool oversized = method.sensitivity == Sensitivity::oversized;
-  const double oversize = oversized ? method.oversize.value_or(UzawaAL::automatic_oversize) : 1;
+  const double oversize = method.scheme().oversize;
   RegularisationField<double> rho;
   auto linearised = detail::linearise(method, problem, previous, increment.state, increment.rho_factor, oversize,
                                       increment.time, rho);
@@ -243,7 +235,7 @@ RegularisationField<Reverse> recorded_regularisation(const UzawaAL& method, Adjo
                                                      std::vector<double> factor, double oversize) {
   for (double& f : factor) f *= oversize;
   problem.tape.rewind(problem.slots_end);
-  if (!reads_regularisation(method))
+  if (!method.scheme().reads_regularisation)
     return constant<Reverse>(adapted(initial_regularisation(problem.slots, method), factor));
   return adapted(initial_regularisation(problem.recorded, method), factor);
 }
@@ -383,7 +375,7 @@ bool pull_back_increment(const UzawaAL& method, AdjointProblem<E>& problem, cons
   if (method.sensitivity == Sensitivity::preconditioned)
     return detail::pull_back_preconditioned(method, problem, previous, increment);
   const bool oversized = method.sensitivity == Sensitivity::oversized;
-  const double oversize = oversized ? method.oversize.value_or(UzawaAL::automatic_oversize) : 1;
+  const double oversize = method.scheme().oversize;
   RecordedEquilibrium<E> recorded(problem, previous, increment.state,
                                   detail::recorded_regularisation(method, problem, increment.rho_factor, oversize),
                                   cone_radius(method), increment.time, false, increment.requested);

@@ -14,6 +14,9 @@ struct Number {
   Number(double v, int s) : value(v), slot(s) {}
 };
 
+/// What a number of a scene must be. (studies/input/ranges.hpp has words and schema of each.)
+enum class Range { positive, not_negative, poisson_ratio };
+
 /// All numbers of a scene in the scalar T.
 template <class T>
 struct Numbers {

@@ -2,8 +2,9 @@
 #pragma once
 
 #include <array>
+#include <tuple>
 
-#include "core/algebra/number.hpp"
+#include "core/algebra/described.hpp"
 #include "core/contact/point_geometry.hpp"
 
 namespace stickslip {
@@ -11,9 +12,16 @@ namespace stickslip {
 /// `inside`: the outside of a disk is solid, the free space is inside.
 struct Circle {
   static constexpr bool is_in_space = false, is_flat = false;
+  static constexpr const char *key = "circle", *about = "a drum, or a cup; not in space";
   std::array<Number, 2> center;
   Number radius;
   bool inside = false;
+
+  static constexpr auto keys() {
+    return std::tuple{Key{&Circle::center, "center", "of the circle (length)", Place2D{{0, 0}}},
+                      Key{&Circle::radius, "radius", "of the circle (length)", InRange{Range::positive, 1}},
+                      Key{&Circle::inside, "inside", "true: a cup, solid outside of the circle", Flag{}}};
+  }
 };
 
 /// `numbers`: as of a plane. Singular where x is the centre.

@@ -18,9 +18,9 @@ struct Coulomb {
   static constexpr auto numbers() {
     return std::tuple{FrictionNumber{&Coulomb::coefficient, "coulomb", "mu",
                                      "coefficient mu: at most mu p tangentially, p the pressure", FrictionUnit::none,
-                                     0.3, "Coulomb friction "},
+                                     Range::not_negative, 0.3, "Coulomb friction "},
                       FrictionNumber{&Coulomb::limit, "limit", "force per area", "but no more than this",
-                                     FrictionUnit::stress, 5.0, ", limited to "}};
+                                     FrictionUnit::stress, Range::not_negative, 5.0, ", limited to "}};
   }
   static constexpr const char* idle = "friction coefficient of {:.6g}";
   static constexpr bool is_piecewise_linear = true;

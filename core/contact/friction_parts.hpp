@@ -4,6 +4,7 @@
 #include <optional>
 #include <tuple>
 
+#include "core/algebra/number.hpp"
 #include "core/algebra/scalar.hpp"
 
 namespace stickslip {
@@ -17,8 +18,8 @@ inline bool is_slipping(ContactState state) { return state == ContactState::slip
 
 enum class FrictionUnit { none, stress };
 
-/// A number of a law: where it is, and how files, messages and pages name it. All are >= 0. `Member`: T where the
-/// number must be there, std::optional<T> where it may be left out.
+/// A number of a law: where it is, and how files, messages and pages name it. `Member`: T where the number must be
+/// there, std::optional<T> where it may be left out.
 template <class Law, class Member>
 struct FrictionNumber {
   Member Law::*member;
@@ -26,13 +27,14 @@ struct FrictionNumber {
   const char* symbol;       ///< its value in a message that shows this object
   const char* description;  ///< for the schema and docs/scene.md; their unit is that of `unit`
   FrictionUnit unit;
+  Range range;
   double example;
   const char* words;  ///< in front of its value in a sentence
 
   static constexpr bool is_required = !requires(Member value) { value.has_value(); };
 };
 template <class Law, class Member>
-FrictionNumber(Member Law::*, const char*, const char*, const char*, FrictionUnit, double, const char*)
+FrictionNumber(Member Law::*, const char*, const char*, const char*, FrictionUnit, Range, double, const char*)
     -> FrictionNumber<Law, Member>;
 
 }  // namespace stickslip

@@ -1,9 +1,10 @@
 /// Rigid half-space.
 #pragma once
 
+#include <tuple>
 #include <vector>
 
-#include "core/algebra/number.hpp"
+#include "core/algebra/described.hpp"
 #include "core/contact/point_geometry.hpp"
 
 namespace stickslip {
@@ -11,7 +12,14 @@ namespace stickslip {
 /// Behind a point; the normal points out of it, into the free space (need not be a unit vector).
 struct Plane {
   static constexpr bool is_in_space = true, is_flat = true;
+  static constexpr const char *key = "plane", *about = "a half space";
   std::vector<Number> point, normal;
+
+  static constexpr auto keys() {
+    return std::tuple{Key{&Plane::point, "point", "any of its surface (length)", Place2D{{0, 0}}},
+                      Key{&Plane::normal, "normal", "out of the obstacle; of any length but 0",
+                          Direction2D{"a vector that is not zero; it points out of the obstacle", {0, 1}}}};
+  }
 };
 
 /// `numbers`: value of a number of the scene, as Numbers<T> gives it.

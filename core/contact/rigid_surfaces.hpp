@@ -1,5 +1,6 @@
-/// The list of rigid surfaces. Each has a file of its own: its description for the scene, which says whether it is made
-/// for space (is_in_space) and whether it is flat (is_flat), and against(x, surface, numbers), the geometry of a place.
+/// The list of rigid surfaces. Each has a file of its own: its description for the scene, which says its keys
+/// (core/algebra/described.hpp), whether it is made for space (is_in_space) and whether it is flat (is_flat), and
+/// against(x, surface, numbers), the geometry of a place.
 /// What it lacks does not compile. One with a place from which no part of it is nearer than another adds
 /// ambiguous_at(). A polyline has facets in place of against(): which one a place faces is found by search
 /// (core/contact/search.hpp).

@@ -12,7 +12,7 @@ struct Tresca {
   static constexpr auto numbers() {
     return std::tuple{FrictionNumber{&Tresca::limit, "tresca", "force per area",
                                      "alone: the tangential traction that a closed point bears", FrictionUnit::stress,
-                                     5.0, "Tresca friction "}};
+                                     Range::not_negative, 5.0, "Tresca friction "}};
   }
   static constexpr const char* idle = "limit of friction, {:.6g},";
   static constexpr bool is_piecewise_linear = true;

@@ -1,6 +1,7 @@
 /// The list of materials: what a scene may name, and the law that each becomes in a scalar T.
 ///
-/// A material has a file of its own: its description for the scene, and what makes a law of it,
+/// A material has a file of its own: its description for the scene, which says its keys (core/algebra/described.hpp)
+/// and what it is for, a verb first (place), and what makes a law of it,
 ///
 ///   law_of(material, space, finite_strain, numbers)   where it fills a continuum
 ///   bar_of(material, elastic, numbers)                where it fills bars too: elastic is the law of bars of its E
@@ -8,8 +9,8 @@
 ///
 /// A law of a continuum says what it is made for (is_finite, is_made_for), which numbers it consists of (numbers, with;
 /// of more than one part: part, part_count) and gives stress, stretch and stress across the plane, and energy of a
-/// displacement gradient. A law of two nodes (bars, springs) gives force, stiffness and energy of their relative
-/// displacement.
+/// displacement gradient; made for finite strain, the stretch in dual numbers too. A law of two nodes (bars, springs)
+/// gives force, stiffness and energy of their relative displacement.
 ///
 /// A law that remembers says how many numbers a point (memory), how a motion changes them (flow), what says which
 /// branch that takes (trial, hardening), the plastic strain in them, and the law that it is at the start (at_rest);
@@ -56,6 +57,11 @@ concept ContinuumLawWith = requires(const L& law, const Mat<double, 2>& H, const
   { law.stress_across(H, memory...) } -> std::same_as<double>;
   { law.template energy<double, 2>(H, memory...) } -> std::same_as<double>;
 };
+/// Whether the stretch across the plane has derivatives: loads at finite strain act on areas that follow it.
+template <class L, class Probe = Dual<4, double>>
+concept StretchHasDerivatives = requires(const L& law, const Mat<Probe, 2>& H) {
+  { law.stretch_across(H) } -> std::same_as<Probe>;
+};
 template <class L, class... Memory>
 concept TwoNodeLawWith = requires(const L& law, const Mat<double, 2>& X, const Vec<double, 2>& d,
                                   const Memory&... memory) {
@@ -84,7 +90,8 @@ concept TwoNodesFlow = requires(const L& law, const Mat<double, 2>& X, const Vec
 }  // namespace detail
 
 template <class L>
-concept ContinuumLaw = (!Remembers<L> && detail::ContinuumLawWith<L>) ||
+concept ContinuumLaw = (!Remembers<L> && detail::ContinuumLawWith<L> &&
+                        (!L::is_made_for(Kinematics::plane, true) || detail::StretchHasDerivatives<L>)) ||
                        (Remembers<L> && detail::ContinuumLawWith<L, Vec<double, memory_of<L>()>> && detail::Flows<L>);
 template <class L>
 concept TwoNodeLaw = (!Remembers<L> && detail::TwoNodeLawWith<L>) ||

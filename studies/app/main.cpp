@@ -17,6 +17,7 @@
 #include "core/algebra/memory.hpp"
 #include "studies/app/commands.hpp"
 #include "studies/app/exit_codes.hpp"
+#include "studies/input/method_options.hpp"
 #include "studies/io/input_fault.hpp"
 #include "studies/io/printing.hpp"
 #include "studies/io/provenance.hpp"
@@ -54,9 +55,21 @@ void is_number(CLI::Option* option, const char* what) {
   option->check(CLI::Validator(fault, ""));
 }
 
+/// a, b or c in place of the scene's
+const std::string& about_method() {
+  static const std::string text = [] {
+    std::string words;
+    words.reserve(100);
+    for (const auto& name : method_names())
+      words.append(words.empty() ? "" : &name == &method_names().back() ? " or " : ", ").append(name);
+    return words.append(" in place of the scene's");
+  }();
+  return text;
+}
+
 void add_scene(CLI::App& command, RunArguments& arguments) {
   command.add_option("SCENE", arguments.scene, "scene file (JSON)")->required();
-  command.add_option("-m,--method", arguments.method, "penalty, uzawa_al or monolithic_al in place of the scene's");
+  command.add_option("-m,--method", arguments.method, about_method());
   command.add_option("--set", arguments.overrides, "change a number of the scene; may be given again")
       ->type_name("POINTER=VALUE")
       ->expected(1)

@@ -49,7 +49,7 @@ Schema kind_schema(const std::string& kind, const Schema& parts, const Schema& k
 template <class Kinds>
 Schema one_of(const Kinds& kinds) {
   Schema properties = Schema::object();
-  for (const auto& kind : kinds) properties[kind.key] = Schema::parse(kind.schema);
+  for (const auto& kind : kinds) properties[kind.key] = kind.schema();
   return {{"type", "object"},   {"title", "one of the following"}, {"minProperties", 1},
           {"maxProperties", 1}, {"additionalProperties", false},   {"properties", properties}};
 }
@@ -58,7 +58,7 @@ Schema one_of(const Kinds& kinds) {
 void add_obstacle_kinds(Schema& obstacle) {
   Schema properties = Schema::object(), one = Schema::array();
   for (const auto& kind : obstacle_kinds()) {
-    properties[kind.key] = Schema::parse(kind.schema);
+    properties[kind.key] = kind.schema();
     one.push_back({{"required", {kind.key}}});
   }
   properties.update(obstacle["properties"]);

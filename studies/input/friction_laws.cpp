@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "studies/input/described.hpp"
+
 namespace stickslip {
 namespace {
 
@@ -36,10 +38,11 @@ FrictionLaw<Number> read_law(const JsonNode& node, SceneReading& reading) {
       [&](const auto& number) { (number.is_required ? keys.required : keys.optional).push_back(number.key); });
   node.is_object(keys);
   for_each_description<Law>([&](const auto& number) {
+    const Rule rule = rule_of(number.range);
     if (number.is_required)
-      law.*number.member = reading.required(node, number.key, not_negative);
+      law.*number.member = reading.required(node, number.key, rule);
     else if (const auto given = node.find(number.key))
-      law.*number.member = reading.number(*given, not_negative);
+      law.*number.member = reading.number(*given, rule);
   });
   return law;
 }
@@ -49,12 +52,10 @@ Schema schema_of() {
   Schema required = Schema::array(), properties = Schema::object();
   for_each_description<Law>([&](const auto& number) {
     const std::string unit = number.unit == FrictionUnit::stress ? " (force per area)" : "";
-    const auto whole = static_cast<long>(number.example);
-    const Schema example = number.example == static_cast<double>(whole) ? Schema(whole) : Schema(number.example);
     if (number.is_required) required.push_back(number.key);
-    properties[number.key] = {{"description", number.description + unit},
-                              {"$ref", "#/$defs/not_negative"},
-                              {"examples", Schema::array({example})}};
+    Schema& own = properties[number.key] = {{"description", number.description + unit}};
+    own.update(schema_of(number.range));
+    own["examples"] = Schema::array({detail::as_json(number.example)});
   });
   return {{"type", "object"}, {"required", required}, {"additionalProperties", false}, {"properties", properties}};
 }
@@ -62,14 +63,14 @@ Schema schema_of() {
 /// A law without its type.
 struct FrictionKind {
   const char* key;
-  std::string form;
-  Schema schema;
+  std::string (*form)();
+  Schema (*schema)();
   FrictionLaw<Number> (*read)(const JsonNode&, SceneReading&);
 };
 
 template <class... Law>
 std::vector<FrictionKind> friction_kinds_of(std::type_identity<std::variant<Law...>>) {
-  return {{key_of<Law>(), form_of<Law>(), schema_of<Law>(), read_law<Law>}...};
+  return {{key_of<Law>(), form_of<Law>, schema_of<Law>, read_law<Law>}...};
 }
 
 const std::vector<FrictionKind>& friction_kinds() {
@@ -80,7 +81,7 @@ const std::vector<FrictionKind>& friction_kinds() {
 /// a number >= 0, FORM, ... or FORM
 std::string all_forms() {
   std::string text = "a number >= 0";
-  for (const auto& kind : friction_kinds()) text += (&kind == &friction_kinds().back() ? " or " : ", ") + kind.form;
+  for (const auto& kind : friction_kinds()) text += (&kind == &friction_kinds().back() ? " or " : ", ") + kind.form();
   return text;
 }
 
@@ -99,7 +100,7 @@ FrictionLaw<Number> read_friction(const JsonNode& node, SceneReading& reading) {
 
 std::vector<Schema> friction_schemas() {
   std::vector<Schema> schemas;
-  for (const auto& kind : friction_kinds()) schemas.push_back(kind.schema);
+  for (const auto& kind : friction_kinds()) schemas.push_back(kind.schema());
   return schemas;
 }
 

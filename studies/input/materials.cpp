@@ -4,21 +4,12 @@
 #include <cmath>
 #include <type_traits>
 
+#include "studies/input/described.hpp"
+
 namespace stickslip {
 namespace {
 
-std::optional<Material> read_elastic(const JsonNode& node, SceneReading& reading) {
-  if (!node.is_object({{"E", "nu"}})) return std::nullopt;
-  return LinearElastic{reading.required(node, "E", positive), reading.required(node, "nu", poisson_ratio)};
-}
-
-std::optional<Material> read_neo_hookean(const JsonNode& node, SceneReading& reading) {
-  if (!node.is_object({{"E", "nu"}, {"volumetric"}})) return std::nullopt;
-  NeoHookean material{reading.required(node, "E", positive), reading.required(node, "nu", poisson_ratio)};
-  if (const auto kind = node.find("volumetric"))
-    if (kind->choice({"quadratic", "log"}) == "log") material.volumetric = NeoHookean::Volumetric::log;
-  return material;
-}
+using Schema = nlohmann::ordered_json;
 
 /// [[plastic strain, stress], ...]; a first row at strain 0 is the yield stress.
 void read_hardening_table(const JsonNode& node, J2Plastic& material, bool yields, SceneReading& reading) {
@@ -99,25 +90,8 @@ std::optional<Material> read_spring(const JsonNode& node, SceneReading& reading)
   return spring;
 }
 
-constexpr const char* elastic_schema = R"json({
-  "description": "of bars, and where strains are small of all but points", "type": "object",
-  "examples": [{"E": 1000, "nu": 0.3}],
-  "required": ["E", "nu"], "additionalProperties": false, "properties": {
-    "E": {"description": "Young's modulus (force per area)", "$ref": "#/$defs/positive", "examples": [1000]},
-    "nu": {"description": "Poisson's ratio", "title": "number > -1 and < 0.5", "type": "number",
-      "exclusiveMinimum": -1, "exclusiveMaximum": 0.5, "examples": [0.3]}}})json";
-
-constexpr const char* neo_hookean_schema = R"json({
-  "description": "of all but bars and points where strains are finite", "type": "object",
-  "examples": [{"E": 1000, "nu": 0.3}], "required": ["E", "nu"], "additionalProperties": false, "properties": {
-    "E": {"description": "Young's modulus of small strains (force per area)", "$ref": "#/$defs/positive",
-      "examples": [1000]},
-    "nu": {"description": "Poisson's ratio of small strains", "title": "number > -1 and < 0.5", "type": "number",
-      "exclusiveMinimum": -1, "exclusiveMaximum": 0.5, "examples": [0.3]},
-    "volumetric": {"description": "energy of a change of volume: lame/2 (J - 1)^2, or lame/2 (ln J)^2",
-      "enum": ["quadratic", "log"], "default": "quadratic"}}})json";
-
-constexpr const char* j2_schema = R"json({
+Schema j2_schema() {
+  return Schema::parse(R"json({
   "description": "elastoplastic, of all but points: J2 (von Mises) with isotropic hardening", "type": "object",
   "examples": [{"E": 1000, "nu": 0.3, "yield": 10, "hardening": 100}],
   "required": ["E", "nu", "hardening"], "if": {"properties": {"hardening": {"type": "number"}}},
@@ -130,28 +104,42 @@ constexpr const char* j2_schema = R"json({
     "hardening": {"description": "rise of that stress with the equivalent plastic strain, 0: perfect plasticity (force per area); or a table [[plastic strain, stress], ...], straight between its rows and constant behind the last",
       "title": "number >= 0, or [[plastic strain, stress], ...]", "examples": [100, [[0, 10], [0.02, 14], [0.1, 18]]],
       "anyOf": [{"type": "number", "minimum": 0}, {"type": "array", "minItems": 1, "items": {"type": "array",
-        "minItems": 2, "maxItems": 2, "items": {"type": "number", "minimum": 0}}}]}}})json";
+        "minItems": 2, "maxItems": 2, "items": {"type": "number", "minimum": 0}}}]}}})json");
+}
 
-constexpr const char* spring_schema = R"json({
+Schema spring_schema() {
+  return Schema::parse(R"json({
   "description": "of a point: the spring to its anchor", "type": "object",
   "examples": [{"stiffness": [[100, 0], [0, 100]]}], "required": ["stiffness"],
   "additionalProperties": false, "properties": {
     "stiffness": {"description": "symmetric and positive definite (force per length)",
       "title": "2 x 2 matrix (3 x 3 in space)", "type": "array", "items": {"$ref": "#/$defs/vector"},
-      "minItems": 2, "maxItems": 3, "examples": [[[100, 0], [0, 100]]]}}})json";
+      "minItems": 2, "maxItems": 3, "examples": [[[100, 0], [0, 100]]]}}})json");
+}
 
-MaterialKind entry_of(std::type_identity<LinearElastic>) {
-  return {"linear_elastic", elastic_schema, "fills bars, and where strains are small all but points", read_elastic};
-}
-MaterialKind entry_of(std::type_identity<NeoHookean>) {
-  return {"neo_hookean", neo_hookean_schema, "fills all but bars and points where strains are finite",
-          read_neo_hookean};
-}
+// Materials that say no keys(), for what they hold are not numbers and words alone.
+
 MaterialKind entry_of(std::type_identity<J2Plastic>) {
   return {"j2_plastic", j2_schema, "fills all but points", read_j2};
 }
 MaterialKind entry_of(std::type_identity<GroundedSpring>) {
   return {"grounded_spring", spring_schema, "holds a point", read_spring};
+}
+
+template <Described M>
+Schema material_schema() {
+  const auto keys = schema_of_keys<M>();
+  return {{"description", M::about},
+          {"type", "object"},
+          {"examples", Schema::array({keys.example})},
+          {"required", keys.required},
+          {"additionalProperties", false},
+          {"properties", keys.properties}};
+}
+
+template <Described M>
+std::optional<Material> read_described_material(const JsonNode& node, SceneReading& reading) {
+  return read_described<M>(node, reading);
 }
 
 template <class M>
@@ -165,9 +153,13 @@ bool goes_with(Filling filling, bool finite_strain) {
 template <class M>
 MaterialKind material_kind() {
   static_assert(
-      requires { entry_of(std::type_identity<M>()); },
-      "a material of core/solids/materials.hpp lacks its entry_of() in studies/input/materials.cpp");
-  MaterialKind kind = entry_of(std::type_identity<M>());
+      Described<M> || requires { entry_of(std::type_identity<M>()); },
+      "a material of core/solids/materials.hpp lacks its keys(), or entry_of() in studies/input/materials.cpp");
+  MaterialKind kind;
+  if constexpr (Described<M>)
+    kind = {M::key, material_schema<M>, M::place, read_described_material<M>};
+  else
+    kind = entry_of(std::type_identity<M>());
   kind.goes_with = goes_with<M>;
   return kind;
 }

@@ -1,6 +1,9 @@
-/// Materials as files name them: for each its key, its schema and its reader. A material more is an entry_of() in
-/// materials.cpp, beside the list of core/solids/materials.hpp and the file of its law.
+/// Materials as files name them: for each its key, its schema and its reader. They are made from what a material says
+/// of its keys (core/algebra/described.hpp). One with a key that is written in another way has an entry_of() in
+/// materials.cpp.
 #pragma once
+
+#include <nlohmann/json.hpp>
 
 #include "studies/input/scene_reading.hpp"
 
@@ -11,7 +14,7 @@ enum class Filling { point, bars, continuum };
 
 struct MaterialKind {
   const char* key;                                                               ///< of {"KEY": {...}}
-  const char* schema;                                                            ///< JSON Schema of what it holds
+  nlohmann::ordered_json (*schema)();                                            ///< JSON Schema of what it holds
   const char* place;                                                             ///< what it is for, a verb first
   std::optional<Material> (*read)(const JsonNode& node, SceneReading& reading);  ///< none where it is at fault
   bool (*goes_with)(Filling filling, bool finite_strain) = nullptr;

@@ -291,10 +291,14 @@ void check_oversize(const JsonNode& options, const UzawaAL& method) {
 
 }  // namespace
 
-std::vector<std::string> method_names() {
-  std::vector<std::string> names;
-  for_each_method([&](const auto& method) { names.emplace_back(method.name); });
-  return names;
+const std::vector<std::string>& method_names() {
+  static const auto all = [] {
+    std::vector<std::string> names;
+    names.reserve(std::variant_size_v<Method>);
+    for_each_method([&](const auto& method) { names.emplace_back(method.name); });
+    return names;
+  }();
+  return all;
 }
 
 void check_option_names(const JsonNode& options, const std::string& method) {
@@ -332,7 +336,7 @@ std::optional<Method> read_method(const JsonNode& node, SceneReading& reading) {
         visit_options(chosen, Reader{options, reading});
         if (reading.diagnostics.error_count() > faults) return;
         if constexpr (std::is_same_v<M, UzawaAL>) check_oversize(options, chosen);
-        if (const auto [option, reason] = conflict(chosen); !option.empty())
+        if (const auto [option, reason] = chosen.conflict(); !option.empty())
           options.find(std::string(option))->error(std::string(reason));
       },
       method);

@@ -15,7 +15,7 @@ class JsonNode;
 struct SceneReading;
 
 /// Names of the closed set, in its order.
-std::vector<std::string> method_names();
+const std::vector<std::string>& method_names();
 
 /// The method with its default options, without slots; none where there is none of this name.
 std::optional<Method> default_method(const std::string& name);

@@ -3,30 +3,14 @@
 #include <concepts>
 #include <type_traits>
 
+#include "studies/input/described.hpp"
 #include "studies/io/json_pointer.hpp"
 
 namespace stickslip {
 namespace {
 
 using nlohmann::json;
-
-std::optional<RigidSurface> read_plane(const JsonNode& node, SceneReading& reading) {
-  if (!node.is_object({{"point", "normal"}})) return std::nullopt;
-  Plane plane{reading.required_vector(node, "point", reading.dimension()), {}};
-  if (const auto normal = node.find("normal"))
-    plane.normal = reading.direction(*normal, "a vector that is not zero; it points out of the obstacle");
-  return plane;
-}
-
-std::optional<RigidSurface> read_circle(const JsonNode& node, SceneReading& reading) {
-  if (!node.is_object({{"center", "radius"}, {"inside"}})) return std::nullopt;
-  Circle circle;
-  const auto center = reading.required_vector(node, "center", 2);
-  circle.center = {center[0], center[1]};
-  circle.radius = reading.required(node, "radius", positive);
-  if (const auto inside = node.find("inside")) circle.inside = inside->boolean().value_or(false);
-  return circle;
-}
+using Schema = nlohmann::ordered_json;
 
 std::optional<RigidSurface> read_polyline(const JsonNode& node, SceneReading& reading) {
   constexpr const char* allowed = "an array of two points [x, y] or more, the solid on the right of the way along them";
@@ -80,44 +64,43 @@ json as_drawn(const Polyline& polyline) {
   return {{"polyline", {{"points", vertices}}}};
 }
 
-constexpr const char* plane_schema = R"json({
-  "description": "a half space", "type": "object", "required": ["point", "normal"],
-  "examples": [{"point": [0, 0], "normal": [0, 1]}], "additionalProperties": false, "properties": {
-    "point": {"description": "any of its surface (length)", "$ref": "#/$defs/vector", "examples": [[0, 0]]},
-    "normal": {"description": "out of the obstacle; of any length but 0", "$ref": "#/$defs/vector",
-      "examples": [[0, 1]]}}})json";
-
-constexpr const char* circle_schema = R"json({
-  "description": "a drum, or a cup; not in space", "type": "object",
-  "required": ["center", "radius"], "examples": [{"center": [0, 0], "radius": 1}],
-  "additionalProperties": false, "properties": {
-    "center": {"description": "of the circle (length)", "$ref": "#/$defs/pair", "examples": [[0, 0]]},
-    "radius": {"description": "of the circle (length)", "$ref": "#/$defs/positive", "examples": [1]},
-    "inside": {"description": "true: a cup, solid outside of the circle", "type": "boolean",
-      "default": false}}})json";
-
-constexpr const char* polyline_schema = R"json({
+Schema polyline_schema() {
+  return Schema::parse(R"json({
   "description": "straight facets; not in space", "type": "object", "required": ["points"],
   "examples": [{"points": [[5, 0], [0, 0], [0, 2]]}], "additionalProperties": false, "properties": {
     "points": {
       "description": "the solid is on the right of the way along them; the first once more closes it (length)",
       "title": "two or more [x, y]", "type": "array",
-      "minItems": 2, "items": {"$ref": "#/$defs/pair"}, "examples": [[[5, 0], [0, 0], [0, 2]]]}}})json";
+      "minItems": 2, "items": {"$ref": "#/$defs/pair"}, "examples": [[[5, 0], [0, 0], [0, 2]]]}}})json");
+}
 
-ObstacleKind entry_of(std::type_identity<Plane>) { return {"plane", plane_schema, read_plane}; }
-ObstacleKind entry_of(std::type_identity<Circle>) { return {"circle", circle_schema, read_circle}; }
 ObstacleKind entry_of(std::type_identity<Polyline>) { return {"polyline", polyline_schema, read_polyline}; }
+template <Described S>
+Schema surface_schema() {
+  const auto keys = schema_of_keys<S>();
+  return {{"description", S::about},       {"type", "object"},
+          {"required", keys.required},     {"examples", Schema::array({keys.example})},
+          {"additionalProperties", false}, {"properties", keys.properties}};
+}
+
+template <Described S>
+std::optional<RigidSurface> read_described_surface(const JsonNode& node, SceneReading& reading) {
+  return read_described<S>(node, reading);
+}
 
 template <class S>
 ObstacleKind obstacle_kind() {
-  static_assert(
-      requires(const S& surface) {
-        entry_of(std::type_identity<S>());
-        { as_drawn(surface) } -> std::same_as<json>;
-      },
-      "a surface of core/contact/rigid_surfaces.hpp lacks entry_of() or as_drawn() in "
-      "studies/input/obstacle_kinds.cpp");
-  ObstacleKind kind = entry_of(std::type_identity<S>());
+  static_assert((Described<S> || requires { entry_of(std::type_identity<S>()); }) &&
+                    requires(const S& surface) {
+                      { as_drawn(surface) } -> std::same_as<json>;
+                    },
+                "a surface of core/contact/rigid_surfaces.hpp lacks its keys(), or as_drawn() in "
+                "studies/input/obstacle_kinds.cpp");
+  ObstacleKind kind;
+  if constexpr (Described<S>)
+    kind = {S::key, surface_schema<S>, read_described_surface<S>};
+  else
+    kind = entry_of(std::type_identity<S>());
   kind.is_in_space = S::is_in_space;
   return kind;
 }

@@ -1,6 +1,6 @@
-/// Rigid surfaces as files name them: for each its key, its schema, its reader and what pictures know of it. A surface
-/// more is an entry_of() in obstacle_kinds.cpp, beside the list of core/contact/rigid_surfaces.hpp and the file of its
-/// geometry.
+/// Rigid surfaces as files name them: for each its key, its schema, its reader and what pictures know of it. They are
+/// made from what a surface says of its keys (core/algebra/described.hpp); how it is drawn is an as_drawn() in
+/// obstacle_kinds.cpp.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,7 +11,7 @@ namespace stickslip {
 
 struct ObstacleKind {
   const char* key;                                                                   ///< of {"KEY": {...}}
-  const char* schema;                                                                ///< JSON Schema of what it holds
+  nlohmann::ordered_json (*schema)();                                                ///< JSON Schema of what it holds
   std::optional<RigidSurface> (*read)(const JsonNode& node, SceneReading& reading);  ///< none where it is at fault
   bool is_in_space = false;                                                          ///< or in the plane alone
 };

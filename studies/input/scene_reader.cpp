@@ -112,32 +112,22 @@ void select_method(JsonDocument& document, const std::optional<std::string>& nam
   document.set("/method", {{*name, nlohmann::json::object()}}, {"-m " + *name});
 }
 
-}  // namespace
-
-std::optional<Input> read_scene(const JsonDocument& given, const std::optional<std::string>& method_name,
-                                Diagnostics& diagnostics, MeshFiles& mesh_files) {
-  const std::size_t faults = diagnostics.error_count();
-  const std::filesystem::path folder = std::filesystem::path(given.file()).parent_path();
-  JsonDocument document = given;
-  const JsonNode file_root(given, diagnostics);
+/// Whether a document is an object with the keys of a scene.
+bool is_scene(const JsonDocument& given, Diagnostics& diagnostics) {
+  const JsonNode root(given, diagnostics);
   if (given.root().is_object() && given.root().contains("scene") && !given.root().contains("bodies")) {
-    file_root.error("is a study, not a scene; `stickslip study` runs it");
-    return std::nullopt;
+    root.error("is a study, not a scene; `stickslip study` runs it");
+    return false;
   }
-  if (!file_root.is_object(
-          {{"bodies", "time"},
-           {"$schema", "title", "space", "strain", "obstacles", "contacts", "supports", "loads", "responses",
-            "objectives", "parameters", "method", "linear_solver", "output", "sensitivity"}}))
-    return std::nullopt;
+  return root.is_object(
+      {{"bodies", "time"},
+       {"$schema", "title", "space", "strain", "obstacles", "contacts", "supports", "loads", "responses", "objectives",
+        "parameters", "method", "linear_solver", "output", "sensitivity"}});
+}
 
-  const bool known = !method_name || default_method(*method_name);
-  select_method(document, method_name, diagnostics, mesh_files);
-
-  Input input;
-  input.file = document.file();
-  const JsonNode root(document, diagnostics);
-  SceneReading reading(diagnostics, folder, mesh_files);
-  auto part = [&](const char* key, auto&& read) {
+/// All of a scene but its method and its parameters; each part goes on from those before it.
+void read_parts(const JsonNode& root, SceneReading& reading, Input& input) {
+  const auto part = [&](const char* key, auto&& read) {
     if (const auto node = root.find(key)) read(*node, reading);
   };
   if (const auto schema = root.find("$schema")) schema->text();
@@ -156,18 +146,41 @@ std::optional<Input> read_scene(const JsonDocument& given, const std::optional<s
   if (const auto node = root.find("linear_solver")) read_linear_solver(*node, reading.scene, input);
   if (const auto node = root.find("output")) read_output(*node, input.output);
   if (const auto node = root.find("sensitivity")) read_sensitivity(*node, reading, input);
+}
 
-  const auto method_node = root.find("method");
-  if (!method_node && known) root.error(R"(the key "method" is missing; allowed: )" + listed(method_names()));
-  const auto method = method_node ? read_method(*method_node, reading) : std::nullopt;
-  std::vector<std::string> dropped;
-  if (const auto node = root.find("parameters"))
-    dropped = read_parameters(*node, document.root(), method ? std::string(name_of(*method)) : "",
-                              method_name.has_value(), reading);
-  if (const auto given = root.find("parameters");
-      reading.scene.sensitivity_mode == SensitivityMode::adjoint && (!given || given->value().empty()))
+/// The parameters of a scene, whose mode may ask for some. Returns the pointers of those that were dropped
+/// (read_parameters).
+std::vector<std::string> read_parameters_of(const JsonNode& root, const std::string& method, bool drop_others,
+                                            SceneReading& reading) {
+  const auto given = root.find("parameters");
+  const auto dropped =
+      given ? read_parameters(*given, root.value(), method, drop_others, reading) : std::vector<std::string>();
+  if (reading.scene.sensitivity_mode == SensitivityMode::adjoint && (!given || given->value().empty()))
     root.find("sensitivity")
         ->error(R"(asks for derivatives by the parameters, and the scene has none; add "parameters")");
+  return dropped;
+}
+
+}  // namespace
+
+std::optional<Input> read_scene(const JsonDocument& given, const std::optional<std::string>& method_name,
+                                Diagnostics& diagnostics, MeshFiles& mesh_files) {
+  const std::size_t faults = diagnostics.error_count();
+  if (!is_scene(given, diagnostics)) return std::nullopt;
+  JsonDocument document = given;
+  select_method(document, method_name, diagnostics, mesh_files);
+
+  Input input;
+  input.file = document.file();
+  const JsonNode root(document, diagnostics);
+  SceneReading reading(diagnostics, std::filesystem::path(given.file()).parent_path(), mesh_files);
+  read_parts(root, reading, input);
+  const auto method_node = root.find("method");
+  const bool known = !method_name || default_method(*method_name);
+  if (!method_node && known) root.error(R"(the key "method" is missing; allowed: )" + listed(method_names()));
+  const auto method = method_node ? read_method(*method_node, reading) : std::nullopt;
+  const auto dropped =
+      read_parameters_of(root, method ? std::string(name_of(*method)) : "", method_name.has_value(), reading);
   if (diagnostics.error_count() > faults) return std::nullopt;
 
   for (const std::string& pointer : dropped) document.remove(pointer);

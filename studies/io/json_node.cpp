@@ -98,7 +98,7 @@ std::optional<std::pair<std::string, JsonNode>> JsonNode::kind(const std::vector
   bool wrong = false;
   for (const auto& [name, node] : members()) {
     if (has(others, name)) continue;
-    if (has(later, name)) {
+    if (has(later, name) && !has(kinds, name)) {
       node.error_at_key(unavailable(name, kinds));
     } else if (!has(kinds, name)) {
       node.error_at_key(unknown_key(name, joined(kinds, others)));

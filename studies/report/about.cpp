@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 
+#include "studies/input/method_options.hpp"
 #include "studies/report/html.hpp"
 #include "studies/report/labels.hpp"
 #include "studies/report/look_up.hpp"
@@ -97,16 +98,13 @@ std::string what_was_run(const Study& study) {
 bool is_merged(const Study& study) { return text_at(study.description, "command").starts_with("stickslip merge "); }
 
 std::string how_to_read(const Study& study) {
-  return "<p>Every dot is one complete run of one method with one setting. Three methods make bodies keep apart" +
-         std::string(is_frictionless(study) ? "" : " and obey Coulomb's friction") +
-         ":</p><ul>"
-         "<li><b>Penalty</b> puts stiff springs between the bodies. One solve, but they sink in a little; stiffer "
-         "springs err less and make the equations harder to solve accurately.</li>"
-         "<li><b>Uzawa AL</b> (augmented Lagrangian) solves with soft springs, adds the force that was missing, and "
-         "repeats until nothing is missing: exact in the limit, at the price of repetition.</li>"
-         "<li><b>Monolithic AL</b> makes the contact forces unknowns of the same equations: exact at once, with a "
-         "larger "
-         "and less friendly system.</li></ul>"
+  std::string methods;
+  for (const auto& name : method_names())
+    methods += std::visit([](const auto& m) { return fmt::format("<li><b>{}</b> {}</li>", m.title, m.idea); },
+                          *default_method(name));
+  return "<p>Every dot is one complete run of one method with one setting. These methods make bodies keep apart" +
+         std::string(is_frictionless(study) ? "" : " and obey Coulomb's friction") + ":</p><ul>" + methods +
+         "</ul>"
          "<p>A <b>response</b> is a number the study asks for, such as a force. A <b>sensitivity</b> is the derivative "
          "of a response with respect to a parameter, computed the way that matches the method. The <b>enforcement "
          "error</b> compares with the exact contact conditions on the same mesh, so it blames the method alone; the "

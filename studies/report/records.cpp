@@ -240,10 +240,8 @@ Study read_run(const std::filesystem::path& directory) {
 }
 
 std::string family_name(const std::string& family) {
-  if (family == "penalty") return "Penalty";
-  if (family == "uzawa_al") return "Uzawa AL";
-  if (family == "monolithic_al") return "Monolithic AL";
-  return family;
+  const auto method = default_method(family);
+  return method ? std::visit([](const auto& m) { return std::string(m.title); }, *method) : family;
 }
 
 std::string running_knob(const Study& study, const std::string& family) {

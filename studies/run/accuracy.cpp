@@ -13,27 +13,24 @@ namespace {
 struct Tolerances {
   double force, contact;
 };
-Tolerances tolerances(const UzawaAL& m) { return {m.newton.tolerance, m.tolerance}; }
-template <class M>
+template <WholeMethod M>
 Tolerances tolerances(const M& m) {
-  return {m.newton.tolerance, m.newton.tolerance};
+  return {m.newton.tolerance, m.contact_tolerance()};
 }
 
 /// The scales that a method measures its residuals by are those of its own iterates and of condensed forces.
 constexpr double headroom = 10;
 
-ElasticLayer layer_of(const Penalty&, const RegularisationField<double>& rho) {
+/// Where multipliers prevent penetration, points are on the cone of the last one but for the tolerance.
+template <WholeMethod M>
+ElasticLayer layer_of(const M& m, const RegularisationField<double>& rho) {
+  if constexpr (M::prevents_penetration) return {{}, {}, headroom * m.contact_tolerance()};
   ElasticLayer layer;
   for (const auto& r : rho) {
     layer.normal.push_back(1 / r.normal);
     layer.tangential.push_back(1 / r.tangential);
   }
   return layer;
-}
-/// Where the cone's radius is that of the last multiplier, points are on it but for the tolerance.
-template <class M>
-ElasticLayer layer_of(const M& m, const RegularisationField<double>&) {
-  return {{}, {}, headroom * tolerances(m).contact};
 }
 
 /// What is explained of the defects of one increment.

@@ -190,9 +190,7 @@ EngineHoldings holdings(const Workspace<double>& workspace) {
 }  // namespace
 
 bool StepResult::has_kink(const Scene& scene, const Method& method, std::size_t response, std::size_t parameter) const {
-  const auto* uzawa = std::get_if<UzawaAL>(&method);
-  const bool oversized = uzawa && uzawa->sensitivity == UzawaAL::Sensitivity::oversized;
-  const double rounding = oversized ? 10 / uzawa->oversize.value_or(UzawaAL::automatic_oversize) : 1e-9;
+  const double allowed = scheme_of(method).error, rounding = allowed > 0 ? allowed : 1e-9;
   const double below = backward(response, parameter), above = forward(response, parameter);
   const double value = scene.parameters[parameter].value, size = value == 0 ? 0 : std::abs(responses[response] / value);
   return !(std::abs(above - below) <= rounding * std::max({std::abs(below), std::abs(above), size}));

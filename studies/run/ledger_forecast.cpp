@@ -30,7 +30,7 @@ struct Size {
   double repeated;                          ///< steps that are solved again
   double steps, parameters, blocks, responses, objectives;
   double together;  ///< increments that are differentiated at once
-  bool condensed, mixed, unknown, unsymmetric, uzawa, truncated, follows;
+  bool condensed, mixed, unknown, unsymmetric, iterates, truncated, follows;
   Condensed what() const { return condensed ? Condensed::all : mixed ? Condensed::part : Condensed::nothing; }
 };
 
@@ -63,10 +63,10 @@ Size size_of(const Input& input, const Model& model) {
   n.blocks = std::ceil(n.parameters / directions);
   n.responses = static_cast<double>(model.scene.responses.size());
   n.objectives = static_cast<double>(model.scene.objectives.size());
-  const auto* uzawa = std::get_if<UzawaAL>(&input.method);
-  n.uzawa = uzawa != nullptr;
-  n.truncated = uzawa && uzawa->sensitivity == UzawaAL::Sensitivity::truncated;
-  n.follows = !n.condensed && (!uzawa || uzawa->sensitivity == UzawaAL::Sensitivity::iterated);
+  const Scheme scheme = scheme_of(input.method);
+  n.iterates = scheme.iterates;
+  n.truncated = scheme.of_each_augmentation;
+  n.follows = !n.condensed && scheme.keeps_tangents;
   n.together = model.effects.plasticity
                    ? 1
                    : std::min(n.steps, std::max(1.0, std::floor(columns_together / std::max(n.parameters, 1.0))));
@@ -136,10 +136,9 @@ double state_numbers(const Size& n) {
 /// as many points. A penalty takes one solve; multipliers that are unknown up to two more, where rounding asks for
 /// them; a factor that follows the run is brought up to date by others; what Uzawa's schemes take hangs on the
 /// contraction.
-std::vector<Amount> derivative_counts(const Method& method, const Size& n, double columns, double evaluated) {
-  const bool uzawa = std::holds_alternative<UzawaAL>(method);
+std::vector<Amount> derivative_counts(const Size& n, double columns, double evaluated) {
   const double on = columns > 0 ? 1 : 0;
-  const double within = on == 0 ? exactly : uzawa || n.follows ? not_known : n.unknown ? 3 : exactly;
+  const double within = on == 0 ? exactly : n.iterates || n.follows ? not_known : n.unknown ? 3 : exactly;
   const double known = on == 0 || within == not_known ? 0 : n.steps;
   return {{"backsolves", columns * known, within},
           {"body_backsolves", 0, on > 0 && (n.condensed || n.mixed) ? not_known : exactly},
@@ -147,7 +146,7 @@ std::vector<Amount> derivative_counts(const Method& method, const Size& n, doubl
           {"evaluations", evaluated * n.points * known, within}};
 }
 
-LedgerRow direct_row(const Input& input, const Problem& problem, const Size& n) {
+LedgerRow direct_row(const Problem& problem, const Size& n) {
   const auto& scene = problem.model.scene;
   constexpr double dual = sizeof(Direction);
   const bool on = n.parameters > 0 && scene.sensitivity_mode == SensitivityMode::direct;
@@ -170,11 +169,11 @@ LedgerRow direct_row(const Input& input, const Problem& problem, const Size& n) 
            {"solves", together * solve, within},
            {"sweeps", 0, on && n.truncated ? not_known : exactly},
            {"derivatives", real_bytes * p * ((ties ? 3 : 1) * n.steps * n.responses + n.dofs + n.objectives)}},
-          derivative_counts(input.method, n, p, 2 * blocks),
+          derivative_counts(n, p, 2 * blocks),
           on ? not_apart : 0};
 }
 
-LedgerRow adjoint_row(const Input& input, const Problem& problem, const Size& n) {
+LedgerRow adjoint_row(const Problem& problem, const Size& n) {
   const auto& model = problem.model;
   const bool on = n.parameters > 0 && model.scene.sensitivity_mode == SensitivityMode::adjoint;
   const double objectives = on ? n.objectives : 0;
@@ -184,7 +183,7 @@ LedgerRow adjoint_row(const Input& input, const Problem& problem, const Size& n)
   const double again = any ? n.together_again : 0;
   // weights of masters that deform are some more, of each point along a curve
   const double within = again == 0 ? exactly : n.truncated ? not_known : n.present > 0 ? 2 : exactly;
-  auto counts = derivative_counts(input.method, n, objectives, 1);
+  auto counts = derivative_counts(n, objectives, 1);
   if (any && n.repeated > 0) counts[3] = {"evaluations", 0, not_known};  // (of the steps that are solved again too)
   counts.push_back({"repeated_increments", any ? n.repeated : 0, any && n.repeated > 0 ? 2.0 : exactly});  // 2: ties
   return {"adjoint_sensitivity",
@@ -272,7 +271,7 @@ LedgerRow condensed_row(const Size& n, const Factors& factors) {
                 {"factorizations", 0, unknown},
                 {"backsolves", 0, unknown},
                 {"iterations", 0, unknown},
-                {"augmentations", 0, n.uzawa ? unknown : exactly}};
+                {"augmentations", 0, n.iterates ? unknown : exactly}};
   return row;
 }
 
@@ -296,7 +295,7 @@ LedgerRow sparse_row(const Size& n, const Factors& factors) {
        {"factorizations", 0, unknown},
        {"backsolves", 0, unknown},
        {"iterations", 0, unknown},
-       {"augmentations", 0, n.uzawa ? unknown : exactly}},
+       {"augmentations", 0, n.iterates ? unknown : exactly}},
       on ? not_apart : 0};
 }
 
@@ -334,8 +333,8 @@ Ledger forecast(const Input& input, const Problem& problem) {
   const Factors factors = n.condensed ? condensed_factors(model, n) : sparse_factors(model, n);
   Ledger ledger{bodies_row(problem, n, factors.tangent_entries)};
   add_contact_rows(problem, n, factors.tangent, ledger);
-  ledger.push_back(direct_row(input, problem, n));
-  ledger.push_back(adjoint_row(input, problem, n));
+  ledger.push_back(direct_row(problem, n));
+  ledger.push_back(adjoint_row(problem, n));
   ledger.push_back(search_row(n));
   ledger.push_back(condensed_row(n, factors));
   ledger.push_back(sparse_row(n, factors));

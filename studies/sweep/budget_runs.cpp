@@ -24,18 +24,8 @@ constexpr double tightest = 1e-15;
 /// A contraction of 0.997 an update, which takes away a digit in 800, still gets there.
 constexpr int most_augmentations = 10'000;
 
-void tighten(NewtonOptions& newton) { newton.tolerance = std::min(newton.tolerance, tightest); }
-template <class M>
-void tighten(M& method) {
-  tighten(method.newton);
-}
-void tighten(UzawaAL& method) {
-  tighten(method.newton);
-  method.tolerance = std::min(method.tolerance, tightest);
-  method.max_augmentations = std::max(method.max_augmentations, most_augmentations);
-}
 void tighten(Method& method) {
-  std::visit([](auto& chosen) { tighten(chosen); }, method);
+  std::visit([](auto& chosen) { chosen.tighten(tightest, most_augmentations); }, method);
 }
 
 /// The cell with the exact enforcement, on a finer mesh and in finer steps. Faults are in the diagnostics.

@@ -16,22 +16,6 @@ const double pi = std::acos(-1.0);
 /// sqrt(1 - (x/a)^2), 0 outside.
 double half_ellipse(double x, double a) { return std::abs(x) < a ? std::sqrt(1 - x * x / (a * a)) : 0; }
 
-/// Stiffness E1 and ratio n of plane strain in the formulas of plane stress.
-struct Plane2D {
-  D E, nu;
-  Plane2D(const In& in, Space space) : E(in.at("E")), nu(in.at("nu")) {
-    if (space == Space::plane_stress) return;
-    E = E / (D(1) - nu * nu);
-    nu = nu / (D(1) - nu);
-  }
-};
-
-Out hertz_line(const In& in, Space) {
-  const D& P = in.at("force");
-  const D b = sqrt(D(4) * P * in.at("radius") / (D(pi) * in.at("modulus")));
-  return {{"half_width", b}, {"peak_pressure", D(2) * P / (D(pi) * b)}};
-}
-
 using Curve = std::vector<ClosedForm::Tractions>;
 
 constexpr int samples = 400;  // of a curve that bends
@@ -52,8 +36,41 @@ Curve symmetric_curve(double reach, At at) {
   return curve;
 }
 
+/// Stiffness E1 and ratio n of plane strain in the formulas of plane stress.
+struct Plane2D {
+  D E, nu;
+  Plane2D(const In& in, Space space) : E(in.at("E")), nu(in.at("nu")) {
+    if (space == Space::plane_stress) return;
+    E = E / (D(1) - nu * nu);
+    nu = nu / (D(1) - nu);
+  }
+};
+
+const ClosedForm::Quantity force{"force", "pressing force per length", positive}, E{"E", "Young's modulus", positive},
+    nu{"nu", "Poisson's ratio", poisson_ratio}, radius{"radius", "relative radius, 1/R = 1/R1 + 1/R2", positive},
+    modulus{"modulus", "contact modulus E* [of the two bodies of the contact]", positive, true, true},
+    friction{"friction", "coefficient [of the contact]", not_negative, true, true},
+    half_width{"half_width", "half the width of the contact"}, peak{"peak_pressure", "largest pressure"},
+    load{"load", "load per length", positive}, gap{"gap", "distance at the start", positive},
+    height{"height", "of the beam", positive};
+
+Out hertz_line(const In& in, Space) {
+  const D& P = in.at("force");
+  const D b = sqrt(D(4) * P * in.at("radius") / (D(pi) * in.at("modulus")));
+  return {{"half_width", b}, {"peak_pressure", D(2) * P / (D(pi) * b)}};
+}
+
 Curve hertz_tractions(const Quantities<double>& all, double) {
   return symmetric_curve(1.3 * all.at("half_width"), [&](double x) { return std::pair{hertz_pressure(all, x), 0.0}; });
+}
+
+ClosedForm hertz_line_form() {
+  return {"hertz_line",
+          "two cylinders pressed together [J85 4.2]",
+          {force, radius, modulus},
+          {half_width, peak},
+          hertz_line,
+          hertz_tractions};
 }
 
 Out cattaneo_mindlin(const In& in, Space space) {
@@ -73,6 +90,19 @@ Curve cattaneo_tractions(const Quantities<double>& all, double) {
   });
 }
 
+ClosedForm cattaneo_mindlin_form() {
+  return {"cattaneo_mindlin",
+          "then sheared until the rim slips [J85 7.2]",
+          {force,
+           {"tangential_force", "shearing force per length, less than friction times force"},
+           radius,
+           modulus,
+           friction},
+          {half_width, peak, {"stick_half_width", "half the width of what sticks"}},
+          cattaneo_mindlin,
+          cattaneo_tractions};
+}
+
 Out flat_punch(const In& in, Space) {
   const D &P = in.at("force"), &a = in.at("half_width");
   return {{"centre_pressure", P / (D(pi) * a)}, {"mean_pressure", P / (D(2) * a)}};
@@ -83,6 +113,15 @@ Curve flat_punch_tractions(const Quantities<double>& all, double) {
   return symmetric_curve(inside * a, [&](double x) {
     return std::pair{all.at("force") / (pi * std::sqrt(a * a - x * x)), 0.0};
   });
+}
+
+ClosedForm flat_punch_form() {
+  return {"flat_punch",
+          "rigid flat punch on a half plane [J85 2.8]",
+          {force, {"half_width", "half the width of the punch", positive}},
+          {{"centre_pressure", "pressure at the middle"}, {"mean_pressure", "force over width"}},
+          flat_punch,
+          flat_punch_tractions};
 }
 
 Out press_fit(const In& in, Space space) {
@@ -99,6 +138,30 @@ Out press_fit(const In& in, Space space) {
   return out;
 }
 
+Curve press_fit_tractions(const Quantities<double>& all, double length) {
+  return {{0, all.at("pressure"), 0}, {length, all.at("pressure"), 0}};
+}
+
+ClosedForm press_fit_form() {
+  return {"press_fit",
+          "ring pressed into a ring of the same material [Lame]",
+          {{"inner", "bore of the inner ring", positive},
+           {"interface", "radius where they meet", positive},
+           {"outer", "rim of the outer ring", positive},
+           {"interference", "how much too large the inner one is", positive},
+           E,
+           nu,
+           {"friction", "coefficient", not_negative, false}},
+          {{"pressure", "between the rings"},
+           {"u_outer", "radial displacement of the outer ring's bore"},
+           {"u_inner", "of the inner ring's outside"},
+           {"u_rim", "of the outer ring's rim"},
+           {"slip_torque", "per length, at which all slips (with friction)"}},
+          press_fit,
+          press_fit_tractions,
+          ClosedForm::Over::arc};
+}
+
 Out belt(const In& in, Space) {
   const D &mu = in.at("friction"), angle = in.at("angle") * D(pi / 180);
   D log_ratio = mu * angle;
@@ -110,10 +173,6 @@ Out belt(const In& in, Space) {
   const D ratio = exp(log_ratio);
   const D tight = in.at("slack") * ratio;
   return {{"ratio", ratio}, {"tight", tight}, {"tight_reaction", -tight}};
-}
-
-Curve press_fit_tractions(const Quantities<double>& all, double length) {
-  return {{0, all.at("pressure"), 0}, {length, all.at("pressure"), 0}};
 }
 
 Curve belt_tractions(const Quantities<double>& all, double length) {
@@ -131,6 +190,22 @@ Curve belt_tractions(const Quantities<double>& all, double length) {
   return curve;
 }
 
+ClosedForm belt_form() {
+  return {"belt",
+          "belt on a drum, about to slip [Euler, Eytelwein]",
+          {{"slack", "tension of the slack end", positive},
+           friction,
+           {"angle", "wrapped, degrees", positive},
+           {"nodes", "of a polygonal belt [a smooth one]", positive, false},
+           {"radius", "of the drum, for the tractions along it", positive, false}},
+          {{"tight", "tension of the tight end"},
+           {"tight_reaction", "minus that: of a support that pulls the end down"},
+           {"ratio", "tight over slack"}},
+          belt,
+          belt_tractions,
+          ClosedForm::Over::arc};
+}
+
 Out pull_out(const In& in, Space) {
   const D &P = in.at("force"), &EA = in.at("stiffness"), &f = in.at("friction_per_length");
   const D u = P * P / (D(2) * EA * f), work = P * P * P / (D(6) * EA * f);
@@ -139,6 +214,20 @@ Out pull_out(const In& in, Space) {
           {"dissipation", work},
           {"residual_displacement", u / D(2)},
           {"cycle_dissipation", D(4) * work}};
+}
+
+ClosedForm pull_out_form() {
+  return {"pull_out",
+          "bar drawn against friction along it",
+          {{"force", "at the end", positive},
+           {"stiffness", "Young's modulus times cross-section", positive},
+           {"friction_per_length", "limit of the friction", positive}},
+          {{"slip_length", "that slips under the force"},
+           {"end_displacement", "under the force"},
+           {"dissipation", "of the first loading"},
+           {"residual_displacement", "of the end, force taken away"},
+           {"cycle_dissipation", "of a full cycle to the force either way"}},
+          pull_out};
 }
 
 D bending_stiffness(const In& in, Space space) {
@@ -155,97 +244,34 @@ Out cantilever_stop(const In& in, Space space) {
   return {{"free_tip", tip}, {"stiffness", k}, {"reaction", touches ? k * (tip - in.at("gap")) : D(0)}};
 }
 
+ClosedForm cantilever_stop_form() {
+  return {"cantilever_stop",
+          "loaded cantilever whose tip meets a stop [Timoshenko]",
+          {load, gap, {"length", "of the beam", positive}, height, E, nu},
+          {{"reaction", "of the stop"}, {"free_tip", "deflection without it"}, {"stiffness", "of the tip"}},
+          cantilever_stop};
+}
+
 Out cantilever_floor(const In& in, Space space) {
   const D& q = in.at("load");
   const D a = pow(D(72) * bending_stiffness(in, space) * in.at("gap") / q, 0.25);
   return {{"lift_off", a}, {"line_reaction", q * a / D(3)}};
 }
 
-const ClosedForm::Quantity force{"force", "pressing force per length", positive}, E{"E", "Young's modulus", positive},
-    nu{"nu", "Poisson's ratio", poisson_ratio}, radius{"radius", "relative radius, 1/R = 1/R1 + 1/R2", positive},
-    modulus{"modulus", "contact modulus E* [of the two bodies of the contact]", positive, true, true},
-    friction{"friction", "coefficient [of the contact]", not_negative, true, true},
-    half_width{"half_width", "half the width of the contact"}, peak{"peak_pressure", "largest pressure"},
-    load{"load", "load per length", positive}, gap{"gap", "distance at the start", positive},
-    height{"height", "of the beam", positive};
+ClosedForm cantilever_floor_form() {
+  return {"cantilever_floor",
+          "loaded cantilever that comes to lie on a floor [Euler, Bernoulli]",
+          {load, gap, height, E, nu},
+          {{"lift_off", "distance from the clamp to where it touches"}, {"line_reaction", "force there"}},
+          cantilever_floor};
+}
 
 }  // namespace
 
 const std::vector<ClosedForm>& closed_forms() {
   static const std::vector<ClosedForm> all = {
-      {"hertz_line",
-       "two cylinders pressed together [J85 4.2]",
-       {force, radius, modulus},
-       {half_width, peak},
-       hertz_line,
-       hertz_tractions},
-      {"cattaneo_mindlin",
-       "then sheared until the rim slips [J85 7.2]",
-       {force,
-        {"tangential_force", "shearing force per length, less than friction times force"},
-        radius,
-        modulus,
-        friction},
-       {half_width, peak, {"stick_half_width", "half the width of what sticks"}},
-       cattaneo_mindlin,
-       cattaneo_tractions},
-      {"flat_punch",
-       "rigid flat punch on a half plane [J85 2.8]",
-       {force, {"half_width", "half the width of the punch", positive}},
-       {{"centre_pressure", "pressure at the middle"}, {"mean_pressure", "force over width"}},
-       flat_punch,
-       flat_punch_tractions},
-      {"press_fit",
-       "ring pressed into a ring of the same material [Lame]",
-       {{"inner", "bore of the inner ring", positive},
-        {"interface", "radius where they meet", positive},
-        {"outer", "rim of the outer ring", positive},
-        {"interference", "how much too large the inner one is", positive},
-        E,
-        nu,
-        {"friction", "coefficient", not_negative, false}},
-       {{"pressure", "between the rings"},
-        {"u_outer", "radial displacement of the outer ring's bore"},
-        {"u_inner", "of the inner ring's outside"},
-        {"u_rim", "of the outer ring's rim"},
-        {"slip_torque", "per length, at which all slips (with friction)"}},
-       press_fit,
-       press_fit_tractions,
-       ClosedForm::Over::arc},
-      {"belt",
-       "belt on a drum, about to slip [Euler, Eytelwein]",
-       {{"slack", "tension of the slack end", positive},
-        friction,
-        {"angle", "wrapped, degrees", positive},
-        {"nodes", "of a polygonal belt [a smooth one]", positive, false},
-        {"radius", "of the drum, for the tractions along it", positive, false}},
-       {{"tight", "tension of the tight end"},
-        {"tight_reaction", "minus that: of a support that pulls the end down"},
-        {"ratio", "tight over slack"}},
-       belt,
-       belt_tractions,
-       ClosedForm::Over::arc},
-      {"pull_out",
-       "bar drawn against friction along it",
-       {{"force", "at the end", positive},
-        {"stiffness", "Young's modulus times cross-section", positive},
-        {"friction_per_length", "limit of the friction", positive}},
-       {{"slip_length", "that slips under the force"},
-        {"end_displacement", "under the force"},
-        {"dissipation", "of the first loading"},
-        {"residual_displacement", "of the end, force taken away"},
-        {"cycle_dissipation", "of a full cycle to the force either way"}},
-       pull_out},
-      {"cantilever_stop",
-       "loaded cantilever whose tip meets a stop [Timoshenko]",
-       {load, gap, {"length", "of the beam", positive}, height, E, nu},
-       {{"reaction", "of the stop"}, {"free_tip", "deflection without it"}, {"stiffness", "of the tip"}},
-       cantilever_stop},
-      {"cantilever_floor",
-       "loaded cantilever that comes to lie on a floor [Euler, Bernoulli]",
-       {load, gap, height, E, nu},
-       {{"lift_off", "distance from the clamp to where it touches"}, {"line_reaction", "force there"}},
-       cantilever_floor}};
+      hertz_line_form(), cattaneo_mindlin_form(), flat_punch_form(),      press_fit_form(),
+      belt_form(),       pull_out_form(),         cantilever_stop_form(), cantilever_floor_form()};
   return all;
 }
 
