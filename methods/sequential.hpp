@@ -273,7 +273,8 @@ Equilibrium<T> solve_in_sequence(E& engine, const EquilibriumTask<T>& task, cons
 
 /// Solves one equilibrium from start values, in up to three attempts: Newton's method; if bodies or geometry are
 /// nonlinear and it does not converge in 15 iterations, the sequence; if that fails, Newton's method with all its
-/// iterations. After an equilibrium by the sequence, the run begins the next ones with it, until it fails.
+/// iterations. After an equilibrium by the sequence, the run begins the next ones with it, until it fails. It always
+/// does where tangents are condensed, for there points change their branches at the price of a dense factor.
 template <class T, class E>
 Equilibrium<T> find_equilibrium(E& engine, const EquilibriumTask<T>& task, Unknowns<T> start,
                                 const NewtonOptions& options, Account& account) {
@@ -293,7 +294,8 @@ Equilibrium<T> find_equilibrium(E& engine, const EquilibriumTask<T>& task, Unkno
   };
   NewtonOptions brief = options;
   brief.max_iterations = soon;
-  if (!account.sequential && take(newton(engine, task, start, brief, account))) return found;
+  if (!account.sequential && !engine.condenses_tangents() && take(newton(engine, task, start, brief, account)))
+    return found;
   account.sequential = take(detail::solve_in_sequence(engine, task, start, options, account));
   if (!account.sequential) take(newton(engine, task, std::move(start), options, account));
   return found;

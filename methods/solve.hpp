@@ -7,6 +7,7 @@
 
 #include "methods/checkpoints.hpp"
 #include "methods/diagnosis.hpp"
+#include "methods/drive.hpp"
 #include "methods/engine_choice.hpp"
 #include "methods/motion.hpp"
 #include "methods/path.hpp"
@@ -79,12 +80,16 @@ double pace_of(const Model& model, const State<T>& from, const State<T>& to, dou
   return largest_nodal_norm(Vector<T>(to.displacement - from.displacement), model.dimension) / duration;
 }
 
-/// Whether bodies that are not linear move at four times the pace of the increment before, or more: so they would
-/// beyond a limit point, if the solution jumps there.
+/// Whether bodies that are not linear move at four times the pace of the increment before, and of what drives them, or
+/// more: so they would beyond a limit point, if the solution jumps there.
 template <class T>
-bool is_sudden(const std::vector<Increment<T>>& before, double pace) {
+bool is_sudden(const Model& model, const Slots<T>& slots, const std::vector<Increment<T>>& before, double end,
+               double pace) {
   constexpr double sudden = 4;
-  return !before.empty() && pace > sudden * before.back().pace;
+  if (before.empty() || !(pace > sudden * before.back().pace)) return false;
+  const double start = before.back().time;
+  const Vector<double> driven = driven_motion(model, slots, end) - driven_motion(model, slots, start);
+  return pace > sudden * largest_nodal_norm(driven, model.dimension) / (end - start);
 }
 
 /// Counts the solutions of an increment that was solved from `start` to its end, and looks for a jump to it where there
@@ -99,7 +104,7 @@ void look_beside(const M& method, Run<T, E>& run, const Trajectory<T>& trajector
       increment.reversed || !increment.others.empty() || (!before.empty() && !before.back().others.empty());
   increment.pace =
       pace_of(run.model, previous, increment.state, increment.time - (before.empty() ? 0 : before.back().time));
-  const bool sudden = is_sudden(before, increment.pace);
+  const bool sudden = is_sudden(run.model, run.slots, before, increment.time, increment.pace);
   if ((increment.counted && folded) || sudden)
     increment.jump = find_jump(method, run, previous, factor, start, increment.time, increment.state);
 }

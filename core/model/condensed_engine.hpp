@@ -25,6 +25,7 @@ class CondensedEngine {
   void linearise(const BodyMotion<T>&) {}  ///< (the bodies' tangent is constant)
   void hold_bodies(const BodyMotion<T>&, const Vector<T>&) {}
   void release_bodies() {}
+  static constexpr bool condenses_tangents() { return false; }
   /// The bodies' tangent times a motion, all dofs in the axes, that is zero inside.
   Vector<T> tangent_times(const BodyMotion<T>&, const Vector<T>& motion) const;
   /// `hold`: stiffness against motion of each contact node, the same in all directions, force per length; empty: none.

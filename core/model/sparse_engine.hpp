@@ -20,8 +20,8 @@ RowLists tangent_rows(const Model& model, bool unknown_multipliers, const MixedR
 /// Where some bodies are of constant stiffness and others are not, the former may be condensed: a dense block each on
 /// their contact dofs. Entries of dofs inside them mean nothing in its vectors.
 ///
-/// Where tangents change, each may be condensed (core/model/condensed_tangent.hpp), until one is not positive definite
-/// inside. The vectors are the same then, and the pattern is that of the bodies alone.
+/// Where tangents change, each may be condensed (core/model/condensed_tangent.hpp), in each increment until one is not
+/// positive definite inside. The vectors are the same then, and the pattern is that of the bodies alone.
 template <class T>
 class SparseEngine {
  public:
@@ -56,6 +56,8 @@ class SparseEngine {
   /// motion. `u`: engine displacement that has the prescribed values. (Where their tangent is constant they are so.)
   void hold_bodies(const BodyMotion<T>& at, const Vector<T>& u);
   void release_bodies() { held_bodies_.reset(); }
+  /// Whether points that change while bodies are held cost no sparse factor.
+  bool condenses_tangents() const { return condenses_; }
   /// The tangent of what is inside and on the bodies at a motion times another, all dofs in the axes, as
   /// model/loading.hpp has it; of condensed bodies, that of their contact dofs.
   Vector<T> tangent_times(const BodyMotion<T>& at, const Vector<T>& motion) const;
@@ -92,10 +94,9 @@ class SparseEngine {
   struct Carried {
     std::vector<std::vector<int>> places;
     FactorRecipe<T> factor;
-    bool condenses = false;  ///< tangents
     long bytes() const { return factor.bytes(); }
   };
-  Carried carried() const { return {places_, model_.effects.linear_bulk ? recipe() : FactorRecipe<T>{}, condenses_}; }
+  Carried carried() const { return {places_, model_.effects.linear_bulk ? recipe() : FactorRecipe<T>{}}; }
   /// Goes back to it, by a factorisation where it had a factor: later solves have the same bits as they had then.
   void carry(const Carried& carried, Counters& counters);
 
@@ -132,7 +133,7 @@ class SparseEngine {
     if (condenses_) return tangent_->rows().dofs;
     return part_ ? part_->rows().dofs : model_.free_dofs;
   }
-  /// Condenses the last tangent, or from now on none where it cannot be.
+  /// Condenses the last tangent; where it cannot be condensed, none until the next begin().
   void condense(Counters& counters);
   /// Rows of a point's entries.
   std::vector<int> rows_of(std::size_t p, const std::vector<int>& places) const;

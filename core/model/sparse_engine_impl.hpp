@@ -191,6 +191,11 @@ template <class T>
 Vector<T> SparseEngine<T>::begin(double time, const Vector<T>& displacement, const Vector<T>& before) {
   before_ = before;
   time_ = time;
+  if (tangent_ && !condenses_) {
+    condenses_ = true;
+    valid_ = condensed_ = false;
+    lay_out(places_at_start());
+  }
   Vector<T> u = displacement;
   prescribe(model_, slots_, time, u);
   u = into_frames(model_, slots_.frames, Layout::all, std::move(u));
@@ -301,10 +306,7 @@ bool SparseEngine<T>::update(const std::vector<PointTangent<T>>& tangents, Count
 
 template <class T>
 void SparseEngine<T>::carry(const Carried& carried, Counters& counters) {
-  if (carried.places != places_ || carried.condenses != condenses_) {
-    condenses_ = carried.condenses;
-    lay_out(carried.places.empty() ? places_at_start() : carried.places);
-  }
+  if (carried.places != places_) lay_out(carried.places);
   valid_ = false;
   if (carried.factor.valid) factorise(carried.factor.tangents, counters, carried.factor.hold);
   update_ = carried.factor.update;
