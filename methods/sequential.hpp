@@ -109,6 +109,7 @@ class Sequence {
         at = evaluate_(unknowns_);
       }
       history_.push_back(record(at, {}, before == branches_ ? 0 : 1, 1));
+      if (account_.trace) account_.trace->take(task_.contact, unknowns_.multiplier, at.field, history_.back(), step);
       if (!at.residuals.finite()) return false;
       const double residual = at.residuals.largest();
       waited = 2 * residual < least_residual ? 0 : waited + 1;
@@ -273,8 +274,10 @@ Equilibrium<T> solve_in_sequence(E& engine, const EquilibriumTask<T>& task, cons
 
 /// Solves one equilibrium from start values, in up to three attempts: Newton's method; if bodies or geometry are
 /// nonlinear and it does not converge in 15 iterations, the sequence; if that fails, Newton's method with all its
-/// iterations. After an equilibrium by the sequence, the run begins the next ones with it, until it fails. It always
-/// does where tangents are condensed, for there points change their branches at the price of a dense factor.
+/// iterations. After an equilibrium by the sequence, the run begins the next ones with it, until it fails. Where
+/// tangents are condensed, points change their branches at the price of a dense factor. Then an increment whose
+/// multipliers are unknown begins with the sequence too, and what follows in an increment, as after an augmentation,
+/// with Newton's method.
 template <class T, class E>
 Equilibrium<T> find_equilibrium(E& engine, const EquilibriumTask<T>& task, Unknowns<T> start,
                                 const NewtonOptions& options, Account& account) {
@@ -294,8 +297,10 @@ Equilibrium<T> find_equilibrium(E& engine, const EquilibriumTask<T>& task, Unkno
   };
   NewtonOptions brief = options;
   brief.max_iterations = soon;
-  if (!account.sequential && !engine.condenses_tangents() && take(newton(engine, task, start, brief, account)))
-    return found;
+  bool in_sequence = account.sequential;
+  if (engine.condenses_tangents())
+    in_sequence = task.last_displacement && (account.sequential || task.solves_for_multipliers());
+  if (!in_sequence && take(newton(engine, task, start, brief, account))) return found;
   account.sequential = take(detail::solve_in_sequence(engine, task, start, options, account));
   if (!account.sequential) take(newton(engine, task, std::move(start), options, account));
   return found;

@@ -13,6 +13,7 @@ struct Iterate {
   IterationRecord record;
   std::vector<ContactState> state;             ///< per contact point, by classification
   Vector<double> multiplier, trial, traction;  ///< lambda, z and t, laid out as multipliers
+  bool in_sequence = false;  ///< the solution of one of the contact problems of methods/sequential.hpp
 };
 
 struct Trace {

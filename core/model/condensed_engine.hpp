@@ -52,9 +52,7 @@ class CondensedEngine {
   double condition_estimate() const { return system_.condition_estimate(); }
   std::string name() const;
   const std::string& message() const { return system_.message(); }
-  int unknowns() const {
-    return system_.displacements() + (unknown_multipliers_ ? model_.multiplier_count : 0);
-  }
+  int unknowns() const { return system_.displacements() + (unknown_multipliers_ ? model_.multiplier_count : 0); }
   long nonzeros() const { return static_cast<long>(unknowns()) * unknowns(); }
   EngineHoldings holdings() const;
 

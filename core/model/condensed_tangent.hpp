@@ -4,10 +4,10 @@
 ///   [ K_ci  K_cc + C_uu  C_ul ]      K: of the bodies; C: of the contact points
 ///   [ 0     C_lu         C_ll ]
 ///
-/// K is symmetric, and K_ii positive definite but where a body buckles. One Cholesky factorisation with the contact dofs
-/// last makes S = K_cc - K_ci K_ii^-1 K_ic, whatever friction does to the symmetry of C. The rest is the dense system of
-/// core/model/contact_system.hpp, so that points which change their branches while K stays cost no sparse factor. The
-/// sparse pattern is that of the bodies alone, and stays the same wherever points slide to.
+/// K is symmetric, and K_ii positive definite but where a body buckles. One Cholesky factorisation with the contact
+/// dofs last makes S = K_cc - K_ci K_ii^-1 K_ic, whatever friction does to the symmetry of C. The rest is the dense
+/// system of core/model/contact_system.hpp, so that points which change their branches while K stays cost no sparse
+/// factor. The sparse pattern is that of the bodies alone, and stays the same wherever points slide to.
 #pragma once
 
 #include <memory>

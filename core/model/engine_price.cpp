@@ -106,7 +106,8 @@ EnginePrice predict_price(const Model& model, bool unknown_multipliers, Symmetry
 bool prefers_condensed_tangents(const FactorSize& bodies, int dense_rows, Symmetry symmetry) {
   const double dense_kind = symmetry == Symmetry::positive_definite ? 1 : lu, rows = dense_rows;
   const double dense = of_dense * dense_kind * rows * rows * rows / 3;
-  return bodies.flops + branches_a_tangent * dense < branches_a_tangent * kind_of(symmetry) * free_ordering * bodies.flops;
+  return bodies.flops + branches_a_tangent * dense <
+         branches_a_tangent * kind_of(symmetry) * free_ordering * bodies.flops;
 }
 
 bool prefers_condensed(const Model& model, const EnginePrice& price) {

@@ -30,7 +30,7 @@ allowed() {
 folders="core/algebra core/mesh core/solids core/contact core/model methods sensitivity
   studies/io studies/input studies/run studies/report studies/sweep studies/app studies/python"
 solver_headers='<(cholmod|umfpack|dmumps_c|SuiteSparse_config)[^>]*>'
-printing='<(nlohmann|fmt|CLI)/|<(iostream|print)>|\b(printf|fprintf|puts|cout|cerr)\b'
+printing='<(nlohmann|fmt|CLI)/|<(iostream|print)>|\b(printf|fprintf|puts) *\(|\b(cout|cerr)\b'
 
 check() {
   cd "$1"
