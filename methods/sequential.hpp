@@ -109,7 +109,10 @@ class Sequence {
         at = evaluate_(unknowns_);
       }
       history_.push_back(record(at, {}, before == branches_ ? 0 : 1, 1));
-      if (account_.trace) account_.trace->take(task_.contact, unknowns_.multiplier, at.field, history_.back(), step);
+      if (account_.trace) {
+        account_.trace->take(task_.contact, unknowns_.multiplier, at.field, history_.back(), step);
+        account_.trace->iterates.back().in_sequence = true;
+      }
       if (!at.residuals.finite()) return false;
       const double residual = at.residuals.largest();
       waited = 2 * residual < least_residual ? 0 : waited + 1;

@@ -45,7 +45,8 @@ struct Solved {
     const Input input = cases::read(document, file);
     problem = std::make_unique<Problem>(input.scene);
     method = input.method;
-    RunOptions options{input.linear_algebra, input.backend};
+    // (Where tangents are condensed, equilibria are sought in sequence first, by problems that are not Newton steps.)
+    RunOptions options{{LinearAlgebra::Engine::sparse}, input.backend};
     options.trace = &trace;
     trajectory = solve(problem->model, problem->slots, method, options);
   }
@@ -92,8 +93,9 @@ int expect_quadratic_convergence(const Solved& s) {
   for (std::size_t i = 2; i < iterates.size(); ++i) {
     const auto &first = iterates[i - 2], &second = iterates[i - 1], &third = iterates[i];
     while (increment + 1 < rounding.size() && s.trajectory.increments[increment].time < third.time) ++increment;
-    const bool settled = first.solve == third.solve && second.record.changed + third.record.changed == 0 &&
-                         second.record.step_length == 1 && third.record.step_length == 1;
+    const bool settled = !first.in_sequence && first.solve == third.solve &&
+                         second.record.changed + third.record.changed == 0 && second.record.step_length == 1 &&
+                         third.record.step_length == 1;
     const double a = first.record.residual, b = second.record.residual, c = third.record.residual;
     if (!settled || a > 1e-2 || b >= a || c >= b || c < rounding[increment]) continue;
     ++count;
