@@ -6,11 +6,17 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <string>
 
 namespace stickslip {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Tests run beside one another, each in a process of its own.
+fs::path directory_of_the_test() {
+  return fs::path(testing::TempDir()) / ("stickslip_directory_locks_" + std::to_string(::getpid()));
+}
 
 /// A directory of results, gone with the test.
 class DirectoryLocks : public testing::Test {
@@ -31,7 +37,7 @@ class DirectoryLocks : public testing::Test {
     return WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   }
 
-  const fs::path directory_ = fs::path(testing::TempDir()) / "stickslip_directory_locks", file_ = directory_ / ".lock";
+  const fs::path directory_ = directory_of_the_test(), file_ = directory_ / ".lock";
 };
 
 TEST_F(DirectoryLocks, LeaveNoFileBehind) {
