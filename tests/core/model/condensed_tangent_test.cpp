@@ -1,0 +1,100 @@
+/// Tangents of bodies that change, condensed: the sparse engine with them against the same with one sparse factor.
+#include <gtest/gtest.h>
+
+#include "tests/support/engine_problem.hpp"
+#include "tests/support/sliding_scenes.hpp"
+
+namespace stickslip {
+namespace {
+
+struct Pair {
+  EngineProblem problem;
+  bool unknown;
+  SparseEngine<double> plain, condensed;
+
+  Pair(const Scene& scene, bool unknown_multipliers)
+      : problem(scene),
+        unknown(unknown_multipliers),
+        plain(problem.sparse(unknown)),
+        condensed(problem.model, problem.slots, unknown, ConeRadius::augmented, Backend::automatic, nullptr,
+                  std::make_shared<CondensedTangent<double>>(
+                      problem.model, problem.slots, unknown,
+                      detail::symmetry_of(problem.model, unknown, ConeRadius::augmented), Backend::automatic)) {
+    for (auto* engine : {&plain, &condensed}) engine->begin(1, problem.u, memory());
+  }
+  Vector<double> memory() const { return Vector<double>::Zero(problem.model.memory_count); }
+  /// Both engines at a motion, with the tangents of the problem.
+  void factorise(const Vector<double>& u, Counters& of_plain, Counters& of_condensed) {
+    const Vector<double> before = memory();
+    plain.linearise({u, before, 1});
+    condensed.linearise({u, before, 1});
+    ASSERT_TRUE(plain.factorise(problem.tangents(), of_plain));
+    ASSERT_TRUE(condensed.factorise(problem.tangents(), of_condensed));
+  }
+  void expect_same_solutions() {
+    const Matrix<double> r = problem.rows(3);
+    const int multipliers = unknown ? problem.model.multiplier_count : 0;
+    Matrix<double> l(multipliers, 3);
+    for (int j = 0; j < 3; ++j) l.col(j) = derivatives::arbitrary(multipliers, 20 + j);
+    for (const auto how : {Solving::refined, Solving::transposed}) {
+      const auto a = plain.solve({r, l}, how), b = condensed.solve({r, l}, how);
+      EXPECT_LE((a.u - b.u).norm(), solved * a.u.norm());
+      EXPECT_LE((a.l - b.l).norm(), solved * a.l.norm());
+      EXPECT_GT(a.u.norm(), 0);
+    }
+  }
+};
+
+std::vector<Scene> scenes_that_change() { return {scenes::pressed_metal(false), scenes::pressed_metal(true)}; }
+
+TEST(CondensedTangent, SolvesAsOneSparseFactorDoes) {
+  for (const auto& scene : scenes_that_change())
+    for (const bool unknown : {false, true}) {
+      Pair pair(scene, unknown);
+      ASSERT_TRUE(can_condense_tangents(pair.problem.model));
+      Counters of_plain, of_condensed;
+      pair.factorise(0.01 * pair.problem.u, of_plain, of_condensed);
+      EXPECT_TRUE(pair.condensed.condenses_tangents());
+      pair.expect_same_solutions();
+    }
+}
+
+TEST(CondensedTangent, TakesOtherBranchesWithoutASparseFactor) {
+  Pair pair(scenes::pressed_metal(true), true);
+  Counters of_plain, of_condensed;
+  pair.factorise(0.01 * pair.problem.u, of_plain, of_condensed);
+  const auto open = pair.problem.open_tangents();
+  ASSERT_TRUE(pair.plain.factorise(open, of_plain));
+  ASSERT_TRUE(pair.condensed.factorise(open, of_condensed));
+  pair.expect_same_solutions();
+  EXPECT_EQ(of_plain.factorizations, 2);
+  EXPECT_EQ(of_condensed.factorizations, 1);
+}
+
+TEST(CondensedTangent, GivesWayWhereABodyIsNotDefiniteInsideUntilTheNextIncrement) {
+  Pair pair(scenes::pressed_metal(true), true);
+  Counters of_plain, of_condensed;
+  Vector<double> crushed = pair.problem.u;  // far beyond what is stable, not inverted
+  const auto& model = pair.problem.model;
+  for (int node = 0; node < model.node_count; ++node) {
+    crushed[2 * node] = 0;
+    crushed[2 * node + 1] = -0.9 * pair.problem.slots.points(1, node);
+  }
+  pair.factorise(crushed, of_plain, of_condensed);
+  EXPECT_FALSE(pair.condensed.condenses_tangents());
+  pair.expect_same_solutions();
+  pair.condensed.begin(1, pair.problem.u, pair.memory());
+  EXPECT_TRUE(pair.condensed.condenses_tangents());
+  pair.factorise(0.01 * pair.problem.u, of_plain, of_condensed);
+  pair.expect_same_solutions();
+}
+
+TEST(CondensedTangent, IsOfContactBetweenBodiesThatChange) {
+  EXPECT_FALSE(can_condense_tangents(make_model(scenes::two_boxes(3, 4))));  // linear
+  auto without = scenes::pressed_metal(true);
+  without.contacts.clear();
+  EXPECT_FALSE(can_condense_tangents(make_model(without)));
+}
+
+}  // namespace
+}  // namespace stickslip
