@@ -45,7 +45,7 @@ struct Solved {
     const Input input = cases::read(document, file);
     problem = std::make_unique<Problem>(input.scene);
     method = input.method;
-    // (Where tangents are condensed, equilibria are sought in sequence first, by problems that are not Newton steps.)
+    // (Measured of Newton's method alone: where tangents are condensed, methods/sequential.hpp comes first.)
     RunOptions options{{LinearAlgebra::Engine::sparse}, input.backend};
     options.trace = &trace;
     trajectory = solve(problem->model, problem->slots, method, options);
