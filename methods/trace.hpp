@@ -13,6 +13,7 @@ struct Iterate {
   IterationRecord record;
   std::vector<ContactState> state;             ///< per contact point, by classification
   Vector<double> multiplier, trial, traction;  ///< lambda, z and t, laid out as multipliers
+  std::vector<char> flows;                     ///< of bodies that remember: whether each point flows
   bool in_sequence = false;  ///< the solution of one of the contact problems of methods/sequential.hpp
 };
 
@@ -21,12 +22,16 @@ struct Trace {
   static constexpr std::size_t most_points = 4;
   std::vector<Iterate> iterates;
 
+  /// `displacement`: all dofs, in the axes.
   template <class T>
-  void take(const ContactInput<T>& input, const Vector<T>& multiplier, const ContactField<T>& field,
-            const IterationRecord& record, int number) {
+  void take(const ContactInput<T>& input, const Vector<T>& displacement, const Vector<T>& multiplier,
+            const ContactField<T>& field, const IterationRecord& record, int number) {
     const int solve = (iterates.empty() ? 0 : iterates.back().solve) + (number == 0 ? 1 : 0);
-    iterates.push_back({input.time, solve, number, record, field.state, {}, {}, {}});
+    iterates.push_back({input.time, solve, number, record, field.state});
     const Model& model = input.model;
+    if constexpr (std::is_same_v<T, double>)
+      if (model.memory_count > 0)
+        iterates.back().flows = flowing_points(model, input.slots, {displacement, input.previous.bodies, input.time});
     if (model.points.size() > most_points) return;
     Iterate& now = iterates.back();
     now.multiplier = values(multiplier);

@@ -34,6 +34,23 @@ void eliminate(const Supernodes& factor, Panel<width>& y) {
   }
 }
 
+/// The same of one right-hand side, with the same bits: column by column, as the factor is stored.
+void eliminate(const Supernodes& factor, Vector<double>& y) {
+  Vector<double> own_rows(factor.size);
+  for (int s = 0; s < factor.count; ++s) {
+    const int own = factor.eliminated_columns_of(s), count = factor.rows_of(s);
+    if (own == 0) continue;
+    const int* const rows = factor.row_list(s);
+    for (int i = 0; i < count; ++i) own_rows[i] = y[rows[i]];
+    for (int j = 0; j < own; ++j) {
+      const double* const L = factor.block(s) + static_cast<std::ptrdiff_t>(j) * count;
+      const double solved = own_rows[j] /= L[j];
+      for (int i = j + 1; i < count; ++i) own_rows[i] -= L[i] * solved;
+    }
+    for (int i = 0; i < count; ++i) y[rows[i]] = own_rows[i];
+  }
+}
+
 /// Replaces y_o by x_o in marked supernodes; the rows of what is kept are x_k.
 template <int width>
 void substitute_back(const Supernodes& factor, const std::vector<char>& marked, Panel<width>& y) {
@@ -93,6 +110,15 @@ Matrix<double> Supernodes::schur_complement() const {
 
 Reduction<double> Supernodes::reduce(const Matrix<double>& b) const {
   Reduction<double> reduced{Matrix<double>(size - eliminated, b.cols()), Matrix<double>(size, b.cols())};
+  if (b.cols() == 1) {
+    Vector<double> y(size);
+    for (int k = 0; k < size; ++k) y[k] = b(permutation[k], 0);
+    eliminate(*this, y);
+    for (int k = 0; k < size; ++k)
+      if (is_kept(k)) reduced.kept(permutation[k] - eliminated, 0) = y[k];
+    reduced.others = y;
+    return reduced;
+  }
   for_each_panel(size, b.cols(), [&]<int width>(Panel<width> y, Eigen::Index first, Eigen::Index columns) {
     if (columns < width) y.setZero();
     for (int k = 0; k < size; ++k)

@@ -38,6 +38,14 @@ double yield_margin(const Model& model, const Slots<double>& slots, const BodyMo
   return least;
 }
 
+std::vector<char> flowing_points(const Model& model, const Slots<double>& slots, const BodyMotion<double>& at) {
+  std::vector<char> flow;
+  for_each_flow_point<double>(model, slots, at, nullptr, [&](const FlowPoint<double>& point) {
+    flow.push_back(point.trial.stress > point.hardening.bound(point.trial.before));
+  });
+  return flow;
+}
+
 STICKSLIP_SLOTS(, double);
 
 }  // namespace stickslip

@@ -333,6 +333,9 @@ T bulk_energy(const Model& model, const Slots<T>& slots, const Vector<T>& u, con
 /// plastic. Infinity if no body is plastic.
 double yield_margin(const Model& model, const Slots<double>& slots, const BodyMotion<double>& at);
 
+/// Whether each point of the bodies that remember flows at a motion, in the order of their memory.
+std::vector<char> flowing_points(const Model& model, const Slots<double>& slots, const BodyMotion<double>& at);
+
 /// Stretch of the thickness of plane stress at finite strain, and its derivatives by the displacements of the nodes of
 /// an element, node-major.
 template <class T>

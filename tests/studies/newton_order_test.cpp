@@ -45,8 +45,7 @@ struct Solved {
     const Input input = cases::read(document, file);
     problem = std::make_unique<Problem>(input.scene);
     method = input.method;
-    // (Measured of Newton's method alone: where tangents are condensed, methods/sequential.hpp comes first.)
-    RunOptions options{{LinearAlgebra::Engine::sparse}, input.backend};
+    RunOptions options{input.linear_algebra, input.backend};
     options.trace = &trace;
     trajectory = solve(problem->model, problem->slots, method, options);
   }
@@ -81,11 +80,11 @@ std::vector<double> roundings(const Solved& s) {
 
 /// Holds residuals a > b > c of iterates one after another, between 1e-2 and a hundred roundings, in states that stand,
 /// to an order of 1.8 or more; returns how many there were.
-int expect_quadratic_convergence(const Solved& s) {
+int expect_quadratic_convergence(const Solved& s, double largest_constant) {
   // The order is that of the last two steps, log(c / b) / log(b / a), and tells nothing of a first step that took away
   // more than a quadratic one would. The constant c / b^2 is then that of the second alone: 40 where the traction of a
-  // stiff penalty turns (tractrix), 7 elsewhere. A tangent that is off by 1e-3 gives 1e-3 / b.
-  constexpr double largest_constant = 50;
+  // stiff penalty turns (tractrix), 7 elsewhere. A tangent that is off by 1e-3 gives 1e-3 / b. A residual of the
+  // contact bends a thin ring, which is (R / t)^2 = 90 times as soft as what 7 is measured of (pinched_tube: 330).
   const auto rounding = roundings(s);
   const auto& iterates = s.trace.iterates;
   int count = 0;
@@ -93,8 +92,8 @@ int expect_quadratic_convergence(const Solved& s) {
   for (std::size_t i = 2; i < iterates.size(); ++i) {
     const auto &first = iterates[i - 2], &second = iterates[i - 1], &third = iterates[i];
     while (increment + 1 < rounding.size() && s.trajectory.increments[increment].time < third.time) ++increment;
-    const bool settled = !first.in_sequence && first.solve == third.solve &&
-                         second.record.changed + third.record.changed == 0 && second.record.step_length == 1 &&
+    const bool settled = first.solve == third.solve && second.record.changed + third.record.changed == 0 &&
+                         first.flows == second.flows && second.flows == third.flows && second.record.step_length == 1 &&
                          third.record.step_length == 1;
     const double a = first.record.residual, b = second.record.residual, c = third.record.residual;
     if (!settled || a > 1e-2 || b >= a || c >= b || c < rounding[increment]) continue;
@@ -120,10 +119,9 @@ TEST_P(NewtonOnShippedScenes, HasTheTangentOfTheComplexStepAndConvergesWithTheSe
     EXPECT_LE(error.rows, 1e-10) << n;
   }
   // Of the other scenes no three residuals lie between 1e-2 and their rounding: they are linear while states stand, or
-  // two steps take them there.
-  const std::set<std::string> show_their_order{"tractrix penalty", "tractrix uzawa_al", "ironing monolithic_al",
-                                               "pinched_tube monolithic_al", "indentation monolithic_al"};
-  const int held = expect_quadratic_convergence(s);
+  // two steps take them there. (Where tangents are condensed, steps of the sequence are of third order and more.)
+  const std::set<std::string> show_their_order{"tractrix penalty", "tractrix uzawa_al", "pinched_tube monolithic_al"};
+  const int held = expect_quadratic_convergence(s, GetParam().scene == "pinched_tube" ? 500 : 50);
   if (show_their_order.contains(GetParam().scene + " " + GetParam().method)) {
     EXPECT_GT(held, 0);
   }
