@@ -19,6 +19,21 @@ EnginePrice predict_price(const Model& model, const Method& method, const Factor
 bool condenses(const Model& model, const Method& method, LinearAlgebra::Engine engine,
                const std::optional<FactorSize>& factor = std::nullopt);
 
+/// What condenses the tangents of a run, analysed; nothing where they are not condensed.
+template <class T>
+std::shared_ptr<CondensedTangent<T>> make_condensed_tangent(const Model& model, const Slots<T>& slots,
+                                                            const Method& method, const LinearAlgebra::Engine engine,
+                                                            Backend backend) {
+  if (!can_condense_tangents(model) || engine == LinearAlgebra::Engine::sparse) return nullptr;
+  const bool unknown = has_unknown_multipliers(method);
+  const auto symmetry = detail::symmetry_of(model, unknown, cone_radius_of(method));
+  auto tangent = std::make_shared<CondensedTangent<T>>(model, slots, unknown, symmetry, backend);
+  if (engine == LinearAlgebra::Engine::automatic &&
+      !prefers_condensed_tangents(tangent->factor_size(), tangent->dense_rows(), symmetry))
+    tangent.reset();
+  return tangent;
+}
+
 /// Makes the engine of a run: dense on the contact dofs if all bodies are condensed, otherwise sparse. If the workspace
 /// has condensed bodies already, they are used: the price of condensing is then not counted again.
 template <class T>
@@ -44,13 +59,7 @@ void make_engine(const Model& model, const Slots<T>& slots, const Method& method
   }
   std::shared_ptr<CondensedTangent<T>> tangent;
   if constexpr (std::is_same_v<T, double>)
-    if (!condensed && can_condense_tangents(model) && engine != LinearAlgebra::Engine::sparse) {
-      const auto symmetry = detail::symmetry_of(model, unknown_multipliers, cone);
-      tangent = std::make_shared<CondensedTangent<T>>(model, slots, unknown_multipliers, symmetry, options.backend);
-      if (engine == LinearAlgebra::Engine::automatic &&
-          !prefers_condensed_tangents(tangent->factor_size(), tangent->dense_rows(), symmetry))
-        tangent.reset();
-    }
+    if (!condensed) tangent = make_condensed_tangent(model, slots, method, engine, options.backend);
   workspace.engine.emplace(std::in_place_type<SparseEngine<T>>, model, slots, unknown_multipliers, cone,
                            options.backend, std::move(condensed), std::move(tangent));
 }

@@ -52,14 +52,16 @@ IterationRecord record(const Evaluation<T>& at, const std::vector<ContactState>&
 inline constexpr const char* kept_message =
     "a point at a vertex of facets has no equilibrium on either of them: it is held on one; try a smooth surface";
 
-/// A solution of points on patches that they do not face.
+inline constexpr const char* far_message = "points go to and fro between facets; try more steps, or a smooth surface";
+
+/// A solution of points on patches that they do not face, and how it ends.
 template <class T>
 using KeptSolution = std::tuple<NewtonEnd, Unknowns<T>, Evaluation<T>>;
 
 /// Whether points that slide along curves give another way on from an end. States may cycle because points go to and
 /// fro at a vertex: then the points are kept on their patches. From the solution of that there may be a way to a
 /// solution in which all points face what they are on. Where there is none, the end is that of the kept points, and
-/// says so.
+/// says so; unless one of them is far from its vertex, for that is no solution.
 template <class T, class E>
 bool goes_on(Evaluator<T, E>& evaluate, NewtonStop& stop, NewtonEnd& end, Unknowns<T>& unknowns, Evaluation<T>& at,
              std::optional<KeptSolution<T>>& kept) {
@@ -67,6 +69,7 @@ bool goes_on(Evaluator<T, E>& evaluate, NewtonStop& stop, NewtonEnd& end, Unknow
   const bool first = is_converged(end.status) && !kept && wrong;
   if (first) {
     kept = {end, unknowns, at};
+    if (evaluate.keeps_far(at.field)) std::get<NewtonEnd>(*kept) = {Status::cycle, far_message};
     evaluate.release();
   }
   if (first || (end.status == Status::cycle && evaluate.keep_patches())) {
@@ -76,7 +79,7 @@ bool goes_on(Evaluator<T, E>& evaluate, NewtonStop& stop, NewtonEnd& end, Unknow
   }
   if (kept && (!is_converged(end.status) || wrong)) {
     std::tie(end, unknowns, at) = std::move(*kept);
-    end.message = kept_message;
+    if (is_converged(end.status)) end.message = kept_message;
   }
   return false;
 }
@@ -111,7 +114,9 @@ Equilibrium<T> newton(E& engine, const EquilibriumTask<T>& task, Unknowns<T> unk
   };
   for (int iteration = 0;; ++iteration) {
     result.history.push_back(detail::record(at, used, evaluate.accept(at), step_length));
-    if (account.trace) account.trace->take(input, unknowns.multiplier, at.field, result.history.back(), iteration);
+    if (account.trace)
+      account.trace->take(input, Vector<T>(engine.spread(unknowns.u)), unknowns.multiplier, at.field,
+                          result.history.back(), iteration);
     auto end = stop.judge(at.residuals, at.field, result.history);
     if (end && !detail::goes_on(evaluate, stop, *end, unknowns, at, kept)) {
       if (end->status == Status::converged && !end->inexact && tangent.redundant())

@@ -184,6 +184,16 @@ class Evaluator {
   bool keep_patches();
   /// Whether a closed point was kept on a patch that it does not face.
   bool keeps_wrong(const Unknowns<T>& unknowns, const ContactField<T>& field) const;
+  /// Whether a closed point that was kept is more than half a facet beyond the end of its patch: far from a vertex, its
+  /// forces are those of a surface that is not there.
+  bool keeps_far(const ContactField<T>& field) const {
+    constexpr double far = 0.5;
+    for (std::size_t p = 0; p < kept_.size(); ++p)
+      if (kept_[p] != Patch::none && field.state[p] != ContactState::open &&
+          std::max(-field.facing[p].xi, field.facing[p].xi - 1) > far)
+        return true;
+    return false;
+  }
   /// Ends the effect of keep_patches().
   void release();
   /// Replaces the rows of an evaluation by those in given branches.

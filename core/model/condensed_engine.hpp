@@ -23,7 +23,8 @@ class CondensedEngine {
   Vector<T> residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const;
   bool is_free(Eigen::Index row) const { return system_.is_free(row); }
   void linearise(const BodyMotion<T>&) {}  ///< (the bodies' tangent is constant)
-  void hold_bodies(const BodyMotion<T>&, const Vector<T>&) {}
+  void hold_bodies(const BodyMotion<T>&, const Vector<T>&, HeldTangent = HeldTangent::at_motion) {}
+  static constexpr bool has_tangent_near(const BodyMotion<T>&) { return false; }
   void release_bodies() {}
   static constexpr bool condenses_tangents() { return false; }
   /// The bodies' tangent times a motion, all dofs in the axes, that is zero inside.

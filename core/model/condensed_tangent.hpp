@@ -6,8 +6,9 @@
 ///
 /// K is symmetric, and K_ii positive definite but where a body buckles. One Cholesky factorisation with the contact
 /// dofs last makes S = K_cc - K_ci K_ii^-1 K_ic, whatever friction does to the symmetry of C. The rest is the dense
-/// system of core/model/contact_system.hpp, so that points which change their branches while K stays cost no sparse
-/// factor. The sparse pattern is that of the bodies alone, and stays the same wherever points slide to.
+/// system of core/model/contact_system.hpp, of those contact dofs that points touch (core/model/untouched_rows.hpp), so
+/// that points which change their branches while K stays cost no sparse factor. The sparse pattern is that of the
+/// bodies alone, and stays the same wherever points slide to.
 #pragma once
 
 #include <memory>
@@ -15,6 +16,7 @@
 
 #include "core/model/body_matrix.hpp"
 #include "core/model/contact_system.hpp"
+#include "core/model/untouched_rows.hpp"
 
 namespace stickslip {
 
@@ -41,11 +43,15 @@ class CondensedTangent {
                    Backend backend);
 
   const CondensedRows& rows() const { return rows_; }
-  /// Size of the bodies' factor, and rows of the dense system where no point is open.
+  /// Size of the bodies' factor, and rows of the dense system at the start where no point is open.
   FactorSize factor_size() const { return solver_.factor_size(); }
   int dense_rows() const { return dense_rows_; }
   /// Takes the bodies' matrix, values on the pattern of rows(). False where K_ii is not positive definite.
   bool condense(const std::vector<T>& bodies, Counters& counters);
+  /// Contact dofs that the dense system has: those that points have touched since condense().
+  const std::vector<int>& touched() const { return untouched_.touched(); }
+  /// Gives the dense system these contact dofs. pre: condense() returned true.
+  void touch(const std::vector<int>& rows);
   /// Makes the dense factor. pre: condense() returned true. `hold`: ContactSystem::factorise.
   bool factorise(const std::vector<PointTangent<T>>& tangents, const Vector<double>& hold);
   /// `rows`: u over all dofs, in the frames of the nodes.
@@ -57,12 +63,18 @@ class CondensedTangent {
   void add_holdings(EngineHoldings& held) const;
 
  private:
+  /// Per contact dof: whether a point of these tangents touches it, or what holds the nodes.
+  std::vector<char> touched_by(const std::vector<PointTangent<T>>& tangents, const Vector<double>& hold) const;
+  void eliminate_all_but(const std::vector<char>& touched);
+
   const Model& model_;
   CondensedRows rows_;
   int dense_rows_;
   bool analysis_counted_ = false;
-  std::vector<int> kept_;  ///< place of the kept rows among the contact dofs
+  std::vector<int> kept_;  ///< place of the kept rows among the contact dofs, in their order
   Matrix<T> schur_;        ///< over all contact dofs; zero where they are prescribed
+  UntouchedRows<T> untouched_;
+  bool eliminated_ = false;  ///< the untouched rows, of the present S
   LinearSolver<T> solver_;
   ContactSystem<T> system_;
 };

@@ -18,6 +18,13 @@ class ContactSystem {
   ContactSystem(const Model& model, const Slots<T>& slots, bool unknown_multipliers, Symmetry symmetry);
 
   bool is_free(Eigen::Index row) const { return free_[row]; }
+  /// From the next factorise() on the system has these displacements alone: of the free ones, all that points touch.
+  /// Solutions are zero in the others.
+  void take_rows(const std::vector<int>& rows) {
+    free_list_ = rows;
+    std::fill(free_place_.begin(), free_place_.end(), -1);
+    for (std::size_t i = 0; i < rows.size(); ++i) free_place_[rows[i]] = static_cast<int>(i);
+  }
   /// Unknown displacements.
   int displacements() const { return static_cast<int>(free_list_.size()); }
   /// Makes the factor anew. `hold`: stiffness against motion of each contact node, the same in all directions, force
@@ -58,11 +65,11 @@ class ContactSystem {
   bool unknown_multipliers_;
   Symmetry symmetry_;
   std::vector<char> free_;
-  std::vector<int> free_list_, free_place_;
-  std::vector<int> active_;  ///< multiplier rows in the factor: those of points that are not open
-  std::vector<int> place_;   ///< per multiplier row: its place in the factor; -1: none
-  Vector<T> open_diagonal_;  ///< of the other multiplier rows
-  Matrix<T> matrix_;         ///< the one that is factorised
+  std::vector<int> free_list_, free_place_;  ///< the displacements of the system, and the place of each row; -1: none
+  std::vector<int> active_;                  ///< multiplier rows in the factor: those of points that are not open
+  std::vector<int> place_;                   ///< per multiplier row: its place in the factor; -1: none
+  Vector<T> open_diagonal_;                  ///< of the other multiplier rows
+  Matrix<T> matrix_;                         ///< the one that is factorised
   DenseFactor<T> factor_;
   bool valid_ = false;
   std::vector<PointTangent<T>> factorised_;

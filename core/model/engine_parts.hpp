@@ -20,6 +20,9 @@ struct BlockVector {
 /// it does not, for the caller checks the solution. `transposed`: with K^T in place of K, refined.
 enum class Solving { refined, unrefined, transposed };
 
+/// Tangent of bodies that are taken for linear: that at the motion, or the last one, however far from there.
+enum class HeldTangent { at_motion, last };
+
 /// What an engine holds now, in bytes, and what it has done beside what Counters count.
 struct EngineHoldings {
   long bodies = 0;                              ///< matrix of the bodies, which the tangents begin from

@@ -54,7 +54,10 @@ class SparseEngine {
   void linearise(const BodyMotion<T>& at);
   /// Takes the bodies for linear, in residuals too, until release_bodies(): as linearise(at), with the forces at that
   /// motion. `u`: engine displacement that has the prescribed values. (Where their tangent is constant they are so.)
-  void hold_bodies(const BodyMotion<T>& at, const Vector<T>& u);
+  void hold_bodies(const BodyMotion<T>& at, const Vector<T>& u, HeldTangent tangent = HeldTangent::at_motion);
+  /// Whether the last tangent that was condensed is nearly that at a motion: they differ by what a displacement of a
+  /// millionth changes. Never for bodies with a memory, nor under loads that follow them.
+  bool has_tangent_near(const BodyMotion<T>& at) const;
   void release_bodies() { held_bodies_.reset(); }
   /// Whether points that change while bodies are held cost no sparse factor.
   bool condenses_tangents() const { return condenses_; }
@@ -89,14 +92,18 @@ class SparseEngine {
   long nonzeros() const { return pattern_->nonzeros(); }
   EngineHoldings holdings() const;
 
-  /// What solves hang on beside what they are given: the pattern's places, and the tangents of a factor that may be
-  /// used again or updated. (That of bodies whose tangent changes is not.)
+  /// What solves hang on beside what they are given: the pattern's places, the tangents of a factor that may be used
+  /// again or updated, and the displacement of a condensed tangent that may be used again.
   struct Carried {
     std::vector<std::vector<int>> places;
     FactorRecipe<T> factor;
-    long bytes() const { return factor.bytes(); }
+    Vector<T> condensed_at;    ///< all dofs; empty: no such tangent
+    std::vector<int> touched;  ///< contact dofs of its dense system
+    long bytes() const {
+      return factor.bytes() + static_cast<long>(condensed_at.size() * sizeof(T) + touched.size() * sizeof(int));
+    }
   };
-  Carried carried() const { return {places_, model_.effects.linear_bulk ? recipe() : FactorRecipe<T>{}}; }
+  Carried carried() const;
   /// Goes back to it, by a factorisation where it had a factor: later solves have the same bits as they had then.
   void carry(const Carried& carried, Counters& counters);
 
@@ -135,6 +142,10 @@ class SparseEngine {
   }
   /// Condenses the last tangent; where it cannot be condensed, none until the next begin().
   void condense(Counters& counters);
+  /// Whether the last tangent is condensed, and hangs on the displacement alone.
+  bool keeps_tangent() const {
+    return condensed_ && linearised_ && model_.memory_count == 0 && model_.followers.empty();
+  }
   /// Rows of a point's entries.
   std::vector<int> rows_of(std::size_t p, const std::vector<int>& places) const;
 

@@ -173,9 +173,17 @@ Matrix<T> SparseEngine<T>::expand(const Matrix<T>& u, Matrix<T> others, const st
 }
 
 template <class T>
-void SparseEngine<T>::hold_bodies(const BodyMotion<T>& at, const Vector<T>& u) {
+bool SparseEngine<T>::has_tangent_near(const BodyMotion<T>& at) const {
+  constexpr double near = 1e-6;
+  if (!keeps_tangent()) return false;
+  const Vector<double> here = values(at.displacement);
+  return (here - values(linearised_->displacement)).cwiseAbs().maxCoeff() <= near * here.cwiseAbs().maxCoeff();
+}
+
+template <class T>
+void SparseEngine<T>::hold_bodies(const BodyMotion<T>& at, const Vector<T>& u, HeldTangent tangent) {
   if (model_.effects.linear_bulk) return;
-  linearise(at);
+  if (tangent == HeldTangent::at_motion) linearise(at);
   HeldBodies held{into_frames(model_, slots_.frames, Layout::all, at.displacement), body_rows(at.displacement)};
   if (!model_.followers.empty())
     held.rows -=
@@ -305,9 +313,26 @@ bool SparseEngine<T>::update(const std::vector<PointTangent<T>>& tangents, Count
 }
 
 template <class T>
+typename SparseEngine<T>::Carried SparseEngine<T>::carried() const {
+  Carried carried{places_, model_.effects.linear_bulk ? recipe() : FactorRecipe<T>{}, {}};
+  if (keeps_tangent()) {
+    carried.condensed_at = linearised_->displacement;
+    carried.touched = tangent_->touched();
+  }
+  return carried;
+}
+
+template <class T>
 void SparseEngine<T>::carry(const Carried& carried, Counters& counters) {
-  if (carried.places != places_) lay_out(carried.places);
-  valid_ = false;
+  const bool condensed = carried.condensed_at.size() > 0;
+  const bool switches = condensed && !std::exchange(condenses_, true);
+  if (switches || carried.places != places_) lay_out(carried.places);
+  valid_ = condensed_ = false;
+  if (condensed) {
+    linearise({carried.condensed_at, Vector<T>()});
+    condense(counters);
+    tangent_->touch(carried.touched);
+  }
   if (carried.factor.valid) factorise(carried.factor.tangents, counters, carried.factor.hold);
   update_ = carried.factor.update;
 }

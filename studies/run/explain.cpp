@@ -94,10 +94,18 @@ std::string mixed_lines(const Model& model) {
 }
 
 /// Which engine runs, what it does with each body of a mixed scene, and the prices it was chosen by.
-std::string engine_lines(const Input& input, const Model& model) {
-  const bool condensed = condenses(model, input.method, input.linear_algebra.engine);
+std::string engine_lines(const Input& input, const Problem& problem) {
+  const auto& model = problem.model;
+  const auto engine = input.linear_algebra.engine;
+  const bool condensed = condenses(model, input.method, engine);
+  const auto tangent =
+      condensed ? nullptr : make_condensed_tangent(model, problem.slots, input.method, engine, input.backend);
   std::string text = "linear algebra: ";
-  text += !model.effects.linear_bulk ? "one sparse factorisation an iteration, the bodies' part assembled anew\n"
+  text += tangent ? fmt::format(
+                        "tangents of the bodies condensed, one after the other, to {} contact dofs; points change "
+                        "their branches on a dense system of {} rows at the start\n",
+                        tangent->rows().kept, tangent->dense_rows())
+          : !model.effects.linear_bulk ? "one sparse factorisation an iteration, the bodies' part assembled anew\n"
           : condensed ? fmt::format("bodies condensed once to {} contact dofs, Newton on a dense system\n",
                                     model.contact_nodes.size() * model.dimension)
                       : "one sparse factorisation an iteration, the bodies' part assembled once\n";
@@ -134,7 +142,7 @@ std::string explain(const Input& input, const Problem& problem) {
   text += fmt::format("unknowns: {} displacements", model.free_dofs.size());
   text += unknown ? fmt::format(", {} multipliers\n", model.multiplier_count) : ", no multipliers among the unknowns\n";
   text += fmt::format("method: {}\n", json_with_exact_numbers(to_json(input.method)));
-  text += engine_lines(input, model);
+  text += engine_lines(input, problem);
   text +=
       "\nwhat each effect takes (~ about, > and more, ? hangs on the path):\n" + ledger_table(forecast(input, problem));
   text += "\nsimulated:\n";

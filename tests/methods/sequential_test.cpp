@@ -1,11 +1,15 @@
-/// Contact and bodies in turns (methods/sequential.hpp): its rule for branches. What it finds stands in the tests of
-/// scenes with finite strain and metal, studies/shipped_scenes_test.cpp among them.
+/// Contact and bodies in turns (methods/sequential.hpp): its rule for branches, and what it costs. What it finds stands
+/// in the tests of scenes with finite strain and metal, studies/shipped_scenes_test.cpp among them.
 #include "methods/sequential.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <array>
 #include <random>
+
+#include "methods/method.hpp"
+#include "tests/support/sliding_scenes.hpp"
 
 namespace stickslip {
 namespace {
@@ -110,6 +114,27 @@ TEST(Pivoting, HardlyHangsOnTheOrderOfThePoints) {
     others += count(problem) != count(turned);
   }
   EXPECT_LE(others, 3);  // (0; where the last point alone changes, Murty's rule, 15)
+}
+
+/// A tangent of the bodies serves for several contact problems, and for the first of the next increment.
+TEST(Sequence, TakesFewerFactorsOfTheBodiesThanItTakesTangents) {
+  std::array<Trajectory<double>, 2> runs;
+  for (const auto engine : {LinearAlgebra::Engine::sparse, LinearAlgebra::Engine::condensed}) {
+    const Model model = make_model(scenes::sliding_die());
+    const auto slots = make_slots<double>(model, scenes::sliding_die().as<double>());
+    RunOptions options;
+    options.linear_algebra.engine = engine;
+    Workspace<double> workspace;
+    auto& run = runs[engine == LinearAlgebra::Engine::condensed];
+    run = solve(model, slots, MonolithicAL{}, options, workspace);
+    ASSERT_TRUE(is_converged(run.status)) << run.message;
+  }
+  const auto& [sparse, condensed] = runs;
+  EXPECT_LE(condensed.counters.factorizations, 3 * static_cast<long>(condensed.increments.size()));  // (2 of each)
+  EXPECT_LT(2 * condensed.counters.factorizations, sparse.counters.factorizations);
+  const Vector<double>&u = sparse.increments.back().state.displacement,
+        &same = condensed.increments.back().state.displacement;
+  EXPECT_LE((u - same).norm(), 1e-9 * u.norm());  // (the tolerance of Newton's method times a condition)
 }
 
 }  // namespace

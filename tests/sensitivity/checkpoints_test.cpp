@@ -87,6 +87,13 @@ TEST(Checkpoints, LeaveTheGradientOfADieThatSlidesAlongASmoothSide) {
     for (const Method& method : all_schemes()) expect_same_gradient(die, method);
 }
 
+TEST(Checkpoints, LeaveTheGradientWhereTangentsAreCondensed) {
+  RunOptions options;
+  options.linear_algebra.engine = LinearAlgebra::Engine::condensed;
+  for (const Scene& scene : {scenes::sliding_die(), scenes::pressed_metal(true)})
+    for (const Method& method : scenes::all_methods()) expect_same_gradient(scene, method, options);
+}
+
 /// The branches at ties are searched for forward in time, over the same states.
 TEST(Checkpoints, LeaveTheGradientAtTies) {
   for (const Method& method : all_schemes()) {

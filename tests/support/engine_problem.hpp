@@ -6,6 +6,7 @@
 
 #include "core/model/engine.hpp"
 #include "core/model/loading.hpp"
+#include "core/model/moved_point.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -45,9 +46,11 @@ struct EngineProblem {
 
   ContactInput<double> input() const { return {model, slots, rho, previous, ConeRadius::augmented, 1.0}; }
   std::vector<PointTangent<double>> tangents() const {
+    const Vector<double> compact = to_compact(model, u);
+    const auto facing = model.slides_along_curves() ? detail::facings(input(), compact) : std::vector<Facing>();
     std::vector<PointTangent<double>> all;
     for (std::size_t p = 0; p < model.points.size(); ++p)
-      all.push_back(point_tangent<double>(input(), static_cast<int>(p), to_compact(model, u), multiplier, states[p]));
+      all.push_back(point_tangent<double>(input(), static_cast<int>(p), compact, multiplier, states[p], facing));
     return all;
   }
   /// The same with every point open.

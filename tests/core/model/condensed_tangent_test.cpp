@@ -45,7 +45,9 @@ struct Pair {
   }
 };
 
-std::vector<Scene> scenes_that_change() { return {scenes::pressed_metal(false), scenes::pressed_metal(true)}; }
+std::vector<Scene> scenes_that_change() {
+  return {scenes::pressed_metal(false), scenes::pressed_metal(true), scenes::sliding_die()};
+}
 
 TEST(CondensedTangent, SolvesAsOneSparseFactorDoes) {
   for (const auto& scene : scenes_that_change())
@@ -69,6 +71,76 @@ TEST(CondensedTangent, TakesOtherBranchesWithoutASparseFactor) {
   pair.expect_same_solutions();
   EXPECT_EQ(of_plain.factorizations, 2);
   EXPECT_EQ(of_condensed.factorizations, 1);
+}
+
+/// A die of five nodes on a side of thirteen, at two places: the points come to touch what none has touched before.
+TEST(CondensedTangent, HasTheDenseRowsThatPointsTouch) {
+  for (const bool unknown : {false, true}) {
+    Pair pair(scenes::sliding_die(), unknown);
+    auto& problem = pair.problem;
+    const CondensedTangent<double> tangent(problem.model, problem.slots, unknown, Symmetry::general,
+                                           Backend::automatic);
+    const int multipliers = unknown ? problem.model.multiplier_count : 0;
+    EXPECT_LT(tangent.dense_rows(), tangent.rows().kept + multipliers);
+    Counters of_plain, of_condensed;
+    pair.factorise(0.01 * problem.u, of_plain, of_condensed);
+    pair.expect_same_solutions();
+    const auto& die = problem.model.bodies[1];
+    for (int node = die.first_node; node < die.first_node + die.mesh.node_count; ++node) problem.u[2 * node] += 0.9;
+    const auto moved = problem.tangents();
+    ASSERT_TRUE(pair.plain.factorise(moved, of_plain));
+    ASSERT_TRUE(pair.condensed.factorise(moved, of_condensed));
+    pair.expect_same_solutions();
+    const Vector<double> hold =
+        Vector<double>::Constant(static_cast<Eigen::Index>(problem.model.contact_nodes.size()), 3.0);
+    ASSERT_TRUE(pair.plain.factorise(moved, of_plain, hold));
+    ASSERT_TRUE(pair.condensed.factorise(moved, of_condensed, hold));
+    pair.expect_same_solutions();
+    EXPECT_EQ(of_condensed.factorizations, 1);
+  }
+}
+
+TEST(CondensedTangent, IsUsedAgainCloseToWhereItWasMadeUnlessBodiesRemember) {
+  for (const bool metal : {false, true}) {
+    Pair pair(metal ? scenes::pressed_metal(true) : scenes::sliding_die(), true);
+    auto& engine = pair.condensed;
+    const Vector<double> u = 0.01 * pair.problem.u, near = (1 + 1e-9) * u, far = 1.01 * u, before = pair.memory();
+    EXPECT_FALSE(engine.has_tangent_near({u, before, 1}));
+    Counters unused, counters;
+    pair.factorise(u, unused, counters);
+    EXPECT_EQ(engine.has_tangent_near({u, before, 1}), !metal);
+    EXPECT_EQ(engine.has_tangent_near({near, before, 1}), !metal);
+    EXPECT_FALSE(engine.has_tangent_near({far, before, 1}));
+    engine.hold_bodies({far, before, 1}, far, HeldTangent::last);
+    ASSERT_TRUE(engine.factorise(pair.problem.tangents(), counters));
+    engine.release_bodies();
+    EXPECT_EQ(counters.factorizations, 1);
+    pair.expect_same_solutions();  // (those of the first tangent)
+  }
+}
+
+TEST(CondensedTangent, IsCarriedToTheLastBit) {
+  Pair pair(scenes::sliding_die(), true);
+  auto& engine = pair.condensed;
+  const Vector<double> here = 0.01 * pair.problem.u, there = -here, before = pair.memory();
+  const Matrix<double> r = pair.problem.rows(1), l = Matrix<double>::Ones(pair.problem.model.multiplier_count, 1);
+  const auto solve_with_last = [&] {
+    Counters counters;
+    engine.hold_bodies({here, before, 1}, here, HeldTangent::last);
+    EXPECT_TRUE(engine.factorise(pair.problem.tangents(), counters));
+    engine.release_bodies();
+    EXPECT_EQ(counters.factorizations, 0);
+    return engine.solve({r, l});
+  };
+  Counters unused, counters;
+  pair.factorise(here, unused, unused);
+  const auto first = solve_with_last();
+  const auto carried = engine.carried();
+  pair.factorise(there, unused, unused);
+  engine.carry(carried, counters);
+  EXPECT_EQ(counters.factorizations, 1);
+  const auto again = solve_with_last();
+  EXPECT_TRUE(again.u == first.u && again.l == first.l);
 }
 
 TEST(CondensedTangent, GivesWayWhereABodyIsNotDefiniteInsideUntilTheNextIncrement) {

@@ -1,0 +1,44 @@
+/// Points that go to and fro between two facets, and are kept on one (Evaluator::keep_patches).
+#include <gtest/gtest.h>
+
+#include "core/model/sparse_engine.hpp"
+#include "methods/residuals.hpp"
+#include "tests/support/sliding_scenes.hpp"
+
+namespace stickslip {
+namespace {
+
+TEST(KeptPatches, MayBeLeftByHalfAFacetAndNoFarther) {
+  Scene scene = scenes::sliding_die();
+  scene.contacts[0].smoothing = Smoothing::none;
+  const Model model = make_model(scene);
+  const auto slots = make_slots<double>(model, scene.as<double>());
+  SparseEngine<double> engine(model, slots, true, ConeRadius::augmented, Backend::automatic);
+  const RegularisationField<double> rho(model.points.size(), {1, 1});
+  const auto start = initial_state<double>(model, slots);
+  const ContactInput<double> input{model, slots, rho, start.history, ConeRadius::augmented, 0.1};
+  const Anchor<double> none;
+  const EquilibriumTask<double> task{input, Multipliers::unknown, none};
+  Account account;
+  Evaluator<double, SparseEngine<double>> evaluate(engine, task, account);
+  auto at = evaluate({engine.begin(0.1, start.displacement, {}), start.multiplier});
+  auto& point = at.field.facing[2];
+  at.field.state[2] = ContactState::stick;
+  const int first = point.patch;
+  ASSERT_NE(first, Patch::none);
+  EXPECT_FALSE(evaluate.keep_patches());
+  for (const int patch : {first, first + 1, first}) {
+    point.patch = patch;
+    evaluate.accept(at);
+  }
+  ASSERT_TRUE(evaluate.keep_patches());
+  for (const auto& [xi, far] : {std::pair(0.5, false), {1.4, false}, {-0.4, false}, {1.6, true}, {-0.6, true}}) {
+    point.xi = xi;
+    EXPECT_EQ(evaluate.keeps_far(at.field), far) << xi;
+  }
+  at.field.state[2] = ContactState::open;
+  EXPECT_FALSE(evaluate.keeps_far(at.field));
+}
+
+}  // namespace
+}  // namespace stickslip
