@@ -22,14 +22,17 @@ constexpr Iterations next_changing{5, 5};
 // Time of an operation, where one of a sparse factorisation takes 1. Orders of magnitude. A back-solve waits for
 // memory, less so with many right-hand sides. A dense factorisation runs on large blocks.
 constexpr double of_solve = 3, of_block_solve = 1.2, of_dense = 1.0 / 3;
-// A constrained ordering costs more than a free one. LU costs twice a Cholesky factorisation. Pattern, ordering and
-// assembly of the bodies cost half a factorisation, by either engine.
-constexpr double free_ordering = 0.8, lu = 2, setting_up = 0.5;
+// A constrained ordering costs more than a free one. LU costs twice a Cholesky factorisation, and so does LDL^T in
+// sparse matrices, of half its operations, for it pivots in small blocks. Pattern, ordering and assembly of the bodies
+// cost half a factorisation, by either engine.
+constexpr double free_ordering = 0.8, lu = 2, sparse_indefinite = 2, setting_up = 0.5;
 constexpr int few_unknowns = 200;
 // Sets of branches that a tangent of bodies which change is solved in: 1 by Newton's method, 3 to 5 in sequence.
 constexpr double branches_a_tangent = 2;
 
-double kind_of(Symmetry symmetry) { return symmetry == Symmetry::general ? lu : 1; }
+double kind_of(Symmetry symmetry) {
+  return symmetry == Symmetry::general ? lu : symmetry == Symmetry::positive_definite ? 1 : sparse_indefinite;
+}
 
 /// Right-hand sides of the derivatives of an increment.
 double derivatives_of(const Scene& scene) {
