@@ -76,6 +76,14 @@ double share_of_forces(const CaseResult& result, double rounding) {
   return force > 0 ? rounding / force : 0;
 }
 
+/// Share of a force that is not unique. A node of the pinched tube on the plane of symmetry touches its like: supports
+/// prescribe the motion of both along their surface, so that the traction there is what Uzawa's updates made it on
+/// their way (-4.6, and -6.1 by the monolithic method). The normal is tilted by 4e-3, which shows in the sum of normal
+/// forces: 142.0589 and 142.0614. Two ways of updates differ by 4e-8 of it; all else agrees to same_answer.
+double not_unique(const Method& method, const std::string& scene) {
+  return std::holds_alternative<UzawaAL>(method) && scene == "pinched_tube" ? 1e-6 : 0;
+}
+
 /// `rounding`: of forces, and in its share of dissipation, beside same_answer, which everything else has alone.
 void expect_same_answers(const CaseResult& a, const CaseResult& reference, double rounding, const std::string& what) {
   EXPECT_TRUE(is_converged(a.status())) << what << ": " << a.message();
@@ -111,7 +119,10 @@ void expect_rounding_does_not_matter(const fs::path& file) {
     const auto reference = run(input, {});
     EXPECT_TRUE(is_converged(reference.status())) << method.dump() << ": " << reference.message();
     if (!is_converged(reference.status())) continue;
-    const double force = rounding_of_force(reference, input.method, file.stem().string());
+    const std::string scene = file.stem().string();
+    double force = rounding_of_force(reference, input.method, scene);
+    for (const auto& step : reference.steps)
+      force = larger(force, not_unique(input.method, scene) * largest_entry(step.responses));
     expect_same_answers(run(input, {1e-15, false, 1}), reference, force, method.dump() + " moved");
     expect_same_answers(run(input, {0, true, 1}), reference, force, method.dump() + " numbered backwards");
     expect_same_answers(run(input, {1e-15, true, 2}), reference, force,
