@@ -128,7 +128,7 @@ Equilibrium<T> newton(E& engine, const EquilibriumTask<T>& task, Unknowns<T> unk
       detail::resume_on_cone(input, unknowns.multiplier, task.resumed, at.field);
     auto branches = detail::step_branches(input, engine.compact(unknowns.u), at.field, unknowns.multiplier, directed);
     used = at.field.state;
-    tangent.move_to(unknowns, at.field);
+    tangent.move_to(unknowns, at.field, iteration == 0 && predictions == 0);
     if (!tangent.factorise(unknowns, branches)) return finish({Status::singular, engine.message()});
     result.reversed |= input.model.effects.linear_bulk && engine.reversed();
     directed = at.field;

@@ -49,7 +49,7 @@ bool begin_path(E& engine, const EquilibriumTask<T>& task, Evaluator<T, E>& eval
                 Account& account, Unknowns<T>& unknowns) {
   auto at = evaluate(unknowns);
   auto branches = detail::step_branches(task.contact, engine.compact(unknowns.u), at.field, unknowns.multiplier, {});
-  tangent.move_to(unknowns, at.field);
+  tangent.move_to(unknowns, at.field, true);
   if (!tangent.factorise(unknowns, branches)) return false;
   evaluate.take_rows_in(branches, unknowns, at);
   const auto step = tangent.step_along(*task.arc, unknowns, at.rows_u, at.rows_l);
@@ -81,7 +81,7 @@ bool predict(E& engine, const EquilibriumTask<T>& task, Evaluator<T, E>& evaluat
   if (!task.resumed.empty()) detail::resume_on_cone(task.contact, start.multiplier, task.resumed, at.field);
   auto branches = detail::step_branches(task.contact, engine.compact(start.u), at.field, start.multiplier, {});
   detail::follow_obstacles(task.contact, task.resumed, branches);
-  tangent.move_to(start, at.field);
+  tangent.move_to(start, at.field, true);
   if (!tangent.factorise(start, branches)) return false;
   evaluate.take_rows_in(branches, start, at);
   const Vector<T> motion = engine.spread(prescribed);

@@ -184,8 +184,9 @@ class Evaluator {
   bool keep_patches();
   /// Whether a closed point was kept on a patch that it does not face.
   bool keeps_wrong(const Unknowns<T>& unknowns, const ContactField<T>& field) const;
-  /// Whether a closed point that was kept is more than a facet beyond the end of its patch: far from a vertex, its forces
-  /// are those of a surface that is not there. (Of nodes that are held for want of a vertex' own branch, 0.6 were met.)
+  /// Whether a closed point that was kept is more than a facet beyond the end of its patch: far from a vertex, its
+  /// forces are those of a surface that is not there. (Of nodes that are held for want of a vertex' own branch, 0.6
+  /// were met.)
   bool keeps_far(const ContactField<T>& field) const {
     constexpr double far = 1;
     for (std::size_t p = 0; p < kept_.size(); ++p)

@@ -55,8 +55,8 @@ class SparseEngine {
   /// Takes the bodies for linear, in residuals too, until release_bodies(): as linearise(at), with the forces at that
   /// motion. `u`: engine displacement that has the prescribed values. (Where their tangent is constant they are so.)
   void hold_bodies(const BodyMotion<T>& at, const Vector<T>& u, HeldTangent tangent = HeldTangent::at_motion);
-  /// Whether the last tangent that was condensed is nearly that at a motion: they differ by what a displacement of a
-  /// millionth changes. Never for bodies with a memory, nor under loads that follow them.
+  /// Whether the last tangent that was condensed is nearly that at a motion: nodes have moved by a ten-thousandth of
+  /// the smallest facet since. Never for bodies with a memory, nor under loads that follow them.
   bool has_tangent_near(const BodyMotion<T>& at) const;
   void release_bodies() { held_bodies_.reset(); }
   /// Whether points that change while bodies are held cost no sparse factor.

@@ -174,10 +174,12 @@ Matrix<T> SparseEngine<T>::expand(const Matrix<T>& u, Matrix<T> others, const st
 
 template <class T>
 bool SparseEngine<T>::has_tangent_near(const BodyMotion<T>& at) const {
-  constexpr double near = 1e-6;
+  constexpr double near = 1e-4;
   if (!keeps_tangent()) return false;
-  const Vector<double> here = values(at.displacement);
-  return (here - values(linearised_->displacement)).cwiseAbs().maxCoeff() <= near * here.cwiseAbs().maxCoeff();
+  double facet = std::numeric_limits<double>::infinity();
+  for (const auto& point : model_.points) facet = std::min(facet, point.mesh_size);
+  const Vector<T> moved = at.displacement - linearised_->displacement;
+  return largest_nodal_norm(moved, model_.dimension) <= near * facet;
 }
 
 template <class T>

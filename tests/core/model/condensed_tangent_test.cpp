@@ -104,7 +104,7 @@ TEST(CondensedTangent, IsUsedAgainCloseToWhereItWasMadeUnlessBodiesRemember) {
   for (const bool metal : {false, true}) {
     Pair pair(metal ? scenes::pressed_metal(true) : scenes::sliding_die(), true);
     auto& engine = pair.condensed;
-    const Vector<double> u = 0.01 * pair.problem.u, near = (1 + 1e-9) * u, far = 1.01 * u, before = pair.memory();
+    const Vector<double> u = 0.01 * pair.problem.u, near = (1 + 1e-9) * u, far = 2 * u, before = pair.memory();
     EXPECT_FALSE(engine.has_tangent_near({u, before, 1}));
     Counters unused, counters;
     pair.factorise(u, unused, counters);
