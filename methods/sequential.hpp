@@ -114,7 +114,7 @@ class Sequence {
           if (!engine_.is_free(dof)) unknowns_.u[dof] = prescribed_[dof];
         at = evaluate_(unknowns_);
       }
-      if (engine_.condenses_tangents()) solve_again(history_.empty() ? 1 : history_.back().residual, at);
+      if (engine_.condenses_tangents()) solve_with_last_tangent(history_.empty() ? 1 : history_.back().residual, at);
       history_.push_back(record(at, {}, (before == branches_ ? 0 : 1) + evaluate_.accept(at), 1));
       if (account_.trace) {
         account_.trace->take(task_.contact, Vector<T>(engine_.spread(unknowns_.u)), unknowns_.multiplier, at.field,
@@ -157,7 +157,7 @@ class Sequence {
 
   /// Solves further contact problems with the last tangent, as long as that pays. `last`: residual before it; `at`: of
   /// its solution, and then of the best.
-  void solve_again(double last, detail::Evaluation<T>& at) {
+  void solve_with_last_tangent(double last, detail::Evaluation<T>& at) {
     constexpr double enough = 0.1;
     constexpr int most = 2;
     for (int n = 0; n < most && at.residuals.largest() <= enough * last; ++n) {
