@@ -34,13 +34,14 @@ struct Iterations {
   Seconds seconds;
   Counters counters;
   void add(const Trajectory<double>& trajectory) {
-    seconds.assembly += trajectory.seconds.assembly;
+    seconds.contact += trajectory.seconds.contact;
+    seconds.bodies += trajectory.seconds.bodies;
     seconds.factorization += trajectory.seconds.factorization;
     seconds.backsolve += trajectory.seconds.backsolve;
     counters += trajectory.counters;
   }
   double factorisation() const { return seconds.factorization / counters.factorizations; }
-  double one() const { return (seconds.assembly + seconds.factorization + seconds.backsolve) / counters.newton; }
+  double one() const { return (seconds.assembly() + seconds.factorization + seconds.backsolve) / counters.newton; }
 };
 
 void increment(benchmark::State& state, const Method& method, Kind engine, Backend backend, bool friction = true) {

@@ -56,9 +56,9 @@ struct Run {
   Seconds parts;
   Counters counters;
   /// Seconds of a Newton iteration, assembly, factorisation and solves: mean of all, and of one that factorises.
-  double iteration() const { return (parts.assembly + parts.factorization + parts.backsolve) / counters.newton; }
+  double iteration() const { return (parts.assembly() + parts.factorization + parts.backsolve) / counters.newton; }
   double full_iteration() const {
-    return (parts.assembly + parts.backsolve) / counters.newton + parts.factorization / counters.factorizations;
+    return (parts.assembly() + parts.backsolve) / counters.newton + parts.factorization / counters.factorizations;
   }
 };
 

@@ -50,9 +50,11 @@ IterationRecord record(const Evaluation<T>& at, const std::vector<ContactState>&
 }
 
 inline constexpr const char* kept_message =
-    "a point at a vertex of facets has no equilibrium on either of them: it is held on one; try a smooth surface";
+    "a point at a vertex of facets has no equilibrium on either of them: it is held on one; try a smooth surface, or "
+    "segments";
 
-inline constexpr const char* far_message = "points go to and fro between facets; try more steps, or a smooth surface";
+inline constexpr const char* far_message =
+    "points go to and fro between facets; try a smooth surface, segments, or more steps";
 
 /// A solution of points on patches that they do not face, and how it ends.
 template <class T>
@@ -133,17 +135,12 @@ Equilibrium<T> newton(E& engine, const EquilibriumTask<T>& task, Unknowns<T> unk
     result.reversed |= input.model.effects.linear_bulk && engine.reversed();
     directed = at.field;
     directed.state = branches;
-    NewtonStep<T> step;
-    {
-      const Stopwatch time(account.seconds.backsolve);
-      if (branches != evaluated) evaluate.take_rows_in(branches, unknowns, at);
-      step =
-          task.arc ? tangent.step_along(*task.arc, unknowns, at.rows_u, at.rows_l) : tangent.step(at.rows_u, at.rows_l);
-    }
+    if (branches != evaluated) evaluate.take_rows_in(branches, unknowns, at);
+    const auto step =
+        task.arc ? tangent.step_along(*task.arc, unknowns, at.rows_u, at.rows_l) : tangent.step(at.rows_u, at.rows_l);
     if (!step.u.allFinite() || !step.l.allFinite() || !std::isfinite(step.time))
       return finish({Status::singular, "the tangent is singular: its solution is not finite"});
     ++account.counters.newton;
-    const Stopwatch time(account.seconds.assembly);
     step_length = search_line(evaluate, step, used, options, unknowns, at);
   }
 }

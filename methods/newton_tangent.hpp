@@ -135,7 +135,7 @@ class NewtonTangent {
   void move_to(const Unknowns<T>& unknowns, const ContactField<T>& field, bool begins) {
     const auto& [model, slots] = std::tie(task_.contact.model, task_.contact.slots);
     if (!model.effects.linear_bulk) {
-      const Stopwatch time(account_.seconds.assembly);
+      const Stopwatch time(account_.seconds.bodies);
       const Vector<T> moved = engine_.spread(unknowns.u);
       const BodyMotion<T> at{moved, task_.contact.previous.bodies, task_.arc ? unknowns.time : task_.contact.time};
       if (!begins || !engine_.has_tangent_near(at)) engine_.linearise(at);
@@ -193,7 +193,7 @@ bool NewtonTangent<T, E>::factorise(const Unknowns<T>& unknowns, std::vector<Con
 template <class T, class E>
 std::vector<PointTangent<T>> NewtonTangent<T, E>::point_tangents(const std::vector<ContactState>& branches,
                                                                  const Unknowns<T>& unknowns) {
-  const Stopwatch time(account_.seconds.assembly);
+  const Stopwatch time(account_.seconds.contact);
   const auto& input = task_.contact;
   std::vector<PointTangent<T>> tangents;
   const Vector<T> compact = engine_.compact(unknowns.u);
@@ -207,6 +207,7 @@ std::vector<PointTangent<T>> NewtonTangent<T, E>::point_tangents(const std::vect
 
 template <class T, class E>
 NewtonStep<T> NewtonTangent<T, E>::step(const Vector<T>& rows_u, const Vector<T>& rows_l) {
+  const Stopwatch time(account_.seconds.backsolve);
   NewtonStep<T> step;
   if (task_.compliance) {
     const auto& [model, slots] = std::tie(task_.contact.model, task_.contact.slots);

@@ -88,7 +88,11 @@ bool predict(E& engine, const EquilibriumTask<T>& task, Evaluator<T, E>& evaluat
   Vector<T> forces = Vector<T>::Constant(static_cast<Eigen::Index>(model.contact_nodes.size()) * model.dimension, T(0));
   detail::add_tangent_times(model, slots, tangent.tangents(), Vector<T>(engine.compact(prescribed)), forces, at.rows_l);
   const BodyMotion<T> at_start{*task.last_displacement, task.contact.previous.bodies, task.contact.time};
-  Vector<T> rows = engine.tangent_times(at_start, motion);
+  Vector<T> rows;
+  {
+    const Stopwatch time(account.seconds.bodies);
+    rows = engine.tangent_times(at_start, motion);
+  }
   add_compact(model, forces, rows);
   rows = at.rows_u + into_frames(model, slots.frames, Layout::all, std::move(rows));
   for (Eigen::Index row = 0; row < rows.size(); ++row)

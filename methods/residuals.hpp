@@ -298,13 +298,22 @@ detail::Evaluation<T> Evaluator<T, E>::operator()(const Unknowns<T>& unknowns) {
   const Vector<T> compact = engine_.compact(unknowns.u);
   std::vector<Facing> facing;
   if (model.slides_along_curves()) {
+    const Stopwatch time(account_.seconds.contact_search);
     facing = detail::facings(input, compact, kept_);
     input.facing = &facing;
   }
-  at.field = field_at(input, compact, unknowns.multiplier, nullptr);
+  Vector<T> forces;
+  {
+    const Stopwatch time(account_.seconds.contact);
+    at.field = field_at(input, compact, unknowns.multiplier, nullptr);
+    forces = contact_field_forces(compact, at.field);
+  }
   count();
   ForceScale force{at.scales.force, 0};
-  at.rows_u = engine_.residual(unknowns.u, contact_field_forces(compact, at.field), force);
+  {
+    const Stopwatch time(account_.seconds.bodies);
+    at.rows_u = engine_.residual(unknowns.u, forces, force);
+  }
   at.scales.force = force.force;
   const auto sizes = detail::measure_points(input, at.field, at.scales);
   const detail::Magnitudes magnitudes = magnitudes_at(compact);
@@ -324,10 +333,19 @@ void Evaluator<T, E>::take_rows_in(const std::vector<ContactState>& branches, co
   ContactInput<T> input = task_.contact;
   input.facing = &at.field.facing;
   const Vector<T> compact = engine_.compact(unknowns.u);
-  const auto field = field_at(input, compact, unknowns.multiplier, &branches);
+  ContactField<T> field;
+  Vector<T> forces;
+  {
+    const Stopwatch time(account_.seconds.contact);
+    field = field_at(input, compact, unknowns.multiplier, &branches);
+    forces = contact_field_forces(compact, field);
+  }
   count();
   ForceScale unused;
-  at.rows_u = engine_.residual(unknowns.u, contact_field_forces(compact, field), unused);
+  {
+    const Stopwatch time(account_.seconds.bodies);
+    at.rows_u = engine_.residual(unknowns.u, forces, unused);
+  }
   if (task_.has_multiplier_rows())
     at.rows_l = multiplier_residual(input.model, input.slots, field.traction, unknowns.multiplier);
 }

@@ -146,7 +146,7 @@ class Sequence {
   bool solve_linear(const Vector<T>& about, HeldTangent tangent) {
     const Vector<T> moved = engine_.spread(about);
     {
-      const Stopwatch time(account_.seconds.assembly);
+      const Stopwatch time(account_.seconds.bodies);
       engine_.hold_bodies({moved, task_.contact.previous.bodies, task_.contact.time}, unknowns_.u, tangent);
     }
     prescribed_ = unknowns_.u;

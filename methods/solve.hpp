@@ -236,7 +236,9 @@ void march(const M& method, const Model& model, const Slots<T>& slots, E& engine
     for (auto& increment : trajectory.increments)
       increment.requested = std::binary_search(model.times.begin(), model.times.end(), increment.time);
   trajectory.counters += run.account.counters;
-  trajectory.seconds.assembly += run.account.seconds.assembly;
+  trajectory.seconds.contact_search += run.account.seconds.contact_search;
+  trajectory.seconds.contact += run.account.seconds.contact;
+  trajectory.seconds.bodies += run.account.seconds.bodies;
   trajectory.seconds.factorization += run.account.seconds.factorization;
   trajectory.seconds.backsolve += run.account.seconds.backsolve;
   trajectory.engine = engine.name();

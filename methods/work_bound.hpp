@@ -37,7 +37,8 @@ class WorkBound {
   std::string in_words() const {
     return "given up after " + std::to_string(vain_) +
            " iterations in vain, of parts of the step too: no equilibrium may lead on from the last, as where nodes of "
-           "a slave are further apart than those of its master; try the other side as the slave, or a smooth master";
+           "a slave are further apart than those of its master; try the other side as the slave, a smooth master, or "
+           "segments";
   }
 
  private:

@@ -91,6 +91,31 @@ std::vector<int> places_of_tangent(const ContactInput<T>& input, int p, const Fa
   return places;
 }
 
+/// Whether the tangent of a point is by the displacements of all nodes that it touches.
+inline bool has_places(const Model& model, const ContactPoint& point) {
+  return model.dimension == 2 && (point.curve >= 0 || !point.segments.empty()) && model.effects.current_geometry;
+}
+
+/// Tangent of an open point: it bears nothing wherever it is, and its rows are -A lambda.
+template <class T>
+PointTangent<T> open_tangent(const ContactInput<T>& input, int p, const Facing* facing) {
+  const auto& point = input.model.points[p];
+  PointTangent<T> tangent;
+  int faced = 0, count = input.model.dimension;
+  if (has_places(input.model, point)) {
+    tangent.places = places_of_tangent(input, p, facing, faced);
+    count = static_cast<int>(2 * tangent.places.size());
+  }
+  const int components = point.components();
+  tangent.force_w = Matrix<T>::Constant(count, count, T(0));
+  tangent.force_l = Matrix<T>::Constant(count, components, T(0));
+  tangent.row_w = Matrix<T>::Constant(components, count, T(0));
+  tangent.row_l = Matrix<T>::Constant(components, components, T(0));
+  for (int c = 0; c < components; ++c)
+    tangent.row_l(c, c) = input.slots.geometry[p].area * -(c == 0 ? input.rho[p].normal : input.rho[p].tangential);
+  return tangent;
+}
+
 /// Tangent by the displacements of all nodes. `facing`: what the point faces of its curve; nullptr against an obstacle.
 template <class T, int Tangents>
 PointTangent<T> tangent_by_places(const ContactInput<T>& input, int p, const Facing* facing, const Vector<T>& compact,
@@ -142,11 +167,12 @@ template <class T>
 PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<T>& compact,
                               const Vector<T>& multiplier, ContactState state, const std::vector<Facing>& facing = {}) {
   const auto& point = input.model.points[p];
+  const bool by_places = detail::has_places(input.model, point);
+  const Facing* const faced = by_places && point.curve >= 0 ? &facing[p] : nullptr;
+  if (state == ContactState::open) return detail::open_tangent(input, p, faced);
   return detail::with_point(input.model, point, [&]<int D, int Tangents>() {
     if constexpr (D == 2)
-      if ((point.curve >= 0 || !point.segments.empty()) && input.model.effects.current_geometry)
-        return detail::tangent_by_places<T, Tangents>(input, p, point.curve >= 0 ? &facing[p] : nullptr, compact,
-                                                      multiplier, state);
+      if (by_places) return detail::tangent_by_places<T, Tangents>(input, p, faced, compact, multiplier, state);
     constexpr int C = 1 + Tangents;
     using Probe = Dual<D + C, T>;
     const bool present = input.model.effects.current_geometry;

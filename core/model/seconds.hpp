@@ -7,7 +7,12 @@ namespace stickslip {
 
 /// Seconds by what they were spent on.
 struct Seconds {
-  double setup = 0, contact_search = 0, assembly = 0, factorization = 0, backsolve = 0, sensitivity = 0, total = 0;
+  double setup = 0;           ///< model, slots and engine
+  double contact_search = 0;  ///< what points face
+  double contact = 0;         ///< gaps, tractions, forces and tangents of points
+  double bodies = 0;          ///< forces and tangents of bodies
+  double factorization = 0, backsolve = 0, total = 0;
+  double assembly() const { return contact + bodies; }
 };
 
 /// Adds the seconds of its own life to a total.

@@ -115,7 +115,7 @@ void measure_work(Cell& cell, double ratio) {
       cell.count("factorizations") + ratio * (cell.count("backsolves") + cell.count("sensitivity_backsolves"));
   cell.work =
       cell.count("factorizations") - cell.count("sensitivity_factorizations") + ratio * cell.count("backsolves");
-  cell.sensitivity_seconds = number_at(seconds, "total") - number_at(seconds, "output");
+  cell.sensitivity_seconds = number_at(seconds, "total");
   cell.seconds = cell.sensitivity_seconds - number_at(seconds, "sensitivity");
 }
 

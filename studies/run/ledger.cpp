@@ -67,11 +67,6 @@ double spared_triangle(const EngineHoldings& engine, bool dense, double rows) {
   return static_cast<double>(engine.factor) * (entries - rows) / 2 / entries;
 }
 
-/// Of residuals: the bodies' are small beside those of the contact points, where there are any.
-double evaluation_seconds(const CaseResult& result) {
-  return result.problem->seconds.contact_search + result.trajectory.seconds.assembly;
-}
-
 LedgerRow bodies_row(const CaseResult& result, const StateBytes& states) {
   const auto& [model, slots, seconds] = *result.problem;
   return {"bodies",
@@ -82,7 +77,7 @@ LedgerRow bodies_row(const CaseResult& result, const StateBytes& states) {
            {"matrix", static_cast<double>(result.engine.bodies)},
            {"states", static_cast<double>(states.displacements)}},
           {{"elements", element_count(model)}},
-          seconds.setup + (model.effects.contact ? 0 : evaluation_seconds(result))};
+          seconds.setup + result.trajectory.seconds.bodies};
 }
 
 /// Contact without friction, friction, masters that deform, and bodies that flow. Multipliers are unknowns where the
@@ -97,14 +92,15 @@ void add_contact_rows(const CaseResult& result, const StateBytes& states, Ledger
   const auto normal = static_cast<double>(contact.gap.size());
   const Masters masters = masters_of(model);
   const long tangents = trajectory.counters.factorizations - result.condensing.factorizations;
-  ledger.push_back({"contact",
-                    model.effects.contact,
-                    {{"normal", std::min(multipliers, normal)}},
-                    {{"points", point_bytes(model, slots) - masters.bytes},
-                     {"states", static_cast<double>(states.contact)},
-                     {"multipliers", static_cast<double>(states.multipliers)}},
-                    {{"points", normal}, {"evaluations", static_cast<double>(trajectory.counters.contact_evaluations)}},
-                    model.effects.contact ? evaluation_seconds(result) : 0});
+  ledger.push_back(
+      {"contact",
+       model.effects.contact,
+       {{"normal", std::min(multipliers, normal)}},
+       {{"points", point_bytes(model, slots) - masters.bytes},
+        {"states", static_cast<double>(states.contact)},
+        {"multipliers", static_cast<double>(states.multipliers)}},
+       {{"points", normal}, {"evaluations", static_cast<double>(trajectory.counters.contact_evaluations)}},
+       result.problem->seconds.contact_search + trajectory.seconds.contact_search + trajectory.seconds.contact});
   ledger.push_back({"friction",
                     model.effects.friction,
                     {{"tangential", std::max(multipliers - normal, 0.0)}},

@@ -124,7 +124,7 @@ void add_held_points(const CaseResult& result, std::vector<Warning>& warnings) {
   for (std::size_t c = 0; c < farthest.size(); ++c)
     if (farthest[c] > 0)
       warnings.push_back({WarningCode::held_on_facet, model.scene.contacts[c].name, farthest[c],
-                          "smooth the master, or take other steps",
+                          "smooth the master, or integrate over segments (\"discretization\": \"segment\")",
                           fmt::format("{}: in {} of {} steps a point is held on a facet of the master beyond its end, "
                                       "by {:.2g} of it: at the vertex neither facet has an equilibrium",
                                       model.scene.contacts[c].name, steps[c], result.steps.size(), farthest[c])});

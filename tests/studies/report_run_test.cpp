@@ -55,6 +55,17 @@ TEST_F(ReportOfARun, HasPictureHistoriesStatesAndValues) {
   EXPECT_TRUE(fs::exists(directory_ / "figures" / "response-histories.csv"));
 }
 
+// The total is of the solve and its derivatives; output comes on top of it.
+TEST_F(ReportOfARun, TellsTheSecondsOfTheSolveWhateverItsOutputTook) {
+  page_of("belt");
+  std::ifstream in(directory_ / "result.json");
+  json record = json::parse(in);
+  record["cost"]["seconds"]["total"] = 2;
+  record["cost"]["seconds"]["output"] = 1.5;
+  std::ofstream(directory_ / "result.json") << record.dump();
+  EXPECT_THAT(written(), HasSubstr("back-solves in 2&nbsp;s."));
+}
+
 TEST_F(ReportOfARun, OfAFrictionlessSceneDoesNotSayThatItSlips) {
   const std::string html = page_of("press_fit");
   EXPECT_THAT(html, AllOf(HasSubstr("fit: touch"), HasSubstr(">touches<"), Not(HasSubstr("fit: slip")),

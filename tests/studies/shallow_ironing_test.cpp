@@ -74,6 +74,59 @@ double last_of(const CaseResult& result, const std::string& name) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
+/// V and H, positive, at a time of a run; NaN without such a step.
+std::array<double, 2> forces_at(const CaseResult& result, double time) {
+  const auto& responses = result.problem->model.scene.responses;
+  const int h = responses[0].name == "H" ? 0 : 1;
+  for (const auto& step : result.steps)
+    if (std::abs(step.increment->time - time) < 1e-9) return {-step.responses[1 - h], step.responses[h]};
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  return {none, none};
+}
+
+// The slab's facets as they are, gap and slip integrated along both sides.
+TEST(SlowShallowIroning, ByEveryMethodOnSegmentsLiesWithinThePublishedCurvesAndIsNotCut) {
+  const auto solve = [](const char* method, const char* slave, const char* master) {
+    auto scene = shallow_ironing();
+    scene["contacts"]["sole"] = {
+        {"slave", slave}, {"master", master}, {"friction", 0.3}, {"discretization", "segment"}};
+    scene["time"] = {{"legs", {{1, 10}, {2, 100}}}};
+    return cases::run(scene, {{method, json::object()}}, meshes / "shallow_ironing.json");
+  };
+  const auto check = [](const CaseResult& result) {
+    ASSERT_TRUE(is_converged(result.status())) << result.message();
+    ASSERT_EQ(result.steps.size(), 110);
+    EXPECT_EQ(result.trajectory.counters.cutbacks, 0);
+    const auto within = [](double x, double least, double most) {
+      EXPECT_GE(x, least);
+      EXPECT_LE(x, most);
+    };
+    within(forces_at(result, 0.5)[0], 81.5, 96.2);
+    const auto [V, H] = forces_at(result, 1);
+    within(V, 267, 332);
+    within(H, 55, 71);
+    const auto [V_late, H_late] = forces_at(result, 1.5);
+    within(V_late, 337, 421);
+    within(H_late, 102, 189);
+    within(H_late / V_late, 0.30, 0.38);
+  };
+  const auto exact = solve("monolithic_al", "die.face", "slab.top");
+  check(exact);
+  const auto [V, H] = forces_at(exact, 1.5);
+  for (const auto& [method, same] : {std::pair("uzawa_al", 1e-6), {"penalty", 1e-3}}) {  // (tolerance; overlap)
+    SCOPED_TRACE(method);
+    const auto result = solve(method, "die.face", "slab.top");
+    check(result);
+    EXPECT_NEAR(forces_at(result, 1.5)[0], V, same * V);
+    EXPECT_NEAR(forces_at(result, 1.5)[1], H, same * V);
+  }
+  const auto turned =
+      solve("monolithic_al", "slab.top", "die.face");  // the other side as the slave: another mesh error
+  check(turned);
+  EXPECT_NEAR(forces_at(turned, 1.5)[0], V, 0.01 * V);
+  EXPECT_NEAR(forces_at(turned, 1.5)[1], H, 0.01 * V);
+}
+
 TEST(SlowShallowIroning, InElevenStepsEndsWhereItDoesInMany) {  // C16
   // One step presses it all the way down, each of the others draws it over ten facets.
   std::array<double, 2> V;
