@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/contact/search.hpp"
 #include "core/contact/segments.hpp"
 
 namespace stickslip {
@@ -92,7 +91,7 @@ double FacetSearch::facet_distance(int facet, const Vec<double, 2>& x) const {
 
 double FacetSearch::distance(const Vec<double, 2>& x) const {
   double least = std::numeric_limits<double>::infinity();
-  const auto from = [&](int at) { return (boxes_[at].low - x).cwiseMax(x - boxes_[at].high).cwiseMax(0.0).norm(); };
+  const auto from = [&](int at) { return box_distance(boxes_[at], x); };
   const auto visit = [&](const auto& self, int at) -> void {
     const Box& box = boxes_[at];
     if (from(at) > least + band_) return;
@@ -107,6 +106,38 @@ double FacetSearch::distance(const Vec<double, 2>& x) const {
   };
   if (!boxes_.empty()) visit(visit, 0);
   return least;
+}
+
+/// Numbers, ascending, of the facets within a distance of x.
+std::vector<int> FacetSearch::within(const Vec<double, 2>& x, double distance) const {
+  std::vector<int> found;
+  const auto visit = [&](const auto& self, int at) -> void {
+    const Box& box = boxes_[at];
+    if (box_distance(box, x) > distance) return;
+    if (box.facet >= 0) {
+      found.push_back(box.facet);
+      return;
+    }
+    self(self, at + 1);
+    self(self, box.right);
+  };
+  if (!boxes_.empty()) visit(visit, 0);
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::optional<ClosestPoint> FacetSearch::closest(const Vec<double, 2>& x) const {
+  // Facets farther away than some ties of the nearest decide nothing; those that share its vertex are no farther.
+  constexpr double ties = 8;
+  const auto numbers = within(x, distance(x) + ties * band_);
+  std::vector<std::vector<int>> facets;
+  facets.reserve(numbers.size());
+  for (int f : numbers) facets.push_back(facets_[f]);
+  auto found = closest_point(points_, facets, x);
+  if (!found) return found;
+  for (int* facet : {&found->facet, &found->second})
+    if (*facet >= 0) *facet = numbers[*facet];
+  return found;
 }
 
 }  // namespace stickslip

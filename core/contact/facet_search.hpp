@@ -6,8 +6,10 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
+#include "core/contact/search.hpp"
 #include "core/contact/segment.hpp"
 #include "core/mesh/mesh.hpp"
 
@@ -27,6 +29,8 @@ class FacetSearch {
   std::vector<Segment> facing(const std::array<int, 2>& slave, const std::vector<int>& ends = {}) const;
   /// Distance of x to the nearest facet, length; infinity where there is no facet.
   double distance(const Vec<double, 2>& x) const;
+  /// The closest point of the side, as closest_point() finds it among all facets.
+  std::optional<ClosestPoint> closest(const Vec<double, 2>& x) const;
 
  private:
   /// The left child of boxes_[k] is boxes_[k + 1]. `right`: index of the right child. `facet`: number of the facet of
@@ -38,6 +42,10 @@ class FacetSearch {
   Vec<double, 2> end_of(int facet, int end) const { return points_.col(facets_[facet][end]).head<2>(); }
   void add_boxes(std::vector<int>& numbers, int first, int last);
   double facet_distance(int facet, const Vec<double, 2>& x) const;
+  double box_distance(const Box& box, const Vec<double, 2>& x) const {
+    return (box.low - x).cwiseMax(x - box.high).cwiseMax(0.0).norm();
+  }
+  std::vector<int> within(const Vec<double, 2>& x, double distance) const;
 
   const Points<double>& points_;
   const std::vector<std::vector<int>>& facets_;

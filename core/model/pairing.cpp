@@ -7,7 +7,6 @@
 
 #include "core/contact/curve_search.hpp"
 #include "core/contact/facet_search.hpp"
-#include "core/contact/search.hpp"
 #include "core/contact/segments.hpp"
 #include "core/mesh/sides.hpp"
 #include "core/model/segment_search.hpp"
@@ -31,13 +30,22 @@ std::vector<std::vector<int>> facets_of(const Polyline& polyline) {
   return facets;
 }
 
+/// What the nodes of a contact are searched in: the facets of a master side or of a polyline; empty against another
+/// obstacle.
+struct Facets {
+  Points<double> points;  ///< 2 x nodes or vertices
+  std::vector<std::vector<int>> facets;
+  FacetSearch search;
+  Facets(Points<double> at, std::vector<std::vector<int>> of)
+      : points(std::move(at)), facets(std::move(of)), search(points, facets) {}
+  Facets(const Facets&) = delete;
+};
+
 /// Sets the facet or vertex of a polyline that a slave node faces. False if the node lies past a free end.
-bool find_on_polyline(const Points<double>& points, const Polyline& polyline, const Numbers<double>& numbers,
-                      ContactPoint& point) {
-  const Points<double> vertices = vertices_of(polyline, numbers);
-  const auto facets = facets_of(polyline);
-  const auto closest = closest_point(vertices, facets, points.col(point.nodes[0]).head<2>());
+bool find_on_polyline(const Points<double>& points, const Facets& polyline, ContactPoint& point) {
+  const auto closest = polyline.search.closest(points.col(point.nodes[0]).head<2>());
   if (!closest) return false;
+  const auto& facets = polyline.facets;
   const auto& facet = facets[closest->facet];
   point.master = closest->second < 0 ? ContactPoint::Master::facet : ContactPoint::Master::vertex;
   point.of_polyline = facet;
@@ -46,9 +54,9 @@ bool find_on_polyline(const Points<double>& points, const Polyline& polyline, co
 }
 
 /// Sets the facet or vertex of a deformable master that a slave node faces. False if it faces none.
-bool find_master(const Points<double>& points, const SideSet& master, ContactPoint& point) {
+bool find_master(const Points<double>& points, const Facets& master, ContactPoint& point) {
   const Vec<double, 2> x = points.col(point.nodes[0]).head<2>();
-  const auto closest = closest_point(points, master.facets, x);
+  const auto closest = master.search.closest(x);
   if (!closest) return false;
   const auto& facet = master.facets[closest->facet];
   const Vec<double, 2> tau = points.col(facet[1]).head<2>() - points.col(facet[0]).head<2>();
@@ -73,11 +81,10 @@ bool find_master(const Points<double>& points, const SideSet& master, ContactPoi
 
 /// Sets what a slave node faces of its obstacle. False if it faces nothing. Throws ModelError if all places of the
 /// obstacle are equally near.
-bool find_on_obstacle(const Points<double>& points, const Scene& scene, ContactPoint& point) {
+bool find_on_obstacle(const Points<double>& points, const Scene& scene, const Facets& facets, ContactPoint& point) {
   const Obstacle& obstacle = scene.obstacles[point.obstacle];
   const auto numbers = scene.as<double>();
-  if (const auto* polyline = std::get_if<Polyline>(&obstacle.shape))
-    return find_on_polyline(points, *polyline, numbers, point);
+  if (std::holds_alternative<Polyline>(obstacle.shape)) return find_on_polyline(points, facets, point);
   if (const char* key = ambiguity(points.col(point.nodes[0]), obstacle.shape, numbers))
     throw ModelError("is where a slave node is, from which no place of the surface is nearer than another",
                      "/obstacles/" + obstacle.name + "/" + key);
@@ -136,15 +143,24 @@ ContactPoint slave_point(const Model& model, const Points<double>& points, const
   return point;
 }
 
+/// Facets of the master side or polyline of a contact.
+Facets facets_of_master(const Model& model, const Points<double>& points, const Pairing& pairing) {
+  if (pairing.obstacle < 0) return {points, pairing.master.facets};
+  const auto* polyline = std::get_if<Polyline>(&model.scene.obstacles[pairing.obstacle].shape);
+  if (!polyline) return {Points<double>(), {}};
+  return {vertices_of(*polyline, model.scene.as<double>()), facets_of(*polyline)};
+}
+
 /// Node-to-segment contact: each slave node against the closest point of its master.
 void pair_nodes(Model& model, const Points<double>& points, const Pairing& pairing) {
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
+  const Facets facets = facets_of_master(model, points, pairing);
   for (int node : pairing.slave.nodes) {
     if (is_quadratic(shape) && model.is_on_axis(points, node)) continue;  // it has no tributary area
     ContactPoint point = slave_point(model, points, pairing, node);
     point.shares_normal = pairing.obstacle < 0 && is_continuum(shape) && !point.area_facets.empty();
-    const bool faces = pairing.obstacle >= 0 ? find_on_obstacle(points, model.scene, point)
-                                             : find_master(points, pairing.master, point);
+    const bool faces = pairing.obstacle >= 0 ? find_on_obstacle(points, model.scene, facets, point)
+                                             : find_master(points, facets, point);
     if (faces) add_point(model, std::move(point));
   }
 }

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "core/contact/contact_point.hpp"
+#include "core/contact/facet_search.hpp"
 #include "core/contact/rigid_surfaces.hpp"
 #include "core/contact/search.hpp"
 #include "core/contact/surfaces.hpp"
@@ -111,6 +112,30 @@ Point foot(const Curve& c, const ClosestPoint& closest, const Point& x) {
 
 // Coordinates are up to 16 facets of 2 from the start, and about 1e-9 of a facet counts as its end.
 constexpr double close_by = 4e-9;
+
+/// Places beside the curve, near it, far away and at its vertices, where facets tie.
+Point anywhere(const Curve& c) {
+  const int kind = *rc::gen::inRange(0, 4);
+  if (kind == 0) return beside(c);
+  if (kind == 1) return near(c);
+  if (kind == 2) return vector<2>(100);
+  return c.points.col(*rc::gen::inRange<Eigen::Index>(0, c.points.cols()));
+}
+
+TEST(ClosestPointProperties, TheTreeFindsWhatAComparisonWithAllFinds) {
+  EXPECT_TRUE(rc::check([] {
+    const auto c = curve();
+    const FacetSearch search(c.points, c.facets);
+    for (int i = 0; i < 8; ++i) {
+      const Point x = anywhere(c);
+      const auto all = closest_point(c.points, c.facets, x), found = search.closest(x);
+      RC_ASSERT(found.has_value() == all.has_value());
+      if (!all) continue;
+      RC_ASSERT(found->facet == all->facet);
+      RC_ASSERT(found->second == all->second);
+    }
+  }));
+}
 
 TEST(ClosestPointProperties, IsNoFartherThanAnySampledPointOfTheCurve) {
   EXPECT_TRUE(rc::check([] {
