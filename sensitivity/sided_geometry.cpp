@@ -13,7 +13,7 @@ namespace {
 /// Whether a point may come to face another part of its master: it is at a vertex, or its segment ends there.
 bool may_leave(const ContactPoint& point) {
   using Master = ContactPoint::Master;
-  if (point.master == Master::segments) return point.obstacle < 0 && point.curve < 0;
+  if (point.master == Master::segments) return point.curve < 0 && point.segments[0].master[0] != Segment::none;
   return point.master == Master::facet || point.master == Master::vertex;
 }
 
@@ -35,6 +35,7 @@ std::vector<ContactPoint> paired_beside(const Model& model, const Points<Directi
   Model beside;
   beside.scene = model.scene;
   beside.dimension = model.dimension;
+  beside.node_count = model.node_count;
   beside.bodies = model.bodies;
   for (std::size_t i = 0; i < beside.scene.numbers.size(); ++i)
     beside.scene.numbers[i] += step * numbers.at_slot[i].d[0];
@@ -42,6 +43,15 @@ std::vector<ContactPoint> paired_beside(const Model& model, const Points<Directi
   for (Eigen::Index i = 0; i < moved.size(); ++i) moved.data()[i] = points.data()[i].v + step * points.data()[i].d[0];
   pair_contacts(beside, moved);
   return beside.points;
+}
+
+/// Vertices of the polyline that a point faces; those of its first facet are the first two.
+std::vector<int> vertices_faced(const Model& model, const ContactPoint& point) {
+  std::vector<int> vertices = point.of_polyline;
+  for (const auto& segment : point.segments)
+    for (int node : segment.master)
+      if (node >= model.node_count) vertices.push_back(node - model.node_count);
+  return vertices;
 }
 
 /// Largest derivative of a contact node or of a number of an obstacle, over the mesh size of the slave.
@@ -53,12 +63,13 @@ double speed(const Model& model, const Points<Direction>& points, const Numbers<
     for (const auto* nodes : {&point.nodes, &point.neighbours})
       for (int node : *nodes)
         for (Eigen::Index i = 0; i < points.rows(); ++i) fastest = std::max(fastest, std::abs(points(i, node).d[0]));
-    if (point.of_polyline.empty()) continue;
+    const auto vertices = vertices_faced(model, point);
+    if (vertices.empty()) continue;
     const auto& polyline = std::get<Polyline>(model.scene.obstacles[point.obstacle].shape);
-    for (int v : point.of_polyline)
+    for (int v : vertices)
       for (const Number& x : polyline.points[v]) fastest = std::max(fastest, std::abs(numbers(x).d[0]));
-    const auto& from = polyline.points[point.of_polyline[0]];
-    const auto& to = polyline.points[point.of_polyline[1]];
+    const auto& from = polyline.points[vertices[0]];
+    const auto& to = polyline.points[vertices[1]];
     const double length = std::hypot(numbers(to[0]).v - numbers(from[0]).v, numbers(to[1]).v - numbers(from[1]).v);
     size = std::min(size, length);
   }

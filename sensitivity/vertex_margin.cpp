@@ -71,15 +71,21 @@ bool has_kink_at(const MasterCurve& curve, int node, At&& present, OfStart&& of_
 
 }  // namespace
 
-double integration_margin(const Model& model, const Slots<double>& slots, const State<double>& state) {
+double integration_margin(const Model& model, const Slots<double>& slots, const State<double>& state, double time) {
   double least = std::numeric_limits<double>::infinity();
-  const auto of_start = [&](int node) -> Place { return slots.points.col(node).head<2>(); };
-  const auto present = [&](int node) -> Place {
-    return of_start(node) + state.displacement.segment<2>(2 * static_cast<Eigen::Index>(node));
-  };
+  const RegularisationField<double> unread_rho;
+  const ContactInput<double> input{model, slots, unread_rho, state.history, ConeRadius::augmented, time, nullptr};
+  const Vector<double> compact = to_compact(model, state.displacement);
   for (int c = 0; c < static_cast<int>(model.curves.size()); ++c) {
     const auto& curve = model.curves[c];
     if (!model.slides_along_curves() || !curve.is_integrated()) continue;
+    const auto of_start = [&](int node) -> Place { return detail::start_of(model, curve.obstacle, slots, node); };
+    const auto present = [&](int node) -> Place {
+      if (node >= model.node_count)
+        return detail::vertex_position<double, double>(input, curve, node - model.node_count,
+                                                       detail::nodal_displacement(compact));
+      return of_start(node) + state.displacement.segment<2>(2 * static_cast<Eigen::Index>(node));
+    };
     const auto ends = ends_of_slave(model, c);
     const auto is_end = [](const std::vector<int>& of, int node) {
       return std::find(of.begin(), of.end(), node) != of.end();
@@ -106,7 +112,7 @@ bool slides_along_facets(const Model& model) {
 }
 
 double vertex_margin(const Model& model, const Slots<double>& slots, const State<double>& state, double time) {
-  double least = integration_margin(model, slots, state);
+  double least = integration_margin(model, slots, state, time);
   if (!slides_along_facets(model)) return least;
   const RegularisationField<double> unread_rho;
   const ContactInput<double> input{model, slots, unread_rho, state.history, ConeRadius::augmented, time, nullptr};

@@ -16,8 +16,8 @@ bool slides_along_facets(const Model& model);
 /// Margin of segment integration at finite strain: least distance, along a slave facet and over its length, between an
 /// end of the slave side and a master node with a kink. At such a node the master turns, or its two facets are
 /// stretched differently. At margin 0 the integrals have two slopes; elsewhere one. Ends of the master are left out:
-/// they have no kink within 1e-6. Infinity if there is no such pair.
-double integration_margin(const Model& model, const Slots<double>& slots, const State<double>& state);
+/// they have no kink within 1e-6. Infinity if there is no such pair. `time`: of the state.
+double integration_margin(const Model& model, const Slots<double>& slots, const State<double>& state, double time);
 
 /// Least distance of a closed point from a vertex, over the length of the facet that it faces, free ends left out; or
 /// integration_margin(), if that is less. Infinity if no closed point slides along facets.

@@ -1,4 +1,5 @@
-/// A mortar segment: unit of the integration of segment-integrated contact (core/contact/segments.hpp).
+/// A mortar segment: unit of the integration of segment-integrated contact (core/contact/segments.hpp). Vertex v of a
+/// polyline counts as the node Model::node_count + v.
 #pragma once
 
 #include <array>
@@ -11,7 +12,7 @@ struct Segment {
   static constexpr int start = -1, end = -2;
   static constexpr int none = -1;
   std::array<int, 2> slave{};               ///< nodes a -> b of the slave facet, solid on the left
-  std::array<int, 2> master{{none, none}};  ///< nodes c -> d of the master facet; none: the master is an obstacle
+  std::array<int, 2> master{{none, none}};  ///< nodes c -> d of the master facet; none: the master has no facets
   int facet = none;                         ///< number of the master facet on its side
   int first_end = start, last_end = end;    ///< start, end, or the master node that is projected there
   int carrier = 0;                          ///< 0 or 1: the slave node that carries the multiplier

@@ -106,10 +106,12 @@ std::vector<Segment> facing_segments(const Points<double>& points, const std::ar
   return segments;
 }
 
-std::vector<int> nodes_of_segments(int own, const std::vector<Segment>& facets, const std::vector<Segment>& segments) {
+std::vector<int> nodes_of_segments(int own, const std::vector<Segment>& facets, const std::vector<Segment>& segments,
+                                   int node_count) {
   std::vector<int> nodes{own};
   const auto add = [&](int node) {
-    if (node >= 0 && std::find(nodes.begin(), nodes.end(), node) == nodes.end()) nodes.push_back(node);
+    if (node >= 0 && node < node_count && std::find(nodes.begin(), nodes.end(), node) == nodes.end())
+      nodes.push_back(node);
   };
   for (const auto& facet : facets) std::for_each(facet.slave.begin(), facet.slave.end(), add);
   for (const auto& segment : segments) std::for_each(segment.master.begin(), segment.master.end(), add);

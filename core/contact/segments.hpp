@@ -117,6 +117,8 @@ struct SegmentIntegrals {
 ///   initial_position(node)  initial position, for dA
 ///   depth                   of the slave body
 ///   rigid_foot(x)           Foot of x on the obstacle; called for segments that have no master facet
+///
+/// A master whose nodes are not among `nodes` is rigid: it has no weights, and the normal is its own.
 ///   visit(segment, IntegrationPoint)  called at each Gauss point
 template <class T, class Position, class InitialPosition, class RigidFoot, class Visit>
 SegmentIntegrals<T> integrate_segments(const std::vector<Segment>& segments, const std::vector<int>& nodes,
@@ -126,9 +128,8 @@ SegmentIntegrals<T> integrate_segments(const std::vector<Segment>& segments, con
   static constexpr double weight[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
   SegmentIntegrals<T> sums;
   sums.weights = decltype(sums.weights)::Constant(static_cast<Eigen::Index>(nodes.size()), T(0));
-  auto share = [&](int node, const T& w) {
-    sums.weights[std::find(nodes.begin(), nodes.end(), node) - nodes.begin()] += w;
-  };
+  const auto place = [&](int node) { return std::find(nodes.begin(), nodes.end(), node) - nodes.begin(); };
+  auto share = [&](int node, const T& w) { sums.weights[place(node)] += w; };
   for (const auto& segment : segments) {
     const Vec<T, 2> a = position(segment.slave[0]), tau = position(segment.slave[1]) - a;
     const Vec<T, 2> A = initial_position(segment.slave[0]), Tau = initial_position(segment.slave[1]) - A;
@@ -141,10 +142,11 @@ SegmentIntegrals<T> integrate_segments(const std::vector<Segment>& segments, con
     for (int q = 0; q < 3; ++q) {
       const T s = point.xi = from + (to - from) * T(0.5 * (1 + gauss[q]));
       const Vec<T, 2> x(a[0] + s * tau[0], a[1] + s * tau[1]);
-      const bool rigid = segment.master[0] == Segment::none;
+      const bool rigid = place(segment.master[0]) == static_cast<std::ptrdiff_t>(nodes.size());
       const detail::Foot<T>& foot = point.foot =
-          rigid ? rigid_foot(x)
-                : detail::foot_on_facet<T>(x, nu, position(segment.master[0]), position(segment.master[1]));
+          segment.master[0] == Segment::none
+              ? rigid_foot(x)
+              : detail::foot_on_facet<T>(x, nu, position(segment.master[0]), position(segment.master[1]));
       const T psi = segment.sole_carrier ? T(1) : segment.carrier == 0 ? T(1) - s : s;
       const T dA = point.area = psi * (to - from) * point.slave_length * T(weight[q]) * depth.at(T(A[0] + s * Tau[0]));
       sums.area += dA;
@@ -163,8 +165,9 @@ SegmentIntegrals<T> integrate_segments(const std::vector<Segment>& segments, con
 }
 
 /// Nodes of a contact point, each once, in this order: `own`, the other slave nodes of `facets`, the master nodes of
-/// `segments`.
-std::vector<int> nodes_of_segments(int own, const std::vector<Segment>& facets, const std::vector<Segment>& segments);
+/// `segments`; of all only those below `node_count`, which are no vertices of a polyline.
+std::vector<int> nodes_of_segments(int own, const std::vector<Segment>& facets, const std::vector<Segment>& segments,
+                                   int node_count);
 
 /// Geometry of a contact point that moves, and the foot from which the next increment measures slip.
 template <class T>

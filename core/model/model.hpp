@@ -42,7 +42,8 @@ struct MasterCurve {
   std::vector<int> places;  ///< index of these nodes in Model::contact_nodes
   int vertex_count = 0;
   std::vector<Patch> patches;
-  /// Segment-integrated contact: the two nodes of each patch, and the nodes at which the side ends.
+  /// Segment-integrated contact: the two nodes of each patch, and the nodes at which the side ends. Vertices of a
+  /// polyline count as nodes behind those of the model (core/contact/segment.hpp).
   std::vector<std::vector<int>> facets = {};
   std::vector<int> ends = {};
   bool is_integrated() const { return !facets.empty(); }

@@ -149,6 +149,8 @@ MovedPoint<U, 2> moved_on_segments(const ContactInput<T>& input, int p, const Fa
   const auto frame =
       along_curve ? Frame<T, 2>{} : frame_of_obstacle<T, 2>(input, input.model.scene.obstacles[point.obstacle]);
   const auto position = [&](int node) {
+    if (const int vertex = node - input.model.node_count; vertex >= 0)
+      return vertex_position<U, T>(input, input.model.curves[point.curve], vertex, displacement);
     return frame_position<U, T, 2>(frame, input.slots.points, node, displacement(input.model.place_of(node)));
   };
   const Facing not_read;
@@ -162,7 +164,8 @@ MovedPoint<U, 2> moved_on_segments(const ContactInput<T>& input, int p, const Fa
     at.foot_motion = Vec<U, 2>(at.foot[0] - previous_foot(0), at.foot[1] - previous_foot(1));
   } else if (const int last = point.foot >= 0 ? input.previous.patch[p] : Patch::none; last != Patch::none) {
     const auto& curve = input.model.curves[point.curve];
-    const U length = at.foot[0] + U(length_between(curve, input.slots.points, last, facing->patch)) - previous_foot(0);
+    const U length =
+        at.foot[0] + U(length_between(input.model, curve, input.slots, last, facing->patch)) - previous_foot(0);
     for (int i = 0; i < 2; ++i) at.foot_motion[i] = kinematics.tangent[i] * length;
   }
   turn_with<U, T>(frame, at);
@@ -215,6 +218,11 @@ std::vector<Facing> facings(const ContactInput<T>& input, const Vector<T>& compa
       Points<double> positions = values(input.slots.points);
       for (std::size_t n = 0; n < model.contact_nodes.size(); ++n)
         positions.col(model.contact_nodes[n]).head<2>() += values(displacement(static_cast<int>(n)));
+      if (curve.obstacle >= 0) {
+        positions.conservativeResize(Eigen::NoChange, model.node_count + curve.vertex_count);
+        for (int v = 0; v < curve.vertex_count; ++v)
+          positions.col(model.node_count + v) = values(vertex_position<T, T>(input, curve, v, displacement));
+      }
       find_segments(model, static_cast<int>(c), values(input.slots.points), positions, found);
       continue;
     }

@@ -30,10 +30,9 @@ std::vector<std::vector<int>> facets_of(const Polyline& polyline) {
   return facets;
 }
 
-/// What the nodes of a contact are searched in: the facets of a master side or of a polyline; empty against another
-/// obstacle.
+/// What a contact is searched in: the facets of a master side or of a polyline; empty against another obstacle.
 struct Facets {
-  Points<double> points;  ///< 2 x nodes or vertices
+  Points<double> points;  ///< of the model's nodes and, behind these, the vertices of the polyline
   std::vector<std::vector<int>> facets;
   FacetSearch search;
   Facets(Points<double> at, std::vector<std::vector<int>> of)
@@ -42,14 +41,14 @@ struct Facets {
 };
 
 /// Sets the facet or vertex of a polyline that a slave node faces. False if the node lies past a free end.
-bool find_on_polyline(const Points<double>& points, const Facets& polyline, ContactPoint& point) {
+bool find_on_polyline(const Points<double>& points, const Facets& polyline, int node_count, ContactPoint& point) {
   const auto closest = polyline.search.closest(points.col(point.nodes[0]).head<2>());
   if (!closest) return false;
-  const auto& facets = polyline.facets;
-  const auto& facet = facets[closest->facet];
+  const auto& facet = polyline.facets[closest->facet];
   point.master = closest->second < 0 ? ContactPoint::Master::facet : ContactPoint::Master::vertex;
   point.of_polyline = facet;
-  if (closest->second >= 0) point.of_polyline.push_back(facets[closest->second][1]);
+  if (closest->second >= 0) point.of_polyline.push_back(polyline.facets[closest->second][1]);
+  for (int& vertex : point.of_polyline) vertex -= node_count;
   return true;
 }
 
@@ -81,10 +80,11 @@ bool find_master(const Points<double>& points, const Facets& master, ContactPoin
 
 /// Sets what a slave node faces of its obstacle. False if it faces nothing. Throws ModelError if all places of the
 /// obstacle are equally near.
-bool find_on_obstacle(const Points<double>& points, const Scene& scene, const Facets& facets, ContactPoint& point) {
-  const Obstacle& obstacle = scene.obstacles[point.obstacle];
-  const auto numbers = scene.as<double>();
-  if (std::holds_alternative<Polyline>(obstacle.shape)) return find_on_polyline(points, facets, point);
+bool find_on_obstacle(const Points<double>& points, const Model& model, const Facets& facets, ContactPoint& point) {
+  const Obstacle& obstacle = model.scene.obstacles[point.obstacle];
+  const auto numbers = model.scene.as<double>();
+  if (std::holds_alternative<Polyline>(obstacle.shape))
+    return find_on_polyline(points, facets, model.node_count, point);
   if (const char* key = ambiguity(points.col(point.nodes[0]), obstacle.shape, numbers))
     throw ModelError("is where a slave node is, from which no place of the surface is nearer than another",
                      "/obstacles/" + obstacle.name + "/" + key);
@@ -143,12 +143,17 @@ ContactPoint slave_point(const Model& model, const Points<double>& points, const
   return point;
 }
 
-/// Facets of the master side or polyline of a contact.
 Facets facets_of_master(const Model& model, const Points<double>& points, const Pairing& pairing) {
   if (pairing.obstacle < 0) return {points, pairing.master.facets};
   const auto* polyline = std::get_if<Polyline>(&model.scene.obstacles[pairing.obstacle].shape);
-  if (!polyline) return {Points<double>(), {}};
-  return {vertices_of(*polyline, model.scene.as<double>()), facets_of(*polyline)};
+  if (!polyline) return {points, {}};
+  const Eigen::Matrix2Xd vertices = vertices_of(*polyline, model.scene.as<double>());
+  Points<double> all(2, points.cols() + vertices.cols());
+  all << points, vertices;
+  auto facets = facets_of(*polyline);
+  for (auto& facet : facets)
+    for (int& vertex : facet) vertex += model.node_count;
+  return {std::move(all), std::move(facets)};
 }
 
 /// Node-to-segment contact: each slave node against the closest point of its master.
@@ -159,8 +164,8 @@ void pair_nodes(Model& model, const Points<double>& points, const Pairing& pairi
     if (is_quadratic(shape) && model.is_on_axis(points, node)) continue;  // it has no tributary area
     ContactPoint point = slave_point(model, points, pairing, node);
     point.shares_normal = pairing.obstacle < 0 && is_continuum(shape) && !point.area_facets.empty();
-    const bool faces = pairing.obstacle >= 0 ? find_on_obstacle(points, model.scene, facets, point)
-                                             : find_master(points, facets, point);
+    const bool faces =
+        pairing.obstacle >= 0 ? find_on_obstacle(points, model, facets, point) : find_master(points, facets, point);
     if (faces) add_point(model, std::move(point));
   }
 }
@@ -231,6 +236,7 @@ std::pair<MasterCurve, Eigen::Matrix2Xd> make_curve(const Model& model, const Po
     const auto& polyline = std::get<Polyline>(model.scene.obstacles[pairing.obstacle].shape);
     places = vertices_of(polyline, model.scene.as<double>());
     facets = facets_of(polyline);
+    if (contact.segment) std::reverse(facets.begin(), facets.end());  // each begins where the one before ends
   } else {
     if (contact.is_of_itself() || contact.segment) facets = ordered_facets(facets, points);
     std::map<int, int> number;
@@ -288,8 +294,11 @@ void pair_along_curve(Model& model, const Points<double>& points, const Pairing&
 /// Master curve of segment-integrated contact at finite strain.
 MasterCurve integrated_curve(const Model& model, const Points<double>& points, const Pairing& pairing) {
   MasterCurve curve = make_curve(model, points, pairing).first;
+  const auto node_of = [&](int vertex) {
+    return pairing.obstacle >= 0 ? model.node_count + vertex : curve.nodes[vertex];
+  };
   for (const auto& patch : curve.patches) {
-    const int begin = curve.nodes[patch.vertices[1]], end = curve.nodes[patch.vertices[2]];
+    const int begin = node_of(patch.vertices[1]), end = node_of(patch.vertices[2]);
     curve.facets.push_back({begin, end});
     if (patch.previous == Patch::none) curve.ends.push_back(begin);
     if (patch.next == Patch::none) curve.ends.push_back(end);
@@ -299,16 +308,14 @@ MasterCurve integrated_curve(const Model& model, const Points<double>& points, c
 
 /// Segments that the multiplier of each slave node acts on. `whole`: one segment per whole slave facet, without a
 /// master, because what it faces is found later.
-std::map<int, std::vector<Segment>> segments_of_nodes(const Points<double>& points, const Pairing& pairing,
-                                                      bool whole) {
+std::map<int, std::vector<Segment>> segments_of_nodes(const Facets& master, const Pairing& pairing, bool whole) {
   const std::set<int> nodes(pairing.slave.nodes.begin(), pairing.slave.nodes.end());
   const auto carries = [&](int node) { return nodes.count(node) > 0; };
-  const FacetSearch search(points, pairing.master.facets);
   std::map<int, std::vector<Segment>> of_node;
   for (const auto& facet : pairing.slave.facets) {
     Segment whole_facet;
     whole_facet.slave = {facet[0], facet[1]};
-    const auto segments = whole ? std::vector<Segment>{whole_facet} : search.facing(whole_facet.slave);
+    const auto segments = whole ? std::vector<Segment>{whole_facet} : master.search.facing(whole_facet.slave);
     for (Segment segment : segments)
       for (int end = 0; end < 2; ++end)
         if (carries(facet[end])) {
@@ -322,8 +329,9 @@ std::map<int, std::vector<Segment>> segments_of_nodes(const Points<double>& poin
 
 /// Segment-integrated contact: the multiplier of each slave node on the segments of its facets.
 void pair_segments(Model& model, const Points<double>& points, const Pairing& pairing) {
-  const bool slides = model.scene.finite_strain && pairing.obstacle < 0;
-  auto of_node = segments_of_nodes(points, pairing, slides || pairing.obstacle >= 0);
+  const Facets master = facets_of_master(model, points, pairing);
+  const bool slides = model.scene.finite_strain && !master.facets.empty();
+  auto of_node = segments_of_nodes(master, pairing, slides || master.facets.empty());
   const int curve = slides ? static_cast<int>(model.curves.size()) : -1;
   if (slides) model.curves.push_back(integrated_curve(model, points, pairing));
   const std::size_t first = model.points.size();
@@ -333,13 +341,13 @@ void pair_segments(Model& model, const Points<double>& points, const Pairing& pa
     point.master = ContactPoint::Master::segments;
     point.curve = curve;
     point.segments = of_node[node];
-    point.slave_nodes = static_cast<int>(nodes_of_segments(node, point.segments, {}).size());
-    point.nodes = nodes_of_segments(node, point.segments, point.segments);
+    point.slave_nodes = static_cast<int>(nodes_of_segments(node, point.segments, {}, model.node_count).size());
+    point.nodes = nodes_of_segments(node, point.segments, point.segments, model.node_count);
     add_point(model, std::move(point));
   }
   if (!slides) return;
   std::vector<Facing> found(model.points.size());
-  find_segments(model, curve, points, points, found);
+  find_segments(model, curve, points, master.points, found);
   for (std::size_t p = first; p < model.points.size(); ++p) {
     model.points[p].facing = found[p];
     model.points[p].nodes = found[p].nodes;
@@ -371,8 +379,6 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
   if (contact.is_of_itself()) throw ModelError("segment integration is between two sides", where);
   if (model.dimension == 3 || pairing.slave.facets.empty() || !is_continuum(shape))
     throw ModelError("segment integration needs a slave side of facets of a solid body", where);
-  if (pairing.obstacle >= 0 && std::holds_alternative<Polyline>(model.scene.obstacles[pairing.obstacle].shape))
-    throw ModelError("segment integration against a polyline is not available in this version", where);
   pair_segments(model, points, pairing);
 }
 

@@ -18,8 +18,8 @@ auto position_in(const Points<double>& points) {
 
 /// Area of segments as a share of the area of the whole slave facets of their point.
 double area_share(const std::vector<Segment>& segments, const ContactPoint& point, const Points<double>& points,
-                  const Points<double>& positions) {
-  const auto nodes = nodes_of_segments(point.nodes[0], point.segments, segments);
+                  const Points<double>& positions, int node_count) {
+  const auto nodes = nodes_of_segments(point.nodes[0], point.segments, segments, node_count);
   const auto not_read = [](const Vec<double, 2>& x) { return detail::Foot<double>{x, x, {}}; };
   const double area = integrate_segments<double>(segments, nodes, position_in(positions), position_in(points),
                                                  Depth<double>{}, not_read, [](auto&&...) {})
@@ -47,13 +47,14 @@ void find_segments(const Model& model, int curve, const Points<double>& points, 
         facing.pieces.push_back(segment);
       }
     }
-    if (!facing.pieces.empty() && !(area_share(facing.pieces, point, points, positions) >= least_share))
+    if (!facing.pieces.empty() &&
+        !(area_share(facing.pieces, point, points, positions, model.node_count) >= least_share))
       facing.pieces.clear();
     if (facing.pieces.empty())
       facing.distance = search.distance(positions.col(point.nodes[0]).head<2>());
     else
       facing.patch = facing.pieces.front().facet;
-    facing.nodes = nodes_of_segments(point.nodes[0], point.segments, facing.pieces);
+    facing.nodes = nodes_of_segments(point.nodes[0], point.segments, facing.pieces, model.node_count);
     found[p] = std::move(facing);
   }
 }

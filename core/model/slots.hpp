@@ -120,17 +120,26 @@ T whole_area(const ContactPoint& point, const Slots<T>& slots) {
       point.segments, [&](int node) { return point2(slots.points, node); }, slots.depths[point.slave_body]);
 }
 
+/// Initial position of a node, or of a vertex of the polyline that is an obstacle (core/contact/segment.hpp).
+template <class T>
+Vec<T, 2> start_of(const Model& model, int obstacle, const Slots<T>& slots, int node) {
+  if (node < model.node_count) return point2(slots.points, node);
+  const auto& x = std::get<Polyline>(model.scene.obstacles[obstacle].shape).points[node - model.node_count];
+  return {slots.numbers(x[0]), slots.numbers(x[1])};
+}
+
 /// Initial arc length along an integrated curve from the beginning of facet `from` to that of facet `to`; negative
 /// backwards. On a closed curve: along the shorter way.
 template <class T>
-T length_between(const MasterCurve& curve, const Points<T>& points, int from, int to) {
+T length_between(const Model& model, const MasterCurve& curve, const Slots<T>& slots, int from, int to) {
   const int count = static_cast<int>(curve.facets.size());
   const bool loop = curve.patches.back().next == 0;
   if (loop && 2 * std::abs(to - from) > count) to += to < from ? count : -count;
   T length{};
   for (int f = std::min(from, to); f < std::max(from, to); ++f) {
     const auto& facet = curve.facets[(f + count) % count];
-    length += norm(Vec<T, 2>(points.col(facet[1]) - points.col(facet[0])));
+    length += norm(
+        Vec<T, 2>(start_of(model, curve.obstacle, slots, facet[1]) - start_of(model, curve.obstacle, slots, facet[0])));
   }
   return from < to ? length : T(-length);
 }
@@ -141,7 +150,10 @@ template <class U, class T, class At, class Read>
 SegmentKinematics<U> integrated_kinematics(const Model& model, const ContactPoint& point, const Slots<T>& slots,
                                            const Facing& facing, At&& at, const Read& numbers) {
   const bool along_curve = point.curve >= 0;
-  const auto of_start = [&](int node) { return Vec<U, 2>(U(slots.points(0, node)), U(slots.points(1, node))); };
+  const auto of_start = [&](int node) {
+    const auto x = start_of(model, point.obstacle, slots, node);
+    return Vec<U, 2>(U(x[0]), U(x[1]));
+  };
   const auto rigid_foot = [&](const Vec<U, 2>& x) {
     const auto g = against_rigid<U>(x, model.scene.obstacles[point.obstacle].shape, numbers);
     Foot<U> foot;
@@ -152,7 +164,7 @@ SegmentKinematics<U> integrated_kinematics(const Model& model, const ContactPoin
     return foot;
   };
   const auto begin = [&](int facet) {
-    return along_curve ? U(length_between(model.curves[point.curve], slots.points, facing.patch, facet)) : U(0);
+    return along_curve ? U(length_between(model, model.curves[point.curve], slots, facing.patch, facet)) : U(0);
   };
   const auto& depth = slots.depths[point.slave_body];
   return segment_kinematics<U>(along_curve ? facing.pieces : point.segments, along_curve ? facing.nodes : point.nodes,
@@ -163,7 +175,7 @@ SegmentKinematics<U> integrated_kinematics(const Model& model, const ContactPoin
 /// Kinematics of a segment-integrated point at the start. pre: it faces its master.
 template <class T>
 SegmentKinematics<T> initial_kinematics(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
-  const auto at = [&](int node) { return point2(slots.points, node); };
+  const auto at = [&](int node) { return start_of(model, point.obstacle, slots, node); };
   return integrated_kinematics<T>(model, point, slots, point.facing, at, slots.numbers);
 }
 

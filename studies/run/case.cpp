@@ -28,7 +28,8 @@ void take_sides(const CaseResult& result, std::size_t n, StepResult& step) {
   else
     take(result.gradients.from_below, result.gradients.from_above);
   if (result.gradients.of_responses.size() > n &&
-      integration_margin(result.problem->model, result.problem->slots, step.increment->state) <= weak_margin) {
+      integration_margin(result.problem->model, result.problem->slots, step.increment->state, step.increment->time) <=
+          weak_margin) {
     step.differentiable = false;  // and neither side is known
     const auto& like = result.gradients.of_responses[n];
     step.backward = step.forward =
