@@ -57,7 +57,12 @@ std::string law_in_words(const FrictionLaw<Number>& friction) {
   return words;
 }
 
+/// With their heading. What kind of contact it is stands in the heading, or, where segments are among them, in each
+/// line.
 std::string contact_lines(const Model& model) {
+  const auto& contacts = model.scene.contacts;
+  const bool mixed = std::any_of(contacts.begin(), contacts.end(), [](const auto& of) { return of.segment; });
+  const std::string heading = mixed ? "contacts:\n" : "contacts (node to segment):\n";
   std::string text;
   for (std::size_t c = 0; c < model.scene.contacts.size(); ++c) {
     const auto& contact = model.scene.contacts[c];
@@ -66,11 +71,11 @@ std::string contact_lines(const Model& model) {
     const std::size_t slaves = model.side(contact.slave).nodes.size();
     text += fmt::format("  {}: {} against {}, {}", contact.name, contact.slave, contact.master,
                         counted(points, "contact point"));
-    if (contact.segment) text += " (segment-integrated)";
+    if (mixed) text += contact.segment ? " (segment-integrated)" : " (node to segment)";
     if (points < static_cast<int>(slaves)) text += fmt::format(" ({} slave nodes face no master)", slaves - points);
     text += contact.friction ? ", " + law_in_words(*contact.friction) + "\n" : ", frictionless\n";
   }
-  return text.empty() ? "  none\n" : text;
+  return heading + (text.empty() ? "  none\n" : text);
 }
 
 /// Of a body.
@@ -132,7 +137,7 @@ std::string explain(const Input& input, const Problem& problem) {
                         counted(mesh.element_count(), shape_name(mesh.shape)),
                         has_mean_dilatation(model.bodies[b].kinematics) ? " with mean dilatation" : "");
   }
-  text += "contacts (node to segment):\n" + contact_lines(model);
+  text += contact_lines(model);
   text += fmt::format("driving: {}, {}, {} to t = {}\n", count(scene.supports, "support"), count(scene.loads, "load"),
                       count(model.times, "step"), exact_number(model.times.empty() ? 0 : model.times.back()));
   if (scene.arc_length)
