@@ -112,6 +112,19 @@ PatchWeights<T> patch_weights(const Patch& patch, const T& s) {
   return w;
 }
 
+/// The same at a place without derivatives.
+template <class T>
+PatchWeights<T> constant_patch_weights(const Patch& patch, double s) {
+  const auto of = patch_weights<double>(patch, s);
+  PatchWeights<T> w;
+  for (int i = 0; i < 4; ++i) {
+    w.value[i] = T(of.value[i]);
+    w.slope[i] = T(of.slope[i]);
+    w.bend[i] = T(of.bend[i]);
+  }
+  return w;
+}
+
 /// Sum of n_i y_i. `position(vertex)`: y_i.
 template <class T, class Position>
 Vec<T, 2> on_patch(const Patch& patch, const std::array<T, 4>& n, Position&& position) {
@@ -141,20 +154,25 @@ struct CurveFoot {
 /// steps from xi in the scalar T carry its derivatives: one step the first, two steps the second.
 template <class T, class Position>
 CurveFoot<T> foot_on_patch(const Patch& patch, double xi, const Vec<T, 2>& x, Position&& position) {
+  std::array<Vec<T, 2>, 4> positions;
+  for (int i = 0; i < 4; ++i)
+    if (patch.vertices[i] != Patch::none) positions[i] = position(patch.vertices[i]);
+  const auto at = [&](int vertex) -> const Vec<T, 2>& {
+    return positions[std::find(patch.vertices.begin(), patch.vertices.end(), vertex) - patch.vertices.begin()];
+  };
   CurveFoot<T> foot;
   foot.xi = T(xi);
   const int steps = patch.smoothing == Smoothing::none ? 1 : 2;
   for (int step = 0; step < steps; ++step) {
-    const auto w = detail::patch_weights<T>(patch, foot.xi);
-    const Vec<T, 2> slope = detail::on_patch<T>(patch, w.slope, position),
-                    bend = detail::on_patch<T>(patch, w.bend, position);
-    const Vec<T, 2> off = x - detail::on_patch<T>(patch, w.value, position);
+    const auto w = step == 0 ? detail::constant_patch_weights<T>(patch, xi) : detail::patch_weights<T>(patch, foot.xi);
+    const Vec<T, 2> slope = detail::on_patch<T>(patch, w.slope, at), bend = detail::on_patch<T>(patch, w.bend, at);
+    const Vec<T, 2> off = x - detail::on_patch<T>(patch, w.value, at);
     foot.xi += dot(off, slope) / (dot(slope, slope) - dot(off, bend));
   }
   const auto w = detail::patch_weights<T>(patch, foot.xi);
   foot.weights = w.value;
-  foot.position = detail::on_patch<T>(patch, w.value, position);
-  const Vec<T, 2> slope = detail::on_patch<T>(patch, w.slope, position);
+  foot.position = detail::on_patch<T>(patch, w.value, at);
+  const Vec<T, 2> slope = detail::on_patch<T>(patch, w.slope, at);
   const T length = norm(slope);
   foot.normal << slope[1] / length, -slope[0] / length;
   foot.gap = dot((x - foot.position).eval(), foot.normal);

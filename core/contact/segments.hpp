@@ -86,6 +86,7 @@ struct IntegrationPoint {
   T slave_length{};  ///< initial length of the slave facet
   T area{};          ///< psi dA times the Gauss weight
   detail::Foot<T> foot;
+  Vec<T, 2> facet;  ///< from the first node of the master facet to its second
 };
 
 /// Integrals over the segments of one contact point.
@@ -137,16 +138,17 @@ SegmentIntegrals<T> integrate_segments(const std::vector<Segment>& segments, con
     const Vec<T, 2> nu(tau[1] / length, -tau[0] / length);
     const T from = detail::end_coordinate<T>(segment.first_end, position, a, tau),
             to = detail::end_coordinate<T>(segment.last_end, position, a, tau);
+    const bool rigid = place(segment.master[0]) == static_cast<std::ptrdiff_t>(nodes.size());
+    const bool has_facet = segment.master[0] != Segment::none;
+    const Vec<T, 2> c = has_facet ? position(segment.master[0]) : Vec<T, 2>(a),
+                    d = has_facet ? position(segment.master[1]) : c;
     IntegrationPoint<T> point;
     point.slave_length = norm(Tau);
+    point.facet = d - c;
     for (int q = 0; q < 3; ++q) {
       const T s = point.xi = from + (to - from) * T(0.5 * (1 + gauss[q]));
       const Vec<T, 2> x(a[0] + s * tau[0], a[1] + s * tau[1]);
-      const bool rigid = place(segment.master[0]) == static_cast<std::ptrdiff_t>(nodes.size());
-      const detail::Foot<T>& foot = point.foot =
-          segment.master[0] == Segment::none
-              ? rigid_foot(x)
-              : detail::foot_on_facet<T>(x, nu, position(segment.master[0]), position(segment.master[1]));
+      const detail::Foot<T>& foot = point.foot = has_facet ? detail::foot_on_facet<T>(x, nu, c, d) : rigid_foot(x);
       const T psi = segment.sole_carrier ? T(1) : segment.carrier == 0 ? T(1) - s : s;
       const T dA = point.area = psi * (to - from) * point.slave_length * T(weight[q]) * depth.at(T(A[0] + s * Tau[0]));
       sums.area += dA;
@@ -194,15 +196,11 @@ SegmentKinematics<T> segment_kinematics(const std::vector<Segment>& segments, co
       for (int i = 0; i < 2; ++i) kinematics.foot[i] += point.area * point.foot.position[i];
       return;
     }
-    const auto facet_vector = [&](auto&& at_node) {
-      return Vec<T, 2>(at_node(segment.master[1]) - at_node(segment.master[0]));
-    };
-    const T facet_length = norm(facet_vector(initial_position)),
+    const T facet_length = norm(Vec<T, 2>(initial_position(segment.master[1]) - initial_position(segment.master[0]))),
             offset = segment.carrier == 0 ? point.xi : T(point.xi - T(1));
     kinematics.foot[0] +=
         point.area * (arc_length(segment.facet) + point.foot.weights[1] * facet_length + offset * point.slave_length);
-    const Vec<T, 2> tau = facet_vector(position);
-    for (int i = 0; i < 2; ++i) kinematics.tangent[i] += point.area * tau[i] / facet_length;
+    for (int i = 0; i < 2; ++i) kinematics.tangent[i] += point.area * point.facet[i] / facet_length;
   };
   const auto sums = integrate_segments<T>(segments, nodes, position, initial_position, depth, rigid_foot, accumulate);
   for (int i = 0; i < 2; ++i) {

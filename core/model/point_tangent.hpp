@@ -116,17 +116,17 @@ PointTangent<T> open_tangent(const ContactInput<T>& input, int p, const Facing* 
   return tangent;
 }
 
-/// Tangent by the displacements of all nodes. `facing`: what the point faces of its curve; nullptr against an obstacle.
-template <class T, int Tangents>
-PointTangent<T> tangent_by_places(const ContactInput<T>& input, int p, const Facing* facing, const Vector<T>& compact,
-                                  const Vector<T>& multiplier, ContactState state) {
-  // (18 dofs in one sweep: the slave node and four vertices each of this patch and of the last)
-  constexpr int C = 1 + Tangents, at_once = 18;
+/// Tangent by the displacements of the nodes at the places `of`, of which the first `faced` have forces, `at_once` dofs
+/// in one sweep. `facing`: what the point faces of its curve; nullptr against an obstacle.
+template <class T, int Tangents, int at_once>
+PointTangent<T> tangent_by_places(const ContactInput<T>& input, int p, const Facing* facing, std::vector<int> of,
+                                  int faced, const Vector<T>& compact, const Vector<T>& multiplier,
+                                  ContactState state) {
+  constexpr int C = 1 + Tangents;
   using Probe = Dual<at_once + C, T>;
   PointTangent<T> tangent;
-  int faced = 0;
   auto& places = tangent.places;
-  places = places_of_tangent(input, p, facing, faced);
+  places = std::move(of);
   const int count = static_cast<int>(2 * places.size());
   tangent.force_w = Matrix<T>::Constant(count, count, T(0));
   tangent.force_l = Matrix<T>::Constant(count, C, T(0));
@@ -168,11 +168,20 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
                               const Vector<T>& multiplier, ContactState state, const std::vector<Facing>& facing = {}) {
   const auto& point = input.model.points[p];
   const bool by_places = detail::has_places(input.model, point);
-  const Facing* const faced = by_places && point.curve >= 0 ? &facing[p] : nullptr;
-  if (state == ContactState::open) return detail::open_tangent(input, p, faced);
+  const Facing* const found = by_places && point.curve >= 0 ? &facing[p] : nullptr;
+  if (state == ContactState::open) return detail::open_tangent(input, p, found);
   return detail::with_point(input.model, point, [&]<int D, int Tangents>() {
     if constexpr (D == 2)
-      if (by_places) return detail::tangent_by_places<T, Tangents>(input, p, faced, compact, multiplier, state);
+      if (by_places) {
+        // 18: the slave node and four vertices each of this patch and of the last; 12: where these are neighbours
+        int faced = 0;
+        auto places = detail::places_of_tangent(input, p, found, faced);
+        const auto tangent = [&]<int at_once>() {
+          return detail::tangent_by_places<T, Tangents, at_once>(input, p, found, std::move(places), faced, compact,
+                                                                 multiplier, state);
+        };
+        return places.size() <= 6 ? tangent.template operator()<12>() : tangent.template operator()<18>();
+      }
     constexpr int C = 1 + Tangents;
     using Probe = Dual<D + C, T>;
     const bool present = input.model.effects.current_geometry;
