@@ -47,16 +47,9 @@ void FacetSearch::add_boxes(std::vector<int>& numbers, int first, int last) {
   add_boxes(numbers, middle, last);
 }
 
-std::vector<int> FacetSearch::candidates(const std::array<int, 2>& slave) const {
-  // Share of the slave facet by which the strip is widened, far above rounding. A facet that is found only because of
-  // it gives no segment in facing_segments().
-  constexpr double margin = 1e-6;
-  const Vec<double, 2> a = points_.col(slave[0]).head<2>(), tau = points_.col(slave[1]).head<2>() - a;
-  const auto is_outside = [&](const Box& box) {
-    const double middle = ((box.low + box.high) / 2 - a).dot(tau) / tau.squaredNorm();
-    const double half = ((box.high - box.low) / 2).dot(tau.cwiseAbs()) / tau.squaredNorm();
-    return middle + half < -margin || middle - half > 1 + margin;
-  };
+/// Numbers, ascending, of the facets in no box that is outside.
+template <class Outside>
+std::vector<int> FacetSearch::facets_but(Outside&& is_outside) const {
   std::vector<int> found;
   const auto visit = [&](const auto& self, int at) -> void {
     const Box& box = boxes_[at];
@@ -71,6 +64,19 @@ std::vector<int> FacetSearch::candidates(const std::array<int, 2>& slave) const 
   if (!boxes_.empty()) visit(visit, 0);
   std::sort(found.begin(), found.end());
   return found;
+}
+
+std::vector<int> FacetSearch::candidates(const std::array<int, 2>& slave) const {
+  // Share of the slave facet by which the strip is widened, far above rounding. A facet that is found only because of
+  // it gives no segment in facing_segments().
+  constexpr double margin = 1e-6;
+  const Vec<double, 2> a = points_.col(slave[0]).head<2>(), tau = points_.col(slave[1]).head<2>() - a;
+  const auto is_outside = [&](const Box& box) {
+    const double middle = ((box.low + box.high) / 2 - a).dot(tau) / tau.squaredNorm();
+    const double half = ((box.high - box.low) / 2).dot(tau.cwiseAbs()) / tau.squaredNorm();
+    return middle + half < -margin || middle - half > 1 + margin;
+  };
+  return facets_but(is_outside);
 }
 
 std::vector<Segment> FacetSearch::facing(const std::array<int, 2>& slave, const std::vector<int>& ends) const {
@@ -108,28 +114,11 @@ double FacetSearch::distance(const Vec<double, 2>& x) const {
   return least;
 }
 
-/// Numbers, ascending, of the facets within a distance of x.
-std::vector<int> FacetSearch::within(const Vec<double, 2>& x, double distance) const {
-  std::vector<int> found;
-  const auto visit = [&](const auto& self, int at) -> void {
-    const Box& box = boxes_[at];
-    if (box_distance(box, x) > distance) return;
-    if (box.facet >= 0) {
-      found.push_back(box.facet);
-      return;
-    }
-    self(self, at + 1);
-    self(self, box.right);
-  };
-  if (!boxes_.empty()) visit(visit, 0);
-  std::sort(found.begin(), found.end());
-  return found;
-}
-
 std::optional<ClosestPoint> FacetSearch::closest(const Vec<double, 2>& x) const {
   // Facets farther away than some ties of the nearest decide nothing; those that share its vertex are no farther.
   constexpr double ties = 8;
-  const auto numbers = within(x, distance(x) + ties * band_);
+  const double near = distance(x) + ties * band_;
+  const auto numbers = facets_but([&](const Box& box) { return box_distance(box, x) > near; });
   std::vector<std::vector<int>> facets;
   facets.reserve(numbers.size());
   for (int f : numbers) facets.push_back(facets_[f]);

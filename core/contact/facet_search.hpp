@@ -45,7 +45,8 @@ class FacetSearch {
   double box_distance(const Box& box, const Vec<double, 2>& x) const {
     return (box.low - x).cwiseMax(x - box.high).cwiseMax(0.0).norm();
   }
-  std::vector<int> within(const Vec<double, 2>& x, double distance) const;
+  template <class Outside>
+  std::vector<int> facets_but(Outside&& is_outside) const;
 
   const Points<double>& points_;
   const std::vector<std::vector<int>>& facets_;
