@@ -92,15 +92,16 @@ void add_contact_rows(const CaseResult& result, const StateBytes& states, Ledger
   const auto normal = static_cast<double>(contact.gap.size());
   const Masters masters = masters_of(model);
   const long tangents = trajectory.counters.factorizations - result.condensing.factorizations;
-  ledger.push_back(
-      {"contact",
-       model.effects.contact,
-       {{"normal", std::min(multipliers, normal)}},
-       {{"points", point_bytes(model, slots) - masters.bytes},
-        {"states", static_cast<double>(states.contact)},
-        {"multipliers", static_cast<double>(states.multipliers)}},
-       {{"points", normal}, {"evaluations", static_cast<double>(trajectory.counters.contact_evaluations)}},
-       result.problem->seconds.contact_search + trajectory.seconds.contact_search + trajectory.seconds.contact});
+  ledger.push_back({"contact",
+                    model.effects.contact,
+                    {{"normal", std::min(multipliers, normal)}},
+                    {{"points", point_bytes(model, slots) - masters.bytes},
+                     {"states", static_cast<double>(states.contact)},
+                     {"multipliers", static_cast<double>(states.multipliers)}},
+                    {{"points", normal}, {"evaluations", static_cast<double>(trajectory.counters.contact_evaluations)}},
+                    model.effects.contact ? result.problem->seconds.contact_search + trajectory.seconds.contact_search +
+                                                trajectory.seconds.contact
+                                          : 0});
   ledger.push_back({"friction",
                     model.effects.friction,
                     {{"tangential", std::max(multipliers - normal, 0.0)}},

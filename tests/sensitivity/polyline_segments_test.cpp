@@ -81,12 +81,13 @@ void expect_the_same(const scenes::Solved& a, const scenes::Solved& b, double al
 TEST(PolylineSegments, OfFacetsOnAPlaneAreThePlane) {
   // Exact integrals, whatever they are cut into: equilibria are solved to 1e-10 of the largest nodal force. Feet are
   // along the normal of the slave facet here, and of the plane there: they slide apart where it has lifted off a bit.
+  // (By mu = 0.02 nothing lifts off.)
   for (const bool finite : {false, true})
-    for (const double mu : {0.0, 0.3})
+    for (const double mu : {0.0, 0.02, 0.3})
       for (const auto& method : finite_methods()) {
         SCOPED_TRACE(name_of(method));
         expect_the_same(run(drawn_block(level, {finite, mu}), method), run(drawn_block(uneven, {finite, mu}), method),
-                        1e-9, finite ? 1e-4 : 1e-9);
+                        1e-9, finite && mu == 0.3 ? 1e-4 : 1e-9);
       }
 }
 

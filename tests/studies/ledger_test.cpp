@@ -65,6 +65,7 @@ void expect_nothing_of_what_is_off(const Ledger& ledger, const std::string& wher
     EXPECT_EQ(sum(each.unknowns), 0) << what;
     EXPECT_EQ(sum(each.memory), 0) << what;
     EXPECT_EQ(sum(each.counts), 0) << what;
+    EXPECT_FALSE(each.seconds > 0) << what;
   }
 }
 
