@@ -219,6 +219,7 @@ void RecordedEquilibrium<E>::record(const State<double>& previous, const Regular
   for_each_part([&](const Vector<double>& values, Vector<Reverse>& part) { part = leaves(values, tape); },
                 previous.history, history_);
   history_.patch = previous.history.patch;
+  history_.faces = previous.history.faces;
   const ContactInput<Reverse> input{model, slots, rho, history_, cone, time, &at_.contact.facing};
   state_.displacement = displacement_;
   state_.multiplier = multiplier_;

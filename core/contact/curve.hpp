@@ -56,9 +56,10 @@ struct OwnVertex {
 
 /// What a contact point faces: a place on a curve, or segments of it.
 struct Facing {
-  int patch = Patch::none;  ///< none: the point faces nothing of the curve
-  double xi = 0;            ///< coordinate of the foot on the patch
-  double distance = 0;      ///< where nothing is faced: to the nearest facet, length
+  int patch = Patch::none;    ///< none: the point faces nothing of the curve
+  double xi = 0;              ///< coordinate of the foot on the patch
+  double distance = 0;        ///< where nothing is faced: to the nearest facet, length
+  int nearest = Patch::none;  ///< where nothing is faced: the patch of the nearest facet; see beside_facet()
   /// Segment-integrated contact: the segments. `patch` is then the origin of arc lengths along the curve.
   std::vector<Segment> pieces = {};
   std::vector<int> nodes = {};  ///< of the slave facets and of these segments, in the order of the weights
@@ -177,6 +178,15 @@ CurveFoot<T> foot_on_patch(const Patch& patch, double xi, const Vec<T, 2>& x, Po
   foot.normal << slope[1] / length, -slope[0] / length;
   foot.gap = dot((x - foot.position).eval(), foot.normal);
   return foot;
+}
+
+/// Coordinate of the place of the facet a -> b that is nearest to x, 0 <= xi <= 1: where a point is along a curve that
+/// it does not face. At a free end it is that end, however far from it x is.
+template <class T>
+T beside_facet(const Vec<T, 2>& x, const Vec<T, 2>& a, const Vec<T, 2>& b) {
+  const Vec<T, 2> tau = b - a;
+  const T xi = dot((x - a).eval(), tau) / dot(tau, tau);
+  return value(xi) <= 0 ? T(0) : value(xi) >= 1 ? T(1) : xi;
 }
 
 /// Weights of the displacements in w: 1 for the slave node, then -N_i for each vertex of the patch. On a rigid curve: 1

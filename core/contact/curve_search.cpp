@@ -227,7 +227,11 @@ Facing CurveSearch::facing(const Vec<double, 2>& x, const Vec<double, 2>& outwar
     if (nearest.patch != Patch::none && !is_inside(nearest)) at = {};
   }
   at = second_patch_facing(at, {x, outward});
-  if (at.patch == Patch::none) at.distance = nearest_facet({x, Vec<double, 2>::Zero()}).distance;
+  if (at.patch == Patch::none) {
+    const Nearest nearest = nearest_facet({x, Vec<double, 2>::Zero()});
+    at.distance = nearest.distance;
+    at.nearest = nearest.patch;
+  }
   return at;
 }
 
@@ -236,7 +240,9 @@ Facing CurveSearch::facing_itself(const Vec<double, 2>& x, const Vec<double, 2>&
   const Query query{x, outward, &own, last};
   const Facing at = second_patch_facing(nearest_facing(query), query);  // (Newton may have left the eligible patch)
   if (at.patch != Patch::none && is_eligible(at.patch, query)) return at;
-  return {Patch::none, 0, size_};
+  Nearest nearest = nearest_facet(query);
+  if (nearest.patch == Patch::none) nearest = nearest_facet({x, Vec<double, 2>::Zero(), &own, last});
+  return {Patch::none, 0, size_, nearest.patch};
 }
 
 /// If x faces the vertex of two eligible patches, the place on the second. So rounding does not choose between them.

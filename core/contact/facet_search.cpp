@@ -95,15 +95,15 @@ double FacetSearch::facet_distance(int facet, const Vec<double, 2>& x) const {
   return (x - c - std::clamp(eta, 0.0, 1.0) * tau).norm();
 }
 
-double FacetSearch::distance(const Vec<double, 2>& x) const {
-  double least = std::numeric_limits<double>::infinity();
+FacetSearch::Nearest FacetSearch::nearest(const Vec<double, 2>& x) const {
+  Nearest best;
   const auto from = [&](int at) { return box_distance(boxes_[at], x); };
   const auto visit = [&](const auto& self, int at) -> void {
     const Box& box = boxes_[at];
-    if (from(at) > least + band_) return;
+    if (from(at) > best.distance + band_) return;
     if (box.facet >= 0) {
       const double distance = facet_distance(box.facet, x);
-      if (distance < least) least = distance;
+      if (distance < best.distance) best = {box.facet, distance};
       return;
     }
     const bool left_first = from(at + 1) <= from(box.right);
@@ -111,13 +111,13 @@ double FacetSearch::distance(const Vec<double, 2>& x) const {
     self(self, left_first ? box.right : at + 1);
   };
   if (!boxes_.empty()) visit(visit, 0);
-  return least;
+  return best;
 }
 
 std::optional<ClosestPoint> FacetSearch::closest(const Vec<double, 2>& x) const {
   // Facets farther away than some ties of the nearest decide nothing; those that share its vertex are no farther.
   constexpr double ties = 8;
-  const double near = distance(x) + ties * band_;
+  const double near = nearest(x).distance + ties * band_;
   const auto numbers = facets_but([&](const Box& box) { return box_distance(box, x) > near; });
   std::vector<std::vector<int>> facets;
   facets.reserve(numbers.size());

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -27,8 +28,12 @@ class FacetSearch {
   std::vector<int> candidates(const std::array<int, 2>& slave) const;
   /// Segments of a slave facet, as facing_segments() finds them among all facets.
   std::vector<Segment> facing(const std::array<int, 2>& slave, const std::vector<int>& ends = {}) const;
-  /// Distance of x to the nearest facet, length; infinity where there is no facet.
-  double distance(const Vec<double, 2>& x) const;
+  /// The facet nearest to x; -1 where there is none.
+  struct Nearest {
+    int facet = -1;
+    double distance = std::numeric_limits<double>::infinity();  ///< length
+  };
+  Nearest nearest(const Vec<double, 2>& x) const;
   /// The closest point of the side, as closest_point() finds it among all facets.
   std::optional<ClosestPoint> closest(const Vec<double, 2>& x) const;
 

@@ -34,6 +34,10 @@
 
 namespace stickslip {
 
+/// Share of its area below which a point faces nothing. Why: a traction is force over area, and would grow without
+/// bound.
+inline constexpr double least_share = 0.01;
+
 /// The segments of a slave facet, in order along it. Where the slave facet faces several master facets, the nearest
 /// counts. Parts that face no master facet have no segment. The caller sets `carrier` and `sole_carrier`.
 ///
@@ -218,6 +222,35 @@ T area_of_facets(const std::vector<Segment>& facets, InitialPosition&& initial_p
   for (const auto& facet : facets) nodes.insert(nodes.end(), facet.slave.begin(), facet.slave.end());
   const auto here = [](const Vec<T, 2>& x) { return detail::Foot<T>{x, Vec<T, 2>(T(0), T(1)), {}}; };
   return integrate_segments<T>(facets, nodes, initial_position, initial_position, depth, here, [](auto&&...) {}).area;
+}
+
+/// Distance of a slave node from a free end of the master, initial length, positive outside, at which 2 least_share of
+/// the area of its point faces the master: where a point that comes on begins to slide. Twice, because a point that
+/// sticks there must face its master, whatever the two sides are stretched.
+///
+///   facets   whole slave facets of the point
+///   leading  Segment::carrier of the facet that comes to face the master first; a point may have none
+///   depth    is taken as uniform
+template <class T, class InitialPosition>
+T way_outside_of_end(const std::vector<Segment>& facets, int leading, InitialPosition&& initial_position) {
+  const auto length = [&](const Segment& facet) {
+    return norm(Vec<T, 2>(initial_position(facet.slave[1]) - initial_position(facet.slave[0])));
+  };
+  const auto area = [&](const Segment& facet) { return T(facet.sole_carrier ? 1.0 : 0.5) * length(facet); };
+  T faces(0);
+  for (const auto& facet : facets) faces += T(2 * least_share) * area(facet);
+  for (const auto& facet : facets) {
+    if (facet.carrier != leading) continue;
+    if (value(faces) <= value(area(facet)))
+      return length(facet) - (facet.sole_carrier ? faces : T(sqrt(T(2) * length(facet) * faces)));
+    faces -= area(facet);
+  }
+  for (const auto& facet : facets)
+    if (facet.carrier != leading) {
+      const T c = length(facet);
+      return facet.sole_carrier ? T(-faces) : T(sqrt(c * c - T(2) * c * faces) - c);
+    }
+  return T(0);
 }
 
 }  // namespace stickslip

@@ -9,6 +9,18 @@
 
 namespace stickslip {
 
+namespace detail {
+
+/// Adds the labels of the next point.
+template <class T>
+void take_labels(const Facing& facing, History<T>& history) {
+  const bool faces = facing.patch != Patch::none;
+  history.patch.push_back(faces ? facing.patch : facing.nearest);
+  history.faces.push_back(faces);
+}
+
+}  // namespace detail
+
 /// History before the first increment: zero slip and work. Where the present geometry is used, it holds the initial
 /// feet.
 template <class T>
@@ -16,12 +28,15 @@ History<T> initial_history(const Model& model, const Slots<T>& slots) {
   const auto zeros = [](std::size_t n) { return Vector<T>::Constant(static_cast<Eigen::Index>(n), T(0)).eval(); };
   History<T> history{zeros(model.multiplier_count - model.points.size()), zeros(model.foot_count),
                      zeros(model.effects.friction ? model.scene.contacts.size() : 0), zeros(model.memory_count)};
-  if (model.slides_along_curves()) history.patch.assign(model.points.size(), Patch::none);
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
-    if (point.curve >= 0 && !history.patch.empty()) history.patch[p] = point.facing.patch;
+    if (model.slides_along_curves()) detail::take_labels(point.facing, history);
     if (point.foot < 0) continue;
-    if (point.curve >= 0 && point.facing.patch == Patch::none) continue;
+    if (point.curve >= 0 && point.facing.patch == Patch::none) {
+      if (point.facing.nearest != Patch::none)
+        history.foot[point.foot] = detail::place_beside_at_start(model, point, slots);
+      continue;
+    }
     if (!point.segments.empty()) {
       const auto foot = detail::initial_kinematics(model, point, slots).foot;
       history.foot.segment(point.foot, point.curve >= 0 ? 1 : 2) = foot.head(point.curve >= 0 ? 1 : 2);
@@ -279,9 +294,9 @@ Vector<T> frictional_work(const ContactInput<T>& input, const ContactField<T>& f
 template <class T>
 History<T> next_history(const ContactInput<T>& input, ContactField<T>& field, const Vector<T>& multiplier) {
   Vector<T> work = frictional_work(input, field, multiplier, input.previous.work);
-  std::vector<int> patch;
-  for (const auto& facing : field.facing) patch.push_back(facing.patch);
-  return {std::move(field.placement), std::move(field.foot), std::move(work), {}, std::move(patch)};
+  History<T> history{std::move(field.placement), std::move(field.foot), std::move(work), {}};
+  for (const auto& facing : field.facing) detail::take_labels(facing, history);
+  return history;
 }
 
 }  // namespace stickslip

@@ -20,8 +20,10 @@ struct History {
   Vector<T> foot;       ///< where geometry is the present one: places on what is faced, at ContactPoint::foot
   Vector<T> work;       ///< frictional work since the start, per contact; empty without friction
   Vector<T> bodies;     ///< what materials remember, at BodyMesh::first_memory; empty where none does
-  /// Of points that slide along curves: the patch that a foot is on, per point. A label, which has no derivative.
+  /// Of points that slide along curves: the patch that a foot is on, per point, and whether the point faced it. One
+  /// that faced nothing has the patch that is nearest. Labels, which have no derivative.
   std::vector<int> patch = {};
+  std::vector<char> faces = {};
 };
 
 /// Calls f(part...) with each part of histories that numbers make up, in turn.

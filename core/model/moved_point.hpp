@@ -126,15 +126,20 @@ Vec<U, 2> vertex_position(const ContactInput<T>& input, const MasterCurve& curve
   return {U(input.slots.points(0, node)) + u[0], U(input.slots.points(1, node)) + u[1]};
 }
 
-/// Geometry of point p if it faces nothing of its curve: the gap is the distance, the normal the initial one.
-template <class U, class T>
-MovedPoint<U, 2> point_off_curve(const ContactInput<T>& input, int p, const Facing& facing) {
+/// Geometry of point p if it faces nothing of its curve: the gap is the distance, the normal the initial one, and the
+/// foot is its placement beside the curve. `position`: as place_beside() reads it, of the slave node too where it is
+/// segment-integrated; `x`: of the slave node.
+template <class U, class T, class Position>
+MovedPoint<U, 2> point_off_curve(const ContactInput<T>& input, int p, const Facing& facing, const Vec<U, 2>& x,
+                                 Position&& position) {
   const auto& start = input.slots.geometry[p];
   MovedPoint<U, 2> at;
   at.faces_master = false;
   at.geometry = alone<U>(U(facing.distance), start.normal.unaryExpr([](const T& n) { return U(n); }),
                          input.model.points[p].slave_nodes);
   at.geometry.area = U(start.area);
+  if (input.model.points[p].foot >= 0 && facing.nearest != Patch::none)
+    at.foot[0] = place_beside<U, T>(input.model, input.model.points[p], input.slots, facing.nearest, x, position);
   return at;
 }
 
@@ -144,7 +149,6 @@ MovedPoint<U, 2> moved_on_segments(const ContactInput<T>& input, int p, const Fa
                                    Displacement&& displacement) {
   const auto& point = input.model.points[p];
   const bool along_curve = point.curve >= 0;
-  if (along_curve && facing->patch == Patch::none) return point_off_curve<U, T>(input, p, *facing);
   const auto number = [&](const Number& n) { return U(input.slots.numbers(n)); };
   const auto frame =
       along_curve ? Frame<T, 2>{} : frame_of_obstacle<T, 2>(input, input.model.scene.obstacles[point.obstacle]);
@@ -153,6 +157,8 @@ MovedPoint<U, 2> moved_on_segments(const ContactInput<T>& input, int p, const Fa
       return vertex_position<U, T>(input, input.model.curves[point.curve], vertex, displacement);
     return frame_position<U, T, 2>(frame, input.slots.points, node, displacement(input.model.place_of(node)));
   };
+  if (along_curve && facing->patch == Patch::none)
+    return point_off_curve<U, T>(input, p, *facing, position(point.nodes[0]), position);
   const Facing not_read;
   auto kinematics =
       integrated_kinematics<U>(input.model, point, input.slots, along_curve ? *facing : not_read, position, number);
@@ -179,12 +185,12 @@ MovedPoint<U, 2> moved_on_curve(const ContactInput<T>& input, int p, const Facin
                                 Displacement&& displacement) {
   const auto& point = input.model.points[p];
   const auto& curve = input.model.curves[point.curve];
-  if (facing.patch == Patch::none) return point_off_curve<U, T>(input, p, facing);
   const auto position = [&](int vertex) { return vertex_position<U, T>(input, curve, vertex, displacement); };
-  MovedPoint<U, 2> at;
-  at.geometry.area = U(input.slots.geometry[p].area);
   Vec<U, 2> x = displacement(point.places[0]);
   for (int i = 0; i < 2; ++i) x[i] += U(input.slots.points(i, point.nodes[0]));
+  if (facing.patch == Patch::none) return point_off_curve<U, T>(input, p, facing, x, position);
+  MovedPoint<U, 2> at;
+  at.geometry.area = U(input.slots.geometry[p].area);
   const Patch& patch = curve.patches[facing.patch];
   const auto foot = foot_on_patch<U>(patch, facing.xi, x, position);
   at.geometry.gap = foot.gap + U(input.slots.numbers(input.model.scene.contacts[point.contact].offset));
@@ -197,6 +203,12 @@ MovedPoint<U, 2> moved_on_curve(const ContactInput<T>& input, int p, const Facin
     at.foot_motion = foot.position - curve_position<U>(previous, U(input.previous.foot[point.foot]), position);
   }
   return at;
+}
+
+/// The patch that point p faced in the last increment, or Patch::none.
+template <class T>
+int last_faced(const ContactInput<T>& input, int p) {
+  return input.previous.faces[p] ? input.previous.patch[p] : Patch::none;
 }
 
 /// The function place -> displacement of the contact node, from compact displacements.
@@ -249,7 +261,7 @@ std::vector<Facing> facings(const ContactInput<T>& input, const Vector<T>& compa
         outward += Vec<double, 2>(along[1], -along[0]);
       }
       found[p] = point.own.vertex == Patch::none ? search.facing(x, outward)
-                                                 : search.facing_itself(x, outward, point.own, input.previous.patch[p]);
+                                                 : search.facing_itself(x, outward, point.own, last_faced(input, p));
     }
   }
   return found;

@@ -87,7 +87,7 @@ std::vector<int> places_of_tangent(const ContactInput<T>& input, int p, const Fa
   };
   add_patch(facing->patch);
   faced = static_cast<int>(places.size());
-  if (point.foot >= 0) add_patch(input.previous.patch[p]);
+  if (point.foot >= 0 && (facing->patch != Patch::none || input.previous.faces[p])) add_patch(input.previous.patch[p]);
   return places;
 }
 

@@ -8,10 +8,6 @@
 namespace stickslip {
 namespace {
 
-/// Share of its area below which a point faces nothing. Why: a traction is force over area, and would grow without
-/// bound.
-constexpr double least_share = 0.01;
-
 auto position_in(const Points<double>& points) {
   return [&points](int node) -> Vec<double, 2> { return points.col(node).head<2>(); };
 }
@@ -50,10 +46,13 @@ void find_segments(const Model& model, int curve, const Points<double>& points, 
     if (!facing.pieces.empty() &&
         !(area_share(facing.pieces, point, points, positions, model.node_count) >= least_share))
       facing.pieces.clear();
-    if (facing.pieces.empty())
-      facing.distance = search.distance(positions.col(point.nodes[0]).head<2>());
-    else
+    if (facing.pieces.empty()) {
+      const auto nearest = search.nearest(positions.col(point.nodes[0]).head<2>());
+      facing.distance = nearest.distance;
+      facing.nearest = nearest.facet;
+    } else {
       facing.patch = facing.pieces.front().facet;
+    }
     facing.nodes = nodes_of_segments(point.nodes[0], point.segments, facing.pieces, model.node_count);
     found[p] = std::move(facing);
   }

@@ -144,6 +144,26 @@ T length_between(const Model& model, const MasterCurve& curve, const Slots<T>& s
   return from < to ? length : T(-length);
 }
 
+/// Placement along its curve of a point that faces nothing of it, as History::foot stores it: from there it slides in
+/// the increment in which it comes to face the curve. It is the place of the patch `nearest` that is nearest to the
+/// slave node; for a segment-integrated point past a free end, where such a point comes on. `at(vertex)`: present
+/// position; of a segment-integrated point `at(node)`.
+template <class U, class T, class At>
+U place_beside(const Model& model, const ContactPoint& point, const Slots<T>& slots, int nearest, const Vec<U, 2>& x,
+               At&& at) {
+  const auto& curve = model.curves[point.curve];
+  const auto& patch = curve.patches[nearest];
+  if (!curve.is_integrated()) return beside_facet<U>(x, at(patch.vertices[1]), at(patch.vertices[2]));
+  const auto of_start = [&](int node) { return start_of(model, point.obstacle, slots, node); };
+  const auto& facet = curve.facets[nearest];
+  const U xi = beside_facet<U>(x, at(facet[0]), at(facet[1]));
+  const U place = xi * U(norm(Vec<T, 2>(of_start(facet[1]) - of_start(facet[0]))));
+  if (value(xi) <= 0 && patch.previous == Patch::none)
+    return place - U(way_outside_of_end<T>(point.segments, 1, of_start));
+  if (value(xi) >= 1 && patch.next == Patch::none) return place + U(way_outside_of_end<T>(point.segments, 0, of_start));
+  return place;
+}
+
 /// Kinematics of a segment-integrated point, in the scalar U built on T. `facing`: its segments, not read against an
 /// obstacle; `at(node)`: present position; `numbers`: of the scene.
 template <class U, class T, class At, class Read>
@@ -194,17 +214,32 @@ PointGeometry<T> against_polyline(const Model& model, const ContactPoint& point,
   return against_vertex<T>(x, vertex(0), vertex(1), vertex(2));
 }
 
+/// Initial position of a vertex of a curve.
+template <class T>
+Vec<T, 2> vertex_of_start(const Model& model, const MasterCurve& curve, const Slots<T>& slots, int vertex) {
+  if (curve.obstacle < 0) return point2(slots.points, curve.nodes[vertex]);
+  return start_of(model, curve.obstacle, slots, model.node_count + vertex);
+}
+
 /// Foot of a point on its curve at the start. pre: it faces the curve.
 template <class T>
 CurveFoot<T> foot_of_start(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
   const auto& curve = model.curves[point.curve];
-  const auto place = [&](int vertex) -> Vec<T, 2> {
-    if (curve.obstacle < 0) return point2(slots.points, curve.nodes[vertex]);
-    const auto& x = std::get<Polyline>(model.scene.obstacles[curve.obstacle].shape).points[vertex];
-    return {slots.numbers(x[0]), slots.numbers(x[1])};
-  };
+  const auto place = [&](int vertex) { return vertex_of_start(model, curve, slots, vertex); };
   const Vec<T, 2> x = point2(slots.points, point.nodes[0]);
   return foot_on_patch<T>(curve.patches[point.facing.patch], point.facing.xi, x, place);
+}
+
+/// place_beside() of the start.
+template <class T>
+T place_beside_at_start(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
+  const auto& curve = model.curves[point.curve];
+  const auto place = [&](int of) {
+    return curve.is_integrated() ? start_of(model, point.obstacle, slots, of)
+                                 : vertex_of_start(model, curve, slots, of);
+  };
+  const Vec<T, 2> x = point2(slots.points, point.nodes[0]);
+  return place_beside<T, T>(model, point, slots, point.facing.nearest, x, place);
 }
 
 /// Initial geometry of a point that faces nothing of its curve. The gap is its distance; the normal is opposite to the

@@ -84,7 +84,7 @@ TEST(FacetSearch, FindsWhatAComparisonWithAllFacetsFinds) {
     }
     for (int k = 0; k < 20; ++k) {
       const Vec<double, 2> x(uniform(random), uniform(random));
-      EXPECT_EQ(search.distance(x), least_distance(s, x)) << trial;
+      EXPECT_EQ(search.nearest(x).distance, least_distance(s, x)) << trial;
     }
   }
   EXPECT_GT(segments, 5000u);
@@ -109,10 +109,11 @@ TEST(FacetSearch, FindsNothingWherePlacesAreNotFinite) {
   s.points.leftCols(31).setConstant(nan);
   const FacetSearch search(s.points, s.master);
   EXPECT_TRUE(search.facing({s.slave[0][0], s.slave[0][1]}).empty());
-  EXPECT_EQ(search.distance({0.5, 0.5}), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(search.nearest({0.5, 0.5}).distance, std::numeric_limits<double>::infinity());
   const Sides whole = waves(30);
-  EXPECT_EQ(FacetSearch(whole.points, whole.master).distance({nan, 0}), std::numeric_limits<double>::infinity());
-  EXPECT_EQ(FacetSearch(whole.points, {}).distance({0, 0}), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(FacetSearch(whole.points, whole.master).nearest({nan, 0}).distance,
+            std::numeric_limits<double>::infinity());
+  EXPECT_EQ(FacetSearch(whole.points, {}).nearest({0, 0}).distance, std::numeric_limits<double>::infinity());
 }
 
 }  // namespace
