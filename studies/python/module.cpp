@@ -67,10 +67,9 @@ void check_signals() {
 
 // ---- scenes ---------------------------------------------------------------------------------------------------------
 
-/// JSON of a Python value; numpy's arrays and numbers are taken as lists and numbers.
+/// JSON of a value of dicts, lists, texts and numbers (stickslip/_arguments.py).
 std::string json_text_of(const py::handle& value) {
-  const py::cpp_function plain([](const py::object& other) { return other.attr("tolist")(); });
-  return py::module_::import("json").attr("dumps")(value, py::arg("default") = plain).cast<std::string>();
+  return py::module_::import("json").attr("dumps")(value).cast<std::string>();
 }
 
 /// The scene as a document: a dict, or the file of a name.

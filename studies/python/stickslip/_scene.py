@@ -1,12 +1,12 @@
 """Scenes: what is run, explained and checked, and what comes out."""
 
 import json
-from os import PathLike, fspath
+from os import PathLike
 from typing import Any, Dict, List, Mapping, Optional, Union
 
 import numpy as np
 
-from stickslip import _stickslip
+from stickslip import _arguments, _stickslip
 
 Scene = Union[Mapping[str, Any], str, "PathLike[str]"]
 Arrays = Dict[str, np.ndarray]
@@ -113,7 +113,7 @@ class Result:
 
         IndexError where there is no such step, ValueError where its state was let go (`sensitivity/memory`).
         """
-        displacement = self._displacements[step]
+        displacement = self._displacements[_arguments.step(step, len(self.times))]
         if displacement is None:
             raise ValueError('its state was let go: raise "memory" of "sensitivity", or ask "output" for its fields')
         return displacement
@@ -123,10 +123,12 @@ class Result:
 
         KeyError where the scene has no such parameter, ValueError where the derivatives were not found.
         """
-        known = any(parameter in of for of in self.sensitivities.values())
-        if known and parameter not in self._displacement_derivatives:
+        _arguments.text(parameter, "parameter", "the name of a parameter")
+        if parameter in self._displacement_derivatives:
+            return self._displacement_derivatives[parameter]
+        if any(parameter in of for of in self.sensitivities.values()):
             raise ValueError(f"the derivatives were not found: {self.message}")
-        return self._displacement_derivatives[parameter]
+        raise _no_name("parameter", parameter, self._displacement_derivatives)
 
     def contact(self, name: str, step: int = -1) -> Arrays:
         """The points of a contact at the end of a step, by key.
@@ -142,7 +144,10 @@ class Result:
 
         KeyError where there is no such contact, IndexError where there is no such step.
         """
-        return self._contacts[name][step]
+        _arguments.text(name, "name", "the name of a contact")
+        if name not in self._contacts:
+            raise _no_name("contact", name, self._contacts)
+        return self._contacts[name][_arguments.step(step, len(self.times))]
 
     def __repr__(self) -> str:
         end = f" to t = {self.times[-1]:g}" if len(self.times) else ""
@@ -152,7 +157,7 @@ class Result:
 
 
 class Gradcheck:
-    """Every derivative of a scene, at every step, held against central differences of the solver itself.
+    """Every derivative of a scene, at every step, held against differences of the solver itself.
 
     Attributes
     ----------
@@ -163,12 +168,15 @@ class Gradcheck:
     faults : str
         Why it did not pass; "" where it did.
     runs, rejected : int
-        Runs for differences, and how many of them were thrown out for passing through other contact states.
+        Runs for differences, and how many of them pass through other contact states somewhere, or fail: a run counts up
+        to there.
     entries : list of dict
         One for each response and parameter, at the step where the error is largest: `response`, `parameter`, `time`,
         `computed` and `difference` (the derivative, by the method and by differences), `error` (the distance of the two
         over `scale`), `estimate` of the error of the difference itself and what is `allowed`, both over `scale` too,
-        relative `step` of the parameter, `verdict` ("agrees", "differs", "not checked").
+        relative `step` of the parameter, `side` of the derivative ("both"; where they differ, "below" or "above"),
+        how many `steps` there are, how many of them `unchecked`, as no difference tells three digits, the first
+        `unchecked_at`, `verdict` ("agrees", "differs", "not checked": a step or more were not).
         pandas.DataFrame(check.entries) is a table of them.
     """
 
@@ -212,10 +220,12 @@ def run(scene: Scene, method: Optional[str] = None, set: Mapping[str, Any] = {},
     check
         Raise NotConverged where there is no solution. Without it the status of the result says so.
 
-    Raises InputError with all faults of the scene, OSError where the disk refuses. Other threads of Python run while it
-    solves; Ctrl-C ends it after the step at hand.
+    Raises InputError with all faults of the scene, TypeError where an argument is of another type, OSError where the
+    disk refuses. Other threads of Python run while it solves; Ctrl-C ends it after the step at hand.
     """
-    result = Result(_stickslip.run(_plain(scene), method, dict(set), folder))
+    check = _arguments.flag(check, "check")
+    arguments = _scene_arguments(scene, method, set)
+    result = Result(_stickslip.run(*arguments, None if folder is None else _arguments.path(folder, "folder")))
     if check and not result.converged:
         raise NotConverged(result)
     return result
@@ -223,7 +233,7 @@ def run(scene: Scene, method: Optional[str] = None, set: Mapping[str, Any] = {},
 
 def explain(scene: Scene, method: Optional[str] = None, set: Mapping[str, Any] = {}) -> str:
     """What would be simulated, and what would not, in words; nothing is solved. Arguments and faults as of `run`."""
-    return _stickslip.explain(_plain(scene), method, dict(set))
+    return _stickslip.explain(*_scene_arguments(scene, method, set))
 
 
 def gradcheck(scene: Scene, method: Optional[str] = None, set: Mapping[str, Any] = {}) -> Gradcheck:
@@ -232,9 +242,13 @@ def gradcheck(scene: Scene, method: Optional[str] = None, set: Mapping[str, Any]
     Arguments and faults as of `run`; a scene without parameters or responses is an InputError. Ctrl-C ends it after the
     run at hand.
     """
-    document, table, faults = _stickslip.gradcheck(_plain(scene), method, dict(set))
+    document, table, faults = _stickslip.gradcheck(*_scene_arguments(scene, method, set))
     return Gradcheck(json.loads(document), table, faults)
 
 
-def _plain(scene: Scene) -> Union[Dict[str, Any], str]:
-    return dict(scene) if isinstance(scene, Mapping) else fspath(scene)
+def _scene_arguments(scene: Any, method: Any, set: Any) -> tuple:
+    return _arguments.scene(scene), _arguments.method(method), _arguments.overrides(set)
+
+
+def _no_name(kind: str, name: str, known: Mapping[str, Any]) -> KeyError:
+    return KeyError(f"there is no {kind} {name!r}; there are: {', '.join(known) or 'none'}")

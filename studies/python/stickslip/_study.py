@@ -2,15 +2,17 @@
 
 import json
 import warnings
-from os import PathLike, fspath
+from os import PathLike, fsdecode
 from typing import Any, Dict, List, Union
 
-from stickslip import _stickslip
+from stickslip import _arguments, _stickslip
 
 Path = Union[str, "PathLike[str]"]
 Row = Dict[str, Any]
 Table = Any
 """pandas.DataFrame, or a list of Row where there is no pandas."""
+MOST_JOBS = 1024
+"""As --jobs of the command."""
 
 
 def study(study: Path, folder: Union[Path, None] = None, resume: bool = False, restart: bool = False, jobs: int = 1,
@@ -31,11 +33,16 @@ def study(study: Path, folder: Union[Path, None] = None, resume: bool = False, r
     shard
         "i/N": every N-th cell alone, from the i-th on.
 
-    Raises InputError with all faults of study, scene and folder. Progress goes to sys.stderr. Ctrl-C ends it after the
-    run at hand; finished cells are kept, and resume=True goes on.
+    Raises InputError with all faults of study, scene and folder, TypeError where an argument is of another type.
+    Progress goes to sys.stderr. Ctrl-C ends it after the run at hand; finished cells are kept, and resume=True goes on.
     """
-    directory, lost = _stickslip.study(fspath(study), "" if folder is None else fspath(folder), resume, restart, shard,
-                                       jobs)
+    file, target = _arguments.path(study, "study"), b"" if folder is None else _arguments.path(folder, "folder")
+    resume, restart = _arguments.flag(resume, "resume"), _arguments.flag(restart, "restart")
+    processes = _arguments.whole(jobs, "jobs")
+    if not 1 <= processes <= MOST_JOBS:
+        _arguments.refuse(f"jobs is {processes}; must be 1 to {MOST_JOBS}")
+    part = _arguments.text(shard, "shard", 'str, as "1/4"')
+    directory, lost = _stickslip.study(file, target, resume, restart, part, processes)
     if lost:
         warnings.warn(f"{lost} cells have no row: their processes were ended from outside; resume=True runs them again",
                       RuntimeWarning, stacklevel=2)
@@ -72,12 +79,13 @@ def load_study(folder: Path) -> Table:
 
     Raises InputError where the folder has no study. Rows that are damaged or missing are a RuntimeWarning.
     """
-    recorded = json.loads(_stickslip.study_cells(folder))
+    encoded = _arguments.path(folder, "folder")
+    name = fsdecode(encoded)
+    recorded = json.loads(_stickslip.study_cells(encoded))
     if recorded["faults"]:
-        warnings.warn(f"{fspath(folder)}/results.jsonl: {recorded['faults']}", RuntimeWarning, stacklevel=2)
+        warnings.warn(f"{name}/results.jsonl: {recorded['faults']}", RuntimeWarning, stacklevel=2)
     if recorded["unrecorded"]:
-        warnings.warn(f"{fspath(folder)}: {recorded['unrecorded']} cells of the study have no row", RuntimeWarning,
-                      stacklevel=2)
+        warnings.warn(f"{name}: {recorded['unrecorded']} cells of the study have no row", RuntimeWarning, stacklevel=2)
     rows = [_flat(cell) for cell in recorded["cells"]]
     try:
         import pandas
@@ -123,4 +131,8 @@ def _number(value: Any) -> float:
 
 def rows_of(table: Table) -> List[Row]:
     """The rows of what load_study() gives, or of a part of it, as dicts."""
-    return table.to_dict("records") if hasattr(table, "to_dict") else list(table)
+    if hasattr(table, "to_dict") and hasattr(table, "columns"):
+        return table.to_dict("records")
+    if not isinstance(table, (list, tuple)) or not all(isinstance(row, dict) for row in table):
+        raise _arguments.wrong_type("study", table, "what load_study() gives, or some of its rows")
+    return list(table)

@@ -9,6 +9,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import LogFormatter
 
+from stickslip import _arguments
 from stickslip._scene import Result
 from stickslip._study import Table, rows_of
 
@@ -28,6 +29,8 @@ def tractions(result: Result, contact: Optional[str] = None, step: int = -1, ax:
     force on the slave along the contact's tangent; in 3D, which has two tangents, it is its size. `contact` may be left
     out where the scene has one.
     """
+    if not isinstance(result, Result):
+        raise _arguments.wrong_type("result", result, "what run() gives, a stickslip.Result")
     if contact is None:
         if len(result.contacts) != 1:
             raise ValueError(f"contact is to be one of {', '.join(result.contacts)}")
@@ -37,7 +40,7 @@ def tractions(result: Result, contact: Optional[str] = None, step: int = -1, ax:
     axis = int(np.argmax(np.ptp(places, axis=0)))
     order = np.argsort(places[:, axis], kind="stable")
     x, pressure, state = places[order, axis], table["pressure"][order], table["state"][order]
-    ax = plt.subplots()[1] if ax is None else ax
+    ax = plt.subplots()[1] if ax is None else _axes(ax)
     ax.plot(x, pressure, "k-", label="pressure")
     if tangents := table["shear"].shape[1]:
         shear = table["shear"][order, 0] if tangents == 1 else np.linalg.norm(table["shear"][order], axis=1)
@@ -46,6 +49,12 @@ def tractions(result: Result, contact: Optional[str] = None, step: int = -1, ax:
         ax.plot(x[slips], shear[slips], "o", color="tab:red", markersize=4, label="slip")
     ax.set(title=f"{contact}, t = {result.times[step]:g}", xlabel="xyz"[axis], ylabel="force per area")
     ax.legend()
+    return ax
+
+
+def _axes(ax: Any) -> Any:
+    if not hasattr(ax, "plot"):
+        raise _arguments.wrong_type("ax", ax, "axes of matplotlib, or None for new ones")
     return ax
 
 
@@ -81,6 +90,10 @@ def work_precision(study: Table, of: str = "response", against: str = "enforceme
     Runs that did not converge are crosses and on no curve. Errors of exactly 0 are drawn at 1e-16. ValueError where no
     row has such an error.
     """
+    for name, value, allowed in (("of", of, '"response", "sensitivity", or one of them, as "response:press"'),
+                                 ("against", against, '"enforcement" or "discretization"'),
+                                 ("work", work, '"work", "seconds", or the name of a column of counts')):
+        _arguments.text(value, name, allowed)
     prefix = f"{against}:{of}" + ("" if ":" in of else ":")
     column = f"sensitivity_{work}" if of.startswith("sensitivity") and work in ("work", "seconds") else work
     curves: dict = {}
@@ -95,7 +108,7 @@ def work_precision(study: Table, of: str = "response", against: str = "enforceme
                 (row["along"], row[column], max(max(errors), EXACT), row["converged"]))
     if not curves:
         raise ValueError(f"no row of the study has an error {prefix}... and {column}")
-    ax = plt.subplots(layout="constrained")[1] if ax is None else ax
+    ax = plt.subplots(layout="constrained")[1] if ax is None else _axes(ax)
     several = len({variant for _, _, variant in curves}) > 1
     drawn: dict = {}  # curves of each method, which share its colour
     for (method, name, variant), points in curves.items():
