@@ -30,18 +30,19 @@ class Tables:
         return {**self.resolved(self.schema["$defs"][name])[0], **node}, name
 
     def children(self, node):
-        """(name, schema, whether required) of what an object or a list holds, whichever alternative it is."""
+        """(name, schema, when required) of what an object or a list holds, whichever alternative it is."""
+        conditions = needs(node)
         for name, inner in node.get("properties", {}).items():
             self.shown.add(id(inner))
-            yield name, inner, name in node.get("required", [])
+            yield name, inner, conditions.get(name, "")
         for name, inner in (("NAME", node.get("additionalProperties")), ("[]", node.get("items"))):
             if isinstance(inner, dict):
-                yield name, inner, False
+                yield name, inner, ""
         for alternative in node.get("anyOf", []):
             yield from self.children(alternative)
 
     def rows(self, path, node, prefix=""):
-        """(key, schema, whether required) of all below a path."""
+        """(key, schema, when required) of all below a path."""
         for name, inner, required in self.children(node):
             inner, definition = self.resolved(inner)
             for each in [inner] if name in node.get("properties", {}) else [inner, *inner.get("anyOf", [])]:
@@ -89,7 +90,30 @@ def shown(value):
 def standard(node, required):
     if "default" in node:
         return f"`{shown(node['default'])}`"
-    return "required" if required else ""
+    return required
+
+
+def needs(node):
+    """When each key of an object is required, in words: always, beside another key, or where another is left out."""
+    conditions = {}
+    for word in ("oneOf", "anyOf"):
+        alternatives = [each["required"] for each in node.get(word, []) if "required" in each]
+        for keys in alternatives:
+            others = [" and ".join(f"`{key}`" for key in other) for other in alternatives if other is not keys]
+            for key in keys:
+                if node.get("title") != "one of the following":
+                    conditions[key] = f"required, or {', '.join(others)}"
+                elif key != keys[0]:
+                    conditions[key] = f"required with `{keys[0]}`"
+    beside = node.get("if", {})
+    for key in node.get("then", {}).get("required", []):
+        conditions[key] = "required with " + ", ".join(
+            [f"`{other}`" for other in beside.get("required", [])] +
+            [f"`{other}` {value.get('const', 'a ' + value.get('type', ''))}"
+             for other, value in beside.get("properties", {}).items()])
+    for key in node.get("required", []):
+        conditions[key] = "required"
+    return conditions
 
 
 def example(key, node):

@@ -37,6 +37,7 @@ Schema kind_schema(const std::string& kind, const Schema& parts, const Schema& k
                 {"required", parts.at("required")},
                 {"additionalProperties", false},
                 {"properties", properties}};
+  for (const auto& key : parts.value("one_of", Schema::array())) schema["anyOf"].push_back({{"required", {key}}});
   if (moment) {  // the two go together
     schema["if"] = {{"properties", {{"component", {{"const", "moment"}}}}}};
     schema["then"] = {{"required", {"about"}}};

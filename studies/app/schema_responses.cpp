@@ -13,7 +13,7 @@ const char* const response = R"json({
       "descriptions": {"component": "an axis; normal: positive in compression; moment: about a point"},
       "example": {"contact": "sole", "component": "normal"}},
     "displacement": {"description": "of a side, or of a point (length)", "required": ["component"],
-      "optional": ["on", "take", "at"],
+      "optional": ["on", "take", "at"], "one_of": ["on", "at"],
       "descriptions": {"on": "where; beside at: the body that the point is in"},
       "example": {"on": "block.right", "component": "x"}},
     "contact_pressure": {"description": "force per area of the start", "required": ["contact"],

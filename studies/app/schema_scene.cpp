@@ -193,7 +193,7 @@ const char* const scene = R"json({
                 "each": {"description": "a parameter NAME/0, NAME/1, ... of every node along the side",
                   "enum": ["node"], "examples": ["node"]}}}},
           "dependentSchemas": {"shape": {"maxProperties": 1}}}]}},
-  "method": {"description": "which method runs, with its options", "$ref": "#/$defs/method",
+  "method": {"description": "which method runs, with its options; needed unless -m names one", "$ref": "#/$defs/method",
     "examples": [{"monolithic_al": {}}]},
   "linear_solver": {"description": "what carries the run; the solution is the same", "type": "object",
     "examples": [{"engine": "sparse"}], "additionalProperties": false, "properties": {
