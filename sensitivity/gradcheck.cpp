@@ -1,11 +1,16 @@
 #include "sensitivity/gradcheck.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "core/model/response.hpp"
 #include "sensitivity/adjoint.hpp"
+#include "sensitivity/branches.hpp"
+#include "sensitivity/one_sided.hpp"
+#include "sensitivity/quotients.hpp"
+#include "sensitivity/vertex_margin.hpp"
 
 namespace stickslip {
 namespace {
@@ -18,7 +23,7 @@ struct Path {
   Matrix<double> values;  ///< one column per increment
   std::vector<std::vector<ContactState>> states;
   std::vector<std::vector<bool>> flowing;  ///< per number of the bodies' memory: whether the increment changed it
-  bool usable = false;
+  Eigen::Index usable = 0;                 ///< number of increments up to the first without a solution
 };
 
 Path run(const Model& model, const Numbers<double>& numbers, const Method& method, const RunOptions& options) {
@@ -37,12 +42,21 @@ Path run(const Model& model, const Numbers<double>& numbers, const Method& metho
     path.flowing.emplace_back(after.size());
     for (Eigen::Index i = 0; i < after.size(); ++i) path.flowing.back()[i] = after[i] != before[i];
   }
-  if (path.values.cols() > 0)
+  const bool complete = trajectory.increments.size() == options.replay.size();
+  if (complete && objectives > 0)
     path.values.rightCols(1).bottomRows(objectives) = objective_values(model, slots, trajectory);
-  path.usable = trajectory.increments.size() == options.replay.size() && path.values.allFinite() &&
-                std::all_of(trajectory.increments.begin(), trajectory.increments.end(),
-                            [](const auto& increment) { return increment.usable(); });
+  while (path.usable < path.values.cols() && trajectory.increments[path.usable].usable() &&
+         path.values.col(path.usable).allFinite())
+    ++path.usable;
+  if (!complete && path.usable == path.values.cols() && path.usable > 0) --path.usable;  // where it stopped
   return path;
+}
+
+/// Number of increments that two runs have in common: with solutions, and with the same states of contact and flow.
+Eigen::Index in_common(const Path& a, const Path& b) {
+  Eigen::Index n = 0;
+  while (n < std::min(a.usable, b.usable) && a.states[n] == b.states[n] && a.flowing[n] == b.flowing[n]) ++n;
+  return n;
 }
 
 /// Size of a parameter: its absolute value. If that is zero: the change that would change a response by its own size.
@@ -56,48 +70,11 @@ double parameter_size(const Parameter& parameter, const Matrix<double>& largest_
   return std::isfinite(size) ? size : 1;
 }
 
-/// Central differences of one parameter at each usable step: responses x increments.
+/// Quotients of one parameter. At an increment with ties the runs of a side are those that share the states of the run
+/// with the smallest step, elsewhere those that share the states of the base run.
 struct Differences {
-  std::vector<double> step;  ///< absolute
-  std::vector<Matrix<double>> values;
+  Quotients central{2, {}, {}}, below{1, {}, {}}, above{1, {}, {}};
 };
-
-/// Best extrapolated derivative of one entry, and its error estimate.
-struct Extrapolated {
-  double value = 0, estimate = std::numeric_limits<double>::infinity(), step = 0;
-};
-
-Extrapolated extrapolate(const Differences& differences, Eigen::Index i, Eigen::Index n, double rounding) {
-  std::vector<double> values;  // extrapolated from each pair of neighbouring steps
-  for (std::size_t k = 0; k + 1 < differences.step.size(); ++k) {
-    const double ratio = differences.step[k] / differences.step[k + 1], r2 = ratio * ratio;
-    values.push_back((r2 * differences.values[k + 1](i, n) - differences.values[k](i, n)) / (r2 - 1));
-  }
-  Extrapolated best;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    // The distance to the neighbouring values shows the truncation error (large steps) and the noise of the solver
-    // (small steps). A pair without neighbours has only its own correction as an estimate.
-    double spread = values.size() == 1 ? std::abs(values[k] - differences.values[k + 1](i, n)) : 0;
-    if (k > 0) spread = larger(spread, std::abs(values[k] - values[k - 1]));
-    if (k + 1 < values.size()) spread = larger(spread, std::abs(values[k] - values[k + 1]));
-    const double estimate = spread + rounding / differences.step[k + 1];
-    if (estimate < best.estimate) best = {values[k], estimate, differences.step[k + 1]};
-  }
-  return best;
-}
-
-/// Upper bound of the solver's noise in response i. Two neighbouring differences disagree by noise / step and by
-/// truncation. The bound is the least disagreement times step over all pairs, each at its worst increment.
-double noise(const Differences& differences, Eigen::Index i) {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k + 1 < differences.step.size(); ++k) {
-    double apart = 0;
-    for (Eigen::Index n = 0; n < differences.values[k].cols(); ++n)
-      apart = larger(apart, std::abs(differences.values[k](i, n) - differences.values[k + 1](i, n)));
-    least = std::min(least, apart * differences.step[k + 1]);
-  }
-  return least;
-}
 
 }  // namespace
 
@@ -125,9 +102,47 @@ namespace {
 
 /// Computed derivatives: per increment a matrix, rows of Path::values x parameters. Those of responses are zero in the
 /// adjoint mode. Empty after a failure.
-std::vector<Matrix<double>> computed_derivatives(const Model& model, const Slots<double>& slots, const Method& method,
-                                                 const Trajectory<double>& trajectory, Workspace<double>& workspace,
-                                                 GradientCheck& check) {
+struct Computed {
+  std::vector<Matrix<double>> derivatives;
+  std::vector<Matrix<double>> below, above;  ///< the same from each side, where ties or kinks make a difference
+  bool sides_known = true;                   ///< false: there are ties, and the adjoint has no sides
+  /// Whether the two sides of an entry differ by more than `allowed`, or a side has no derivative.
+  bool has_sides(Eigen::Index i, Eigen::Index n, int j, double allowed) const {
+    return !below.empty() && !(std::abs(above[n](i, j) - below[n](i, j)) <= allowed);
+  }
+};
+
+/// One-sided derivatives of responses, in place of the derivatives: where a point is at a tie, the geometry has a kink,
+/// or a largest value is taken of several that tie. None where there is nothing of that kind.
+std::optional<OneSided> sides_of(const Model& model, const Slots<double>& slots, const Method& method,
+                                 const Trajectory<double>& trajectory, Workspace<double>& workspace,
+                                 const Gradients& gradients) {
+  auto sides = one_sided_derivatives(model, slots, method, trajectory, workspace);
+  if (!sides && !gradients.from_below.empty()) sides = OneSided{gradients.from_below, gradients.from_above, {}};
+  for (std::size_t n = 0; n < trajectory.increments.size(); ++n) {
+    const auto& increment = trajectory.increments[n];
+    if (integration_margin(model, slots, increment.state, increment.time) > weak_margin) continue;
+    if (!sides) sides = OneSided{gradients.of_responses, gradients.of_responses, {}};
+    sides->backward[n].setConstant(std::numeric_limits<double>::quiet_NaN());  // and neither is known
+    sides->forward[n] = sides->backward[n];
+  }
+  return sides;
+}
+
+bool has_any_tie(const Model& model, const Slots<double>& slots, const Method& method,
+                 const Trajectory<double>& trajectory) {
+  double largest = 0;
+  for (std::size_t n = 0; n < trajectory.increments.size(); ++n) {
+    const auto& increment = trajectory.increments[n];
+    largest = std::max(largest, traction_scale(model, slots, increment.state));
+    const auto& previous = n == 0 ? trajectory.initial : trajectory.increments[n - 1].state;
+    if (has_ties(model, slots, method, previous, increment, largest)) return true;
+  }
+  return false;
+}
+
+Computed compute(const Model& model, const Slots<double>& slots, const Method& method,
+                 const Trajectory<double>& trajectory, Workspace<double>& workspace, GradientCheck& check) {
   const auto& scene = model.scene;
   const bool direct = scene.sensitivity_mode == SensitivityMode::direct;
   auto gradients = direct ? differentiate(model, slots, method, trajectory, workspace)
@@ -139,69 +154,128 @@ std::vector<Matrix<double>> computed_derivatives(const Model& model, const Slots
   if (!complete || scene.parameters.empty()) return {};
   const auto responses = static_cast<Eigen::Index>(scene.responses.size());
   const auto objectives = static_cast<Eigen::Index>(scene.objectives.size());
-  std::vector<Matrix<double>> computed(trajectory.increments.size(),
-                                       Matrix<double>::Zero(responses + objectives, scene.parameters.size()));
-  for (std::size_t n = 0; n < gradients.of_responses.size(); ++n)
-    computed[n].topRows(responses) = gradients.of_responses[n];
-  if (objectives > 0) computed.back().bottomRows(objectives) = gradients.of_objectives;
+  const auto rows = [&](const std::vector<Matrix<double>>& of_responses, const Matrix<double>& of_objectives) {
+    std::vector<Matrix<double>> all(trajectory.increments.size(),
+                                    Matrix<double>::Zero(responses + objectives, scene.parameters.size()));
+    for (std::size_t n = 0; n < of_responses.size(); ++n) all[n].topRows(responses) = of_responses[n];
+    if (objectives > 0) all.back().bottomRows(objectives) = of_objectives;
+    return all;
+  };
+  Computed computed{rows(gradients.of_responses, gradients.of_objectives), {}, {}};
+  if (!direct) {
+    computed.sides_known = !has_any_tie(model, slots, method, trajectory);
+    return computed;
+  }
+  const auto sides = sides_of(model, slots, method, trajectory, workspace, gradients);
+  if (!sides) return computed;
+  const auto rows_of = [&](const std::vector<Matrix<double>>& side) {
+    gradients.of_responses = side;
+    return rows(side, objective_gradients(model, slots, trajectory, gradients));
+  };
+  computed.below = rows_of(sides->backward);
+  computed.above = rows_of(sides->forward);
   return computed;
 }
 
-/// Central differences by parameter j, at the steps whose runs have the states of the base run.
+/// Runs the differences by parameter j. `ties`: whether the base run has increments with ties.
 Differences difference(const Model& model, const Method& method, const RunOptions& replay, const Path& base, int j,
-                       double size, const std::function<void(int, int)>& progress, GradientCheck& check) {
+                       double size, bool ties, const std::function<void(int, int)>& progress, GradientCheck& check) {
   const Parameter& parameter = model.scene.parameters[j];
   const int total = static_cast<int>(model.scene.parameters.size() * std::size(relative_steps)) * 2;
   const auto numbers = model.scene.as<double>();
-  Differences differences;
+  std::vector<std::array<Path, 2>> runs;  // per step: below, above
   for (double relative : relative_steps) {
-    const double h = relative * size;
-    Path side[2];
+    runs.emplace_back();
     for (int s = 0; s < 2; ++s) {
       auto shifted = numbers;
-      for (const auto& [slot, weight] : parameter.slots) shifted.at_slot[slot] += (s == 0 ? -h : h) * weight;
-      side[s] = run(model, shifted, method, replay);
+      const double h = (s == 0 ? -relative : relative) * size;
+      for (const auto& [slot, weight] : parameter.slots) shifted.at_slot[slot] += h * weight;
+      runs.back()[s] = run(model, shifted, method, replay);
+      if (in_common(runs.back()[s], base) < base.values.cols()) ++check.rejected;
       if (progress) progress(++check.runs, total);
     }
-    const auto is_other = [&](const Path& path) {
-      return !path.usable || path.states != base.states || path.flowing != base.flowing;
-    };
-    if (is_other(side[0]) || is_other(side[1])) {
-      check.rejected += 2;
-      continue;
-    }
-    differences.step.push_back(h);
-    differences.values.push_back((side[1].values - side[0].values) / (2 * h));
+  }
+  Differences differences;
+  const auto unknown =
+      Matrix<double>::Constant(base.values.rows(), base.values.cols(), std::numeric_limits<double>::quiet_NaN());
+  const auto add = [&](Quotients& to, double step, const Path& from, const Path& till, Eigen::Index count) {
+    const int steps = &from == &base || &till == &base ? 1 : 2;  // from one to the other
+    to.step.push_back(step);
+    to.values.push_back(unknown);
+    to.values.back().leftCols(count) = (till.values.leftCols(count) - from.values.leftCols(count)) / (steps * step);
+  };
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    const double h = relative_steps[k] * size;
+    const auto& [below, above] = runs[k];
+    add(differences.central, h, below, above, std::min(in_common(below, base), in_common(above, base)));
+    add(differences.below, h, below, base, in_common(below, ties ? runs.back()[0] : base));
+    add(differences.above, h, base, above, in_common(above, ties ? runs.back()[1] : base));
   }
   return differences;
 }
 
-/// Compares row i with its differences at its increments, and records the worst.
-void compare(const Differences& differences, const std::vector<Matrix<double>>& computed, int i, int j,
-             const std::vector<double>& times, double size, double largest, double scheme,
-             GradientCheck::Entry& worst) {
-  double excess = -1;
-  for (Eigen::Index n = 0; n < static_cast<Eigen::Index>(times.size()) && differences.step.size() >= 2; ++n) {
-    if (std::isnan(times[n])) continue;
-    const double rounding = std::max(1e-14 * largest, noise(differences, i));
-    const auto best = extrapolate(differences, i, n, rounding);
+/// Comparisons of one entry, of which the worst is kept.
+struct Comparisons {
+  GradientCheck::Entry& worst;
+  int row;
+  double scheme, rounding, size;
+  double excess = -1;  ///< of the worst: error over what is allowed; below zero: nothing was compared yet
+
+  /// False if the quotients do not tell the derivative.
+  bool compare(double computed, const Quotients& quotients, double noise, int side, Eigen::Index n, double time) {
+    constexpr double three_digits = 1e-3;
+    const int needed = side == 0 ? 2 : 3;  // of one side more terms are left in the difference
+    if (quotients.count(row, n) < needed) return false;
+    const auto best = extrapolate(quotients, row, n, std::max(rounding, noise));
     const double scale = worst.scale > 0 ? worst.scale : 1;
-    const double error = std::abs(computed[n](i, j) - best.value) / scale, estimate = best.estimate / scale;
+    const double error = std::abs(computed - best.value) / scale, estimate = best.estimate / scale;
+    if (!(estimate <= three_digits)) return false;
     const double allowed = std::max(scheme, estimate);
-    if (std::isnan(excess) || error / allowed <= excess) continue;  // NaN counts as the worst
+    if (std::isnan(excess) || error / allowed <= excess) return true;  // NaN counts as the worst
     excess = error / allowed;
-    worst.time = times[n];
-    worst.computed = computed[n](i, j);
+    worst.time = time;
+    worst.side = side;
+    worst.computed = computed;
     worst.difference = best.value;
     worst.error = error;
     worst.estimate = estimate;
     worst.allowed = allowed;
     worst.step = best.step / size;
-    // a difference of less than three digits checks nothing
-    worst.verdict = estimate > 1e-3    ? GradientCheck::Verdict::not_checked
-                    : error <= allowed ? GradientCheck::Verdict::agrees
-                                       : GradientCheck::Verdict::differs;
+    return true;
   }
+};
+
+/// Compares one row with its quotients at its increments.
+void compare(const Differences& differences, const Computed& computed, int j, const std::vector<double>& times,
+             Comparisons& comparisons) {
+  auto& entry = comparisons.worst;
+  const int i = comparisons.row;
+  const double noises[] = {noise(differences.below, i), noise(differences.central, i), noise(differences.above, i)};
+  for (Eigen::Index n = 0; n < static_cast<Eigen::Index>(times.size()); ++n) {
+    if (std::isnan(times[n])) continue;
+    const auto check = [&](double derivative, const Quotients& quotients, int side) {
+      return comparisons.compare(derivative, quotients, noises[side + 1], side, n, times[n]);
+    };
+    bool checked = false;
+    if (computed.has_sides(i, n, j, comparisons.scheme * entry.scale)) {
+      const double below = computed.below[n](i, j), above = computed.above[n](i, j);
+      const bool from_below = !std::isnan(below) && check(below, differences.below, -1);
+      const bool from_above = !std::isnan(above) && check(above, differences.above, 1);
+      checked = from_below && from_above;
+    } else {
+      const double derivative = computed.derivatives[n](i, j);
+      checked = check(derivative, differences.central, 0) ||
+                (computed.sides_known &&
+                 (check(derivative, differences.below, -1) || check(derivative, differences.above, 1)));
+    }
+    ++entry.steps;
+    if (!checked && entry.unchecked++ == 0) entry.unchecked_at = times[n];
+  }
+  using Verdict = GradientCheck::Verdict;
+  if (!(comparisons.excess <= 1))
+    entry.verdict = Verdict::differs;
+  else if (entry.steps > 0 && entry.unchecked == 0)
+    entry.verdict = Verdict::agrees;
 }
 
 }  // namespace
@@ -217,14 +291,14 @@ GradientCheck check_gradients(const Model& model, const Method& given, const Run
   const auto trajectory = solve(model, slots, method, options, workspace);
   check.status = trajectory.status;
   check.message = trajectory.message;
-  const auto computed = computed_derivatives(model, slots, method, trajectory, workspace, check);
-  if (computed.empty()) return check;
+  const auto computed = compute(model, slots, method, trajectory, workspace, check);
+  if (computed.derivatives.empty()) return check;
   const RunOptions replay = repeating(options, model, trajectory);
   const Path base = run(model, numbers, method, replay);
 
   const Matrix<double> largest_value = base.values.cwiseAbs().rowwise().maxCoeff();
   Matrix<double> largest_derivative = Matrix<double>::Zero(base.values.rows(), scene.parameters.size());
-  for (const auto& g : computed) largest_derivative = largest_derivative.cwiseMax(g.cwiseAbs());
+  for (const auto& g : computed.derivatives) largest_derivative = largest_derivative.cwiseMax(g.cwiseAbs());
   std::vector<double> ends(trajectory.increments.size(), std::numeric_limits<double>::quiet_NaN()), last = ends;
   for (std::size_t n = 0; n < ends.size(); ++n)
     if (trajectory.increments[n].requested) ends[n] = trajectory.increments[n].time;
@@ -233,7 +307,7 @@ GradientCheck check_gradients(const Model& model, const Method& given, const Run
   const int responses = static_cast<int>(scene.responses.size());
   for (int j = 0; j < static_cast<int>(scene.parameters.size()); ++j) {
     const double size = parameter_size(scene.parameters[j], largest_value, largest_derivative, j);
-    const auto differences = difference(model, method, replay, base, j, size, progress, check);
+    const auto differences = difference(model, method, replay, base, j, size, !computed.below.empty(), progress, check);
     const int first = scene.sensitivity_mode == SensitivityMode::direct ? 0 : responses;
     for (int i = first; i < static_cast<int>(base.values.rows()); ++i) {
       const bool objective = i >= responses;
@@ -241,7 +315,8 @@ GradientCheck check_gradients(const Model& model, const Method& given, const Run
       entry.response = objective ? scene.objectives[i - responses].name : scene.responses[i].name;
       entry.parameter = scene.parameters[j].name;
       entry.scale = std::max(largest_derivative(i, j), largest_value(i, 0) / size);
-      compare(differences, computed, i, j, objective ? last : ends, size, largest_value(i, 0), scheme, entry);
+      Comparisons comparisons{entry, i, scheme, 1e-14 * largest_value(i, 0), size};
+      compare(differences, computed, j, objective ? last : ends, comparisons);
       check.entries.push_back(entry);
     }
   }

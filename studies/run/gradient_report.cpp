@@ -22,6 +22,25 @@ GradientCheck check_gradients(const Simulation& simulation, const std::string& n
   return check_gradients(model, simulation.input.method, options, progress);
 }
 
+namespace {
+
+const char* side_of(const GradientCheck::Entry& entry) {
+  return entry.side == 0 ? "both" : entry.side < 0 ? "below" : "above";
+}
+
+/// Verdict in words: of which side, or how many steps were not checked.
+std::string verdict_of(const GradientCheck::Entry& entry) {
+  static const char* const verdicts[] = {"agrees", "DIFFERS", "not checked"};
+  std::string text = verdicts[static_cast<int>(entry.verdict)];
+  if (entry.side != 0) text += fmt::format(" from {}", side_of(entry));
+  if (entry.verdict == GradientCheck::Verdict::not_checked && entry.unchecked < entry.steps)
+    text =
+        fmt::format("not checked: {} of {} steps, from t = {:g} on", entry.unchecked, entry.steps, entry.unchecked_at);
+  return text;
+}
+
+}  // namespace
+
 json check_json(const GradientCheck& check) {
   static const char* const verdicts[] = {"agrees", "differs", "not checked"};
   json entries = json::array();
@@ -29,6 +48,7 @@ json check_json(const GradientCheck& check) {
     entries.push_back({{"response", e.response},
                        {"parameter", e.parameter},
                        {"time", e.time},
+                       {"side", side_of(e)},
                        {"computed", e.computed},
                        {"difference", e.difference},
                        {"error", e.error},
@@ -36,6 +56,9 @@ json check_json(const GradientCheck& check) {
                        {"allowed", e.allowed},
                        {"scale", e.scale},
                        {"step", e.step},
+                       {"steps", e.steps},
+                       {"unchecked", e.unchecked},
+                       {"unchecked_at", e.unchecked > 0 ? json(e.unchecked_at) : json(nullptr)},
                        {"verdict", verdicts[static_cast<int>(e.verdict)]}});
   return {{"status", name_of(check.status)}, {"message", check.message},
           {"passed", check.passed()},        {"runs", check.runs},
@@ -43,14 +66,13 @@ json check_json(const GradientCheck& check) {
 }
 
 std::string check_table(const GradientCheck& check) {
-  static const char* const verdicts[] = {"agrees", "DIFFERS", "not checked"};
   std::string text =
       fmt::format("{} difference runs, {} of them through other contact states\n", check.runs, check.rejected);
   text += fmt::format("{:<16} {:<12} {:>9} {:>18} {:>18} {:>9} {:>9}  {}\n", "response", "parameter", "time",
                       "computed", "difference", "error", "allowed", "verdict");
   for (const auto& e : check.entries)
     text += fmt::format("{:<16} {:<12} {:>9.4g} {:>18.10e} {:>18.10e} {:>9.1e} {:>9.1e}  {}\n", e.response, e.parameter,
-                        e.time, e.computed, e.difference, e.error, e.allowed, verdicts[static_cast<int>(e.verdict)]);
+                        e.time, e.computed, e.difference, e.error, e.allowed, verdict_of(e));
   return text + "error and allowed are relative to the largest derivative of the run (or response / parameter)\n";
 }
 

@@ -286,11 +286,11 @@ TEST(GradientCheck, AgreesForEveryMethodToWhatADifferenceTells) {
   }
 }
 
-TEST(GradientCheck, NeverPassesWhatItCouldNotCheck) {
+TEST(GradientCheck, ChecksBothSidesOfATie) {
   // at F = k g0 exactly every step changes a state on one side
   const auto check = check_gradients(make_model(scenes::stop(10, 1000, 0.01)), MonolithicAL{}, {});
-  EXPECT_FALSE(check.passed());
-  EXPECT_EQ(check.entries.front().verdict, GradientCheck::Verdict::not_checked);
+  EXPECT_TRUE(check.passed());
+  for (const auto& entry : check.entries) EXPECT_NE(entry.side, 0) << entry.response << "/" << entry.parameter;
   EXPECT_GT(check.rejected, 0);
 }
 
