@@ -342,8 +342,10 @@ void read_body(const std::string& name, const JsonNode& node, SceneReading& read
   const auto material = material_node ? read_material(*material_node, mesh ? &*mesh : nullptr, reading) : std::nullopt;
   if (mesh) read_section(node, *mesh, body, reading);
   if (mesh)
-    if (auto made = check_mesh(node, *mesh_node, *mesh, body.element, reading))
+    if (auto made = check_mesh(node, *mesh_node, *mesh, body.element, reading)) {
       reading.meshes.emplace(name, *std::move(made));
+      reading.described.emplace(name, *mesh);
+    }
   if (!mesh || !material) return;
   body.mesh = *mesh;
   body.material = *material;

@@ -89,11 +89,10 @@ void read_surface(const JsonNode& node, Contact& contact, const SceneReading& re
   if (const auto corner = node.find("corner")) contact.corner = corner->number(angle).value_or(contact.corner);
 }
 
-/// Mean length of the facets around a body at the start.
+/// Mean length of the facets around a body at the start. pre: it has a mesh; what else it has may be at fault.
 double facet_length(const std::string& body, const Side& boundary, const SceneReading& reading) {
-  const auto& bodies = reading.scene.bodies;
-  const auto of = std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.name == body; });
-  const auto points = make_points<double>(of->mesh, reading.meshes.at(body), reading.scene.as<double>());
+  const auto points =
+      make_points<double>(reading.described.at(body), reading.meshes.at(body), reading.scene.as<double>());
   double length = 0;
   for (const auto& facet : boundary.facets)
     length += (points.col(facet[0]) - points.col(facet[1])).norm() / static_cast<double>(boundary.facets.size());

@@ -36,8 +36,9 @@ struct SceneReading {
   std::map<std::string, std::string> constants;  ///< pointers of numbers that cannot be a parameter, and why
   std::map<int, int> equal;                      ///< slots of two numbers that must change together
   std::vector<std::string> body_names, obstacle_names, contact_names;  ///< valid or not: all that the file has
-  double nodes = 0;                    ///< of all bodies so far, as estimated before they are made
-  std::map<std::string, Mesh> meshes;  ///< by body; none where the body's mesh is at fault
+  double nodes = 0;                                  ///< of all bodies so far, as estimated before they are made
+  std::map<std::string, Mesh> meshes;                ///< by body; none where the body's mesh is at fault
+  std::map<std::string, MeshDescription> described;  ///< of each of these what it is made from
 
   int dimension() const { return scene.dimension(); }
   /// Axes of the space: x, y (, z).
