@@ -36,7 +36,8 @@ bool acts_on_the_terminal(std::uint32_t code) {
          (code >= 0x2028 && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069) || code == 0xFFFE || code == 0xFFFF;
 }
 
-std::string printed(std::string_view text, bool keep_lines) {
+/// `kept`: control characters that stay.
+std::string printed(std::string_view text, std::string_view kept) {
   std::string out;
   out.reserve(text.size());
   while (!text.empty()) {
@@ -44,8 +45,10 @@ std::string printed(std::string_view text, bool keep_lines) {
     const std::size_t bytes = c.bytes > 0 ? c.bytes : 1;
     if (c.bytes == 0)
       out += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[0]));
+    else if (kept.find(text[0]) != std::string_view::npos)
+      out += text[0];
     else if (c.code == '\n')
-      out += keep_lines ? "\n" : "\\n";
+      out += "\\n";
     else if (c.code == '\t')
       out += "\\t";
     else if (acts_on_the_terminal(c.code))
@@ -74,9 +77,9 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
-std::string printable(std::string_view text) { return printed(text, false); }
+std::string printable(std::string_view text) { return printed(text, ""); }
 
-std::string printable_lines(std::string_view text) { return printed(text, true); }
+std::string printable_lines(std::string_view text) { return printed(text, "\n"); }
 
 std::string json_text(const nlohmann::json& value, int indent) {
   return value.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -100,7 +103,7 @@ std::string shell_word(std::string_view word) {
 
 std::string csv_text(std::string_view text) {
   const bool formula = !text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos;
-  const std::string cell = (formula ? "'" : "") + std::string(text);
+  const std::string cell = (formula ? "'" : "") + printed(text, "\n\t");
   if (cell.find_first_of(",\"\r\n") == std::string::npos) return cell;
   return '"' + replaced(cell, '"', "\"\"") + '"';
 }

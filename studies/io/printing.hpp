@@ -23,7 +23,8 @@ std::string json_text(const nlohmann::json& value, int indent = -1);
 std::string shell_word(std::string_view word);
 
 /// The text of a cell of a CSV file, in double quotes where it needs them. What a spreadsheet would take for a formula
-/// (it begins with = + - @ or a tab) gets an apostrophe before it, by which spreadsheets know text.
+/// (it begins with = + - @ or a tab) gets an apostrophe before it, by which spreadsheets know text; control characters
+/// but ends of lines and tabs are escaped.
 std::string csv_text(std::string_view text);
 
 }  // namespace stickslip

@@ -216,9 +216,11 @@ std::vector<CellInput> expand(const Study& study, const std::string& program_ver
     all_faults.note(
         {{study.document.file()},
          "",
-         fmt::format("{} of the {} cells that its lists make {} another and {} "
-                     "left out (the same method and options, or a mesh that has no levels)",
-                     again, again + cells.size(), again == 1 ? "equals" : "equal", again == 1 ? "is" : "are")});
+         fmt::format(
+             "{} of the {} cells that its lists make {} another and {} "
+             "left out (the same method and options, scenes that differ in their title alone, or a mesh that has no "
+             "levels)",
+             again, again + cells.size(), again == 1 ? "equals" : "equal", again == 1 ? "is" : "are")});
   if (diagnostics.has_errors()) cells.clear();
   return cells;
 }

@@ -66,6 +66,11 @@ TEST(Printing, KeepsFormulasOutOfSpreadsheets) {
   EXPECT_EQ(csv_text("=a,b"), "\"'=a,b\"");
 }
 
+TEST(Printing, KeepsEscapeSequencesOutOfTables) {
+  EXPECT_EQ(csv_text("a\x1b[2J\x07"), "a\\u001b[2J\\u0007");
+  EXPECT_EQ(csv_text("a\nb\tc"), "\"a\nb\tc\"");
+}
+
 TEST(Printing, EndsAListOfManyNames) {
   std::vector<std::string> names(50, "n");
   EXPECT_THAT(listed(names), testing::EndsWith("n, ... (50 in all)"));
