@@ -1,13 +1,20 @@
 /// Which backends are built in, which one is chosen, and what they tell of themselves.
+#include <sys/mman.h>
+
+#include <atomic>
 #include <cmath>
 
 #include "core/algebra/backend.hpp"
+#include "core/algebra/memory.hpp"
 
 // OpenBLAS where it is loaded, null elsewhere: the BLAS is the system's choice at run time, not ours at link time.
 extern "C" {
 __attribute__((weak)) char* openblas_get_config();
 __attribute__((weak)) int openblas_get_parallel();
 __attribute__((weak)) void openblas_set_num_threads(int);
+__attribute__((weak)) void dsyrk_(const char* triangle, const char* transposed, const int* n, const int* k,
+                                  const double* alpha, const double* a, const int* rows_of_a, const double* beta,
+                                  double* c, const int* rows_of_c);
 }
 
 namespace stickslip {
@@ -25,6 +32,22 @@ Backend preferred(Symmetry symmetry, int size) {
   return Backend::eigen;
 }
 
+/// Has OpenBLAS take its work space, once for the process. It would ask for it again and again without an end if there
+/// is no room, so whether there is any is found out before. Throws NoWorkSpace.
+void take_work_space() {
+  static std::atomic<bool> is_taken = false;  // (of two threads each may take it)
+  if (is_taken || !openblas_get_config || !dsyrk_) return;
+  void* const room =
+      ::mmap(nullptr, NoWorkSpace::bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (room == MAP_FAILED) throw NoWorkSpace();
+  ::munmap(room, NoWorkSpace::bytes);
+  const int one = 1;
+  const double factor = 1;
+  double c = 0;
+  dsyrk_("L", "N", &one, &one, &factor, &factor, &one, &factor, &c, &one);
+  is_taken = true;
+}
+
 }  // namespace
 
 template <class T>
@@ -34,6 +57,7 @@ std::unique_ptr<Factor<T>> make_factor(Backend backend, std::shared_ptr<const Pa
     // CHOLMOD knows positive definite matrices alone.
     if (backend == Backend::automatic || (backend == Backend::cholmod && symmetry != Symmetry::positive_definite))
       backend = preferred(symmetry, pattern->size);
+    if (backend != Backend::eigen) take_work_space();
 #ifdef STICKSLIP_WITH_CHOLMOD
     if (backend == Backend::cholmod) return std::make_unique<Factor<T>>(CholmodFactor(std::move(pattern), kept));
 #endif

@@ -3,12 +3,16 @@
 #include <new>
 #include <stdexcept>
 
+#include "core/algebra/memory.hpp"
+
 namespace stickslip {
 
 std::optional<Breakdown> attempt(const std::function<void()>& work) {
   try {
     work();
     return std::nullopt;
+  } catch (const NoWorkSpace& error) {
+    return Breakdown{"cap", error.what()};
   } catch (const std::bad_alloc&) {
     return Breakdown{"cap", "there is not enough memory; a coarser mesh or fewer steps need less"};
   } catch (const std::length_error&) {  // a container beyond all memory
