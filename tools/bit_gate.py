@@ -83,7 +83,7 @@ class Gate:
                            OPENBLAS_NUM_THREADS="1")
         ended = subprocess.run([program, "run", self.folder / "scenes" / name, "-m", method, "-o", output],
                                capture_output=True, text=True, check=False, env=environment)
-        files = {file.name: file.read_bytes() for file in sorted(output.glob("*"))} if output.is_dir() else {}
+        files = {file.name: file.read_bytes() for file in sorted(output.glob("[!.]*"))} if output.is_dir() else {}
         result = json.loads(files.pop("result.json", b"null"))
         return {"exit": ended.returncode, "result": result}, files, int(counted.read_text())
 

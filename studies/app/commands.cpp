@@ -11,16 +11,16 @@
 
 #include "studies/app/exit_codes.hpp"
 #include "studies/app/recorded.hpp"
+#include "studies/app/say.hpp"
 #include "studies/app/schema.hpp"
 #include "studies/app/trace_table.hpp"
 #include "studies/input/method_options.hpp"
 #include "studies/io/atomic_file.hpp"
-#include "studies/io/directory_lock.hpp"
 #include "studies/io/input_fault.hpp"
+#include "studies/io/output_folder.hpp"
 #include "studies/io/printing.hpp"
 #include "studies/io/progress.hpp"
 #include "studies/io/result_rows.hpp"
-#include "studies/report/figure_files.hpp"
 #include "studies/report/report.hpp"
 #include "studies/run/explain.hpp"
 #include "studies/run/export_system.hpp"
@@ -52,8 +52,8 @@ std::filesystem::path output_directory(const std::string& given, const std::stri
 
 void print_summary(const CaseResult& result) {
   const auto& scene = result.problem->model.scene;
-  fmt::print("{:>10} {:>24} {:>7} {:>7} {:>6} {:>6} {:>6} {:>10}\n", "time", "status", "newton", "augm.", "open",
-             "stick", "slip", "kkt");
+  say(std::cout, "{:>10} {:>24} {:>7} {:>7} {:>6} {:>6} {:>6} {:>10}\n", "time", "status", "newton", "augm.", "open",
+      "stick", "slip", "kkt");
   for (const auto& step : result.steps) {
     int open = 0, stick = 0, slip = 0;
     for (const auto& s : summarise(result.problem->model, result.problem->slots, step.increment->state)) {
@@ -61,40 +61,39 @@ void print_summary(const CaseResult& result) {
       stick += s.stick;
       slip += s.slip;
     }
-    fmt::print("{:>10.6g} {:>24} {:>7} {:>7} {:>6} {:>6} {:>6} {:>10.1e}\n", step.increment->time,
-               name_of(step.increment->status), step.newton, step.augmentations, open, stick, slip, step.kkt.largest());
+    say(std::cout, "{:>10.6g} {:>24} {:>7} {:>7} {:>6} {:>6} {:>6} {:>10.1e}\n", step.increment->time,
+        name_of(step.increment->status), step.newton, step.augmentations, open, stick, slip, step.kkt.largest());
   }
   if (result.steps.empty()) return;
   const auto& last = result.steps.back();
-  fmt::print("\nresponses at t = {:g}, and their derivatives\n", last.increment->time);
+  say(std::cout, "\nresponses at t = {:g}, and their derivatives\n", last.increment->time);
   for (std::size_t i = 0; i < scene.responses.size(); ++i) {
-    fmt::print("  {:<20} {: .10e}", scene.responses[i].name, last.responses[i]);
+    say(std::cout, "  {:<20} {: .10e}", scene.responses[i].name, last.responses[i]);
     for (std::size_t j = 0; last.sensitivities.size() && j < scene.parameters.size(); ++j)
-      fmt::print("   d/d{} {: .6e}", scene.parameters[j].name, last.sensitivities(i, j));
-    fmt::print("\n");
+      say(std::cout, "   d/d{} {: .6e}", scene.parameters[j].name, last.sensitivities(i, j));
+    say(std::cout, "\n");
   }
   for (std::size_t i = 0; i < scene.objectives.size(); ++i) {
-    fmt::print("  {:<20} {: .10e}", scene.objectives[i].name, result.objectives[i]);
+    say(std::cout, "  {:<20} {: .10e}", scene.objectives[i].name, result.objectives[i]);
     const auto& gradient = result.gradients.of_objectives;
     constexpr Eigen::Index shown = 8;
     for (Eigen::Index j = 0; j < std::min(gradient.cols(), shown); ++j)
-      fmt::print("   d/d{} {: .6e}", scene.parameters[j].name, gradient(i, j));
-    fmt::print("{}\n", gradient.cols() > shown ? "   ..." : "");
+      say(std::cout, "   d/d{} {: .6e}", scene.parameters[j].name, gradient(i, j));
+    say(std::cout, "{}\n", gradient.cols() > shown ? "   ..." : "");
   }
   if (!scene.parameters.empty() && !last.differentiable)
-    fmt::print("  a contact point is about to change state: these hold on one side only (result.json: one_sided)\n");
+    say(std::cout,
+        "  a contact point is about to change state: these hold on one side only (result.json: one_sided)\n");
 }
 
-/// picture.json, with what a study's rows hold of it; none where no report is asked for.
-void write_picture(const std::filesystem::path& directory, const CaseResult& result, bool report, Written& written) {
-  for (const char* file : {"picture.json", "report.html"}) std::filesystem::remove(directory / file);
-  if (!report) return report::remove_figures(directory);
+/// picture.json, with what a study's rows hold of it.
+void write_picture(const std::filesystem::path& directory, const CaseResult& result, Written& written) {
   const Stopwatch time(written.seconds);
   json picture = picture_json(result);
   if (picture.is_null()) return;
   picture["interface"] = interface_json(result);
   picture["film"] = film_json(result);
-  write_file_atomically(directory / "picture.json", json_text(picture));
+  write_output(directory / "picture.json", json_text(picture));
   written.picture = file_bytes(directory, {"picture.json"});
   ++written.files;
 }
@@ -102,12 +101,11 @@ void write_picture(const std::filesystem::path& directory, const CaseResult& res
 /// trace.csv, and of scenes with few contact points cones.svg; returns their names.
 std::vector<std::string> trace_files(const std::filesystem::path& directory, const Problem& problem,
                                      const Trace& trace) {
-  write_file_atomically(directory / "trace.csv", trace_csv(problem, trace));
+  write_output(directory / "trace.csv", trace_csv(problem, trace));
   const auto paths = cone_paths(problem, trace);
   if (paths.empty()) return {"trace.csv"};
   const std::string& title = problem.model.scene.title;
-  write_file_atomically(directory / "cones.svg",
-                        report::draw_cones(paths, title.empty() ? "Friction cones" : title).svg_file());
+  write_output(directory / "cones.svg", report::draw_cones(paths, title.empty() ? "Friction cones" : title).svg_file());
   return {"trace.csv", "cones.svg"};
 }
 
@@ -117,13 +115,10 @@ void add_files(const std::filesystem::path& folder, const std::vector<std::strin
   for (const auto& name : names) written.push_back(printable((folder / name).string()));
 }
 
-/// The trace's files; returns their names. Those of an earlier run go where none is asked for.
+/// The trace's files; returns their names.
 std::vector<std::string> write_trace(const std::filesystem::path& directory, const Problem& problem, const Trace* trace,
                                      Written& written) {
-  if (!trace) {
-    for (const char* file : {"trace.csv", "cones.svg"}) std::filesystem::remove(directory / file);
-    return {};
-  }
+  if (!trace) return {};
   const Stopwatch time(written.seconds);
   const auto files = trace_files(directory, problem, *trace);
   written.trace = file_bytes(directory, files);
@@ -136,8 +131,9 @@ std::vector<std::string> write_trace(const std::filesystem::path& directory, con
 json write_run(const std::filesystem::path& directory, const RunArguments& arguments, const Simulation& simulation,
                const CaseResult& result, const Trace* trace, std::vector<std::string>& names) {
   Written written;
+  remove_run(directory);
   const auto traced = write_trace(directory, *simulation.problem, trace, written);
-  write_picture(directory, result, arguments.report, written);
+  if (arguments.report) write_picture(directory, result, written);
   json document = write_result(directory, simulation, result, written);
   if (arguments.report) write_run_report(directory);
   add_files(directory, result_files(simulation, result), names);
@@ -146,14 +142,31 @@ json write_run(const std::filesystem::path& directory, const RunArguments& argum
   return document;
 }
 
+/// The folders that a run writes to, of which --export may name the same.
+std::vector<OutputFolder> folders_of_run(const std::filesystem::path& directory, const RunArguments& arguments,
+                                         bool writes) {
+  std::vector<std::string> names, exported;
+  if (arguments.report) names = report_files();
+  if (arguments.report) names.emplace_back("picture.json");
+  if (arguments.trace) names.insert(names.end(), {"trace.csv", "cones.svg"});
+  if (!arguments.export_to.empty()) exported = exported_files();
+  using std::filesystem::weakly_canonical;
+  const bool same = writes && !exported.empty() && weakly_canonical(arguments.export_to) == weakly_canonical(directory);
+  if (same) names.insert(names.end(), exported.begin(), exported.end());
+  std::vector<OutputFolder> folders;
+  if (writes) folders.push_back(folder_of_run(directory, names));
+  if (!exported.empty() && !same) folders.emplace_back(arguments.export_to, exported);
+  return folders;
+}
+
 /// A line for each option: name, default, meaning. `before`: what the names begin with.
 void print_options(const nlohmann::ordered_json& options, const std::string& before) {
   for (const auto& [name, option] : options.items())
     if (option.contains("properties"))
       print_options(option.at("properties"), before + name + "/");
     else
-      fmt::print("  {:<22} {:<12} {}\n", before + name, option.at("default").dump(),
-                 option.at("description").get<std::string>());
+      say(std::cout, "  {:<22} {:<12} {}\n", before + name, option.at("default").dump(),
+          option.at("description").get<std::string>());
 }
 
 }  // namespace
@@ -161,7 +174,7 @@ void print_options(const nlohmann::ordered_json& options, const std::string& bef
 int run_command(const RunArguments& arguments) {
   const auto loaded = load(arguments);
   if (!loaded) return bad_input;
-  const bool writes = !arguments.json || !arguments.output.empty();
+  const bool writes = arguments.writes_results();
   const auto directory = output_directory(arguments.output, arguments.scene);
   if (!arguments.export_to.empty()) check_folder(arguments.export_to);
   if (!arguments.export_to.empty() && !has_constant_stiffness(loaded->input.scene))
@@ -169,10 +182,7 @@ int run_command(const RunArguments& arguments) {
         "--export: the system of finite strain, or of bodies that flow, is not linear; only linear bodies have a K to "
         "write");
   if (!writes && arguments.report) throw InputFault("--report: with --json nothing is written; give -o DIR too");
-  if (writes) prepare_run_directory(directory, arguments.report);
-  std::optional<DirectoryLock> lock;
-  if (writes) lock.emplace(directory);
-  if (!arguments.export_to.empty()) prepare_directory(arguments.export_to, {"README"});
+  const auto folders = folders_of_run(directory, arguments, writes);
   std::optional<Progress> progress;  // of long work only: a run of a second or two speaks for itself
   const auto start = std::chrono::steady_clock::now();
   long pending = 0;
@@ -186,27 +196,24 @@ int run_command(const RunArguments& arguments) {
   Trace trace;
   const auto result = simulate(*loaded, on_step, arguments.trace ? &trace : nullptr);
   progress.reset();
-  json document;
   std::vector<std::string> written;
-  if (!writes) {
-    document = result_json(result, canonical_text(loaded->input));
-  } else {
-    document = write_run(directory, arguments, *loaded, result, arguments.trace ? &trace : nullptr, written);
-    if (!arguments.json) {
-      if (arguments.trace) std::cout << trace_table(trace) << '\n';
-      print_summary(result);
-      fmt::print("\neffects: {}", ledger_line(document["ledger"]));
-    }
-  }
+  const json document =
+      writes ? write_run(directory, arguments, *loaded, result, arguments.trace ? &trace : nullptr, written)
+             : result_json(result, canonical_text(loaded->input));
   if (!arguments.export_to.empty() && !result.trajectory.increments.empty())
     add_files(arguments.export_to, export_system(arguments.export_to, result), written);
-  if (!arguments.json) fmt::print("\nwritten: {}\n", fmt::join(written, ", "));
-  if (arguments.json) std::cout << json_text(document, 2) << '\n';
+  if (arguments.json) {
+    std::cout << json_text(document, 2) << '\n';
+  } else {
+    if (arguments.trace) std::cout << trace_table(trace) << '\n';
+    print_summary(result);
+    say(std::cout, "\neffects: {}\nwritten: {}\n", ledger_line(document["ledger"]), fmt::join(written, ", "));
+  }
   for (const auto& warning : document["warnings"])
-    fmt::print(stderr, "warning ({}): {}; {}\n", warning["code"].get<std::string>(),
-               printable(warning["text"].get<std::string>()), printable(warning["remedy"].get<std::string>()));
+    say(std::cerr, "warning ({}): {}; {}\n", warning["code"].get<std::string>(),
+        printable(warning["text"].get<std::string>()), printable(warning["remedy"].get<std::string>()));
   if (is_converged(result.status())) return done;
-  fmt::print(stderr, "{}: {}\n", name_of(result.status()), printable(result.message()));
+  say(std::cerr, "{}: {}\n", name_of(result.status()), printable(result.message()));
   return not_solved;
 }
 
@@ -236,7 +243,7 @@ int gradcheck_command(const RunArguments& arguments) {
   if (arguments.json)
     std::cout << json_text(check_json(check), 2) << '\n';
   else
-    fmt::print("{} by {}: {}", printable(arguments.scene), name_of(loaded->input.method), check_table(check));
+    say(std::cout, "{} by {}: {}", printable(arguments.scene), name_of(loaded->input.method), check_table(check));
   if (check.passed()) return done;
   std::cerr << check_faults(check);
   return not_solved;
@@ -249,13 +256,13 @@ int study_command(const StudyArguments& arguments) {
     std::cerr << diagnostics.text();
     return bad_input;
   }
-  fmt::print("{} cells, {} run now, {} of these without a converged result (kept as rows)\nreport: {}\n", study->cells,
-             study->run, study->failed, printable((study->directory / "report.html").string()));
+  say(std::cout, "{} cells, {} run now, {} of these without a converged result (kept as rows)\nreport: {}\n",
+      study->cells, study->run, study->failed, printable((study->directory / "report.html").string()));
   if (study->lost == 0) return done;
-  fmt::print(stderr,
-             "{} cells have no row: their processes were ended from outside, by the system where memory runs out; "
-             "--resume runs them again, fewer --jobs need less memory at once\n",
-             study->lost);
+  say(std::cerr,
+      "{} cells have no row: their processes were ended from outside, by the system where memory runs out; "
+      "--resume runs them again, fewer --jobs need less memory at once\n",
+      study->lost);
   return not_solved;
 }
 
@@ -268,15 +275,16 @@ int methods_command(bool as_json) {
   }
   const auto schema = method_schema(OptionLists::refused);
   for (const auto& [name, method] : schema.at("properties").items()) {
-    fmt::print("{}\n", name);
+    say(std::cout, "{}\n", name);
     print_options(method.at("properties"), "");
   }
-  fmt::print("\nclosed forms, as a study's reference (inputs -> what they give)\n");
+  say(std::cout, "\nclosed forms, as a study's reference (inputs -> what they give)\n");
   for (const auto& form : closed_forms()) {
-    fmt::print("{}: {}\n", form.name, form.about);
+    say(std::cout, "{}: {}\n", form.name, form.about);
     for (const auto& [quantities, sign] : {std::pair{&form.inputs, ""}, {&form.outputs, "-> "}})
       for (const auto& quantity : *quantities)
-        fmt::print("  {:<24} {}{}\n", sign + quantity.name, quantity.meaning, quantity.required ? "" : " (optional)");
+        say(std::cout, "  {:<24} {}{}\n", sign + quantity.name, quantity.meaning,
+            quantity.required ? "" : " (optional)");
   }
   return done;
 }
@@ -291,11 +299,10 @@ int report_command(const std::string& directory) {
   const bool of_run = holds(directory, "result.json");
   if (!of_run && !holds(directory, "results.jsonl"))
     throw InputFault(directory + ": there are no results; run `stickslip study`, or `stickslip run` first");
-  const DirectoryLock lock(directory);
+  const OutputFolder folder(directory, report_files());
   if (of_run) {
-    prepare_directory(directory, {"report.html"}, {"figures"});
     write_run_report(directory);
-    fmt::print("{}\n", printable((std::filesystem::path(directory) / "report.html").string()));
+    say(std::cout, "{}\n", printable((std::filesystem::path(directory) / "report.html").string()));
     return done;
   }
   check_records(directory);
@@ -303,9 +310,8 @@ int report_command(const std::string& directory) {
   if (!stored.sound()) std::cerr << printable("note: " + directory + "/results.jsonl: " + stored.faults()) << '\n';
   if (stored.rows.empty())
     throw InputFault(directory + ": there are no rows in results.jsonl; run `stickslip study` with --resume first");
-  prepare_directory(directory, {"report.html"}, {"figures"});
   write_report(directory);
-  fmt::print("{}\n", printable((std::filesystem::path(directory) / "report.html").string()));
+  say(std::cout, "{}\n", printable((std::filesystem::path(directory) / "report.html").string()));
   return done;
 }
 

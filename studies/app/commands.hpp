@@ -19,6 +19,7 @@ struct RunArguments {
   bool report = false;    ///< write report.html, and picture.json, which it draws
   bool trace = false;     ///< print every iterate, and write trace.csv
   std::string export_to;  ///< directory for the linear system of the last step; empty: none
+  bool writes_results() const { return !json || !output.empty(); }
 };
 
 struct CompareArguments {

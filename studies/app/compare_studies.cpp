@@ -13,6 +13,7 @@
 #include "studies/app/commands.hpp"
 #include "studies/app/exit_codes.hpp"
 #include "studies/app/recorded.hpp"
+#include "studies/app/say.hpp"
 #include "studies/io/input_fault.hpp"
 #include "studies/io/printing.hpp"
 
@@ -194,8 +195,8 @@ std::map<std::string, int> values_changed(const CellComparison& cell) {
 void print(const std::vector<CellComparison>& cells) {
   const auto line = [](const CellComparison& cell, const std::string& quantity, const std::string& before,
                        const std::string& after, bool worse) {
-    fmt::print("{:<5}  {:<44} {:<44} {:>14} -> {}\n", worse ? "WORSE" : "", printable(cell.label + "  " + cell.variant),
-               printable(quantity), printable(before), printable(after));
+    say(std::cout, "{:<5}  {:<44} {:<44} {:>14} -> {}\n", worse ? "WORSE" : "",
+        printable(cell.label + "  " + cell.variant), printable(quantity), printable(before), printable(after));
   };
   for (const auto& cell : cells) {
     if (cell.only_before) line(cell, "cell", "recorded", "missing", true);
@@ -309,9 +310,9 @@ int compare_command(const CompareArguments& arguments) try {
   } else {
     print(cells);
     if (other_scenes > 0)
-      fmt::print("{} of {} cells ran another scene, or with other options of the method: their hashes differ\n",
-                 other_scenes, cells.size());
-    fmt::print(
+      say(std::cout, "{} of {} cells ran another scene, or with other options of the method: their hashes differ\n",
+          other_scenes, cells.size());
+    say(std::cout,
         "{} cells: {} changed, {} of them for the worse; errors may grow by {} of themselves and by {} (rounding), "
         "counts not at all; responses and sensitivities may differ by {} of their largest size in any cell\n"
         "seconds, not judged: {:.3g} -> {:.3g}\n",

@@ -1,6 +1,10 @@
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <functional>
@@ -78,12 +82,21 @@ void add_scene(CLI::App& command, RunArguments& arguments) {
   command.add_flag("--json", arguments.json, "one JSON document on standard output and nothing else");
 }
 
-/// Exit code of a command, or bad_input where what it printed was not taken: a full disk, a closed pipe.
-int finished(int code) {
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.flush()) return code;
+/// Whether what was printed was taken, as neither a full disk nor a closed pipe does; said where it was not.
+bool was_printed() {
+  if (std::cout.flush() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return true;
   std::cerr << "stickslip: standard output cannot be written\n";
-  return bad_input;
+  return false;
 }
+
+/// Exit code of a command whose results are in files, whatever became of what it printed beside them.
+int with_files(int code) {
+  was_printed();
+  return code;
+}
+
+/// Exit code of a command all of whose results are printed.
+int on_standard_output(int code) { return was_printed() ? code : bad_input; }
 
 int out_of_memory() {
   std::cerr << "stickslip: there is not enough memory; a coarser mesh, fewer steps or fewer parameters need less\n";
@@ -132,30 +145,36 @@ Actions add_commands(CLI::App& app, Arguments& given) {
     actions.emplace_back(app.add_subcommand(name, description), std::move(action));
     return *actions.back().first;
   };
-  add_run(add("run", "simulate a scene", [&] { return run_command(given.run); }), given.run);
-  add_study(add("study", "compare methods on a scene and write a report", [&] { return study_command(given.study); }),
+  add_run(add("run", "simulate a scene",
+              [&] {
+                const int code = run_command(given.run);
+                return given.run.writes_results() ? with_files(code) : on_standard_output(code);
+              }),
+          given.run);
+  add_study(add("study", "compare methods on a scene and write a report",
+                [&] { return with_files(study_command(given.study)); }),
             given.study);
   add_merge(add("merge", "join the shards of a study and write their report",
-                [&] { return merge_command(given.shards, given.merged); }),
+                [&] { return with_files(merge_command(given.shards, given.merged)); }),
             given);
   add_compare(add("compare", "two recordings of a study, cell by cell; fails where one is worse",
-                  [&] { return compare_command(given.compare); }),
+                  [&] { return on_standard_output(compare_command(given.compare)); }),
               given.compare);
-  add_scene(
-      add("explain", "say what would be simulated, and what would not", [&] { return explain_command(given.explain); }),
-      given.explain);
+  add_scene(add("explain", "say what would be simulated, and what would not",
+                [&] { return on_standard_output(explain_command(given.explain)); }),
+            given.explain);
   add_scene(add("gradcheck", "hold every sensitivity against differences",
-                [&] { return gradcheck_command(given.gradcheck); }),
+                [&] { return on_standard_output(gradcheck_command(given.gradcheck)); }),
             given.gradcheck);
   add("report", "rebuild report.html of a study or a run from recorded results",
-      [&] { return report_command(given.directory); })
+      [&] { return with_files(report_command(given.directory)); })
       .add_option("DIR", given.directory, "directory of a study or a run")
       ->required();
   add("methods", "list the methods and their options", [&] {
-    return methods_command(given.methods_json);
+    return on_standard_output(methods_command(given.methods_json));
   }).add_flag("--json", given.methods_json, "as JSON");
   add("schema", "print the JSON Schema of scene or study files, for editors",
-      [&] { return schema_command(given.schema_of); })
+      [&] { return on_standard_output(schema_command(given.schema_of)); })
       .add_option("KIND", given.schema_of, "scene or study")
       ->check(CLI::IsMember({"scene", "study"}));
   return actions;
@@ -180,10 +199,10 @@ int run_line(CLI::App& app, const Actions& actions, int argc, char** argv) {
     const int code = app.exit(error, out, faults);
     std::cout << out.str();
     std::cerr << printable_lines(faults.str());
-    return code == 0 ? finished(0) : 2;
+    return code == 0 ? on_standard_output(done) : bad_input;
   }
   for (const auto& [command, action] : actions)
-    if (*command) return finished(action());
+    if (*command) return action();
   return done;  // never: one is required
 }
 
@@ -193,12 +212,28 @@ std::string what_helps(const std::error_code& code) {
     return "; make room there and run it again, a study with --resume";
   if (code == std::errc::permission_denied || code == std::errc::read_only_file_system)
     return "; take a directory that you may write to";
+  if (code == std::errc::file_too_large)
+    return "; raise the limit of a file's size (ulimit -f) and run it again, a study with --resume";
   return "";
+}
+
+/// Opens what of the standard streams is closed, so that no file of results takes its number and what is printed to it.
+/// Standard output cannot be written to then, as was_printed() finds.
+void open_standard_streams() {
+  while (true) {
+    const int file = ::open("/dev/null", O_RDONLY);
+    if (file < 0 || file > STDERR_FILENO) {
+      if (file >= 0) ::close(file);
+      return;
+    }
+  }
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  open_standard_streams();
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of writing, with a message
   set_blas_threads(1);
   keep_freed_memory();
   CLI::App app{"stickslip: one frictional contact problem, three ways to enforce it, and their derivatives"};
@@ -213,6 +248,9 @@ int main(int argc, char** argv) {
     return bad_input;
   } catch (const std::system_error& error) {
     std::cerr << "stickslip: " << printable_lines(error.what()) << what_helps(error.code()) << '\n';
+    return bad_input;
+  } catch (const NoWorkSpace& error) {
+    std::cerr << "stickslip: " << error.what() << '\n';
     return bad_input;
   } catch (const std::bad_alloc&) {
     return out_of_memory();

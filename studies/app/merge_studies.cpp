@@ -9,13 +9,15 @@
 
 #include "studies/app/commands.hpp"
 #include "studies/app/exit_codes.hpp"
+#include "studies/app/say.hpp"
 #include "studies/io/atomic_file.hpp"
-#include "studies/io/directory_lock.hpp"
 #include "studies/io/input_fault.hpp"
+#include "studies/io/output_folder.hpp"
 #include "studies/io/printing.hpp"
 #include "studies/io/result_rows.hpp"
 #include "studies/report/report.hpp"
-#include "studies/run/simulation.hpp"
+#include "studies/run/fields.hpp"
+#include "studies/sweep/run_study.hpp"
 
 namespace stickslip {
 namespace {
@@ -98,11 +100,11 @@ void copy_drawings(const std::vector<Part>& parts, const fs::path& output) {
   const auto drawn = std::find_if(parts.begin(), parts.end(),
                                   [](const Part& part) { return fs::exists(part.directory / "picture.json"); });
   if (drawn == parts.end() || fs::equivalent(drawn->directory, output)) return;
-  remove_fields(output);
+  remove_outputs(output, {std::begin(field_names), std::end(field_names)});
   for (const auto& entry : fs::directory_iterator(drawn->directory)) {
     const std::string name = entry.path().filename();
     if ((name == "picture.json" || name.starts_with("fields")) && entry.is_regular_file())
-      fs::copy_file(entry.path(), output / name, fs::copy_options::overwrite_existing);
+      write_output(output / name, read_file(entry.path()));
   }
 }
 
@@ -130,9 +132,7 @@ json merged_description(const std::vector<Part>& parts, const std::string& outpu
 
 int join(const std::vector<Part>& parts, const fs::path& output) {
   check_output(parts, output);
-  prepare_directory(output, {"results.jsonl", "timings.jsonl", "study.json", "picture.json", "report.html"},
-                    {"figures"});
-  const DirectoryLock lock(output);
+  const OutputFolder folder(output, study_files());
   const std::vector<std::string> ids = parts.front().description["cells"];
   const std::set<std::string> known(ids.begin(), ids.end());
   RowsById rows;
@@ -148,21 +148,22 @@ int join(const std::vector<Part>& parts, const fs::path& output) {
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < ids.size(); ++i)
     if (rows.count(ids[i]) == 0) missing.push_back(i);
-  fs::remove(output / "timings.jsonl");
+  remove_outputs(output, {"timings.jsonl"});
   for (const auto& part : parts)
     for (const auto& [id, rounds] : part.timings)
       for (const auto& [round, seconds] : rounds) append_timing(output, id, round, seconds);
   copy_drawings(parts, output);
-  write_file_atomically(output / "study.json", json_text(merged_description(parts, output.string()), 2) + "\n");
+  write_output(output / "study.json", json_text(merged_description(parts, output.string()), 2) + "\n");
   write_rows(output, ids, rows);
   const std::size_t joined = rows.size();
   rows.clear();  // the report reads them again, and not all of each
   write_report(output);
-  fmt::print("{} of {} cells from {} directories, {} of these without a converged result (kept as rows), {} double\n",
-             joined, ids.size(), parts.size(), failed, doubles);
-  fmt::print("report: {}\n", printable((output / "report.html").string()));
+  say(std::cout,
+      "{} of {} cells from {} directories, {} of these without a converged result (kept as rows), {} double\n", joined,
+      ids.size(), parts.size(), failed, doubles);
+  say(std::cout, "report: {}\n", printable((output / "report.html").string()));
   if (missing.empty()) return done;
-  fmt::print(stderr, "{} cells are still missing, in the study's order: {}\n", missing.size(), places(missing));
+  say(std::cerr, "{} cells are still missing, in the study's order: {}\n", missing.size(), places(missing));
   return not_solved;
 }
 

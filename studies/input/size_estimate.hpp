@@ -27,6 +27,9 @@ double estimated_bytes(const ProblemSize& size);
 /// says so. Linux; elsewhere infinite.
 double memory_limit();
 
+/// "some 45 GB of memory".
+std::string about(double bytes);
+
 /// "some 45 GB of memory, and there are 16 GB for this process".
 std::string too_much(double bytes, double limit);
 

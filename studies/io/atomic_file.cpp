@@ -1,12 +1,12 @@
 #include "studies/io/atomic_file.hpp"
 
 #include <fcntl.h>
-#include <signal.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
@@ -75,29 +75,9 @@ off_t length_of_whole_lines(const Descriptor& file, const fs::path& path) {
   return 0;
 }
 
-/// Whether the process whose number ends the stem of a temporary file, "result.json.123", is gone.
-bool is_orphan(const fs::path& temporary) {
-  const std::string stem = temporary.stem(), digits = stem.substr(stem.rfind('.') + 1);
-  const bool number =
-      !digits.empty() && digits.size() < 10 && digits.find_first_not_of("0123456789") == std::string::npos;
-  return number && ::kill(std::stoi(digits), 0) != 0 && errno == ESRCH;
-}
-
-void prepare_folder(const fs::path& folder) {
-  check_folder(folder);
-  std::error_code error;
-  fs::create_directories(folder, error);
-  const bool denied = error == std::errc::permission_denied || error == std::errc::read_only_file_system;
-  if (error)
-    throw InputFault(folder.string() + ": cannot be made: " + error.message() +
-                     (denied ? "; must be where you may write" : ""));
-  if (::access(folder.c_str(), W_OK | X_OK) != 0)
-    throw InputFault(folder.string() + ": cannot be written to; must be a directory that you may write to");
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (entry.path().extension() == ".part" && is_orphan(entry.path())) fs::remove(entry.path());
-}
-
 }  // namespace
+
+std::string temporary_of(const std::string& name, const std::string& process) { return name + "." + process + ".part"; }
 
 bool holds(const fs::path& folder, const char* file) {
   std::error_code none;
@@ -110,27 +90,16 @@ void check_folder(const fs::path& folder) {
     throw InputFault(folder.string() + ": is a file; must be a directory, or a name that is free");
 }
 
-void prepare_directory(const fs::path& directory, const std::vector<std::string>& files,
-                       const std::vector<std::string>& folders) {
-  prepare_folder(directory);
-  for (const auto& folder : folders) prepare_folder(directory / folder);
-  for (const auto& file : files)
-    if (fs::is_directory(directory / file))
-      throw InputFault((directory / file).string() + ": is a directory; the file of this name goes there");
-}
-
 void write_file_atomically(const fs::path& path, std::string_view content) {
   make_folder_of(path);
   // In the same folder, since a rename is atomic only within one file system; with the process's number, since two
   // processes may write the same file.
-  fs::path temporary = path;
-  temporary += "." + std::to_string(::getpid()) + ".part";
+  const fs::path temporary = path.parent_path() / temporary_of(path.filename().string(), std::to_string(::getpid()));
+  std::optional<Descriptor> file(std::in_place, temporary, O_WRONLY | O_CREAT | O_EXCL, path);
   try {
-    {
-      const Descriptor file(temporary, O_WRONLY | O_CREAT | O_TRUNC, path);
-      file.write(content);
-      file.sync();
-    }
+    file->write(content);
+    file->sync();
+    file.reset();
     fs::rename(temporary, path);
   } catch (...) {
     std::error_code ignored;
@@ -142,10 +111,16 @@ void write_file_atomically(const fs::path& path, std::string_view content) {
 void append_line(const fs::path& path, std::string_view line) {
   if (line.find('\n') != std::string_view::npos) throw std::invalid_argument("append_line: a line holds no newline");
   make_folder_of(path);
-  const Descriptor file(path, O_RDWR | O_CREAT | O_APPEND, path);
-  if (::ftruncate(file.number(), length_of_whole_lines(file, path)) != 0) fail(path, "cannot truncate");
-  file.write(std::string(line) + "\n");
-  file.sync();
+  const Descriptor file(path, O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW, path);
+  const off_t end = length_of_whole_lines(file, path);
+  if (::ftruncate(file.number(), end) != 0) fail(path, "cannot truncate");
+  try {
+    file.write(std::string(line) + "\n");
+    file.sync();
+  } catch (...) {
+    if (::ftruncate(file.number(), end) != 0) fail(path, "cannot truncate");
+    throw;
+  }
 }
 
 std::string unreadable(const fs::path& path, std::uintmax_t most) {

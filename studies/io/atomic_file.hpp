@@ -11,8 +11,12 @@
 namespace stickslip {
 
 /// Writes `content` to a temporary file beside `path` and renames it over `path`; missing folders are made. A reader
-/// sees the old file or the new one, whole. Throws std::system_error with the path where the disk refuses.
+/// sees the old file or the new one, whole. Throws std::system_error with the path where the disk refuses; the
+/// temporary file is then gone.
 void write_file_atomically(const std::filesystem::path& path, std::string_view content);
+
+/// Name of the temporary file of a process, by its number.
+std::string temporary_of(const std::string& name, const std::string& process);
 
 /// Whether the folder has a file of the name; false where the folder is none, or its name no name at all.
 bool holds(const std::filesystem::path& folder, const char* file);
@@ -20,14 +24,9 @@ bool holds(const std::filesystem::path& folder, const char* file);
 /// Throws InputFault where something that is no directory has the name.
 void check_folder(const std::filesystem::path& folder);
 
-/// Makes a directory for results ready, and `folders` in it: made where they are missing, rid of the temporary files of
-/// processes that are gone. Throws InputFault where it cannot be written to, or where one of `files`, which are to be
-/// written there, is a directory.
-void prepare_directory(const std::filesystem::path& directory, const std::vector<std::string>& files,
-                       const std::vector<std::string>& folders = {});
-
 /// Appends `line` and a newline in one write, and returns once they are on the disk (fsync). A torn last line, left by
-/// a process that was killed, is cut off first. pre: `line` holds no newline. Throws std::system_error.
+/// a process that was killed, is cut off first; so is what a full disk took of this one. pre: `line` holds no newline.
+/// Throws std::system_error.
 void append_line(const std::filesystem::path& path, std::string_view line);
 
 /// The whole lines of a file that append_line() wrote, without their newlines; a torn last line is left out. Empty

@@ -16,9 +16,10 @@ struct DirectoryInUse : InputFault {
 };
 
 /// Holds DIR/.lock until the end of the scope or of the process, however it ends: the kernel drops the lock of a
-/// process that is killed. The file is made where it is missing and taken away at the end, an interrupt's included;
-/// after SIGKILL it stays, and holds nothing. A child made by fork() does not hold the lock. POSIX record lock, so it
-/// works over NFS too. Throws DirectoryInUse, or std::system_error where the disk refuses.
+/// process that is killed. The file is made if it is missing and taken away at the end, an interrupt's included; after
+/// SIGKILL it stays, and holds nothing. A file of this name that another program made is locked too, and stays. A child
+/// made by fork() does not hold the lock, nor does another thread. POSIX record lock, so it works over NFS too. Throws
+/// DirectoryInUse, InputFault if the name is of no file, or std::system_error if the disk refuses.
 class DirectoryLock {
  public:
   explicit DirectoryLock(const std::filesystem::path& directory);
@@ -30,6 +31,7 @@ class DirectoryLock {
 
  private:
   bool is_there() const;
+  bool is_ours() const;
   std::string path_;  ///< of the file that is locked
   int file_;
   std::optional<AtInterrupt> at_interrupt_;

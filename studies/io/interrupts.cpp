@@ -29,7 +29,7 @@ void on_signal(int signal) {  // only what a signal handler may call
 
 /// Gives the signals whose handler is `from` the handler `to`.
 void exchange_handlers(void (*from)(int), void (*to)(int)) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
     struct sigaction now {
     }, next{};
     next.sa_handler = to;

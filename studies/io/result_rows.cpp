@@ -11,6 +11,7 @@
 #include "studies/io/atomic_file.hpp"
 #include "studies/io/input_fault.hpp"
 #include "studies/io/json_node.hpp"
+#include "studies/io/output_folder.hpp"
 #include "studies/io/printing.hpp"
 
 namespace stickslip {
@@ -153,6 +154,7 @@ StoredRows read_rows(const fs::path& directory, const std::function<void(json&)>
     json row = json::parse(text, nullptr, false);
     if (const std::string fault = row_fault(row); !fault.empty()) {
       stored.damaged.push_back(fmt::format("line {} is no row and was dropped: {}", line, fault));
+      stored.dropped += text + "\n";
       continue;
     }
     const std::string id = row["id"];
@@ -169,7 +171,8 @@ StoredRows read_rows(const fs::path& directory, const std::function<void(json&)>
 
 void drop_unsealed(StoredRows& stored) {
   if (stored.unsealed.empty()) return;
-  for (const auto& id : stored.unsealed) stored.rows.erase(id);
+  for (const auto& id : stored.unsealed)
+    if (const auto row = stored.rows.extract(id); row) stored.dropped += json_text(row.mapped()) + "\n";
   std::erase_if(stored.order, [&](const auto& id) { return stored.rows.count(id) == 0; });
   stored.damaged.push_back(fmt::format("{} row(s) without a checksum were dropped", stored.unsealed.size()));
   stored.unsealed.clear();
@@ -183,25 +186,27 @@ RowsById resume_rows(const fs::path& directory, const std::vector<std::string>& 
   std::vector<const json*> stale;
   for (const auto& [id, row] : stored.rows)
     if (own.count(id) == 0) stale.push_back(&row);
-  if (!stale.empty()) {
-    const auto path = directory / "results.stale.jsonl";
-    write_file_atomically(path, (fs::exists(path) ? read_file(path) : std::string()) + lines(stale));
+  const auto path = directory / "results.stale.jsonl";
+  if (const std::string aside = stored.dropped + lines(stale); !aside.empty())
+    write_output(path, (fs::exists(path) ? read_file(path) : std::string()) + aside, Sums::of_each_line);
+  if (!stale.empty())
     notes.push_back(fmt::format("{} row(s) of another study or version of the program were put aside in {}",
                                 stale.size(), path.string()));
-  }
   const bool rewrite = !stored.sound() || !stale.empty();
   std::erase_if(stored.rows, [&](const auto& each) { return own.count(each.first) == 0; });
   if (rewrite) write_rows(directory, ids, stored.rows);
   return std::move(stored.rows);
 }
 
-void append_row(const fs::path& directory, const json& row) { append_line(rows_of(directory), json_text(sealed(row))); }
+void append_row(const fs::path& directory, const json& row) {
+  append_output(rows_of(directory), json_text(sealed(row)));
+}
 
 void write_rows(const fs::path& directory, const std::vector<std::string>& ids, const RowsById& rows) {
   std::string text;
   for (const auto& id : ids)
     if (const auto row = rows.find(id); row != rows.end()) text += json_text(sealed(row->second)) + "\n";
-  write_file_atomically(rows_of(directory), text);
+  write_output(rows_of(directory), text, Sums::of_each_line);
 }
 
 Timings read_timings(const fs::path& directory, int* damaged) {
@@ -220,7 +225,7 @@ Timings read_timings(const fs::path& directory, int* damaged) {
 }
 
 void append_timing(const fs::path& directory, const std::string& id, int round, const json& seconds) {
-  append_line(timings_of(directory), json_text(sealed_timing({{"id", id}, {"round", round}, {"seconds", seconds}})));
+  append_output(timings_of(directory), json_text(sealed_timing({{"id", id}, {"round", round}, {"seconds", seconds}})));
 }
 
 json read_description(const fs::path& directory) {

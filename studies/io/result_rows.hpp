@@ -12,6 +12,9 @@
 
 namespace stickslip {
 
+/// Files of a study, but for what is drawn of it.
+inline constexpr const char* record_files[] = {"study.json", "results.jsonl", "results.stale.jsonl", "timings.jsonl"};
+
 /// Rows by the id of their cell; of an id recorded twice, the last.
 using RowsById = std::map<std::string, nlohmann::json>;
 
@@ -21,6 +24,7 @@ struct StoredRows {
   std::vector<std::string> order;     ///< their ids, as they first stand in the file
   std::size_t torn_bytes = 0;         ///< of a last line that a killed process left
   std::vector<std::string> damaged;   ///< whole lines that are no rows: "line 3 is no row: ..."
+  std::string dropped;                ///< these, as they stand
   int doubles = 0;                    ///< rows of an id that a later line repeats
   std::vector<std::string> unsealed;  ///< ids of rows without a checksum, as another version of the program wrote them
 
@@ -41,8 +45,8 @@ StoredRows read_rows(const std::filesystem::path& directory, const std::function
 void drop_unsealed(StoredRows& stored);
 
 /// Takes the rows in `directory` up again for the cells of `ids`: what read_rows() mends is mended on the disk, and
-/// rows of other cells (of another study, or of another version of the program) go to results.stale.jsonl. What was
-/// done is told in `notes`, a sentence each.
+/// lines that are none of its rows, and rows of other cells (of another study, or of another version of the program),
+/// go to results.stale.jsonl. What was done is told in `notes`, a sentence each.
 RowsById resume_rows(const std::filesystem::path& directory, const std::vector<std::string>& ids,
                      std::vector<std::string>& notes);
 

@@ -10,8 +10,6 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "studies/io/atomic_file.hpp"
-
 namespace stickslip {
 namespace {
 
@@ -178,7 +176,7 @@ void append_mesh(VtuData& data, const Mesh& mesh, const Points<double>& coordina
   for (const int node : mesh.connectivity) data.connectivity.push_back(static_cast<int>(first) + node);
 }
 
-void write_vtu(const std::filesystem::path& path, const VtuData& data) {
+std::string vtu_text(const VtuData& data) {
   if (data.points.cols() > 0 && data.points.rows() != 2 && data.points.rows() != 3) {
     throw std::invalid_argument("vtu: points have 2 or 3 coordinates");
   }
@@ -197,11 +195,10 @@ void write_vtu(const std::filesystem::path& path, const VtuData& data) {
   out += "<Cells>\n" + cells(data) + "</Cells>\n";
   out += "<PointData>\n" + fields(data.point_fields, data.points.cols(), "points") + "</PointData>\n";
   out += "<CellData>\n" + fields(data.cell_fields, cell_count, "cells") + "</CellData>\n";
-  out += "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
-  write_file_atomically(path, out);
+  return out + "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
 }
 
-void write_pvd(const std::filesystem::path& path, const std::vector<PvdEntry>& entries) {
+std::string pvd_text(const std::vector<PvdEntry>& entries) {
   std::string out = fmt::format(
       "<?xml version=\"1.0\"?>\n"
       "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"{}\">\n"
@@ -212,8 +209,7 @@ void write_pvd(const std::filesystem::path& path, const std::vector<PvdEntry>& e
     out +=
         fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"0\" file=\"{}\"/>\n", entry.time, escaped(entry.file));
   }
-  out += "</Collection>\n</VTKFile>\n";
-  write_file_atomically(path, out);
+  return out + "</Collection>\n</VTKFile>\n";
 }
 
 }  // namespace stickslip

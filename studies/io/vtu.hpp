@@ -3,7 +3,6 @@
 /// Format: VTK File Formats, "XML File Formats" (Kitware).
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -35,9 +34,8 @@ struct VtuData {
 /// Throws std::invalid_argument where they do not fit. Fields are the caller's: body after body, in this order.
 void append_mesh(VtuData& data, const Mesh& mesh, const Points<double>& coordinates);
 
-/// Writes data to `path`, atomically. Throws std::invalid_argument, naming the field, where sizes do not fit together,
-/// and std::system_error where the disk refuses.
-void write_vtu(const std::filesystem::path& path, const VtuData& data);
+/// The file of the data. Throws std::invalid_argument, naming the field, where sizes do not fit together.
+std::string vtu_text(const VtuData& data);
 
 /// A file of a collection; `file` is relative to the folder of the .pvd.
 struct PvdEntry {
@@ -45,8 +43,7 @@ struct PvdEntry {
   std::string file;
 };
 
-/// Writes the collection, atomically, so that it can be written anew after each step and a killed run still opens.
-/// Throws std::system_error where the disk refuses.
-void write_pvd(const std::filesystem::path& path, const std::vector<PvdEntry>& entries);
+/// The file of the collection.
+std::string pvd_text(const std::vector<PvdEntry>& entries);
 
 }  // namespace stickslip

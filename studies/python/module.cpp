@@ -9,7 +9,6 @@
 #include <system_error>
 
 #include "core/algebra/linear_solver.hpp"
-#include "studies/io/directory_lock.hpp"
 #include "studies/io/input_fault.hpp"
 #include "studies/io/printing.hpp"
 #include "studies/python/arrays.hpp"
@@ -106,12 +105,10 @@ py::dict run(const py::object& scene, const Text& method, const py::dict& set, c
   RunResult run;
   {
     const py::gil_scoped_release unlocked;
-    std::optional<DirectoryLock> lock;
-    if (folder) {
-      prepare_run_directory(*folder);
-      lock.emplace(*folder);
-    }
+    std::optional<OutputFolder> held;
+    if (folder) held = folder_of_run(*folder);
     auto result = simulate(simulation, check_signals);
+    if (folder) remove_run(*folder);
     document = json_text(folder ? write_result(*folder, simulation, result)
                                 : result_json(result, canonical_text(simulation.input)));
     run = gather(std::move(simulation), std::move(result));

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
-#include "studies/io/atomic_file.hpp"
+#include "studies/io/output_folder.hpp"
 #include "studies/io/printing.hpp"
 #include "studies/report/chart_parts.hpp"
 #include "studies/report/look_up.hpp"
@@ -30,21 +31,14 @@ bool is_of_looks(const std::string& field) {
   return names.count(field) > 0 || field.starts_with("tag");
 }
 
-void write_drawing(const fs::path& stem, const Drawing& drawing) {
-  write_file_atomically(stem.string() + ".svg", drawing.svg_file());
-  write_file_atomically(stem.string() + ".pdf", drawing.pdf());
-  constexpr std::size_t most_pieces = 20'000;  // TeX's memory holds some ten times that
-  if (drawing.pieces() <= most_pieces) write_file_atomically(stem.string() + ".pgf", drawing.pgf());
-}
+/// By name.
+using Files = std::map<std::string, std::string>;
 
-/// Removes the figures that a folder holds.
-void clear(const fs::path& directory) {
-  std::vector<fs::path> old;
-  for (const auto& entry : fs::directory_iterator(directory))
-    if (const auto kind = entry.path().extension();
-        kind == ".svg" || kind == ".pdf" || kind == ".pgf" || kind == ".csv")
-      old.push_back(entry.path());
-  for (const auto& file : old) fs::remove(file);
+void add_drawing(const std::string& stem, const Drawing& drawing, Files& files) {
+  files[stem + ".svg"] = drawing.svg_file();
+  files[stem + ".pdf"] = drawing.pdf();
+  constexpr std::size_t most_pieces = 20'000;  // TeX's memory holds some ten times that
+  if (drawing.pieces() <= most_pieces) files[stem + ".pgf"] = drawing.pgf();
 }
 
 }  // namespace
@@ -71,27 +65,20 @@ std::string to_csv(const json& rows) {
   return out;
 }
 
-void remove_figures(const fs::path& directory) {
-  const auto folder = directory / "figures";
-  if (!fs::is_directory(folder)) return;
-  clear(folder);
-  if (fs::is_empty(folder)) fs::remove(folder);
-}
-
 void write_figures(const fs::path& directory, const std::vector<Figure>& figures, const std::vector<Plate>& plates) {
-  const auto folder = directory / "figures";
-  fs::create_directories(folder);
-  clear(folder);
+  Files files;
   for (const auto& figure : figures) {
     for (const auto& panel : figure.panels)
       if (const auto drawing = draw_plot(figure, panel))
-        write_drawing(folder / (figure.id + (panel.title.empty() ? "" : "-" + slug(panel.title))), *drawing);
-    write_file_atomically(folder / (figure.id + ".csv"), to_csv(figure.rows));
+        add_drawing(figure.id + (panel.title.empty() ? "" : "-" + slug(panel.title)), *drawing, files);
+    files[figure.id + ".csv"] = to_csv(figure.rows);
   }
   for (const auto& plate : plates) {
-    write_drawing(folder / plate.id, plate.drawing);
-    write_file_atomically(folder / (plate.id + ".csv"), to_csv(plate.rows));
+    add_drawing(plate.id, plate.drawing, files);
+    files[plate.id + ".csv"] = to_csv(plate.rows);
   }
+  remove_outputs(directory, {std::begin(figure_files), std::end(figure_files)});
+  write_outputs(directory / "figures", {files.begin(), files.end()});
 }
 
 }  // namespace stickslip::report

@@ -15,13 +15,13 @@ std::vector<std::string> columns_of(const nlohmann::json& rows);
 /// Rows of a chart as comma-separated values (RFC 4180), the header first; numbers read back to the same bits.
 std::string to_csv(const nlohmann::json& rows);
 
+/// What the names of these files are.
+inline constexpr const char* figure_files[] = {"figures/*.svg", "figures/*.pdf", "figures/*.pgf", "figures/*.csv"};
+
 /// Writes DIR/figures anew: NAME.svg, NAME.pdf and NAME.pgf (but of a very fine mesh) of each panel with what the
-/// report shows at first, and the figure's rows, of all that can be chosen, as ID.csv. Other files there stay; those of
-/// the four kinds go, since they are of a former report.
+/// report shows at first, and the figure's rows, of all that can be chosen, as ID.csv. Those of a former report go,
+/// files of others stay (write_outputs).
 void write_figures(const std::filesystem::path& directory, const std::vector<Figure>& figures,
                    const std::vector<Plate>& plates);
-
-/// Removes those files of a former report.
-void remove_figures(const std::filesystem::path& directory);
 
 }  // namespace stickslip::report

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <map>
 
-#include "studies/io/atomic_file.hpp"
 #include "studies/io/input_fault.hpp"
+#include "studies/io/output_folder.hpp"
 #include "studies/report/about.hpp"
 #include "studies/report/chart_parts.hpp"
 #include "studies/report/charts.hpp"
@@ -164,14 +164,20 @@ std::vector<Section> sections_of(const Study& all, const Study& study, Figures& 
 
 }  // namespace
 
+std::vector<std::string> report_files() {
+  std::vector<std::string> files(std::begin(figure_files), std::end(figure_files));
+  files.emplace_back("report.html");
+  return files;
+}
+
 void write_report(const std::filesystem::path& directory) try {
   const Study study = read_study(directory);
   const Study shown = sample_of(study);
   Figures figures;
   const std::string title = text_at(study.description, "title");
   const std::string first = "<section id=\"verdict\">\n" + first_screen(study, shown, figures) + "</section>\n";
-  write_file_atomically(directory / "report.html", page(title.empty() ? "Frictional contact study" : title, first,
-                                                        sections_of(study, shown, figures)));
+  write_output(directory / "report.html",
+               page(title.empty() ? "Frictional contact study" : title, first, sections_of(study, shown, figures)));
   write_figures(directory, figures.figures, figures.plates);
 } catch (const json::exception& error) {  // rows have checksums; what else is recorded may have been edited
   throw InputFault(directory.string() + ": study.json, picture.json or rows without a checksum hold what stickslip " +
@@ -183,8 +189,8 @@ void write_run_report(const std::filesystem::path& directory) try {
   Figures figures;
   const std::string title = text_at(run.description, "title");
   const std::string first = "<section id=\"run\">\n" + first_of_run(run, figures) + "</section>\n";
-  write_file_atomically(directory / "report.html",
-                        page(title.empty() ? "Frictional contact" : title, first, sections_of_run(run, figures)));
+  write_output(directory / "report.html",
+               page(title.empty() ? "Frictional contact" : title, first, sections_of_run(run, figures)));
   write_figures(directory, figures.figures, figures.plates);
 } catch (const json::exception& error) {  // it may have been edited
   throw InputFault(directory.string() + ": result.json or picture.json hold what stickslip does not write (" +

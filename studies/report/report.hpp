@@ -2,11 +2,16 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace stickslip {
 
+/// What the names of the files of a report are.
+std::vector<std::string> report_files();
+
 /// Reads study.json, results.jsonl and picture.json of `directory` (all but results.jsonl may be missing) and writes
-/// directory/report.html, whole or not at all.
+/// directory/report.html and its figures, each whole or not at all (write_output).
 /// Throws std::runtime_error, with the path, where results.jsonl cannot be read or study.json or picture.json is no
 /// JSON, and its kind std::system_error where the file cannot be written.
 ///

@@ -7,9 +7,11 @@
 #include "core/model/loading.hpp"
 #include "methods/engine_choice.hpp"
 #include "studies/input/method_options.hpp"
+#include "studies/input/size_estimate.hpp"
 #include "studies/io/numerals.hpp"
 #include "studies/io/printing.hpp"
 #include "studies/run/ledger_forecast.hpp"
+#include "studies/run/simulation.hpp"
 
 namespace stickslip {
 namespace {
@@ -146,6 +148,7 @@ std::string explain(const Input& input, const Problem& problem) {
   const bool unknown = has_unknown_multipliers(input.method);
   text += fmt::format("unknowns: {} displacements", model.free_dofs.size());
   text += unknown ? fmt::format(", {} multipliers\n", model.multiplier_count) : ", no multipliers among the unknowns\n";
+  text += "at its peak: " + about(needed_bytes(problem, input)) + ", within a factor of two\n";
   text += fmt::format("method: {}\n", json_with_exact_numbers(to_json(input.method)));
   text += engine_lines(input, problem);
   text +=

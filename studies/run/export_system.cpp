@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <unsupported/Eigen/SparseExtra>
+#include <Eigen/SparseCore>
+#include <iterator>
 
 #include "core/model/body_matrix.hpp"
 #include "core/model/loading.hpp"
-#include "studies/io/atomic_file.hpp"
+#include "studies/io/output_folder.hpp"
 #include "studies/io/printing.hpp"
 #include "studies/run/contact_points.hpp"
 
@@ -85,6 +86,22 @@ std::string points_csv(const Model& model, const State<double>& state) {
   return text;
 }
 
+/// A matrix in the format of Matrix Market, all digits.
+std::string matrix_market(const Sparse& matrix) {
+  std::string text = fmt::format("%%MatrixMarket matrix coordinate real general\n{} {} {}\n", matrix.rows(),
+                                 matrix.cols(), matrix.nonZeros());
+  for (int j = 0; j < matrix.outerSize(); ++j)
+    for (Sparse::InnerIterator entry(matrix, j); entry; ++entry)
+      fmt::format_to(std::back_inserter(text), "{} {} {}\n", entry.row() + 1, entry.col() + 1, entry.value());
+  return text;
+}
+
+std::string matrix_market(const Vector<double>& vector) {
+  std::string text = fmt::format("%%MatrixMarket matrix array real general\n{} 1\n", vector.size());
+  for (const double x : vector) fmt::format_to(std::back_inserter(text), "{}\n", x);
+  return text;
+}
+
 constexpr const char* readme =
     R"(The system of the last step, small strain, at time {} ({} displacements, {} multipliers).
 
@@ -102,6 +119,10 @@ Where a support is inclined, a row is a direction of its frame, not an axis. Wha
 )";
 
 }  // namespace
+
+std::vector<std::string> exported_files() {
+  return {"K.mtx", "G.mtx", "lambda.mtx", "f.mtx", "u.mtx", "g.mtx", "rows.csv", "points.csv", "README"};
+}
 
 std::vector<std::string> export_system(const std::filesystem::path& folder, const CaseResult& result) {
   const auto& model = result.problem->model;
@@ -129,19 +150,21 @@ std::vector<std::string> export_system(const std::filesystem::path& folder, cons
               geometry.area * (c == 0 ? geometry.normal[i] : geometry.tangents(i, c - 1)) * moved[i];
     });
   }
-  std::filesystem::create_directories(folder);
-  const auto path = [&](const char* name) { return (folder / name).string(); };
   const Sparse K_free = select * K * select.transpose(), G_free = select * G;
-  Eigen::saveMarket(K_free, path("K.mtx"));
-  Eigen::saveMarket(G_free, path("G.mtx"));
-  Eigen::saveMarketVector(state.contact.traction, path("lambda.mtx"));
-  Eigen::saveMarketVector(Vector<double>(select * f), path("f.mtx"));
-  Eigen::saveMarketVector(Vector<double>(select * u), path("u.mtx"));
-  Eigen::saveMarketVector(g, path("g.mtx"));
-  write_file_atomically(folder / "rows.csv", rows_csv(model, slots));
-  write_file_atomically(folder / "points.csv", points_csv(model, state));
-  write_file_atomically(folder / "README", fmt::format(readme, increment.time, K_free.rows(), G.cols()));
-  return {"K.mtx", "G.mtx", "lambda.mtx", "f.mtx", "u.mtx", "g.mtx", "rows.csv", "points.csv", "README"};
+  const std::vector<std::string> names = exported_files(),
+                                 contents = {matrix_market(K_free),
+                                             matrix_market(G_free),
+                                             matrix_market(state.contact.traction),
+                                             matrix_market(Vector<double>(select * f)),
+                                             matrix_market(Vector<double>(select * u)),
+                                             matrix_market(g),
+                                             rows_csv(model, slots),
+                                             points_csv(model, state),
+                                             fmt::format(readme, increment.time, K_free.rows(), G.cols())};
+  NamedContents files;
+  for (std::size_t i = 0; i < names.size(); ++i) files.emplace_back(names[i], contents[i]);
+  write_outputs(folder, files);
+  return names;
 }
 
 }  // namespace stickslip

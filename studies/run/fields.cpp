@@ -7,8 +7,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "methods/checkpoints.hpp"
 #include "studies/input/obstacle_kinds.hpp"
 #include "studies/input/response_kinds.hpp"
+#include "studies/io/output_folder.hpp"
 #include "studies/io/vtu.hpp"
 #include "studies/run/contact_points.hpp"
 #include "studies/run/strains.hpp"
@@ -327,15 +329,20 @@ Vector<double> traction_vector(const Problem& problem, const State<double>& stat
   return t;
 }
 
-void write_fields(const std::filesystem::path& directory, const CaseResult& result, int every) {
+void for_each_field(const CaseResult& result, int every, const std::function<void(std::string, std::string)>& take) {
   std::vector<PvdEntry> entries;
   for (const std::size_t n : steps_with_fields(result, every)) {
     const std::string file = field_file(n);
-    write_vtu(directory / file, fields_of(result, result.steps[n], n + 1 == result.steps.size()));
+    take(file, vtu_text(fields_of(result, result.steps[n], n + 1 == result.steps.size())));
     const bool may_return = result.problem->model.scene.arc_length.has_value();  // (viewers put times in order)
     entries.push_back({may_return ? static_cast<double>(n + 1) : result.steps[n].increment->time, file});
   }
-  write_pvd(directory / "fields.pvd", entries);
+  take("fields.pvd", pvd_text(entries));
+}
+
+void write_fields(const std::filesystem::path& directory, const CaseResult& result, int every) {
+  for_each_field(result, every,
+                 [&](const std::string& name, const std::string& text) { write_output(directory / name, text); });
 }
 
 std::vector<std::string> field_files(const CaseResult& result, int every) {
@@ -346,7 +353,8 @@ std::vector<std::string> field_files(const CaseResult& result, int every) {
 
 namespace {
 
-/// The displacements, step by step, of points on springs and of their anchors; of many steps some, the last among them.
+/// The displacements, step by step, of points on springs and of their anchors; of many steps some, the last among them,
+/// and none of those that an adjoint let go.
 json paths_json(const CaseResult& result) {
   constexpr std::size_t most = 200;  // of a path: more than a picture shows
   const auto& model = result.problem->model;
@@ -359,7 +367,8 @@ json paths_json(const CaseResult& result) {
     for (const int node : nodes) {
       json displacement = json::array();
       for (std::size_t n = (result.steps.size() - 1) % stride; n < result.steps.size(); n += stride)
-        displacement.push_back(point_json(nodal(model, result.steps[n].increment->state.displacement).col(node)));
+        if (const auto& state = result.steps[n].increment->state; is_whole(state))
+          displacement.push_back(point_json(nodal(model, state.displacement).col(node)));
       paths.push_back({{"node", node}, {"displacement", displacement}});
     }
   }

@@ -25,6 +25,19 @@ int fields_every(const OutputOptions& output) {
   return 0;
 }
 
+/// What the bodies and their contact need, by sparse matrices.
+ProblemSize size_without_steps(const Model& model) {
+  return {static_cast<double>(model.free_dofs.size()),
+          static_cast<double>(model.contact_nodes.size()) * model.dimension, static_cast<double>(model.points.size()),
+          0, false};
+}
+
+void add_steps(const Model& model, const Input& input, ProblemSize& size) {
+  size.steps = static_cast<double>(model.times.size());
+  if (const auto plan = plan_checkpoints(model, run_options(input)))
+    size.thin_steps = std::max(0.0, size.steps - static_cast<double>(plan->whole() + plan->stride - 1));
+}
+
 }  // namespace
 
 std::optional<Simulation> prepare(const JsonDocument& document, const Overrides& overrides,
@@ -47,14 +60,19 @@ std::optional<Simulation> prepare(const std::string& file, const Overrides& over
   return document ? prepare(*document, overrides, method, diagnostics) : std::nullopt;
 }
 
+double needed_bytes(const Problem& problem, const Input& input) {
+  ProblemSize size = size_without_steps(problem.model);
+  add_steps(problem.model, input, size);
+  size.condensed = condenses(problem.model, input.method, input.linear_algebra.engine);
+  return estimated_bytes(size);
+}
+
 void check_memory(const Problem& problem, const Input& input) {
   using Engine = LinearAlgebra::Engine;
   const auto& model = problem.model;
   const Engine engine = input.linear_algebra.engine;
   const double limit = memory_limit();
-  ProblemSize size{static_cast<double>(model.free_dofs.size()),
-                   static_cast<double>(model.contact_nodes.size()) * model.dimension,
-                   static_cast<double>(model.points.size()), 0, false};
+  ProblemSize size = size_without_steps(model);
   if (estimated_bytes(size) > limit)
     throw ModelError("the bodies need " + too_much(estimated_bytes(size), limit) + "; try fewer cells", "/bodies");
   size.condensed = true;  // or so: to find out takes an analysis, which is made where it matters
@@ -68,9 +86,7 @@ void check_memory(const Problem& problem, const Input& input) {
     throw ModelError("the bodies, condensed to " + shown(size.contact_dofs) + " contact dofs, need " +
                          too_much(estimated_bytes(size), limit) + R"(; try {"engine": "sparse"}, or fewer cells)",
                      engine == Engine::condensed ? "/linear_solver/engine" : "/linear_solver");
-  size.steps = static_cast<double>(model.times.size());
-  if (const auto plan = plan_checkpoints(model, run_options(input)))
-    size.thin_steps = std::max(0.0, size.steps - static_cast<double>(plan->whole() + plan->stride - 1));
+  add_steps(model, input, size);
   if (is_too_much())
     throw ModelError("its " + shown(size.steps) + " steps need " + too_much(estimated_bytes(size), limit) +
                          "; try fewer, or tables with fewer points",
@@ -92,29 +108,18 @@ CaseResult simulate(const Simulation& simulation, const std::function<void()>& o
   return run_case(simulation.problem, simulation.input.method, options, condensation);
 }
 
-void prepare_run_directory(const std::filesystem::path& directory, bool report) {
+OutputFolder folder_of_run(const std::filesystem::path& directory, const std::vector<std::string>& others) {
   if (holds(directory, "study.json"))
     throw InputFault(directory.string() + ": holds a study; -o DIR writes to another directory");
-  std::vector<std::string> files = {"result.json", "fields.pvd"}, folders;
-  if (report) {
-    files.insert(files.end(), {"picture.json", "report.html"});
-    folders.emplace_back("figures");
-  }
-  prepare_directory(directory, files, folders);
+  std::vector<std::string> names(others);
+  names.emplace_back("result.json");
+  names.insert(names.end(), std::begin(field_names), std::end(field_names));
+  return {directory, names};
 }
 
-void remove_fields(const std::filesystem::path& directory) {
-  constexpr std::string_view begin = "fields_", end = ".vtu";
-  std::vector<std::filesystem::path> old;
-  std::error_code none;
-  for (const auto& entry : std::filesystem::directory_iterator(directory, none)) {
-    const std::string name = entry.path().filename();
-    const bool framed = name.size() > begin.size() + end.size() && name.starts_with(begin) && name.ends_with(end);
-    if (framed && name.substr(begin.size(), name.size() - begin.size() - end.size()).find_first_not_of("0123456789") ==
-                      std::string::npos)
-      old.push_back(entry.path());
-  }
-  for (const auto& file : old) std::filesystem::remove(file);
+void remove_run(const std::filesystem::path& directory) {
+  remove_outputs(directory, {"result.json", "fields.pvd", "fields_#.vtu", "picture.json", "report.html", "figures/*",
+                             "trace.csv", "cones.svg"});
 }
 
 nlohmann::json write_result(const std::filesystem::path& directory, const Simulation& simulation,
@@ -123,7 +128,6 @@ nlohmann::json write_result(const std::filesystem::path& directory, const Simula
   const int every = fields_every(simulation.input.output);
   {
     const Stopwatch time(written.seconds);
-    remove_fields(directory);
     write_fields(directory, result, every);
   }
   const auto fields = field_files(result, every);
@@ -132,7 +136,7 @@ nlohmann::json write_result(const std::filesystem::path& directory, const Simula
   auto document = result_json(result, canonical_text(simulation.input));
   document["cost"]["seconds"]["output"] = written.seconds;
   document["ledger"] = ledger_json(ledger(result, written));
-  write_file_atomically(directory / "result.json", json_text(document, 2) + "\n");
+  write_output(directory / "result.json", json_text(document, 2) + "\n");
   return document;
 }
 

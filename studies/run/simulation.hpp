@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "studies/input/scene_reader.hpp"
+#include "studies/io/output_folder.hpp"
 #include "studies/run/ledger.hpp"
 
 namespace stickslip {
@@ -28,6 +29,9 @@ std::optional<Simulation> prepare(const JsonDocument& document, const Overrides&
 std::optional<Simulation> prepare(const std::string& file, const Overrides& overrides,
                                   const std::optional<std::string>& method, Diagnostics& diagnostics);
 
+/// Bytes that a run needs, as estimated before it (studies/input/size_estimate.hpp).
+double needed_bytes(const Problem& problem, const Input& input);
+
 /// Throws ModelError if a run would need more memory than there is. The message has the bytes and what to try.
 void check_memory(const Problem& problem, const Input& input);
 
@@ -38,16 +42,16 @@ RunOptions run_options(const Input& input);
 /// records every iterate; nullptr: none.
 CaseResult simulate(const Simulation& simulation, const std::function<void()>& on_step = {}, Trace* trace = nullptr);
 
-/// Makes the directory of a run, and of its `report`, if it does not exist. Throws InputFault if it holds a study or
-/// cannot be written to.
-void prepare_run_directory(const std::filesystem::path& directory, bool report = false);
+/// The folder of a run, for result.json, fields and `others`. Throws what OutputFolder throws, and InputFault if it
+/// holds a study.
+OutputFolder folder_of_run(const std::filesystem::path& directory, const std::vector<std::string>& others = {});
 
-/// Removes the fields_NNNN.vtu of an earlier run, which would mix with those of the next.
-void remove_fields(const std::filesystem::path& directory);
+/// Deletes what an earlier run left, which would mix with the files of the next.
+void remove_run(const std::filesystem::path& directory);
 
-/// Writes DIR/result.json and DIR/fields.pvd with its .vtu files, in place of those of an earlier run. Returns the
-/// content of result.json (docs/results.md). `before`: files already written, for its ledger. Throws std::system_error
-/// if writing fails.
+/// Writes DIR/fields.pvd with its .vtu files, and then DIR/result.json (write_output). Returns the content of
+/// result.json (docs/results.md). `before`: files already written, for its ledger. Throws std::system_error if writing
+/// fails. pre: remove_run()
 nlohmann::json write_result(const std::filesystem::path& directory, const Simulation& simulation,
                             const CaseResult& result, const Written& before = {});
 

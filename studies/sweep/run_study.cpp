@@ -1,7 +1,6 @@
 #include "studies/sweep/run_study.hpp"
 
 #include <fmt/core.h>
-#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,9 +11,9 @@
 #include <vector>
 
 #include "studies/io/atomic_file.hpp"
-#include "studies/io/directory_lock.hpp"
 #include "studies/io/input_fault.hpp"
 #include "studies/io/interrupts.hpp"
+#include "studies/io/output_folder.hpp"
 #include "studies/io/printing.hpp"
 #include "studies/io/progress.hpp"
 #include "studies/io/result_rows.hpp"
@@ -22,6 +21,7 @@
 #include "studies/run/explain.hpp"
 #include "studies/run/fields.hpp"
 #include "studies/run/simulation.hpp"
+#include "studies/sweep/attempt.hpp"
 #include "studies/sweep/shard.hpp"
 #include "studies/sweep/study_cell.hpp"
 #include "studies/sweep/timing.hpp"
@@ -115,7 +115,7 @@ json description(const Plan& plan, const StudyArguments& arguments, MeshFiles& m
 }
 
 void write_description(const fs::path& directory, const json& description) {
-  write_file_atomically(directory / "study.json", json_text(description, 2) + "\n");
+  write_output(directory / "study.json", json_text(description, 2) + "\n");
 }
 
 std::ptrdiff_t rows_of_other_shards(const Plan& plan, const RowsById& rows) {
@@ -156,15 +156,44 @@ std::string name_of_cell(const CellInput& cell) {
   return cell.label + (variant.empty() ? "" : ", " + variant);
 }
 
-/// Whether such a signal comes from outside: the user, a scheduler, or the kernel where memory runs out. The others
-/// are the program's own fault.
-bool from_outside(int signal) {
-  return signal == SIGKILL || signal == SIGTERM || signal == SIGINT || signal == SIGHUP || signal == SIGXCPU;
+/// The picture of the last variant, its fields, and the closed form's curves beside it; `fault` where it cannot be
+/// drawn, as for want of memory.
+json showcase_of(const Plan& plan, CellRunner& runner) {
+  json out;
+  const auto breakdown = attempt([&] {
+    const auto result = runner.showcase(plan.cells.size() - 1);
+    out = {{"picture", picture_json(result)}, {"size", size_json(result)}, {"fields", json::object()}};
+    for_each_field(result, 0, [&](const std::string& name, const std::string& text) { out["fields"][name] = text; });
+    if (!is_converged(result.status())) return;
+    for (const auto& reference : plan.study.references)
+      if (reference.kind == Reference::Kind::analytic && !out.contains("analytic"))
+        if (const auto values = reference_values(reference.entry, result); !values.curves.is_null())
+          out["analytic"] = {{"name", reference.entry.value("analytic", "")}, {"curves", values.curves}};
+  });
+  return breakdown ? json{{"fault", breakdown->message}} : out;
 }
 
-/// The accuracy pass: runs what is missing and records each cell as soon as it is done.
-Tally run_missing(const Plan& plan, const DirectoryLock& lock, const Listener& listener, CellRunner& runner, int jobs,
-                  RowsById& rows) {
+/// A picture that cannot be drawn is missing in the report; the rows are what counts.
+void note_fault(const Listener& listener, const std::string& fault) {
+  listener.log << printable(fmt::format("note: there is no picture of the solution: {}", fault)) << '\n';
+}
+
+/// Writes the picture, and study.json, which has its size.
+void write_showcase(const Plan& plan, const json& showcase, const Listener& listener, json& described) {
+  if (showcase.contains("fault")) return note_fault(listener, showcase["fault"]);
+  remove_outputs(plan.directory, {std::begin(field_names), std::end(field_names)});
+  write_output(plan.directory / "picture.json", json_text(showcase["picture"]));
+  for (const auto& [name, text] : showcase["fields"].items())
+    write_output(plan.directory / name, text.get_ref<const std::string&>());
+  for (const char* drawn : {"size", "analytic"})
+    if (showcase.contains(drawn)) described[drawn] = showcase[drawn];
+  write_description(plan.directory, described);
+}
+
+/// The accuracy pass: runs what is missing and records each cell as soon as it is done. Then draws the picture, unless
+/// that is `drawn`. Neither is done by this process: a crash is a row, and takes no other cell with it.
+Tally run_missing(const Plan& plan, const OutputFolder& folder, const Listener& listener, CellRunner& runner, int jobs,
+                  bool drawn, json& described, RowsById& rows) {
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < plan.cells.size(); ++i)
     if (rows.count(plan.cells[i].id) == 0) missing.push_back(i);
@@ -172,7 +201,7 @@ Tally run_missing(const Plan& plan, const DirectoryLock& lock, const Listener& l
   Progress progress(listener.log, progress_style_of_stderr(), "cells", static_cast<long>(plan.cells.size()));
   progress.skip(static_cast<long>(plan.cells.size() - missing.size()));
   const auto record = [&](const CellInput& cell, json row) {
-    lock.check();
+    folder.check();
     append_row(plan.directory, row);
     ++tally.run;
     if (!converged(row)) {
@@ -184,21 +213,29 @@ Tally run_missing(const Plan& plan, const DirectoryLock& lock, const Listener& l
     progress.advance();
     listener.end_of_run();
   };
+  const bool draws = !drawn && !plan.cells.empty();
+  const auto is_cell = [&](std::size_t i) { return i < missing.size(); };
   run_in_processes(
-      jobs, missing.size(), [&](std::size_t i) { return json_text(runner.row(missing[i])); },
-      [&](std::size_t i, const std::string& text) { record(plan.cells[missing[i]], json::parse(text)); },
-      [&](std::size_t i, int signal) {
-        const std::string end = fmt::format("its process was ended by signal {} ({})", signal, ::strsignal(signal));
-        if (from_outside(signal))
-          progress.note(printable(fmt::format("{}: {}; it has no row", name_of_cell(plan.cells[missing[i]]), end)));
+      jobs, missing.size() + (draws ? 1 : 0),
+      [&](std::size_t i) { return json_text(is_cell(i) ? runner.row(missing[i]) : showcase_of(plan, runner)); },
+      [&](std::size_t i, const std::string& text) {
+        if (is_cell(i)) return record(plan.cells[missing[i]], json::parse(text));
+        folder.check();
+        write_showcase(plan, json::parse(text), listener, described);
+      },
+      [&](std::size_t i, const Loss& loss) {
+        if (!is_cell(i)) return note_fault(listener, loss.words);
+        if (loss.from_outside)
+          progress.note(
+              printable(fmt::format("{}: {}; it has no row", name_of_cell(plan.cells[missing[i]]), loss.words)));
         else
-          record(plan.cells[missing[i]], runner.failed_row(missing[i], "failed", end + ", please report it"));
+          record(plan.cells[missing[i]], runner.failed_row(missing[i], "failed", loss.words + ", please report it"));
       });
   return tally;
 }
 
 /// The timing pass: serial, over the cells that converged; what is recorded is not run again.
-void time_cells(const Plan& plan, const DirectoryLock& lock, const Listener& listener, CellRunner& runner,
+void time_cells(const Plan& plan, const OutputFolder& folder, const Listener& listener, CellRunner& runner,
                 const RowsById& rows) {
   std::vector<std::size_t> cells;
   std::vector<std::string> keys;
@@ -224,7 +261,7 @@ void time_cells(const Plan& plan, const DirectoryLock& lock, const Listener& lis
     } catch (const std::exception& error) {
       progress.note(printable(fmt::format("{}: not timed: {}", name_of_cell(plan.cells[cell]), error.what())));
     }
-    lock.check();
+    folder.check();
     if (!seconds.is_null()) append_timing(plan.directory, plan.cells[cell].id, run.round, seconds);
     progress.advance();
     listener.end_of_run();
@@ -244,32 +281,6 @@ void take_timings(const fs::path& directory, std::ostream& log, RowsById& rows) 
     auto& cost = row->second["cost"];
     cost["seconds"] = least_seconds(runs);
     cost["timing"] = {{"repeat", runs.size()}, {"median", median_seconds(runs)}};
-  }
-}
-
-/// The picture of the last variant, its fields, and the closed form's curves beside it.
-void draw_showcase(const Plan& plan, CellRunner& runner, json& described) {
-  const auto result = runner.showcase(plan.cells.size() - 1);
-  remove_fields(plan.directory);
-  write_file_atomically(plan.directory / "picture.json", json_text(picture_json(result)));
-  write_fields(plan.directory, result, 0);
-  described["size"] = size_json(result);
-  if (is_converged(result.status()))
-    for (const auto& reference : plan.study.references)
-      if (reference.kind == Reference::Kind::analytic && described["analytic"].is_null())
-        if (const auto values = reference_values(reference.entry, result); !values.curves.is_null())
-          described["analytic"] = {{"name", reference.entry.value("analytic", "")}, {"curves", values.curves}};
-  write_description(plan.directory, described);
-}
-
-/// A picture that cannot be drawn, as for want of memory, is missing in the report; the rows are what counts.
-void try_to_draw(const Plan& plan, std::ostream& log, CellRunner& runner, json& described) {
-  try {
-    draw_showcase(plan, runner, described);
-  } catch (const std::system_error&) {
-    throw;  // the disk's
-  } catch (const std::exception& error) {
-    log << printable(fmt::format("note: there is no picture of the solution: {}", error.what())) << '\n';
   }
 }
 
@@ -300,9 +311,7 @@ class InterruptNote {
 StudyOutcome carry_out(const Plan& plan, const StudyArguments& arguments, const Listener& listener, MeshFiles& meshes) {
   if (holds(plan.directory, "result.json"))
     throw InputFault(plan.directory.string() + ": holds the result of a run; -o DIR writes to another directory");
-  prepare_directory(plan.directory, {"results.jsonl", "timings.jsonl", "study.json", "picture.json", "report.html"},
-                    {"figures"});
-  const DirectoryLock lock(plan.directory);
+  const OutputFolder folder(plan.directory, study_files());
   if (!arguments.restart) check_records(plan.directory);
   if (const auto found = read_rows(plan.directory).rows.size(); found > 0 && !arguments.resume && !arguments.restart)
     throw InputFault(
@@ -310,8 +319,7 @@ StudyOutcome carry_out(const Plan& plan, const StudyArguments& arguments, const 
                     "missing, --restart deletes them, -o DIR writes to another directory",
                     plan.directory.string(), found));
   if (arguments.restart)
-    for (const char* file : {"results.jsonl", "timings.jsonl", "study.json", "picture.json"})
-      fs::remove(plan.directory / file);
+    remove_outputs(plan.directory, {"results.jsonl", "timings.jsonl", "study.json", "picture.json"});
   json described = description(plan, arguments, meshes);
   const bool drawn = is_described(plan.directory, described);
   if (!drawn) write_description(plan.directory, described);
@@ -324,11 +332,9 @@ StudyOutcome carry_out(const Plan& plan, const StudyArguments& arguments, const 
         fmt::format("{} row(s) of this study that are not of shard {} stay as they are", others, plan.shard.text()));
   for (const auto& note : notes) listener.log << "note: " << printable(note) << '\n';
   CellRunner runner(plan.study, plan.cells, meshes);
-  const Tally tally = run_missing(plan, lock, listener, runner, arguments.jobs, rows);
-  lock.check();
-  if (!drawn && !plan.cells.empty()) try_to_draw(plan, listener.log, runner, described);
-  time_cells(plan, lock, listener, runner, rows);
-  lock.check();
+  const Tally tally = run_missing(plan, folder, listener, runner, arguments.jobs, drawn, described, rows);
+  time_cells(plan, folder, listener, runner, rows);
+  folder.check();
   take_timings(plan.directory, listener.log, rows);
   write_rows(plan.directory, plan.ids, rows);
   const auto recorded =
@@ -339,6 +345,14 @@ StudyOutcome carry_out(const Plan& plan, const StudyArguments& arguments, const 
 }
 
 }  // namespace
+
+std::vector<std::string> study_files() {
+  std::vector<std::string> files = report_files();
+  files.insert(files.end(), std::begin(record_files), std::end(record_files));
+  files.insert(files.end(), std::begin(field_names), std::end(field_names));
+  files.emplace_back("picture.json");
+  return files;
+}
 
 std::optional<StudyOutcome> run_study(const StudyArguments& arguments, std::ostream& log, Diagnostics& diagnostics,
                                       const std::function<void()>& on_run) {

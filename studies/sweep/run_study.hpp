@@ -6,6 +6,7 @@
 #include <iosfwd>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "studies/io/diagnostics.hpp"
 
@@ -29,11 +30,14 @@ struct StudyOutcome {
   long lost = 0;    ///< without a row: their processes were ended from outside
 };
 
+/// What the names of the files of a study are.
+std::vector<std::string> study_files();
+
 /// Runs the cells that are missing, times them and writes the report. Progress and notes go to `log`; `on_run` is
 /// called after each run, and what it throws ends the study, whose finished cells are on the disk. None where the study
 /// or its scene has a fault: all are in the diagnostics, and nothing was written. Throws InputFault where the directory
-/// is not to be written to, std::system_error where the disk refuses. pre: with several jobs the caller's other threads
-/// hold nothing that a run needs.
+/// is not to be written to, std::system_error where the disk refuses. Cells run in processes of their own; pre: the
+/// caller's other threads hold nothing that a run needs.
 std::optional<StudyOutcome> run_study(const StudyArguments& arguments, std::ostream& log, Diagnostics& diagnostics,
                                       const std::function<void()>& on_run = {});
 

@@ -12,6 +12,8 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
+#include <cstring>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <system_error>
@@ -70,6 +72,22 @@ void write_all(int file, const std::string& text) {
   ::_exit(0);
 }
 
+/// Whether such a signal comes from outside.
+bool from_outside(int signal) {
+  return signal == SIGKILL || signal == SIGTERM || signal == SIGINT || signal == SIGHUP || signal == SIGXCPU;
+}
+
+/// Of the status of a process that ended; none where it did what there was to do.
+std::optional<Loss> loss_of(int status) {
+  if (WIFSIGNALED(status)) {
+    const int signal = WTERMSIG(status);
+    return Loss{signal, "its process was ended by signal " + std::to_string(signal) + " (" + ::strsignal(signal) + ")",
+                from_outside(signal)};
+  }
+  if (WEXITSTATUS(status) == 0) return std::nullopt;
+  return Loss{0, "its process ended itself with exit code " + std::to_string(WEXITSTATUS(status)), false};
+}
+
 /// The children; none outlives this.
 class Pool {
  public:
@@ -108,16 +126,14 @@ class Pool {
     workers.push_back({process, ends[0], {}, {}});
   }
 
-  /// Forgets a worker that closed its pipe and returns the signal that ended it, 0 for none.
-  int dismiss(Worker& worker) {
+  /// Forgets a worker that closed its pipe and returns what was amiss; none where it had nothing left to do.
+  std::optional<Loss> dismiss(Worker& worker) {
     ::close(worker.input);
     worker.input = -1;
     int status = 0;
     ::waitpid(worker.process, &status, 0);
     worker.process = 0;
-    if (WIFSIGNALED(status)) return WTERMSIG(status);
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw std::runtime_error("a worker ended without a word");
-    return 0;
+    return loss_of(status);
   }
 
   std::vector<Worker> workers;
@@ -140,19 +156,22 @@ void deliver(Pool::Worker& worker, const std::function<void(std::size_t, const s
   worker.unread.erase(0, begin);
 }
 
-}  // namespace
-
-void run_in_processes(int jobs, std::size_t count, const std::function<std::string(std::size_t)>& work,
-                      const std::function<void(std::size_t, const std::string&)>& done,
-                      const std::function<void(std::size_t, int)>& lost) {
-  if (jobs <= 1 || count <= 1) {
-    for (std::size_t i = 0; i < count; ++i) done(i, work(i));
-    return;
-  }
-  std::fflush(nullptr);  // what is buffered would be written by each child too
+/// Has the pieces done whose numbers are given, and returns those that nobody began: of a process that ended between
+/// two of them.
+std::vector<std::size_t> work_off(int jobs, std::vector<std::size_t> pieces,
+                                  const std::function<std::string(std::size_t)>& work,
+                                  const std::function<void(std::size_t, const std::string&)>& done,
+                                  const std::function<void(std::size_t, const Loss&)>& lost) {
+  const std::vector<std::size_t> given = pieces;
+  const auto work_on = [&](std::size_t k) { return work(given[k]); };
+  const auto settle = [&](std::size_t k) { std::erase(pieces, given[k]); };
+  const auto take = [&](std::size_t k, const std::string& text) {
+    settle(k);
+    done(given[k], text);
+  };
   SharedCounter counter;
   Pool pool;
-  for (int j = 0; j < jobs && static_cast<std::size_t>(j) < count; ++j) pool.add(counter, count, work);
+  for (int j = 0; j < jobs && static_cast<std::size_t>(j) < given.size(); ++j) pool.add(counter, given.size(), work_on);
   std::size_t open = pool.workers.size();
   while (open > 0) {
     std::vector<pollfd> ready;
@@ -167,16 +186,33 @@ void run_in_processes(int jobs, std::size_t count, const std::function<std::stri
       if (size < 0 && errno == EINTR) continue;
       if (size < 0) fail("read from a worker");
       worker.unread.append(block, static_cast<std::size_t>(size));
-      deliver(worker, done);
+      deliver(worker, take);
       if (size > 0) continue;
       --open;
-      const int signal = pool.dismiss(worker);
+      const auto loss = pool.dismiss(worker);
       const auto piece = std::exchange(worker.piece, std::nullopt);
-      if (signal == 0 || !piece) continue;
-      lost(*piece, signal);
-      pool.add(counter, count, work);
+      if (!loss || !piece) continue;
+      settle(*piece);
+      lost(given[*piece], *loss);
+      pool.add(counter, given.size(), work_on);
       ++open;
     }
+  }
+  return pieces;
+}
+
+}  // namespace
+
+void run_in_processes(int jobs, std::size_t count, const std::function<std::string(std::size_t)>& work,
+                      const std::function<void(std::size_t, const std::string&)>& done,
+                      const std::function<void(std::size_t, const Loss&)>& lost) {
+  std::fflush(nullptr);  // what is buffered would be written by each child too
+  std::vector<std::size_t> pieces(count);
+  std::iota(pieces.begin(), pieces.end(), 0);
+  while (!pieces.empty()) {
+    auto left = work_off(jobs, pieces, work, done, lost);
+    if (left.size() == pieces.size()) throw std::runtime_error("the workers end before they begin");
+    pieces = std::move(left);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -9,8 +10,6 @@
 #include <fstream>
 #include <stdexcept>
 #include <system_error>
-
-#include "studies/io/input_fault.hpp"
 
 namespace stickslip {
 namespace {
@@ -108,42 +107,25 @@ TEST_F(AtomicFile, AppendedLinesComeBackInOrder) {
   EXPECT_EQ(read_lines(path), (std::vector<std::string>{R"({"id":"1"})", "", R"({"id":"3"})"}));
 }
 
-TEST_F(AtomicFile, ADirectoryIsMadeReadyOrRefused) {
-  const fs::path directory = folder_ / "new" / "results", file = folder_ / "file";
-  prepare_directory(directory, {"a.json"}, {"figures"});
-  EXPECT_TRUE(fs::is_directory(directory / "figures"));
-  std::ofstream(file) << "text";
-  fs::create_directories(directory / "b.json");
-  std::ofstream(directory / "plots") << "text";
-  const auto refused = [](const fs::path& at, const std::string& file_in, const std::string& folder_in) {
+TEST_F(AtomicFile, ALineThatTheDiskRefusesLeavesNothing) {
+  const fs::path path = folder_ / "results.jsonl";
+  append_line(path, "first");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit small{8, 8};
+    if (::setrlimit(RLIMIT_FSIZE, &small) != 0) ::_exit(1);
     try {
-      prepare_directory(at, {file_in}, {folder_in});
-    } catch (const InputFault& fault) {
-      return std::string(fault.what());
+      append_line(path, "second");
+    } catch (const std::system_error& error) {
+      ::_exit(error.code() == std::errc::file_too_large ? 0 : 2);
     }
-    return std::string();
-  };
-  EXPECT_EQ(refused(file, "a", "b"), file.string() + ": is a file; must be a directory, or a name that is free");
-  EXPECT_EQ(refused(file / "in", "a", "b"), (file / "in").string() + ": cannot be made: Not a directory");
-  EXPECT_EQ(refused(folder_ / std::string(300, 'x'), "a", "b").substr((folder_ / "").string().size() + 300),
-            ": cannot be made: File name too long");
-  EXPECT_EQ(refused(directory, "b.json", "figures"),
-            (directory / "b.json").string() + ": is a directory; the file of this name goes there");
-  EXPECT_EQ(refused(directory, "a.json", "plots"),
-            (directory / "plots").string() + ": is a file; must be a directory, or a name that is free");
-}
-
-TEST_F(AtomicFile, WhatAKilledProcessLeftIsRemovedBeforeTheNextOneWrites) {
-  const pid_t gone = ::fork();
-  if (gone == 0) ::_exit(0);
-  ::waitpid(gone, nullptr, 0);
-  const fs::path stale = folder_ / ("a.vtu." + std::to_string(gone) + ".part"),
-                 own = folder_ / ("a.vtu." + std::to_string(::getpid()) + ".part"), foreign = folder_ / "a.part";
-  for (const auto& path : {stale, own, foreign}) std::ofstream(path) << "half";
-  prepare_directory(folder_, {});
-  EXPECT_FALSE(fs::exists(stale));
-  EXPECT_TRUE(fs::exists(own));
-  EXPECT_TRUE(fs::exists(foreign));
+    ::_exit(3);
+  }
+  int status = -1;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+  EXPECT_EQ(read_file(path), "first\n");
 }
 
 TEST_F(AtomicFile, ALineOfAFileThatIsNotThereIsNone) { EXPECT_TRUE(read_lines(folder_ / "absent").empty()); }

@@ -44,7 +44,8 @@ struct Done {
     write_result(directory, simulation, result);
     std::map<std::string, std::string> files;
     for (const auto& entry : fs::directory_iterator(directory))
-      if (entry.path().filename() != "result.json") files[entry.path().filename()] = read_file(entry.path());
+      if (entry.path().filename().string().starts_with("fields"))
+        files[entry.path().filename()] = read_file(entry.path());
     fs::remove_all(directory);
     return files;
   }

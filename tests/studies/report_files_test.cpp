@@ -5,6 +5,7 @@
 #include <set>
 #include <sstream>
 
+#include "studies/io/output_folder.hpp"
 #include "studies/report/charts.hpp"
 #include "studies/report/cone_picture.hpp"
 #include "studies/report/embedded.hpp"
@@ -413,11 +414,12 @@ TEST_F(ReportCharts, FiguresOfAFormerReportDoNotStay) {
   record(description(), three_methods());
   page();
   const auto folder = directory_ / "figures";
-  std::ofstream(folder / "old.svg") << "<svg/>";
-  std::ofstream(folder / "notes.txt") << "mine";
+  write_output(folder / "old.svg", "<svg/>");
+  for (const char* name : {"theirs.svg", "notes.txt"}) std::ofstream(folder / name) << "mine";
   page();
   EXPECT_FALSE(std::filesystem::exists(folder / "old.svg"));
-  EXPECT_TRUE(std::filesystem::exists(folder / "notes.txt"));
+  EXPECT_EQ(file("theirs.svg"), "mine");
+  EXPECT_EQ(file("notes.txt"), "mine");
 }
 
 TEST(ReportCsv, QuotesWhatHoldsCommasQuotesOrLineBreaks) {

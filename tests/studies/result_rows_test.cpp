@@ -10,6 +10,7 @@
 #include "studies/io/atomic_file.hpp"
 #include "studies/io/directory_lock.hpp"
 #include "studies/io/input_fault.hpp"
+#include "studies/io/output_folder.hpp"
 #include "studies/sweep/workers.hpp"
 
 namespace stickslip {
@@ -30,7 +31,12 @@ class ResultRows : public testing::Test {
 
   /// A line that the program wrote.
   static std::string line(const json& row) { return sealed(row).dump() + "\n"; }
-  void write(const std::string& text) { std::ofstream(directory_ / "results.jsonl", std::ios::binary) << text; }
+  /// As a study left it, and somebody edited it.
+  void write(const std::string& text) {
+    const auto file = directory_ / "results.jsonl";
+    if (!std::filesystem::exists(file)) write_output(file, "", Sums::of_each_line);
+    std::ofstream(file, std::ios::binary) << text;
+  }
   std::string content() { return read_file(directory_ / "results.jsonl"); }
 
   const json a = {{"id", "a"}, {"status", "cap"}}, b = {{"id", "b"}, {"status", "cap"}};
@@ -77,6 +83,7 @@ TEST_F(ResultRows, LoseDoublesAndLinesThatAreNoRows) {
                                   "it is an array; line 4 is no row and was dropped: it has no \"status\"; "
                                   "1 double row(s) were dropped"));
   EXPECT_EQ(content(), line(second));
+  EXPECT_EQ(read_file(directory_ / "results.stale.jsonl"), "nonsense\n[1]\n{\"id\":7}\n");  // nothing is lost
 }
 
 /// A cell whose row is damaged is run again.
@@ -169,6 +176,7 @@ TEST_F(ResultRows, AreRunAnewWithoutAChecksum) {
   EXPECT_EQ(rows.count("a"), 0u);
   EXPECT_EQ(rows.count("b"), 1u);
   EXPECT_THAT(notes_, ElementsAre("1 row(s) without a checksum were dropped"));
+  EXPECT_EQ(read_file(directory_ / "results.stale.jsonl"), a.dump() + "\n");
 }
 
 TEST_F(ResultRows, LeaveOutTimedRunsThatAreDamaged) {
@@ -208,7 +216,7 @@ TEST_F(ResultRows, BelongToOneProcessAtATime) {
       [&](std::size_t, const std::string& text) {
         EXPECT_THAT(text, HasSubstr("another stickslip writes here (process " + std::to_string(::getpid()) + ")"));
       },
-      [](std::size_t, int signal) { ADD_FAILURE() << signal; });
+      [](std::size_t, const Loss& loss) { ADD_FAILURE() << loss.words; });
 }
 
 TEST_F(ResultRows, AreLostWithTheirDirectoryWithAWord) {

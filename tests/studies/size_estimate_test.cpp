@@ -23,7 +23,12 @@ TEST(SizeEstimate, IsWithinAFactorOfTwoOfWhatRunsTook) {
     double megabytes, displacements, contact_dofs;
     bool condensed;
   };
-  for (const auto& run : {Run{59, 20'200, 202, false}, {216, 80'400, 402, false}, {565, 80'400, 402, true}}) {
+  for (const auto& run : {Run{59, 20'200, 202, false},
+                          {216, 80'400, 402, false},
+                          {104, 40'040, 2002, false},
+                          {140, 80'400, 402, true},
+                          {421, 80'100, 1602, true},
+                          {537, 40'040, 2002, true}}) {
     const double estimate =
         estimated_bytes({run.displacements, run.contact_dofs, run.contact_dofs / 2, 1, run.condensed});
     EXPECT_LT(estimate, 2e6 * run.megabytes) << run.displacements;

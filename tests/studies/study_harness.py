@@ -203,9 +203,10 @@ def not_overwritten(study, whole, work):
         damaged = work / "damaged"
         shutil.copytree(whole, damaged)
         (damaged / name).write_text(text)
-        for arguments in (("report", damaged), ("study", study, "-o", damaged, "--resume")):
+        for arguments, reason in ((("report", damaged), f"{name}:1:"),
+                                  (("study", study, "-o", damaged, "--resume"), f"{name}: was edited since")):
             refused = run(*arguments, check=False)
-            if refused.returncode != 2 or f"{name}:1:" not in refused.stderr:
+            if refused.returncode != 2 or reason not in refused.stderr:
                 sys.exit(f"{name}: {arguments}: {refused.returncode} {refused.stderr}")
         shutil.rmtree(damaged)
 
