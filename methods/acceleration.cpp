@@ -15,7 +15,7 @@ double contraction(const std::vector<Secant>& secants) {
   Vector<double> noise(m);
   Eigen::Index rank = 0;
   for (const Secant& secant : secants) {
-    const double size = secant.argument.norm();
+    const double size = norm(secant.argument);
     Vector<double> direction = secant.argument / size, its_image = secant.image / size;
     double squared = secant.noise * secant.noise;
     for (int twice = 0; twice < 2; ++twice) {
@@ -30,7 +30,7 @@ double contraction(const std::vector<Secant>& secants) {
     image.col(rank) = its_image / novel;
     noise[rank++] = std::sqrt(squared) / novel;
   }
-  if (rank < 2) return secants.back().image.norm() / secants.back().argument.norm();
+  if (rank < 2) return norm(secants.back().image) / norm(secants.back().argument);
   const Matrix<double> A = space.leftCols(rank).transpose() * image.leftCols(rank);
   return A.eigenvalues().cwiseAbs().maxCoeff();
 }

@@ -54,7 +54,7 @@ class Accelerator {
   Vector<T> next(const Vector<T>& x, const Vector<T>& image, bool same_map, double contraction,
                  Admissible&& admissible) {
     if (kind_ == UzawaAL::Acceleration::none) return image;
-    const double residual = values(image - x).norm();
+    const double residual = norm(values(image - x));
     const double allowed = contraction < 1 ? std::max(0.9, contraction) : 0.9;
     if (on_trial_ && !(residual < allowed * last_residual_)) {
       on_trial_ = false;
@@ -95,7 +95,7 @@ class Accelerator {
     for (Eigen::Index i = 0; i < differences.cols(); ++i)
       differences.col(i) = past_[i + 1].residual() - past_[i].residual();
     Vector<T> x = past_.back().image;
-    const double noise = 1e2 * unit_roundoff * values(x).norm();  // bound of the rounding of a difference of residuals
+    const double noise = 1e2 * unit_roundoff * norm(values(x));  // bound of the rounding of a difference of residuals
     const Vector<double> gamma = anderson_weights(differences, residual, noise);
     for (Eigen::Index i = 0; i < gamma.size(); ++i)
       if (gamma[i] != 0) x -= T(gamma[i]) * (past_[i + 1].image - past_[i].image);

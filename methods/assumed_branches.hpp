@@ -32,15 +32,12 @@ ContactTrial trial_after(const ContactInput<T>& input, int p, const Vector<T>& m
   trial.pressure = -value(multiplier[point.multiplier]);
   if (branch == ContactState::open)
     trial.pressure = -(value(seen[point.multiplier]) + value(rho.normal) * value(field.gap[p]));
-  double squares = 0;
-  for (int a = 0; a < point.tangents; ++a) {
+  trial.tangential = root_of_squares(point.tangents, [&](int a) {
     const int k = point.multiplier + 1 + a;
-    double z = value(multiplier[k]);
-    if (branch != ContactState::stick)
-      z = value(seen[k]) + value(rho.tangential) * value(field.slip[tangential_offset(input.model, p) + a]);
-    squares += z * z;
-  }
-  trial.tangential = std::sqrt(squares);
+    return branch == ContactState::stick
+               ? value(multiplier[k])
+               : value(seen[k]) + value(rho.tangential) * value(field.slip[tangential_offset(input.model, p) + a]);
+  });
   if (point.tangents > 0) trial.bound = input.slots.friction[point.contact].bound(trial.pressure);
   return trial;
 }

@@ -63,7 +63,7 @@ class AugmentationProgress {
     return update() * std::max(1.0, q / (1 - q));
   }
   /// Whether, in the same states, the norm of the last update exceeds half of that before.
-  bool is_stalled() const { return same_states_ && last_update_ > 0 && 2 * update_.norm() > last_update_; }
+  bool is_stalled() const { return same_states_ && last_update_ > 0 && 2 * norm(update_) > last_update_; }
   /// Whether, in the same states, no update has fallen to 0.7 of the least one for 50 augmentations. Cause: a rho far
   /// above the stiffness of the other body, which turns residuals of the inner solves into tractions.
   bool is_exhausted() const { return same_states_ && idle_ >= 50; }
@@ -128,12 +128,12 @@ void AugmentationProgress<T>::record(const Vector<T>& multiplier, const ContactF
   const Vector<T> change = field.traction - multiplier;
   carried_ = Carried<T>::size(change);
   const Vector<double> update = values(change);
-  const bool undone = update_.size() && update.norm() > 0 && (update + update_).norm() <= 1e-6 * update.norm();
+  const bool undone = update_.size() && norm(update) > 0 && norm(update + update_) <= 1e-6 * norm(update);
   undone_ = undone ? undone_ + 1 : 0;
-  last_update_ = update_.size() ? update_.norm() : 0;
+  last_update_ = update_.size() ? norm(update_) : 0;
   update_ = update;
-  if (!same_states_ || !same_map_ || update.norm() < 0.7 * least_update_) {
-    least_update_ = update.norm();
+  if (!same_states_ || !same_map_ || norm(update) < 0.7 * least_update_) {
+    least_update_ = norm(update);
     idle_ = 0;
   } else {
     ++idle_;
@@ -162,7 +162,7 @@ void AugmentationProgress<T>::record_rate(const Vector<T>& multiplier, const Con
   same_map_ = true;
   if (!comparable) return;
   const Vector<double> moved = values(multiplier - multiplier_);
-  const double size = moved.norm(), rounding = 8 * unit_roundoff * values(field.traction).norm();
+  const double size = norm(moved), rounding = 8 * unit_roundoff * norm(values(field.traction));
   const double noise = (rounding + before + inner_error_) / size;
   // Rounding has no rate. Neither have values so close that the inner solve had nothing to do.
   if (100 * rounding > size || noise > 0.5) return;
@@ -182,7 +182,7 @@ bool AugmentationProgress<T>::keeps_state(const Vector<double>& change, const Co
   const auto& point = model_.points[p];
   if (change[0] > 0) return false;
   if (field.state[p] != ContactState::stick) return true;
-  return change.tail(point.tangents).norm() <= -slots_.friction[point.contact].slope_at_infinity() * change[0];
+  return norm(change.tail(point.tangents)) <= -slots_.friction[point.contact].slope_at_infinity() * change[0];
 }
 
 /// Whether the gap of point p changes with its multiplier. `expected`: change of the gap in a body of the local
@@ -210,7 +210,7 @@ template <class T>
 bool AugmentationProgress<T>::is_within(double force) const {
   for (int p = 0; p < static_cast<int>(model_.points.size()); ++p) {
     const auto& point = model_.points[p];
-    const double update = update_.segment(point.multiplier, point.components()).norm();
+    const double update = norm(update_.segment(point.multiplier, point.components()));
     if (violations_[p] * value(slots_.stiffness[p]) > force || update * value(slots_.geometry[p].area) > force)
       return false;
   }

@@ -72,19 +72,14 @@ PointSizes measure_points(const ContactInput<T>& input, const ContactField<T>& f
   for (std::size_t p = 0; p < input.model.points.size(); ++p) {
     const auto& point = input.model.points[p];
     const double area = value(input.slots.geometry[p].area), stiffness = value(input.slots.stiffness[p]);
-    double moved = value(field.gap[p]) - value(input.slots.geometry[p].gap);
-    moved *= moved;
-    double traction = value(field.traction[point.multiplier]);
-    traction *= traction;
-    for (int a = 0; a < point.tangents; ++a) {
-      const double s = value(field.placement[tangential_offset(input.model, static_cast<int>(p)) + a]);
-      const double t = value(field.traction[point.multiplier + 1 + a]);
-      moved += s * s;
-      traction += t * t;
-    }
-    traction = std::sqrt(traction);
+    const int offset = tangential_offset(input.model, static_cast<int>(p)) - 1;
+    const double moved = root_of_squares(point.components(), [&](int c) {
+      return c == 0 ? value(field.gap[p]) - value(input.slots.geometry[p].gap) : value(field.placement[offset + c]);
+    });
+    const double traction =
+        root_of_squares(point.components(), [&](int c) { return value(field.traction[point.multiplier + c]); });
     scales.traction = std::max(scales.traction, traction);
-    scales.length = std::max({scales.length, std::sqrt(moved), area * traction / stiffness});
+    scales.length = std::max({scales.length, moved, area * traction / stiffness});
     sizes.area_times_rho = std::max(sizes.area_times_rho, area * value(input.rho[p].normal));
     if (field.state[p] != ContactState::open)
       sizes.distance = std::max(sizes.distance, std::abs(value(input.slots.geometry[p].gap)));

@@ -6,7 +6,7 @@
 namespace stickslip {
 
 double unbalanced_share(const RigidStatics& statics) {
-  const double size = statics.load.norm();
+  const double size = norm(statics.load);
   if (!(size > 0)) return 0;
   // All factors are >= 0. A support has two columns, one for each sign.
   const Eigen::Index rows = statics.load.size(), limits = statics.limit.size();

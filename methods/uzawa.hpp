@@ -63,7 +63,7 @@ Vector<T> projected_multiplier(const Model& model, const Slots<T>& slots, Vector
     if (point.tangents == 0) continue;
     auto tangential = multiplier.segment(point.multiplier + 1, point.tangents);
     const auto& law = slots.friction[point.contact];
-    const double bound = law.bound(-value(normal)), magnitude = values(tangential).norm();
+    const double bound = law.bound(-value(normal)), magnitude = norm(values(tangential));
     if (magnitude > bound) tangential *= law.bound(T(-normal), law.piece(-value(normal))) / norm(tangential);
   }
   return multiplier;

@@ -120,7 +120,7 @@ double traction_scale(const Model& model, const Slots<double>& slots, const Stat
     largest = std::max({largest, -state.contact.traction[model.points[p].multiplier],
                         elastic * std::abs(state.contact.gap[p] - slots.geometry[p].gap)});
     const int offset = tangential_offset(model, static_cast<int>(p));
-    largest = std::max(largest, elastic * state.history.placement.segment(offset, model.points[p].tangents).norm());
+    largest = std::max(largest, elastic * norm(state.history.placement.segment(offset, model.points[p].tangents)));
   }
   return largest;
 }
@@ -133,7 +133,7 @@ std::vector<WeakPoint> weak_points(const Model& model, const Slots<double>& slot
     const double elastic = elastic_traction(slots, p);
     const double negligible = std::max(weak_margin * largest, elastic * tie_length(point, slots.geometry[p]));
     const Vector<double> z = trial(model, state, rho[p], p);
-    const double tangential = z.tail(point.tangents).norm();
+    const double tangential = norm(z.tail(point.tangents));
     const bool open = state.contact.state[p] == ContactState::open;
     const bool at_apex = point.tangents > 0 && elastic / rho[p].tangential * tangential <= negligible;
     const auto& law = slots.friction[point.contact];
@@ -150,7 +150,7 @@ std::vector<WeakPoint> weak_points(const Model& model, const Slots<double>& slot
     }
     const double excess = tangential - bound;
     // At a small rho, (|z_T| - bound) / rho is rounding although the slip itself is not.
-    const double slip = state.contact.slip.segment(tangential_offset(model, p), point.tangents).norm();
+    const double slip = norm(state.contact.slip.segment(tangential_offset(model, p), point.tangents));
     const double beyond = elastic * std::min(excess / rho[p].tangential, slip), inside = -excess;
     if ((excess > 0 ? beyond : inside) <= weak_margin * bound)
       weak.push_back({p, Tie::slips});
@@ -224,7 +224,7 @@ Verdict branch_verdict(const Model& model, const Slots<double>& slots, const Par
   if (weak.tie == Tie::opens || weak.tie == Tie::apex) {
     const bool jumps = weak.tie == Tie::opens && point.tangents > 0 && !law.has_apex();
     const bool bears =
-        elastic / own[p].tangential * found.tail(point.tangents).norm() > weak_margin * direction.largest_so_far;
+        elastic / own[p].tangential * norm(found.tail(point.tangents)) > weak_margin * direction.largest_so_far;
     if (!open && d.normal > d.negligible) {
       Verdict verdict = contradicted({ContactState::open, {}}, d.normal / d.negligible);
       verdict.possible = !(jumps && bears);
@@ -259,7 +259,7 @@ Verdict branch_verdict(const Model& model, const Slots<double>& slots, const Par
   }
   if (weak.tie == Tie::corner) return {};
   const auto along = found.tail(point.tangents);
-  const double excess = along.dot(d.tangential) / along.norm() - bound;
+  const double excess = along.dot(d.tangential) / norm(along) - bound;
   const bool sticks = now.state == ContactState::stick;
   const double by = (sticks ? excess : -excess * d.kinematic) / d.negligible;
   if (!(by > 1)) return {};

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <type_traits>
@@ -145,11 +146,33 @@ auto dot(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
   return a.cwiseProduct(b).sum();
 }
 
-/// Euclidean norm without conjugation; not differentiable at zero, where the caller must not use it.
+/// Euclidean norm without conjugation; not differentiable at zero, where the caller must not use it. If squares would
+/// under- or overflow, the vector is scaled by a power of two, which rounds nothing.
 template <class A>
-auto norm(const Eigen::MatrixBase<A>& a) {
+typename A::Scalar norm(const Eigen::MatrixBase<A>& a) {
   using std::sqrt;
-  return sqrt(dot(a, a));
+  using T = typename A::Scalar;
+  constexpr double least = 0x1p-900, most = 0x1p900;  // what a square between them loses of other squares is rounding
+  const T square = dot(a, a);
+  if (value(square) > least && value(square) < most) return sqrt(square);
+  double largest = 0;
+  for (Eigen::Index j = 0; j < a.cols(); ++j)
+    for (Eigen::Index i = 0; i < a.rows(); ++i) largest = std::max(largest, std::abs(value(a.coeff(i, j))));
+  if (!(largest > 0 && std::isfinite(largest))) return sqrt(square);
+  const T scale(std::ldexp(1.0, -std::clamp(std::ilogb(largest), -1000, 1000)));
+  Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic> scaled = a;
+  for (Eigen::Index i = 0; i < scaled.size(); ++i) scaled.coeffRef(i) *= scale;
+  return sqrt(dot(scaled, scaled)) / scale;
+}
+
+/// Root of the squares of part(0) ... part(count - 1), which may be tiny or huge.
+template <class Part>
+double root_of_squares(int count, Part&& part) {
+  double squares = 0, root = 0;
+  for (int i = 0; i < count; ++i) squares += part(i) * part(i);
+  if (squares > 0x1p-900 && squares < 0x1p900) return std::sqrt(squares);
+  for (int i = 0; i < count; ++i) root = std::hypot(root, part(i));
+  return root;
 }
 
 /// Primal parts of a vector or matrix.

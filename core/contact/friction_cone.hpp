@@ -36,7 +36,7 @@ template <class T, int Tangents>
 ContactState classify(const Traction<T, Tangents>& trial, double bound, double tie_normal) {
   if (value(trial.normal) > tie_normal) return ContactState::open;
   if constexpr (Tangents == 0) return ContactState::slip;
-  if (bound > 0 && values(trial.tangential).norm() <= bound * (1 + tie_band)) return ContactState::stick;
+  if (bound > 0 && norm(values(trial.tangential)) <= bound * (1 + tie_band)) return ContactState::stick;
   return ContactState::slip;
 }
 
@@ -49,7 +49,7 @@ Traction<T, Tangents> project_onto_cone(const Traction<T, Tangents>& trial, cons
   if constexpr (Tangents > 0) {
     if (state == ContactState::stick) {
       t.tangential = trial.tangential;
-    } else if (values(trial.tangential).norm() > 0) {  // z_T = 0 has no direction: t_T = 0
+    } else if (norm(values(trial.tangential)) > 0) {  // z_T = 0 has no direction: t_T = 0
       const T magnitude = norm(trial.tangential);
       for (int a = 0; a < Tangents; ++a) t.tangential[a] = bound * trial.tangential[a] / magnitude;
     }

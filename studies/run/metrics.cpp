@@ -52,10 +52,10 @@ void enlarge(const Model& model, const Slots<double>& slots, const State<double>
   double stiffest = 0;  // k / A
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
-    const double traction = state.contact.traction.segment(point.multiplier, point.components()).norm();
+    const double traction = norm(state.contact.traction.segment(point.multiplier, point.components()));
     const double normal = state.contact.gap[p] - slots.geometry[p].gap;
     const double along =
-        state.history.placement.segment(tangential_offset(model, static_cast<int>(p)), point.tangents).norm();
+        norm(state.history.placement.segment(tangential_offset(model, static_cast<int>(p)), point.tangents));
     const double elastic = slots.stiffness[p] / slots.geometry[p].area;
     stiffest = larger(stiffest, elastic);
     scales.traction = larger(scales.traction, traction);
@@ -91,18 +91,20 @@ PointDefects defects_of(const Model& model, const Slots<double>& slots, const St
   if (point.tangents == 0) return d;
   auto [traction, slip] = tangential(model, state, p);
   if (!layer.tangential.empty()) slip -= layer.tangential[p] * (traction - tangential(model, previous, p).traction);
-  const double bound = slots.friction[point.contact].bound(larger(0.0, pressure)), size = traction.norm();
+  const double bound = slots.friction[point.contact].bound(larger(0.0, pressure)), size = norm(traction);
   d.cone = larger(0.0, size - bound);
   const double nothing = 1e-4 * scales.least_traction;  // what rounding makes of displacements
   const bool inside = pressure > nothing && size < bound - std::max(on_cone * bound, layer.band * scales.traction);
   creep = inside ? Eigen::VectorXd(creep + slip) : Eigen::VectorXd::Zero(point.tangents);
-  d.creep = creep.norm();
-  const double moved = slip.norm();
+  d.creep = norm(creep);
+  const double moved = norm(slip);
   if (inside || size <= std::max(nothing, rounding * scales.traction) || moved <= 1e-9 * scales.length) return d;
-  const double along = traction.dot(slip) / size;
+  const int exponent = std::ilogb(size);  // a power of two rounds nothing, and products do not underflow
+  const Eigen::VectorXd scaled = traction.unaryExpr([&](double t) { return std::ldexp(t, -exponent); });
+  const double length = std::ldexp(size, -exponent), along = scaled.dot(slip) / length;
   d.pull = size;
   d.turn = 1 - along / moved;
-  d.astray = (slip - larger(0.0, along) / size * traction).norm();
+  d.astray = norm(slip - larger(0.0, along) / length * scaled);
   return d;
 }
 

@@ -1,0 +1,119 @@
+/// Numbers whose squares under- or overflow: results are those of moderate numbers, by every method.
+#include <gtest/gtest.h>
+
+#include "tests/studies/cases.hpp"
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+
+/// A block, of edge `length` and of modulus 1000 `force` / length^2, pressed on a floor by 1 % of it and dragged along.
+json block(double length = 1, double force = 1) {
+  const double E = 1000 * force / length / length;
+  return {{"bodies",
+           {{"b",
+             {{"mesh", {{"box", {{"min", {0, 0}}, {"max", {length, length}}, {"cells", {2, 2}}}}}},
+              {"material", {{"linear_elastic", {{"E", E}, {"nu", 0.3}}}}}}}}},
+          {"obstacles", {{"floor", {{"plane", {{"point", {0, 0}}, {"normal", {0, 1}}}}}}}},
+          {"contacts", {{"s", {{"slave", "b.bottom"}, {"master", "floor"}, {"friction", 0.3}}}}},
+          {"supports",
+           {{{"on", "b.top"}, {"move", {{"x", {{0, 0}, {1, 0.01 * length}}}, {"y", {{0, 0}, {1, -0.01 * length}}}}}}}},
+          {"time", {{"end", 1}, {"steps", 2}}},
+          {"responses",
+           {{"N", {{"contact_force", {{"contact", "s"}, {"component", "normal"}}}}},
+            {"T", {{"contact_force", {{"contact", "s"}, {"component", "x"}}}}}}}};
+}
+
+const std::vector<std::string> methods{"penalty", "uzawa_al", "monolithic_al"};
+
+CaseResult run(const json& scene, const std::string& method) {
+  auto result = cases::run(scene, {{method, json::object()}}, "block.json");
+  EXPECT_TRUE(is_converged(result.status())) << method << ": " << result.message();
+  return result;
+}
+
+/// Two runs of one problem: Uzawa's tolerance of 1e-10 is the larger of what is left.
+constexpr double close = 1e-9;
+
+TEST(Friction, OfTheSmallestNumbersIsAsNone) {
+  for (const char* strain : {"small", "finite"})
+    for (const double mu : {1e-160, 1e-300}) {
+      json scene = block();
+      scene["strain"] = strain;
+      if (strain == std::string("finite"))
+        scene["bodies"]["b"]["material"] = {{"neo_hookean", {{"E", 1000}, {"nu", 0.3}}}};
+      scene["contacts"]["s"]["friction"] = mu;
+      for (const auto& method : methods) {
+        const auto result = run(scene, method);
+        const double N = result.steps.back().responses[0], T = result.steps.back().responses[1];
+        EXPECT_NEAR(T / (mu * N), -1, close) << method << mu;
+      }
+    }
+}
+
+TEST(Normal, MayHaveAnyLengthButZero) {
+  for (const auto& method : methods) {
+    json scene = block();
+    scene["obstacles"]["floor"]["plane"]["normal"] = {0.1, 1};
+    const auto moderate = run(scene, method);
+    for (const double length : {1e-300, 1e-160, 1e160, 1e300}) {
+      scene["obstacles"]["floor"]["plane"]["normal"] = {0.1 * length, length};
+      const auto result = run(scene, method);
+      for (int i = 0; i < 2; ++i)
+        EXPECT_NEAR(result.steps.back().responses[i], moderate.steps.back().responses[i],
+                    close * std::abs(moderate.steps.back().responses[0]))
+            << method << length;
+    }
+  }
+}
+
+TEST(DirectionOfASupport, MayHaveAnyLengthButZero) {
+  json scene = block();
+  scene["supports"] = {{{"on", "b.top"}, {"along", {1, 2}}, {"value", {{0, 0}, {1, -0.01}}}},
+                       {{"on", "b.left & b.top"}, {"along", {2, -1}}, {"value", 0}}};
+  for (const auto& method : methods) {
+    const auto moderate = run(scene, method);
+    for (const double length : {1e-300, 1e300}) {
+      json other = scene;
+      other["supports"][0]["along"] = {length, 2 * length};
+      other["supports"][1]["along"] = {2 * length, -length};
+      const auto result = run(other, method);
+      for (int i = 0; i < 2; ++i)
+        EXPECT_NEAR(result.steps.back().responses[i], moderate.steps.back().responses[i],
+                    close * std::abs(moderate.steps.back().responses[0]))
+            << method << length;
+    }
+  }
+}
+
+TEST(Units, MayMakeForcesAndLengthsWhoseSquaresAreNoNumbers) {
+  for (const auto& method : methods) {
+    const auto moderate = run(block(), method);
+    for (const auto& [length, force] : {std::pair{1.0, 1e-160}, {1.0, 1e-250}, {1.0, 1e160}, {1e100, 1.0}}) {
+      const auto result = run(block(length, force), method);
+      for (int i = 0; i < 2; ++i)
+        EXPECT_NEAR(result.steps.back().responses[i] / force, moderate.steps.back().responses[i],
+                    close * std::abs(moderate.steps.back().responses[0]))
+            << method << length << " " << force;
+    }
+  }
+}
+
+TEST(Units, MayMakeMotionsWhoseSquaresAreNoNumbers) {
+  for (const auto& method : methods) {
+    const auto moderate = run(block(), method);
+    for (const double small : {1e-160, 1e-250}) {
+      json scene = block();
+      scene["supports"][0]["move"] = {{"x", {{0, 0}, {1, 0.01 * small}}}, {"y", {{0, 0}, {1, -0.01 * small}}}};
+      const auto result = run(scene, method);
+      for (int i = 0; i < 2; ++i)
+        EXPECT_NEAR(result.steps.back().responses[i] / small, moderate.steps.back().responses[i],
+                    close * std::abs(moderate.steps.back().responses[0]))
+            << method << small;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace stickslip
