@@ -195,8 +195,9 @@ Gradients adjoint(const Model& model, const Slots<double>& slots, const Method& 
   Gradients gradients;
   const auto& scene = model.scene;
   if (scene.objectives.empty() || scene.parameters.empty()) return gradients;
-  const Stopwatch time(gradients.seconds);
   WholeStates states(model, slots, method, trajectory, workspace);
+  if (states.count() < trajectory.increments.size()) return gradients;
+  const Stopwatch time(gradients.seconds);
   std::vector<TakenBranches> taken;
   {
     const Stopwatch searching(gradients.search_seconds);

@@ -246,7 +246,7 @@ Gradients Derivatives::finish(const Trajectory<double>& trajectory) {
       if (taken) consistent = trajectory;
       for (std::size_t n = 0; taken && n < taken->size(); ++n) (*taken)[n].give(consistent->increments[n]);
     }
-    now.advance(consistent ? *consistent : trajectory, trajectory.increments.size(), false);
+    now.advance(consistent ? *consistent : trajectory, trajectory.solved_count(), false);
     now.gradients.search = search;
     now.gradients.counters += search;
   }

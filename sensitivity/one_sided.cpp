@@ -15,7 +15,7 @@ constexpr double none = std::numeric_limits<double>::infinity();
 Margins margins_of(const Model& model, const Slots<double>& slots, const State<double>& state, int p, double largest) {
   const auto& point = model.points[p];
   const auto& contact = state.contact;
-  const auto tangential = [&](const Vector<double>& of, int first) { return of.segment(first, point.tangents).norm(); };
+  const auto tangential = [&](const Vector<double>& of, int first) { return norm(of.segment(first, point.tangents)); };
   const double pressure = -contact.traction[point.multiplier];
   const double elastic = slots.stiffness[p] / slots.geometry[p].area;
   const bool open = contact.state[p] == ContactState::open;
@@ -36,12 +36,14 @@ Margins margins_of(const Model& model, const Slots<double>& slots, const State<d
   return margin;
 }
 
-/// Per increment: largest traction_scale() of the run up to it.
+/// Per increment that has derivatives: largest traction_scale() of the run up to it.
 std::vector<double> traction_scales(const Model& model, const Slots<double>& slots,
                                     const Trajectory<double>& trajectory) {
   std::vector<double> scales;
-  for (const auto& increment : trajectory.increments)
-    scales.push_back(std::max(scales.empty() ? 0.0 : scales.back(), traction_scale(model, slots, increment.state)));
+  for (std::size_t n = 0; n < trajectory.solved_count(); ++n) {
+    const double scale = traction_scale(model, slots, trajectory.increments[n].state);
+    scales.push_back(std::max(scales.empty() ? 0.0 : scales.back(), scale));
+  }
   return scales;
 }
 
@@ -60,7 +62,7 @@ bool has_ties_of(const M& method, const Model& model, const Slots<double>& slots
                      [&](const auto& sweep) { return weak(sweep.state, sweep.rho_factor); });
 }
 
-/// Index of the first increment with ties; the number of increments if there is none.
+/// Index of the first increment with ties; WholeStates::count() if there is none.
 std::size_t first_tie(const Model& model, const Slots<double>& slots, const Method& method,
                       const Trajectory<double>& trajectory, WholeStates& states) {
   const auto scales = traction_scales(model, slots, trajectory);
@@ -152,7 +154,7 @@ void run_sides(const M& method, E& engine, const Model& model, const Slots<doubl
                const Trajectory<double>& trajectory, WholeStates& states, std::size_t first, int parameter,
                const Pairings& pairings, OneSided& sides) {
   const auto& responses = model.scene.responses;
-  const std::size_t count = trajectory.increments.size();
+  const std::size_t count = states.count();
   const bool geometric = pairings[0].kink || pairings[1].kink;
   if (geometric) first = 0;
   SideRun start(method, model, slots, engine, trajectory, states,
@@ -226,7 +228,7 @@ std::optional<OneSided> one_sided_derivatives(const Model& model, const Slots<do
   WholeStates states(model, slots, method, trajectory, workspace);
   const std::size_t first = first_tie(model, slots, method, trajectory, states);
   std::vector<Pairings> pairings;
-  bool kinks = first < trajectory.increments.size();
+  bool kinks = first < states.count();
   for (int j = 0; j < parameters; ++j) {
     pairings.push_back({sided_pairing(model, j, -1), sided_pairing(model, j, 1)});
     kinks |= pairings.back()[0].kink || pairings.back()[1].kink;
@@ -235,7 +237,7 @@ std::optional<OneSided> one_sided_derivatives(const Model& model, const Slots<do
   const auto unknown =
       Matrix<double>::Constant(model.scene.responses.size(), parameters, std::numeric_limits<double>::quiet_NaN());
   OneSided sides;
-  sides.backward.assign(trajectory.increments.size(), unknown);
+  sides.backward.assign(states.count(), unknown);
   sides.forward = sides.backward;
   auto both = [&](const auto& m, auto& engine) {
     for (int j = 0; j < parameters; ++j)
@@ -261,7 +263,7 @@ std::optional<std::vector<TakenBranches>> consistent_at_ties(const Model& model,
                                                              WholeStates& states, Workspace<double>& workspace,
                                                              Counters& counters) {
   const std::size_t first = first_tie(model, slots, method, trajectory, states);
-  if (first == trajectory.increments.size()) return std::nullopt;
+  if (first == states.count()) return std::nullopt;
   std::vector<TakenBranches> taken;
   for (const auto& increment : trajectory.increments) {
     const auto& history = increment.state.history;
@@ -279,7 +281,7 @@ std::optional<std::vector<TakenBranches>> consistent_at_ties(const Model& model,
         taken[n].sweeps[k] = {std::move(increment.augmented[k].state.contact),
                               std::move(increment.augmented[k].state.flow)};
     };
-    run.run(0, trajectory.increments.size(), 1, take, true);
+    run.run(0, states.count(), 1, take, true);
     counters += run.counters;
   };
   std::visit([&](const auto& m) { std::visit([&](auto& engine) { search(m, engine); }, *workspace.engine); }, method);

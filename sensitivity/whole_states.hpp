@@ -13,7 +13,8 @@ class WholeStates {
               const Trajectory<double>& trajectory, Workspace<double>& workspace)
       : model_(model), slots_(slots), method_(method), trajectory_(trajectory), workspace_(workspace) {}
 
-  std::size_t count() const { return trajectory_.increments.size(); }
+  /// Number of increments that have derivatives.
+  std::size_t count() const { return trajectory_.solved_count(); }
   /// Increment n, whole. Its reference, and that of before(n), are valid until another increment is asked for. Both
   /// exist together, because a whole increment lies between two stretches of thin ones.
   const Increment<double>& increment(std::size_t n);

@@ -119,6 +119,8 @@ struct Increment {
   bool cut_off = false;
   /// Whether the run can continue from this increment.
   bool usable() const { return is_converged(status) || cut_off; }
+  /// Whether its state is what the method takes for a solution. Only such a state has derivatives and is told of.
+  bool solved() const { return usable() || status == Status::inaccurate; }
 };
 
 template <class T>
@@ -136,6 +138,12 @@ struct Trajectory {
     std::vector<double> times;
     for (const auto& increment : increments) times.push_back(increment.time);
     return times;
+  }
+  /// Number of increments before the first that found no solution.
+  std::size_t solved_count() const {
+    std::size_t count = 0;
+    while (count < increments.size() && increments[count].solved()) ++count;
+    return count;
   }
 };
 

@@ -2,8 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "studies/run/strains.hpp"
 
@@ -16,6 +18,15 @@ constexpr double degree = M_PI / 180;
 
 /// Poisson's ratio from which locking is looked for, and spurious pressure that is told.
 constexpr double nearly_incompressible = 0.45, most_spurious = 0.2;
+
+/// The steps that were solved: all of a run, or of one that failed those before.
+std::span<const StepResult> solved_steps(const CaseResult& result) {
+  const auto end = std::find_if(result.steps.begin(), result.steps.end(),
+                                [](const StepResult& step) { return !step.increment->solved(); });
+  return {result.steps.begin(), end};
+}
+/// Whether these are all. What says something of a whole run is not said of one that failed.
+bool has_ended(const CaseResult& result) { return solved_steps(result).size() == result.steps.size(); }
 
 /// Largest strain and rotation in the elements of a body.
 BodyMeasures deformation_of(const Problem& problem, const State<double>& state, std::size_t b) {
@@ -33,7 +44,7 @@ void add_deformations(const CaseResult& result, std::vector<Warning>& warnings) 
   const auto& model = result.problem->model;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     BodyMeasures largest;
-    for (const auto& step : result.steps) {
+    for (const auto& step : solved_steps(result)) {
       const auto now = step.bodies.empty() ? deformation_of(*result.problem, step.increment->state, b) : step.bodies[b];
       largest = {std::max(largest.strain, now.strain), std::max(largest.rotation, now.rotation)};
     }
@@ -73,7 +84,7 @@ void add_slips(const CaseResult& result, std::vector<Warning>& warnings) {
   const auto& contacts = model.scene.contacts;
   std::vector<double> farthest(contacts.size(), 0);
   std::vector<char> closed(contacts.size(), 0), slipped(contacts.size(), 0);
-  for (const auto& step : result.steps) {
+  for (const auto& step : solved_steps(result)) {
     const auto& field = step.increment->state.contact;
     for (std::size_t p = 0; p < model.points.size(); ++p) {
       const auto& point = model.points[p];
@@ -96,7 +107,7 @@ void add_slips(const CaseResult& result, std::vector<Warning>& warnings) {
                                       "that of the start, which holds below some half of one",
                                       name, farthest[c])});
     const auto& law = result.problem->slots.friction[c];
-    if (!contacts[c].friction || law.bears_nothing() || !closed[c] || slipped[c]) continue;
+    if (!has_ended(result) || !contacts[c].friction || law.bears_nothing() || !closed[c] || slipped[c]) continue;
     const IdleNumber idle = idle_number(law);
     warnings.push_back(
         {WarningCode::idle_friction, name, idle.value, "lower the friction, or pull harder",
@@ -109,7 +120,7 @@ void add_held_points(const CaseResult& result, std::vector<Warning>& warnings) {
   const auto& model = result.problem->model;
   std::vector<double> farthest(model.scene.contacts.size(), 0);
   std::vector<int> steps(farthest.size(), 0);
-  for (const auto& step : result.steps) {
+  for (const auto& step : solved_steps(result)) {
     const auto& field = step.increment->state.contact;
     std::vector<char> held(farthest.size(), 0);
     for (std::size_t p = 0; p < field.facing.size(); ++p) {
@@ -123,23 +134,25 @@ void add_held_points(const CaseResult& result, std::vector<Warning>& warnings) {
   }
   for (std::size_t c = 0; c < farthest.size(); ++c)
     if (farthest[c] > 0)
-      warnings.push_back({WarningCode::held_on_facet, model.scene.contacts[c].name, farthest[c],
-                          "smooth the master, or integrate over segments (\"discretization\": \"segment\")",
-                          fmt::format("{}: in {} of {} steps a point is held on a facet of the master beyond its end, "
-                                      "by {:.2g} of it: at the vertex neither facet has an equilibrium",
-                                      model.scene.contacts[c].name, steps[c], result.steps.size(), farthest[c])});
+      warnings.push_back(
+          {WarningCode::held_on_facet, model.scene.contacts[c].name, farthest[c],
+           "smooth the master, or integrate over segments (\"discretization\": \"segment\")",
+           fmt::format("{}: in {} of {} steps a point is held on a facet of the master beyond its end, "
+                       "by {:.2g} of it: at the vertex neither facet has an equilibrium",
+                       model.scene.contacts[c].name, steps[c], solved_steps(result).size(), farthest[c])});
 }
 
 void add_cut_steps(const CaseResult& result, std::vector<Warning>& warnings) {
   if (!result.problem->model.effects.friction) return;
-  const auto cut = std::count_if(result.steps.begin(), result.steps.end(),
-                                 [](const StepResult& step) { return step.increment->cutbacks > 0; });
+  const auto steps = solved_steps(result);
+  const auto cut =
+      std::count_if(steps.begin(), steps.end(), [](const StepResult& step) { return step.increment->cutbacks > 0; });
   if (cut > 0)
     warnings.push_back(
         {WarningCode::cut_steps, "", static_cast<double>(cut), "ask for more steps",
          fmt::format("{} of {} steps were cut into smaller ones: friction depends on the path, and this is another "
                      "one than whole steps would take",
-                     cut, result.steps.size())});
+                     cut, steps.size())});
 }
 
 /// Elements whose pressure locks where the material hardly changes its volume.
@@ -176,7 +189,7 @@ void add_locking(const CaseResult& result, std::vector<Warning>& warnings) {
     if (!is_watched_for_locking(problem, b)) continue;
     const auto moduli = moduli_of(problem.slots.laws[b]);
     double largest = 0;
-    for (const auto& step : result.steps)
+    for (const auto& step : solved_steps(result))
       largest = larger(largest, step.bodies.empty() ? spurious_pressure(problem, step.increment->state, b)
                                                     : step.bodies[b].spurious_pressure);
     if (!(largest > most_spurious)) continue;
@@ -218,7 +231,7 @@ void add_single_nodes(const CaseResult& result, std::vector<Warning>& warnings) 
   for (int c = 0; c < static_cast<int>(wide.size()); ++c) {
     if (!wide[c]) continue;
     Share hardest;  // pressed
-    for (const auto& step : result.steps) {
+    for (const auto& step : solved_steps(result)) {
       const Share now = share_of(*result.problem, step.increment->state.contact, c);
       if (now.force > hardest.force) hardest = now;
     }
@@ -257,7 +270,8 @@ void add_loose_bodies(const CaseResult& result, std::vector<Warning>& warnings) 
 void add_other_solutions(const CaseResult& result, std::vector<Warning>& warnings) {
   std::size_t most = 0, several = 0, uncounted = 0;
   double first = 0;
-  for (const auto& increment : result.trajectory.increments) {
+  const std::span increments(result.trajectory.increments.data(), result.trajectory.solved_count());
+  for (const auto& increment : increments) {
     if (increment.reversed && !increment.counted) ++uncounted;
     if (increment.others.empty()) continue;
     if (several++ == 0) first = increment.time;
@@ -270,8 +284,8 @@ void add_other_solutions(const CaseResult& result, std::vector<Warning>& warning
         {WarningCode::non_unique, "", static_cast<double>(most), remedy,
          fmt::format("{} of {} increments have several solutions, up to {}, the first at t = {:.6g}; the one "
                      "is taken in which the motion from the last increment comes to rest",
-                     several, result.trajectory.increments.size(), most, first)});
-  for (const auto& increment : result.trajectory.increments)
+                     several, increments.size(), most, first)});
+  for (const auto& increment : increments)
     if (increment.jump)
       warnings.push_back({WarningCode::branch_ends, "", *increment.jump,
                           "control a displacement in place of a force, or lower the friction",
@@ -282,7 +296,7 @@ void add_other_solutions(const CaseResult& result, std::vector<Warning>& warning
         {WarningCode::non_unique, "", 1, remedy,
          fmt::format("{} of {} increments met tangents whose determinant has the other sign: there may be "
                      "other solutions",
-                     uncounted, result.trajectory.increments.size())});
+                     uncounted, increments.size())});
 }
 
 /// A path that used its steps up before it came to the full load.
@@ -353,7 +367,6 @@ BodyMeasures measures_of_body(const Problem& problem, const State<double>& state
 
 std::vector<Warning> warnings_of(const CaseResult& result) {
   std::vector<Warning> warnings;
-  if (!is_converged(result.trajectory.status)) return warnings;
   add_deformations(result, warnings);
   add_slips(result, warnings);
   add_held_points(result, warnings);
@@ -361,9 +374,9 @@ std::vector<Warning> warnings_of(const CaseResult& result) {
   add_locking(result, warnings);
   add_single_nodes(result, warnings);
   add_shared_places(result, warnings);
-  add_loose_bodies(result, warnings);
+  if (has_ended(result)) add_loose_bodies(result, warnings);
   add_other_solutions(result, warnings);
-  add_path_that_goes_on(result, warnings);
+  if (has_ended(result)) add_path_that_goes_on(result, warnings);
   return warnings;
 }
 
