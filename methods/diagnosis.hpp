@@ -26,15 +26,16 @@ inline NodeRange nodes_of_body(const Model& model, std::size_t b) {
   return {model.bodies[b].first_node, model.bodies[b].first_node + model.bodies[b].mesh.node_count};
 }
 
-/// Rigid motion of an elastic body that its supports and its contact points, in these states, leave free: "along (0,
-/// 1)" or "about (X, Y)"; empty if there is none. 2D only. What the body touches counts as fixed.
+/// Rigid motion of a body that its supports and its contact points, in these states, leave free: "along (0, 1)" or
+/// "about (X, Y)"; empty if there is none. 2D only. `at`: where the bodies are. What the body touches counts as fixed.
 template <class T>
-std::string free_motion(const Model& model, const Slots<T>& slots, std::size_t b,
+std::string free_motion(const Model& model, const Slots<T>& slots, std::size_t b, const State<T>& at,
                         const std::vector<ContactState>& states) {
   constexpr double held = 1e-8, straight = 1e-6;
-  if (model.dimension != 2 || !std::holds_alternative<LinearElasticLaw<T>>(slots.laws[b])) return "";
+  if (model.dimension != 2 || model.bodies[b].mesh.shape == ElementShape::point) return "";
   const auto body = nodes_of_body(model, b);
-  const Matrix<double> points = slots.points.unaryExpr([](const T& x) { return value(x); });
+  Matrix<double> points = slots.points.unaryExpr([](const T& x) { return value(x); });
+  if (model.effects.current_geometry) points += values(at.displacement).reshaped(2, points.cols());
   const auto own = points.middleCols(body.first, body.end - body.first);
   const Vec<double, 2> low = own.rowwise().minCoeff(), high = own.rowwise().maxCoeff(), centre = (low + high) / 2;
   const double size = (high - low).norm();
@@ -62,9 +63,10 @@ std::string free_motion(const Model& model, const Slots<T>& slots, std::size_t b
     if (states[p] == ContactState::open || (!body.has(point.nodes[0]) && !body.has(master_node(model, point))))
       continue;
     const auto motions = motions_at(points.col(point.nodes[0]));
-    hold(values(slots.geometry[p].normal).transpose() * motions);
+    const auto& geometry = geometry_in(at.contact, slots, p);
+    hold(values(geometry.normal).transpose() * motions);
     if (states[p] == ContactState::stick && point.tangents > 0)
-      hold(values(slots.geometry[p].tangents.col(0)).transpose() * motions);
+      hold(values(geometry.tangents.col(0)).transpose() * motions);
   }
   const auto in_words = [](const Vec<double, 2>& x, double unit) {
     const auto number = [&](double of) { return short_number(std::abs(of) <= straight * unit ? 0 : of); };
@@ -98,8 +100,7 @@ std::string words_of_inversion(const Model& model, const Slots<T>& slots, const 
 
 /// The body whose load no forces balance, and its free motion, in words; empty if there is none.
 template <class T>
-std::string words_of_imbalance(const Model& model, const Slots<T>& slots, double time,
-                               const std::vector<ContactState>& states) {
+std::string words_of_imbalance(const Model& model, const Slots<T>& slots, double time, const State<T>& at) {
   const int b = unbalanced_body(model, slots, time);
   if (b < 0)
     return "bodies are free to move together: no forces that their contacts and supports can give balance their loads";
@@ -108,9 +109,47 @@ std::string words_of_imbalance(const Model& model, const Slots<T>& slots, double
   const bool supported = std::any_of(model.constraints.begin(), model.constraints.end(),
                                      [&](const Constraint& c) { return body.has(c.dof / model.dimension); });
   if (!supported) return name + " is free to slide: no support holds it, and " + load;
-  const std::string motion = free_motion(model, slots, b, states);
+  const std::string motion = free_motion(model, slots, b, at, at.contact.state);
   return name + " is free to move" + (motion.empty() ? "" : " " + motion) +
          ": neither its supports nor its contacts hold it, and " + load;
+}
+
+/// A body that its supports and closed contacts leave free to move.
+struct FreeBody {
+  std::string words;     ///< the body and its motion; empty if there is none
+  bool pressed = false;  ///< some contact presses on it
+};
+
+/// Whether a contact presses on a body. Tractions that are rounding of the displacements do not count.
+template <class T>
+bool is_pressed(const Model& model, const Slots<T>& slots, std::size_t b, const State<T>& at) {
+  constexpr double telling = 1e-9;  // more than half of the digits are left
+  const double reach = telling * largest_nodal_norm(at.displacement, model.dimension);
+  const auto body = nodes_of_body(model, b);
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const auto nodes = nodes_in(model, at.contact, p);
+    const double compliance = value(slots.geometry[p].area) / value(slots.stiffness[p]);
+    if (-value(at.contact.traction[model.points[p].multiplier]) * compliance > reach &&
+        std::any_of(nodes.begin(), nodes.end(), [&](int node) { return body.has(node); }))
+      return true;
+  }
+  return false;
+}
+
+/// The first body that is free to move in the state that an increment starts from. `begins`: the run starts there; the
+/// points that touch then count as closed.
+template <class T>
+FreeBody free_body(const Model& model, const Slots<T>& slots, const State<T>& at, bool begins) {
+  auto states = at.contact.state;
+  for (std::size_t p = 0; begins && p < states.size(); ++p)
+    if (value(slots.geometry[p].gap) <= model.points[p].tie_length)
+      states[p] = model.points[p].tangents > 0 ? ContactState::stick : ContactState::slip;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    if (const std::string motion = free_motion(model, slots, b, at, states); !motion.empty())
+      return {model.scene.bodies[b].name + " is free to move " + motion +
+                  ": neither its supports nor the contacts that are closed hold it",
+              is_pressed(model, slots, b, at)};
+  return {};
 }
 
 /// A body that flows plastically in a state, in words; empty if there is none.
@@ -128,8 +167,8 @@ std::string words_of_flow(const Model& model, const Slots<T>& slots, const State
   return "";
 }
 
-/// Cause of a failure that supports explain, in words; empty if they do not. Either supports push a point into its
-/// obstacle, and the method `prevents_penetration`. Or the tangent is singular because a body can move: it has no
+/// Cause of a failure that supports explain, in words; empty if they do not. Either supports push what touches into one
+/// another, as prescribed_overlap() says. Or the tangent is singular because a body can move: it has no
 /// support and no contact point sticks, or its supports leave a motion free.
 template <class T>
 void name_failure(const Model& model, const Slots<T>& slots, double time, bool prevents_penetration,
@@ -139,15 +178,15 @@ void name_failure(const Model& model, const Slots<T>& slots, double time, bool p
     failed.message = inverted;
     return;
   }
-  const std::string driven_in = prescribed_penetration(model, slots, failed.state);
-  if (prevents_penetration && !driven_in.empty()) {
+  if (const std::string driven_in = prescribed_overlap(model, slots, time, prevents_penetration, failed.state);
+      !driven_in.empty()) {
     failed.status = Status::infeasible;
     failed.message = driven_in;
     return;
   }
   if (failed.status == Status::no_equilibrium) {
     if (unbalanced_body(model, slots, time) != balanced)
-      failed.message = detail::words_of_imbalance(model, slots, time, failed.state.contact.state);
+      failed.message = detail::words_of_imbalance(model, slots, time, failed.state);
     return;
   }
   if (failed.status != Status::singular) return;
@@ -157,7 +196,7 @@ void name_failure(const Model& model, const Slots<T>& slots, double time, bool p
     const bool supported = std::any_of(model.constraints.begin(), model.constraints.end(),
                                        [&](const Constraint& c) { return body.has(c.dof / model.dimension); });
     if (supported) {
-      const std::string motion = detail::free_motion(model, slots, b, states);
+      const std::string motion = detail::free_motion(model, slots, b, failed.state, states);
       if (motion.empty()) continue;
       failed.message = model.scene.bodies[b].name + " is free to move " + motion +
                        ": neither its supports nor its closed contacts hold it there (" + failed.message + ")";

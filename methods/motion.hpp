@@ -68,9 +68,9 @@ bool same_solution(const Model& model, const State<T>& a, const State<T>& b, dou
   const int D = model.dimension;
   const double length =
       std::max({largest_nodal_norm(a.displacement, D), largest_nodal_norm(b.displacement, D), least_length});
-  const double traction = std::max(values(a.contact.traction).norm(), values(b.contact.traction).norm());
+  const double traction = std::max(norm(values(a.contact.traction)), norm(values(b.contact.traction)));
   return largest_nodal_norm(Vector<T>(a.displacement - b.displacement), D) <= same * length &&
-         values(a.contact.traction - b.contact.traction).norm() <= same * traction;
+         norm(values(a.contact.traction - b.contact.traction)) <= same * traction;
 }
 
 /// All solutions of an increment with few contact points.
@@ -218,11 +218,12 @@ Increment<T> find_increment(const M& method, Run<T, E>& run, const State<T>& pre
       direct.status == Status::infeasible &&
       (!method.prevents_penetration || !prescribed_penetration(run.model, run.slots, direct.state).empty());
   const bool final = prescribed || (solved && (!several || direct.cut_off)) || (!solved && bound.is_spent());
-  if (final || run.model.points.empty() || !is_globalised(method) || (!solved && !may_move)) return direct;
+  if (final || run.model.points.empty() || !is_globalised(method)) return direct;
   if (!solved && unbalanced_body(run.model, run.slots, time) != balanced) {
     direct.status = Status::no_equilibrium;
     return direct;
   }
+  if (!solved && !may_move) return direct;
   const auto all = detail::try_all_branches(method, run, previous, factor, time);
   const auto take_among_all = [&] {
     return detail::take_resting_solution(method, run, previous, factor, time, direct, before, *all);
@@ -235,8 +236,8 @@ Increment<T> find_increment(const M& method, Run<T, E>& run, const State<T>& pre
   auto rest = detail::follow_motion(method, run, previous, factor, time, several, bound);
   // a multiplier that grows for ever makes any violation small against it
   constexpr double runaway = 1e4;
-  const bool grown = direct.status == Status::infeasible && values(rest.state.contact.traction).norm() >
-                                                                runaway * values(direct.state.contact.traction).norm();
+  const bool grown = direct.status == Status::infeasible &&
+                     norm(values(rest.state.contact.traction)) > runaway * norm(values(direct.state.contact.traction));
   const bool better = rest.usable() && !grown;
   if (!better && !solved && all && !all->complete)  // as a last resort
     if (auto taken = take_among_all()) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <stdexcept>
+#include <tuple>
 
 #include "methods/checkpoints.hpp"
 #include "methods/diagnosis.hpp"
@@ -109,6 +110,18 @@ void look_beside(const M& method, Run<T, E>& run, const Trajectory<T>& trajector
     increment.jump = find_jump(method, run, previous, factor, start, increment.time, increment.state);
 }
 
+/// Whether an increment failed because supports drive what touches into one another, which no smaller step mends.
+template <class T, class E, class M>
+bool drives_together(const M& method, const Run<T, E>& run, double start, double end, const Increment<T>& failed) {
+  const auto& [model, slots] = std::tie(run.model, run.slots);
+  if (!method.prevents_penetration) {
+    if (failed.status == Status::infeasible) return true;
+  } else if (!prescribed_penetration(model, slots, failed.state).empty()) {
+    return true;
+  }
+  return crossing_facets(model, slots, start).empty() && !crossing_facets(model, slots, end).empty();
+}
+
 /// Advances the trajectory to the time `target`. False if it gave up; the failed increment is then the last.
 template <class T, class E, class M>
 bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double target, bool may_cut) {
@@ -120,13 +133,18 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
   int easy = 0, cutbacks = 0;
   std::optional<Increment<T>> failed;
   WorkBound bound(run.model, run.account.counters, method.newton.max_iterations);
+  const bool linear = run.model.effects.linear_bulk;
+  FreeBody free;
+  if (!linear)
+    free = free_body(run.model, run.slots, start_count ? trajectory.increments.back().state : trajectory.initial,
+                     start_count == 0);
   while (true) {
     const bool last = reached + step >= target - 1e-9 * (target - start);
     const double next = last ? target : reached + step;
     const auto& increments = trajectory.increments;
     const State<T>& previous = increments.empty() ? trajectory.initial : increments.back().state;
     const auto factor = increments.empty() ? std::vector<double>{} : increments.back().rho_factor;
-    const bool may_move = run.model.effects.linear_bulk || !may_cut || step < patient * (target - start);
+    const bool may_move = linear || !may_cut || !free.words.empty() || step < patient * (target - start);
     bound.begin();
     auto increment = find_increment(method, run, previous, factor, next, bound, may_move);
     bound.end(increment.usable() ? std::max(1, increment.augmentations) : 0);
@@ -148,7 +166,8 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
     }
     const bool impossible = increment.status == Status::no_equilibrium
                                 ? unbalanced_body(run.model, run.slots, next) != balanced
-                                : increment.status == Status::infeasible && !method.prevents_penetration;
+                                : drives_together(method, run, reached, next, increment);
+    if (!free.words.empty() && !free.pressed) bound.lessen();
     if (!failed) failed = std::move(increment);
     easy = 0;
     step = (next - reached) / 2;
@@ -158,6 +177,8 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
     ++run.account.counters.cutbacks;
   }
   diagnose(run.model, run.slots, target, method.prevents_penetration, *failed);
+  if (!free.words.empty() && failed->status != Status::no_equilibrium && failed->status != Status::infeasible)
+    failed->message += (failed->message.empty() ? "" : "; ") + std::string("where the step begins, ") + free.words;
   if (bound.is_spent()) failed->message += (failed->message.empty() ? "" : "; ") + bound.in_words();
   trajectory.increments.resize(start_count);
   failed->time = target;
@@ -177,7 +198,8 @@ bool may_have_several(Run<T, E>& run) {
   if (is_wedged(model, run.slots)) return true;
   if constexpr (std::is_same_v<T, double>) {
     if (!can_try_all_branches(model))
-      return run.condensation && exceeds_critical_friction(model, run.slots, run.condensation->schur());
+      return run.condensation && run.condensation->valid() &&
+             exceeds_critical_friction(model, run.slots, run.condensation->schur());
     if (!run.condensation)
       run.condensation = std::make_shared<Condensation<double>>(model, run.slots, Backend::automatic);
     if (!run.condensation->valid()) return false;

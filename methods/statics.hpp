@@ -26,9 +26,21 @@ struct RigidStatics {
 /// least squares [LH74].
 double unbalanced_share(const RigidStatics& statics);
 
-/// Rigid statics of a model at a time. pre: 2D, not axisymmetric.
+/// Whether the normal of a point is that of the start at all times: of a plane that does not rotate, or if the geometry
+/// is that of the start.
+inline bool keeps_its_normal(const Model& model, const ContactPoint& point) {
+  if (!model.scene.finite_strain) return true;
+  if (point.obstacle < 0) return false;
+  const auto& obstacle = model.scene.obstacles[point.obstacle];
+  return is_flat(obstacle.shape) && !obstacle.rotate;
+}
+
+/// Rigid statics of a model at a time. At finite strain moments are left out, for arms change, and a point whose
+/// normal may turn can push in all directions: what is not balanced then cannot be balanced anywhere.
+/// pre: 2D, not axisymmetric; no load follows its side.
 template <class T>
 RigidStatics rigid_statics(const Model& model, const Slots<T>& slots, double time) {
+  const bool fixed_arms = !model.scene.finite_strain;
   const Matrix<double> X = slots.points.unaryExpr([](const T& x) { return value(x); });
   const double size = std::max((X.rowwise().maxCoeff() - X.rowwise().minCoeff()).norm(), 1e-300);
   const auto body_of = [&](int node) {
@@ -45,10 +57,19 @@ RigidStatics rigid_statics(const Model& model, const Slots<T>& slots, double tim
   const auto add = [&](auto column, int node, const Vec<double, 2>& force) {
     const auto at = X.col(node);
     column.template segment<3>(3 * body_of(node)) +=
-        Vec<double, 3>(force[0], force[1], (at[0] * force[1] - at[1] * force[0]) / size);
+        Vec<double, 3>(force[0], force[1], fixed_arms ? (at[0] * force[1] - at[1] * force[0]) / size : 0);
   };
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
+    if (!keeps_its_normal(model, point)) {
+      constexpr double third = 2 * M_PI / 3;  // three directions with factors >= 0 span all
+      for (int k = 0; k < 3; ++k) {
+        const Vec<double, 2> force(std::cos(k * third), std::sin(k * third));
+        add(statics.pushes.col(3 * p + k), point.nodes[0], force);
+        if (point.obstacle < 0) add(statics.pushes.col(3 * p + k), model.curves[point.curve].nodes[0], -force);
+      }
+      continue;
+    }
     const auto& geometry = slots.geometry[p];
     const auto& law = slots.friction[point.contact];
     const bool rough = point.tangents > 0 && !law.bears_nothing(), has_cone = !rough || law.couples();
@@ -92,11 +113,11 @@ RigidStatics rigid_statics(const Model& model, const Slots<T>& slots, double tim
 inline constexpr int balanced = -1, a_group = -2;
 
 /// Index of a body whose load cannot be balanced. `balanced` if there is none, or if this is not known: in 3D, for
-/// bodies of revolution and at finite strain.
+/// bodies of revolution, and for loads that follow their sides.
 template <class T>
 int unbalanced_body(const Model& model, const Slots<T>& slots, double time) {
   constexpr double rounding = 1e-9;  // of the least squares: a smaller share counts as balanced
-  if (model.dimension != 2 || model.scene.space == Space::axisymmetric || model.scene.finite_strain) return balanced;
+  if (model.dimension != 2 || model.scene.space == Space::axisymmetric || !model.followers.empty()) return balanced;
   const RigidStatics all = rigid_statics(model, slots, time);
   if (!(unbalanced_share(all) > rounding)) return balanced;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {

@@ -26,6 +26,9 @@ class WorkBound {
     most_ = linear ? std::numeric_limits<long>::max() : equilibria_in_vain * std::max(each_, least_each);
   }
 
+  /// Lessens the bound for a step at whose start a body is free and nothing presses on it: what holds it must be met
+  /// at once.
+  void lessen() { most_ = std::min(most_, few_in_vain * std::max(each_, least_each)); }
   void begin() { before_ = counters_.newton; }
   /// Ends an attempt. `equilibria`: number of its equilibria; 0: it failed.
   void end(int equilibria) {
@@ -44,6 +47,7 @@ class WorkBound {
  private:
   /// Bound in units of max_iterations. Steps that succeeded took up to 20; 50 take minutes at 8000 displacements.
   static constexpr long equilibria_in_vain = 50;
+  static constexpr long few_in_vain = 4;
   static constexpr long least_each = 100;  // for a small max_iterations, which is chosen to have steps cut
   const Counters& counters_;
   long each_, most_ = 0, vain_ = 0, before_ = 0;
