@@ -161,7 +161,12 @@ Slots<T> make_slots(const Model& model, const Numbers<T>& numbers, Points<T> poi
   Slots<T> slots = make_body_slots(model, numbers, std::move(points));
   for (const auto& contact : model.scene.contacts)
     slots.friction.push_back(contact.friction ? contact.friction->template as<T>(numbers) : FrictionLaw<T>());
-  for (const auto& point : model.points) slots.geometry.push_back(detail::initial_geometry(model, point, slots));
+  for (const auto& point : model.points) {
+    slots.geometry.push_back(detail::initial_geometry(model, point, slots));
+    // A gap that is rounding of the coordinates would make forces of its own, where no load presses.
+    T& gap = slots.geometry.back().gap;
+    if (!model.scene.finite_strain && std::abs(value(gap)) <= point.tie_length) gap -= T(value(gap));
+  }
   for (const auto& framed : model.framed) slots.frames.push_back(nodal_frame(model.scene, framed, numbers));
   if (stiffness)
     slots.stiffness.assign(stiffness->begin(), stiffness->end());
