@@ -100,13 +100,18 @@ inline State<double> restated(const Model& model, State<double> at, const Regula
 
 /// Iterates D lambda <- D t until each parameter has ended. False if the passes reach their limit, or if a tangent is
 /// singular. `change`: largest change of D lambda in a pass; q: ratio of the last two changes; `floors`: what rounding
-/// of rho Dg makes of a change. A parameter ends in one of three cases:
+/// of rho Dg makes of a change. A parameter ends in one of four cases:
 ///
 ///   left <= enough   left = change q / (1 - q), the sum of all changes to come; enough: `tolerance` of D lambda
 ///   stalled          change <= floors, or change <= rounding of D lambda
 ///   drifts           changes below 1e-11 of D lambda do not fall. Cause: constraints that repeat one another, whose
 ///                    multipliers drift by the rounding between them. It is no slow mode: at such a q a slow mode would
 ///                    begin with larger changes
+///   rests            for ten passes no change has fallen to half of the least, and D lambda has come no farther in all
+///   of
+///                    them than four such changes. A slow mode would go on in its direction. What is left is the
+///                    rounding of the back-solves, which the factor's condition number magnifies; up to 1e-9 of D
+///                    lambda
 ///
 /// The rounding of Dg is that of its terms, and that of the forces that balance in it. Example: tractions do not depend
 /// on a thickness, so its Dg is this rounding alone.
@@ -118,7 +123,11 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
     stiffest = std::max(stiffest, rho[p].normal);
     rho_over_k = std::max(rho_over_k, rho[p].normal / problem.slots.stiffness[p]);
   }
-  Eigen::ArrayXd last = Eigen::ArrayXd::Zero(problem.parameters), carried = last;
+  constexpr int patience = 10;
+  constexpr double far = 4, most_rounding = 1e-9;
+  Eigen::ArrayXd last = Eigen::ArrayXd::Zero(problem.parameters), carried = last, least = last;
+  std::vector<int> since(problem.parameters, 0);  // pass of the least change
+  Matrix<double> at_least;                        // D lambda after it
   auto columns = [&](auto&& pick) { return gather(problem.blocks, problem.parameters, pick); };
   auto& record = problem.record.emplace();
   Progress progress;
@@ -132,6 +141,7 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
     bool converged = true;
     double slowest = 0;  // largest change / enough of a parameter that has not ended
     record = {pass, 1, 0};
+    if (pass == 1) at_least = after;
     for (int j = 0; j < problem.parameters && after.rows() > 0; ++j) {
       const double change = (after.col(j) - before.col(j)).cwiseAbs().maxCoeff();
       const double size = after.col(j).cwiseAbs().maxCoeff();
@@ -141,8 +151,15 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
       const double left = q < 1 ? change * q / (1 - q) : change;
       const bool stalled = pass > 3 && change <= std::max(floors[j], 4 * unit_roundoff * std::max(size, carried[j]));
       const bool drifts = pass > 10 && q > 1 - 1e-4 && change <= 1e-11 * std::max(size, carried[j]);
+      if (pass == 1 || change < least[j] / 2) {
+        least[j] = change;
+        since[j] = pass;
+        at_least.col(j) = after.col(j);
+      }
+      const bool rests = pass - since[j] >= patience && least[j] <= most_rounding * std::max(size, carried[j]) &&
+                         (after.col(j) - at_least.col(j)).cwiseAbs().maxCoeff() <= far * least[j];
       const double enough = std::max(tolerance * size, floors[j]);
-      const bool ended = change == 0 || stalled || drifts || (q < 1 && pass > 2 && left <= enough);
+      const bool ended = change == 0 || stalled || drifts || rests || (q < 1 && pass > 2 && left <= enough);
       if (!ended) slowest = std::max(slowest, change / enough);
       converged &= ended;
       if (last[j] > 0 && change > floors[j]) record.contraction = std::max(record.contraction, q);
