@@ -8,17 +8,15 @@ namespace {
 
 using nlohmann::json;
 
-/// A block, of edge `length` and of modulus 1000 `force` / length^2, pressed on a floor by 1 % of it and dragged along.
-json block(double length = 1, double force = 1) {
-  const double E = 1000 * force / length / length;
+/// A block, pressed on a floor and dragged along.
+json block() {
   return {{"bodies",
            {{"b",
-             {{"mesh", {{"box", {{"min", {0, 0}}, {"max", {length, length}}, {"cells", {2, 2}}}}}},
-              {"material", {{"linear_elastic", {{"E", E}, {"nu", 0.3}}}}}}}}},
+             {{"mesh", {{"box", {{"min", {0, 0}}, {"max", {1, 1}}, {"cells", {2, 2}}}}}},
+              {"material", {{"linear_elastic", {{"E", 1000}, {"nu", 0.3}}}}}}}}},
           {"obstacles", {{"floor", {{"plane", {{"point", {0, 0}}, {"normal", {0, 1}}}}}}}},
           {"contacts", {{"s", {{"slave", "b.bottom"}, {"master", "floor"}, {"friction", 0.3}}}}},
-          {"supports",
-           {{{"on", "b.top"}, {"move", {{"x", {{0, 0}, {1, 0.01 * length}}}, {"y", {{0, 0}, {1, -0.01 * length}}}}}}}},
+          {"supports", {{{"on", "b.top"}, {"move", {{"x", {{0, 0}, {1, 0.01}}}, {"y", {{0, 0}, {1, -0.01}}}}}}}},
           {"time", {{"end", 1}, {"steps", 2}}},
           {"responses",
            {{"N", {{"contact_force", {{"contact", "s"}, {"component", "normal"}}}}},
@@ -83,34 +81,6 @@ TEST(DirectionOfASupport, MayHaveAnyLengthButZero) {
         EXPECT_NEAR(result.steps.back().responses[i], moderate.steps.back().responses[i],
                     close * std::abs(moderate.steps.back().responses[0]))
             << method << length;
-    }
-  }
-}
-
-TEST(Units, MayMakeForcesAndLengthsWhoseSquaresAreNoNumbers) {
-  for (const auto& method : methods) {
-    const auto moderate = run(block(), method);
-    for (const auto& [length, force] : {std::pair{1.0, 1e-160}, {1.0, 1e-250}, {1.0, 1e160}, {1e100, 1.0}}) {
-      const auto result = run(block(length, force), method);
-      for (int i = 0; i < 2; ++i)
-        EXPECT_NEAR(result.steps.back().responses[i] / force, moderate.steps.back().responses[i],
-                    close * std::abs(moderate.steps.back().responses[0]))
-            << method << length << " " << force;
-    }
-  }
-}
-
-TEST(Units, MayMakeMotionsWhoseSquaresAreNoNumbers) {
-  for (const auto& method : methods) {
-    const auto moderate = run(block(), method);
-    for (const double small : {1e-160, 1e-250}) {
-      json scene = block();
-      scene["supports"][0]["move"] = {{"x", {{0, 0}, {1, 0.01 * small}}}, {"y", {{0, 0}, {1, -0.01 * small}}}};
-      const auto result = run(scene, method);
-      for (int i = 0; i < 2; ++i)
-        EXPECT_NEAR(result.steps.back().responses[i] / small, moderate.steps.back().responses[i],
-                    close * std::abs(moderate.steps.back().responses[0]))
-            << method << small;
     }
   }
 }
