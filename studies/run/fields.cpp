@@ -154,16 +154,6 @@ std::vector<double> present_areas(const Problem& problem, const State<double>& s
   return areas;
 }
 
-/// Whether some node is a slave in more than one contact.
-bool contacts_share_nodes(const Model& model) {
-  std::vector<int> contact(model.node_count, -1);
-  return std::any_of(model.points.begin(), model.points.end(), [&](const ContactPoint& point) {
-    int& first = contact[point.nodes[0]];
-    if (first < 0) first = point.contact;
-    return first != point.contact;
-  });
-}
-
 void append_contact_fields(VtuData& data, const Problem& problem, const State<double>& state) {
   const auto& model = problem.model;
   const int count = static_cast<int>(model.points.size());
@@ -319,6 +309,15 @@ json contact_json(const Problem& problem, const State<double>& state) {
 }
 
 }  // namespace
+
+bool contacts_share_nodes(const Model& model) {
+  std::vector<int> contact(model.node_count, -1);
+  return std::any_of(model.points.begin(), model.points.end(), [&](const ContactPoint& point) {
+    int& first = contact[point.nodes[0]];
+    if (first < 0) first = point.contact;
+    return first != point.contact;
+  });
+}
 
 Vector<double> traction_vector(const Problem& problem, const State<double>& state, int p) {
   const auto& point = problem.model.points[p];

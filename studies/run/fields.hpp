@@ -31,6 +31,9 @@ void write_fields(const std::filesystem::path& directory, const CaseResult& resu
 /// Names of the files that write_fields writes, in order.
 std::vector<std::string> field_files(const CaseResult& result, int every);
 
+/// Whether some node is a slave in more than one contact.
+bool contacts_share_nodes(const Model& model);
+
 /// Force per area on the slave at contact point p.
 Vector<double> traction_vector(const Problem& problem, const State<double>& state, int p);
 

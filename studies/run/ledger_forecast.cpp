@@ -9,6 +9,7 @@
 #include "core/model/storage.hpp"
 #include "methods/engine_choice.hpp"
 #include "sensitivity/differentiation.hpp"
+#include "studies/run/fields.hpp"
 #include "studies/run/ledger_parts.hpp"
 #include "studies/run/simulation.hpp"
 
@@ -17,6 +18,9 @@ namespace {
 
 constexpr double exactly = 1, not_known = 0;
 constexpr double real_bytes = sizeof(double);
+/// Points that slide along curves have up to two patches each, and the pattern gains those that they pass: measured up
+/// to 1.35 times what there is at the start.
+constexpr double of_moving_points = 1.5;
 
 /// Counts that a forecast is made of.
 struct Size {
@@ -30,6 +34,8 @@ struct Size {
   double repeated;                          ///< steps that are solved again
   double steps, parameters, blocks, responses, objectives;
   double together;  ///< increments that are differentiated at once
+  double path;      ///< factor that the number of steps holds to, as a path finds its own
+  double moving;    ///< factor that what hangs on the masters' nodes of a point holds to: points slide along curves
   bool condensed, mixed, unknown, unsymmetric, iterates, truncated, follows;
   Condensed what() const { return condensed ? Condensed::all : mixed ? Condensed::part : Condensed::nothing; }
 };
@@ -53,6 +59,8 @@ Size size_of(const Input& input, const Model& model) {
   n.present = model.effects.current_geometry ? n.points : 0;
   n.contacts = model.effects.friction ? static_cast<double>(model.scene.contacts.size()) : 0;
   n.steps = static_cast<double>(model.times.size());
+  n.path = model.scene.arc_length ? std::max(model.scene.arc_length->max / n.steps, n.steps) : exactly;
+  n.moving = model.slides_along_curves() ? of_moving_points : exactly;
   n.states = n.whole = n.steps + 1;
   if (const auto plan = plan_checkpoints(model, run_options(input))) {
     n.whole = static_cast<double>(plan->whole()) + 1;
@@ -81,15 +89,15 @@ double geometry_bytes(const Size& n) {
 
 double multipliers(const Size& n) { return n.unknown ? n.points + n.tangential : 0; }
 
-LedgerRow bodies_row(const Problem& problem, const Size& n, double tangent_entries) {
+LedgerRow bodies_row(const Problem& problem, const Size& n, const Amount& matrix) {
   const auto& model = problem.model;
   return {"bodies",
           !model.bodies.empty(),
           {{"displacements", n.free}},
           {{"mesh", mesh_bytes(model)},
            {"slots", static_cast<double>(slot_bytes(problem.slots).bodies)},
-           {"matrix", real_bytes * tangent_entries},
-           {"states", real_bytes * n.dofs * n.whole}},
+           {"matrix", real_bytes * matrix.value, matrix.spread},
+           {"states", real_bytes * n.dofs * n.whole, n.path}},
           {{"elements", element_count(model)}},
           not_apart};
 }
@@ -104,16 +112,17 @@ void add_contact_rows(const Problem& problem, const Size& n, const Amount& facto
        effects.contact,
        {{"normal", n.unknown ? n.points : 0}},
        {{"points", point_bytes(model, problem.slots) - bytes},
-        {"states", ((sizeof(ContactState) + 2 * real_bytes) * n.points + geometry_bytes<double>(n)) * n.states},
-        {"multipliers", real_bytes * n.points * n.states}},
+        {"states", ((sizeof(ContactState) + 2 * real_bytes) * n.points + geometry_bytes<double>(n)) * n.states,
+         n.path * n.moving},
+        {"multipliers", real_bytes * n.points * n.states, n.path}},
        {{"points", n.points}, {"evaluations", 0, effects.contact ? not_known : exactly}},
        not_apart});
   const bool spares = n.unsymmetric && !n.condensed;
   ledger.push_back({"friction",
                     effects.friction,
                     {{"tangential", n.unknown ? n.tangential : 0}},
-                    {{"history", real_bytes * (2 * n.tangential + n.feet + n.contacts) * n.states},
-                     {"multipliers", 2 * real_bytes * n.tangential * n.states},
+                    {{"history", real_bytes * (2 * n.tangential + n.feet + n.contacts) * n.states, n.path},
+                     {"multipliers", 2 * real_bytes * n.tangential * n.states, n.path},
                      {"factor", spares ? factor.value : 0, spares ? factor.spread : exactly}},
                     {{"unsymmetric_factorizations", 0, n.unsymmetric ? not_known : exactly}},
                     not_apart});
@@ -122,7 +131,7 @@ void add_contact_rows(const Problem& problem, const Size& n, const Amount& facto
   ledger.push_back({"plasticity",
                     effects.plasticity,
                     {},
-                    {{"history", real_bytes * model.memory_count * n.whole}},
+                    {{"history", real_bytes * model.memory_count * n.whole, n.path}},
                     {{"numbers", static_cast<double>(model.memory_count)}},
                     not_apart});
 }
@@ -138,7 +147,10 @@ double state_numbers(const Size& n) {
 /// contraction.
 std::vector<Amount> derivative_counts(const Size& n, double columns, double evaluated) {
   const double on = columns > 0 ? 1 : 0;
-  const double within = on == 0 ? exactly : n.iterates || n.follows ? not_known : n.unknown ? 3 : exactly;
+  const double within = on == 0                                       ? exactly
+                        : n.iterates || n.follows || n.path > exactly ? not_known
+                        : n.unknown                                   ? 3
+                                                                      : exactly;
   const double known = on == 0 || within == not_known ? 0 : n.steps;
   return {{"backsolves", columns * known, within},
           {"body_backsolves", 0, on > 0 && (n.condensed || n.mixed) ? not_known : exactly},
@@ -165,10 +177,10 @@ LedgerRow direct_row(const Problem& problem, const Size& n) {
           {{"parameters", p}},
           {{"slots", blocks * slots},
            {"stiffness", on ? static_cast<double>(kept_stiffness_bytes(problem.model)) : 0},
-           {"states", together * blocks * state, within},
-           {"solves", together * solve, within},
+           {"states", together * blocks * state, within * n.path * n.moving},
+           {"solves", together * solve, within * n.path},
            {"sweeps", 0, on && n.truncated ? not_known : exactly},
-           {"derivatives", real_bytes * p * ((ties ? 3 : 1) * n.steps * n.responses + n.dofs + n.objectives)}},
+           {"derivatives", real_bytes * p * ((ties ? 3 : 1) * n.steps * n.responses + n.dofs + n.objectives), n.path}},
           derivative_counts(n, p, 2 * blocks),
           on ? not_apart : 0};
 }
@@ -214,9 +226,12 @@ LedgerRow search_row(const Size& n) {
 
 /// Factors of the engine that runs: of the bodies, and of its tangents; bytes.
 struct Factors {
-  double tangent_entries = 0;  ///< of the sparse matrix
-  double point_entries = 0;    ///< of the blocks of the contact points
-  Amount bodies{"bodies_factor"}, tangent{"factor"};
+  Amount tangent_entries;                             ///< of the sparse matrix
+  double point_entries = 0;                           ///< of the blocks of the contact points
+  Amount bodies{"bodies_factor"}, tangent{"factor"};  ///< `tangent`: what a symmetric one has
+  Amount stored{"factor_entries"};
+  double dense = 0;           ///< entries of the dense system of tangents that are condensed
+  Amount schur{"condensed"};  ///< of the bodies on the contact dofs
 };
 
 /// Factor that the bytes of a factor hold to, forecast as entries of CHOLMOD's analysis. Libraries store zeros where
@@ -234,36 +249,59 @@ Factors condensed_factors(const Model& model, const Size& n) {
   const double within = n.solved > 0 ? std::pow(rows / n.solved, 2) : not_known;
   out.tangent = {"factor", real_bytes * rows * rows, within};
   if (n.free > n.solved) out.bodies = {"bodies_factor", real_bytes * bodies_factor(model).entries, of_library(n.free)};
+  out.schur = {"condensed", real_bytes * n.condensed_dofs * n.condensed_dofs};
   return out;
 }
 
-Factors sparse_factors(const Model& model, const Size& n) {
+/// Bodies whose tangents change, condensed one by one: their own pattern, and a dense system that is smaller, or
+/// larger, by the dofs that points touch on the way.
+Factors condensed_tangent_factors(const CondensedTangent<double>& tangent, bool unsymmetric) {
+  constexpr double of_touched = 4;
+  Factors out;
+  const double rows = tangent.dense_rows(), kept = tangent.rows().kept;
+  const FactorSize size = tangent.factor_size();
+  out.tangent_entries = {"", static_cast<double>(tangent.rows().pattern->nonzeros())};
+  out.dense = rows * rows;
+  const double within = std::max(of_touched, of_library(tangent.rows().pattern->size));
+  out.tangent = {"factor", real_bytes * (size.entries + rows * rows) / (unsymmetric ? 2 : 1), within};
+  out.stored = {"factor_entries", static_cast<double>(size.entries), within};
+  out.schur = {"condensed", 2 * real_bytes * kept * kept, of_touched};  // and what is left of it
+  return out;
+}
+
+Factors sparse_factors(const Input& input, const Problem& problem, const Size& n) {
+  const Model& model = problem.model;
+  if (const auto tangent = n.mixed ? nullptr
+                                   : make_condensed_tangent<double>(model, problem.slots, input.method,
+                                                                    input.linear_algebra.engine, input.backend))
+    return condensed_tangent_factors(*tangent, n.unsymmetric);
   Factors out;
   std::optional<MixedRows> mixed;
   if (n.mixed) mixed.emplace(model);
   const auto lists = tangent_rows(model, n.unknown, mixed ? &*mixed : nullptr);
-  if (mixed) out.bodies = {"bodies_factor", real_bytes * bodies_factor(model).entries, of_library(n.free)};
+  if (mixed) {
+    out.bodies = {"bodies_factor", real_bytes * bodies_factor(model).entries, of_library(n.free)};
+    out.schur = {"condensed", real_bytes * n.condensed_dofs * n.condensed_dofs};
+  }
   const auto pattern = make_pattern(static_cast<int>(n.solved + multipliers(n)), lists);
-  out.tangent_entries = pattern->nonzeros();
+  out.tangent_entries = {"", static_cast<double>(pattern->nonzeros()), n.moving};
   for (int k = lists.count() - static_cast<int>(model.points.size()); k < lists.count(); ++k)
     out.point_entries += std::pow(lists.start[k + 1] - lists.start[k], 2);
-  out.tangent = {"factor", real_bytes * predict_factor(pattern, 0).entries, of_library(pattern->size)};
+  out.tangent = {"factor", real_bytes * predict_factor(pattern, 0).entries, of_library(pattern->size) * n.moving};
+  out.stored = {"factor_entries", (n.unsymmetric ? 2 : 1) * out.tangent.value / real_bytes, out.tangent.spread};
   return out;
 }
 
 LedgerRow condensed_row(const Size& n, const Factors& factors) {
-  const bool on = n.condensed || n.mixed;
+  const bool on = n.condensed || n.mixed || factors.schur.value > 0;
   LedgerRow row{"condensed_engine", on, {{"eliminated", 0}}, {}, {}, n.condensed ? not_apart : 0};
   const double unknown = n.condensed ? not_known : exactly;
   Amount matrix = n.condensed ? factors.tangent : Amount{}, factor = matrix, entries = matrix, stored = matrix;
   matrix.name = "matrix", factor.name = "factor", entries.name = "matrix_entries", stored.name = "factor_entries";
   entries.value = stored.value = matrix.value / real_bytes;
   row.unknowns[0].value = n.free - n.solved;
-  row.memory = {{"condensed", real_bytes * n.condensed_dofs * n.condensed_dofs},
-                on ? factors.bodies : Amount{"bodies_factor"},
-                matrix,
-                factor,
-                {"iterations", 0, unknown}};
+  row.memory = {
+      factors.schur, on ? factors.bodies : Amount{"bodies_factor"}, matrix, factor, {"iterations", 0, unknown}};
   row.counts = {{"body_backsolves", 0, on ? not_known : exactly},
                 entries,
                 stored,
@@ -278,25 +316,27 @@ LedgerRow condensed_row(const Size& n, const Factors& factors) {
 LedgerRow sparse_row(const Size& n, const Factors& factors) {
   const bool on = !n.condensed;
   const double unknown = on ? not_known : exactly, rows = n.solved + multipliers(n);
-  const double integers = on ? factors.tangent_entries + rows + 1 + factors.point_entries : 0;
-  Amount factor = on ? factors.tangent : Amount{"factor"}, stored = factor;
-  stored.name = "factor_entries";
-  stored.value = (n.unsymmetric ? 2 : 1) * factor.value / real_bytes;
-  return {
-      "sparse_engine",
-      on,
-      {},
-      {{"matrix", real_bytes * factors.tangent_entries + sizeof(int) * integers}, factor, {"iterations", 0, unknown}},
-      {{"matrix_entries", factors.tangent_entries},
-       stored,
-       {"analyses", !on       ? 0.0
-                    : n.mixed ? 2.0
-                              : 1.0},
-       {"factorizations", 0, unknown},
-       {"backsolves", 0, unknown},
-       {"iterations", 0, unknown},
-       {"augmentations", 0, n.iterates ? unknown : exactly}},
-      on ? not_apart : 0};
+  const double entries = factors.tangent_entries.value;
+  const double integers = on ? entries + rows + 1 + factors.point_entries : 0;
+  const double within = factors.dense > 0 ? factors.schur.spread : n.moving;
+  return {"sparse_engine",
+          on,
+          {},
+          {{"matrix", real_bytes * (entries + factors.dense) + sizeof(int) * integers, within},
+           on ? factors.tangent : Amount{"factor"},
+           {"iterations", 0, unknown}},
+          {{"matrix_entries", entries, factors.tangent_entries.spread},
+           factors.stored,
+           {"analyses",
+            !on       ? 0.0
+            : n.mixed ? 2.0
+                      : 1.0,
+            on && n.moving > exactly ? not_known : exactly},
+           {"factorizations", 0, unknown},
+           {"backsolves", 0, unknown},
+           {"iterations", 0, unknown},
+           {"augmentations", 0, n.iterates ? unknown : exactly}},
+          on ? not_apart : 0};
 }
 
 /// Steps whose fields are written.
@@ -313,15 +353,25 @@ double field_steps(const OutputOptions& output, double steps) {
 }
 
 LedgerRow files_row(const Input& input, const Model& model, const Size& n) {
-  // Base 64 of doubles and of three integers an element: coordinates, displacement and four fields of contact a node,
-  // three fields an element, at the last step derivatives. Names and folds take a few kilobytes a file.
+  // Base 64 of doubles and integers: of a node its place, displacement and fields of contact (of all contacts, and of
+  // each where some share nodes), of an element its nodes, place, kind, body and stresses, at the last step
+  // derivatives. Names and folds take a few kilobytes a file.
   constexpr double base64 = 4.0 / 3, head = 3000, within = 2;
   const double files = field_steps(input.output, n.steps);
-  const double a_node = 6 + (model.effects.contact ? 6 : 0), an_element = 8 + 6;
+  const double of_contact = model.effects.current_geometry ? 10 : 6;
+  const double sets = !model.effects.contact        ? 0
+                      : contacts_share_nodes(model) ? 1 + static_cast<double>(model.scene.contacts.size())
+                                                    : 1;
+  double connectivity = 0;
+  for (const auto& body : model.bodies) connectivity += static_cast<double>(body.mesh.connectivity.size());
+  const double numbers = (6 + of_contact * sets) * model.node_count + connectivity + 10 * element_count(model);
   const double bytes =
-      files * (head + base64 * real_bytes * (a_node * model.node_count + an_element * element_count(model))) +
-      base64 * real_bytes * 3 * n.parameters * model.node_count;
-  return {"output", true, {}, {{"fields", bytes, within}, {"picture", 0}, {"trace", 0}}, {{"files", files + 1}},
+      files * (head + base64 * real_bytes * numbers) + base64 * real_bytes * 3 * n.parameters * model.node_count;
+  return {"output",
+          true,
+          {},
+          {{"fields", bytes, within * n.path}, {"picture", 0}, {"trace", 0}},
+          {{"files", files + 1, input.output.fields == OutputOptions::Fields::last ? exactly : n.path}},
           not_apart};
 }
 
@@ -330,7 +380,7 @@ LedgerRow files_row(const Input& input, const Model& model, const Size& n) {
 Ledger forecast(const Input& input, const Problem& problem) {
   const Model& model = problem.model;
   const Size n = size_of(input, model);
-  const Factors factors = n.condensed ? condensed_factors(model, n) : sparse_factors(model, n);
+  const Factors factors = n.condensed ? condensed_factors(model, n) : sparse_factors(input, problem, n);
   Ledger ledger{bodies_row(problem, n, factors.tangent_entries)};
   add_contact_rows(problem, n, factors.tangent, ledger);
   ledger.push_back(direct_row(problem, n));

@@ -128,6 +128,27 @@ TEST_P(LedgerOf, AShippedSceneIsForetoldAndAddsUp) {
 INSTANTIATE_TEST_SUITE_P(Shipped, LedgerOf, testing::Values("slider", "stop", "belt", "press_fit", "greco_plate"),
                          [](const auto& each) { return each.param; });
 
+TEST(Ledger, OfBodiesThatChangeIsForetoldWithinWhatItSays) {
+  // points that slide along curves, tangents that are condensed, a path that finds its steps
+  for (const std::string name : {"ironing", "plastic_bar", "snap", "truss"})
+    for (const auto& method : {penalty, uzawa, monolithic})
+      for (const std::string engine : {"auto", "sparse"}) {
+        const std::string where = name + " " + method.dump() + " " + engine;
+        const Book book = book_of(scene(name), method, engine, name);
+        ASSERT_TRUE(is_converged(book.result.status())) << where;
+        expect_foretold(book, where);
+        expect_nothing_of_what_is_off(book.foretold, where);
+      }
+}
+
+TEST(SlowLedger, OfTheTubeIsForetoldAlthoughItsPatternChanges) {
+  for (const auto& method : {penalty, monolithic}) {
+    const Book book = book_of(scene("pinched_tube"), method, "auto", "pinched_tube");
+    ASSERT_TRUE(is_converged(book.result.status()));
+    expect_foretold(book, method.dump());
+  }
+}
+
 TEST(Ledger, OfASceneWithoutAnEffectHasNothingOfIt) {
   json plain = scene("greco_plate");
   for (auto& contact : plain["contacts"]) contact.erase("friction");
