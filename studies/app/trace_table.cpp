@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "studies/run/contact_points.hpp"
 
 namespace stickslip {
@@ -18,6 +20,13 @@ std::string trace_table(const Trace& trace) {
   return text;
 }
 
+namespace {
+
+/// A number of a table; empty where it is none, as of an iterate that overflowed.
+std::string cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
+
+}  // namespace
+
 std::string trace_csv(const Problem& problem, const Trace& trace) {
   const auto& points = problem.model.points;
   const bool few = points.size() <= Trace::most_points;
@@ -31,12 +40,13 @@ std::string trace_csv(const Problem& problem, const Trace& trace) {
   text += "\n";
   for (const auto& i : trace.iterates) {
     const auto& r = i.record;
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}", i.time, i.solve, i.number, r.residual, r.equilibrium,
-                        r.normal, r.tangential, r.open, r.stick, r.slip, r.changed, r.step_length);
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}", i.time, i.solve, i.number, cell(r.residual),
+                        cell(r.equilibrium), cell(r.normal), cell(r.tangential), r.open, r.stick, r.slip, r.changed,
+                        cell(r.step_length));
     for (std::size_t p = 0; few && p < points.size(); ++p) {
       text += fmt::format(",{}", branch_name(i.state[p]));
       for (const auto* of : {&i.multiplier, &i.trial, &i.traction})
-        for (int c = 0; c < points[p].components(); ++c) text += fmt::format(",{}", (*of)[points[p].multiplier + c]);
+        for (int c = 0; c < points[p].components(); ++c) text += "," + cell((*of)[points[p].multiplier + c]);
     }
     text += "\n";
   }
