@@ -43,7 +43,7 @@ void collect_options(const JsonNode& node, const std::string& pointer, OptionLis
 
 /// The one of the pointers that names a part of what `pointer` names, or what that is a part of; "" where none does.
 std::string overlapping(const std::set<std::string>& pointers, const std::string& pointer) {
-  for (std::string around = pointer; !around.empty(); around.erase(around.rfind('/')))
+  for (std::string around = pointer; around.find('/') != std::string::npos; around.erase(around.rfind('/')))
     if (pointers.count(around) > 0) return around;
   const auto inside = pointers.lower_bound(pointer + "/");
   return inside != pointers.end() && inside->starts_with(pointer + "/") ? *inside : "";

@@ -194,6 +194,12 @@ TEST_F(StudyFaults, OfAReferenceAreToldThoughNoCellIsSound) {
   EXPECT_THAT(diagnostics_.text(), HasSubstr("/reference/2/method/monolithic_al/scale: is -5;"));
 }
 
+TEST_F(StudyFaults, OfAMissingSceneAreToldWhateverIsVaried) {
+  // without a scene no pointer is checked, so they may be none
+  EXPECT_FALSE(read(R"({"methods": [{"penalty": {}}], "vary": {"/time/steps": [1], "extra": 360, "a/b": [1]}})"));
+  EXPECT_THAT(diagnostics_.text(), HasSubstr(R"(the key "scene" is missing)"));
+}
+
 TEST_F(StudyFaults, CannotTakeAnOverkillReferenceOfAnImportedMesh) {
   std::filesystem::copy_file(STICKSLIP_SOURCE_DIR "/studies/meshes/half_disk_coarse.msh", folder_ / "disk.msh");
   const auto scene = R"({"bodies": {"disk": {"mesh": {"gmsh": "disk.msh", "body": "disk"},
