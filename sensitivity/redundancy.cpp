@@ -1,8 +1,15 @@
 #include "sensitivity/redundancy.hpp"
 
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <map>
+#include <set>
+
+#include "core/model/shared_forces.hpp"
+#include "sensitivity/force_search.hpp"
 
 namespace stickslip {
 namespace {
@@ -11,15 +18,14 @@ namespace {
 /// angles of distinct constraints differ by more.
 constexpr double independent = 1e-8;
 
-/// Constraint rows of a closed point over the free dofs (node * D + i, in the frame of a support).
-std::vector<std::map<int, double>> rows_of(const Model& model, const Slots<double>& slots,
-                                           const ContactField<double>& field, int p, const std::vector<int>& nodes,
-                                           const std::vector<char>& decided) {
+/// The first `components` constraint rows of a point over the free dofs (node * D + i, in the frame of a support).
+/// Those that are `decided` elsewhere are left out.
+using Rows = std::vector<std::map<int, double>>;
+Rows rows_of(const Model& model, const Slots<double>& slots, const PointGeometry<double>& geometry, int p,
+             int components, const std::vector<int>& nodes, const std::vector<char>& decided) {
   const auto& point = model.points[p];
-  const auto& geometry = geometry_in(field, slots, p);
-  const ContactState state = field.state[p];
-  const int D = model.dimension, components = state == ContactState::stick ? point.components() : 1;
-  std::vector<std::map<int, double>> rows;
+  const int D = model.dimension;
+  Rows rows;
   for (int c = 0; c < components; ++c) {
     if (!decided.empty() && decided[point.multiplier + c]) continue;
     const Vector<double> direction = c == 0 ? geometry.normal : geometry.tangents.col(c - 1);
@@ -37,7 +43,7 @@ std::vector<std::map<int, double>> rows_of(const Model& model, const Slots<doubl
 
 /// Whether rows are linearly independent on the dofs with counts(dof).
 template <class Counts>
-bool are_independent(const std::vector<std::map<int, double>>& rows, Counts&& counts) {
+bool are_independent(const Rows& rows, Counts&& counts) {
   std::map<int, int> column;
   for (const auto& row : rows)
     for (const auto& [dof, weight] : row)
@@ -56,23 +62,13 @@ bool are_independent(const std::vector<std::map<int, double>>& rows, Counts&& co
   return factor.rank() == height;
 }
 
-}  // namespace
-
-bool constraints_repeat(const Model& model, const Slots<double>& slots, const ContactField<double>& field,
-                        const std::vector<char>& decided) {
-  constexpr std::size_t most =
-      500;  // largest number of rows of a dense factorisation; with more, constraints count as repeated
-  std::vector<int> left, users(model.node_count, 0);
-  std::vector<std::vector<std::map<int, double>>> rows(model.points.size());
-  std::vector<std::vector<int>> nodes(model.points.size());
-  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
-    if (field.state[p] == ContactState::open) continue;
-    nodes[p] = nodes_in(model, field, p);
-    rows[p] = rows_of(model, slots, field, p, nodes[p], decided);
-    left.push_back(p);
+/// Removes points whose rows are independent on nodes of their own, repeatedly: they depend on no others. Returns the
+/// rest.
+std::vector<int> without_lone_points(std::vector<int> left, const std::vector<Rows>& rows,
+                                     const std::vector<std::vector<int>>& nodes, const Model& model) {
+  std::vector<int> users(model.node_count, 0);
+  for (int p : left)
     for (int node : nodes[p]) ++users[node];
-  }
-  // Rows that are independent on nodes of their own depend on no others. They are removed, repeatedly.
   const auto stands_alone = [&](int p) {
     return are_independent(rows[p], [&](int dof) { return users[dof / model.dimension] == 1; });
   };
@@ -88,9 +84,189 @@ bool constraints_repeat(const Model& model, const Slots<double>& slots, const Co
     }
     left = std::move(rest);
   }
-  std::vector<std::map<int, double>> joined;
-  for (int p : left) joined.insert(joined.end(), rows[p].begin(), rows[p].end());
+  return left;
+}
+
+/// The rows that stand in some combination of rows that vanishes.
+std::vector<char> in_combinations(const Rows& rows) {
+  std::map<int, int> column;
+  for (const auto& row : rows)
+    for (const auto& [dof, weight] : row) column.try_emplace(dof, static_cast<int>(column.size()));
+  const auto height = static_cast<Eigen::Index>(rows.size());
+  std::vector<char> in(rows.size(), 0);
+  if (height == 0) return in;
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(column.size()), height);  // transposed
+  for (Eigen::Index k = 0; k < height; ++k) {
+    for (const auto& [dof, weight] : rows[k]) matrix(column.at(dof), k) = weight;
+    matrix.col(k).normalize();
+  }
+  Eigen::FullPivLU<Eigen::MatrixXd> factor(matrix);
+  factor.setThreshold(independent);
+  if (factor.dimensionOfKernel() == 0) return in;
+  const Eigen::MatrixXd kernel = factor.kernel();
+  for (Eigen::Index k = 0; k < height; ++k)
+    in[k] = kernel.row(k).cwiseAbs().maxCoeff() > independent * kernel.cwiseAbs().maxCoeff();
+  return in;
+}
+
+/// Nodes of a slave and a master that face one another at the start.
+struct FacingSides {
+  std::set<int> slave, master;
+};
+
+/// By contact: its sides, where more slave nodes face a deformable master than nodes of it. Constraints repeat one
+/// another there, but for what the slave yields.
+std::map<int, FacingSides> crowded_sides(const Model& model) {
+  std::map<int, FacingSides> sides;
+  for (const auto& point : model.points) {
+    const auto faced = point.nodes.begin() + point.slave_nodes;
+    if (point.obstacle >= 0 || faced == point.nodes.end()) continue;
+    auto& side = sides[point.contact];
+    side.slave.insert(point.nodes[0]);
+    side.master.insert(faced, point.nodes.end());
+  }
+  std::erase_if(sides, [](const auto& side) { return side.second.slave.size() <= side.second.master.size(); });
+  return sides;
+}
+
+/// Per contact node: mean stiffness over all directions.
+std::vector<double> mean_stiffness(const Model& model, const Slots<double>& slots) {
+  std::vector<double> stiffness;
+  for (const auto& block : nodal_stiffness(model, slots)) stiffness.push_back(block.trace() / model.dimension);
+  return stiffness;
+}
+
+/// A node that is stiffer than its master by more is as good as held. Why: gaps are met to 1e-10 (Uzawa's default
+/// tolerance) of what the softer side yields; of the pressures that the stiff side alone shares out, that leaves more
+/// than 1e-4.
+constexpr double stiffer = 1e6;
+
+/// Per node: whether it is as good as held for the master of its contact. Empty if there is no such node.
+std::vector<char> stiff_nodes(const Model& model, const Slots<double>& slots) {
+  const auto sides = crowded_sides(model);
+  if (sides.empty()) return {};
+  const auto stiffness = mean_stiffness(model, slots);
+  std::vector<char> stiff;
+  for (const auto& [contact, side] : sides) {
+    double softest = std::numeric_limits<double>::infinity();
+    for (int node : side.master) softest = std::min(softest, stiffness[model.place_of(node)]);
+    for (int node : side.slave)
+      if (stiffness[model.place_of(node)] > stiffer * softest) {
+        stiff.resize(model.node_count);
+        stiff[node] = 1;
+      }
+  }
+  return stiff;
+}
+
+/// Drops what stands at dofs of stiff nodes, and rows of which nothing is left.
+void drop_stiff(const std::vector<char>& stiff, int dimension, Rows& rows) {
+  if (!stiff.empty())
+    for (auto& row : rows) std::erase_if(row, [&](const auto& entry) { return stiff[entry.first / dimension] != 0; });
+  std::erase_if(rows, [](const auto& row) { return row.empty(); });
+}
+
+}  // namespace
+
+bool constraints_repeat(const Model& model, const Slots<double>& slots, const ContactField<double>& field,
+                        const std::vector<char>& decided) {
+  constexpr std::size_t most =
+      500;  // largest number of rows of a dense factorisation; with more, constraints count as repeated
+  std::vector<int> closed;
+  std::vector<Rows> rows(model.points.size());
+  std::vector<std::vector<int>> nodes(model.points.size());
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    if (field.state[p] == ContactState::open) continue;
+    nodes[p] = nodes_in(model, field, p);
+    const int components = field.state[p] == ContactState::stick ? model.points[p].components() : 1;
+    rows[p] = rows_of(model, slots, geometry_in(field, slots, p), p, components, nodes[p], decided);
+    closed.push_back(p);
+  }
+  Rows joined;
+  for (int p : without_lone_points(std::move(closed), rows, nodes, model))
+    joined.insert(joined.end(), rows[p].begin(), rows[p].end());
   return joined.size() > most || !are_independent(joined, [](int) { return true; });
+}
+
+std::vector<double> slave_shares(const Model& model, const Slots<double>& slots) {
+  const auto sides = crowded_sides(model);
+  if (sides.empty()) return {};
+  const auto stiffness = mean_stiffness(model, slots);
+  std::vector<double> shares;
+  for (const auto& point : model.points)
+    shares.push_back(sides.count(point.contact) ? stiffness[model.place_of(point.nodes[0])] : 0);
+  return shares;
+}
+
+ForceSearch::ForceSearch(const Model& model, const Slots<double>& slots)
+    : model_(model), slots_(slots), stiff_(stiff_nodes(model, slots)) {
+  std::vector<int> as_slave(model.node_count, 0), as_master(model.node_count, 0);
+  for (const auto& point : model.points) {
+    ++as_slave[point.nodes[0]];
+    for (std::size_t n = point.slave_nodes; n < point.nodes.size(); ++n) ++as_master[point.nodes[n]];
+    if (point.curve >= 0)
+      for (int node : model.curves[point.curve].nodes) ++as_master[node];
+  }
+  const auto yields = [&](int node) {
+    const auto first = model.free_index.begin() + static_cast<long>(node) * model.dimension;
+    return std::all_of(first, first + model.dimension, [](int index) { return index >= 0; }) &&
+           (stiff_.empty() || !stiff_[node]);
+  };
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    const auto& point = model.points[p];
+    const int node = point.nodes[0];
+    const bool shared = as_slave[node] > 1 || as_master[node] > 0;
+    if (shared || (point.obstacle < 0 && !yields(node))) suspects_.push_back(p);
+  }
+}
+
+std::vector<char> ForceSearch::undetermined(const State<double>& state, const std::vector<double>& compliance) const {
+  constexpr double nothing = 1e-9;   // of the largest traction and displacement: what solving leaves of none
+  constexpr double elastic = 10;     // springs of a penalty slip by compliance times traction, and a little more
+  constexpr std::size_t most = 200;  // rows of a dense factorisation; more are not searched
+  const auto& field = state.contact;
+  const auto& points = model_.points;
+  double pressed = 0;
+  for (const auto& point : points) pressed = std::max(pressed, -field.traction[point.multiplier]);
+  const double reach = state.displacement.cwiseAbs().maxCoeff();
+  const auto presses = [&](int p) {
+    // (a stiff node that is as near as the softer side makes the stiff one yield may press as well as not)
+    if (!stiff_.empty() && stiff_[points[p].nodes[0]]) return std::abs(field.gap[p]) <= reach / stiffer;
+    return field.state[p] != ContactState::open && -field.traction[points[p].multiplier] > nothing * pressed;
+  };
+  if (std::none_of(suspects_.begin(), suspects_.end(), presses)) return {};
+  const double still = nothing * reach;
+  const auto sticks = [&](int p) {  // a point on its cone may stick as well, if it does not move
+    if (field.state[p] == ContactState::stick || points[p].tangents == 0) return points[p].tangents > 0;
+    if (slots_.friction[points[p].contact].bears_nothing()) return false;
+    const auto slip = field.slip.segment(tangential_offset(model_, p), points[p].tangents);
+    const auto pull = field.traction.segment(points[p].multiplier + 1, points[p].tangents);
+    return slip.norm() <= still + (compliance.empty() ? 0 : elastic * compliance[p] * pull.norm());
+  };
+  const auto decided = decided_elsewhere(model_, slots_, &field);
+  std::vector<int> closed;
+  std::vector<Rows> rows(points.size());
+  std::vector<std::vector<int>> nodes(points.size());
+  for (int p = 0; p < static_cast<int>(points.size()); ++p) {
+    if (!presses(p)) continue;
+    nodes[p] = nodes_in(model_, field, p);
+    rows[p] = rows_of(model_, slots_, geometry_in(field, slots_, p), p, sticks(p) ? points[p].components() : 1,
+                      nodes[p], decided);
+    drop_stiff(stiff_, model_.dimension, rows[p]);
+    closed.push_back(p);
+  }
+  Rows joined;
+  std::vector<int> contact_of;
+  for (int p : without_lone_points(std::move(closed), rows, nodes, model_)) {
+    joined.insert(joined.end(), rows[p].begin(), rows[p].end());
+    contact_of.resize(joined.size(), points[p].contact);
+  }
+  if (joined.size() > most) return {};
+  const auto in = in_combinations(joined);
+  if (std::none_of(in.begin(), in.end(), [](char c) { return c != 0; })) return {};
+  std::vector<char> contacts(model_.scene.contacts.size(), 0);
+  for (std::size_t k = 0; k < in.size(); ++k) contacts[contact_of[k]] |= in[k];
+  return contacts;
 }
 
 }  // namespace stickslip

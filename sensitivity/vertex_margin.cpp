@@ -15,9 +15,10 @@ using Place = Vec<double, 2>;
 
 bool is_facet(const Patch& patch) { return patch.smoothing == Smoothing::none; }
 
-/// Least distance of x from an end of the patch that it faces, over the length of the patch. `place(vertex)`: position.
+/// Least distance of x from an end of the patch that it faces, over the length of the patch, of ends at which the sine
+/// of the angle between the patches is at least `turn`. `place(vertex)`: position.
 template <class Places>
-double least_way(const std::vector<Patch>& patches, int faced, const Place& x, Places&& place) {
+double least_way(const std::vector<Patch>& patches, int faced, const Place& x, double turn, Places&& place) {
   const auto along = [&](int patch) -> Place {
     const auto& ends = patches[patch].vertices;
     return place(ends[2]) - place(ends[1]);
@@ -28,7 +29,8 @@ double least_way(const std::vector<Patch>& patches, int faced, const Place& x, P
     const int other = side == 0 ? patches[faced].previous : patches[faced].next;
     if (other == Patch::none) continue;
     const Place vertex = place(patches[faced].vertices[1 + side]);
-    const Place half = (along(faced).normalized() + along(other).normalized()).normalized();
+    const Place a = along(faced).normalized(), b = along(other).normalized(), half = (a + b).normalized();
+    if (std::abs(a[0] * b[1] - a[1] * b[0]) < turn) continue;
     least = std::min(least, std::abs((x - vertex).dot(half)) / length);
   }
   return least;
@@ -67,6 +69,30 @@ bool has_kink_at(const MasterCurve& curve, int node, At&& present, OfStart&& of_
            std::abs(stretch - other) > straight * stretch;
   }
   return false;
+}
+
+/// Calls f(point, way) for each point that is closed in `reached` and faces a facet there; `way`: its least_way() at
+/// the places of `at`, whose time is `time`.
+template <class F>
+void for_each_way(const Model& model, const Slots<double>& slots, const State<double>& at, const State<double>& reached,
+                  double time, double turn, F&& f) {
+  if (!slides_along_facets(model)) return;
+  const RegularisationField<double> unread_rho;
+  const ContactInput<double> input{model, slots, unread_rho, at.history, ConeRadius::augmented, time, nullptr};
+  const Vector<double> compact = to_compact(model, at.displacement);
+  const auto moved = detail::nodal_displacement(compact);
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const auto& point = model.points[p];
+    if (point.curve < 0 || reached.contact.state[p] == ContactState::open) continue;
+    const auto& curve = model.curves[point.curve];
+    if (curve.is_integrated()) continue;
+    const int faced = reached.contact.facing[p].patch;
+    if (faced == Patch::none || !is_facet(curve.patches[faced])) continue;
+    const Place x = slots.points.col(point.nodes[0]).head<2>() + moved(point.places[0]);
+    f(static_cast<int>(p), least_way(curve.patches, faced, x, turn, [&](int vertex) {
+        return detail::vertex_position<double, double>(input, curve, vertex, moved);
+      }));
+  }
 }
 
 }  // namespace
@@ -113,24 +139,29 @@ bool slides_along_facets(const Model& model) {
 
 double vertex_margin(const Model& model, const Slots<double>& slots, const State<double>& state, double time) {
   double least = integration_margin(model, slots, state, time);
-  if (!slides_along_facets(model)) return least;
-  const RegularisationField<double> unread_rho;
-  const ContactInput<double> input{model, slots, unread_rho, state.history, ConeRadius::augmented, time, nullptr};
-  const Vector<double> compact = to_compact(model, state.displacement);
-  const auto moved = detail::nodal_displacement(compact);
-  for (std::size_t p = 0; p < model.points.size(); ++p) {
-    const auto& point = model.points[p];
-    if (point.curve < 0 || state.contact.state[p] == ContactState::open) continue;
-    const auto& curve = model.curves[point.curve];
-    if (curve.is_integrated()) continue;
-    const int faced = state.contact.facing[p].patch;
-    if (faced == Patch::none || !is_facet(curve.patches[faced])) continue;
-    const Place x = slots.points.col(point.nodes[0]).head<2>() + moved(point.places[0]);
-    least = std::min(least, least_way(curve.patches, faced, x, [&](int vertex) {
-                       return detail::vertex_position<double, double>(input, curve, vertex, moved);
-                     }));
-  }
+  for_each_way(model, slots, state, state, time, 0, [&](int, double way) { least = std::min(least, way); });
   return least;
+}
+
+std::vector<char> contacts_at_vertices(const Model& model, const Slots<double>& slots, const State<double>& left,
+                                       double start, const State<double>& reached, double end,
+                                       const std::vector<double>& compliance) {
+  constexpr double rounding = 1e-9;  // of a facet: coordinates of places that meet differ by less
+  constexpr double turn = 1e-5;      // forces along normals that are nearer to one another are alike
+  std::vector<char> contacts;
+  const auto mark = [&](int p, double way) {
+    const auto& point = model.points[p];
+    double elastic = 0;
+    if (!compliance.empty() && point.mesh_size > 0)
+      elastic = compliance[p] * reached.contact.traction.segment(point.multiplier + 1, point.tangents).norm() /
+                point.mesh_size;
+    if (way > std::max(rounding, elastic)) return;
+    contacts.resize(model.scene.contacts.size());
+    contacts[point.contact] = 1;
+  };
+  for_each_way(model, slots, left, reached, start, turn, mark);
+  for_each_way(model, slots, reached, reached, end, turn, mark);
+  return contacts;
 }
 
 }  // namespace stickslip

@@ -22,6 +22,8 @@ std::string_view name_of(WarningCode code) {
       return "held_on_facet";
     case WarningCode::shared_place:
       return "shared_place";
+    case WarningCode::soft_penalty:
+      return "soft_penalty";
     case WarningCode::branch_ends:
       return "branch_ends";
     case WarningCode::path_goes_on:

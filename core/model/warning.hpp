@@ -18,6 +18,7 @@ enum class WarningCode {
   single_node,     ///< value: share of the force that one node carries
   held_on_facet,   ///< value: how far a point is beyond the end of its facet, in facets
   shared_place,    ///< value: number of bodies that hold the place of a response
+  soft_penalty,    ///< value: share by which springs of the penalty yield beside the bodies
   branch_ends,     ///< value: time at which the solution jumps
   path_goes_on,    ///< value: share of the load at which the last step of a path ends
   non_unique       ///< value: number of solutions that are known, 1: there may be more, 0 where they are a continuum

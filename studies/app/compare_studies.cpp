@@ -16,6 +16,7 @@
 #include "studies/app/say.hpp"
 #include "studies/io/input_fault.hpp"
 #include "studies/io/printing.hpp"
+#include "studies/report/disagreement.hpp"
 
 namespace stickslip {
 namespace {
@@ -299,8 +300,12 @@ int compare_command(const CompareArguments& arguments) try {
     seconds[1] += cell.seconds_after;
     list.push_back(to_json(cell));
   }
+  std::vector<const json*> all;
+  for (const auto& [id, row] : rows[1]) all.push_back(&row);
+  const auto disagree = disagreements(all);
   if (arguments.json) {
     std::cout << json_text({{"cells", list},
+                            {"disagreements", disagree},
                             {"changed", changed},
                             {"worse", worse},
                             {"other_scenes", other_scenes},
@@ -317,6 +322,7 @@ int compare_command(const CompareArguments& arguments) try {
         "counts not at all; responses and sensitivities may differ by {} of their largest size in any cell\n"
         "seconds, not judged: {:.3g} -> {:.3g}\n",
         cells.size(), changed, worse, bands.relative, bands.rounding, bands.rounding, seconds[0], seconds[1]);
+    for (const auto& sentence : disagree) fmt::print("{}\n", printable(directories[1] + ": " + sentence));
   }
   return worse ? not_solved : done;
 } catch (const json::exception& error) {  // rows without a checksum may hold anything

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "studies/io/wording.hpp"
+#include "studies/report/disagreement.hpp"
 #include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
 
@@ -191,6 +192,9 @@ std::vector<std::string> headline(const Study& study) {
     out.push_back("These figures are for " + study.main_variant +
                   (study.variants.size() > 1 ? "; the charts offer the others." : "."));
   out.push_back(failure_sentence(study));
+  std::vector<const nlohmann::json*> rows;
+  for (const auto& cell : study.cells) rows.push_back(&cell.record);
+  for (auto& sentence : disagreements(rows)) out.push_back(std::move(sentence));
   for (auto& sentence : warning_sentences(study)) out.push_back(std::move(sentence));
   return out;
 }

@@ -12,7 +12,7 @@ namespace stickslip::report {
 constexpr double digits_of_given_values = 1e-9;  ///< errors below it are of the reference, not of the mesh
 
 /// Sentences, plain text, of what the verdict does not say: how penalty's error follows its stiffness; what the mesh
-/// itself costs in accuracy; what failed; what the runs warn of. At least one sentence.
+/// itself costs in accuracy; what failed; what runs disagree about; what they warn of. At least one sentence.
 std::vector<std::string> headline(const Study& study);
 
 /// What, besides the method, makes the difference to the references: of mesh, steps and references those that may.

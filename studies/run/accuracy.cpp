@@ -132,6 +132,7 @@ void AccuracyReader::read(const State<double>& before, const Increment<double>& 
   defects_.read(before, increment, &layer);
   const KktDefects& defects = defects_.defects();
   accuracy_.errors.push_back(relative(defects));
+  accuracy_.scales = defects.scales;
   const auto tolerance = std::visit([](const auto& m) { return tolerances(m); }, method_);
   const auto allowed = allowance(model_, slots_, tolerance, rho, defects.scales);
   const auto found = worst(model_, slots_, rho, defects, defects_.with_layer(), allowed, accuracy_.errors.size());

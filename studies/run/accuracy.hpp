@@ -26,6 +26,7 @@ inline constexpr double most_rounding = 1e-4;
 struct Accuracy {
   std::vector<KktError> errors;
   std::vector<std::string> faults;  ///< per increment: empty, or what is off, where, by how much, and what to try
+  KktScales scales;                 ///< of the last increment
 };
 
 /// Assesses the increments of a run one after the other.

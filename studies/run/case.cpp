@@ -56,6 +56,8 @@ std::vector<StepResult> gather_steps(const CaseResult& result, const StepReader&
     step.margins = read.margins;
     step.responses = read.responses;
     step.bodies = read.bodies;
+    step.undetermined = read.undetermined;
+    step.at_vertex = read.at_vertex;
     if (n < result.gradients.of_responses.size()) step.sensitivities = result.gradients.of_responses[n];
     if (n < result.gradients.records.size()) step.scheme = result.gradients.records[n];
     take_sides(result, n, step);
@@ -258,6 +260,7 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
     result.sensitivity_body_solves = holdings(workspace).body_solves - result.engine.body_solves;
   }
   result.steps = gather_steps(result, reader);
+  result.scales = reader.accuracy().scales;
   result.objectives = objectives_of(result);
   refuse_overflow(result);
   return result;

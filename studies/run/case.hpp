@@ -35,11 +35,12 @@ struct StepResult {
   KktError kkt;
   Margins margins;
   Vector<double> responses;
-  std::vector<BodyMeasures> bodies;    ///< where its state may have been let go; else empty
-  std::optional<SchemeRecord> scheme;  ///< of the increment; only where the scheme iterates
-  Matrix<double> sensitivities;        ///< responses x parameters; empty where there are none
-  bool differentiable = true;          ///< both one-sided derivatives agree
-  Matrix<double> backward, forward;    ///< one-sided sensitivities, where they are known; else empty
+  std::vector<BodyMeasures> bodies;           ///< where its state may have been let go; else empty
+  std::vector<char> undetermined, at_vertex;  ///< as in a StepReading (studies/run/step_reader.hpp)
+  std::optional<SchemeRecord> scheme;         ///< of the increment; only where the scheme iterates
+  Matrix<double> sensitivities;               ///< responses x parameters; empty where there are none
+  bool differentiable = true;                 ///< both one-sided derivatives agree
+  Matrix<double> backward, forward;           ///< one-sided sensitivities, where they are known; else empty
   /// Whether the one-sided derivatives of a response by a parameter differ by more than their rounding, or than their
   /// scheme is off by (or are no numbers). pre: there are some.
   bool has_kink(const Scene& scene, const Method& method, std::size_t response, std::size_t parameter) const;
@@ -52,6 +53,7 @@ struct CaseResult {
   Gradients gradients;
   std::optional<OneSided> one_sided;  ///< where a point was about to change state
   std::vector<StepResult> steps;
+  KktScales scales;           ///< of the last increment
   Vector<double> objectives;  ///< their values
   double condition_estimate = 0;
   long nonzeros = 0;
@@ -74,6 +76,9 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
 
 /// result.json (docs/results.md). `scene_text`: what the hash is of.
 nlohmann::json result_json(const CaseResult& result, const std::string& scene_text);
+/// {response: size that its kind has in this run}: largest force, length or traction, or what these make of an energy
+/// or a moment. What is small beside it may be rounding. Without responses of no such size.
+nlohmann::json scales_json(const CaseResult& result);
 /// Parts of it that a study's row has too.
 nlohmann::json cost_json(const CaseResult& result);
 nlohmann::json steps_json(const CaseResult& result);

@@ -111,6 +111,41 @@ json cost_json(const CaseResult& result) {
           {"condition_estimate", finite(result.condition_estimate)}};
 }
 
+json scales_json(const CaseResult& result) {
+  using Kind = Response::Kind;
+  const auto& [model, slots, unused] = *result.problem;
+  const auto& scales = result.scales;
+  const double extent = (slots.points.rowwise().maxCoeff() - slots.points.rowwise().minCoeff()).norm();
+  const double length = std::max(scales.reach, scales.length);
+  json out = json::object();
+  for (const auto& response : model.scene.responses) {
+    double scale = 0;
+    switch (response.kind) {
+      case Kind::reaction:
+      case Kind::contact_force:
+        scale = scales.force * (response.component == "moment" ? extent : 1);
+        break;
+      case Kind::displacement:
+      case Kind::gap:
+      case Kind::slip:
+        scale = length;
+        break;
+      case Kind::contact_pressure:
+        scale = scales.traction;
+        break;
+      case Kind::dissipation:
+      case Kind::strain_energy:
+        scale = scales.force * length;
+        break;
+      case Kind::plastic_strain:
+      case Kind::contact_half_width:
+        continue;
+    }
+    if (std::isfinite(scale) && scale > 0) out[response.name] = scale;
+  }
+  return out;
+}
+
 json objectives_json(const CaseResult& result) {
   const auto& scene = result.problem->model.scene;
   json out = json::object();

@@ -13,9 +13,28 @@ bool flows_on(const State<double>& from, const State<double>& to) {
   return (to.displacement - from.displacement).cwiseAbs().maxCoeff() > rest * to.displacement.cwiseAbs().maxCoeff();
 }
 
+/// Of the tangential springs of a method that lets points slip elastically; empty for others, and without friction.
+std::vector<double> tangential_compliance(const Problem& problem, const Method& method) {
+  std::vector<double> compliance;
+  std::visit(
+      [&](const auto& m) {
+        if (m.prevents_penetration || !problem.model.effects.friction) return;
+        for (const auto& rho : initial_regularisation(problem.slots, m)) compliance.push_back(1 / rho.tangential);
+      },
+      method);
+  return compliance;
+}
+
 }  // namespace
 
-StepReading StepReader::read(const State<double>& before, const Increment<double>& increment, bool lets_go) const {
+StepReader::StepReader(const Problem& problem, const Method& method)
+    : problem_(problem),
+      accuracy_(problem.model, problem.slots, method),
+      forces_(problem.model, problem.slots),
+      compliance_(tangential_compliance(problem, method)) {}
+
+StepReading StepReader::read(const State<double>& before, double start, const Increment<double>& increment,
+                             bool lets_go) const {
   const auto& [model, slots, unused] = problem_;
   const State<double>& state = increment.state;
   StepReading step;
@@ -23,6 +42,8 @@ StepReading StepReader::read(const State<double>& before, const Increment<double
   if (model.effects.plasticity && flows_on(before, state))
     step.margins.yield = yield_margin(model, slots, {state.displacement, before.history.bodies});
   step.margins.vertex = vertex_margin(model, slots, state, increment.time);
+  step.at_vertex = contacts_at_vertices(model, slots, before, start, state, increment.time, compliance_);
+  if (forces_.is_called_for()) step.undetermined = forces_.undetermined(state, compliance_);
   step.responses = evaluate_responses(model, slots, state, increment.time);
   for (std::size_t b = 0; lets_go && b < model.bodies.size(); ++b)
     step.bodies.push_back(measures_of_body(problem_, state, b));
@@ -33,9 +54,10 @@ void StepReader::follow(const Trajectory<double>& trajectory, bool lets_go) {
   for (std::size_t n = steps_.size(); n < trajectory.increments.size(); ++n) {
     const auto& increment = trajectory.increments[n];
     const auto& before = n == 0 ? trajectory.initial : trajectory.increments[n - 1].state;
+    const double start = n == 0 ? 0 : trajectory.increments[n - 1].time;
     accuracy_.read(before, increment);
     steps_.emplace_back();
-    if (increment.requested) steps_.back() = read(before, increment, lets_go);
+    if (increment.requested) steps_.back() = read(before, start, increment, lets_go);
   }
 }
 

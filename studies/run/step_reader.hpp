@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "sensitivity/force_search.hpp"
 #include "studies/run/accuracy.hpp"
 #include "studies/run/case.hpp"
 
@@ -14,13 +15,15 @@ struct StepReading {
   Margins margins;
   Vector<double> responses;
   std::vector<BodyMeasures> bodies;  ///< empty unless the state may be thinned
+  /// Per contact, empty where there is none: whether its forces are undetermined (ForceSearch), and whether a point is
+  /// or was on a vertex (contacts_at_vertices()).
+  std::vector<char> undetermined, at_vertex;
 };
 
 class StepReader {
  public:
   /// Both must outlive it.
-  StepReader(const Problem& problem, const Method& method)
-      : problem_(problem), accuracy_(problem.model, problem.slots, method) {}
+  StepReader(const Problem& problem, const Method& method);
 
   /// Reads the increments since the last call. `lets_go`: the run may thin states.
   void follow(const Trajectory<double>& trajectory, bool lets_go);
@@ -29,10 +32,13 @@ class StepReader {
   const Accuracy& accuracy() const { return accuracy_.accuracy(); }
 
  private:
-  StepReading read(const State<double>& before, const Increment<double>& increment, bool lets_go) const;
+  /// `start`: time of the state before.
+  StepReading read(const State<double>& before, double start, const Increment<double>& increment, bool lets_go) const;
 
   const Problem& problem_;
   AccuracyReader accuracy_;
+  ForceSearch forces_;
+  std::vector<double> compliance_;  ///< as undetermined() takes it
   std::vector<std::optional<StepReading>> steps_;
 };
 

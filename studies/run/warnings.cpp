@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "sensitivity/force_search.hpp"
 #include "studies/run/strains.hpp"
 
 namespace stickslip {
@@ -78,6 +79,12 @@ IdleNumber idle_number(const FrictionLaw<double>& friction) {
   return {first, fmt::format(fmt::runtime(words), first)};
 }
 
+/// How many steps have a mark of a contact.
+long steps_with(const CaseResult& result, std::size_t contact, std::vector<char> StepResult::*marks) {
+  return std::count_if(result.steps.begin(), result.steps.end(),
+                       [&](const StepResult& step) { return !(step.*marks).empty() && (step.*marks)[contact] != 0; });
+}
+
 void add_slips(const CaseResult& result, std::vector<Warning>& warnings) {
   constexpr double most = 0.5;  // of a slave element
   const auto& model = result.problem->model;
@@ -108,6 +115,7 @@ void add_slips(const CaseResult& result, std::vector<Warning>& warnings) {
                                       name, farthest[c])});
     const auto& law = result.problem->slots.friction[c];
     if (!has_ended(result) || !contacts[c].friction || law.bears_nothing() || !closed[c] || slipped[c]) continue;
+    if (steps_with(result, c, &StepResult::undetermined) > 0) continue;  // (friction decides which forces may be)
     const IdleNumber idle = idle_number(law);
     warnings.push_back(
         {WarningCode::idle_friction, name, idle.value, "lower the friction, or pull harder",
@@ -299,6 +307,61 @@ void add_other_solutions(const CaseResult& result, std::vector<Warning>& warning
                      uncounted, increments.size())});
 }
 
+/// Contacts whose forces equilibrium leaves open, and points on a vertex.
+void add_undetermined_contacts(const CaseResult& result, std::vector<Warning>& warnings) {
+  const auto& contacts = result.problem->model.scene.contacts;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const std::string& name = contacts[c].name;
+    const std::size_t steps = result.steps.size();
+    if (const long n = steps_with(result, c, &StepResult::undetermined); n > 0)
+      warnings.push_back(
+          {WarningCode::non_unique, name, 0,
+           "take friction off one of the contacts of a node, or use fewer slave nodes on a facet of the master",
+           fmt::format("{}: in {} of {} steps the forces of its points are not determined: their constraints repeat "
+                       "one another, so that other forces balance the same loads; methods, scales and steps may settle "
+                       "on different ones",
+                       name, n, steps)});
+    if (const long n = steps_with(result, c, &StepResult::at_vertex); n > 0)
+      warnings.push_back(
+          {WarningCode::non_unique, name, 1,
+           R"(smooth the master, integrate over segments ("discretization": "segment"), or shift a mesh a little)",
+           fmt::format("{}: in {} of {} steps a point begins or ends on a vertex of the master's facets: each of "
+                       "the two facets may lead to a solution of its own, and rounding decides between them",
+                       name, n, steps)});
+  }
+}
+
+/// Springs of a penalty that yield beside the bodies: under the contact's force, as the method-blind errors measure it;
+/// and under the part of the pressures that the slave alone shares out, where more nodes of it face the master than
+/// nodes of that. It yields there by 1/k of its nodes, beside which the springs' 1/(stiffness A) is to be small.
+void add_soft_penalty(const CaseResult& result, std::vector<Warning>& warnings) {
+  constexpr double most = 0.02;
+  const auto* penalty = std::get_if<Penalty>(&result.method);
+  if (!penalty) return;
+  constexpr const char* stiffer = "raise `stiffness`, or take another method";
+  double yields = 0;
+  for (const auto& step : result.steps) yields = std::max({yields, step.kkt.gap, step.kkt.stick});
+  if (yields > most)
+    warnings.push_back({WarningCode::soft_penalty, "", yields, stiffer,
+                        fmt::format("the springs of the penalty yield by {:.2g} % of the motion of the contact, and "
+                                    "forces are off by about as much",
+                                    100 * yields)});
+  const auto& [model, slots, unused] = *result.problem;
+  const auto rho = initial_regularisation(slots, *penalty);
+  const auto shares = slave_shares(model, slots);
+  std::vector<double> softest(model.scene.contacts.size(), 0);
+  for (std::size_t p = 0; p < shares.size(); ++p)
+    softest[model.points[p].contact] =
+        std::max(softest[model.points[p].contact], shares[p] / (rho[p].normal * slots.geometry[p].area));
+  for (std::size_t c = 0; c < softest.size(); ++c)
+    if (softest[c] > most && softest[c] > 10 * yields)  // (the first sentence says the rest)
+      warnings.push_back(
+          {WarningCode::soft_penalty, model.scene.contacts[c].name, softest[c], stiffer,
+           fmt::format("{}: several nodes of a stiff slave share facets of a softer master, and the springs of the "
+                       "penalty yield by {:.2g} times what the slave does: they decide how its nodes share the force",
+                       model.scene.contacts[c].name, softest[c])});
+}
+
 /// A path that used its steps up before it came to the full load.
 void add_path_that_goes_on(const CaseResult& result, std::vector<Warning>& warnings) {
   const auto& model = result.problem->model;
@@ -376,6 +439,8 @@ std::vector<Warning> warnings_of(const CaseResult& result) {
   add_shared_places(result, warnings);
   if (has_ended(result)) add_loose_bodies(result, warnings);
   add_other_solutions(result, warnings);
+  add_undetermined_contacts(result, warnings);
+  add_soft_penalty(result, warnings);
   if (has_ended(result)) add_path_that_goes_on(result, warnings);
   return warnings;
 }

@@ -20,9 +20,10 @@ namespace stickslip {
 ///   locking        Q4 or T3, nu near 1/2: pressures that oscillate within and between elements
 ///   single_node    a side of several nodes, one of which carries nearly all of the contact force
 ///   shared_place   a response at a point that belongs to several bodies, and names none of them
+///   soft_penalty   springs of a penalty that yield by more than 2 % of what the bodies do, under all of a contact's
+///                  force or under the share of it that its slave alone distributes
 ///   non_unique     a body that nothing holds and no load moves; increments with several solutions, or with tangents
-///   that
-///                  allow several
+///                  that allow several; contacts whose forces are undetermined; points on a vertex
 ///   path_goes_on   a path by arc length used up its steps before the full load
 ///   branch_ends    where solutions were counted: the branch from the last increment ends
 /// Empty if there is none, or if nothing converged.

@@ -17,6 +17,7 @@
 #include "studies/io/printing.hpp"
 #include "studies/io/progress.hpp"
 #include "studies/io/result_rows.hpp"
+#include "studies/report/disagreement.hpp"
 #include "studies/report/report.hpp"
 #include "studies/run/explain.hpp"
 #include "studies/run/fields.hpp"
@@ -308,6 +309,13 @@ class InterruptNote {
   AtInterrupt at_interrupt_;
 };
 
+/// Notes what runs disagree about, as the report's page says too.
+void note_disagreements(const RowsById& rows, std::ostream& log) {
+  std::vector<const json*> all;
+  for (const auto& [id, row] : rows) all.push_back(&row);
+  for (const auto& sentence : disagreements(all)) log << "note: " << printable(sentence) << '\n';
+}
+
 StudyOutcome carry_out(const Plan& plan, const StudyArguments& arguments, const Listener& listener, MeshFiles& meshes) {
   if (holds(plan.directory, "result.json"))
     throw InputFault(plan.directory.string() + ": holds the result of a run; -o DIR writes to another directory");
@@ -339,6 +347,7 @@ StudyOutcome carry_out(const Plan& plan, const StudyArguments& arguments, const 
   write_rows(plan.directory, plan.ids, rows);
   const auto recorded =
       std::count_if(plan.cells.begin(), plan.cells.end(), [&](const auto& cell) { return rows.count(cell.id) > 0; });
+  note_disagreements(rows, listener.log);
   rows.clear();  // the report reads them again, and not all of each
   write_report(plan.directory);
   return {plan.directory, std::ssize(plan.cells), tally.run, tally.failed, std::ssize(plan.cells) - recorded};

@@ -232,6 +232,7 @@ json CellRunner::measured_row(const CellInput& cell) {
   if (!steps.empty()) {
     if (asked_for("kkt", study_.errors)) row["errors"]["kkt"] = steps.back()["kkt"];
     row["responses"] = steps.back()["responses"];
+    row["scales"] = scales_json(result);
     if (steps.back().contains("sensitivities")) row["sensitivities"] = steps.back()["sensitivities"];
   }
   if (const json objectives = objectives_json(result); !objectives.empty()) row["objectives"] = objectives;

@@ -1,0 +1,184 @@
+/// Scenes with more answers than one: what warnings, reports and comparisons say of them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "studies/report/disagreement.hpp"
+#include "studies/run/warnings.hpp"
+#include "tests/studies/cases.hpp"
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+const json penalty = {{"penalty", json::object()}}, uzawa = {{"uzawa_al", json::object()}},
+           monolithic = {{"monolithic_al", json::object()}};
+
+auto has_code(WarningCode code) { return testing::Field(&Warning::code, code); }
+auto is_undetermined(const std::string& where) {
+  return testing::AllOf(has_code(WarningCode::non_unique), testing::Field(&Warning::where, where),
+                        testing::Field(&Warning::value, 0),
+                        testing::Field(&Warning::text, HasSubstr("not determined")));
+}
+
+std::vector<Warning> warnings(const json& document, const json& method) {
+  return warnings_of(cases::run(document, method, "scene.json"));
+}
+
+/// A point on springs in a groove of two planes at right angles, pressed into it and a little aside.
+json groove(double friction) {
+  const auto plane = [](double x) { return json{{"plane", {{"point", {0, 0}}, {"normal", {x, 1}}}}}; };
+  const auto contact = [&](const char* wall) {
+    return json{{"slave", "m.node"}, {"master", wall}, {"friction", friction}};
+  };
+  return {{"bodies",
+           {{"m",
+             {{"mesh", {{"point", {{"at", {0, 0}}}}}},
+              {"material", {{"grounded_spring", {{"stiffness", {{100, 0}, {0, 100}}}}}}}}}}},
+          {"obstacles", {{"l", plane(1)}, {"r", plane(-1)}}},
+          {"contacts", {{"a", contact("l")}, {"b", contact("r")}}},
+          {"loads", {{{"on", "m.node"}, {"force", {1, -10}}, {"history", {{0, 0}, {1, 1}}}}}},
+          {"time", {{"end", 1}, {"steps", 5}}}};
+}
+
+TEST(SeveralSolutions, AreToldOfANodeThatFrictionHoldsInTwoContacts) {
+  for (const json& method : {penalty, uzawa, monolithic}) {
+    const auto found = warnings(groove(0.5), method);
+    EXPECT_THAT(found, Contains(is_undetermined("a"))) << method;
+    EXPECT_THAT(found, Contains(is_undetermined("b"))) << method;
+    EXPECT_THAT(found, Not(Contains(has_code(WarningCode::idle_friction)))) << method;
+  }
+}
+
+TEST(SeveralSolutions, AreNotToldOfANodeInTwoContactsWithoutFriction) {
+  for (const json& method : {penalty, uzawa, monolithic}) EXPECT_THAT(warnings(groove(0), method), IsEmpty()) << method;
+}
+
+/// A block of `cells` cells in the width of its sole, driven on to a slab of one cell, whose modulus is `soft`.
+json block_on_a_soft_slab(int cells, double soft) {
+  const auto body = [](double modulus, const json& min, const json& max, int across) {
+    return json{{"mesh", {{"box", {{"min", min}, {"max", max}, {"cells", {across, 1}}}}}},
+                {"material", {{"linear_elastic", {{"E", modulus}, {"nu", 0.3}}}}}};
+  };
+  return {{"bodies", {{"block", body(1000, {0.5, 1}, {1.5, 1.5}, cells)}, {"slab", body(soft, {0, 0}, {1.5, 1}, 1)}}},
+          {"contacts", {{"t", {{"slave", "block.bottom"}, {"master", "slab.top"}, {"friction", 0.3}}}}},
+          {"supports",
+           {{{"on", "slab.bottom"}, {"move", {{"x", 0}, {"y", 0}}}},
+            {{"on", "block.top"}, {"move", {{"x", {{0, 0}, {1, 1e-6}}}, {"y", {{0, 0}, {1, -0.02}}}}}}}},
+          {"time", {{"end", 1}, {"steps", 1}}},
+          {"responses", {{"Fx", {{"reaction", {{"on", "block.top"}, {"component", "x"}}}}}}}};
+}
+
+TEST(SeveralSolutions, AreToldOfNodesOfARigidFaceOnOneFacet) {
+  for (const json& method : {penalty, uzawa, monolithic}) {
+    // three nodes share out the force of two nodes of the slab, which the block alone resists: by 3e-9 of its motion
+    EXPECT_THAT(warnings(block_on_a_soft_slab(2, 3e-6), method), Contains(is_undetermined("t"))) << method;
+    EXPECT_THAT(warnings(block_on_a_soft_slab(1, 3e-6), method), Not(Contains(is_undetermined("t")))) << method;
+    EXPECT_THAT(warnings(block_on_a_soft_slab(2, 100), method), Not(Contains(is_undetermined("t")))) << method;
+  }
+}
+
+TEST(SeveralSolutions, AreToldOfNodesOfADrivenFaceOnOneFacet) {
+  json scene = block_on_a_soft_slab(2, 100);
+  scene["supports"].push_back(scene["supports"][1]);
+  scene["supports"][2]["on"] = "block.bottom";
+  EXPECT_THAT(warnings(scene, monolithic), Contains(is_undetermined("t")));
+}
+
+/// Half rings fitted into one another at finite strain, the inner one turned: a node of the outer one begins on the
+/// vertex of the inner one at 90 degrees, and sticks.
+json rings(const json& surface) {
+  const auto ring = [](double inner, double outer, int cells, double modulus) {
+    return json{
+        {"mesh",
+         {{"ring",
+           {{"center", {0, 0}}, {"inner", inner}, {"outer", outer}, {"to_angle", 180}, {"cells", {1, cells}}}}}},
+        {"material", {{"neo_hookean", {{"E", modulus}, {"nu", 0.3}}}}}};
+  };
+  return {
+      {"strain", "finite"},
+      {"bodies", {{"i", ring(1, 2, 8, 1)}, {"o", ring(2, 3, 10, 100)}}},
+      {"contacts",
+       {{"c",
+         {{"slave", "o.inner"}, {"master", "i.outer"}, {"friction", 1.6}, {"offset", -0.02}, {"surface", surface}}}}},
+      {"supports",
+       {{{"on", "o.outer"}, {"move", {{"x", 0}, {"y", 0}}}},
+        {{"on", "i.inner"}, {"rotate", {{"center", {0, 0}}, {"angle", {{0, 0}, {1, 0.1}}}}}}}},
+      {"time", {{"end", 1}, {"steps", 1}}}};
+}
+
+TEST(SeveralSolutions, AreToldOfAPointThatBeginsOnAVertex) {
+  const auto leaves = testing::AllOf(has_code(WarningCode::non_unique), testing::Field(&Warning::where, "c"),
+                                     testing::Field(&Warning::text, HasSubstr("vertex")));
+  EXPECT_THAT(warnings(rings("faceted"), monolithic), Contains(leaves));
+  EXPECT_THAT(warnings(rings("smooth"), monolithic), Not(Contains(leaves)));
+  json turned = rings("faceted");  // no node begins on a vertex: not by 1e-9 of a facet, but by half of one
+  turned["bodies"]["o"]["mesh"]["ring"]["cells"] = {1, 9};
+  turned["bodies"]["i"]["mesh"]["ring"]["from_angle"] = 1;
+  EXPECT_THAT(warnings(turned, monolithic), Not(Contains(leaves)));
+}
+
+TEST(SoftPenalty, IsToldWhereItsSpringsYieldBesideTheBodies) {
+  const json scene = block_on_a_soft_slab(1, 100);
+  const auto soft = has_code(WarningCode::soft_penalty);
+  EXPECT_THAT(warnings(scene, penalty), Not(Contains(soft)));  // 1e3: by 1e-3
+  EXPECT_THAT(warnings(scene, uzawa), Not(Contains(soft)));
+  EXPECT_THAT(warnings(scene, {{"penalty", {{"stiffness", 10}}}}), Contains(soft));
+}
+
+/// A row of a study: a penalty, or another run of that label, with one response.
+json row(const std::string& label, double value, double error, double scale) {
+  return {{"label", label},
+          {"status", "converged"},
+          {"vary", json::object()},
+          {"responses", {{"heat", value}}},
+          {"scales", {{"heat", scale}}},
+          {"errors", {{"kkt", {{"gap", error}, {"stick", error / 2}}}}},
+          {"warnings", json::array()}};
+}
+
+std::vector<std::string> disagree(const std::vector<json>& rows) {
+  std::vector<const json*> all;
+  for (const auto& each : rows) all.push_back(&each);
+  return disagreements(all);
+}
+
+TEST(Disagreements, NameRunsThatDifferByMoreThanTheirErrorsExplain) {
+  const auto found = disagree({row("penalty", 0.03436, 1e-3, 0.1), row("uzawa_al", 0.03034, 1e-11, 0.1),
+                               row("monolithic_al", 0.03449, 1e-12, 0.1)});
+  ASSERT_THAT(found, SizeIs(1));
+  EXPECT_THAT(found[0], HasSubstr("heat"));
+  EXPECT_THAT(found[0], HasSubstr("0.03034 by uzawa_al"));
+  EXPECT_THAT(found[0], HasSubstr("0.03449 by monolithic_al"));
+  EXPECT_THAT(found[0], HasSubstr("12 % apart"));
+}
+
+TEST(Disagreements, AreExplainedByTheErrorOfAPenalty) {
+  EXPECT_THAT(disagree({row("penalty", 0.031, 1e-2, 0.1), row("uzawa_al", 0.03, 1e-11, 0.1)}), IsEmpty());
+}
+
+TEST(Disagreements, AreNoneOfWhatIsRoundingBesideItsKind) {
+  EXPECT_THAT(disagree({row("uzawa_al", 1e-17, 1e-12, 1), row("monolithic_al", -4e-17, 1e-12, 1)}), IsEmpty());
+}
+
+TEST(Disagreements, AreNotSoughtBetweenVariantsOrRunsThatFailed) {
+  json varied = row("monolithic_al", 2, 1e-12, 1), failed = row("penalty", 3, 1e-12, 1);
+  varied["vary"] = {{"/contacts/t/friction", 0.2}};
+  failed["status"] = "cycle";
+  EXPECT_THAT(disagree({row("uzawa_al", 1, 1e-12, 1), varied, failed}), IsEmpty());
+}
+
+TEST(Disagreements, RepeatWhatTheRunsWarnOf) {
+  json warned = row("monolithic_al", 2, 1e-12, 1);
+  warned["warnings"] = {{{"code", "non_unique"}}, {{"code", "single_node"}}};
+  EXPECT_THAT(disagree({row("uzawa_al", 1, 1e-12, 1), warned}), ElementsAre(HasSubstr("they warn of non_unique.")));
+}
+
+}  // namespace
+}  // namespace stickslip
