@@ -222,7 +222,10 @@ class Parser {
         for (int k = 0; k < (dimension == 0 ? 3 : 6); ++k) tokens_.real("a coordinate of an entity's bounds");
         auto& groups = groups_of_[{dimension, tag}];
         const long long physical = tokens_.count("the number of an entity's physical groups");
-        for (long long k = 0; k < physical; ++k) groups.push_back(group_number(tokens_.integer("a physical group")));
+        for (long long k = 0; k < physical; ++k) {
+          const long long group = group_number(tokens_.integer("a physical group"));
+          if (std::find(groups.begin(), groups.end(), group) == groups.end()) groups.push_back(group);
+        }
         const long long bounding = dimension == 0 ? 0 : tokens_.count("the number of an entity's bounding entities");
         for (long long k = 0; k < bounding; ++k) tokens_.integer("a bounding entity");
       }

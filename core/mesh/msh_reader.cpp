@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <tuple>
 
 #include "core/mesh/msh_file.hpp"
@@ -30,6 +31,12 @@ std::string joined(const std::vector<std::string>& words) {
   std::string list;
   for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
   return list;
+}
+
+std::string in_digits(double x) {
+  std::ostringstream text;
+  text << x;
+  return text.str();
 }
 
 /// Twice the signed area between the corners of an element where it lies.
@@ -141,6 +148,8 @@ class Import {
       }
     const std::vector<int> node = number_nodes(elements, body);
     if (!is_plane(body.body, elements) || !turn_counter_clockwise(elements, body)) return std::nullopt;
+    if (!lie_beside_each_other(elements, body)) return std::nullopt;
+    note_slits(body, node);
     add_sides(body, node);
     return body;
   }
@@ -194,13 +203,79 @@ class Import {
       std::reverse(first + corners_of(mesh.shape), first + count);  // the last side is now the first
     }
     const auto bad = first_inverted_element(mesh, body.points);
-    if (!bad) return true;
+    if (!bad) return is_thick_enough(elements, body);
     const MshElement* element = elements[*bad];
     const bool against = twice_area(mesh, body.points, *bad) < 0 && clockwise != 0 && clockwise != all;
     fault(element, "element " + std::to_string(element->tag) + " of body \"" + body.body + "\" " +
                        (against ? "is turned against the others (clockwise and counter-clockwise are mixed)"
                                 : "is degenerate: a corner is flat or turns inwards"));
     return false;
+  }
+
+  bool is_thick_enough(const Elements& elements, const ImportedMesh& body) {
+    const auto thin = first_thin_element(body.mesh, body.points);
+    if (!thin) return true;
+    const MshElement* element = elements[thin->element];
+    fault(element, "element " + std::to_string(element->tag) + " of body \"" + body.body + "\" is " +
+                       in_digits(thin->thickness) + " thick where coordinates reach " + in_digits(thin->size) +
+                       ": rounding leaves its strain less than four digits");
+    return false;
+  }
+
+  std::string line_of(const MshElement* element) const {
+    const std::string place = msh_location(text_, element->offset);
+    return "line " + place.substr(0, place.find(':'));
+  }
+
+  /// Whether no two elements overlap by their nodes. Elements are counter-clockwise, so two with a common side in the
+  /// same direction lie on the same side of it; an element that is listed twice has all sides in common with itself.
+  bool lie_beside_each_other(const Elements& elements, const ImportedMesh& body) {
+    const Mesh& mesh = body.mesh;
+    const int count = nodes_of(mesh.shape), corners = corners_of(mesh.shape);
+    std::map<std::pair<int, int>, int> element_left_of;
+    const auto nodes_of_element = [&](int e) {
+      const auto first = mesh.connectivity.begin() + e * count;
+      return std::set<int>(first, first + count);
+    };
+    for (int e = 0; e < mesh.element_count(); ++e)
+      for (int k = 0; k < corners; ++k) {
+        const int* nodes = mesh.connectivity.data() + e * count;
+        const auto [other, is_new] = element_left_of.try_emplace({nodes[k], nodes[(k + 1) % corners]}, e);
+        if (is_new) continue;
+        const MshElement *element = elements[e], *first = elements[other->second];
+        const bool twice = nodes_of_element(e) == nodes_of_element(other->second);
+        fault(element, "element " + std::to_string(element->tag) + " of body \"" + body.body + "\" " +
+                           (twice ? "has the same nodes as element " : "overlaps element ") +
+                           std::to_string(first->tag) + " of " + line_of(first) +
+                           (twice ? ": the body would be twice as stiff there; delete one of the two"
+                                  : ": both lie on the same side of their common edge"));
+        return false;
+      }
+    return true;
+  }
+
+  /// Notes nodes of a body at one place: elements do not hold together there.
+  void note_slits(const ImportedMesh& body, const std::vector<int>& number) {
+    std::map<std::pair<double, double>, long long> tag_at;
+    for (std::size_t i = 0; i < number.size(); ++i) {
+      if (number[i] < 0) continue;
+      const MshNode& node = file_.nodes[i];
+      const auto [first, is_new] = tag_at.try_emplace({node.place[0], node.place[1]}, node.tag);
+      if (is_new) continue;
+      result_.notes.push_back("nodes " + std::to_string(first->second) + " and " + std::to_string(node.tag) +
+                              " of body \"" + body.body +
+                              "\" are at one place, so that its elements do not hold together there; unless a slit is "
+                              "meant, merge them (Gmsh: Coherence Mesh)");
+      return;
+    }
+  }
+
+  /// Says that an element of a curve or a point is listed twice, so that loads there would count twice.
+  void fault_twice(const MshElement* element, const MshElement* first, const MshGroup& group) {
+    fault(element, "element " + std::to_string(element->tag) + " of physical " +
+                       (group.first == 1 ? "curve" : "point") + " \"" + name_of(group) +
+                       "\" has the same nodes as element " + std::to_string(first->tag) + " of " + line_of(first) +
+                       ": loads would count twice there; delete one of the two");
   }
 
   void add_sides(ImportedMesh& body, const std::vector<int>& node) {
@@ -216,14 +291,21 @@ class Import {
       if (group.first == 2) continue;
       std::vector<Edge> segments;
       Side side;
+      std::map<Edge, const MshElement*> listed;
+      const auto is_new = [&](const Edge& edge, const MshElement* element) {
+        const auto [first, inserted] = listed.try_emplace(edge.first < edge.second ? edge : turned(edge), element);
+        if (!inserted) fault_twice(element, first->second, group);
+        return inserted;
+      };
       for (const MshElement* element : elements) {
         const int first = node[element->nodes[0]];
         if (group.first == 0) {
-          if (first < 0) continue;
+          if (first < 0 || !is_new({first, first}, element)) continue;
           side.nodes.push_back(first);
         } else {
           const Edge edge{first, node[element->nodes[1]], element->node_count == 3 ? node[element->nodes[2]] : -1};
           if (!edges.count(edge) && !edges.count(turned(edge))) continue;
+          if (!is_new(edge, element)) continue;
           segments.push_back(edges.count(edge) ? edge : turned(edge));
         }
         used_.insert(element);

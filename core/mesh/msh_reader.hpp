@@ -17,13 +17,13 @@ struct ImportResult {
   /// as the file directs it).
   std::vector<ImportedMesh> bodies;
   std::vector<std::string> errors;  ///< "FILE:LINE:COL: what is wrong"; if there is one, `bodies` may lack some
-  std::vector<std::string> notes;   ///< what the file holds and no body uses
+  std::vector<std::string> notes;   ///< what the file holds and no body uses, and nodes at one place
 };
 
 /// Reads a stream to its end. Never throws on a bad file, however broken; errors say what is wrong with it:
 /// an unknown version, binary, truncated, wrong counts, other elements than these, elements of a
-/// body that are mixed, degenerate or turned against each other, no physical surface, two groups of one name, not
-/// plane.
+/// body that are mixed, degenerate, turned against each other, listed twice or overlap, lines or points of a group that
+/// are listed twice, no physical surface, two groups of one name, not plane.
 ImportResult read_msh(std::istream&, const std::string& file_name);
 
 /// What is wrong with asking for this body: "" if it is there, else which there are and which is nearest.

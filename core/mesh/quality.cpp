@@ -1,5 +1,7 @@
 #include "core/mesh/quality.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace stickslip {
@@ -25,7 +27,36 @@ bool is_convex(const int* nodes, ElementShape shape, const Points<double>& point
   return true;
 }
 
+/// Least distance of a corner of an element from a side at its neighbour: that of a bar is its length.
+double thickness(const int* nodes, ElementShape shape, const Points<double>& points) {
+  const auto at = [&](int k) -> Vec<double, 2> { return points.col(nodes[k]).head<2>(); };
+  const int count = corners_of(shape);
+  double least = std::numeric_limits<double>::infinity();
+  for (int corner = 0; corner < count; ++corner) {
+    const Vec<double, 2> here = at(corner);
+    const Vec<double, 2> out = at((corner + 1) % count) - here, back = at((corner + count - 1) % count) - here;
+    least = std::min(least, std::abs(out[0] * back[1] - out[1] * back[0]) / std::max(out.norm(), back.norm()));
+  }
+  return least;
+}
+
 }  // namespace
+
+std::optional<ThinElement> first_thin_element(const Mesh& mesh, const Points<double>& points) {
+  constexpr double least_share = std::numeric_limits<double>::epsilon() / most_strain_rounding;
+  if (mesh.shape == ElementShape::point) return std::nullopt;
+  // displacements are of the size of the body at most, and coordinates round as they are
+  const double size =
+      std::max((points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm(), points.cwiseAbs().maxCoeff());
+  const int count = nodes_of(mesh.shape);
+  for (int element = 0; element < mesh.element_count(); ++element) {
+    const int* nodes = mesh.connectivity.data() + element * count;
+    const double thick = mesh.shape == ElementShape::bar2 ? (points.col(nodes[1]) - points.col(nodes[0])).norm()
+                                                          : thickness(nodes, mesh.shape, points);
+    if (thick < least_share * size) return ThinElement{element, thick, size};
+  }
+  return std::nullopt;
+}
 
 std::optional<int> first_inverted_element(const Mesh& mesh, const Points<double>& points) {
   const int count = nodes_of(mesh.shape);

@@ -12,4 +12,18 @@ namespace stickslip {
 /// zero. A point is always usable.
 std::optional<int> first_inverted_element(const Mesh&, const Points<double>&);
 
+/// Largest relative rounding of a strain: four digits, as many as a run that passes as solved has at least
+/// (most_rounding of studies/run/accuracy.hpp).
+inline constexpr double most_strain_rounding = 1e-4;
+
+struct ThinElement {
+  int element = 0;
+  double thickness = 0, size = 0;  ///< lengths: of the element; of its body, or of its distance from the origin
+};
+
+/// The first element that is too thin for its strain to have digits; none if all are usable. The strain is a difference
+/// of displacements over the thickness of the element, and displacements and coordinates round by 1e-16 of the size of
+/// the body, or of its distance from the origin.
+std::optional<ThinElement> first_thin_element(const Mesh&, const Points<double>&);
+
 }  // namespace stickslip

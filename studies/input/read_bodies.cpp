@@ -266,7 +266,19 @@ std::optional<MeshDescription> without_grade(const MeshDescription& description)
       description);
 }
 
-/// Reports the inverted element `bad`: at the grade, where cells that are all alike would be sound.
+/// Reports a fault of an element: at the grade, where cells that are all alike would be sound. `is_sound(points)`.
+template <class IsSound>
+void report_element(const JsonNode& node, const MeshDescription& description, const Mesh& mesh,
+                    const std::string& fault, const SceneReading& reading, IsSound&& is_sound) {
+  const auto even = without_grade(description);
+  if (even && is_sound(make_points<double>(*even, mesh, reading.scene.as<double>())))
+    for (const auto& [kind, generator] : node.members())
+      if (const auto grade = generator.find("grade"))
+        return grade->error("is " + shown(grade->value()) + "; with it " + fault + "; try one nearer to 1");
+  node.error(fault);
+}
+
+/// Reports the inverted element `bad`.
 void report_inverted(const JsonNode& node, const MeshDescription& description, const Mesh& mesh,
                      const Points<double>& points, int bad, const SceneReading& reading) {
   std::string fault = "element " + std::to_string(bad + 1) + " is inverted or flat; its corners are";
@@ -275,12 +287,18 @@ void report_inverted(const JsonNode& node, const MeshDescription& description, c
     const auto x = points.col(mesh.connectivity[bad * n + a]);
     fault += " (" + shown(x[0]) + ", " + shown(x[1]) + ")";
   }
-  const auto even = without_grade(description);
-  if (even && !first_inverted_element(mesh, make_points<double>(*even, mesh, reading.scene.as<double>())))
-    for (const auto& [kind, generator] : node.members())
-      if (const auto grade = generator.find("grade"))
-        return grade->error("is " + shown(grade->value()) + "; with it " + fault + "; try one nearer to 1");
-  node.error(fault);
+  report_element(node, description, mesh, fault, reading,
+                 [&](const auto& even) { return !first_inverted_element(mesh, even); });
+}
+
+/// Reports an element that is too thin for its strain to have digits.
+void report_thin(const JsonNode& node, const MeshDescription& description, const Mesh& mesh, const ThinElement& thin,
+                 const SceneReading& reading) {
+  const std::string fault = "element " + std::to_string(thin.element + 1) + " is " + shown(thin.thickness) +
+                            " thick where coordinates reach " + shown(thin.size) +
+                            ": rounding leaves its strain less than four digits";
+  report_element(node, description, mesh, fault, reading,
+                 [&](const auto& even) { return !first_thin_element(mesh, even); });
 }
 
 /// Makes the mesh and looks at it; none where it is at fault.
@@ -304,6 +322,10 @@ std::optional<Mesh> check_mesh(const JsonNode& body, const JsonNode& node, const
   }
   if (const auto bad = first_inverted_element(mesh, points)) {
     report_inverted(node, description, mesh, points, *bad, reading);
+    return std::nullopt;
+  }
+  if (const auto thin = first_thin_element(mesh, points)) {
+    report_thin(node, description, mesh, *thin, reading);
     return std::nullopt;
   }
   return mesh;
