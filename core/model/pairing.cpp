@@ -156,12 +156,18 @@ Facets facets_of_master(const Model& model, const Points<double>& points, const 
   return {std::move(all), std::move(facets)};
 }
 
+/// Whether a node of the surface of a body has no tributary area. On the axis of revolution the share of a corner of a
+/// quadratic element is the integral of (1 - s) (1 - 2 s) s, which is zero.
+bool has_no_area(const Model& model, const Points<double>& points, const SideSet& side, int node) {
+  return is_quadratic(model.bodies[side.body].mesh.shape) && model.is_on_axis(points, node);
+}
+
 /// Node-to-segment contact: each slave node against the closest point of its master.
 void pair_nodes(Model& model, const Points<double>& points, const Pairing& pairing) {
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
   const Facets facets = facets_of_master(model, points, pairing);
   for (int node : pairing.slave.nodes) {
-    if (is_quadratic(shape) && model.is_on_axis(points, node)) continue;  // it has no tributary area
+    if (has_no_area(model, points, pairing.slave, node)) continue;
     ContactPoint point = slave_point(model, points, pairing, node);
     point.shares_normal = pairing.obstacle < 0 && is_continuum(shape) && !point.area_facets.empty();
     const bool faces =
@@ -263,7 +269,7 @@ void pair_along_curve(Model& model, const Points<double>& points, const Pairing&
   const CurveSearch search(curve.patches, places);
   const bool of_itself = model.scene.contacts[pairing.index].is_of_itself();
   for (int node : pairing.slave.nodes) {
-    if (is_quadratic(shape) && model.is_on_axis(points, node)) continue;  // it has no tributary area
+    if (has_no_area(model, points, pairing.slave, node)) continue;
     ContactPoint point = slave_point(model, points, pairing, node);
     const bool has_side = is_continuum(shape) && !point.area_facets.empty();
     const Vec<double, 2> outward = has_side ? slave_normal(point.area_facets, points) : Vec<double, 2>::Zero().eval();
@@ -358,9 +364,11 @@ void pair_segments(Model& model, const Points<double>& points, const Pairing& pa
 void pair_contact(Model& model, const Points<double>& points, int index) {
   const Contact& contact = model.scene.contacts[index];
   const std::string where = "/contacts/" + contact.name;
-  Pairing pairing{index, obstacle_index(model.scene, contact.master), model.side(contact.slave), {}};
+  Pairing pairing{
+      index, obstacle_index(model.scene, contact.master), surface_of(model, points, model.side(contact.slave)), {}};
   if (pairing.obstacle < 0) {
-    pairing.master = model.side(contact.master);
+    pairing.master = model.side(contact.master);  // of a side that touches itself the axis tells how thick it is
+    if (!contact.is_of_itself()) pairing.master = surface_of(model, points, pairing.master);
     if (model.dimension == 3) throw ModelError("a deformable master needs a 2D space", where);
     if (pairing.master.facets.empty()) throw ModelError("the master side has no facets", where);
   } else if (model.dimension == 3 && !is_in_space(model.scene.obstacles[pairing.obstacle].shape)) {
@@ -386,6 +394,32 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
 
 void pair_contacts(Model& model, const Points<double>& points) {
   for (std::size_t c = 0; c < model.scene.contacts.size(); ++c) pair_contact(model, points, static_cast<int>(c));
+}
+
+SideSet surface_of(const Model& model, const Points<double>& points, SideSet side) {
+  if (model.scene.space != Space::axisymmetric) return side;
+  const auto on_axis = [&](const std::vector<int>& facet) {
+    return std::all_of(facet.begin(), facet.end(), [&](int node) { return model.is_on_axis(points, node); });
+  };
+  std::set<int> on_facets, on_surface;
+  for (const auto& facet : side.facets) {
+    on_facets.insert(facet.begin(), facet.end());
+    if (!on_axis(facet)) on_surface.insert(facet.begin(), facet.end());
+  }
+  std::erase_if(side.facets, on_axis);
+  std::erase_if(side.edges, on_axis);
+  std::erase_if(side.nodes, [&](int node) { return on_facets.count(node) > 0 && on_surface.count(node) == 0; });
+  return side;
+}
+
+std::vector<int> nodes_without_area(const Model& model, const Points<double>& points, int contact) {
+  std::vector<int> nodes;
+  if (model.scene.space != Space::axisymmetric) return nodes;
+  const SideSet side = surface_of(model, points, model.side(model.scene.contacts[contact].slave));
+  for (int node : side.nodes)
+    if (has_no_area(model, points, side, node)) nodes.push_back(node);
+  std::sort(nodes.begin(), nodes.end());
+  return nodes;
 }
 
 }  // namespace stickslip

@@ -10,4 +10,12 @@ namespace stickslip {
 /// that does not exist, or if all places of an obstacle are equally near to a slave node.
 void pair_contacts(Model& model, const Points<double>& points);
 
+/// A side without what lies on the axis of revolution, which is inside of the body: without the facets there, and the
+/// nodes that have no other.
+SideSet surface_of(const Model& model, const Points<double>& points, SideSet side);
+
+/// Slave nodes of a contact that are no contact points because they have no tributary area: nodes of quadratic elements
+/// on the axis of revolution. Ascending.
+std::vector<int> nodes_without_area(const Model& model, const Points<double>& points, int contact);
+
 }  // namespace stickslip
