@@ -17,8 +17,11 @@ namespace stickslip {
 /// Largest relative error of one rounding of a double, 2^-53.
 inline constexpr double unit_roundoff = 0x1p-53;
 
-/// ln(1 + x) of the oracle's scalar.
-inline std::complex<double> log1p(const std::complex<double>& x) { return std::log(1.0 + x); }
+/// ln(1 + x) of the oracle's scalar, with the digits of a small x.
+inline std::complex<double> log1p(const std::complex<double>& x) {
+  const double across = x.imag() / (1 + x.real());
+  return {std::log1p(x.real()) + std::log1p(across * across) / 2, std::atan2(x.imag(), 1 + x.real())};
+}
 
 /// Forward derivative: a value and N directional derivatives. S is the scalar it is built on (double, or
 /// std::complex<double> where the oracle needs a tangent of its own).

@@ -134,21 +134,26 @@ struct NeoHookeanLaw {
     return volumetric == NeoHookean::Volumetric::quadratic ? value(lame) * j : value(lame) * std::log1p(j) / (1 + j);
   }
 
-  /// Energy per initial volume.
+  /// Energy per initial volume. The first invariant counts what is left of it without the growth of the volume,
+  /// (tr C - 3)/2 - (J - 1), for both are of the first order in H and the energy is of the second.
   template <class U, int D>
   U energy(const Mat<U, D>& H) const {
     using std::log1p, stickslip::log1p;
-    U j = growth(H), squares{};
+    U j = plane_growth(H), squares{};
     for (int k = 0; k < D * D; ++k) squares += H.data()[k] * H.data()[k];
-    U half = H(0, 0) + H(1, 1) + squares / U(2);  // (tr C - 3)/2
-    if constexpr (D == 3) half += H(2, 2);
+    U half = squares / U(2) - (H(0, 0) * H(1, 1) - H(0, 1) * H(1, 0));
+    const auto thicken = [&](const U& h) {
+      half -= j * h;
+      j += h + j * h;
+    };
+    if constexpr (D == 3) thicken(H(2, 2));
     if (D == 2 && space == Space::plane_stress) {
       const U h = thickening(j);
-      half += h + h * h / U(2);
-      j += h + j * h;
+      half += h * h / U(2);
+      thicken(h);
     }
-    const U logarithm = log1p(j), change = volumetric == NeoHookean::Volumetric::quadratic ? j : logarithm;
-    return U(shear) * (half - logarithm) + U(lame) / U(2) * change * change;
+    const U change = volumetric == NeoHookean::Volumetric::quadratic ? j : U(log1p(j));
+    return U(shear) * (half + less_log1p<U>(j)) + U(lame) / U(2) * change * change;
   }
 
  private:
