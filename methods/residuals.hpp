@@ -101,7 +101,8 @@ double prescribed_motion(const Model& model, const Slots<T>& slots, double time)
 /// Largest values of an iterate, lengths.
 struct Magnitudes {
   double displacement = 0;  ///< of a contact node
-  double position = 0;      ///< whose rounding appears in a gap: displacement; with present geometry plus coordinates
+  double relative = 0;      ///< whose rounding appears in a gap: displacement; with present geometry also relative
+                            ///< displacement, which an obstacle makes too
   double prescribed = 0;    ///< displacement that supports prescribe
 };
 
@@ -118,10 +119,10 @@ inline void set_floors(const PointSizes& sizes, const RunScales& scales, double 
     residuals.floor_equilibrium =
         bulk_floor +
         rounding_factor *
-            ratio(unit_roundoff * sizes.area_times_rho * std::max(magnitudes.position, sizes.distance), scales.force);
-  residuals.floor_length = rounding_factor * ratio(unit_roundoff * magnitudes.position, scales.length);
+            ratio(unit_roundoff * sizes.area_times_rho * std::max(magnitudes.relative, sizes.distance), scales.force);
+  residuals.floor_length = rounding_factor * ratio(unit_roundoff * magnitudes.relative, scales.length);
   // In slip the bound turns the rounding of the pressure lambda_N + rho g_N into one of the tangential traction.
-  residuals.floor_traction = rounding_factor * ratio(unit_roundoff * sizes.rho * magnitudes.position, scales.traction);
+  residuals.floor_traction = rounding_factor * ratio(unit_roundoff * sizes.rho * magnitudes.relative, scales.traction);
 }
 
 /// Sets the normal and tangential residuals from t - lambda. `largest_displacement`: of a contact node, length.
@@ -196,13 +197,10 @@ class Evaluator {
   void take_rows_in(const std::vector<ContactState>& branches, const Unknowns<T>& unknowns, detail::Evaluation<T>& at);
 
  private:
-  detail::Magnitudes magnitudes_at(const Vector<T>& compact) const {
-    const auto& [model, slots] = std::tie(task_.contact.model, task_.contact.slots);
+  detail::Magnitudes magnitudes_at(const Vector<T>& compact, const RunScales& scales) const {
+    const Model& model = task_.contact.model;
     const double moved = largest_nodal_norm(compact, model.dimension);
-    if (!model.effects.current_geometry) return {moved, moved, prescribed_};
-    double placed = 0;
-    for (int node : model.contact_nodes) placed = std::max(placed, values(slots.points.col(node)).norm());
-    return {moved, moved + placed, prescribed_};
+    return {moved, model.effects.current_geometry ? std::max(moved, scales.length) : moved, prescribed_};
   }
   ContactField<T> field_at(const ContactInput<T>& input, const Vector<T>& compact, const Vector<T>& multiplier,
                            const std::vector<ContactState>* branches) const {
@@ -311,7 +309,7 @@ detail::Evaluation<T> Evaluator<T, E>::operator()(const Unknowns<T>& unknowns) {
   }
   at.scales.force = force.force;
   const auto sizes = detail::measure_points(input, at.field, at.scales);
-  const detail::Magnitudes magnitudes = magnitudes_at(compact);
+  const detail::Magnitudes magnitudes = magnitudes_at(compact, at.scales);
   for (Eigen::Index row = 0; row < at.rows_u.size(); ++row)
     if (!engine_.is_free(row)) at.rows_u[row] = T(0);
   at.residuals.equilibrium = detail::ratio(largest_nodal_norm(at.rows_u, model.dimension), at.scales.force);

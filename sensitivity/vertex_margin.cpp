@@ -15,10 +15,10 @@ using Place = Vec<double, 2>;
 
 bool is_facet(const Patch& patch) { return patch.smoothing == Smoothing::none; }
 
-/// Least distance of x from an end of the patch that it faces, over the length of the patch, of ends at which the sine
-/// of the angle between the patches is at least `turn`. `place(vertex)`: position.
+/// Least distance of a point from an end of the patch that it faces, over the length of the patch, of ends at which the
+/// sine of the angle between the patches is at least `turn`. `place(vertex)`: from the point.
 template <class Places>
-double least_way(const std::vector<Patch>& patches, int faced, const Place& x, double turn, Places&& place) {
+double least_way(const std::vector<Patch>& patches, int faced, double turn, Places&& place) {
   const auto along = [&](int patch) -> Place {
     const auto& ends = patches[patch].vertices;
     return place(ends[2]) - place(ends[1]);
@@ -31,7 +31,7 @@ double least_way(const std::vector<Patch>& patches, int faced, const Place& x, d
     const Place vertex = place(patches[faced].vertices[1 + side]);
     const Place a = along(faced).normalized(), b = along(other).normalized(), half = (a + b).normalized();
     if (std::abs(a[0] * b[1] - a[1] * b[0]) < turn) continue;
-    least = std::min(least, std::abs((x - vertex).dot(half)) / length);
+    least = std::min(least, std::abs(vertex.dot(half)) / length);
   }
   return least;
 }
@@ -88,9 +88,9 @@ void for_each_way(const Model& model, const Slots<double>& slots, const State<do
     if (curve.is_integrated()) continue;
     const int faced = reached.contact.facing[p].patch;
     if (faced == Patch::none || !is_facet(curve.patches[faced])) continue;
-    const Place x = slots.points.col(point.nodes[0]).head<2>() + moved(point.places[0]);
-    f(static_cast<int>(p), least_way(curve.patches, faced, x, turn, [&](int vertex) {
-        return detail::vertex_position<double, double>(input, curve, vertex, moved);
+    const Placed<double> x{slots.points.col(point.nodes[0]).head<2>(), moved(point.places[0])};
+    f(static_cast<int>(p), least_way(curve.patches, faced, turn, [&](int vertex) -> Place {
+        return detail::vertex_position<double, double>(input, curve, vertex, moved) - x;
       }));
   }
 }
@@ -106,11 +106,11 @@ double integration_margin(const Model& model, const Slots<double>& slots, const 
     const auto& curve = model.curves[c];
     if (!model.slides_along_curves() || !curve.is_integrated()) continue;
     const auto of_start = [&](int node) -> Place { return detail::start_of(model, curve.obstacle, slots, node); };
-    const auto present = [&](int node) -> Place {
+    const auto present = [&](int node) -> Placed<double> {
       if (node >= model.node_count)
         return detail::vertex_position<double, double>(input, curve, node - model.node_count,
                                                        detail::nodal_displacement(compact));
-      return of_start(node) + state.displacement.segment<2>(2 * static_cast<Eigen::Index>(node));
+      return {of_start(node), state.displacement.segment<2>(2 * static_cast<Eigen::Index>(node))};
     };
     const auto ends = ends_of_slave(model, c);
     const auto is_end = [](const std::vector<int>& of, int node) {
@@ -122,7 +122,8 @@ double integration_margin(const Model& model, const Slots<double>& slots, const 
         for (int side : {0, 1})
           for (int node : segment.master) {
             if (!is_end(ends, segment.slave[side]) || !has_kink_at(curve, node, present, of_start)) continue;
-            const Place a = present(segment.slave[0]), tau = present(segment.slave[1]) - a;
+            const Placed<double> a = present(segment.slave[0]);
+            const Place tau = present(segment.slave[1]) - a;
             least = std::min(least, std::abs(detail::end_coordinate<double>(node, present, a, tau) - side));
           }
     }

@@ -30,7 +30,10 @@ VertexGeometry<T> vertex_geometry(const Model& model, const Slots<T>& slots, con
   const History<T> unread_history;
   const ContactInput<T> input{model, slots, unread_rho, unread_history, ConeRadius::augmented, time, nullptr};
   const auto displacement = detail::nodal_displacement(compact);
-  const auto position = [&](int vertex) { return detail::vertex_position<T, T>(input, curve, vertex, displacement); };
+  const auto placed = [&](int vertex) { return detail::vertex_position<T, T>(input, curve, vertex, displacement); };
+  const auto& ends = curve.patches[first].vertices;
+  const Placed<T> vertex = placed(ends[2]);
+  const auto position = [&](int of) -> Vec<T, 2> { return placed(of) - vertex; };
   const auto end_geometry = [&](int patch, double end) {
     const auto weights = detail::patch_weights<T>(curve.patches[patch], T(end));
     const Vec<T, 2> slope = detail::on_patch<T>(curve.patches[patch], weights.slope, position),
@@ -39,15 +42,13 @@ VertexGeometry<T> vertex_geometry(const Model& model, const Slots<T>& slots, con
     const Vec<T, 2> tangent = slope / norm(slope);
     return std::pair(tangent, cross(values(slope), values(bend)) / (speed * speed * speed));
   };
-  const auto& ends = curve.patches[first].vertices;
-  const Vec<T, 2> vertex = position(ends[2]), facet = vertex - position(ends[1]);
-  Vec<T, 2> x = displacement(point.places[0]);
-  for (int i = 0; i < 2; ++i) x[i] += slots.points(i, point.nodes[0]);
+  const Vec<T, 2> facet = -position(ends[1]);
+  const Vec<T, 2> x = Placed<T>{detail::point2(slots.points, point.nodes[0]), displacement(point.places[0])} - vertex;
   const auto [before, bend_before] = end_geometry(first, 1);
   const auto [after, bend_after] = end_geometry(second, 0);
   const Vec<T, 2> along = before + after;
   const T length = norm(facet);
-  return {dot((x - vertex).eval(), along) / (norm(along) * length), std::abs(cross(values(before), values(after))),
+  return {dot(x, along) / (norm(along) * length), std::abs(cross(values(before), values(after))),
           std::abs(bend_after - bend_before) * value(length), value(length)};
 }
 
@@ -105,7 +106,8 @@ void set_patch(const Model& model, const VertexTie& tie, int patch, State<double
   const double xi = patch == tie.first ? 1 : 0;
   at.contact.facing[tie.point] = {patch, xi, 0};
   at.history.patch[tie.point] = patch;
-  if (const int foot = model.points[tie.point].foot; foot >= 0) at.history.foot[foot] = xi;
+  const auto& point = model.points[tie.point];
+  if (point.foot >= 0) at.history.foot[point.foot] = xi - detail::foot_reference(model, point, patch);
 }
 
 VertexVerdict vertex_verdict(const Model& model, const ParameterBlock& block, const VertexTie& tie,

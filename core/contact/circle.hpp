@@ -35,6 +35,22 @@ PointGeometry<T> against(const Point& x, const Circle& circle, const Read& numbe
   return detail::rigid<T>(sign * (distance - numbers(circle.radius)), n);
 }
 
+/// The geometry of the place X + w. With D from the centre to X, the distance grows by |D + w| - |D| = (2 D + w).w /
+/// (|D + w| + |D|), which keeps the digits of w.
+template <class T, class Point, class Read>
+PointGeometry<T> against(const Point& X, const Point& w, const Circle& circle, const Read& numbers) {
+  Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> n(2), D(2);
+  T twice{};
+  for (int i = 0; i < 2; ++i) {
+    D[i] = X[i] - numbers(circle.center[i]);
+    n[i] = D[i] + w[i];
+    twice += (D[i] + n[i]) * w[i];
+  }
+  const T first = norm(D), distance = norm(n), sign(circle.inside ? -1.0 : 1.0);
+  for (int i = 0; i < 2; ++i) n[i] *= sign / distance;
+  return detail::rigid<T>(sign * (first - numbers(circle.radius) + twice / (distance + first)), n);
+}
+
 /// The key of the surface that is wrong where x has no nearest place on it; nullptr where x has one.
 template <class Point>
 const char* ambiguous_at(const Point& x, const Circle& circle, const Numbers<double>& numbers) {

@@ -3,6 +3,9 @@
 ///
 ///   y(xi) = sum N_i(xi) y_i,   0 <= xi <= 1, the solid on the left      foot of x:  (x - y(xi)) . y'(xi) = 0
 ///
+/// A foot is measured from a reference on its patch, xi = reference + shift, and places from one another, so that a
+/// small motion has its digits, however far from the origin the curve is.
+///
 ///   facets        N_i of the two ends
 ///   Catmull-Rom   cubic through both ends, slope (y_next - y_previous)/2 at each: the normal is continuous
 ///   B-spline      uniform cubic, the vertices are its control points: the curvature is continuous; the curve misses
@@ -17,6 +20,7 @@
 #include <array>
 #include <vector>
 
+#include "core/contact/placed.hpp"
 #include "core/contact/point_geometry.hpp"
 #include "core/contact/segment.hpp"
 
@@ -113,15 +117,33 @@ PatchWeights<T> patch_weights(const Patch& patch, const T& s) {
   return w;
 }
 
-/// The same at a place without derivatives.
+/// N_i and its derivatives at a place `by` from another, and the change of N_i from there, with the digits of `by`.
+/// They are cubic, so these series end. `from`: at the other place, in S: T, or what it is built on.
 template <class T>
-PatchWeights<T> constant_patch_weights(const Patch& patch, double s) {
-  const auto of = patch_weights<double>(patch, s);
-  PatchWeights<T> w;
+struct MovedWeights : PatchWeights<T> {
+  std::array<T, 4> change;
+};
+template <class T, class S>
+MovedWeights<T> moved_weights(const Patch& patch, const PatchWeights<S>& from, const T& by) {
+  MovedWeights<T> w;
+  if (patch.smoothing == Smoothing::none) {
+    w.change = {T(0), -by, by, T(0)};
+    for (int i = 0; i < 4; ++i) {
+      w.value[i] = T(from.value[i]) + w.change[i];
+      w.slope[i] = T(from.slope[i]);
+      w.bend[i] = T(0);
+    }
+    return w;
+  }
+  const auto start = patch_weights<double>(patch, 0).bend, end = patch_weights<double>(patch, 1).bend;
+  const T half = by * S(0.5), third = by * S(1.0 / 3);
   for (int i = 0; i < 4; ++i) {
-    w.value[i] = T(of.value[i]);
-    w.slope[i] = T(of.slope[i]);
-    w.bend[i] = T(of.bend[i]);
+    const S jerk(end[i] - start[i]);
+    const T slope(from.slope[i]), bend(from.bend[i]);
+    w.change[i] = by * (slope + half * (bend + third * jerk));
+    w.value[i] = T(from.value[i]) + w.change[i];
+    w.slope[i] = slope + by * (bend + half * jerk);
+    w.bend[i] = bend + by * jerk;
   }
   return w;
 }
@@ -143,50 +165,141 @@ Vec<T, 2> curve_position(const Patch& patch, const T& xi, Position&& position) {
   return detail::on_patch<T>(patch, detail::patch_weights<T>(patch, xi).value, position);
 }
 
+/// Vectors from the vertex where a patch starts to each of its vertices. That of one that it lacks is not read.
+template <class T>
+using PatchArms = std::array<Vec<T, 2>, 4>;
+
+namespace detail {
+
+/// Sum of n_i (y_i - y_1): of n_i y_i where the n_i sum to 0. The n_i are in T, or in what it is built on.
+template <class T, class S>
+Vec<T, 2> along_arms(const Patch& patch, const std::array<S, 4>& n, const PatchArms<T>& arms) {
+  Vec<T, 2> sum = n[2] * arms[2];
+  if (patch.vertices[0] != Patch::none) sum += n[0] * arms[0];
+  if (patch.vertices[3] != Patch::none) sum += n[3] * arms[3];
+  return sum;
+}
+
+/// The vertices of a patch. One that it lacks is not read.
+template <class T, class S>
+using PatchVertices = std::array<Placed<T, S>, 4>;
+
+/// `position(vertex)`: Placed.
+template <class T, class S, class Position>
+PatchVertices<T, S> vertices_of(const Patch& patch, Position&& position) {
+  PatchVertices<T, S> vertices;
+  for (int i = 0; i < 4; ++i)
+    if (patch.vertices[i] != Patch::none) vertices[i] = position(patch.vertices[i]);
+  return vertices;
+}
+template <class T, class S>
+PatchArms<T> arms_of(const Patch& patch, const PatchVertices<T, S>& vertices) {
+  PatchArms<T> arms;
+  for (int i : {0, 2, 3})
+    if (patch.vertices[i] != Patch::none) arms[i] = vertices[i] - vertices[1];
+  return arms;
+}
+
+/// x - y of a place of constant weights N_i. Initial positions are summed up apart from displacements.
+template <class T, class S>
+Vec<T, 2> off_place(const Patch& patch, const std::array<S, 4>& n, const Placed<T, S>& x,
+                    const PatchVertices<T, S>& vertices) {
+  Vec<S, 2> start = Vec<S, 2>::Constant(S(0));
+  Vec<T, 2> moved = Vec<T, 2>::Constant(T(0));
+  for (int i = 0; i < 4; ++i)
+    for (int k = 0; k < 2 && patch.vertices[i] != Patch::none; ++k) {
+      start[k] += n[i] * (x.start[k] - vertices[i].start[k]);
+      moved[k] += n[i] * (x.moved[k] - vertices[i].moved[k]);
+    }
+  return {T(start[0]) + moved[0], T(start[1]) + moved[1]};
+}
+
+}  // namespace detail
+
 /// The foot of a point on a patch.
 template <class T>
 struct CurveFoot {
-  T xi{}, gap{};               ///< coordinate on the patch; distance along the normal, length, negative inside
-  Vec<T, 2> position, normal;  ///< normal: unit, out of the solid
-  std::array<T, 4> weights;    ///< N_i(xi)
+  double reference = 0;
+  T shift{};                 ///< coordinate on the patch: reference + shift
+  T gap{};                   ///< distance along the normal, length, negative inside
+  Vec<T, 2> normal;          ///< unit, out of the solid
+  std::array<T, 4> weights;  ///< N_i(xi)
+  PatchArms<T> arms;
+  T xi() const { return T(reference) + shift; }
 };
 
-/// Foot of x on a patch. `xi`: the foot in double, found by the search; `position(vertex)`: of the vertices. Newton
-/// steps from xi in the scalar T carry its derivatives: one step the first, two steps the second.
-template <class T, class Position>
-CurveFoot<T> foot_on_patch(const Patch& patch, double xi, const Vec<T, 2>& x, Position&& position) {
-  std::array<Vec<T, 2>, 4> positions;
-  for (int i = 0; i < 4; ++i)
-    if (patch.vertices[i] != Patch::none) positions[i] = position(patch.vertices[i]);
-  const auto at = [&](int vertex) -> const Vec<T, 2>& {
-    return positions[std::find(patch.vertices.begin(), patch.vertices.end(), vertex) - patch.vertices.begin()];
-  };
+/// Foot of x on a patch. `reference`: coordinate that it is measured from; `xi`: the foot in double, found by the
+/// search; `position(vertex)`: Placed. Newton steps in the scalar T carry its derivatives: one step the first, two
+/// steps the second. On a facet one step from anywhere is exact.
+template <class T, class S, class Position>
+CurveFoot<T> foot_on_patch(const Patch& patch, double reference, double xi, const Placed<T, S>& x,
+                           Position&& position) {
+  const bool facet = patch.smoothing == Smoothing::none;
+  const auto from = detail::patch_weights<S>(patch, S(reference));
   CurveFoot<T> foot;
-  foot.xi = T(xi);
-  const int steps = patch.smoothing == Smoothing::none ? 1 : 2;
-  for (int step = 0; step < steps; ++step) {
-    const auto w = step == 0 ? detail::constant_patch_weights<T>(patch, xi) : detail::patch_weights<T>(patch, foot.xi);
-    const Vec<T, 2> slope = detail::on_patch<T>(patch, w.slope, at), bend = detail::on_patch<T>(patch, w.bend, at);
-    const Vec<T, 2> off = x - detail::on_patch<T>(patch, w.value, at);
-    foot.xi += dot(off, slope) / (dot(slope, slope) - dot(off, bend));
-  }
-  const auto w = detail::patch_weights<T>(patch, foot.xi);
+  foot.reference = reference;
+  const auto vertices = detail::vertices_of<T, S>(patch, position);
+  foot.arms = detail::arms_of(patch, vertices);
+  const auto sum = [&](const auto& n) { return detail::along_arms<T>(patch, n, foot.arms); };
+  const Vec<T, 2> off_reference = detail::off_place<T, S>(patch, from.value, x, vertices);
+  const auto step_from = [&](const auto& w) {
+    const Vec<T, 2> slope = sum(w.slope), off = off_reference - sum(w.change);
+    const T square = dot(slope, slope);
+    foot.shift += dot(off, slope) / (facet ? square : T(square - dot(off, sum(w.bend))));
+  };
+  const S first(facet ? 0.0 : xi - reference);
+  foot.shift = T(first);
+  step_from(detail::moved_weights<S>(patch, from, first));
+  if (!facet) step_from(detail::moved_weights<T>(patch, from, foot.shift));
+  const auto w = detail::moved_weights<T>(patch, from, foot.shift);
   foot.weights = w.value;
-  foot.position = detail::on_patch<T>(patch, w.value, at);
-  const Vec<T, 2> slope = detail::on_patch<T>(patch, w.slope, at);
+  const Vec<T, 2> slope = sum(w.slope), off = off_reference - sum(w.change);
   const T length = norm(slope);
   foot.normal << slope[1] / length, -slope[0] / length;
-  foot.gap = dot((x - foot.position).eval(), foot.normal);
+  foot.gap = dot(off, foot.normal);
   return foot;
 }
 
 /// Coordinate of the place of the facet a -> b that is nearest to x, 0 <= xi <= 1: where a point is along a curve that
 /// it does not face. At a free end it is that end, however far from it x is.
-template <class T>
-T beside_facet(const Vec<T, 2>& x, const Vec<T, 2>& a, const Vec<T, 2>& b) {
+template <class T, class S>
+T beside_facet(const Placed<T, S>& x, const Placed<T, S>& a, const Placed<T, S>& b) {
   const Vec<T, 2> tau = b - a;
-  const T xi = dot((x - a).eval(), tau) / dot(tau, tau);
+  const T xi = dot(Vec<T, 2>(x - a), tau) / dot(tau, tau);
   return value(xi) <= 0 ? T(0) : value(xi) >= 1 ? T(1) : xi;
+}
+
+/// The same of places without displacements. `position(vertex)`: a vector.
+template <class T, class Position>
+CurveFoot<T> foot_on_patch(const Patch& patch, double xi, const Vec<T, 2>& x, Position&& position) {
+  return foot_on_patch<T, T>(patch, xi, xi, at_start<T>(x), [&](int vertex) { return at_start<T>(position(vertex)); });
+}
+
+/// Vector to a foot on `patch` from the place reference + shift on the patch `last`, both where the patches are now. It
+/// has the digits of the shifts where the patches are the same one, and where they share a vertex that both places are
+/// near. `shift` is in S: T, or what it is built on.
+template <class T, class S, class Position>
+Vec<T, 2> foot_motion(const Patch& patch, const CurveFoot<T>& foot, const Patch& last, double reference, const S& shift,
+                      Position&& position) {
+  if (&patch == &last) {
+    const auto from = detail::patch_weights<S>(patch, S(reference) + shift);
+    const T by = T(foot.reference - reference) + (foot.shift - T(shift));
+    return detail::along_arms<T>(patch, detail::moved_weights<T>(patch, from, by).change, foot.arms);
+  }
+  const bool ends_in_last = patch.vertices[2] == last.vertices[1],
+             begins_in_last = last.vertices[2] == patch.vertices[1];
+  const double end = ends_in_last ? 1 : 0, end_of_last = 1 - end;
+  const auto from_end = [](const Patch& of, double end, const T& by, const PatchArms<T>& arms) {
+    const auto from = detail::patch_weights<S>(of, S(end));
+    return detail::along_arms<T>(of, detail::moved_weights<T>(of, from, by).change, arms);
+  };
+  const Vec<T, 2> motion = from_end(patch, end, T(foot.reference - end) + foot.shift, foot.arms) -
+                           from_end(last, end_of_last, T(reference - end_of_last) + T(shift),
+                                    detail::arms_of(last, detail::vertices_of<T, S>(last, position)));
+  if (ends_in_last || begins_in_last) return motion;
+  const auto origin = position(patch.vertices[1]);
+  const auto place = [&](int vertex) -> Vec<T, 2> { return position(vertex) - origin; };
+  return motion + curve_position<T>(patch, T(end), place) - curve_position<T>(last, T(end_of_last), place);
 }
 
 /// Weights of the displacements in w: 1 for the slave node, then -N_i for each vertex of the patch. On a rigid curve: 1

@@ -165,7 +165,7 @@ Facing CurveSearch::end_facing(Facing at, const Query& query) const {
   const Vec<double, 2> along = tangent_at_end(at.patch, end) + tangent_at_end(other, 1 - end);
   const double side = (x - vertex(at.patch, end)).dot(along);
   if (end == 1 ? side <= 0 : side >= 0) return at;
-  return {other, foot_on_patch<double>(patches_[other], 1 - end, x, position_in(positions_)).xi};
+  return {other, foot_on_patch<double>(patches_[other], 1 - end, x, position_in(positions_)).xi()};
 }
 
 /// Newton's method for the foot of x, from the start value `at`. It may pass to the next patch, `hops` times at most,
@@ -180,7 +180,9 @@ Facing CurveSearch::newton_foot(Facing at, const Vec<double, 2>& x, int hops) co
     const auto w = detail::patch_weights<double>(patch, at.xi);
     const Vec<double, 2> slope = detail::on_patch<double>(patch, w.slope, place);
     const Vec<double, 2> bend = detail::on_patch<double>(patch, w.bend, place);
-    const Vec<double, 2> off = x - detail::on_patch<double>(patch, w.value, place);
+    const auto start = [&](int vertex) { return at_start<double>(place(vertex)); };
+    const Vec<double, 2> off = detail::off_place<double, double>(patch, w.value, at_start(x),
+                                                                 detail::vertices_of<double, double>(patch, start));
     const double metric = slope.squaredNorm(), falls = metric - off.dot(bend);
     if (!(falls > 1e-8 * metric)) return {};  // x is at or beyond the centre of curvature
     const double whole = off.dot(slope) / falls;

@@ -37,4 +37,14 @@ PointGeometry<T> against(const Point& x, const Plane& plane, const Read& numbers
   return detail::rigid<T>(gap, n);
 }
 
+/// The geometry of the place X + w: that of X, and the gap that w adds.
+template <class T, class Point, class Read>
+PointGeometry<T> against(const Point& X, const Point& w, const Plane& plane, const Read& numbers) {
+  PointGeometry<T> geometry = against<T>(X, plane, numbers);
+  T change{};
+  for (int i = 0; i < static_cast<int>(w.size()); ++i) change += w[i] * geometry.normal[i];
+  geometry.gap += change;
+  return geometry;
+}
+
 }  // namespace stickslip

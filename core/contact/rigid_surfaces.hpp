@@ -1,7 +1,8 @@
 /// The list of rigid surfaces. Each has a file of its own: its description for the scene, which says its keys
 /// (core/algebra/described.hpp), whether it is made for space (is_in_space) and whether it is flat (is_flat), and
-/// against(x, surface, numbers), the geometry of a place.
-/// What it lacks does not compile. One with a place from which no part of it is nearer than another adds
+/// against(x, surface, numbers), the geometry of a place. against(X, w, surface, numbers) is that of the place X + w:
+/// its gap is that of X and what the displacement w adds, so that a small displacement keeps its digits far from the
+/// origin. What it lacks does not compile. One with a place from which no part of it is nearer than another adds
 /// ambiguous_at(). A polyline has facets in place of against(): which one a place faces is found by search
 /// (core/contact/search.hpp).
 #pragma once
@@ -28,6 +29,7 @@ concept WholeSurface = requires(const S& surface, const Vec<double, 2>& x, const
   { S::is_in_space } -> std::convertible_to<bool>;
   { S::is_flat } -> std::convertible_to<bool>;
   { against<double>(x, surface, numbers) } -> std::same_as<PointGeometry<double>>;
+  { against<double>(x, x, surface, numbers) } -> std::same_as<PointGeometry<double>>;
 };
 static_assert(WholeSurface<Plane> && WholeSurface<Circle> && !WholeSurface<Polyline>);
 
@@ -45,6 +47,16 @@ PointGeometry<T> against_rigid(const Place& x, const RigidSurface& surface, cons
       [&]<class S>(const S& shape) -> PointGeometry<T> {
         static_assert(WholeSurface<S> || std::is_same_v<S, Polyline>, "a rigid surface lacks something");
         if constexpr (WholeSurface<S>) return against<T>(x, shape, numbers);
+        return {};
+      },
+      surface);
+}
+/// The same of the place X + w.
+template <class T, class Place, class Read>
+PointGeometry<T> against_rigid(const Place& X, const Place& w, const RigidSurface& surface, const Read& numbers) {
+  return std::visit(
+      [&]<class S>(const S& shape) -> PointGeometry<T> {
+        if constexpr (WholeSurface<S>) return against<T>(X, w, shape, numbers);
         return {};
       },
       surface);

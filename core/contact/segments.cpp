@@ -35,6 +35,14 @@ Break break_at(double xi, int node, const std::vector<int>& ends) {
   return {xi, node};
 }
 
+/// Distance of x along the direction nu to the line through c and d.
+double distance_along(const Vec<double, 2>& x, const Vec<double, 2>& nu, const Vec<double, 2>& c,
+                      const Vec<double, 2>& d) {
+  const Vec<double, 2> tau = d - c, from = x - c;
+  const double eta = (from[0] * nu[1] - from[1] * nu[0]) / (tau[0] * nu[1] - tau[1] * nu[0]);
+  return (from - eta * tau).norm();
+}
+
 /// The projections of the master facets that are opposite to the slave facet a + xi tau, 0 <= xi <= 1.
 std::vector<Shadow> shadows(const Points<double>& points, const Vec<double, 2>& a, const Vec<double, 2>& tau,
                             const std::vector<std::vector<int>>& masters, const std::vector<int>& ends) {
@@ -83,8 +91,7 @@ std::vector<Segment> facing_segments(const Points<double>& points, const std::ar
     double least = std::numeric_limits<double>::infinity();
     for (const auto& shadow : candidates) {
       if (shadow.low.xi > middle || shadow.high.xi < middle) continue;
-      const auto foot = detail::foot_on_facet<double>(x, nu, points.col(shadow.nodes[0]), points.col(shadow.nodes[1]));
-      const double distance = (x - foot.position).norm();
+      const double distance = distance_along(x, nu, points.col(shadow.nodes[0]), points.col(shadow.nodes[1]));
       if (distance < least) {
         least = distance;
         nearest = &shadow;

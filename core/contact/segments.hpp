@@ -21,12 +21,22 @@
 ///
 /// To first order n_j then does no work as points slide, and dg_T is the tangential part of the change of w_j. A rigid
 /// motion of both bodies causes no slip. Source: [PL04]; theory: core/README.md.
+///
+/// So that small displacements keep their digits, feet are measured from those of the start: a point X of the slave
+/// facet has the initial distance G from the line of the master facet, along its normal N, at the coordinate E. With u
+/// the displacement of the point relative to that place,
+///
+///   off = G N + u         eta = E + off . tau / (tau_m . tau)         x - y = off - (eta - E) tau_m
+///
+/// tau and tau_m run along the two facets as they are now. G and E are linear along the slave facet.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <vector>
 
+#include "core/contact/placed.hpp"
 #include "core/contact/segment.hpp"
 #include "core/contact/surfaces.hpp"
 #include "core/mesh/mesh.hpp"
@@ -52,31 +62,57 @@ std::vector<Segment> facing_segments(const Points<double>& points, const std::ar
 namespace detail {
 
 /// Coordinate of a segment's end along the slave facet: 0 at its first node a, 1 at its second. `tau`: vector from a to
-/// the second node. `position(node)`: present position.
-template <class T, class Position>
-T end_coordinate(int segment_end, Position&& position, const Vec<T, 2>& a, const Vec<T, 2>& tau) {
+/// the second node. `position(node)`: Placed.
+template <class T, class Position, class Place>
+T end_coordinate(int segment_end, Position&& position, const Place& a, const Vec<T, 2>& tau) {
   if (segment_end == Segment::start) return T(0);
   if (segment_end == Segment::end) return T(1);
-  const Vec<T, 2> m = position(segment_end);
-  return dot((m - a).eval(), tau) / dot(tau, tau);
+  return dot(Vec<T, 2>(position(segment_end) - a), tau) / dot(tau, tau);
 }
+
+/// Slave facet a -> b over the line of its master facet c -> d, as they were at the start, in S, and as they are now.
+template <class T, class S>
+struct FacingFacets {
+  S length{};                              ///< of the master facet, initial
+  S first{}, along{};                      ///< E at a; what it grows by from a to b
+  S distance{}, apart{};                   ///< G likewise
+  Vec<S, 2> normal;                        ///< N
+  Vec<T, 2> tau, facet, shift, stretched;  ///< tau, tau_m; u_a - u_c, u_d - u_c
+
+  FacingFacets(const Placed<T, S>& a, const Placed<T, S>& b, const Placed<T, S>& c, const Placed<T, S>& d)
+      : tau(b - a), facet(d - c), shift(a.moved - c.moved), stretched(d.moved - c.moved) {
+    const Vec<S, 2> line = d.start - c.start, from = a.start - c.start, to = b.start - c.start;
+    const S square = dot(line, line);
+    length = norm(line);
+    normal << line[1] / length, -line[0] / length;
+    first = dot(from, line) / square;
+    along = dot(to, line) / square - first;
+    distance = dot(from, normal);
+    apart = dot(to, normal) - distance;
+  }
+};
 
 /// Foot of a slave point on its master.
 template <class T>
 struct Foot {
-  Vec<T, 2> position, normal;  ///< normal: unit, out of the master
-  std::array<T, 2> weights{};  ///< shape functions of the two master nodes of the segment
+  Vec<T, 2> off;               ///< x - y
+  Vec<T, 2> normal;            ///< unit, out of the master
+  std::array<T, 2> weights{};  ///< on a facet: shape functions of its two nodes
+  T shift{};                   ///< on a facet: eta - E
+  Vec<T, 2> moved = {};        ///< on an obstacle: y, from the initial place of the slave point
 };
 
-/// Foot of x along the direction nu, on the line through the master facet c -> d.
-template <class T>
-Foot<T> foot_on_facet(const Vec<T, 2>& x, const Vec<T, 2>& nu, const Vec<T, 2>& c, const Vec<T, 2>& d) {
-  const Vec<T, 2> tau = d - c;
-  const T length = norm(tau);
-  const T eta = ((x[0] - c[0]) * nu[1] - (x[1] - c[1]) * nu[0]) / (tau[0] * nu[1] - tau[1] * nu[0]);
+/// Foot on a master facet of the slave point at the coordinate s, which moves by `moved` more than the facet's node a.
+template <class T, class S>
+Foot<T> foot_on_facet(const FacingFacets<T, S>& facets, const T& s, const Vec<T, 2>& moved) {
   Foot<T> foot;
-  for (int i = 0; i < 2; ++i) foot.position[i] = c[i] + eta * tau[i];
-  foot.normal = Vec<T, 2>(tau[1] / length, -tau[0] / length);
+  const T E = T(facets.first) + s * facets.along, G = T(facets.distance) + s * facets.apart;
+  for (int i = 0; i < 2; ++i)
+    foot.off[i] = G * facets.normal[i] + (facets.shift[i] + moved[i] - E * facets.stretched[i]);
+  foot.shift = dot(foot.off, facets.tau) / dot(facets.facet, facets.tau);
+  foot.off -= foot.shift * facets.facet;
+  const T eta = E + foot.shift, length = norm(facets.facet);
+  foot.normal = Vec<T, 2>(facets.facet[1] / length, -facets.facet[0] / length);
   foot.weights = {T(1) - eta, eta};
   return foot;
 }
@@ -90,7 +126,6 @@ struct IntegrationPoint {
   T slave_length{};  ///< initial length of the slave facet
   T area{};          ///< psi dA times the Gauss weight
   detail::Foot<T> foot;
-  Vec<T, 2> facet;  ///< from the first node of the master facet to its second
 };
 
 /// Integrals over the segments of one contact point.
@@ -117,18 +152,18 @@ struct SegmentIntegrals {
 
 /// Integrals over segments.
 ///
-///   nodes                   nodes of the contact point, in the order of the weights that are returned
-///   position(node)          present position
-///   initial_position(node)  initial position, for dA
-///   depth                   of the slave body
-///   rigid_foot(x)           Foot of x on the obstacle; called for segments that have no master facet
+///   nodes             nodes of the contact point, in the order of the weights that are returned
+///   position(node)    Placed<T, S>
+///   depth             of the slave body
+///   rigid_foot(X, u)  Foot on the obstacle of the place X displaced by u; called for segments that have no master
+///   facet
 ///
 /// A master whose nodes are not among `nodes` is rigid: it has no weights, and the normal is its own.
-///   visit(segment, IntegrationPoint)  called at each Gauss point
-template <class T, class Position, class InitialPosition, class RigidFoot, class Visit>
+///   visit(segment, facets, IntegrationPoint)  called at each Gauss point. facets: optional FacingFacets
+template <class T, class S, class Position, class RigidFoot, class Visit>
 SegmentIntegrals<T> integrate_segments(const std::vector<Segment>& segments, const std::vector<int>& nodes,
-                                       Position&& position, InitialPosition&& initial_position, const Depth<T>& depth,
-                                       RigidFoot&& rigid_foot, Visit&& visit) {
+                                       Position&& position, const Depth<T>& depth, RigidFoot&& rigid_foot,
+                                       Visit&& visit) {
   static constexpr double gauss[3] = {-0.7745966692414834, 0, 0.7745966692414834};  // exact to degree 5; 3 is needed
   static constexpr double weight[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
   SegmentIntegrals<T> sums;
@@ -136,35 +171,36 @@ SegmentIntegrals<T> integrate_segments(const std::vector<Segment>& segments, con
   const auto place = [&](int node) { return std::find(nodes.begin(), nodes.end(), node) - nodes.begin(); };
   auto share = [&](int node, const T& w) { sums.weights[place(node)] += w; };
   for (const auto& segment : segments) {
-    const Vec<T, 2> a = position(segment.slave[0]), tau = position(segment.slave[1]) - a;
-    const Vec<T, 2> A = initial_position(segment.slave[0]), Tau = initial_position(segment.slave[1]) - A;
+    const bool has_facet = segment.master[0] != Segment::none;
+    const Placed<T, S> a = position(segment.slave[0]), b = position(segment.slave[1]);
+    std::optional<detail::FacingFacets<T, S>> facets;
+    if (has_facet) facets.emplace(a, b, position(segment.master[0]), position(segment.master[1]));
+    const Vec<T, 2> tau = b - a, stretched = b.moved - a.moved;
+    const Vec<S, 2> Tau = b.start - a.start;
     const T length = norm(tau);
     const Vec<T, 2> nu(tau[1] / length, -tau[0] / length);
     const T from = detail::end_coordinate<T>(segment.first_end, position, a, tau),
             to = detail::end_coordinate<T>(segment.last_end, position, a, tau);
     const bool rigid = place(segment.master[0]) == static_cast<std::ptrdiff_t>(nodes.size());
-    const bool has_facet = segment.master[0] != Segment::none;
-    const Vec<T, 2> c = has_facet ? position(segment.master[0]) : Vec<T, 2>(a),
-                    d = has_facet ? position(segment.master[1]) : c;
     IntegrationPoint<T> point;
-    point.slave_length = norm(Tau);
-    point.facet = d - c;
+    point.slave_length = T(norm(Tau));
     for (int q = 0; q < 3; ++q) {
       const T s = point.xi = from + (to - from) * T(0.5 * (1 + gauss[q]));
-      const Vec<T, 2> x(a[0] + s * tau[0], a[1] + s * tau[1]);
-      const detail::Foot<T>& foot = point.foot = has_facet ? detail::foot_on_facet<T>(x, nu, c, d) : rigid_foot(x);
+      const Vec<T, 2> moved = s * stretched, X(T(a.start[0]) + s * Tau[0], T(a.start[1]) + s * Tau[1]);
+      const detail::Foot<T>& foot = point.foot =
+          has_facet ? detail::foot_on_facet<T, S>(*facets, s, moved) : rigid_foot(X, Vec<T, 2>(a.moved + moved));
       const T psi = segment.sole_carrier ? T(1) : segment.carrier == 0 ? T(1) - s : s;
-      const T dA = point.area = psi * (to - from) * point.slave_length * T(weight[q]) * depth.at(T(A[0] + s * Tau[0]));
+      const T dA = point.area = psi * (to - from) * point.slave_length * T(weight[q]) * depth.at(X[0]);
       sums.area += dA;
       share(segment.slave[0], dA * (T(1) - s));
       share(segment.slave[1], dA * s);
       if (!rigid)
         for (int m = 0; m < 2; ++m) share(segment.master[m], -dA * foot.weights[m]);
       for (int i = 0; i < 2; ++i) {
-        sums.gap[i] += dA * (x[i] - foot.position[i]);
+        sums.gap[i] += dA * foot.off[i];
         sums.normal[i] += dA * (foot.normal[i] - (rigid ? T(0) : nu[i]));
       }
-      visit(segment, point);
+      visit(segment, facets, point);
     }
   }
   return sums;
@@ -179,34 +215,36 @@ std::vector<int> nodes_of_segments(int own, const std::vector<Segment>& facets, 
 template <class T>
 struct SegmentKinematics {
   PointGeometry<T> geometry;
-  /// On an obstacle: the mean foot. On facets: (Z_j, 0), Z_j the mean initial arc length along the master. Each Gauss
-  /// point contributes its foot's arc length plus S_s, its own distance from the slave node. So Z_j does not depend on
-  /// which part of the slave facets faces the master.
+  /// On an obstacle: the mean foot, from the mean place of the slave points at the start. On facets: (Z_j, 0), Z_j the
+  /// mean initial arc length along the master. Each Gauss point contributes its foot's arc length plus S_s, its own
+  /// distance from the slave node. So Z_j does not depend on which part of the slave facets faces the master.
   Vec<T, 2> foot = Vec<T, 2>::Constant(T(0));
   Vec<T, 2> tangent = foot;  ///< m_j: mean tangent of the master facets, per initial length; 0 on an obstacle
 };
 
 /// Kinematics of a contact point. Arguments as in integrate_segments(), and
 ///
-///   arc_length(facet)  initial arc length along the master at which a master facet begins
+///   arc_length(facet)  initial arc length along the master at which a master facet begins, in S
 ///   bisects            true: the normal is that of the mean bisector; false: it is perpendicular to the mean tangent
-template <class T, class Position, class InitialPosition, class RigidFoot, class ArcLength>
+template <class T, class S, class Position, class RigidFoot, class ArcLength>
 SegmentKinematics<T> segment_kinematics(const std::vector<Segment>& segments, const std::vector<int>& nodes,
-                                        Position&& position, InitialPosition&& initial_position, const Depth<T>& depth,
-                                        RigidFoot&& rigid_foot, ArcLength&& arc_length, bool bisects) {
+                                        Position&& position, const Depth<T>& depth, RigidFoot&& rigid_foot,
+                                        ArcLength&& arc_length, bool bisects) {
   SegmentKinematics<T> kinematics;
-  const auto accumulate = [&](const Segment& segment, const IntegrationPoint<T>& point) {
-    if (segment.master[0] == Segment::none) {
-      for (int i = 0; i < 2; ++i) kinematics.foot[i] += point.area * point.foot.position[i];
+  const auto accumulate = [&](const Segment& segment, const auto& facets, const IntegrationPoint<T>& point) {
+    if (!facets) {
+      for (int i = 0; i < 2; ++i) kinematics.foot[i] += point.area * point.foot.moved[i];
       return;
     }
-    const T facet_length = norm(Vec<T, 2>(initial_position(segment.master[1]) - initial_position(segment.master[0]))),
-            offset = segment.carrier == 0 ? point.xi : T(point.xi - T(1));
-    kinematics.foot[0] +=
-        point.area * (arc_length(segment.facet) + point.foot.weights[1] * facet_length + offset * point.slave_length);
-    for (int i = 0; i < 2; ++i) kinematics.tangent[i] += point.area * point.facet[i] / facet_length;
+    // S(y) + S_s at a, what it grows by along the slave facet (nothing where this lay on the master), and the rest
+    const S& length = facets->length;
+    const T start = T(arc_length(segment.facet) + facets->first * length) -
+                    (segment.carrier == 0 ? T(0) : point.slave_length),
+            growth = T(facets->along * length) + point.slave_length;
+    kinematics.foot[0] += point.area * (start + point.xi * growth + point.foot.shift * length);
+    for (int i = 0; i < 2; ++i) kinematics.tangent[i] += point.area * facets->facet[i] / T(length);
   };
-  const auto sums = integrate_segments<T>(segments, nodes, position, initial_position, depth, rigid_foot, accumulate);
+  const auto sums = integrate_segments<T, S>(segments, nodes, position, depth, rigid_foot, accumulate);
   for (int i = 0; i < 2; ++i) {
     kinematics.foot[i] /= sums.area;
     kinematics.tangent[i] /= sums.area;
@@ -220,8 +258,9 @@ template <class T, class InitialPosition>
 T area_of_facets(const std::vector<Segment>& facets, InitialPosition&& initial_position, const Depth<T>& depth) {
   std::vector<int> nodes;
   for (const auto& facet : facets) nodes.insert(nodes.end(), facet.slave.begin(), facet.slave.end());
-  const auto here = [](const Vec<T, 2>& x) { return detail::Foot<T>{x, Vec<T, 2>(T(0), T(1)), {}}; };
-  return integrate_segments<T>(facets, nodes, initial_position, initial_position, depth, here, [](auto&&...) {}).area;
+  const auto position = [&](int node) { return at_start<T>(initial_position(node)); };
+  const auto here = [](const auto&...) { return detail::Foot<T>{Vec<T, 2>(T(0), T(0)), Vec<T, 2>(T(0), T(1))}; };
+  return integrate_segments<T, T>(facets, nodes, position, depth, here, [](auto&&...) {}).area;
 }
 
 /// Distance of a slave node from a free end of the master, initial length, positive outside, at which 2 least_share of

@@ -43,7 +43,7 @@ History<T> initial_history(const Model& model, const Slots<T>& slots) {
       continue;
     }
     if (point.curve >= 0) {
-      history.foot[point.foot] = detail::foot_of_start(model, point, slots).xi;
+      history.foot[point.foot] = detail::foot_of_start(model, point, slots).shift;
       continue;
     }
     const Vector<T> at = slots.points.col(point.nodes[0]);
@@ -143,8 +143,6 @@ double tie_at(const ContactInput<T>& input, int p, const Vector<T>& compact) {
   double largest = 0;
   for (int place : point.places)
     for (int i = 0; i < D; ++i) largest = std::max(largest, std::abs(value(compact[place * D + i])));
-  // (present positions round as coordinates do, also where the initial gap is exactly zero)
-  if (input.model.effects.current_geometry) return point.tie_length + 8 * unit_roundoff * largest;
   return tie_length(point, input.slots.geometry[p], largest);
 }
 

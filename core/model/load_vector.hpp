@@ -137,12 +137,17 @@ void for_each_followed_edge(const Model& model, const Slots<T>& slots, double t,
   }
 }
 
-/// Present places of the nodes of an edge, in a scalar that is made of theirs.
+/// Present places of the nodes of an edge of body b, in a scalar that is made of theirs: from the initial place of the
+/// first, so that they keep the digits of the displacements; of revolution, radii from the axis.
 template <class U, class T, class Make>
-Points<U> present_places(const Slots<T>& slots, const std::vector<int>& nodes, const Vector<T>& u, Make&& make) {
+Points<U> present_places(const Slots<T>& slots, int b, const std::vector<int>& nodes, const Vector<T>& u, Make&& make) {
   Points<U> places(2, nodes.size());
   for (std::size_t a = 0; a < nodes.size(); ++a)
-    for (int i = 0; i < 2; ++i) places(i, a) = make(slots.points(i, nodes[a]) + u[nodes[a] * 2 + i], 2 * a + i);
+    for (int i = 0; i < 2; ++i) {
+      const T& X = slots.points(i, nodes[a]);
+      const bool is_radius = i == 0 && slots.depths[b].of_revolution;
+      places(i, a) = make((is_radius ? X : T(X - slots.points(i, nodes[0]))) + u[nodes[a] * 2 + i], 2 * a + i);
+    }
   return places;
 }
 
@@ -171,7 +176,8 @@ template <class T>
 Vector<T> follower_forces(const Model& model, const Slots<T>& slots, double t, const Vector<T>& u) {
   Vector<T> forces = Vector<T>::Constant(model.dof_count(), T(0));
   detail::for_each_followed_edge(model, slots, t, u, [&](const detail::FollowedEdge<T>& edge) {
-    const auto places = detail::present_places<T>(slots, edge.nodes, u, [](const T& x, std::size_t) { return x; });
+    const auto places =
+        detail::present_places<T>(slots, edge.body, edge.nodes, u, [](const T& x, std::size_t) { return x; });
     const Points<T> force = detail::pressure_on(places, edge.loaded, slots.depths[edge.body],
                                                 [&](int point) { return edge.pressure_at(point); });
     for (std::size_t a = 0; a < edge.nodes.size(); ++a)
@@ -189,7 +195,7 @@ void for_each_follower_tangent(const Model& model, const Slots<T>& slots, const 
   detail::for_each_followed_edge(model, slots, at.time, at.displacement, [&](const detail::FollowedEdge<T>& edge) {
     const int n = static_cast<int>(edge.nodes.size());
     const auto places =
-        detail::present_places<Probe>(slots, edge.nodes, at.displacement,
+        detail::present_places<Probe>(slots, edge.body, edge.nodes, at.displacement,
                                       [](const T& x, std::size_t k) { return Probe::seed(x, static_cast<int>(k)); });
     const auto& depth = slots.depths[edge.body];
     const auto force = detail::pressure_on<Probe>(places, edge.loaded, {depth.of_revolution, Probe(depth.thickness)},

@@ -29,21 +29,20 @@ struct ContactInput {
 
 namespace detail {
 
-/// Foot, D, of the position x on an obstacle. Both are in the frame of the obstacle.
+/// Foot, D, of the position x on an obstacle, from there.
 template <class T, class Position, class Read>
 Vector<T> obstacle_foot(const Obstacle& obstacle, const Position& x, const Read& numbers) {
   const auto geometry = against_rigid<T>(x, obstacle.shape, numbers);
-  Vector<T> foot(x.size());
-  for (Eigen::Index i = 0; i < foot.size(); ++i) foot[i] = x[i] - geometry.gap * geometry.normal[i];
-  return foot;
+  return -geometry.gap * geometry.normal;
 }
 
 /// Present geometry of a contact point.
 template <class T, int D>
 struct MovedPoint {
   PointGeometry<T> geometry;
-  /// Foot, as History::foot stores it. On an obstacle: position in its frame. On a curve: (xi, 0) on the patch; where
-  /// segment-integrated: (mean initial arc length, 0).
+  /// Foot, as History::foot stores it. On an obstacle: in its frame, from the initial position of the slave node. On a
+  /// curve: coordinate on the patch less foot_reference(), and 0; where segment-integrated: mean initial arc length
+  /// less origin_of_arcs(), and 0.
   Vec<T, D> foot = Vec<T, D>::Constant(T(0));
   /// Motion of the foot relative to the master since the last increment, length. Slip is its tangential part.
   Vec<T, D> foot_motion = foot;
@@ -68,14 +67,18 @@ Frame<T, D> frame_of_obstacle(const ContactInput<T>& input, const Obstacle& obst
   return frame;
 }
 
-/// Present position of a node in a frame. `points`: initial positions, D x nodes; `u`: displacement of the node.
+/// Displacement of a node in a frame, from its initial position. `points`: initial positions, D x nodes; `u`:
+/// displacement of the node.
 template <class U, class T, int D>
-Vec<U, D> frame_position(const Frame<T, D>& frame, const Points<T>& points, int node, const Vec<U, D>& u) {
-  Vec<U, D> x;
-  for (int i = 0; i < D; ++i) x[i] = U(points(i, node) - frame.shift[i]) + u[i];
+Vec<U, D> frame_displacement(const Frame<T, D>& frame, const Points<T>& points, int node, const Vec<U, D>& u) {
+  Vec<U, D> w;
+  for (int i = 0; i < D; ++i) w[i] = u[i] - U(frame.shift[i]);
   if constexpr (D == 2)
-    if (frame.turn) x += frame.turn->back().change(Vec<U, 2>(x[0] - U(frame.center[0]), x[1] - U(frame.center[1])));
-  return x;
+    if (frame.turn) {
+      const auto arm = [&](int i) { return U(points(i, node) - frame.center[i]) + w[i]; };
+      w += frame.turn->back().change(Vec<U, 2>(arm(0), arm(1)));
+    }
+  return w;
 }
 
 /// Turns normal, tangents and foot motion from the frame of the obstacle into axes of the plane.
@@ -96,11 +99,13 @@ MovedPoint<U, D> moved_point(const ContactInput<T>& input, int p, const Vec<U, D
   const auto number = [&](const Number& n) { return U(input.slots.numbers(n)); };
   const auto& obstacle = input.model.scene.obstacles[point.obstacle];
   const auto frame = frame_of_obstacle<T, D>(input, obstacle);
-  const Vec<U, D> x = frame_position<U, T, D>(frame, input.slots.points, point.nodes[0], u);
+  const Vec<U, D> w = frame_displacement<U, T, D>(frame, input.slots.points, point.nodes[0], u);
+  Vec<U, D> X;
+  for (int i = 0; i < D; ++i) X[i] = U(input.slots.points(i, point.nodes[0]));
   MovedPoint<U, D> at;
-  at.geometry = against_rigid<U>(x, obstacle.shape, number);
+  at.geometry = against_rigid<U>(X, w, obstacle.shape, number);
   for (int i = 0; i < D; ++i) {
-    at.foot[i] = x[i] - at.geometry.gap * at.geometry.normal[i];
+    at.foot[i] = w[i] - at.geometry.gap * at.geometry.normal[i];
     at.foot_motion[i] = point.foot < 0 ? U(0) : U(at.foot[i] - U(input.previous.foot[point.foot + i]));
   }
   if constexpr (D == 2) turn_with<U, T>(frame, at);
@@ -109,28 +114,27 @@ MovedPoint<U, D> moved_point(const ContactInput<T>& input, int p, const Vec<U, D
   return at;
 }
 
-/// Present position of a vertex of a curve. `displacement(place)`: of the contact node Model::contact_nodes[place].
+/// A vertex of a curve as it moves. `displacement(place)`: of the contact node Model::contact_nodes[place].
 template <class U, class T, class Displacement>
-Vec<U, 2> vertex_position(const ContactInput<T>& input, const MasterCurve& curve, int vertex,
-                          Displacement&& displacement) {
+Placed<U, T> vertex_position(const ContactInput<T>& input, const MasterCurve& curve, int vertex,
+                             Displacement&& displacement) {
   if (curve.obstacle >= 0) {
     const auto& obstacle = input.model.scene.obstacles[curve.obstacle];
     const auto frame = frame_of_obstacle<T, 2>(input, obstacle);
     const auto& X = std::get<Polyline>(obstacle.shape).points[vertex];
-    Vec<T, 2> x(input.slots.numbers(X[0]), input.slots.numbers(X[1]));
-    if (frame.turn) x += frame.turn->change(Vec<T, 2>(x - frame.center));
-    return {U(x[0] + frame.shift[0]), U(x[1] + frame.shift[1])};
+    const Vec<T, 2> x(input.slots.numbers(X[0]), input.slots.numbers(X[1]));
+    Vec<T, 2> u = frame.shift;
+    if (frame.turn) u += frame.turn->change(Vec<T, 2>(x - frame.center));
+    return {x, {U(u[0]), U(u[1])}};
   }
-  const int node = curve.nodes[vertex];
-  const Vec<U, 2> u = displacement(curve.places[vertex]);
-  return {U(input.slots.points(0, node)) + u[0], U(input.slots.points(1, node)) + u[1]};
+  return {point2(input.slots.points, curve.nodes[vertex]), displacement(curve.places[vertex])};
 }
 
 /// Geometry of point p if it faces nothing of its curve: the gap is the distance, the normal the initial one, and the
 /// foot is its placement beside the curve. `position`: as place_beside() reads it, of the slave node too where it is
 /// segment-integrated; `x`: of the slave node.
 template <class U, class T, class Position>
-MovedPoint<U, 2> point_off_curve(const ContactInput<T>& input, int p, const Facing& facing, const Vec<U, 2>& x,
+MovedPoint<U, 2> point_off_curve(const ContactInput<T>& input, int p, const Facing& facing, const Placed<U, T>& x,
                                  Position&& position) {
   const auto& start = input.slots.geometry[p];
   MovedPoint<U, 2> at;
@@ -155,7 +159,9 @@ MovedPoint<U, 2> moved_on_segments(const ContactInput<T>& input, int p, const Fa
   const auto position = [&](int node) {
     if (const int vertex = node - input.model.node_count; vertex >= 0)
       return vertex_position<U, T>(input, input.model.curves[point.curve], vertex, displacement);
-    return frame_position<U, T, 2>(frame, input.slots.points, node, displacement(input.model.place_of(node)));
+    const Vec<U, 2> u = displacement(input.model.place_of(node));
+    return Placed<U, T>{point2(input.slots.points, node),
+                        frame_displacement<U, T, 2>(frame, input.slots.points, node, u)};
   };
   if (along_curve && facing->patch == Patch::none)
     return point_off_curve<U, T>(input, p, *facing, position(point.nodes[0]), position);
@@ -168,10 +174,13 @@ MovedPoint<U, 2> moved_on_segments(const ContactInput<T>& input, int p, const Fa
   const auto previous_foot = [&](int i) { return U(input.previous.foot[point.foot + i]); };
   if (point.foot >= 0 && !along_curve) {
     at.foot_motion = Vec<U, 2>(at.foot[0] - previous_foot(0), at.foot[1] - previous_foot(1));
-  } else if (const int last = point.foot >= 0 ? input.previous.patch[p] : Patch::none; last != Patch::none) {
-    const auto& curve = input.model.curves[point.curve];
-    const U length =
-        at.foot[0] + U(length_between(input.model, curve, input.slots, last, facing->patch)) - previous_foot(0);
+  } else if (point.foot >= 0 && input.previous.patch[p] != Patch::none) {
+    U length = at.foot[0] - previous_foot(0);
+    const Vector<T>& arcs = input.slots.arcs[point.curve];
+    const T& whole = arcs[arcs.size() - 1];
+    const bool loop = input.model.curves[point.curve].patches.back().next == 0;
+    const double turns = loop ? std::round(value(length) / value(whole)) : 0;
+    if (turns != 0) length -= U(turns) * U(whole);
     for (int i = 0; i < 2; ++i) at.foot_motion[i] = kinematics.tangent[i] * length;
   }
   turn_with<U, T>(frame, at);
@@ -186,22 +195,21 @@ MovedPoint<U, 2> moved_on_curve(const ContactInput<T>& input, int p, const Facin
   const auto& point = input.model.points[p];
   const auto& curve = input.model.curves[point.curve];
   const auto position = [&](int vertex) { return vertex_position<U, T>(input, curve, vertex, displacement); };
-  Vec<U, 2> x = displacement(point.places[0]);
-  for (int i = 0; i < 2; ++i) x[i] += U(input.slots.points(i, point.nodes[0]));
+  const Placed<U, T> x{point2(input.slots.points, point.nodes[0]), displacement(point.places[0])};
   if (facing.patch == Patch::none) return point_off_curve<U, T>(input, p, facing, x, position);
   MovedPoint<U, 2> at;
   at.geometry.area = U(input.slots.geometry[p].area);
   const Patch& patch = curve.patches[facing.patch];
-  const auto foot = foot_on_patch<U>(patch, facing.xi, x, position);
+  const auto foot =
+      foot_on_patch<U, T>(patch, foot_reference(input.model, point, facing.patch), facing.xi, x, position);
   at.geometry.gap = foot.gap + U(input.slots.numbers(input.model.scene.contacts[point.contact].offset));
   at.geometry.normal = foot.normal;
   at.geometry.tangents = tangent_frame<U>(at.geometry.normal);
   at.geometry.weights = foot_weights(patch, foot.weights, curve.obstacle >= 0);
-  at.foot[0] = foot.xi;
-  if (point.foot >= 0 && input.previous.patch[p] != Patch::none) {
-    const Patch& previous = curve.patches[input.previous.patch[p]];
-    at.foot_motion = foot.position - curve_position<U>(previous, U(input.previous.foot[point.foot]), position);
-  }
+  at.foot[0] = foot.shift;
+  if (const int last = point.foot >= 0 ? input.previous.patch[p] : Patch::none; last != Patch::none)
+    at.foot_motion = foot_motion<U, T>(patch, foot, curve.patches[last], foot_reference(input.model, point, last),
+                                       input.previous.foot[point.foot], position);
   return at;
 }
 
@@ -227,23 +235,29 @@ std::vector<Facing> facings(const ContactInput<T>& input, const Vector<T>& compa
   for (std::size_t c = 0; c < model.curves.size(); ++c) {
     const auto& curve = model.curves[c];
     if (curve.is_integrated()) {
-      Points<double> positions = values(input.slots.points);
+      Points<double> start = values(input.slots.points);
+      if (curve.obstacle >= 0) start.conservativeResize(Eigen::NoChange, model.node_count + curve.vertex_count);
+      Points<double> moved = Points<double>::Zero(start.rows(), start.cols());
       for (std::size_t n = 0; n < model.contact_nodes.size(); ++n)
-        positions.col(model.contact_nodes[n]).head<2>() += values(displacement(static_cast<int>(n)));
-      if (curve.obstacle >= 0) {
-        positions.conservativeResize(Eigen::NoChange, model.node_count + curve.vertex_count);
-        for (int v = 0; v < curve.vertex_count; ++v)
-          positions.col(model.node_count + v) = values(vertex_position<T, T>(input, curve, v, displacement));
+        moved.col(model.contact_nodes[n]).head<2>() = values(displacement(static_cast<int>(n)));
+      for (int v = 0; curve.obstacle >= 0 && v < curve.vertex_count; ++v) {
+        const auto vertex = vertex_position<T, T>(input, curve, v, displacement);
+        start.col(model.node_count + v) = values(vertex.start);
+        moved.col(model.node_count + v) = values(vertex.moved);
       }
-      find_segments(model, static_cast<int>(c), values(input.slots.points), positions, found);
+      find_segments(model, static_cast<int>(c), start, moved, found);
       continue;
     }
+    // (places from the first vertex at the start, so that what lies far from the origin is found as near it)
+    const Vec<double, 2> origin = values(vertex_position<T, T>(input, curve, 0, displacement).start);
     Eigen::Matrix2Xd positions(2, curve.vertex_count);
-    for (int v = 0; v < curve.vertex_count; ++v)
-      positions.col(v) = values(vertex_position<T, T>(input, curve, v, displacement));
+    for (int v = 0; v < curve.vertex_count; ++v) {
+      const auto vertex = vertex_position<T, T>(input, curve, v, displacement);
+      positions.col(v) = values(vertex.start) - origin + values(vertex.moved);
+    }
     const CurveSearch search(curve.patches, positions);
     const auto position = [&](int node, int place) -> Vec<double, 2> {
-      return values(input.slots.points.col(node).template head<2>()) + values(displacement(place));
+      return values(input.slots.points.col(node).template head<2>()) - origin + values(displacement(place));
     };
     for (std::size_t p = 0; p < found.size(); ++p) {
       const auto& point = model.points[p];

@@ -353,7 +353,7 @@ void pair_segments(Model& model, const Points<double>& points, const Pairing& pa
   }
   if (!slides) return;
   std::vector<Facing> found(model.points.size());
-  find_segments(model, curve, points, master.points, found);
+  find_segments(model, curve, master.points, Points<double>::Zero(master.points.rows(), master.points.cols()), found);
   for (std::size_t p = first; p < model.points.size(); ++p) {
     model.points[p].facing = found[p];
     model.points[p].nodes = found[p].nodes;

@@ -7,12 +7,12 @@ namespace stickslip {
 
 /// Sets found[p] for each point p of an integrated curve.
 ///
-///   curve      index in Model::curves
-///   points     initial nodal positions, D x nodes, length
-///   positions  present nodal positions, D x nodes, length; where the master is a polyline, then those of its vertices
+///   curve  index in Model::curves
+///   start  initial positions of the nodes, D x nodes, length; where the master is a polyline, then those of its
+///   vertices moved  displacements likewise
 ///
 /// A point less than 1 % of whose area faces the curve counts as facing nothing.
-void find_segments(const Model& model, int curve, const Points<double>& points, const Points<double>& positions,
+void find_segments(const Model& model, int curve, const Points<double>& start, const Points<double>& moved,
                    std::vector<Facing>& found);
 
 }  // namespace stickslip

@@ -54,6 +54,8 @@ struct Slots {
   std::vector<Matrix<T>> frames;           ///< per framed node: D x D, frame vectors as columns
   std::vector<Vector<T>> spins;            ///< per contact point: displacement of its obstacle per degree of rotation,
                                            ///< length; empty: no obstacle rotates
+  std::vector<Vector<T>> arcs;  ///< per curve that is integrated: initial arc length along it to the beginning
+                                ///< of each facet, and of all; empty for another; no entry: none is
 };
 
 /// Gap of a point, length, up to which it counts as zero. If the initial gap is not exactly zero: the rounding of the
@@ -128,74 +130,80 @@ Vec<T, 2> start_of(const Model& model, int obstacle, const Slots<T>& slots, int 
   return {slots.numbers(x[0]), slots.numbers(x[1])};
 }
 
-/// Initial arc length along an integrated curve from the beginning of facet `from` to that of facet `to`; negative
-/// backwards. On a closed curve: along the shorter way.
+/// Slots::arcs of a curve.
 template <class T>
-T length_between(const Model& model, const MasterCurve& curve, const Slots<T>& slots, int from, int to) {
-  const int count = static_cast<int>(curve.facets.size());
-  const bool loop = curve.patches.back().next == 0;
-  if (loop && 2 * std::abs(to - from) > count) to += to < from ? count : -count;
-  T length{};
-  for (int f = std::min(from, to); f < std::max(from, to); ++f) {
-    const auto& facet = curve.facets[(f + count) % count];
-    length += norm(
-        Vec<T, 2>(start_of(model, curve.obstacle, slots, facet[1]) - start_of(model, curve.obstacle, slots, facet[0])));
+Vector<T> arcs_of(const Model& model, const MasterCurve& curve, const Slots<T>& slots) {
+  if (!curve.is_integrated()) return {};
+  Vector<T> arcs(static_cast<Eigen::Index>(curve.facets.size()) + 1);
+  arcs[0] = T(0);
+  for (std::size_t f = 0; f < curve.facets.size(); ++f) {
+    const auto end = [&](int k) { return start_of(model, curve.obstacle, slots, curve.facets[f][k]); };
+    arcs[f + 1] = arcs[f] + norm(Vec<T, 2>(end(1) - end(0)));
   }
-  return from < to ? length : T(-length);
+  return arcs;
 }
 
-/// Placement along its curve of a point that faces nothing of it, as History::foot stores it: from there it slides in
-/// the increment in which it comes to face the curve. It is the place of the patch `nearest` that is nearest to the
-/// slave node; for a segment-integrated point past a free end, where such a point comes on. `at(vertex)`: present
-/// position; of a segment-integrated point `at(node)`.
-template <class U, class T, class At>
-U place_beside(const Model& model, const ContactPoint& point, const Slots<T>& slots, int nearest, const Vec<U, 2>& x,
-               At&& at) {
+/// The facet of an integrated curve from which the arc lengths of a point are measured.
+inline int facet_of_arcs(const ContactPoint& point) { return std::max(point.facing.patch, 0); }
+
+/// Where a point is along its integrated curve at the start, from the beginning of facet_of_arcs(): that facet's line
+/// at its slave node. Arc lengths are measured from there, so that those of small motions are small.
+template <class T>
+double origin_of_arcs(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
   const auto& curve = model.curves[point.curve];
-  const auto& patch = curve.patches[nearest];
-  if (!curve.is_integrated()) return beside_facet<U>(x, at(patch.vertices[1]), at(patch.vertices[2]));
-  const auto of_start = [&](int node) { return start_of(model, point.obstacle, slots, node); };
-  const auto& facet = curve.facets[nearest];
-  const U xi = beside_facet<U>(x, at(facet[0]), at(facet[1]));
-  const U place = xi * U(norm(Vec<T, 2>(of_start(facet[1]) - of_start(facet[0]))));
-  if (value(xi) <= 0 && patch.previous == Patch::none)
-    return place - U(way_outside_of_end<T>(point.segments, 1, of_start));
-  if (value(xi) >= 1 && patch.next == Patch::none) return place + U(way_outside_of_end<T>(point.segments, 0, of_start));
-  return place;
+  const auto& facet = curve.facets[facet_of_arcs(point)];
+  const auto place = [&](int node) -> Vec<double, 2> { return values(start_of(model, curve.obstacle, slots, node)); };
+  const Vec<double, 2> c = place(facet[0]), tau = place(facet[1]) - c;
+  return (place(point.nodes[0]) - c).dot(tau) / tau.norm();
+}
+
+/// Initial arc length along an integrated curve from the beginning of facet_of_arcs() to that of a facet. `first`: a
+/// facet near it; on a closed curve the way to `first` is the shorter one.
+template <class T>
+T arc_to(const Model& model, const ContactPoint& point, const Slots<T>& slots, int first, int facet) {
+  const auto& curve = model.curves[point.curve];
+  const Vector<T>& arcs = slots.arcs[point.curve];
+  const int count = static_cast<int>(curve.facets.size()), origin = facet_of_arcs(point);
+  const bool loop = curve.patches.back().next == 0;
+  const auto way = [&](int from, int to) {
+    const bool is_longer = loop && 2 * std::abs(to - from) > count;
+    return to - from + (!is_longer ? 0 : to < from ? count : -count);
+  };
+  const int turns = (origin + way(origin, first) + way(first, facet) - facet) / count;
+  const T arc = arcs[facet] - arcs[origin];
+  return turns == 0 ? arc : T(arc + T(static_cast<double>(turns)) * arcs[count]);
 }
 
 /// Kinematics of a segment-integrated point, in the scalar U built on T. `facing`: its segments, not read against an
-/// obstacle; `at(node)`: present position; `numbers`: of the scene.
+/// obstacle; `at(node)`: Placed, on an obstacle in its frame; `numbers`: of the scene.
 template <class U, class T, class At, class Read>
 SegmentKinematics<U> integrated_kinematics(const Model& model, const ContactPoint& point, const Slots<T>& slots,
                                            const Facing& facing, At&& at, const Read& numbers) {
   const bool along_curve = point.curve >= 0;
-  const auto of_start = [&](int node) {
-    const auto x = start_of(model, point.obstacle, slots, node);
-    return Vec<U, 2>(U(x[0]), U(x[1]));
-  };
-  const auto rigid_foot = [&](const Vec<U, 2>& x) {
-    const auto g = against_rigid<U>(x, model.scene.obstacles[point.obstacle].shape, numbers);
+  const auto rigid_foot = [&](const Vec<U, 2>& X, const Vec<U, 2>& u) {
+    const auto g = against_rigid<U>(X, u, model.scene.obstacles[point.obstacle].shape, numbers);
     Foot<U> foot;
     for (int i = 0; i < 2; ++i) {
       foot.normal[i] = g.normal[i];
-      foot.position[i] = x[i] - g.gap * g.normal[i];
+      foot.off[i] = g.gap * g.normal[i];
+      foot.moved[i] = u[i] - foot.off[i];
     }
     return foot;
   };
+  const double origin = along_curve ? origin_of_arcs(model, point, slots) : 0;
   const auto begin = [&](int facet) {
-    return along_curve ? U(length_between(model, model.curves[point.curve], slots, facing.patch, facet)) : U(0);
+    return along_curve ? T(arc_to(model, point, slots, facing.patch, facet) - T(origin)) : T(0);
   };
   const auto& depth = slots.depths[point.slave_body];
-  return segment_kinematics<U>(along_curve ? facing.pieces : point.segments, along_curve ? facing.nodes : point.nodes,
-                               at, of_start, Depth<U>{depth.of_revolution, U(depth.thickness)}, rigid_foot, begin,
-                               !along_curve);
+  return segment_kinematics<U, T>(along_curve ? facing.pieces : point.segments,
+                                  along_curve ? facing.nodes : point.nodes, at,
+                                  Depth<U>{depth.of_revolution, U(depth.thickness)}, rigid_foot, begin, !along_curve);
 }
 
 /// Kinematics of a segment-integrated point at the start. pre: it faces its master.
 template <class T>
 SegmentKinematics<T> initial_kinematics(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
-  const auto at = [&](int node) { return start_of(model, point.obstacle, slots, node); };
+  const auto at = [&](int node) { return at_start<T>(start_of(model, point.obstacle, slots, node)); };
   return integrated_kinematics<T>(model, point, slots, point.facing, at, slots.numbers);
 }
 
@@ -221,6 +229,14 @@ Vec<T, 2> vertex_of_start(const Model& model, const MasterCurve& curve, const Sl
   return start_of(model, curve.obstacle, slots, model.node_count + vertex);
 }
 
+/// Coordinate on a patch from which the foot of a point is measured: that of its foot at the start, and on the patch
+/// before this one its end. So a small motion makes a small difference, also across a vertex.
+inline double foot_reference(const Model& model, const ContactPoint& point, int patch) {
+  const Facing& start = point.facing;
+  if (patch == start.patch) return start.xi;
+  return start.patch != Patch::none && model.curves[point.curve].patches[start.patch].previous == patch ? 1 : 0;
+}
+
 /// Foot of a point on its curve at the start. pre: it faces the curve.
 template <class T>
 CurveFoot<T> foot_of_start(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
@@ -230,15 +246,38 @@ CurveFoot<T> foot_of_start(const Model& model, const ContactPoint& point, const 
   return foot_on_patch<T>(curve.patches[point.facing.patch], point.facing.xi, x, place);
 }
 
+/// Placement along its curve of a point that faces nothing of it, as History::foot stores it: from there it slides in
+/// the increment in which it comes to face the curve. It is the place of the patch `nearest` that is nearest to the
+/// slave node; for a segment-integrated point past a free end, where such a point comes on. `x`: of the slave node;
+/// `at(vertex)`: Placed; of a segment-integrated point `at(node)`.
+template <class U, class T, class At>
+U place_beside(const Model& model, const ContactPoint& point, const Slots<T>& slots, int nearest, const Placed<U, T>& x,
+               At&& at) {
+  const auto& curve = model.curves[point.curve];
+  const auto& patch = curve.patches[nearest];
+  if (!curve.is_integrated())
+    return beside_facet<U, T>(x, at(patch.vertices[1]), at(patch.vertices[2])) -
+           U(foot_reference(model, point, nearest));
+  const auto of_start = [&](int node) { return start_of(model, point.obstacle, slots, node); };
+  const auto& facet = curve.facets[nearest];
+  const U xi = beside_facet<U, T>(x, at(facet[0]), at(facet[1]));
+  const U place = U(arc_to(model, point, slots, nearest, nearest) - T(origin_of_arcs(model, point, slots))) +
+                  xi * U(norm(Vec<T, 2>(of_start(facet[1]) - of_start(facet[0]))));
+  if (value(xi) <= 0 && patch.previous == Patch::none)
+    return place - U(way_outside_of_end<T>(point.segments, 1, of_start));
+  if (value(xi) >= 1 && patch.next == Patch::none) return place + U(way_outside_of_end<T>(point.segments, 0, of_start));
+  return place;
+}
+
 /// place_beside() of the start.
 template <class T>
 T place_beside_at_start(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
   const auto& curve = model.curves[point.curve];
   const auto place = [&](int of) {
-    return curve.is_integrated() ? start_of(model, point.obstacle, slots, of)
-                                 : vertex_of_start(model, curve, slots, of);
+    return at_start<T>(curve.is_integrated() ? start_of(model, point.obstacle, slots, of)
+                                             : vertex_of_start(model, curve, slots, of));
   };
-  const Vec<T, 2> x = point2(slots.points, point.nodes[0]);
+  const auto x = at_start<T>(point2(slots.points, point.nodes[0]));
   return place_beside<T, T>(model, point, slots, point.facing.nearest, x, place);
 }
 

@@ -161,6 +161,8 @@ Slots<T> make_slots(const Model& model, const Numbers<T>& numbers, Points<T> poi
   Slots<T> slots = make_body_slots(model, numbers, std::move(points));
   for (const auto& contact : model.scene.contacts)
     slots.friction.push_back(contact.friction ? contact.friction->template as<T>(numbers) : FrictionLaw<T>());
+  if (std::any_of(model.curves.begin(), model.curves.end(), [](const auto& curve) { return curve.is_integrated(); }))
+    for (const auto& curve : model.curves) slots.arcs.push_back(detail::arcs_of(model, curve, slots));
   for (const auto& point : model.points) {
     slots.geometry.push_back(detail::initial_geometry(model, point, slots));
     // A gap that is rounding of the coordinates would make forces of its own, where no load presses.

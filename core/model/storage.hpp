@@ -31,6 +31,7 @@ SlotBytes slot_bytes(const Slots<T>& slots) {
   held.contact += one * static_cast<long>(slots.stiffness.size());
   for (const auto& law : slots.friction) held.contact += one * std::max(law.size(), 1);
   for (const auto& spin : slots.spins) held.contact += one * spin.size();
+  for (const auto& arcs : slots.arcs) held.contact += one * arcs.size();
   return held;
 }
 template <class T>

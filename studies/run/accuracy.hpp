@@ -7,6 +7,8 @@
 ///   monolithic   Newton's `tolerance`
 ///   all          Newton's `tolerance` of the equilibrium, and rounding: u = 1e-16 times what it rounds,
 ///                of lengths      u R                        R: largest displacement and relative displacement
+///                                8 u (h + L)                where an initial gap is not exactly 0: of the given
+///                                                           coordinates, at L from the origin (tie_length())
 ///                of tractions    u rho R                    rho: stiffness or scale
 ///                of forces       u (k + rho A) R            k: stiffness of an element
 ///                but never more than `most_rounding` of the run's largest length, traction or force; a hundred times

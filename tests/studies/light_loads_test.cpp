@@ -1,0 +1,106 @@
+/// Bodies at finite strain under loads of 1e-2 to 1e-9 of their modulus, at the origin and far from it: gaps and slips
+/// are differences of displacements, so that neither the load nor the place decides how many digits forces have.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "studies/run/accuracy.hpp"
+#include "tests/studies/cases.hpp"
+
+namespace stickslip {
+namespace {
+
+using nlohmann::json;
+
+constexpr double E = 1000;
+const double loads[] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9};
+const double distances[] = {0, 1, 1e2, 1e4, 1e6};
+const json methods[] = {
+    {{"penalty", json::object()}}, {{"uzawa_al", json::object()}}, {{"monolithic_al", json::object()}}};
+constexpr double friction = 0.3;
+
+json box(double x0, double y0, double x1, double y1, int nx, int ny) {
+  return {{"box", {{"min", {x0, y0}}, {"max", {x1, y1}}, {"cells", {nx, ny}}}}};
+}
+
+/// A block of 2 x 1 on something that is flat at its foot: an obstacle, or a slab as "facets", "segments" or smoothed.
+/// `slides`: with friction that bears a force of a fifth of the load, and nothing else holds the block; without, its
+/// left side is held.
+json scene_of(const std::string& floor, double L, double load, bool slides) {
+  const json rubber = {{"neo_hookean", {{"E", E}, {"nu", 0.3}}}};
+  json s = {{"space", "plane_strain"},
+            {"strain", "finite"},
+            {"bodies", {{"block", {{"mesh", box(L, L, L + 2, L + 1, 4, 1)}, {"material", rubber}}}}},
+            {"contacts", {{"sole", {{"slave", "block.bottom"}, {"master", "floor"}}}}},
+            {"supports", json::array()},
+            {"loads", {{{"on", "block.top"}, {"traction", {slides ? 0.2 * load * E : 0, -load * E}}}}},
+            {"time", {{"end", 1}, {"steps", 1}}}};
+  for (const char* component : {"x", "y"})
+    s["responses"][component] = {{"contact_force", {{"contact", "sole"}, {"component", component}}}};
+  s["responses"]["sunk"] = {{"displacement", {{"on", "block.top"}, {"component", "y"}}}};
+  json& contact = s["contacts"]["sole"];
+  if (slides)
+    contact["friction"] = friction;
+  else
+    s["supports"].push_back({{"on", "block.left"}, {"move", {{"x", 0}}}});
+  if (floor == "plane") {
+    s["obstacles"]["floor"]["plane"] = {{"point", {L, L}}, {"normal", {0, 1}}};
+  } else if (floor == "circle") {  // (it would tip)
+    s["obstacles"]["floor"]["circle"] = {{"center", {L + 1, L - 8}}, {"radius", 8}};
+    s["supports"].push_back({{"on", "block.top"}, {"move", {{"x", 0}}}});
+    s["loads"] = json::array({{{"on", "block"}, {"body_force", {0, -load * E}}}});
+  } else if (floor == "polyline") {
+    s["obstacles"]["floor"]["polyline"]["points"] = {{L - 3, L}, {L + 1.25, L}, {L + 5, L}};
+  } else {
+    s["bodies"]["slab"] = {{"mesh", box(L - 1, L - 1, L + 3, L, 3, 1)}, {"material", rubber}};
+    s["supports"].push_back({{"on", "slab.bottom"}, {"move", {{"x", 0}, {"y", 0}}}});
+    contact["master"] = "slab.top";
+    if (floor == "segments") contact["discretization"] = "segment";
+    if (floor == "catmull_rom" || floor == "b_spline") contact["surface"]["smooth"] = floor;
+  }
+  return s;
+}
+
+/// Largest relative difference of forces and displacements that rounding of the coordinates explains: the elements of
+/// the facets' length h have sides of L u / h where coordinates are rounded to L u. Those here are not, but their shape
+/// functions round what they are multiplied by.
+double digits_of_coordinates(double L) { return 16 * unit_roundoff * (L + 2) / 0.5; }
+
+class LightLoads : public testing::TestWithParam<std::tuple<const char*, bool>> {};
+
+TEST_P(LightLoads, HaveTheDigitsOfHeavyOnesWhereverTheyAre) {
+  const auto [floor, slides] = GetParam();
+  for (const json& method : methods)
+    for (const double load : loads) {
+      Vector<double> at_origin;
+      for (const double L : distances) {
+        const std::string where =
+            method.begin().key() + ", load " + std::to_string(std::log10(load)) + ", at " + std::to_string(L);
+        auto result = cases::run(scene_of(floor, L, load, slides), method, "light.json");
+        check_accuracy(result.problem->model, result.problem->slots, result.method, result.trajectory);
+        ASSERT_EQ(result.trajectory.status, Status::converged) << where << ": " << result.trajectory.message;
+        const Vector<double>& found = result.steps.back().responses;  // x, y, sunk
+        // the block is in equilibrium to Newton's tolerance, 1e-10 of a nodal force
+        const double weight = 2 * load * E, most = 1e-9;
+        EXPECT_NEAR(found[1], weight, most * weight) << where;
+        const bool known = slides && std::string(floor) != "circle";
+        if (known) EXPECT_NEAR(found[0], -0.2 * weight, most * weight) << where;
+        if (at_origin.size() == 0) at_origin = found;
+        const double same = std::max(most, digits_of_coordinates(L));
+        EXPECT_NEAR(found[0], at_origin[0], same * weight) << where;
+        EXPECT_NEAR(found[2], at_origin[2], same * std::abs(at_origin[2])) << where;
+      }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Floors, LightLoads,
+                         testing::Combine(testing::Values("plane", "circle", "polyline", "facets", "catmull_rom",
+                                                          "b_spline", "segments"),
+                                          testing::Bool()),
+                         [](const auto& info) {
+                           return std::string(std::get<0>(info.param)) +
+                                  (std::get<1>(info.param) ? "_with_friction" : "");
+                         });
+
+}  // namespace
+}  // namespace stickslip
