@@ -167,29 +167,6 @@ TEST(EndsThatCross, AreInfeasible) {
   }
 }
 
-/// The lower block's top and the upper block's bottom are both prescribed, one into the other.
-TEST(SidesThatSupportsPushTogether, AreInfeasibleOnDeformableMastersToo) {
-  for (const bool finite : {false, true})
-    for (const char* discretization : {"node", "segment"}) {
-      json scene = block(4, finite);
-      scene["bodies"]["b"] = box({0.5, 1.05}, {1.5, 2}, {3, 2}, finite);
-      scene["bodies"]["a"] = box({0, 0}, {2, 1}, {4, 2}, finite);
-      scene["contacts"] = {
-          {"sole",
-           {{"slave", "b.bottom"}, {"master", "a.top"}, {"discretization", discretization}, {"friction", 0.2}}}};
-      scene.erase("obstacles");
-      scene["supports"] = {{{"on", "a.bottom | a.top"}, {"move", {{"x", 0}, {"y", 0}}}},
-                           {{"on", "b.top | b.bottom"}, {"move", {{"x", 0}, {"y", {{0, 0}, {1, -0.1}}}}}}};
-      for (const char* method : {"uzawa_al", "monolithic_al"}) {
-        const auto result = run(scene, method);
-        EXPECT_EQ(result.status(), Status::infeasible)
-            << method << discretization << finite << " " << name_of(result.status()) << result.message();
-        EXPECT_THAT(result.message(), HasSubstr("penetrates by")) << method << discretization << finite;
-        EXPECT_LT(result.trajectory.counters.newton, 500) << method << discretization << finite;
-      }
-    }
-}
-
 TEST(LoadThatNoContactBalances, IsNamedAtFiniteStrainToo) {
   for (const auto& traction : std::vector<std::array<double, 2>>{{4, -10}, {0, 1}, {0.1, 0}})
     for (const auto& method : methods) {
