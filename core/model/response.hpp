@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 
 #include "core/model/contact_assembly.hpp"
 #include "core/model/loading.hpp"
@@ -123,11 +124,57 @@ T contact_force(const Model& model, const Slots<T>& slots, const Response& respo
   return force;
 }
 
-/// Half width of a contact from its force F and the second moment I of its pressures: a = 2 sqrt(I / F), as of Hertz's
-/// p0 sqrt(1 - x^2/a^2). Of revolution it is the radius, sqrt(5/2 I / F), likewise. 0 where fewer than two points are
-/// closed; of revolution one is enough, if it is off the axis.
+/// Where the arms of a half width begin, and the direction that they are measured along.
 template <class T>
-T contact_half_width(const Model& model, const Slots<T>& slots, const State<T>& state,
+struct ArmOrigin {
+  Vec<T, 2> place, along;
+};
+
+/// The plane of symmetry of a contact: where its slave side ends, pressed, in a node that a support holds along the
+/// side, at zero, and leaves free across it. None where both ends are such, or neither. `presses(p)`: whether point p
+/// does.
+template <class T, class Presses>
+std::optional<ArmOrigin<T>> symmetry_plane(const Model& model, const Slots<T>& slots, const State<T>& state,
+                                           const std::vector<int>& of_contact, Presses&& presses) {
+  constexpr double along_side = 0.5;  // largest cosine between the direction that is held and the normal
+  const auto is_zero = [](const Table& table) {
+    return std::all_of(table.points.begin(), table.points.end(), [](const auto& p) { return p.second.value == 0; });
+  };
+  const auto stays = [&](const Constraint& held) {
+    if (held.support < 0) return false;
+    const Support& support = model.scene.supports[held.support];
+    if (support.rotate) return false;
+    return is_zero(held.axis == Constraint::inclined ? support.inclined->value : support.move.at(held.axis));
+  };
+  std::optional<ArmOrigin<T>> found;
+  for (int p : of_contact) {
+    const auto& point = model.points[p];
+    if (point.area_facets.size() != 1 || !presses(p)) continue;
+    const int node = point.nodes[0], framed = framed_index(model, node);
+    const auto first = std::find_if(model.constraints.begin(), model.constraints.end(),
+                                    [&](const Constraint& held) { return held.dof / 2 == node; });
+    if (first == model.constraints.end() || !stays(*first)) continue;
+    if (std::next(first) != model.constraints.end() && std::next(first)->dof / 2 == node) continue;  // held at all
+    ArmOrigin<T> plane;
+    for (int i = 0; i < 2; ++i) {
+      plane.place[i] = place_of(model, slots, state, node)[i];
+      plane.along[i] = framed >= 0 ? slots.frames[framed](i, first->dof % 2) : T(i == first->dof % 2 ? 1 : 0);
+    }
+    const auto& normal = geometry_in(state.contact, slots, p).normal;
+    if (std::abs(value(plane.along[0]) * value(normal[0]) + value(plane.along[1]) * value(normal[1])) > along_side)
+      continue;
+    if (found) return std::nullopt;
+    found = plane;
+  }
+  return found;
+}
+
+/// Half width of a contact from its force F and the second moment I of its pressures: a = 2 sqrt(I / F), as of Hertz's
+/// p0 sqrt(1 - x^2/a^2). Of revolution it is the radius, sqrt(5/2 I / F), likewise. Arms are measured from the point
+/// `about`, where one is given; else from the plane of symmetry, where there is one; else from the centroid of the
+/// pressures. 0 where fewer than two points are closed; of revolution one is enough, if it is off the axis.
+template <class T>
+T contact_half_width(const Model& model, const Slots<T>& slots, const Response& response, const State<T>& state,
                      const std::vector<int>& of_contact) {
   using std::sqrt;
   const bool rings = model.scene.space == Space::axisymmetric;
@@ -148,11 +195,20 @@ T contact_half_width(const Model& model, const Slots<T>& slots, const State<T>& 
     }
   }
   if (closed < (rings ? 1 : 2) || !(value(force) > 0)) return T(0);
-  for (int p : of_contact) {  // arms: radii, or across the normal from the centroid
-    const T arm =
-        rings ? T(place(p)[0])
-              : (normal[0] * (place(p)[1] - moment[1] / force) - normal[1] * (place(p)[0] - moment[0] / force)) /
-                    norm(normal);
+  std::optional<ArmOrigin<T>> plane;
+  if (!rings && response.about.empty())
+    plane = symmetry_plane(model, slots, state, of_contact, [&](int p) { return value(nodal_force(p)) > 0; });
+  const auto arm_of = [&](int p) -> T {
+    if (rings) return place(p)[0];
+    if (plane)
+      return (place(p)[0] - plane->place[0]) * plane->along[0] + (place(p)[1] - plane->place[1]) * plane->along[1];
+    const auto origin = [&](int i) -> T {
+      return response.about.empty() ? T(moment[i] / force) : slots.numbers(response.about[i]);
+    };
+    return (normal[0] * (place(p)[1] - origin(1)) - normal[1] * (place(p)[0] - origin(0))) / norm(normal);
+  };
+  for (int p : of_contact) {
+    const T arm = arm_of(p);
     second_moment += nodal_force(p) * arm * arm;
   }
   return value(second_moment) > 0 ? sqrt(T(rings ? 2.5 : 4.0) * second_moment / force) : T(0);
@@ -174,7 +230,7 @@ T contact_response(const Model& model, const Slots<T>& slots, const Response& re
         (place.contact_point < 0 || place.contact_point == p))
       of_contact.push_back(p);
   if (response.kind == Kind::contact_force) return contact_force(model, slots, response, state, of_contact);
-  if (response.kind == Kind::contact_half_width) return contact_half_width(model, slots, state, of_contact);
+  if (response.kind == Kind::contact_half_width) return contact_half_width(model, slots, response, state, of_contact);
   std::vector<T> samples, weights;
   for (int p : of_contact) {
     if (response.kind == Kind::slip && model.points[p].tangents == 0) continue;

@@ -234,7 +234,7 @@ struct Response {
   std::string on;         ///< side expression, or contact name, as the kind asks
   std::string component;  ///< x y z normal moment
   Take take = Take::mean;
-  std::vector<Number> about = {};  ///< of a moment
+  std::vector<Number> about = {};  ///< of a moment, or of a half width
   std::vector<Number> at;          ///< point of the initial configuration instead of `on`
 };
 

@@ -23,7 +23,7 @@ Schema kind_schema(const std::string& kind, const Schema& parts, const Schema& k
     for (const std::string key : parts.at(list)) properties[key] = keys.at(key);
   const Schema own = parts.value("descriptions", Schema::object());
   for (const auto& [key, text] : own.items()) properties[key]["description"] = text;
-  const bool moment = properties.contains("about");
+  const bool moment = properties.contains("about") && properties.contains("component");
   if (properties.contains("component")) {
     Schema components = {"x", "y", "z"};
     if (kind == "contact_force") components.push_back("normal");

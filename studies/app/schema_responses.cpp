@@ -33,7 +33,8 @@ const char* const response = R"json({
       "descriptions": {"on": "a body", "take": "of its points, mean by volume"},
       "example": {"on": "block", "take": "max"}},
     "contact_half_width": {"description": "2 sqrt(sum of p x^2 A / P), Hertz's a; around an axis the radius",
-      "required": ["contact"], "optional": [],
+      "required": ["contact"], "optional": ["about"],
+      "descriptions": {"about": "in a plane space: the middle of the contact, where it is no end held by symmetry (length)"},
       "example": {"contact": "sole"}}},
   "keys": {
     "on": {"description": "where", "$ref": "#/$defs/side",

@@ -48,7 +48,7 @@ Keys keys_of(const Kind& kind, const SceneReading& reading) {
     keys.required.emplace_back("on");
   else if (kind.sampled)
     keys.optional.emplace_back("at");
-  if (has_moment(kind, reading)) keys.optional.push_back("about");
+  if (has_moment(kind, reading) || kind.kind == Response::Kind::contact_half_width) keys.optional.push_back("about");
   return keys;
 }
 
@@ -153,6 +153,11 @@ void read_response(const std::string& name, const JsonNode& outer, SceneReading&
     if (at) take->error_at_key(R"("take" has no meaning beside "at", which is a single point)");
   }
   if (at && kind.sampled) response.at = read_place(*at, reading);
+  if (const auto about = node.find("about"); about && kind.kind == Response::Kind::contact_half_width) {
+    response.about = read_place(*about, reading);
+    if (reading.scene.space == Space::axisymmetric)
+      about->error_at_key("a half width around an axis is a radius, which is measured from the axis");
+  }
   reading.scene.responses.push_back(std::move(response));
 }
 
