@@ -81,7 +81,8 @@ IdleNumber idle_number(const FrictionLaw<double>& friction) {
 
 /// How many steps have a mark of a contact.
 long steps_with(const CaseResult& result, std::size_t contact, std::vector<char> StepResult::*marks) {
-  return std::count_if(result.steps.begin(), result.steps.end(),
+  const auto steps = solved_steps(result);
+  return std::count_if(steps.begin(), steps.end(),
                        [&](const StepResult& step) { return !(step.*marks).empty() && (step.*marks)[contact] != 0; });
 }
 
@@ -312,7 +313,7 @@ void add_undetermined_contacts(const CaseResult& result, std::vector<Warning>& w
   const auto& contacts = result.problem->model.scene.contacts;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const std::string& name = contacts[c].name;
-    const std::size_t steps = result.steps.size();
+    const std::size_t steps = solved_steps(result).size();
     if (const long n = steps_with(result, c, &StepResult::undetermined); n > 0)
       warnings.push_back(
           {WarningCode::non_unique, name, 0,
@@ -340,7 +341,7 @@ void add_soft_penalty(const CaseResult& result, std::vector<Warning>& warnings) 
   if (!penalty) return;
   constexpr const char* stiffer = "raise `stiffness`, or take another method";
   double yields = 0;
-  for (const auto& step : result.steps) yields = std::max({yields, step.kkt.gap, step.kkt.stick});
+  for (const auto& step : solved_steps(result)) yields = std::max({yields, step.kkt.gap, step.kkt.stick});
   if (yields > most)
     warnings.push_back({WarningCode::soft_penalty, "", yields, stiffer,
                         fmt::format("the springs of the penalty yield by {:.2g} % of the motion of the contact, and "
