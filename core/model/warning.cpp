@@ -18,6 +18,20 @@ std::string_view name_of(WarningCode code) {
       return "locking";
     case WarningCode::single_node:
       return "single_node";
+    case WarningCode::narrow_contact:
+      return "narrow_contact";
+    case WarningCode::master_inside:
+      return "master_inside";
+    case WarningCode::turned_surface:
+      return "turned_surface";
+    case WarningCode::no_area:
+      return "no_area";
+    case WarningCode::floating_body:
+      return "floating_body";
+    case WarningCode::shear_locking:
+      return "shear_locking";
+    case WarningCode::unbalanced_moment:
+      return "unbalanced_moment";
     case WarningCode::held_on_facet:
       return "held_on_facet";
     case WarningCode::shared_place:

@@ -4,9 +4,11 @@
 #include <cmath>
 
 #include "core/model/objective.hpp"
+#include "core/model/pairing.hpp"
 #include "methods/engine_choice.hpp"
 #include "sensitivity/vertex_margin.hpp"
 #include "studies/io/json_document.hpp"
+#include "studies/run/contact_warnings.hpp"
 #include "studies/run/step_reader.hpp"
 #include "studies/run/warnings.hpp"
 
@@ -58,6 +60,7 @@ std::vector<StepResult> gather_steps(const CaseResult& result, const StepReader&
     step.bodies = read.bodies;
     step.undetermined = read.undetermined;
     step.at_vertex = read.at_vertex;
+    step.contacts = read.contacts;
     if (n < result.gradients.of_responses.size()) step.sensitivities = result.gradients.of_responses[n];
     if (n < result.gradients.records.size()) step.scheme = result.gradients.records[n];
     take_sides(result, n, step);
@@ -176,11 +179,23 @@ void check_responses(const Model& model, const Slots<double>& slots) {
     const int p = model.response_places[i].contact_point;
     if (p < 0) continue;
     const auto& point = model.points[static_cast<std::size_t>(p)];
-    double squared = 0;
-    for (std::size_t k = 0; k < response.at.size(); ++k)
-      squared += std::pow(response.at[k].value - slots.points(static_cast<Eigen::Index>(k), point.nodes[0]), 2);
-    if (point.mesh_size > 0 && std::sqrt(squared) > point.mesh_size)
-      throw ModelError("the point of \"at\" is off the contact: " + shown(std::sqrt(squared)) +
+    const auto distance = [&](int node) {
+      double squared = 0;
+      for (std::size_t k = 0; k < response.at.size(); ++k)
+        squared += std::pow(response.at[k].value - slots.points(static_cast<Eigen::Index>(k), node), 2);
+      return std::sqrt(squared);
+    };
+    const double nearest = distance(point.nodes[0]);
+    for (int c = 0; c < static_cast<int>(model.scene.contacts.size()); ++c)
+      for (const int node : nodes_without_area(model, slots.points, c))
+        if (model.is_of_contact(c, response.on) && distance(node) < nearest)
+          throw ModelError("the point of \"at\" is the node of " + model.scene.contacts[c].slave +
+                               " on the axis of revolution, where quadratic elements have no area, so that it has no "
+                               "contact of its own; take the place of a neighbour, or linear elements",
+                           pointer);
+    constexpr double rounding = 1e-9;  // of a facet
+    if (point.mesh_size > 0 && nearest > (1 + rounding) * point.mesh_size)
+      throw ModelError("the point of \"at\" is off the contact: " + shown(nearest) +
                            " from its nearest node, where its facets are " + shown(point.mesh_size) + " long",
                        pointer);
   }
@@ -252,6 +267,7 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
         result.engine.body_solves - (shared ? solved_before : static_cast<double>(result.condensing.backsolves));
   mark_inaccurate(reader.accuracy(), result.trajectory);
   name_loose_body(problem->model, result.trajectory);
+  name_turned_surfaces(*problem, result.trajectory);
   if (has_tangent(result.trajectory)) {
     if (result.trajectory.counters.newton > 0)  // otherwise nothing was factorised
       result.condition_estimate =

@@ -25,6 +25,16 @@ struct Problem {
 struct BodyMeasures {
   double strain = 0, rotation = 0;  ///< largest component in an element; radians
   double spurious_pressure = 0;     ///< spurious_pressure()
+  double parasitic_shear = 0;       ///< parasitic_shear()
+  std::string free_motion;          ///< free_motion() that nothing which presses holds; empty: none
+};
+
+/// What warnings are told by of a contact at a step.
+struct ContactMeasures {
+  double inside = 0;       ///< depth, length, of a node of the master in the slave, deeper than the slave's points are
+  double missing = 0;      ///< that depth as a force, by the stiffness of the points, over the force of the contact
+  std::vector<double> at;  ///< where that node is now
+  double moment = 0;       ///< of the forces on both sides, which balance; 0 unless a response is a moment
 };
 
 /// A step that the scene asked for, gathered from its sub-steps.
@@ -35,12 +45,13 @@ struct StepResult {
   KktError kkt;
   Margins margins;
   Vector<double> responses;
-  std::vector<BodyMeasures> bodies;           ///< where its state may have been let go; else empty
-  std::vector<char> undetermined, at_vertex;  ///< as in a StepReading (studies/run/step_reader.hpp)
-  std::optional<SchemeRecord> scheme;         ///< of the increment; only where the scheme iterates
-  Matrix<double> sensitivities;               ///< responses x parameters; empty where there are none
-  bool differentiable = true;                 ///< both one-sided derivatives agree
-  Matrix<double> backward, forward;           ///< one-sided sensitivities, where they are known; else empty
+  std::vector<BodyMeasures> bodies;            ///< where its state may have been let go; else empty
+  std::vector<ContactMeasures> contacts = {};  ///< likewise
+  std::vector<char> undetermined, at_vertex;   ///< as in a StepReading (studies/run/step_reader.hpp)
+  std::optional<SchemeRecord> scheme;          ///< of the increment; only where the scheme iterates
+  Matrix<double> sensitivities;                ///< responses x parameters; empty where there are none
+  bool differentiable = true;                  ///< both one-sided derivatives agree
+  Matrix<double> backward, forward;            ///< one-sided sensitivities, where they are known; else empty
   /// Whether the one-sided derivatives of a response by a parameter differ by more than their rounding, or than their
   /// scheme is off by (or are no numbers). pre: there are some.
   bool has_kink(const Scene& scene, const Method& method, std::size_t response, std::size_t parameter) const;

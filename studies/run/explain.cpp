@@ -5,11 +5,13 @@
 #include <nlohmann/json.hpp>
 
 #include "core/model/loading.hpp"
+#include "core/model/pairing.hpp"
 #include "methods/engine_choice.hpp"
 #include "studies/input/method_options.hpp"
 #include "studies/input/size_estimate.hpp"
 #include "studies/io/numerals.hpp"
 #include "studies/io/printing.hpp"
+#include "studies/run/contact_warnings.hpp"
 #include "studies/run/ledger_forecast.hpp"
 #include "studies/run/simulation.hpp"
 
@@ -61,7 +63,9 @@ std::string law_in_words(const FrictionLaw<Number>& friction) {
 
 /// With their heading. What kind of contact it is stands in the heading, or, where segments are among them, in each
 /// line.
-std::string contact_lines(const Model& model) {
+std::string contact_lines(const Problem& problem) {
+  const auto& [model, slots, unused] = problem;
+  const auto& at_start = slots.points;
   const auto& contacts = model.scene.contacts;
   const bool mixed = std::any_of(contacts.begin(), contacts.end(), [](const auto& of) { return of.segment; });
   const std::string heading = mixed ? "contacts:\n" : "contacts (node to segment):\n";
@@ -70,7 +74,8 @@ std::string contact_lines(const Model& model) {
     const auto& contact = model.scene.contacts[c];
     int points = 0;
     for (const auto& point : model.points) points += point.contact == static_cast<int>(c);
-    const std::size_t slaves = model.side(contact.slave).nodes.size();
+    const std::size_t slaves = surface_of(model, at_start, model.side(contact.slave)).nodes.size() -
+                               nodes_without_area(model, at_start, static_cast<int>(c)).size();
     text += fmt::format("  {}: {} against {}, {}", contact.name, contact.slave, contact.master,
                         counted(points, "contact point"));
     if (mixed) text += contact.segment ? " (segment-integrated)" : " (node to segment)";
@@ -139,7 +144,7 @@ std::string explain(const Input& input, const Problem& problem) {
                         counted(mesh.element_count(), shape_name(mesh.shape)),
                         has_mean_dilatation(model.bodies[b].kinematics) ? " with mean dilatation" : "");
   }
-  text += contact_lines(model);
+  text += contact_lines(problem);
   text += fmt::format("driving: {}, {}, {} to t = {}\n", count(scene.supports, "support"), count(scene.loads, "load"),
                       count(model.times, "step"), exact_number(model.times.empty() ? 0 : model.times.back()));
   if (scene.arc_length)
@@ -172,6 +177,8 @@ std::string explain(const Input& input, const Problem& problem) {
   if (!effects.sensitivity) text += "  derivatives: the scene names no parameters\n";
   text += fmt::format("  {}{}{}inertia\n", scene.finite_strain ? "" : "large displacements and sliding, ",
                       effects.plasticity ? "" : "plasticity, ", effects.smoothing ? "" : "smoothing, ");
+  for (const auto& warning : contact_warnings_before(problem))
+    text += fmt::format("warning ({}): {}; {}\n", name_of(warning.code), warning.text, warning.remedy);
   return text;
 }
 

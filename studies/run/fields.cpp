@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "methods/checkpoints.hpp"
@@ -58,7 +59,13 @@ Matrix<double> nodal(const Model& model, const Eigen::Ref<const Vector<double>>&
   return Eigen::Map<const Matrix<double>>(dofs.data(), model.dimension, model.node_count);
 }
 
-/// Fields of contact over the nodes, of one contact or of several together.
+/// Whether point p has a place of its master before it; otherwise its gap is a distance to what it does not face.
+bool faces_master(const Model& model, const ContactField<double>& field, int p) {
+  return field.facing.empty() || model.points[p].curve < 0 || field.facing[p].patch != Patch::none;
+}
+
+/// Fields of contact over the nodes, of one contact or of several together. The gap is no number where a node faces
+/// nothing.
 /// Nominal tractions, per area of the start; at finite strain `current` has those per present area too.
 struct ContactFields {
   Matrix<double> state, pressure, traction, gap;
@@ -71,7 +78,7 @@ struct ContactFields {
       : state(Matrix<double>::Constant(1, model.node_count, -1)),
         pressure(Matrix<double>::Zero(1, model.node_count)),
         traction(Matrix<double>::Zero(model.dimension, model.node_count)),
-        gap(pressure) {
+        gap(Matrix<double>::Constant(1, model.node_count, std::numeric_limits<double>::quiet_NaN())) {
     if (model.effects.current_geometry) current = {pressure, traction};
   }
 
@@ -82,7 +89,8 @@ struct ContactFields {
     const int node = point.nodes[0];
     const auto hold = [](double code) { return code == 1 ? 2 : code == 2 ? 1 : code; };  // open < slip < stick
     const double code = state_code(of.contact.state[p]);
-    gap(0, node) = state(0, node) < 0 ? of.contact.gap[p] : -larger(-gap(0, node), -of.contact.gap[p]);
+    if (faces_master(problem.model, of.contact, p) && !(gap(0, node) <= of.contact.gap[p]))
+      gap(0, node) = of.contact.gap[p];
     if (hold(code) > hold(state(0, node))) state(0, node) = code;
     pressure(0, node) -= of.contact.traction[point.multiplier];
     traction.col(node) += traction_vector(problem, of, p);
@@ -161,6 +169,9 @@ void append_contact_fields(VtuData& data, const Problem& problem, const State<do
   ContactFields together(model);
   for (int p = 0; p < count; ++p) together.add(problem, state, p, areas);
   together.append_to(data, "");
+  Vector<double> forces = Vector<double>::Zero(model.dof_count());  // on both sides
+  add_compact(model, Vector<double>(-contact_forces(model, problem.slots, state.contact)), forces);
+  data.point_fields.push_back({"contact_force", nodal(model, forces)});
   if (!contacts_share_nodes(model)) return;
   for (std::size_t c = 0; c < model.scene.contacts.size(); ++c) {
     ContactFields alone(model);

@@ -17,12 +17,12 @@ inline constexpr const char* field_names[] = {"fields.pvd", "fields_#.vtu"};
 /// Gives name and content of fields_NNNN.vtu for every `every`-th step and the last one (0: the last alone), and of
 /// fields.pvd.
 /// Point fields: displacement, contact_state (-1: no contact point, 0 open, 1 stick, 2 slip), contact_pressure,
-/// contact_traction (force per area on the slave), gap; at the last step d_displacement_d_NAME per parameter. Cell
-/// fields: body, and for continua stress (xx yy zz xy yz xz) and von_mises; where a body flows plastic_strain, the mean
-/// equivalent one of the element.
-/// A node that is a slave in several contacts has the state that holds most (stick, then slip, then open), the sum of
-/// the pressures and of the tractions, and the smallest gap; the four fields of each contact NAME alone then follow,
-/// contact_state_NAME and so on.
+/// contact_traction (force per area on the slave), gap (no number where a node is no slave, or faces nothing),
+/// contact_force (nodal forces of all contacts on both sides); at the last step d_displacement_d_NAME per parameter.
+/// Cell fields: body, and for continua stress (xx yy zz xy yz xz) and von_mises; where a body flows plastic_strain, the
+/// mean equivalent one of the element. A node that is a slave in several contacts has the state that holds most (stick,
+/// then slip, then open), the sum of the pressures and of the tractions, and the smallest gap; the four fields of each
+/// contact NAME alone then follow, contact_state_NAME and so on.
 void for_each_field(const CaseResult& result, int every, const std::function<void(std::string, std::string)>& take);
 
 /// Writes them (write_output).

@@ -2,6 +2,7 @@
 
 #include "core/model/response.hpp"
 #include "sensitivity/vertex_margin.hpp"
+#include "studies/run/contact_warnings.hpp"
 #include "studies/run/warnings.hpp"
 
 namespace stickslip {
@@ -47,6 +48,8 @@ StepReading StepReader::read(const State<double>& before, double start, const In
   step.responses = evaluate_responses(model, slots, state, increment.time);
   for (std::size_t b = 0; lets_go && b < model.bodies.size(); ++b)
     step.bodies.push_back(measures_of_body(problem_, state, b));
+  for (std::size_t c = 0; lets_go && c < model.scene.contacts.size(); ++c)
+    step.contacts.push_back(measures_of_contact(problem_, state, increment.time, static_cast<int>(c)));
   return step;
 }
 

@@ -14,7 +14,8 @@ namespace stickslip {
 struct StepReading {
   Margins margins;
   Vector<double> responses;
-  std::vector<BodyMeasures> bodies;  ///< empty unless the state may be thinned
+  std::vector<BodyMeasures> bodies;       ///< empty unless the state may be thinned
+  std::vector<ContactMeasures> contacts;  ///< likewise
   /// Per contact, empty where there is none: whether its forces are undetermined (ForceSearch), and whether a point is
   /// or was on a vertex (contacts_at_vertices()).
   std::vector<char> undetermined, at_vertex;

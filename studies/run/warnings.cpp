@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <span>
 
+#include "methods/diagnosis.hpp"
 #include "sensitivity/force_search.hpp"
+#include "studies/run/contact_warnings.hpp"
 #include "studies/run/strains.hpp"
 
 namespace stickslip {
@@ -210,6 +214,90 @@ void add_locking(const CaseResult& result, std::vector<Warning>& warnings) {
                      "that alternates from element to element",
                      name, moduli->flows ? "plastic flow keeps the volume" : fmt::format("nu = {:.6g}", moduli->nu()),
                      quads ? "Q4" : "T3", largest)});
+  }
+}
+
+/// Nodes at the ends of an element's edge on the boundary of its body.
+using BoundaryEdges = std::map<int, std::pair<int, int>>;  // by element
+
+/// Per element with an edge on the boundary: one of these. Empty where some node is inside of the body: then it is more
+/// than one element thick.
+BoundaryEdges edges_of_thin_body(const Mesh& mesh) {
+  const int nodes = nodes_of(mesh.shape);
+  std::map<std::pair<int, int>, int> edges;  // as the elements have them; an inner one in both directions
+  for (int e = 0; e < mesh.element_count(); ++e)
+    for (int k = 0; k < nodes; ++k)
+      edges[{mesh.connectivity[e * nodes + k], mesh.connectivity[e * nodes + (k + 1) % nodes]}] = e;
+  BoundaryEdges found;
+  std::set<int> on_boundary;
+  for (const auto& [edge, element] : edges) {
+    if (edges.count({edge.second, edge.first}) > 0) continue;
+    found.emplace(element, edge);
+    on_boundary.insert({edge.first, edge.second});
+  }
+  return static_cast<int>(on_boundary.size()) == mesh.node_count ? found : BoundaryEdges{};
+}
+
+bool may_lock_in_shear(const Problem& problem, std::size_t b) {
+  const ElementShape shape = problem.model.bodies[b].mesh.shape;
+  return shape == ElementShape::quad4 || shape == ElementShape::tri3;
+}
+
+void add_shear_locking(const CaseResult& result, std::vector<Warning>& warnings) {
+  constexpr double most = 0.2;  // squares, of which bending is more than half of the squared strain
+  const auto& problem = *result.problem;
+  for (std::size_t b = 0; b < problem.model.bodies.size(); ++b) {
+    if (!may_lock_in_shear(problem, b) || edges_of_thin_body(problem.model.bodies[b].mesh).empty()) continue;
+    double largest = 0;
+    for (const auto& step : result.steps)
+      largest = larger(largest, step.bodies.empty() ? parasitic_shear(problem, step.increment->state, b)
+                                                    : step.bodies[b].parasitic_shear);
+    if (!(largest > most)) continue;
+    const std::string& name = problem.model.scene.bodies[b].name;
+    const bool quads = problem.model.bodies[b].mesh.shape == ElementShape::quad4;
+    warnings.push_back({WarningCode::shear_locking, name, largest,
+                        quads ? "element Q8, or more elements through its thickness"
+                              : "element T6, or more elements through its thickness",
+                        fmt::format("{} bends, and is one {} thick: {:.2g} of its squared strain is a shear that "
+                                    "bending has not, so that it is too stiff",
+                                    name, quads ? "Q4" : "T3", largest)});
+  }
+}
+
+/// The motion that a body is free to make where only what presses holds it.
+std::string motion_of_floating_body(const Problem& problem, const State<double>& state, std::size_t b) {
+  constexpr double pressing = 1e-6;  // of the largest traction: less is a touch without force
+  const auto& points = problem.model.points;
+  auto states = state.contact.state;
+  double largest = 0;
+  for (const auto& point : points) largest = larger(largest, -state.contact.traction[point.multiplier]);
+  for (std::size_t p = 0; p < points.size(); ++p)
+    if (!(-state.contact.traction[points[p].multiplier] > pressing * largest)) states[p] = ContactState::open;
+  return detail::free_motion(problem.model, problem.slots, b, state, states);
+}
+
+void add_floating_bodies(const CaseResult& result, std::vector<Warning>& warnings) {
+  const auto& model = result.problem->model;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    std::string motion;
+    double first = 0;
+    int steps = 0;
+    for (const auto& step : result.steps) {
+      const std::string now = step.bodies.empty() ? motion_of_floating_body(*result.problem, step.increment->state, b)
+                                                  : step.bodies[b].free_motion;
+      if (now.empty()) continue;
+      if (++steps > 1) continue;
+      motion = now;
+      first = step.increment->time;
+    }
+    if (steps == 0) continue;
+    const std::string& name = model.scene.bodies[b].name;
+    warnings.push_back(
+        {WarningCode::floating_body, name, static_cast<double>(steps),
+         "hold it by a support, or end the run while something presses on it",
+         fmt::format("{} floats at the end of {} of {} steps, first at t = {:.6g}: it is free to move {}, as neither "
+                     "supports nor a contact that presses hold it, and its place is not determined",
+                     name, steps, result.steps.size(), first, motion)});
   }
 }
 
@@ -422,10 +510,59 @@ double spurious_pressure(const Problem& problem, const State<double>& state, std
   return all > 0 ? std::sqrt(spurious / all) : 0;
 }
 
+double parasitic_shear(const Problem& problem, const State<double>& state, std::size_t b) {
+  const auto& body = problem.model.bodies[b];
+  const auto& mesh = body.mesh;
+  if (!may_lock_in_shear(problem, b)) return 0;
+  const auto edges = edges_of_thin_body(mesh);
+  if (edges.empty()) return 0;
+  const int nodes = nodes_of(mesh.shape);
+  using Strain = Mat<double, 2>;  // in the plane; Green's at finite strain
+  const auto strain_of = [&](const auto& H) {
+    const Strain h = H.template topLeftCorner<2, 2>();
+    Strain strain = (h + h.transpose()) / 2;
+    if (problem.model.scene.finite_strain) strain += h.transpose() * h / 2;
+    return strain;
+  };
+  std::vector<double> volume(mesh.element_count(), 0), nodal_volume(mesh.node_count, 0);
+  std::vector<Strain> mean(mesh.element_count(), Strain::Zero()), nodal(mesh.node_count, Strain::Zero()), around = mean;
+  for_each_strain(problem, state, b, [&](int e, const auto& H, double v, const double*) {
+    volume[e] += v;
+    mean[e] += v * strain_of(H);
+  });
+  for (int e = 0; e < mesh.element_count(); ++e)
+    for (int a = 0; a < nodes; ++a) {
+      nodal_volume[mesh.connectivity[e * nodes + a]] += volume[e];
+      nodal[mesh.connectivity[e * nodes + a]] += mean[e];
+    }
+  for (int e = 0; e < mesh.element_count(); ++e)
+    for (int a = 0; a < nodes; ++a) {
+      const int node = mesh.connectivity[e * nodes + a];
+      around[e] += nodal[node] / (nodal_volume[node] * nodes);
+    }
+  double shear = 0, all = 0;
+  for_each_strain(problem, state, b, [&](int e, const auto& H, double v, const double*) {
+    const Strain strain = strain_of(H);
+    all += v * strain.squaredNorm();
+    const auto edge = edges.find(e);
+    if (edge == edges.end()) return;
+    const auto [from, to] = edge->second;
+    const Vec<double, 2> along =
+        (problem.slots.points.col(body.first_node + to) - problem.slots.points.col(body.first_node + from))
+            .template head<2>()
+            .normalized();
+    const double varying = along.dot((strain - around[e]) * Vec<double, 2>(-along[1], along[0]));
+    shear += 2 * v * varying * varying;
+  });
+  return all > 0 ? shear / all : 0;
+}
+
 BodyMeasures measures_of_body(const Problem& problem, const State<double>& state, std::size_t b) {
   BodyMeasures measures;
   if (!problem.model.scene.finite_strain) measures = deformation_of(problem, state, b);
   if (is_watched_for_locking(problem, b)) measures.spurious_pressure = spurious_pressure(problem, state, b);
+  measures.parasitic_shear = parasitic_shear(problem, state, b);
+  measures.free_motion = motion_of_floating_body(problem, state, b);
   return measures;
 }
 
@@ -436,7 +573,10 @@ std::vector<Warning> warnings_of(const CaseResult& result) {
   add_held_points(result, warnings);
   add_cut_steps(result, warnings);
   add_locking(result, warnings);
+  add_shear_locking(result, warnings);
   add_single_nodes(result, warnings);
+  add_contact_warnings(result, warnings);
+  add_floating_bodies(result, warnings);
   add_shared_places(result, warnings);
   if (has_ended(result)) add_loose_bodies(result, warnings);
   add_other_solutions(result, warnings);

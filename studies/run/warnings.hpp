@@ -18,6 +18,9 @@ namespace stickslip {
 ///   held_on_facet  closed points beyond the end of their facet, at a vertex where neither facet has an equilibrium
 ///   cut_steps      with friction: steps that were cut, which gives another discrete path
 ///   locking        Q4 or T3, nu near 1/2: pressures that oscillate within and between elements
+///   shear_locking  Q4 or T3, one element thick, that bend: a shear that varies within elements
+///   floating_body  a body that nothing which presses holds at the end of a step
+///   (of contacts: studies/run/contact_warnings.hpp)
 ///   single_node    a side of several nodes, one of which carries nearly all of the contact force
 ///   shared_place   a response at a point that belongs to several bodies, and names none of them
 ///   soft_penalty   springs of a penalty that yield by more than 2 % of what the bodies do, under all of a contact's
@@ -41,5 +44,10 @@ const Body* loose_body(const Model& model);
 /// averaged over the elements around each node, over that of the stress. 0 unless the body is of Q4 without mean
 /// dilatation or of T3; 0 in plane stress.
 double spurious_pressure(const Problem& problem, const State<double>& state, std::size_t body);
+
+/// Measure of shear locking of a body of Q4 or T3 that is one element thick: the share, in the squared strain of the
+/// body, of shears along and across it that vary within elements or from each to those around it. Bending makes them
+/// where an element has no curvature: a third in squares, more in longer elements. 0 for other bodies.
+double parasitic_shear(const Problem& problem, const State<double>& state, std::size_t body);
 
 }  // namespace stickslip

@@ -1,0 +1,475 @@
+#include "studies/run/contact_warnings.hpp"
+
+#include <fmt/core.h>
+
+#include <map>
+
+#include "core/contact/curve_search.hpp"
+#include "core/contact/facet_search.hpp"
+#include "core/model/contact_assembly.hpp"
+#include "core/model/pairing.hpp"
+#include "core/model/response.hpp"
+#include "methods/residuals.hpp"
+#include "studies/io/wording.hpp"
+
+namespace stickslip {
+namespace {
+
+using PlanePlace = Vec<double, 2>;
+
+std::string in_words(const PlanePlace& x) { return fmt::format("({:.6g}, {:.6g})", x[0], x[1]); }
+
+/// A side, or a polyline, as a curve at some positions: a copy, for searches of what it does not look for itself.
+struct SideCurve {
+  std::vector<int> nodes;  ///< per vertex; empty of a polyline
+  Eigen::Matrix2Xd places;
+  std::vector<Patch> patches;
+
+  auto position() const {
+    return [this](int vertex) -> PlanePlace { return places.col(vertex); };
+  }
+  /// Gap of x to the place that it faces.
+  double gap(const Facing& facing, const PlanePlace& x) const {
+    return foot_on_patch<double>(patches[facing.patch], facing.xi, x, position()).gap;
+  }
+};
+
+SideCurve curve_of_side(const SideSet& side, const Points<double>& points, const Contact& contact, bool smooth) {
+  SideCurve curve;
+  std::map<int, int> number;
+  auto facets = side.facets;
+  for (auto& facet : facets)
+    for (int& node : facet) {
+      const auto [found, is_new] = number.emplace(node, static_cast<int>(number.size()));
+      if (is_new) curve.nodes.push_back(node);
+      node = found->second;
+    }
+  curve.places.resize(2, static_cast<Eigen::Index>(curve.nodes.size()));
+  for (std::size_t v = 0; v < curve.nodes.size(); ++v)
+    curve.places.col(static_cast<Eigen::Index>(v)) = points.col(curve.nodes[v]).head<2>();
+  curve.patches = make_patches(facets, smooth ? contact.smoothing : Smoothing::none, contact.corner, curve.places);
+  return curve;
+}
+
+/// Displacement of a place of an obstacle at a time.
+PlanePlace obstacle_displacement(const Problem& problem, const Obstacle& obstacle, const PlanePlace& x, double time) {
+  const auto& numbers = problem.slots.numbers;
+  PlanePlace u = PlanePlace::Zero();
+  for (const auto& [axis, table] : obstacle.move)
+    if (axis < 'z') u[axis - 'x'] = evaluate(table, time, numbers);
+  if (obstacle.rotate)
+    u += rotated<double>(*obstacle.rotate, x, evaluate(obstacle.rotate->angle, time, numbers),
+                         problem.model.scene.finite_strain, numbers);
+  return u;
+}
+
+SideCurve curve_of_polyline(const Problem& problem, const Obstacle& obstacle, const Contact& contact, double time) {
+  const auto& polyline = std::get<Polyline>(obstacle.shape);
+  const int count = static_cast<int>(polyline.points.size());
+  SideCurve curve;
+  curve.places.resize(2, count);
+  for (int v = 0; v < count; ++v) {
+    const PlanePlace x(problem.slots.numbers(polyline.points[v][0]), problem.slots.numbers(polyline.points[v][1]));
+    curve.places.col(v) = x + obstacle_displacement(problem, obstacle, x, time);
+  }
+  std::vector<std::vector<int>> facets;  // the solid is on the right of a polyline, and on the left of a facet
+  for (int v = 0; v + 1 < count + polyline.closed; ++v) facets.push_back({(v + 1) % count, v});
+  curve.patches = make_patches(facets, contact.smoothing, contact.corner, curve.places);
+  return curve;
+}
+
+/// Calls f(vertex, place on the curve, normal out of the solid, of any length) for each vertex of a curve; on a
+/// B-spline for the places that belong to them.
+template <class F>
+void for_each_vertex(const SideCurve& curve, F&& f) {
+  const auto at = [&](int patch, double xi) {
+    const auto w = detail::patch_weights<double>(curve.patches[patch], xi);
+    const PlanePlace slope = detail::on_patch<double>(curve.patches[patch], w.slope, curve.position());
+    return std::pair<PlanePlace, PlanePlace>{detail::on_patch<double>(curve.patches[patch], w.value, curve.position()),
+                                             PlanePlace(slope[1], -slope[0]).normalized()};
+  };
+  for (int p = 0; p < static_cast<int>(curve.patches.size()); ++p) {
+    const Patch& patch = curve.patches[p];
+    auto [place, normal] = at(p, 0);
+    if (patch.previous != Patch::none) normal += at(patch.previous, 1).second;
+    f(patch.vertices[1], place, normal);
+    if (patch.next != Patch::none) continue;
+    const auto [end, out] = at(p, 1);
+    f(patch.vertices[2], end, out);
+  }
+}
+
+/// Positions of the nodes at a state.
+Points<double> positions_of(const Problem& problem, const State<double>& state) {
+  const auto& model = problem.model;
+  return problem.slots.points +
+         Eigen::Map<const Matrix<double>>(state.displacement.data(), model.dimension, model.node_count);
+}
+
+const Obstacle* obstacle_of(const Model& model, const Contact& contact) {
+  for (const auto& obstacle : model.scene.obstacles)
+    if (obstacle.name == contact.master) return &obstacle;
+  return nullptr;
+}
+
+/// Whether a contact looks from its slave's nodes alone at a master that has nodes, or vertices, of its own.
+bool may_overlook_master(const Model& model, const Contact& contact) {
+  const Obstacle* const obstacle = obstacle_of(model, contact);
+  return model.dimension == 2 && !contact.segment && !contact.is_of_itself() &&
+         (!obstacle || std::holds_alternative<Polyline>(obstacle->shape));
+}
+
+/// Normal force of a contact, positive in compression, and the largest penetration of its points.
+std::pair<double, double> press_and_penetration(const Problem& problem, const ContactField<double>& field, int c) {
+  double force = 0, penetration = 0;
+  for (std::size_t p = 0; p < problem.model.points.size(); ++p) {
+    const auto& point = problem.model.points[p];
+    if (point.contact != c) continue;
+    force -= area_in(field, problem.slots, p) * field.traction[point.multiplier];
+    if (field.state[p] != ContactState::open) penetration = std::max(penetration, -field.gap[p]);
+  }
+  return {force, penetration};
+}
+
+/// Looks for the node of the master that is deepest in the slave, deeper than the slave's own points are in the master.
+void find_master_inside(const Problem& problem, const State<double>& state, double time, int c,
+                        ContactMeasures& measures) {
+  const auto& [model, slots, unused] = problem;
+  const auto& contact = model.scene.contacts[c];
+  const Points<double> points = positions_of(problem, state);
+  const Obstacle* const obstacle = obstacle_of(model, contact);
+  const SideCurve slave =
+      curve_of_side(surface_of(model, slots.points, model.side(contact.slave)), points, contact, false);
+  if (slave.patches.empty()) return;
+  const SideCurve master =
+      obstacle ? curve_of_polyline(problem, *obstacle, contact, time)
+               : curve_of_side(surface_of(model, slots.points, model.side(contact.master)), points, contact, true);
+  const auto [force, penetration] = press_and_penetration(problem, state.contact, c);
+  double stiffness = 0;
+  int count = 0;
+  for (std::size_t p = 0; p < model.points.size(); ++p)
+    if (model.points[p].contact == c) {
+      stiffness += slots.stiffness[p];
+      ++count;
+    }
+  stiffness = count > 0 ? stiffness / count : 0;
+  const double reach = largest_nodal_norm(state.displacement, model.dimension);
+  // of what moves, and of coordinates: less is what a solution leaves
+  const double nothing = 1e-6 * reach + 8 * unit_roundoff * points.cwiseAbs().maxCoeff();
+  const CurveSearch search(slave.patches, slave.places);
+  for_each_vertex(master, [&](int, const PlanePlace& x, const PlanePlace& outward) {
+    const Facing facing = search.facing(x, outward);
+    if (facing.patch == Patch::none) return;
+    const double depth = -slave.gap(facing, x) - slots.numbers(contact.offset) - penetration;
+    if (!(depth > nothing) || depth <= measures.inside) return;
+    measures.inside = depth;
+    measures.at = {x[0], x[1]};
+    measures.missing = force > 0 ? stiffness * depth / force : std::numeric_limits<double>::infinity();
+  });
+}
+
+/// Forces of a contact on both sides have this moment; each balances the other in force.
+double unbalanced_moment(const Problem& problem, const State<double>& state, int c) {
+  const auto& [model, slots, unused] = problem;
+  double moment = 0;
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const auto& point = model.points[p];
+    if (point.contact != c || state.contact.state[p] == ContactState::open) continue;
+    const auto& geometry = geometry_in(state.contact, slots, p);
+    PlanePlace force = state.contact.traction[point.multiplier] * PlanePlace(geometry.normal[0], geometry.normal[1]);
+    for (int a = 0; a < point.tangents; ++a)
+      force += state.contact.traction[point.multiplier + 1 + a] * PlanePlace(geometry.tangents.col(a));
+    for_each_place(model, state.contact, p, [&](std::size_t n, int place) {
+      const auto x = detail::place_of(model, slots, state, model.contact_nodes[place]);
+      moment -= geometry.area * geometry.weights[static_cast<Eigen::Index>(n)] * (x[0] * force[1] - x[1] * force[0]);
+    });
+  }
+  return moment;
+}
+
+bool is_moment(const Response& response) { return response.component == "moment"; }
+
+bool asks_for_moments(const Scene& scene) {
+  return std::any_of(scene.responses.begin(), scene.responses.end(), is_moment);
+}
+
+/// The measures of a step, read while its state was whole where that was let go.
+ContactMeasures measures_at(const CaseResult& result, const StepResult& step, int c) {
+  if (!step.contacts.empty()) return step.contacts[c];
+  return measures_of_contact(*result.problem, step.increment->state, step.increment->time, c);
+}
+
+void add_masters_inside(const CaseResult& result, int c, std::vector<Warning>& warnings) {
+  constexpr double missed = 0.1;  // force that the overlap stands for, of the force of the contact
+  const auto& model = result.problem->model;
+  const auto& contact = model.scene.contacts[c];
+  if (!may_overlook_master(model, contact)) return;
+  ContactMeasures worst;
+  double time = 0;
+  for (const auto& step : result.steps) {
+    const auto now = measures_at(result, step, c);
+    if (!(now.missing > missed) || now.inside <= worst.inside) continue;
+    worst = now;
+    time = step.increment->time;
+  }
+  if (!(worst.inside > 0)) return;
+  const bool polyline = obstacle_of(model, contact) != nullptr;
+  warnings.push_back(
+      {WarningCode::master_inside, contact.name, worst.inside,
+       polyline ? R"(refine the slave's mesh, or integrate over segments ("discretization": "segment"))"
+                : R"(take the other side as the slave, or integrate over segments ("discretization": "segment"))",
+       fmt::format("{}: at t = {:.6g} a {} of {}, at {}, is inside of {} by {:.3g}: no slave node is near enough to "
+                   "hold it off",
+                   contact.name, time, polyline ? "vertex" : "node", contact.master,
+                   in_words({worst.at[0], worst.at[1]}), contact.slave, worst.inside)});
+}
+
+/// The facets of a deformable master that point p faces, by their nodes.
+std::vector<std::array<int, 2>> faced_facets(const Model& model, const ContactField<double>& field, std::size_t p) {
+  const auto& point = model.points[p];
+  if (point.obstacle >= 0) return {};
+  if (!point.segments.empty()) {
+    std::vector<std::array<int, 2>> facets;
+    const bool along_curve = point.curve >= 0 && !field.facing.empty();
+    for (const auto& piece : along_curve ? field.facing[p].pieces : point.segments) facets.push_back(piece.master);
+    return facets;
+  }
+  if (point.curve >= 0) {
+    const int patch = field.facing.empty() ? point.facing.patch : field.facing[p].patch;
+    if (patch == Patch::none) return {};
+    const auto& curve = model.curves[point.curve];
+    const auto& vertices = curve.patches[patch].vertices;
+    return {{curve.nodes[vertices[1]], curve.nodes[vertices[2]]}};
+  }
+  if (point.master == ContactPoint::Master::facet) return {{point.nodes[1], point.nodes[2]}};
+  if (point.master == ContactPoint::Master::vertex)
+    return {{point.neighbours[0], point.nodes[1]}, {point.nodes[1], point.neighbours[1]}};
+  return {};
+}
+
+/// A contact where it is pressed hardest: how wide its pressed points are apart, and the facets that they are on.
+struct Width {
+  double force = 0, extent = 0, master_facet = 0;
+  int pressed = 0, points = 0;
+  double largest_share = 0;  ///< of one point in the force
+};
+
+Width width_of(const Problem& problem, const ContactField<double>& field, int c) {
+  const auto& [model, slots, unused] = problem;
+  const auto place = [&](int node) -> PlanePlace { return slots.points.col(node).head<2>(); };
+  Width width;
+  PlanePlace low, high;
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const auto& point = model.points[p];
+    if (point.contact != c) continue;
+    ++width.points;
+    const double force = -area_in(field, slots, p) * field.traction[point.multiplier];
+    if (!(force > 0)) continue;
+    const PlanePlace x = place(point.nodes[0]);
+    low = width.pressed == 0 ? x : PlanePlace(low.cwiseMin(x));
+    high = width.pressed == 0 ? x : PlanePlace(high.cwiseMax(x));
+    ++width.pressed;
+    width.force += force;
+    width.largest_share = std::max(width.largest_share, force);
+    for (const auto& [a, b] : faced_facets(model, field, p))
+      width.master_facet = std::max(width.master_facet, (place(a) - place(b)).norm());
+  }
+  if (width.pressed > 0) width.extent = (high - low).norm();
+  if (width.force > 0) width.largest_share /= width.force;
+  return width;
+}
+
+void add_narrow_contact(const CaseResult& result, int c, std::vector<Warning>& warnings) {
+  constexpr double rounding = 1e-9;  // of a facet: sides that are as wide as one
+  const auto& model = result.problem->model;
+  const auto& contact = model.scene.contacts[c];
+  if (model.dimension != 2) return;
+  const auto first =
+      std::find_if(model.points.begin(), model.points.end(), [&](const auto& p) { return p.contact == c; });
+  if (first == model.points.end() || !is_continuum(model.bodies[first->slave_body].mesh.shape)) return;
+  Width hardest;
+  for (const auto& step : result.steps)
+    if (const Width now = width_of(*result.problem, step.increment->state.contact, c); now.force > hardest.force)
+      hardest = now;
+  if (hardest.pressed < 2) return;  // one node alone: single_node
+  const double of_master = hardest.master_facet > 0 ? hardest.extent / hardest.master_facet : 1;
+  if (of_master < 1 - rounding)
+    warnings.push_back(
+        {WarningCode::narrow_contact, contact.name, of_master, "refine the master's mesh towards the contact",
+         fmt::format("{}: what presses is {:.2g} of a facet of the master {} wide; its stiffness there is that of the "
+                     "mesh",
+                     contact.name, of_master, contact.master)});
+  else if (hardest.pressed == 2 && hardest.points > 2)
+    warnings.push_back({WarningCode::narrow_contact, contact.name, 1.0, "refine the slave's mesh towards the contact",
+                        fmt::format("{}: two of {} nodes carry the force: it is one facet of the slave wide, and "
+                                    "pressure and half width are those of the mesh",
+                                    contact.name, hardest.points)});
+}
+
+void add_nodes_without_area(const Problem& problem, int c, std::vector<Warning>& warnings) {
+  const auto& [model, slots, unused] = problem;
+  const auto& contact = model.scene.contacts[c];
+  const auto nodes = nodes_without_area(model, slots.points, c);
+  if (nodes.empty()) return;
+  std::string places;
+  for (int node : nodes)
+    places += (places.empty() ? "" : ", ") + in_words(PlanePlace(slots.points.col(node).head<2>()));
+  warnings.push_back({WarningCode::no_area, contact.name, static_cast<double>(nodes.size()),
+                      "read the pressure at a neighbour, or take linear elements (Q4, T3)",
+                      fmt::format("{}: the {} of {} at {} on the axis of revolution, where quadratic elements have no "
+                                  "area, {} no contact of {} own, and may overlap a little",
+                                  contact.name, nodes.size() == 1 ? "node" : "nodes", contact.slave, places,
+                                  nodes.size() == 1 ? "has" : "have", nodes.size() == 1 ? "its" : "their")});
+}
+
+/// Geometry of the nearest place of an obstacle at the start: outward normal and gap; none past its free ends.
+std::optional<std::pair<PlanePlace, double>> start_against(const Problem& problem, const Obstacle& obstacle,
+                                                           const SideCurve& polyline, const CurveSearch* search,
+                                                           const PlanePlace& x) {
+  if (!search) {
+    if (ambiguity(x, obstacle.shape, problem.slots.numbers)) return std::nullopt;
+    const auto at = against_rigid<double>(x, obstacle.shape, problem.slots.numbers);
+    return std::pair{PlanePlace(at.normal[0], at.normal[1]), at.gap};
+  }
+  const Facing facing = search->facing(x, PlanePlace::Zero());
+  if (facing.patch == Patch::none) return std::nullopt;
+  const auto foot = foot_on_patch<double>(polyline.patches[facing.patch], facing.xi, x, polyline.position());
+  return std::pair{foot.normal, foot.gap};
+}
+
+bool touches(const CaseResult& result, int c) {
+  const auto& points = result.problem->model.points;
+  return std::any_of(result.steps.begin(), result.steps.end(), [&](const StepResult& step) {
+    const auto& states = step.increment->state.contact.state;
+    for (std::size_t p = 0; p < points.size(); ++p)
+      if (points[p].contact == c && states[p] != ContactState::open) return true;
+    return false;
+  });
+}
+
+Warning turned_warning(const Problem& problem, int c, const std::string& words, int faulty) {
+  const auto& contact = problem.model.scene.contacts[c];
+  const Obstacle& obstacle = *obstacle_of(problem.model, contact);
+  const char* remedy = std::holds_alternative<Polyline>(obstacle.shape)
+                           ? "turn the points of the polyline round: its solid is on their right"
+                       : std::holds_alternative<Plane>(obstacle.shape)
+                           ? "turn the normal of the plane round: it points out of the solid"
+                           : R"(look at "inside" of the circle: true is a cup, solid outside)";
+  return {WarningCode::turned_surface, contact.name, static_cast<double>(faulty), remedy, contact.name + ": " + words};
+}
+
+}  // namespace
+
+ContactMeasures measures_of_contact(const Problem& problem, const State<double>& state, double time, int contact) {
+  ContactMeasures measures;
+  const auto& model = problem.model;
+  if (may_overlook_master(model, model.scene.contacts[contact]))
+    find_master_inside(problem, state, time, contact, measures);
+  if (asks_for_moments(model.scene) && !obstacle_of(model, model.scene.contacts[contact]))
+    measures.moment = unbalanced_moment(problem, state, contact);
+  return measures;
+}
+
+std::string turned_surface(const Problem& problem, int contact_index, int& faulty) {
+  constexpr double alike_from =
+      0.5;                          // cosine of the two normals: a side that is steeper may come to touch with its end
+  constexpr double against = 1e-9;  // cosine: less is a side along the obstacle's normal, to rounding
+  const auto& [model, slots, unused] = problem;
+  const auto& contact = model.scene.contacts[contact_index];
+  const Obstacle* const obstacle = obstacle_of(model, contact);
+  if (!obstacle || model.dimension != 2) return "";
+  const SideSet side = surface_of(model, slots.points, model.side(contact.slave));
+  std::map<int, PlanePlace> outward;
+  for (const auto& facet : side.facets) {
+    const PlanePlace along = slots.points.col(facet[1]).head<2>() - slots.points.col(facet[0]).head<2>();
+    for (int node : facet)
+      outward.try_emplace(node, PlanePlace::Zero()).first->second += PlanePlace(along[1], -along[0]);
+  }
+  if (outward.empty()) return "";  // points and bars have no inside
+  const bool is_polyline = std::holds_alternative<Polyline>(obstacle->shape);
+  const SideCurve polyline = is_polyline ? curve_of_polyline(problem, *obstacle, contact, 0) : SideCurve{};
+  std::optional<CurveSearch> search;
+  if (is_polyline) search.emplace(polyline.patches, polyline.places);
+  int alike = 0, opposed = 0, inside = 0, all = 0;
+  for (int node : side.nodes) {
+    const PlanePlace x = slots.points.col(node).head<2>();
+    const auto found = outward.find(node);
+    const auto at = start_against(problem, *obstacle, polyline, search ? &*search : nullptr, x);
+    if (!at || found == outward.end()) continue;
+    const double cosine = at->first.dot(found->second.normalized());
+    const double rounding = 8 * unit_roundoff * (x.norm() + std::abs(at->second));
+    ++all;
+    alike += cosine > alike_from;
+    opposed += cosine < -against;
+    inside += at->second < -rounding;
+  }
+  if (alike > 0 && opposed == 0) {
+    faulty = alike;
+    return fmt::format("the solid of {} is on the side of {}, whose outward normals point the same way as its own",
+                       contact.master, contact.slave);
+  }
+  if (alike > 0 && opposed > 0 && 2 * inside > all && inside + 1 >= all) {  // a closed side: one node may be on it
+    faulty = inside;
+    return fmt::format("{} starts inside of the solid of {}", contact.slave, contact.master);
+  }
+  return "";
+}
+
+void name_turned_surfaces(const Problem& problem, Trajectory<double>& trajectory) {
+  if (is_converged(trajectory.status)) return;
+  for (std::size_t c = 0; c < problem.model.scene.contacts.size(); ++c) {
+    int faulty = 0;
+    const std::string words = turned_surface(problem, static_cast<int>(c), faulty);
+    if (words.empty()) continue;
+    const Warning warning = turned_warning(problem, static_cast<int>(c), words, faulty);
+    trajectory.message += (trajectory.message.empty() ? "" : "; ") + warning.text + "; " + warning.remedy;
+  }
+}
+
+void add_contact_warnings(const CaseResult& result, std::vector<Warning>& warnings) {
+  const auto& problem = *result.problem;
+  const auto& scene = problem.model.scene;
+  for (int c = 0; c < static_cast<int>(scene.contacts.size()); ++c) {
+    add_narrow_contact(result, c, warnings);
+    add_masters_inside(result, c, warnings);
+    int faulty = 0;
+    if (const std::string words = turned_surface(problem, c, faulty); !words.empty())
+      warnings.push_back(turned_warning(problem, c, words, faulty));
+    if (touches(result, c)) add_nodes_without_area(problem, c, warnings);
+  }
+  for (std::size_t i = 0; i < scene.responses.size(); ++i) {
+    constexpr double told = 0.01;  // of the largest value of the response
+    if (!is_moment(scene.responses[i])) continue;
+    double largest = 0, off = 0;
+    int of = -1;
+    for (const auto& step : result.steps) {
+      largest = std::max(largest, std::abs(step.responses[static_cast<Eigen::Index>(i)]));
+      for (int c = 0; c < static_cast<int>(scene.contacts.size()); ++c)
+        if (const double now = std::abs(measures_at(result, step, c).moment); now > off) {
+          off = now;
+          of = c;
+        }
+    }
+    if (of < 0 || !(off > told * largest)) continue;
+    const auto& contact = scene.contacts[of];
+    warnings.push_back({WarningCode::unbalanced_moment, contact.name, off / largest,
+                        contact.segment ? "refine both sides" : "take a stiffer penalty, or multipliers",
+                        fmt::format("{}: the moments of its forces on both sides differ by {:.3g}, {:.2g} % of the "
+                                    "response {}: forces act where the sides are, which is not one place",
+                                    contact.name, off, 100 * off / largest, scene.responses[i].name)});
+    break;  // all moments read the same forces
+  }
+}
+
+std::vector<Warning> contact_warnings_before(const Problem& problem) {
+  std::vector<Warning> warnings;
+  for (int c = 0; c < static_cast<int>(problem.model.scene.contacts.size()); ++c) {
+    int faulty = 0;
+    if (const std::string words = turned_surface(problem, c, faulty); !words.empty())
+      warnings.push_back(turned_warning(problem, c, words, faulty));
+    add_nodes_without_area(problem, c, warnings);
+  }
+  return warnings;
+}
+
+}  // namespace stickslip
