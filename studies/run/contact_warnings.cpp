@@ -11,6 +11,7 @@
 #include "core/model/response.hpp"
 #include "methods/residuals.hpp"
 #include "studies/io/wording.hpp"
+#include "studies/run/warnings.hpp"
 
 namespace stickslip {
 namespace {
@@ -206,7 +207,7 @@ void add_masters_inside(const CaseResult& result, int c, std::vector<Warning>& w
   if (!may_overlook_master(model, contact)) return;
   ContactMeasures worst;
   double time = 0;
-  for (const auto& step : result.steps) {
+  for (const auto& step : solved_steps(result)) {
     const auto now = measures_at(result, step, c);
     if (!(now.missing > missed) || now.inside <= worst.inside) continue;
     worst = now;
@@ -288,7 +289,7 @@ void add_narrow_contact(const CaseResult& result, int c, std::vector<Warning>& w
       std::find_if(model.points.begin(), model.points.end(), [&](const auto& p) { return p.contact == c; });
   if (first == model.points.end() || !is_continuum(model.bodies[first->slave_body].mesh.shape)) return;
   Width hardest;
-  for (const auto& step : result.steps)
+  for (const auto& step : solved_steps(result))
     if (const Width now = width_of(*result.problem, step.increment->state.contact, c); now.force > hardest.force)
       hardest = now;
   if (hardest.pressed < 2) return;  // one node alone: single_node
@@ -339,7 +340,8 @@ std::optional<std::pair<PlanePlace, double>> start_against(const Problem& proble
 
 bool touches(const CaseResult& result, int c) {
   const auto& points = result.problem->model.points;
-  return std::any_of(result.steps.begin(), result.steps.end(), [&](const StepResult& step) {
+  const auto steps = solved_steps(result);
+  return std::any_of(steps.begin(), steps.end(), [&](const StepResult& step) {
     const auto& states = step.increment->state.contact.state;
     for (std::size_t p = 0; p < points.size(); ++p)
       if (points[p].contact == c && states[p] != ContactState::open) return true;
@@ -442,7 +444,7 @@ void add_contact_warnings(const CaseResult& result, std::vector<Warning>& warnin
     if (!is_moment(scene.responses[i])) continue;
     double largest = 0, off = 0;
     int of = -1;
-    for (const auto& step : result.steps) {
+    for (const auto& step : solved_steps(result)) {
       largest = std::max(largest, std::abs(step.responses[static_cast<Eigen::Index>(i)]));
       for (int c = 0; c < static_cast<int>(scene.contacts.size()); ++c)
         if (const double now = std::abs(measures_at(result, step, c).moment); now > off) {

@@ -24,12 +24,6 @@ constexpr double degree = M_PI / 180;
 /// Poisson's ratio from which locking is looked for, and spurious pressure that is told.
 constexpr double nearly_incompressible = 0.45, most_spurious = 0.2;
 
-/// The steps that were solved: all of a run, or of one that failed those before.
-std::span<const StepResult> solved_steps(const CaseResult& result) {
-  const auto end = std::find_if(result.steps.begin(), result.steps.end(),
-                                [](const StepResult& step) { return !step.increment->solved(); });
-  return {result.steps.begin(), end};
-}
 /// Whether these are all. What says something of a whole run is not said of one that failed.
 bool has_ended(const CaseResult& result) { return solved_steps(result).size() == result.steps.size(); }
 
@@ -249,7 +243,7 @@ void add_shear_locking(const CaseResult& result, std::vector<Warning>& warnings)
   for (std::size_t b = 0; b < problem.model.bodies.size(); ++b) {
     if (!may_lock_in_shear(problem, b) || edges_of_thin_body(problem.model.bodies[b].mesh).empty()) continue;
     double largest = 0;
-    for (const auto& step : result.steps)
+    for (const auto& step : solved_steps(result))
       largest = larger(largest, step.bodies.empty() ? parasitic_shear(problem, step.increment->state, b)
                                                     : step.bodies[b].parasitic_shear);
     if (!(largest > most)) continue;
@@ -282,7 +276,7 @@ void add_floating_bodies(const CaseResult& result, std::vector<Warning>& warning
     std::string motion;
     double first = 0;
     int steps = 0;
-    for (const auto& step : result.steps) {
+    for (const auto& step : solved_steps(result)) {
       const std::string now = step.bodies.empty() ? motion_of_floating_body(*result.problem, step.increment->state, b)
                                                   : step.bodies[b].free_motion;
       if (now.empty()) continue;
@@ -297,7 +291,7 @@ void add_floating_bodies(const CaseResult& result, std::vector<Warning>& warning
          "hold it by a support, or end the run while something presses on it",
          fmt::format("{} floats at the end of {} of {} steps, first at t = {:.6g}: it is free to move {}, as neither "
                      "supports nor a contact that presses hold it, and its place is not determined",
-                     name, steps, result.steps.size(), first, motion)});
+                     name, steps, solved_steps(result).size(), first, motion)});
   }
 }
 
@@ -564,6 +558,12 @@ BodyMeasures measures_of_body(const Problem& problem, const State<double>& state
   measures.parasitic_shear = parasitic_shear(problem, state, b);
   measures.free_motion = motion_of_floating_body(problem, state, b);
   return measures;
+}
+
+std::span<const StepResult> solved_steps(const CaseResult& result) {
+  const auto end = std::find_if(result.steps.begin(), result.steps.end(),
+                                [](const StepResult& step) { return !step.increment->solved(); });
+  return {result.steps.begin(), end};
 }
 
 std::vector<Warning> warnings_of(const CaseResult& result) {

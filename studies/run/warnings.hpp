@@ -3,6 +3,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <vector>
 
 #include "core/model/warning.hpp"
@@ -31,6 +32,9 @@ namespace stickslip {
 ///   branch_ends    where solutions were counted: the branch from the last increment ends
 /// Empty if there is none, or if nothing converged.
 std::vector<Warning> warnings_of(const CaseResult& result);
+
+/// The steps that were solved: all of a run, or of one that failed those before.
+std::span<const StepResult> solved_steps(const CaseResult& result);
 
 BodyMeasures measures_of_body(const Problem& problem, const State<double>& state, std::size_t body);
 
