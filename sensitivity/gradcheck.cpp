@@ -257,7 +257,10 @@ void compare(const Differences& differences, const Computed& computed, int j, co
       return comparisons.compare(derivative, quotients, noises[side + 1], side, n, times[n]);
     };
     bool checked = false;
-    if (computed.has_sides(i, n, j, comparisons.scheme * entry.scale)) {
+    // (Where the runs of both sides share the states of the base run, they tell the derivative itself: of a node that
+    // faces a node they keep the pairing, and so the mean of the two sides.)
+    const bool shared = differences.central.count(i, n) >= 2;
+    if (!shared && computed.has_sides(i, n, j, comparisons.scheme * entry.scale)) {
       const double below = computed.below[n](i, j), above = computed.above[n](i, j);
       const bool from_below = !std::isnan(below) && check(below, differences.below, -1);
       const bool from_above = !std::isnan(above) && check(above, differences.above, 1);

@@ -205,6 +205,10 @@ void add_masters_inside(const CaseResult& result, int c, std::vector<Warning>& w
   const auto& model = result.problem->model;
   const auto& contact = model.scene.contacts[c];
   if (!may_overlook_master(model, contact)) return;
+  const auto slides_far = [&](const Warning& warning) {
+    return warning.code == WarningCode::large_sliding && warning.where == contact.name;
+  };
+  if (std::any_of(warnings.begin(), warnings.end(), slides_far)) return;  // (present places mean nothing then)
   ContactMeasures worst;
   double time = 0;
   for (const auto& step : solved_steps(result)) {

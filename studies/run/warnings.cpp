@@ -273,6 +273,7 @@ std::string motion_of_floating_body(const Problem& problem, const State<double>&
 void add_floating_bodies(const CaseResult& result, std::vector<Warning>& warnings) {
   const auto& model = result.problem->model;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (&model.scene.bodies[b] == loose_body(model)) continue;  // (add_loose_bodies names it)
     std::string motion;
     double first = 0;
     int steps = 0;

@@ -132,19 +132,18 @@ INSTANTIATE_TEST_SUITE_P(A1, Stop,
                          testing::Values(StopCase{15, 1000, 0.01, 1e4}, StopCase{7.25, 310, 0.004, 155},
                                          StopCase{2e-3, 1e-2, 0.1, 0.37}, StopCase{15, 1000, -0.01, 2.5e3}));
 
-TEST(Stop, MonolithicDerivativeWithRespectToItsOwnScaleVanishesOnlyAtTheSolution) {
+TEST(Stop, MonolithicDerivativeWithRespectToItsOwnScaleVanishesAndOfATruncatedSolveThereIsNone) {
   for (int cap : {50, 1}) {
     auto scene = scenes::stop();
     MonolithicAL method;
     method.scale = {Regularisation::Kind::relative, scenes::parameter(scene, "scale", 0.7)};
     method.newton.max_iterations = cap;
     const auto s = run(scene, method);
-    const double own = std::abs(s.derivative("press", "scale")) * 0.7;
     if (cap == 1) {
       EXPECT_EQ(s.trajectory.status, Status::cap);
-      EXPECT_GT(own, 1e-3) << "a truncated solve depends on the scale";
+      EXPECT_TRUE(s.gradients.of_responses.empty());
     } else {
-      EXPECT_LE(own, 1e-12 * 5);  // of the response
+      EXPECT_LE(std::abs(s.derivative("press", "scale")) * 0.7, 1e-12 * 5);  // of the response
     }
   }
 }

@@ -168,7 +168,7 @@ bool has_null(const json& value) {
   return value.is_null() || (value.is_structured() && std::any_of(value.begin(), value.end(), has_null));
 }
 
-TEST(Case, AForceThatOverflowsIsNotSolved) {
+TEST(Case, AForceWhoseSquareOverflowsLeavesNumbersInWhatConverged) {
   auto tractrix = cases::load(std::string(STICKSLIP_SOURCE_DIR) + "/studies/scenes/tractrix.json");
   for (const double force : {-1e100, -1e150, -1e160, -1e200, -1e300, -1.7e308})
     for (const char* method : {"penalty", "uzawa_al", "monolithic_al"}) {
@@ -176,9 +176,6 @@ TEST(Case, AForceThatOverflowsIsNotSolved) {
         if (load.contains("force")) load["force"][2] = force;
       const auto result = cases::run(tractrix, {{method, json::object()}}, "tractrix.json");
       const std::string what = std::string(method) + " " + std::to_string(force) + ": " + result.message();
-      if (force <= -1e160) {
-        EXPECT_EQ(result.status(), Status::not_finite) << what;
-      }
       if (!is_converged(result.status())) continue;
       for (const auto& step : steps_json(result)) {
         EXPECT_FALSE(has_null(step["responses"]) || has_null(step["kkt"]) || has_null(step["sensitivities"])) << what;

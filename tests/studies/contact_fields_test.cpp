@@ -9,7 +9,7 @@
 #include "tests/studies/cases.hpp"
 #include "tests/studies/vtu_reader.hpp"
 
-namespace stickslip {
+namespace stickslip::contact_fields {
 namespace {
 
 using nlohmann::json;
@@ -74,7 +74,7 @@ TEST(ContactFields, HaveTheForcesOnBothSidesAndNoGapWhereNothingIsFaced) {
   const auto gap = made.array("gap"), force = made.array("contact_force");
   const auto& model = made.result.problem->model;
   double on_low = 0, on_high = 0;
-  for (int n = 0; n < model.node_count; ++n) (n < model.bodies[1].first_node ? on_low : on_high) += force[3 * n + 1];
+  for (int n = 0; n < model.node_count; ++n) (n < model.bodies[1].first_node ? on_high : on_low) += force[3 * n + 1];
   EXPECT_GT(on_high, 10);
   EXPECT_NEAR(on_low, -on_high, 1e-12 * on_high);
   for (int node : model.side("high.bottom").nodes)  // x = 2.5 and 3 are past the end of the master
@@ -82,4 +82,4 @@ TEST(ContactFields, HaveTheForcesOnBothSidesAndNoGapWhereNothingIsFaced) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::contact_fields

@@ -6,7 +6,7 @@
 #include "studies/run/warnings.hpp"
 #include "tests/studies/cases.hpp"
 
-namespace stickslip {
+namespace stickslip::crashes {
 namespace {
 
 using nlohmann::json;
@@ -69,4 +69,4 @@ TEST(APictureOfARunThatLetStatesGo, HasThePathsOfThoseThatAreKept) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::crashes

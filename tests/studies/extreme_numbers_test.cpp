@@ -3,7 +3,7 @@
 
 #include "tests/studies/cases.hpp"
 
-namespace stickslip {
+namespace stickslip::extreme_numbers {
 namespace {
 
 using nlohmann::json;
@@ -86,4 +86,4 @@ TEST(DirectionOfASupport, MayHaveAnyLengthButZero) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::extreme_numbers

@@ -5,7 +5,7 @@
 #include "studies/run/warnings.hpp"
 #include "tests/studies/cases.hpp"
 
-namespace stickslip {
+namespace stickslip::failing_runs {
 namespace {
 
 using nlohmann::json;
@@ -180,4 +180,4 @@ TEST(LoadThatNoContactBalances, IsNamedAtFiniteStrainToo) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::failing_runs

@@ -5,7 +5,7 @@
 #include "studies/run/simulation.hpp"
 #include "tests/studies/cases.hpp"
 
-namespace stickslip {
+namespace stickslip::gradcheck {
 namespace {
 
 using nlohmann::json;
@@ -58,4 +58,4 @@ TEST(Gradcheck, SaysHowManyStepsWereNotChecked) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::gradcheck

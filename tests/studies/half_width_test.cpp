@@ -5,7 +5,7 @@
 
 #include "tests/studies/cases.hpp"
 
-namespace stickslip {
+namespace stickslip::half_width {
 namespace {
 
 using nlohmann::json;
@@ -90,4 +90,4 @@ TEST(HalfWidth, AroundAnAxisHasNoPoint) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::half_width

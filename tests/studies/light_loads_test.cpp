@@ -7,7 +7,7 @@
 #include "studies/run/accuracy.hpp"
 #include "tests/studies/cases.hpp"
 
-namespace stickslip {
+namespace stickslip::light_loads {
 namespace {
 
 using nlohmann::json;
@@ -85,7 +85,9 @@ TEST_P(LightLoads, HaveTheDigitsOfHeavyOnesWhereverTheyAre) {
         const double weight = 2 * load * E, most = 1e-9;
         EXPECT_NEAR(y, weight, most * weight) << where;
         const bool known = slides && std::string(floor) != "circle";
-        if (known) EXPECT_NEAR(x, -0.2 * weight, most * weight) << where;
+        if (known) {
+          EXPECT_NEAR(x, -0.2 * weight, most * weight) << where;
+        }
         if (at_origin.size() == 0) at_origin = found;
         const double same = std::max(most, digits_of_coordinates(L));
         EXPECT_NEAR(sunk, at_origin[0], same * std::abs(at_origin[0])) << where;
@@ -104,4 +106,4 @@ INSTANTIATE_TEST_SUITE_P(Floors, LightLoads,
                          });
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::light_loads

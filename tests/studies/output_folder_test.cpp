@@ -12,7 +12,7 @@
 #include "studies/report/report.hpp"
 #include "studies/sweep/run_study.hpp"
 
-namespace stickslip {
+namespace stickslip::output_folder {
 namespace {
 
 namespace fs = std::filesystem;
@@ -186,4 +186,4 @@ TEST_F(OutputFolders, AreGoneWhereNothingCameOfThem) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::output_folder

@@ -3,7 +3,7 @@
 
 #include "tests/studies/cases.hpp"
 
-namespace stickslip {
+namespace stickslip::settled_derivatives {
 namespace {
 
 TEST(IteratedDerivatives, EndWhereTheyRest) {
@@ -16,4 +16,4 @@ TEST(IteratedDerivatives, EndWhereTheyRest) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::settled_derivatives

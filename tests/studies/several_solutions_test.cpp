@@ -6,7 +6,7 @@
 #include "studies/run/warnings.hpp"
 #include "tests/studies/cases.hpp"
 
-namespace stickslip {
+namespace stickslip::several_solutions {
 namespace {
 
 using nlohmann::json;
@@ -181,4 +181,4 @@ TEST(Disagreements, RepeatWhatTheRunsWarnOf) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::several_solutions

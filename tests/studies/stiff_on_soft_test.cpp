@@ -4,7 +4,7 @@
 
 #include "tests/studies/cases.hpp"
 
-namespace stickslip {
+namespace stickslip::stiff_on_soft {
 namespace {
 
 using nlohmann::json;
@@ -52,4 +52,4 @@ TEST(AStiffBodyOnASoftOne, HasOneAnswerByEveryEngineWhereItIsNearlyRigid) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::stiff_on_soft

@@ -187,7 +187,7 @@ TEST(Warnings, NameAContactThatOneNodeCarries) {
 
 TEST(Warnings, SayNothingOfASingleNodeThatIsMeant) {
   json document = roller(4, 0.001);
-  document["bodies"]["roller"]["mesh"] = {{"box", {{"min", {0, 0}}, {"max", {1, 8}}, {"cells", {1, 4}}}}};
+  document["bodies"]["roller"]["mesh"] = {{"box", {{"min", {0, 0}}, {"max", {1, 8}}, {"cells", {2, 8}}}}};
   document["supports"][0]["on"] = "roller.top";
   document["contacts"]["touch"]["slave"] = "roller.bottom & roller.left";
   EXPECT_THAT(warnings(document), IsEmpty());

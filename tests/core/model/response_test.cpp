@@ -209,8 +209,9 @@ TEST(HalfWidth, ScalesWithLengthAloneWhereverTheContactIs) {
 }
 
 TEST(HalfWidth, IsMeasuredAcrossTheNormalOfTheContact) {
-  // the same block before a tilted floor: arms are shortened by the cosine
-  const auto a = response("a", Kind::contact_half_width, "sole");
+  // the same block before a tilted floor: arms, from a corner, are shortened by the cosine
+  auto a = response("a", Kind::contact_half_width, "sole");
+  a.about = {0.0, 0.0};
   auto level = block({a}), tilted = block({a}, {0.6, 0.8});
   for (auto* b : {&level, &tilted})
     for (const auto& point : b->model.points) b->state.contact.traction[point.multiplier] = -1;
