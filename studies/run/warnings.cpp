@@ -10,6 +10,7 @@
 #include <span>
 
 #include "methods/diagnosis.hpp"
+#include "methods/residuals.hpp"
 #include "sensitivity/force_search.hpp"
 #include "studies/run/contact_warnings.hpp"
 #include "studies/run/strains.hpp"
@@ -258,28 +259,37 @@ void add_shear_locking(const CaseResult& result, std::vector<Warning>& warnings)
   }
 }
 
-/// The motion that a body is free to make where only what presses holds it.
-std::string motion_of_floating_body(const Problem& problem, const State<double>& state, std::size_t b) {
+/// The motion that a body is free to make where only what presses holds it. `reach`: largest displacement of the run.
+std::string motion_of_floating_body(const Problem& problem, const State<double>& state, std::size_t b, double reach) {
   constexpr double pressing = 1e-6;  // of the largest traction: less is a touch without force
-  const auto& points = problem.model.points;
+  constexpr double rounding = 1e-9;  // of the motion: what its stiffness makes of less is no force
+  const auto& [model, slots, unused] = problem;
+  const auto& points = model.points;
   auto states = state.contact.state;
   double largest = 0;
   for (const auto& point : points) largest = larger(largest, -state.contact.traction[point.multiplier]);
-  for (std::size_t p = 0; p < points.size(); ++p)
-    if (!(-state.contact.traction[points[p].multiplier] > pressing * largest)) states[p] = ContactState::open;
-  return detail::free_motion(problem.model, problem.slots, b, state, states);
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const double least = rounding * reach * slots.stiffness[p] / slots.geometry[p].area;
+    if (!(-state.contact.traction[points[p].multiplier] > std::max(pressing * largest, least)))
+      states[p] = ContactState::open;
+  }
+  return detail::free_motion(model, slots, b, state, states);
 }
 
 void add_floating_bodies(const CaseResult& result, std::vector<Warning>& warnings) {
   const auto& model = result.problem->model;
+  double reach = 0;
+  for (const auto& step : solved_steps(result))
+    reach = std::max(reach, largest_nodal_norm(step.increment->state.displacement, model.dimension));
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     if (&model.scene.bodies[b] == loose_body(model)) continue;  // (add_loose_bodies names it)
     std::string motion;
     double first = 0;
     int steps = 0;
     for (const auto& step : solved_steps(result)) {
-      const std::string now = step.bodies.empty() ? motion_of_floating_body(*result.problem, step.increment->state, b)
-                                                  : step.bodies[b].free_motion;
+      const std::string now = step.bodies.empty()
+                                  ? motion_of_floating_body(*result.problem, step.increment->state, b, reach)
+                                  : step.bodies[b].free_motion;
       if (now.empty()) continue;
       if (++steps > 1) continue;
       motion = now;
@@ -557,7 +567,8 @@ BodyMeasures measures_of_body(const Problem& problem, const State<double>& state
   if (!problem.model.scene.finite_strain) measures = deformation_of(problem, state, b);
   if (is_watched_for_locking(problem, b)) measures.spurious_pressure = spurious_pressure(problem, state, b);
   measures.parasitic_shear = parasitic_shear(problem, state, b);
-  measures.free_motion = motion_of_floating_body(problem, state, b);
+  measures.free_motion =
+      motion_of_floating_body(problem, state, b, largest_nodal_norm(state.displacement, problem.model.dimension));
   return measures;
 }
 

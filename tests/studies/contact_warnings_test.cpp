@@ -272,7 +272,7 @@ json pressed_and_let_go(bool finite) {
 }
 
 TEST(BodyWarnings, NameABodyThatFloatsOnceItIsLetGo) {
-  for (const bool finite : {true}) {
+  for (const bool finite : {false, true}) {
     const auto result = run(pressed_and_let_go(finite), "penalty");
     if (!is_converged(result.status())) continue;  // (a method may also refuse it)
     const auto found = of_code(result, WarningCode::floating_body);
