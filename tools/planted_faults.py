@@ -112,7 +112,7 @@ FAULTS = [
     ("thickness without its derivative", "core/model/slots_impl.hpp",
      "plane ? <<<numbers(model.scene.bodies[b].thickness)>>> : T(1)",
      "T(value(numbers(model.scene.bodies[b].thickness)))"),
-    ("nodal stiffness halved between bodies", "core/model/slots_impl.hpp", "const T mean = T(<<<2>>>) * slave * master", "1"),
+    ("nodal stiffness halved between bodies", "core/model/slots_impl.hpp", "return T(<<<2>>>) * slave * master", "1"),
     ("rho of the side that a support holds", "core/model/slots_impl.hpp",
      "if (slave_yields) return <<<slave>>>;", "master"),
     ("a strain energy without the inside", "sensitivity/differentiate.cpp",
