@@ -385,13 +385,14 @@ std::string turned_surface(const Problem& problem, int contact_index, int& fault
   const Obstacle* const obstacle = obstacle_of(model, contact);
   if (!obstacle || model.dimension != 2) return "";
   const SideSet side = surface_of(model, slots.points, model.side(contact.slave));
+  if (!is_continuum(model.bodies[side.body].mesh.shape)) return "";  // points and bars have no inside
   std::map<int, PlanePlace> outward;
   for (const auto& facet : side.facets) {
     const PlanePlace along = slots.points.col(facet[1]).head<2>() - slots.points.col(facet[0]).head<2>();
     for (int node : facet)
       outward.try_emplace(node, PlanePlace::Zero()).first->second += PlanePlace(along[1], -along[0]);
   }
-  if (outward.empty()) return "";  // points and bars have no inside
+  if (outward.empty()) return "";
   const bool is_polyline = std::holds_alternative<Polyline>(obstacle->shape);
   const SideCurve polyline = is_polyline ? curve_of_polyline(problem, *obstacle, contact, 0) : SideCurve{};
   std::optional<CurveSearch> search;
