@@ -26,6 +26,12 @@ inline NodeRange nodes_of_body(const Model& model, std::size_t b) {
   return {model.bodies[b].first_node, model.bodies[b].first_node + model.bodies[b].mesh.node_count};
 }
 
+/// A place or a direction, in words: "(x, y)". What is 1e-6 of `unit` counts as 0.
+inline std::string in_words(const Vec<double, 2>& x, double unit) {
+  const auto number = [&](double of) { return short_number(std::abs(of) <= 1e-6 * unit ? 0 : of); };
+  return "(" + number(x[0]) + ", " + number(x[1]) + ")";
+}
+
 /// Rigid motion of a body that its supports and its contact points, in these states, leave free: "along (0, 1)" or
 /// "about (X, Y)"; empty if there is none. 2D only. `at`: where the bodies are. What the body touches counts as fixed.
 template <class T>
@@ -68,10 +74,6 @@ std::string free_motion(const Model& model, const Slots<T>& slots, std::size_t b
     if (states[p] == ContactState::stick && point.tangents > 0)
       hold(values(geometry.tangents.col(0)).transpose() * motions);
   }
-  const auto in_words = [](const Vec<double, 2>& x, double unit) {
-    const auto number = [&](double of) { return short_number(std::abs(of) <= straight * unit ? 0 : of); };
-    return "(" + number(x[0]) + ", " + number(x[1]) + ")";
-  };
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> modes(squares);
   const Eigen::Vector3d least = modes.eigenvectors().col(0);
   for (const Eigen::Vector3d& mode : {Eigen::Vector3d::Unit(0).eval(), Eigen::Vector3d::Unit(1).eval(), least}) {
@@ -81,6 +83,73 @@ std::string free_motion(const Model& model, const Slots<T>& slots, std::size_t b
     return "about " + in_words(centre + Vec<double, 2>(-mode[1], mode[0]) * size / mode[2], size);
   }
   return "";
+}
+
+/// A joint of bars that they leave free to move across themselves, in words: "at (X, Y) is free to move along (x, y)";
+/// empty if there is none. Not looked for in 3D, in bodies of more than 200 nodes, and where the body as a whole is
+/// free. `at`, `states`: where the bodies are, and which contact points hold them. The bars' tension does not count.
+///
+/// The free motions are the null space of the sum of a a^T over the constraints a: the length of each bar, supports,
+/// and closed contact points. The joint is the one that moves most in it.
+template <class T>
+std::string free_joint(const Model& model, const Slots<T>& slots, std::size_t b, const State<T>& at,
+                       const std::vector<ContactState>& states) {
+  constexpr int most_nodes = 200;
+  constexpr double held = 1e-10, alike = 1e-6;
+  const auto& mesh = model.bodies[b].mesh;
+  const auto body = nodes_of_body(model, b);
+  const int count = body.end - body.first;
+  if (model.dimension != 2 || mesh.shape != ElementShape::bar2 || count > most_nodes ||
+      !free_motion(model, slots, b, at, states).empty())
+    return "";
+  const auto X = [&](int node) { return Vec<double, 2>(values(slots.points.col(node)).template head<2>()); };
+  const auto u = [&](int node) { return Vec<double, 2>(values(at.displacement.template segment<2>(2 * node))); };
+  Matrix<double> squares = Matrix<double>::Zero(2 * count, 2 * count);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int i = mesh.connectivity[2 * e], j = mesh.connectivity[2 * e + 1];
+    const Vec<double, 2> moved =
+        model.effects.current_geometry ? Vec<double, 2>(u(body.first + j) - u(body.first + i)) : Vec<double, 2>(0, 0);
+    const Vec<double, 2> axis = (X(body.first + j) - X(body.first + i) + moved).normalized();
+    Vector<double> row = Vector<double>::Zero(2 * count);
+    row.segment<2>(2 * i) = -axis;
+    row.segment<2>(2 * j) = axis;
+    squares += row * row.transpose();
+  }
+  const auto hold = [&](int node, const Vec<double, 2>& along) {
+    if (body.has(node))
+      squares.block<2, 2>(2 * (node - body.first), 2 * (node - body.first)) += along * along.transpose();
+  };
+  for (const auto& constraint : model.constraints) {
+    const int node = constraint.dof / 2, framed = framed_index(model, node);
+    const Vec<double, 2> axis = Vec<double, 2>::Unit(constraint.dof % 2);
+    hold(node, framed < 0 ? axis : Vec<double, 2>(values(slots.frames[framed]).col(constraint.dof % 2)));
+  }
+  for (std::size_t p = 0; p < states.size(); ++p) {
+    if (states[p] == ContactState::open) continue;
+    const auto& geometry = geometry_in(at.contact, slots, p);
+    for (const int node : nodes_in(model, at.contact, p)) {
+      hold(node, values(geometry.normal));
+      if (states[p] == ContactState::stick && model.points[p].tangents > 0)
+        hold(node, values(geometry.tangents.col(0)));
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Matrix<double>> modes(squares);
+  Eigen::Index free = 0;
+  while (free < modes.eigenvalues().size() && modes.eigenvalues()[free] < held) ++free;
+  int joint = -1;
+  double most = 0;
+  for (int n = 0; free > 0 && n < count; ++n)
+    if (const double size = modes.eigenvectors().block(2 * n, 0, 2, free).norm(); size > (1 + alike) * most) {
+      joint = n;
+      most = size;
+    }
+  if (joint < 0) return "";
+  const auto motion = modes.eigenvectors().block(2 * joint, 0, 2, free);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> directions(motion * motion.transpose());
+  Vec<double, 2> along = directions.eigenvectors().col(1);
+  if (along[0] < -alike || (std::abs(along[0]) <= alike && along[1] < 0)) along = -along;
+  return "at " + in_words(X(body.first + joint), X(body.first + joint).norm()) + " is free to move along " +
+         in_words(along, 1);
 }
 
 /// The first inverted element of a state, in words; empty if there is none.
@@ -114,10 +183,10 @@ std::string words_of_imbalance(const Model& model, const Slots<T>& slots, double
          ": neither its supports nor its contacts hold it, and " + load;
 }
 
-/// A body that its supports and closed contacts leave free to move.
-struct FreeBody {
-  std::string words;     ///< the body and its motion; empty if there is none
-  bool pressed = false;  ///< some contact presses on it
+/// Bodies that their supports and closed contacts leave free to move.
+struct FreeBodies {
+  std::string words;           ///< the first of them and its motion; empty if there is none
+  std::vector<char> floating;  ///< per body: it is free, and no contact presses on it; empty if there is none
 };
 
 /// Whether a contact presses on a body. Tractions that are rounding of the displacements do not count.
@@ -136,20 +205,32 @@ bool is_pressed(const Model& model, const Slots<T>& slots, std::size_t b, const 
   return false;
 }
 
-/// The first body that is free to move in the state that an increment starts from. `begins`: the run starts there; the
-/// points that touch then count as closed.
+/// States in which points that touch at the start are closed.
 template <class T>
-FreeBody free_body(const Model& model, const Slots<T>& slots, const State<T>& at, bool begins) {
-  auto states = at.contact.state;
-  for (std::size_t p = 0; begins && p < states.size(); ++p)
+std::vector<ContactState> touching_states(const Model& model, const Slots<T>& slots, std::vector<ContactState> states) {
+  for (std::size_t p = 0; p < states.size(); ++p)
     if (value(slots.geometry[p].gap) <= model.points[p].tie_length)
       states[p] = model.points[p].tangents > 0 ? ContactState::stick : ContactState::slip;
-  for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    if (const std::string motion = free_motion(model, slots, b, at, states); !motion.empty())
-      return {model.scene.bodies[b].name + " is free to move " + motion +
-                  ": neither its supports nor the contacts that are closed hold it",
-              is_pressed(model, slots, b, at)};
-  return {};
+  return states;
+}
+
+/// The bodies that are free to move in the state that an increment starts from. `begins`: the run starts there; the
+/// points that touch then count as closed.
+template <class T>
+FreeBodies free_bodies(const Model& model, const Slots<T>& slots, const State<T>& at, bool begins) {
+  const auto states = begins ? touching_states(model, slots, at.contact.state) : at.contact.state;
+  FreeBodies free;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const std::string motion = free_motion(model, slots, b, at, states);
+    if (motion.empty()) continue;
+    if (free.words.empty())
+      free.words = model.scene.bodies[b].name + " is free to move " + motion +
+                   ": neither its supports nor the contacts that are closed hold it";
+    if (is_pressed(model, slots, b, at)) continue;
+    free.floating.resize(model.bodies.size());
+    free.floating[b] = 1;
+  }
+  return free;
 }
 
 /// A body that flows plastically in a state, in words; empty if there is none.
@@ -193,6 +274,15 @@ void name_failure(const Model& model, const Slots<T>& slots, double time, bool p
   const auto& states = failed.state.contact.state;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const auto body = detail::nodes_of_body(model, b);
+    const bool unstressed = model.effects.linear_bulk || largest_nodal_norm(failed.state.displacement, 2) == 0;
+    const std::string joint = unstressed ? free_joint(model, slots, b, failed.state, states) : "";
+    if (!joint.empty()) {
+      failed.status = Status::no_equilibrium;
+      failed.message = "the joint of " + model.scene.bodies[b].name + " " + joint +
+                       ": its bars, supports and contacts bear no force across them there; support it" +
+                       (model.effects.linear_bulk ? ", or take \"strain\": \"finite\", in which tension holds it" : "");
+      return;
+    }
     const bool supported = std::any_of(model.constraints.begin(), model.constraints.end(),
                                        [&](const Constraint& c) { return body.has(c.dof / model.dimension); });
     if (supported) {

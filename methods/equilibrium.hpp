@@ -82,6 +82,8 @@ struct EquilibriumTask {
   const Compliance<T>* compliance = nullptr;
   /// Arc of a step whose time is an unknown; nullptr: the time is given.
   const Arc* arc = nullptr;
+  /// Whether the start values may be the solution, as far as rounding tells. Else they are improved until that stops.
+  bool rests = false;
   /// Whether lambda is an unknown of the engine's systems.
   bool solves_for_multipliers() const { return multipliers == Multipliers::unknown; }
   /// Whether the rows A (t - lambda) are part of the residual.

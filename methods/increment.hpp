@@ -22,6 +22,9 @@ struct Run {
   Account account;
   bool several = false;  ///< increments may have several solutions (methods/motion.hpp)
   std::shared_ptr<Condensation<T>> condensation = nullptr;  ///< where all branches are tried; made on demand
+  double start = 0;                                         ///< time at which the increment begins
+  /// Per body: it is free to move where the increment begins, and nothing presses on it; empty: no body is.
+  std::vector<char> floating = {};
 };
 
 /// Where a method begins to look for an increment's solution, and what holds the bodies there.
@@ -31,6 +34,7 @@ struct Start {
   Anchor<T> anchor;          ///< of the motion; empty: the unmodified equations
   bool inexact_step = true;  ///< whether a step of the motion is solved to the root of the tolerance alone
   const Arc* arc = nullptr;  ///< of a step along a path, whose time is a guess then
+  bool rests = false;        ///< whether the state may be the solution, as far as rounding tells
   bool is_step() const { return anchor.stiffness.size() > 0; }
   /// States that points resume which start on their cone: those of the last increment, where it starts there.
   std::span<const ContactState> resumed(const State<T>& previous) const {
@@ -48,6 +52,7 @@ State<T> settle(Run<T, E>& run, const ContactInput<T>& input, Unknowns<T> at, Co
   state.displacement = run.engine.all(at.u);
   state.multiplier = std::move(at.multiplier);
   state.contact = std::move(field);
+  if (run.model.slides_along_curves()) detail::place_open_vertices(input, run.engine.compact(at.u), state.contact);
   state.history = next_history(input, state.contact, state.multiplier);
   state.history.bodies = bulk_flow(run.model, run.slots, state.displacement, input.previous.bodies);
   return state;
@@ -174,6 +179,12 @@ std::string crossing_facets(const Model& model, const Slots<T>& slots, double ti
       }
   }
   return words;
+}
+
+/// Whether supports move facets through one another between two times.
+template <class T>
+bool cross_between(const Model& model, const Slots<T>& slots, double start, double end) {
+  return crossing_facets(model, slots, start).empty() && !crossing_facets(model, slots, end).empty();
 }
 
 /// What supports alone push into one another, in words; empty if there is none. A point that penetrates counts if the

@@ -10,6 +10,9 @@
 /// regular, and for a large alpha the points know little of each other (alpha: methods/motion_pace.hpp). After each
 /// step the method tries without the term: nothing but a solution of the unmodified equations counts.
 ///
+/// Bodies that float, as nothing holds them and nothing presses on them where the increment begins, are moved so first,
+/// and D is theirs alone: until something touches them they stay where they are.
+///
 /// There may be several solutions where the determinant of a tangent on the way has another sign, where friction may
 /// hold a body between surfaces, and where mu reaches a critical value. Then the solution is taken in whose branches
 /// the motion comes to rest. Path, D and alpha say which; rho and the method do not. With few points the motion is
@@ -151,14 +154,16 @@ std::optional<Increment<T>> take_resting_solution(const M& method, Run<T, E>& ru
 template <class M, class T, class E>
 Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& previous, const std::vector<double>& factor,
                            double time, bool several, const WorkBound& bound) {
-  const Vector<double> D = damping(run.model, run.slots);
+  const Vector<double> D = damping(run.model, run.slots, run.floating);
   const RunScales scales = run.account.scales;
   std::vector<IterationRecord> history;
   int iterations = 0;
-  bool inexact_step = !several;  // (multipliers that are not unique keep what an inexact step leaves)
+  // (multipliers that are not unique, and bodies that float, keep what an inexact step leaves)
+  bool inexact_step = !several && run.floating.empty();
   const auto attempt = [&](const State<T>& from, double alpha) {
     run.account.scales = scales;  // iterates on the way do not count
     Start<T> start{from, {}, inexact_step};
+    start.rests = alpha == 0 && !run.floating.empty();
     if (alpha > 0) start.anchor = {alpha * D, to_compact(run.model, from.displacement)};
     auto found = solve_increment(method, run, previous, factor, time, start);
     history.insert(history.end(), found.history.begin(), found.history.end());
@@ -211,6 +216,11 @@ Increment<T> find_increment(const M& method, Run<T, E>& run, const State<T>& pre
                             const std::vector<double>& factor, double time, const WorkBound& bound,
                             bool may_move = true) {
   const RunScales before = run.account.scales;
+  if (!run.floating.empty() && is_globalised(method)) {  // a tangent that is singular sends the body anywhere
+    auto rest = detail::follow_motion(method, run, previous, factor, time, false, bound);
+    if (rest.usable()) return rest;
+    run.account.scales = before;
+  }
   auto direct = solve_increment(method, run, previous, factor, time, Start<T>{previous, {}});
   const bool solved = direct.usable();
   const bool several = run.several || direct.reversed;
@@ -223,7 +233,7 @@ Increment<T> find_increment(const M& method, Run<T, E>& run, const State<T>& pre
     direct.status = Status::no_equilibrium;
     return direct;
   }
-  if (!solved && !may_move) return direct;
+  if (!solved && (!may_move || cross_between(run.model, run.slots, run.start, time))) return direct;
   const auto all = detail::try_all_branches(method, run, previous, factor, time);
   const auto take_among_all = [&] {
     return detail::take_resting_solution(method, run, previous, factor, time, direct, before, *all);

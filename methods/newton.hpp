@@ -95,7 +95,7 @@ Equilibrium<T> newton(E& engine, const EquilibriumTask<T>& task, Unknowns<T> unk
   const ContactInput<T>& input = task.contact;
   Evaluator<T, E> evaluate(engine, task, account);
   NewtonTangent<T, E> tangent(engine, task, account);
-  NewtonStop stop(options, task.forcing, Carried<T>::newton_iterations);
+  NewtonStop stop(options, task.forcing, Carried<T>::newton_iterations, task.rests);
   Equilibrium<T> result;
   std::vector<ContactState> used;  // states of the last tangent
   ContactField<T> directed;        // field and branches of the last step

@@ -27,8 +27,9 @@ struct NewtonEnd {
 class NewtonStop {
  public:
   /// `extra`: iterations that follow the one that has converged, for a derivative that rides on the scalar.
-  NewtonStop(const NewtonOptions& options, double forcing, int extra)
-      : options_(options), forcing_(forcing), extra_(extra) {}
+  /// `rests`: the start values count as solved if their residuals are rounding.
+  NewtonStop(const NewtonOptions& options, double forcing, int extra, bool rests)
+      : options_(options), forcing_(forcing), extra_(extra), rests_(rests) {}
 
   /// Takes in an iterate, whose record is the last of the history; nothing where the method goes on.
   template <class T>
@@ -79,6 +80,7 @@ class NewtonStop {
                                   const std::vector<IterationRecord>& history) const {
     if ((unchanged_ || repeats_) && residuals.within(options_.tolerance)) return NewtonEnd{};
     if (!residuals.within_rounding(options_.tolerance)) return std::nullopt;
+    if (rests_ && history.size() == 1) return NewtonEnd{Status::converged_at_roundoff, "nothing but rounding moves it"};
     const auto fell = [&] { return 2 * residuals.largest() <= history[history.size() - 2].residual; };
     if (!repeats_ && (steady_ < 2 || fell())) return std::nullopt;
     return NewtonEnd{Status::converged_at_roundoff, "the residual stopped falling at the level of rounding"};
@@ -98,6 +100,7 @@ class NewtonStop {
   const NewtonOptions& options_;
   double forcing_;
   int extra_;
+  bool rests_;
   bool unchanged_ = true, repeats_ = false;  ///< since the last tangent; a set of states that was met before
   int steady_ = 0;                           ///< iterations in a row without a change
   std::unordered_map<std::size_t, double> least_residual_;  ///< per set of states

@@ -90,12 +90,18 @@ std::optional<std::size_t> resting_solution(const ContactProblem& problem, const
 /// slave node with all other contact nodes held. `schur`: stiffness of the bodies on the contact dofs.
 bool exceeds_critical_friction(const Model& model, const Slots<double>& slots, const Matrix<double>& schur);
 
-/// D per contact node, force per length: the largest local stiffness among its points.
+/// D per contact node, force per length: the largest local stiffness among its points. `of`: per body, whether it is
+/// damped; empty: all are.
 template <class T>
-Vector<double> damping(const Model& model, const Slots<T>& slots) {
+Vector<double> damping(const Model& model, const Slots<T>& slots, const std::vector<char>& of = {}) {
   Vector<double> stiffness = Vector<double>::Zero(static_cast<Eigen::Index>(model.contact_nodes.size()));
   for (std::size_t p = 0; p < model.points.size(); ++p)
     for (int place : model.points[p].places) stiffness[place] = std::max(stiffness[place], value(slots.stiffness[p]));
+  for (std::size_t b = 0; b < of.size(); ++b)
+    for (std::size_t place = 0; !of[b] && place < model.contact_nodes.size(); ++place) {
+      const int first = model.bodies[b].first_node, node = model.contact_nodes[place] - first;
+      if (node >= 0 && node < model.bodies[b].mesh.node_count) stiffness[static_cast<Eigen::Index>(place)] = 0;
+    }
   return stiffness;
 }
 

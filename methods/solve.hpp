@@ -119,7 +119,7 @@ bool drives_together(const M& method, const Run<T, E>& run, double start, double
   } else if (!prescribed_penetration(model, slots, failed.state).empty()) {
     return true;
   }
-  return crossing_facets(model, slots, start).empty() && !crossing_facets(model, slots, end).empty();
+  return cross_between(model, slots, start, end);
 }
 
 /// Advances the trajectory to the time `target`. False if it gave up; the failed increment is then the last.
@@ -134,10 +134,12 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
   std::optional<Increment<T>> failed;
   WorkBound bound(run.model, run.account.counters, method.newton.max_iterations);
   const bool linear = run.model.effects.linear_bulk;
-  FreeBody free;
+  FreeBodies free;
   if (!linear)
-    free = free_body(run.model, run.slots, start_count ? trajectory.increments.back().state : trajectory.initial,
-                     start_count == 0);
+    free = free_bodies(run.model, run.slots, start_count ? trajectory.increments.back().state : trajectory.initial,
+                       start_count == 0);
+  run.floating = free.floating;
+  if (!run.floating.empty()) bound.lessen();
   while (true) {
     const bool last = reached + step >= target - 1e-9 * (target - start);
     const double next = last ? target : reached + step;
@@ -146,6 +148,7 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
     const auto factor = increments.empty() ? std::vector<double>{} : increments.back().rho_factor;
     const bool may_move = linear || !may_cut || !free.words.empty() || step < patient * (target - start);
     bound.begin();
+    run.start = reached;
     auto increment = find_increment(method, run, previous, factor, next, bound, may_move);
     bound.end(increment.usable() ? std::max(1, increment.augmentations) : 0);
     increment.time = next;
@@ -167,7 +170,6 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
     const bool impossible = increment.status == Status::no_equilibrium
                                 ? unbalanced_body(run.model, run.slots, next) != balanced
                                 : drives_together(method, run, reached, next, increment);
-    if (!free.words.empty() && !free.pressed) bound.lessen();
     if (!failed) failed = std::move(increment);
     easy = 0;
     step = (next - reached) / 2;

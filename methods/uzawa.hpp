@@ -217,7 +217,8 @@ class AugmentationLoop {
                                   inexact_ ? forcing : 0,
                                   first ? &start_.state.displacement : nullptr,
                                   nullptr,
-                                  start_.arc};
+                                  start_.arc,
+                                  first && start_.rests};
     auto equilibrium =
         find_equilibrium(run_.engine, task, unknowns_, inner_options(method_, progress_.contraction()), run_.account);
     account_for(increment_, equilibrium, ++increment_.augmentations);

@@ -242,9 +242,13 @@ Facing CurveSearch::facing_itself(const Vec<double, 2>& x, const Vec<double, 2>&
   const Query query{x, outward, &own, last};
   const Facing at = second_patch_facing(nearest_facing(query), query);  // (Newton may have left the eligible patch)
   if (at.patch != Patch::none && is_eligible(at.patch, query)) return at;
-  Nearest nearest = nearest_facet(query);
-  if (nearest.patch == Patch::none) nearest = nearest_facet({x, Vec<double, 2>::Zero(), &own, last});
-  return {Patch::none, 0, size_, nearest.patch};
+  return {Patch::none, 0, size_};
+}
+
+int CurveSearch::nearest_of_itself(const Vec<double, 2>& x, const Vec<double, 2>& outward, const OwnVertex& own,
+                                   int last) const {
+  const int eligible = nearest_facet({x, outward, &own, last}).patch;
+  return eligible != Patch::none ? eligible : nearest_facet({x, Vec<double, 2>::Zero(), &own, last}).patch;
 }
 
 /// If x faces the vertex of two eligible patches, the place on the second. So rounding does not choose between them.

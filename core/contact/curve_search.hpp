@@ -31,9 +31,10 @@ class CurveSearch {
   /// The same for a vertex of this curve, which is in contact with itself. A patch is eligible if its normal makes more
   /// than 120 degrees with `outward`, and if `own` allows it. The vertex may penetrate a patch up to own.max_depth if
   /// the patch is within 8 patches of `last`, the patch that it faced in the last state; otherwise up to a quarter of
-  /// that. If it faces nothing, the distance is the size of the curve, and the nearest patch is the nearest eligible
-  /// one; if there is none, the nearest that `own` allows.
+  /// that. If it faces nothing, the distance is the size of the curve, and the nearest patch is not looked for.
   Facing facing_itself(const Vec<double, 2>& x, const Vec<double, 2>& outward, const OwnVertex& own, int last) const;
+  /// The patch nearest to such a vertex: the nearest eligible one; if there is none, the nearest that `own` allows.
+  int nearest_of_itself(const Vec<double, 2>& x, const Vec<double, 2>& outward, const OwnVertex& own, int last) const;
   /// The foot of x on one patch, which is extended past both ends.
   Facing foot_on(int patch, const Vec<double, 2>& x) const;
 

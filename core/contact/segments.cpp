@@ -1,6 +1,7 @@
 #include "core/contact/segments.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace stickslip {
@@ -20,11 +21,16 @@ struct Break {
   int end;    ///< as Segment::first_end
 };
 
-/// Projection of a master facet onto the slave facet that it faces.
+/// Projection of a master facet onto the slave facet.
 struct Shadow {
   std::array<int, 2> nodes;  ///< of the master facet
   int facet;                 ///< its number
   Break low, high;           ///< ends of the projection, low.xi < high.xi
+  bool covers(double xi) const { return low.xi <= xi && xi <= high.xi; }
+};
+/// Those of the facets that are opposite to the slave facet, and of those that look the same way.
+struct Shadows {
+  std::vector<Shadow> opposite, alike;
 };
 
 /// The breakpoint of a node that projects to the coordinate xi.
@@ -35,28 +41,29 @@ Break break_at(double xi, int node, const std::vector<int>& ends) {
   return {xi, node};
 }
 
-/// Distance of x along the direction nu to the line through c and d.
-double distance_along(const Vec<double, 2>& x, const Vec<double, 2>& nu, const Vec<double, 2>& c,
-                      const Vec<double, 2>& d) {
+/// The way from the line through c and d to x along the direction nu.
+Vec<double, 2> way_along(const Vec<double, 2>& x, const Vec<double, 2>& nu, const Vec<double, 2>& c,
+                         const Vec<double, 2>& d) {
   const Vec<double, 2> tau = d - c, from = x - c;
   const double eta = (from[0] * nu[1] - from[1] * nu[0]) / (tau[0] * nu[1] - tau[1] * nu[0]);
-  return (from - eta * tau).norm();
+  return from - eta * tau;
 }
 
-/// The projections of the master facets that are opposite to the slave facet a + xi tau, 0 <= xi <= 1.
-std::vector<Shadow> shadows(const Points<double>& points, const Vec<double, 2>& a, const Vec<double, 2>& tau,
-                            const std::vector<std::vector<int>>& masters, const std::vector<int>& ends) {
-  std::vector<Shadow> out;
+/// The projections of the master facets onto the slave facet a + xi tau, 0 <= xi <= 1.
+Shadows shadows(const Points<double>& points, const Vec<double, 2>& a, const Vec<double, 2>& tau,
+                const std::vector<std::vector<int>>& masters, const std::vector<int>& ends) {
+  Shadows out;
   const Vec<double, 2> nu(tau[1], -tau[0]);
   for (std::size_t f = 0; f < masters.size(); ++f) {
     const auto& facet = masters[f];
     const Vec<double, 2> c = points.col(facet[0]), d = points.col(facet[1]), along = d - c;
-    if (nu.dot(Vec<double, 2>(along[1], -along[0])) >= -band * nu.norm() * along.norm()) continue;
-    const Break high = break_at((c - a).dot(tau) / tau.squaredNorm(), facet[0], ends),
-                low = break_at((d - a).dot(tau) / tau.squaredNorm(), facet[1], ends);
-    if (high.xi > band && low.xi < 1 - band &&
-        high.xi - low.xi > band)  // a facet opposite to the slave runs from high to low
-      out.push_back({{facet[0], facet[1]}, static_cast<int>(f), low, high});
+    const double turn = nu.dot(Vec<double, 2>(along[1], -along[0]));
+    if (std::abs(turn) <= band * nu.norm() * along.norm()) continue;
+    Break high = break_at((c - a).dot(tau) / tau.squaredNorm(), facet[0], ends),
+          low = break_at((d - a).dot(tau) / tau.squaredNorm(), facet[1], ends);
+    if (turn > 0) std::swap(high, low);  // a facet opposite to the slave runs from high to low
+    if (high.xi > band && low.xi < 1 - band && high.xi - low.xi > band)
+      (turn < 0 ? out.opposite : out.alike).push_back({{facet[0], facet[1]}, static_cast<int>(f), low, high});
   }
   return out;
 }
@@ -82,22 +89,32 @@ std::vector<Segment> facing_segments(const Points<double>& points, const std::ar
   const Vec<double, 2> a = points.col(slave[0]), tau = points.col(slave[1]).head<2>() - points.col(slave[0]).head<2>();
   const Vec<double, 2> nu = Vec<double, 2>(tau[1], -tau[0]) / tau.norm();
   const auto candidates = shadows(points, a, tau, masters, ends);
-  const auto breaks = breakpoints(candidates);
+  const auto breaks = breakpoints(candidates.opposite);
   std::vector<Segment> segments;
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
     const double middle = (breaks[k].xi + breaks[k + 1].xi) / 2;
     const Vec<double, 2> x = a + middle * tau;
+    const auto way = [&](const Shadow& shadow) {
+      return way_along(x, nu, points.col(shadow.nodes[0]), points.col(shadow.nodes[1]));
+    };
     const Shadow* nearest = nullptr;
     double least = std::numeric_limits<double>::infinity();
-    for (const auto& shadow : candidates) {
-      if (shadow.low.xi > middle || shadow.high.xi < middle) continue;
-      const double distance = distance_along(x, nu, points.col(shadow.nodes[0]), points.col(shadow.nodes[1]));
+    for (const auto& shadow : candidates.opposite) {
+      if (!shadow.covers(middle)) continue;
+      const double distance = way(shadow).norm();
       if (distance < least) {
         least = distance;
         nearest = &shadow;
       }
     }
-    if (!nearest) continue;
+    // Beyond the other face of the solid x is outside, and penetrates no face on its far side.
+    const auto is_between = [&](const Shadow& shadow) {
+      const double from = shadow.covers(middle) ? way(shadow).dot(nu) : 0;
+      return from > 0 && from < least;
+    };
+    if (!nearest ||
+        (way(*nearest).dot(nu) > 0 && std::any_of(candidates.alike.begin(), candidates.alike.end(), is_between)))
+      continue;
     if (!segments.empty() && segments.back().master == nearest->nodes && segments.back().last_end == breaks[k].end) {
       segments.back().last_end = breaks[k + 1].end;  // the shadow that begins or ends there is not the nearest
       continue;

@@ -225,6 +225,51 @@ auto nodal_displacement(const Vector<T>& compact) {
   return [&compact](int place) -> Vec<T, 2> { return compact.template segment<2>(2 * place); };
 }
 
+/// A curve where displacements have moved it, and the search along it. Positions are from the first vertex at the
+/// start, so that what lies far from the origin is found as near it. Not to be copied.
+template <class T>
+struct MovedCurve {
+  const ContactInput<T>& input;
+  const Vector<T>& compact;  ///< displacements of the contact nodes
+  Vec<double, 2> origin;
+  Eigen::Matrix2Xd positions;  ///< of the vertices
+  CurveSearch search;
+
+  /// All arguments must outlive this.
+  MovedCurve(const ContactInput<T>& input, const MasterCurve& curve, const Vector<T>& compact)
+      : input(input),
+        compact(compact),
+        origin(values(vertex_position<T, T>(input, curve, 0, nodal_displacement(compact)).start)),
+        positions(positions_of(curve)),
+        search(curve.patches, positions) {}
+  MovedCurve(const MovedCurve&) = delete;
+
+  Vec<double, 2> position(int node, int place) const {
+    return values(input.slots.points.col(node).template head<2>()) - origin +
+           values(nodal_displacement(compact)(place));
+  }
+  /// Outward normal of the slave side at a point, by the lengths of its facets; zero where it has none.
+  Vec<double, 2> outward(const ContactPoint& point) const {
+    Vec<double, 2> normal = Vec<double, 2>::Zero();
+    for (std::size_t f = 0; f < point.facet_places.size(); ++f) {
+      const auto& [a, b] = point.area_facets[f];
+      const Vec<double, 2> along = position(b, point.facet_places[f].second) - position(a, point.facet_places[f].first);
+      normal += Vec<double, 2>(along[1], -along[0]);
+    }
+    return normal;
+  }
+
+ private:
+  Eigen::Matrix2Xd positions_of(const MasterCurve& curve) const {
+    Eigen::Matrix2Xd at(2, curve.vertex_count);
+    for (int v = 0; v < curve.vertex_count; ++v) {
+      const auto vertex = vertex_position<T, T>(input, curve, v, nodal_displacement(compact));
+      at.col(v) = values(vertex.start) - origin + values(vertex.moved);
+    }
+    return at;
+  }
+};
+
 /// What each contact point faces of its curve. `compact`: displacements of the contact nodes; `kept`: per point, the
 /// patch on which its foot is to be found, or Patch::none to search the curve; empty: search for all points.
 template <class T>
@@ -248,37 +293,41 @@ std::vector<Facing> facings(const ContactInput<T>& input, const Vector<T>& compa
       find_segments(model, static_cast<int>(c), start, moved, found);
       continue;
     }
-    // (places from the first vertex at the start, so that what lies far from the origin is found as near it)
-    const Vec<double, 2> origin = values(vertex_position<T, T>(input, curve, 0, displacement).start);
-    Eigen::Matrix2Xd positions(2, curve.vertex_count);
-    for (int v = 0; v < curve.vertex_count; ++v) {
-      const auto vertex = vertex_position<T, T>(input, curve, v, displacement);
-      positions.col(v) = values(vertex.start) - origin + values(vertex.moved);
-    }
-    const CurveSearch search(curve.patches, positions);
-    const auto position = [&](int node, int place) -> Vec<double, 2> {
-      return values(input.slots.points.col(node).template head<2>()) - origin + values(displacement(place));
-    };
+    const MovedCurve<T> now(input, curve, compact);
     for (std::size_t p = 0; p < found.size(); ++p) {
       const auto& point = model.points[p];
       if (point.curve != static_cast<int>(c)) continue;
-      const Vec<double, 2> x = position(point.nodes[0], point.places[0]);
-      if (!kept.empty() && kept[p] != Patch::none) {
-        found[p] = search.foot_on(kept[p], x);
-        continue;
-      }
-      Vec<double, 2> outward = Vec<double, 2>::Zero();
-      for (std::size_t f = 0; f < point.facet_places.size(); ++f) {
-        const auto& [a, b] = point.area_facets[f];
-        const Vec<double, 2> along =
-            position(b, point.facet_places[f].second) - position(a, point.facet_places[f].first);
-        outward += Vec<double, 2>(along[1], -along[0]);
-      }
-      found[p] = point.own.vertex == Patch::none ? search.facing(x, outward)
-                                                 : search.facing_itself(x, outward, point.own, last_faced(input, p));
+      const Vec<double, 2> x = now.position(point.nodes[0], point.places[0]);
+      if (!kept.empty() && kept[p] != Patch::none)
+        found[p] = now.search.foot_on(kept[p], x);
+      else if (point.own.vertex == Patch::none)
+        found[p] = now.search.facing(x, now.outward(point));
+      else
+        found[p] = now.search.facing_itself(x, now.outward(point), point.own, last_faced(input, p));
     }
   }
   return found;
+}
+
+/// Places the vertices of curves in contact with themselves that face nothing beside their nearest patches, from which
+/// they slide if they come onto one. An equilibrium needs it, and no iterate on the way: the search looks far.
+template <class T>
+void place_open_vertices(const ContactInput<T>& input, const Vector<T>& compact, ContactField<T>& field) {
+  const auto displacement = nodal_displacement(compact);
+  std::optional<MovedCurve<T>> now;
+  for (int p = 0, of = -1; p < static_cast<int>(field.facing.size()); ++p) {
+    const auto& point = input.model.points[p];
+    auto& facing = field.facing[p];
+    if (point.own.vertex == Patch::none || point.foot < 0 || facing.patch != Patch::none) continue;
+    const auto& curve = input.model.curves[point.curve];
+    if (of != point.curve) now.emplace(input, curve, compact);
+    of = point.curve;
+    facing.nearest = now->search.nearest_of_itself(now->position(point.nodes[0], point.places[0]), now->outward(point),
+                                                   point.own, last_faced(input, p));
+    const Placed<T, T> x{point2(input.slots.points, point.nodes[0]), displacement(point.places[0])};
+    const auto position = [&](int vertex) { return vertex_position<T, T>(input, curve, vertex, displacement); };
+    field.foot[point.foot] = point_off_curve<T, T>(input, p, facing, x, position).foot[0];
+  }
 }
 
 }  // namespace detail

@@ -52,22 +52,40 @@ bool find_on_polyline(const Points<double>& points, const Facets& polyline, int 
   return true;
 }
 
+/// Leaves a slave node at a corner of its side the facets that face a master facet of normal `across`, any length:
+/// those within 60 degrees. If none is, it keeps all.
+void keep_facets_that_face(const Points<double>& points, const Vec<double, 2>& across, ContactPoint& point) {
+  constexpr double within = 0.5;
+  auto facets = point.area_facets;
+  std::erase_if(facets, [&](const auto& facet) {
+    const Vec<double, 2> outward = slave_normal({facet}, points);
+    return outward.dot(across) > -within * outward.norm() * across.norm();
+  });
+  if (!facets.empty()) point.area_facets = std::move(facets);
+}
+
 /// Sets the facet or vertex of a deformable master that a slave node faces. False if it faces none.
 bool find_master(const Points<double>& points, const Facets& master, ContactPoint& point) {
   const Vec<double, 2> x = points.col(point.nodes[0]).head<2>();
   const auto closest = master.search.closest(x);
   if (!closest) return false;
-  const auto& facet = master.facets[closest->facet];
-  const Vec<double, 2> tau = points.col(facet[1]).head<2>() - points.col(facet[0]).head<2>();
-  if (point.shares_normal && slave_normal(point.area_facets, points).dot(Vec<double, 2>(tau[1], -tau[0])) >= 0)
-    return false;  // the facet does not oppose the slave side
-  if (closest->second < 0) {
+  const auto opposes = [&](int f) {
+    const Vec<double, 2> tau = points.col(master.facets[f][1]).head<2>() - points.col(master.facets[f][0]).head<2>();
+    return !point.shares_normal || slave_normal(point.area_facets, points).dot(Vec<double, 2>(tau[1], -tau[0])) < 0;
+  };
+  const bool first = opposes(closest->facet), second = closest->second >= 0 && opposes(closest->second);
+  if (!first && !second) return false;
+  if (closest->second < 0 || first != second) {  // at a corner only one of its facets may oppose the slave side
+    const auto& facet = master.facets[first ? closest->facet : closest->second];
+    const Vec<double, 2> tau = points.col(facet[1]).head<2>() - points.col(facet[0]).head<2>();
+    if (point.shares_normal) keep_facets_that_face(points, {tau[1], -tau[0]}, point);
     point.master = ContactPoint::Master::facet;
     point.nodes.insert(point.nodes.end(), {facet[0], facet[1]});
     return true;
   }
   point.master = ContactPoint::Master::vertex;
-  const int before = facet[0], vertex = facet[1], after = master.facets[closest->second][1];
+  const int before = master.facets[closest->facet][0], vertex = master.facets[closest->facet][1],
+            after = master.facets[closest->second][1];
   point.nodes.push_back(vertex);
   point.neighbours = {before, after};
   const Vec<double, 2> v = points.col(vertex).head<2>();
@@ -282,6 +300,8 @@ void pair_along_curve(Model& model, const Points<double>& points, const Pairing&
           own_vertex(curve.patches, places, static_cast<int>(found - curve.nodes.begin()), outward, point.mesh_size);
       if (!point.own.may_face_some(curve.patches)) continue;
       point.facing = search.facing_itself(x, outward, point.own, Patch::none);
+      if (point.facing.patch == Patch::none)
+        point.facing.nearest = search.nearest_of_itself(x, outward, point.own, Patch::none);
     } else {
       point.facing = search.facing(x, outward);
     }

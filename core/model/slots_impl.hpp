@@ -44,9 +44,12 @@ bool is_held(const Model& model, const Slots<T>& slots, int node, const Vector<d
   return true;
 }
 
-/// k_i from the slave's and the master's stiffness: their harmonic mean, as of springs in series. Where supports hold
-/// one of them along a direction of the contact, the other alone yields there, and k_i is its stiffness. Where each
-/// yields alone along another direction, k_i is their sum. Supports decide, not sizes: k_i is smooth in both.
+/// k_i from the slave's and the master's stiffness: their harmonic mean, as of springs in series, but at least a tenth
+/// of the slave's, and at most 1e3 of the mean. Why: the master's nodes leave several slave nodes on one facet a way to
+/// shift their pressures among themselves, which the slave alone resists. Springs that are soft beside it would decide
+/// about that share. Where supports hold one side along a direction of the contact, the other alone yields there, and
+/// k_i is its stiffness. Where each yields alone along another direction, k_i is their sum. Supports decide, not sizes:
+/// k_i is smooth in both, but where the slave is 19 or 2e4 times as stiff.
 template <class T>
 T stiffness_between(const Model& model, const Slots<T>& slots, int p, const T& slave, const T& master) {
   const auto& point = model.points[p];
@@ -65,7 +68,9 @@ T stiffness_between(const Model& model, const Slots<T>& slots, int p, const T& s
   if (slave_yields && master_yields) return slave + master;
   if (slave_yields) return slave;
   if (master_yields) return master;
-  return T(2) * slave * master / (slave + master);
+  const T mean = T(2) * slave * master / (slave + master), tenth = T(0.1) * slave, most = T(1e3) * mean;
+  if (value(tenth) <= value(mean)) return mean;
+  return value(tenth) < value(most) ? tenth : most;
 }
 
 /// k_i of each contact point, from n.K_ii n at the interpolated slave and at the interpolated master nodes (slave only

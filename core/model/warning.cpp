@@ -30,6 +30,8 @@ std::string_view name_of(WarningCode code) {
       return "floating_body";
     case WarningCode::shear_locking:
       return "shear_locking";
+    case WarningCode::folded_element:
+      return "folded_element";
     case WarningCode::unbalanced_moment:
       return "unbalanced_moment";
     case WarningCode::held_on_facet:

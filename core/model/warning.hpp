@@ -22,6 +22,7 @@ enum class WarningCode {
   no_area,            ///< value: number of slave nodes that have no area
   floating_body,      ///< value: number of steps at whose end nothing holds the body
   shear_locking,      ///< value: share of a shear that varies within elements in the squared strain of the body
+  folded_element,     ///< value: number of elements that are folded at a corner
   unbalanced_moment,  ///< value: share of a response that is a moment
   held_on_facet,      ///< value: how far a point is beyond the end of its facet, in facets
   shared_place,       ///< value: number of bodies that hold the place of a response

@@ -1,0 +1,86 @@
+/// Bodies that nothing holds until something touches them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "studies/run/warnings.hpp"
+#include "tests/studies/cases.hpp"
+
+namespace stickslip::floating_bodies {
+namespace {
+
+using nlohmann::json;
+
+const std::vector<std::string> methods{"penalty", "uzawa_al", "monolithic_al"};
+
+/// A tube that stands on a floor, and a block that comes down on it from 0.05 above, by 0.3 in `steps` steps.
+json tube_under_a_block(int steps) {
+  const json rubber = {{"neo_hookean", {{"E", 1000}, {"nu", 0.3}}}};
+  return {{"strain", "finite"},
+          {"bodies",
+           {{"tube",
+             {{"mesh", {{"ring", {{"center", {0, 0}}, {"inner", 0.9}, {"outer", 1}, {"cells", {1, 32}}}}}},
+              {"material", rubber}}},
+            {"block",
+             {{"mesh", {{"box", {{"min", {-0.5, 1.05}}, {"max", {0.5, 1.5}}, {"cells", {4, 2}}}}}},
+              {"material", rubber}}}}},
+          {"obstacles", {{"floor", {{"plane", {{"point", {0, -1}}, {"normal", {0, 1}}}}}}}},
+          {"contacts",
+           {{"all", {{"between", {"tube", "block"}}, {"friction", 0.2}}},
+            {"floor", {{"slave", "tube.outer"}, {"master", "floor"}, {"friction", 0.5}}}}},
+          {"supports", {{{"on", "block.top"}, {"move", {{"x", 0}, {"y", {{0, 0}, {1, -0.3}}}}}}}},
+          {"time", {{"end", 1}, {"steps", steps}}}};
+}
+
+/// Nothing acts on the tube, so its place is where it was, though its tangent is singular.
+TEST(AFloatingBody, StaysWhereItIsUntilItIsTouched) {
+  for (const auto& method : methods) {
+    json scene = tube_under_a_block(20);
+    scene["time"] = {{"legs", {{0.15, 3}}}};  // the block is 0.005 above the tube then
+    const auto result = cases::run(scene, {{method, json::object()}}, "tube.json");
+    ASSERT_TRUE(is_converged(result.status())) << method << result.message();
+    ASSERT_EQ(result.steps.size(), 3u);
+    for (const auto& step : result.steps) {
+      const auto& body = result.problem->model.bodies[0];
+      const auto of_tube = step.increment->state.displacement.segment(2 * body.first_node, 2 * body.mesh.node_count);
+      EXPECT_EQ(of_tube.norm(), 0) << method << step.increment->time;
+      EXPECT_LE(step.newton, 5) << method;  // the block's own, moved at its top as a whole
+    }
+    EXPECT_THAT(warnings_of(result), testing::Contains(testing::Field(&Warning::code, WarningCode::floating_body)));
+  }
+}
+
+/// Two points that stick hold it from then on, one above the other, and all methods press it alike.
+TEST(AFloatingBody, IsPressedByEveryMethodOnceItIsTouched) {
+  std::vector<double> on_floor;
+  for (const auto& method : methods) {
+    const auto result = cases::run(tube_under_a_block(20), {{method, json::object()}}, "tube.json");
+    ASSERT_TRUE(is_converged(result.status())) << method << result.message();
+    const auto& model = result.problem->model;
+    const auto& last = result.steps.back().increment->state;
+    double force = 0;
+    for (std::size_t p = 0; p < model.points.size(); ++p)
+      if (model.points[p].obstacle >= 0)
+        force -= last.contact.traction[model.points[p].multiplier] * result.problem->slots.geometry[p].area;
+    on_floor.push_back(force);
+    EXPECT_LE(result.trajectory.counters.newton, 20 * 20) << method;  // 6 to 14 a step
+  }
+  EXPECT_GT(on_floor[2], 0);
+  EXPECT_NEAR(on_floor[1], on_floor[2], 1e-8 * on_floor[2]);  // Uzawa stops at 1e-10 of the tractions
+  EXPECT_NEAR(on_floor[0], on_floor[2], 1e-4 * on_floor[2]);  // springs yield by 1e-3 of little
+}
+
+/// What cannot be held is given up after a few hundred iterations, and its motion is named.
+TEST(AFloatingBody, ThatNothingWillHoldIsNamedSoon) {
+  for (const auto& method : methods) {
+    json scene = tube_under_a_block(20);
+    scene["contacts"].erase("floor");
+    scene["obstacles"].erase("floor");
+    const auto result = cases::run(scene, {{method, json::object()}}, "tube.json");
+    if (is_converged(result.status())) continue;  // (it may be pushed along)
+    EXPECT_THAT(result.message(), testing::HasSubstr("tube is free to move")) << method;
+    EXPECT_LT(result.trajectory.counters.newton, 3000) << method;
+  }
+}
+
+}  // namespace
+}  // namespace stickslip::floating_bodies
