@@ -64,16 +64,21 @@ void print_summary(const CaseResult& result) {
     say(std::cout, "{:>10.6g} {:>24} {:>7} {:>7} {:>6} {:>6} {:>6} {:>10.1e}\n", step.increment->time,
         name_of(step.increment->status), step.newton, step.augmentations, open, stick, slip, step.kkt.largest());
   }
-  if (result.steps.empty()) return;
-  const auto& last = result.steps.back();
-  say(std::cout, "\nresponses at t = {:g}, and their derivatives\n", last.increment->time);
+  const auto solved = solved_steps(result);
+  if (!has_ended(result))
+    say(std::cout, "\nNO SOLUTION at t = {:g}: {}{}\n", result.steps.back().increment->time, name_of(result.status()),
+        solved.empty() ? "; no step before it converged, so there are no responses" : "");
+  if (solved.empty()) return;
+  const auto& last = solved.back();
+  say(std::cout, "\nresponses at t = {:g}{}, and their derivatives\n", last.increment->time,
+      has_ended(result) ? "" : ", the last step that converged");
   for (std::size_t i = 0; i < scene.responses.size(); ++i) {
     say(std::cout, "  {:<20} {: .10e}", scene.responses[i].name, last.responses[i]);
     for (std::size_t j = 0; last.sensitivities.size() && j < scene.parameters.size(); ++j)
       say(std::cout, "   d/d{} {: .6e}", scene.parameters[j].name, last.sensitivities(i, j));
     say(std::cout, "\n");
   }
-  for (std::size_t i = 0; i < scene.objectives.size(); ++i) {
+  for (std::size_t i = 0; has_ended(result) && i < scene.objectives.size(); ++i) {
     say(std::cout, "  {:<20} {: .10e}", scene.objectives[i].name, result.objectives[i]);
     const auto& gradient = result.gradients.of_objectives;
     constexpr Eigen::Index shown = 8;

@@ -3,7 +3,8 @@
     python3 studies/examples/identify.py        (needs the Python module of stickslip, numpy and nlopt)
 
 The "measurement" is a run of slider.json with other numbers, and noise of 0.2 % on it. First the gradients are held
-against differences; then NLopt's SLSQP takes sum of squares and gradient, both of one run. At last an honest failure:
+against differences; then NLopt's SLSQP takes sum of squares and gradient, both of one run. Where a trial has no solution,
+run() raises, the misfit is infinite, and the search takes a shorter step. At last an honest failure:
 from a friction so large that the block never slips, the force does not know it, the gradient is zero, and no method
 that goes by gradients can leave.
 """
@@ -22,7 +23,7 @@ HIDDEN = {"mu": 0.42, "k": 137.0}
 
 def simulate(values):
     """Force of the spring over the steps, and its derivatives by mu and k, a column each."""
-    result = stickslip.run(SCENE, set={NAMES[name]: value for name, value in values.items()}, check=True)
+    result = stickslip.run(SCENE, set={NAMES[name]: value for name, value in values.items()})
     return result.responses["pull"], np.column_stack([result.sensitivities["pull"][name] for name in NAMES])
 
 
@@ -36,7 +37,11 @@ def identify(curve, start):
     scale = np.array(list(start.values()))  # parameters of the size of one
 
     def objective(x, gradient):
-        force, slopes = simulate(dict(zip(NAMES, x * scale)))
+        try:
+            force, slopes = simulate(dict(zip(NAMES, x * scale)))
+        except stickslip.NotConverged:
+            gradient[:] = 0
+            return np.inf
         misfit = force - curve
         if gradient.size:
             gradient[:] = 2 * misfit @ slopes * scale / (curve @ curve)

@@ -30,7 +30,7 @@ def scene(tilt, steps=400):
 
 def peak(tilt):
     """(peak of the force, its derivative by the tilt) of one run."""
-    result = stickslip.run(scene(tilt), check=True)
+    result = stickslip.run(scene(tilt))
     force = result.responses["press"]
     at = int(force.argmax())
     return force[at], result.sensitivities["press"]["tilt"][at]

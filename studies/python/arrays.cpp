@@ -110,6 +110,9 @@ py::dict arrays_of(const py::object& owner) {
   const auto& run = owner.cast<const RunResult&>();
   py::dict out;
   out["times"] = view(owner, run.times.data(), {run.times.size()});
+  const auto& steps = run.result.steps;
+  const bool failed = !steps.empty() && !steps.back().increment->solved();
+  out["failed_at"] = failed ? py::cast(steps.back().increment->time) : py::none();
   out["responses"] = responses(owner, run);
   out["sensitivities"] = sensitivities(owner, run);
   out["coordinates"] = rows(owner, run.simulation.problem->slots.points);

@@ -20,6 +20,10 @@ void gather_series(RunResult& run) {
   run.sensitivities.assign(responses, Matrix<double>::Constant(count, scene.parameters.size(), unknown));
   for (Eigen::Index n = 0; n < count; ++n) {
     run.times[n] = steps[n].increment->time;
+    if (!steps[n].increment->solved()) {
+      run.responses.row(n).setConstant(unknown);  // an iterate is no answer
+      continue;
+    }
     run.responses.row(n) = steps[n].responses.transpose();
     for (Eigen::Index i = 0; i < steps[n].sensitivities.rows(); ++i)
       run.sensitivities[i].row(n) = steps[n].sensitivities.row(i);

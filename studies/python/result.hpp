@@ -32,7 +32,7 @@ struct RunResult {
   Simulation simulation;
   CaseResult result;
   Vector<double> times;                       ///< of the steps
-  Matrix<double> responses;                   ///< steps x responses
+  Matrix<double> responses;                   ///< steps x responses; not a number of a step without a solution
   std::vector<Matrix<double>> sensitivities;  ///< per response: steps x parameters; not a number where none is known
   std::vector<std::vector<ContactTable>> contacts;  ///< per step and contact
   std::vector<ElementTable> elements;               ///< per body

@@ -222,9 +222,12 @@ Study read_run(const std::filesystem::path& directory) {
   if (!result.is_object()) throw InputFault((directory / "result.json").string() + ": is no result of a run");
   study.picture = read_json(directory / "picture.json");
   study.description = {{"title", text_at(at(result, "scene"), "title")}};
-  if (const json& steps = array_at(result, "steps"); !steps.empty())
+  const json& steps = array_at(result, "steps");
+  const auto solved =
+      std::find_if(steps.rbegin(), steps.rend(), [](const json& step) { return step.contains("responses"); });
+  if (solved != steps.rend())
     for (const char* part : {"responses", "sensitivities"}) {
-      json values = object_at(steps.back(), part);
+      json values = object_at(*solved, part);
       result[part] = std::move(values);
     }
   result["errors"] = json::object();

@@ -38,9 +38,14 @@ bool is_frictionless(const Study& run, const std::string& contact) {
                      [&](const json& p) { return at(p, "name") == contact && at(p, "state") == "closed"; });
 }
 
+/// States of the contacts in a step; of one without a solution those of its last iterate.
+const json& contacts_of(const json& step) {
+  return object_at(step.contains("iterate") ? at(step, "iterate") : step, "contacts");
+}
+
 /// Points of a contact by state in a step: open, stick and slip, or open and touch.
 std::vector<std::pair<const char*, double>> states_of(const json& step, const std::string& contact, bool frictionless) {
-  const json& counts = at(object_at(step, "contacts"), contact);
+  const json& counts = at(contacts_of(step), contact);
   const double open = number_at(counts, "open"), stick = number_at(counts, "stick"), slip = number_at(counts, "slip");
   if (frictionless) return {{"open", open}, {"touch", stick + slip}};
   return {{"open", open}, {"stick", stick}, {"slip", slip}};
@@ -54,9 +59,9 @@ std::string steps_table(const Study& run) {
   const json& steps = array_at(cell.record, "steps");
   if (steps.empty()) return "";
   constexpr std::size_t most_apart = 3;  // of more contacts the states of each share a column
-  const bool apart = object_at(steps.front(), "contacts").size() <= most_apart;
+  const bool apart = contacts_of(steps.front()).size() <= most_apart;
   std::vector<std::pair<std::string, bool>> contacts;  // and whether there is no friction
-  for (const auto& [contact, unused] : object_at(steps.front(), "contacts").items()) {
+  for (const auto& [contact, unused] : contacts_of(steps.front()).items()) {
     contacts.emplace_back(contact, is_frictionless(run, contact));
     std::string words;
     for (const auto& [state, n] : states_of(steps.front(), contact, contacts.back().second)) {
@@ -109,7 +114,18 @@ std::string slope_in_words(double slope, double value, double largest_share) {
   return number(slope, std::abs(slope) <= rounding * largest_share * std::abs(value) ? 2 : 8);
 }
 
-/// Responses and their derivatives at the last step, a line each.
+/// Of a run without a solution at its end: where it failed, and what is shown in its place; else empty.
+std::string banner(const Cell& cell) {
+  const json& steps = array_at(cell.record, "steps");
+  if (steps.empty() || steps.back().contains("responses")) return "";
+  const std::string shown = steps.size() > 1 ? fmt::format("What is shown is the last step that converged, t = {}.",
+                                                           number(number_at(steps[steps.size() - 2], "time"), 6))
+                                             : "No step before it converged: what is shown is the start.";
+  return fmt::format("<p class=\"banner\"><strong>No solution at t = {}: {}.</strong> {}</p>\n",
+                     number(number_at(steps.back(), "time"), 6), escape(in_plain_words(cell.status)), shown);
+}
+
+/// Responses and their derivatives at the last step that was solved, a line each.
 Table last_values(const Cell& cell) {
   Table table;
   table.header = {"response", "value"};
@@ -173,14 +189,15 @@ std::string first_of_run(const Study& run, Figures& figures) {
   if (wide)
     for (Panel& panel : responses->panels) panel.spec["height"] = low;
   const std::string scene = figures.show(draw_overview(run.picture)), histories = figures.show(std::move(responses));
-  std::string out = "<p class=\"reason\">" + escape_sentence(how_it_ended(run.cells.front())) + "</p>\n";
+  std::string out =
+      banner(run.cells.front()) + "<p class=\"reason\">" + escape_sentence(how_it_ended(run.cells.front())) + "</p>\n";
   for (const auto& warning : warning_sentences(run)) out += "<p class=\"warning\">" + escape(warning) + "</p>\n";
   if (run.picture.is_null())
     out += "<p class=\"note\">The bodies and tractions were not recorded; <code>run --report</code> does.</p>\n";
   constexpr std::size_t most_columns = 6;  // that half a page has room for
   const Table values = last_values(run.cells.front());
-  const std::string table =
-      values.rows.empty() ? "" : to_html(values, "Responses at the last step, and their derivatives");
+  const std::string when = banner(run.cells.front()).empty() ? "at the last step" : "at the last step that converged";
+  const std::string table = values.rows.empty() ? "" : to_html(values, "Responses " + when + ", and their derivatives");
   const bool narrow = values.header.size() <= most_columns;
   const std::string words = "<div>" + out + (narrow ? table : "") + "</div>\n", below = narrow ? "" : table;
   if (!wide && !scene.empty() && !histories.empty())

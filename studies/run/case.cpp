@@ -9,6 +9,7 @@
 #include "sensitivity/vertex_margin.hpp"
 #include "studies/io/json_document.hpp"
 #include "studies/run/contact_warnings.hpp"
+#include "studies/run/solution_warnings.hpp"
 #include "studies/run/step_reader.hpp"
 #include "studies/run/warnings.hpp"
 
@@ -280,6 +281,14 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
   result.objectives = objectives_of(result);
   refuse_overflow(result);
   return result;
+}
+
+bool has_ended(const CaseResult& result) { return solved_steps(result).size() == result.steps.size(); }
+
+std::span<const StepResult> solved_steps(const CaseResult& result) {
+  const auto end = std::find_if(result.steps.begin(), result.steps.end(),
+                                [](const StepResult& step) { return !step.increment->solved(); });
+  return {result.steps.begin(), end};
 }
 
 }  // namespace stickslip

@@ -103,4 +103,10 @@ nlohmann::json kkt_json(const KktError& error);
 /// Contact points of the last step by contact: position, arc length, tractions, gap, slip, state.
 nlohmann::json interface_json(const CaseResult& result);
 
+/// The steps that were solved: all of a run, or of one that failed those before. The last iterate of a step that failed
+/// is no answer: what tells of a run tells of these.
+std::span<const StepResult> solved_steps(const CaseResult& result);
+/// Whether these are all.
+bool has_ended(const CaseResult& result);
+
 }  // namespace stickslip

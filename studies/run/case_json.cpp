@@ -151,7 +151,7 @@ json objectives_json(const CaseResult& result) {
   json out = json::object();
   for (std::size_t i = 0; i < scene.objectives.size(); ++i) {
     json& entry = out[scene.objectives[i].name];
-    entry["value"] = finite(result.objectives[i]);
+    entry["value"] = has_ended(result) ? finite(result.objectives[i]) : json(nullptr);
     for (std::size_t j = 0; result.gradients.of_objectives.size() && j < scene.parameters.size(); ++j)
       entry["gradient"][scene.parameters[j].name] = finite(result.gradients.of_objectives(i, j));
   }
@@ -196,35 +196,45 @@ json solutions_json(const CaseResult& result) {
   return solutions;
 }
 
+/// Adds what a solved step tells: contacts, responses, margins and derivatives.
+void add_answers(const CaseResult& result, const StepResult& step, json& entry) {
+  const auto& scene = result.problem->model.scene;
+  json sensitivities = json::object();
+  for (std::size_t i = 0; i < scene.responses.size(); ++i)
+    for (std::size_t j = 0; step.sensitivities.size() && j < scene.parameters.size(); ++j)
+      sensitivities[scene.responses[i].name][scene.parameters[j].name] = finite(step.sensitivities(i, j));
+  entry["margins"] = {{"open", finite(step.margins.open)}, {"slip", finite(step.margins.slip)}};
+  if (result.problem->model.effects.plasticity) entry["margins"]["yield"] = finite(step.margins.yield);
+  if (slides_along_facets(result.problem->model)) entry["margins"]["vertex"] = finite(step.margins.vertex);
+  if (!scene.parameters.empty()) {
+    if (scene.sensitivity_mode == SensitivityMode::direct) entry["sensitivities"] = sensitivities;
+    entry["differentiable"] = step.differentiable;
+    if (!step.differentiable) entry["one_sided"] = one_sided_json(step, scene);
+  }
+  if (step.scheme) entry["sensitivity_scheme"] = scheme_json(*step.scheme);
+}
+
+/// A step without a solution has the last iterate of Newton's method under that name.
 json steps_json(const CaseResult& result) {
   const auto& scene = result.problem->model.scene;
   json steps = json::array();
   for (const auto& step : result.steps) {
-    json responses = json::object(), sensitivities = json::object();
-    for (std::size_t i = 0; i < scene.responses.size(); ++i) {
+    json responses = json::object();
+    for (std::size_t i = 0; i < scene.responses.size(); ++i)
       responses[scene.responses[i].name] = finite(step.responses[i]);
-      for (std::size_t j = 0; step.sensitivities.size() && j < scene.parameters.size(); ++j)
-        sensitivities[scene.responses[i].name][scene.parameters[j].name] = finite(step.sensitivities(i, j));
-    }
     json entry = {{"time", step.increment->time},
                   {"status", name_of(step.increment->status)},
                   {"newton", step.newton},
                   {"augmentations", step.augmentations},
                   {"cutbacks", step.increment->cutbacks},
                   {"history", history_json(step.history)},
-                  {"contacts", contacts_json(*result.problem, step.increment->state)},
-                  {"kkt", kkt_json(step.kkt)},
-                  {"margins", {{"open", finite(step.margins.open)}, {"slip", finite(step.margins.slip)}}},
-                  {"responses", responses}};
-    if (result.problem->model.effects.plasticity) entry["margins"]["yield"] = finite(step.margins.yield);
-    if (slides_along_facets(result.problem->model)) entry["margins"]["vertex"] = finite(step.margins.vertex);
-    if (!scene.parameters.empty()) {
-      if (scene.sensitivity_mode == SensitivityMode::direct) entry["sensitivities"] = sensitivities;
-      entry["differentiable"] = step.differentiable;
-      if (!step.differentiable) entry["one_sided"] = one_sided_json(step, scene);
-    }
+                  {"kkt", kkt_json(step.kkt)}};
+    const bool solved = step.increment->solved();
+    json& state = solved ? entry : entry["iterate"];
+    state["contacts"] = contacts_json(*result.problem, step.increment->state);
+    state["responses"] = responses;
+    if (solved) add_answers(result, step, entry);
     if (step.increment->contraction > 0) entry["contraction"] = step.increment->contraction;
-    if (step.scheme) entry["sensitivity_scheme"] = scheme_json(*step.scheme);
     if (!step.increment->message.empty()) entry["message"] = step.increment->message;
     steps.push_back(std::move(entry));
   }
@@ -266,9 +276,10 @@ const char* state_name(const ContactPoint& point, ContactState state) {
 
 json interface_json(const CaseResult& result) {
   json contacts = json::object();
-  if (result.steps.empty()) return contacts;
+  const auto solved = solved_steps(result);
+  if (solved.empty()) return contacts;
   const auto& [model, slots, unused] = *result.problem;
-  const auto& state = result.steps.back().increment->state;
+  const auto& state = solved.back().increment->state;
   for (std::size_t c = 0; c < model.scene.contacts.size(); ++c) {
     const json arc = arc_of(*result.problem, static_cast<int>(c));
     json x = json::array(), y = json::array(), area = json::array(), gap = json::array(), slip = json::array(),

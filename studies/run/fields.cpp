@@ -245,11 +245,12 @@ json numbers_json(const std::vector<Number>& numbers) {
   return out;
 }
 
-/// Every `every`-th step and the last one; 0: the last alone.
+/// Every `every`-th solved step and the last of them; 0: the last alone.
 std::vector<std::size_t> steps_with_fields(const CaseResult& result, int every) {
   std::vector<std::size_t> steps;
-  for (std::size_t n = 0; n < result.steps.size(); ++n)
-    if (n + 1 == result.steps.size() || (every > 0 && (n + 1) % every == 0)) steps.push_back(n);
+  const std::size_t count = solved_steps(result).size();
+  for (std::size_t n = 0; n < count; ++n)
+    if (n + 1 == count || (every > 0 && (n + 1) % every == 0)) steps.push_back(n);
   return steps;
 }
 
@@ -343,7 +344,7 @@ void for_each_field(const CaseResult& result, int every, const std::function<voi
   std::vector<PvdEntry> entries;
   for (const std::size_t n : steps_with_fields(result, every)) {
     const std::string file = field_file(n);
-    take(file, vtu_text(fields_of(result, result.steps[n], n + 1 == result.steps.size())));
+    take(file, vtu_text(fields_of(result, result.steps[n], n + 1 == solved_steps(result).size())));
     const bool may_return = result.problem->model.scene.arc_length.has_value();  // (viewers put times in order)
     entries.push_back({may_return ? static_cast<double>(n + 1) : result.steps[n].increment->time, file});
   }
@@ -368,7 +369,8 @@ namespace {
 json paths_json(const CaseResult& result) {
   constexpr std::size_t most = 200;  // of a path: more than a picture shows
   const auto& model = result.problem->model;
-  const std::size_t stride = (result.steps.size() + most - 1) / most;
+  const auto steps = solved_steps(result);
+  const std::size_t stride = (steps.size() + most - 1) / most;
   json paths = json::array();
   for (const auto& body : model.bodies) {
     const auto nodes = body.mesh.element_count() == 1 ? detail::element_nodes(body, 0) : std::vector<int>{};
@@ -376,8 +378,8 @@ json paths_json(const CaseResult& result) {
     if (nodes.size() != 2 || place(nodes[0]) != place(nodes[1])) continue;
     for (const int node : nodes) {
       json displacement = json::array();
-      for (std::size_t n = (result.steps.size() - 1) % stride; n < result.steps.size(); n += stride)
-        if (const auto& state = result.steps[n].increment->state; is_whole(state))
+      for (std::size_t n = steps.empty() ? 0 : (steps.size() - 1) % stride; n < steps.size(); n += stride)
+        if (const auto& state = steps[n].increment->state; is_whole(state))
           displacement.push_back(point_json(nodal(model, state.displacement).col(node)));
       paths.push_back({{"node", node}, {"displacement", displacement}});
     }
@@ -391,14 +393,16 @@ json picture_json(const CaseResult& result) {
   if (result.steps.empty()) return nullptr;
   const auto& problem = *result.problem;
   const auto& scene = problem.model.scene;
-  const auto& last = *result.steps.back().increment;
-  json picture = bodies_json(problem, last.state);
-  picture["contact"] = contact_json(problem, last.state);
+  const auto solved = solved_steps(result);  // where there is none, the picture is of the start
+  const State<double>& state = solved.empty() ? result.trajectory.initial : solved.back().increment->state;
+  const double time = solved.empty() ? 0 : solved.back().increment->time;
+  json picture = bodies_json(problem, state);
+  picture["contact"] = contact_json(problem, state);
   if (json paths = paths_json(result); !paths.empty()) picture["paths"] = std::move(paths);
   if (scene.finite_strain) picture["finite"] = true;  // it is drawn at true scale
   picture["obstacles"] = json::array();
   for (const auto& obstacle : scene.obstacles)
-    picture["obstacles"].push_back(obstacle_json(obstacle, last.time, scene.finite_strain, problem.slots.numbers));
+    picture["obstacles"].push_back(obstacle_json(obstacle, time, scene.finite_strain, problem.slots.numbers));
   picture["responses"] = json::object();
   for (const auto& response : scene.responses) picture["responses"][response.name] = name_of(response.kind);
   return picture;

@@ -4,15 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <span>
 
 #include "methods/diagnosis.hpp"
 #include "methods/residuals.hpp"
-#include "sensitivity/force_search.hpp"
 #include "studies/run/contact_warnings.hpp"
+#include "studies/run/locking_warnings.hpp"
+#include "studies/run/solution_warnings.hpp"
 #include "studies/run/strains.hpp"
 
 namespace stickslip {
@@ -21,12 +19,6 @@ namespace {
 using nlohmann::json;
 
 constexpr double degree = M_PI / 180;
-
-/// Poisson's ratio from which locking is looked for, and spurious pressure that is told.
-constexpr double nearly_incompressible = 0.45, most_spurious = 0.2;
-
-/// Whether these are all. What says something of a whole run is not said of one that failed.
-bool has_ended(const CaseResult& result) { return solved_steps(result).size() == result.steps.size(); }
 
 /// Largest strain and rotation in the elements of a body.
 BodyMeasures deformation_of(const Problem& problem, const State<double>& state, std::size_t b) {
@@ -76,13 +68,6 @@ IdleNumber idle_number(const FrictionLaw<double>& friction) {
   const auto words = std::visit([](const auto& law) { return law.idle; }, friction.law);
   const double first = friction.first_number();
   return {first, fmt::format(fmt::runtime(words), first)};
-}
-
-/// How many steps have a mark of a contact.
-long steps_with(const CaseResult& result, std::size_t contact, std::vector<char> StepResult::*marks) {
-  const auto steps = solved_steps(result);
-  return std::count_if(steps.begin(), steps.end(),
-                       [&](const StepResult& step) { return !(step.*marks).empty() && (step.*marks)[contact] != 0; });
 }
 
 void add_slips(const CaseResult& result, std::vector<Warning>& warnings) {
@@ -163,102 +148,6 @@ void add_cut_steps(const CaseResult& result, std::vector<Warning>& warnings) {
                      cut, steps.size())});
 }
 
-/// Elements whose pressure locks where the material hardly changes its volume.
-bool may_lock(const Problem& problem, std::size_t b) {
-  const auto& body = problem.model.bodies[b];
-  const ElementShape shape = body.mesh.shape;
-  return problem.model.scene.space != Space::plane_stress && !has_mean_dilatation(body.kinematics) &&
-         (shape == ElementShape::quad4 || shape == ElementShape::tri3);
-}
-
-/// What a body of small strain resists: of linear elasticity, or of a metal, whose flow keeps the volume.
-struct Moduli {
-  double lame, shear;
-  bool flows;
-  double nu() const { return lame / (2 * (lame + shear)); }
-};
-std::optional<Moduli> moduli_of(const Law<double>& law) {
-  if (const auto* elastic = std::get_if<LinearElasticLaw<double>>(&law))
-    return Moduli{elastic->lame, elastic->shear, false};
-  if (const auto* metal = std::get_if<J2Law<double>>(&law); metal && !metal->is_finite)
-    return Moduli{metal->lame, metal->shear, true};
-  return std::nullopt;
-}
-
-/// Whether locking is looked for in a body.
-bool is_watched_for_locking(const Problem& problem, std::size_t b) {
-  const auto moduli = moduli_of(problem.slots.laws[b]);
-  return moduli && may_lock(problem, b) && (moduli->flows || moduli->nu() >= nearly_incompressible);
-}
-
-void add_locking(const CaseResult& result, std::vector<Warning>& warnings) {
-  const auto& problem = *result.problem;
-  for (std::size_t b = 0; b < problem.model.bodies.size(); ++b) {
-    if (!is_watched_for_locking(problem, b)) continue;
-    const auto moduli = moduli_of(problem.slots.laws[b]);
-    double largest = 0;
-    for (const auto& step : solved_steps(result))
-      largest = larger(largest, step.bodies.empty() ? spurious_pressure(problem, step.increment->state, b)
-                                                    : step.bodies[b].spurious_pressure);
-    if (!(largest > most_spurious)) continue;
-    const std::string& name = problem.model.scene.bodies[b].name;
-    const bool quads = problem.model.bodies[b].mesh.shape == ElementShape::quad4;
-    warnings.push_back(
-        {WarningCode::locking, name, largest, quads ? "element Q4_mean_dilatation or Q8" : "element T6",
-         fmt::format("{} locks: {} in {} elements, and {:.2g} of its stress is a pressure "
-                     "that alternates from element to element",
-                     name, moduli->flows ? "plastic flow keeps the volume" : fmt::format("nu = {:.6g}", moduli->nu()),
-                     quads ? "Q4" : "T3", largest)});
-  }
-}
-
-/// Nodes at the ends of an element's edge on the boundary of its body.
-using BoundaryEdges = std::map<int, std::pair<int, int>>;  // by element
-
-/// Per element with an edge on the boundary: one of these. Empty where some node is inside of the body: then it is more
-/// than one element thick.
-BoundaryEdges edges_of_thin_body(const Mesh& mesh) {
-  const int nodes = nodes_of(mesh.shape);
-  std::map<std::pair<int, int>, int> edges;  // as the elements have them; an inner one in both directions
-  for (int e = 0; e < mesh.element_count(); ++e)
-    for (int k = 0; k < nodes; ++k)
-      edges[{mesh.connectivity[e * nodes + k], mesh.connectivity[e * nodes + (k + 1) % nodes]}] = e;
-  BoundaryEdges found;
-  std::set<int> on_boundary;
-  for (const auto& [edge, element] : edges) {
-    if (edges.count({edge.second, edge.first}) > 0) continue;
-    found.emplace(element, edge);
-    on_boundary.insert({edge.first, edge.second});
-  }
-  return static_cast<int>(on_boundary.size()) == mesh.node_count ? found : BoundaryEdges{};
-}
-
-bool may_lock_in_shear(const Problem& problem, std::size_t b) {
-  const ElementShape shape = problem.model.bodies[b].mesh.shape;
-  return shape == ElementShape::quad4 || shape == ElementShape::tri3;
-}
-
-void add_shear_locking(const CaseResult& result, std::vector<Warning>& warnings) {
-  constexpr double most = 0.2;  // squares, of which bending is more than half of the squared strain
-  const auto& problem = *result.problem;
-  for (std::size_t b = 0; b < problem.model.bodies.size(); ++b) {
-    if (!may_lock_in_shear(problem, b) || edges_of_thin_body(problem.model.bodies[b].mesh).empty()) continue;
-    double largest = 0;
-    for (const auto& step : solved_steps(result))
-      largest = larger(largest, step.bodies.empty() ? parasitic_shear(problem, step.increment->state, b)
-                                                    : step.bodies[b].parasitic_shear);
-    if (!(largest > most)) continue;
-    const std::string& name = problem.model.scene.bodies[b].name;
-    const bool quads = problem.model.bodies[b].mesh.shape == ElementShape::quad4;
-    warnings.push_back({WarningCode::shear_locking, name, largest,
-                        quads ? "element Q8, or more elements through its thickness"
-                              : "element T6, or more elements through its thickness",
-                        fmt::format("{} bends, and is one {} thick: {:.2g} of its squared strain is a shear that "
-                                    "bending has not, so that it is too stiff",
-                                    name, quads ? "Q4" : "T3", largest)});
-  }
-}
-
 /// The motion that a body is free to make where only what presses holds it. `reach`: largest displacement of the run.
 std::string motion_of_floating_body(const Problem& problem, const State<double>& state, std::size_t b, double reach) {
   constexpr double pressing = 1e-6;  // of the largest traction: less is a touch without force
@@ -282,7 +171,7 @@ void add_floating_bodies(const CaseResult& result, std::vector<Warning>& warning
   for (const auto& step : solved_steps(result))
     reach = std::max(reach, largest_nodal_norm(step.increment->state.displacement, model.dimension));
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    if (&model.scene.bodies[b] == loose_body(model)) continue;  // (add_loose_bodies names it)
+    if (&model.scene.bodies[b] == loose_body(model)) continue;  // (studies/run/solution_warnings.cpp names it)
     std::string motion;
     double first = 0;
     int steps = 0;
@@ -360,102 +249,6 @@ void add_shared_places(const CaseResult& result, std::vector<Warning>& warnings)
   }
 }
 
-void add_loose_bodies(const CaseResult& result, std::vector<Warning>& warnings) {
-  if (const Body* const loose = loose_body(result.problem->model))
-    warnings.push_back({WarningCode::non_unique, loose->name, 0, "add a support or a contact",
-                        loose->name + " may be anywhere: no support holds it and no contact touches it; it is left "
-                                      "where it is"});
-}
-
-/// Steps with other solutions than the one that was taken, where these were counted, or with tangents that belong to
-/// problems of which some have several.
-void add_other_solutions(const CaseResult& result, std::vector<Warning>& warnings) {
-  std::size_t most = 0, several = 0, uncounted = 0;
-  double first = 0;
-  const std::span increments(result.trajectory.increments.data(), result.trajectory.solved_count());
-  for (const auto& increment : increments) {
-    if (increment.reversed && !increment.counted) ++uncounted;
-    if (increment.others.empty()) continue;
-    if (several++ == 0) first = increment.time;
-    most = std::max(most, 1 + increment.others.size());
-  }
-  const std::string remedy =
-      "look at `solutions`, and whether friction this high is meant; smaller steps follow a branch";
-  if (several > 0)
-    warnings.push_back(
-        {WarningCode::non_unique, "", static_cast<double>(most), remedy,
-         fmt::format("{} of {} increments have several solutions, up to {}, the first at t = {:.6g}; the one "
-                     "is taken in which the motion from the last increment comes to rest",
-                     several, increments.size(), most, first)});
-  for (const auto& increment : increments)
-    if (increment.jump)
-      warnings.push_back({WarningCode::branch_ends, "", *increment.jump,
-                          "control a displacement in place of a force, or lower the friction",
-                          fmt::format("the branch of solutions ends at t = {:.4g}, and the bodies jump to another one",
-                                      *increment.jump)});
-  if (several == 0 && uncounted > 0)
-    warnings.push_back(
-        {WarningCode::non_unique, "", 1, remedy,
-         fmt::format("{} of {} increments met tangents whose determinant has the other sign: there may be "
-                     "other solutions",
-                     uncounted, increments.size())});
-}
-
-/// Contacts whose forces equilibrium leaves open, and points on a vertex.
-void add_undetermined_contacts(const CaseResult& result, std::vector<Warning>& warnings) {
-  const auto& contacts = result.problem->model.scene.contacts;
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    const std::string& name = contacts[c].name;
-    const std::size_t steps = solved_steps(result).size();
-    if (const long n = steps_with(result, c, &StepResult::undetermined); n > 0)
-      warnings.push_back(
-          {WarningCode::non_unique, name, 0,
-           "take friction off one of the contacts of a node, or use fewer slave nodes on a facet of the master",
-           fmt::format("{}: in {} of {} steps the forces of its points are not determined: their constraints repeat "
-                       "one another, so that other forces balance the same loads; methods, scales and steps may settle "
-                       "on different ones",
-                       name, n, steps)});
-    if (const long n = steps_with(result, c, &StepResult::at_vertex); n > 0)
-      warnings.push_back(
-          {WarningCode::non_unique, name, 1,
-           R"(smooth the master, integrate over segments ("discretization": "segment"), or shift a mesh a little)",
-           fmt::format("{}: in {} of {} steps a point begins or ends on a vertex of the master's facets: each of "
-                       "the two facets may lead to a solution of its own, and rounding decides between them",
-                       name, n, steps)});
-  }
-}
-
-/// Springs of a penalty that yield beside the bodies: under the contact's force, as the method-blind errors measure it;
-/// and under the part of the pressures that the slave alone shares out, where more nodes of it face the master than
-/// nodes of that. It yields there by 1/k of its nodes, beside which the springs' 1/(stiffness A) is to be small.
-void add_soft_penalty(const CaseResult& result, std::vector<Warning>& warnings) {
-  constexpr double most = 0.02;
-  const auto* penalty = std::get_if<Penalty>(&result.method);
-  if (!penalty) return;
-  constexpr const char* stiffer = "raise `stiffness`, or take another method";
-  double yields = 0;
-  for (const auto& step : solved_steps(result)) yields = std::max({yields, step.kkt.gap, step.kkt.stick});
-  if (yields > most)
-    warnings.push_back({WarningCode::soft_penalty, "", yields, stiffer,
-                        fmt::format("the springs of the penalty yield by {:.2g} % of the motion of the contact, and "
-                                    "forces are off by about as much",
-                                    100 * yields)});
-  const auto& [model, slots, unused] = *result.problem;
-  const auto rho = initial_regularisation(slots, *penalty);
-  const auto shares = slave_shares(model, slots);
-  std::vector<double> softest(model.scene.contacts.size(), 0);
-  for (std::size_t p = 0; p < shares.size(); ++p)
-    softest[model.points[p].contact] =
-        std::max(softest[model.points[p].contact], shares[p] / (rho[p].normal * slots.geometry[p].area));
-  for (std::size_t c = 0; c < softest.size(); ++c)
-    if (softest[c] > most && softest[c] > 10 * yields)  // (the first sentence says the rest)
-      warnings.push_back(
-          {WarningCode::soft_penalty, model.scene.contacts[c].name, softest[c], stiffer,
-           fmt::format("{}: several nodes of a stiff slave share facets of a softer master, and the springs of the "
-                       "penalty yield by {:.2g} times what the slave does: they decide how its nodes share the force",
-                       model.scene.contacts[c].name, softest[c])});
-}
-
 /// A path that used its steps up before it came to the full load.
 void add_path_that_goes_on(const CaseResult& result, std::vector<Warning>& warnings) {
   const auto& model = result.problem->model;
@@ -469,113 +262,20 @@ void add_path_that_goes_on(const CaseResult& result, std::vector<Warning>& warni
 
 }  // namespace
 
-const Body* loose_body(const Model& model) {
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    const auto in_body = [&, first = model.bodies[b].first_node](int node) {
-      return node >= first && node < first + model.bodies[b].mesh.node_count;
-    };
-    const bool held = std::any_of(model.constraints.begin(), model.constraints.end(),
-                                  [&](const Constraint& c) { return in_body(c.dof / model.dimension); });
-    const bool touched = std::any_of(model.contact_nodes.begin(), model.contact_nodes.end(), in_body);
-    if (!held && !touched) return &model.scene.bodies[b];
-  }
-  return nullptr;
-}
-
-double spurious_pressure(const Problem& problem, const State<double>& state, std::size_t b) {
-  const auto& law = problem.slots.laws[b];
-  const auto moduli = moduli_of(law);
-  if (!moduli || !may_lock(problem, b)) return 0;
-  const auto& mesh = problem.model.bodies[b].mesh;
-  const int nodes = nodes_of(mesh.shape);
-  Vector<double> volume = Vector<double>::Zero(mesh.element_count()), change = volume, around = volume;
-  for_each_strain(problem, state, b, [&](int e, const auto& H, double v, const double*) {
-    volume[e] += v;
-    change[e] += v * H.trace();
-  });
-  Vector<double> nodal_volume = Vector<double>::Zero(mesh.node_count), nodal_change = nodal_volume;
-  for (int e = 0; e < mesh.element_count(); ++e)
-    for (int a = 0; a < nodes; ++a) {
-      nodal_volume[mesh.connectivity[e * nodes + a]] += volume[e];
-      nodal_change[mesh.connectivity[e * nodes + a]] += change[e];
-    }
-  for (int e = 0; e < mesh.element_count(); ++e)
-    for (int a = 0; a < nodes; ++a) {
-      const int node = mesh.connectivity[e * nodes + a];
-      around[e] += nodal_change[node] / nodal_volume[node] / nodes;
-    }
-  const double bulk = moduli->lame + 2 * moduli->shear / 3;
-  double spurious = 0, all = 0;
-  for_each_strain(problem, state, b, [&](int e, const auto& H, double v, const double* memory) {
-    constexpr int rows = std::decay_t<decltype(H)>::RowsAtCompileTime;
-    const auto [xx, yy, zz, xy] = stress_of<rows>(law, H, memory);
-    spurious += v * std::pow(bulk * (H.trace() - around[e]), 2);
-    all += v * (xx * xx + yy * yy + zz * zz + 2 * xy * xy);
-  });
-  return all > 0 ? std::sqrt(spurious / all) : 0;
-}
-
-double parasitic_shear(const Problem& problem, const State<double>& state, std::size_t b) {
-  const auto& body = problem.model.bodies[b];
-  const auto& mesh = body.mesh;
-  if (!may_lock_in_shear(problem, b)) return 0;
-  const auto edges = edges_of_thin_body(mesh);
-  if (edges.empty()) return 0;
-  const int nodes = nodes_of(mesh.shape);
-  using Strain = Mat<double, 2>;  // in the plane; Green's at finite strain
-  const auto strain_of = [&](const auto& H) {
-    const Strain h = H.template topLeftCorner<2, 2>();
-    Strain strain = (h + h.transpose()) / 2;
-    if (problem.model.scene.finite_strain) strain += h.transpose() * h / 2;
-    return strain;
-  };
-  std::vector<double> volume(mesh.element_count(), 0), nodal_volume(mesh.node_count, 0);
-  std::vector<Strain> mean(mesh.element_count(), Strain::Zero()), nodal(mesh.node_count, Strain::Zero()), around = mean;
-  for_each_strain(problem, state, b, [&](int e, const auto& H, double v, const double*) {
-    volume[e] += v;
-    mean[e] += v * strain_of(H);
-  });
-  for (int e = 0; e < mesh.element_count(); ++e)
-    for (int a = 0; a < nodes; ++a) {
-      nodal_volume[mesh.connectivity[e * nodes + a]] += volume[e];
-      nodal[mesh.connectivity[e * nodes + a]] += mean[e];
-    }
-  for (int e = 0; e < mesh.element_count(); ++e)
-    for (int a = 0; a < nodes; ++a) {
-      const int node = mesh.connectivity[e * nodes + a];
-      around[e] += nodal[node] / (nodal_volume[node] * nodes);
-    }
-  double shear = 0, all = 0;
-  for_each_strain(problem, state, b, [&](int e, const auto& H, double v, const double*) {
-    const Strain strain = strain_of(H);
-    all += v * strain.squaredNorm();
-    const auto edge = edges.find(e);
-    if (edge == edges.end()) return;
-    const auto [from, to] = edge->second;
-    const Vec<double, 2> along =
-        (problem.slots.points.col(body.first_node + to) - problem.slots.points.col(body.first_node + from))
-            .template head<2>()
-            .normalized();
-    const double varying = along.dot((strain - around[e]) * Vec<double, 2>(-along[1], along[0]));
-    shear += 2 * v * varying * varying;
-  });
-  return all > 0 ? shear / all : 0;
-}
-
 BodyMeasures measures_of_body(const Problem& problem, const State<double>& state, std::size_t b) {
   BodyMeasures measures;
   if (!problem.model.scene.finite_strain) measures = deformation_of(problem, state, b);
-  if (is_watched_for_locking(problem, b)) measures.spurious_pressure = spurious_pressure(problem, state, b);
+  measures.spurious_pressure = watched_pressure(problem, state, b);
   measures.parasitic_shear = parasitic_shear(problem, state, b);
   measures.free_motion =
       motion_of_floating_body(problem, state, b, largest_nodal_norm(state.displacement, problem.model.dimension));
   return measures;
 }
 
-std::span<const StepResult> solved_steps(const CaseResult& result) {
-  const auto end = std::find_if(result.steps.begin(), result.steps.end(),
-                                [](const StepResult& step) { return !step.increment->solved(); });
-  return {result.steps.begin(), end};
+long steps_with(const CaseResult& result, std::size_t contact, std::vector<char> StepResult::*marks) {
+  const auto steps = solved_steps(result);
+  return std::count_if(steps.begin(), steps.end(),
+                       [&](const StepResult& step) { return !(step.*marks).empty() && (step.*marks)[contact] != 0; });
 }
 
 std::vector<Warning> warnings_of(const CaseResult& result) {
@@ -584,16 +284,12 @@ std::vector<Warning> warnings_of(const CaseResult& result) {
   add_slips(result, warnings);
   add_held_points(result, warnings);
   add_cut_steps(result, warnings);
-  add_locking(result, warnings);
-  add_shear_locking(result, warnings);
+  add_locking_warnings(result, warnings);
   add_single_nodes(result, warnings);
   add_contact_warnings(result, warnings);
   add_floating_bodies(result, warnings);
   add_shared_places(result, warnings);
-  if (has_ended(result)) add_loose_bodies(result, warnings);
-  add_other_solutions(result, warnings);
-  add_undetermined_contacts(result, warnings);
-  add_soft_penalty(result, warnings);
+  add_solution_warnings(result, warnings);
   if (has_ended(result)) add_path_that_goes_on(result, warnings);
   return warnings;
 }

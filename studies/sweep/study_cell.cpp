@@ -62,7 +62,7 @@ json brief(const json& steps) {
   json out = json::array();
   for (const auto& step : steps) {
     json kept = json::object();
-    for (const char* name : {"time", "status", "newton", "augmentations", "cutbacks", "history", "responses",
+    for (const char* name : {"time", "status", "newton", "augmentations", "cutbacks", "history", "responses", "iterate",
                              "contraction", "sensitivity_scheme"})
       if (step.contains(name)) kept[name] = step[name];
     if (few && step.contains("sensitivities")) kept["sensitivities"] = step["sensitivities"];
@@ -161,22 +161,24 @@ json CellRunner::seconds(std::size_t cell) {
   return seconds_of(run(cells_[cell]));
 }
 
-/// Enforcement errors are against runs on the same mesh, discretisation errors against all other references. Where
-/// several give an error of one name, the first in the study's list counts, and each is recorded by reference too.
+/// None of a run without a solution. Enforcement errors are against runs on the same mesh, discretisation errors
+/// against all other references. Where several give an error of one name, the first in the study's list counts, and
+/// each is recorded by reference too.
 json CellRunner::errors(const CaseResult& result) const {
   json all = {{"enforcement", json::object()}, {"discretization", json::object()}}, by_reference = json::array();
   auto same_mesh = variant_.same_mesh.begin();
   auto overkill = variant_.overkill.begin();
   for (const auto& reference : study_.references) {
     const bool enforcement = reference.kind == Reference::Kind::method;
-    json given;
+    json given = json::object();
     if (enforcement) {
       const auto& other = *same_mesh++;
-      if (other && is_converged(other->status())) given = only_asked(enforcement_errors(result, *other), study_.errors);
+      if (has_ended(result) && other && is_converged(other->status()))
+        given = only_asked(enforcement_errors(result, *other), study_.errors);
     } else {
       const auto values =
           reference.kind == Reference::Kind::overkill ? *overkill++ : reference_values(reference.entry, result);
-      given = only_asked(discretisation_errors(result, values), study_.errors);
+      if (has_ended(result)) given = only_asked(discretisation_errors(result, values), study_.errors);
     }
     fill_in(all[enforcement ? "enforcement" : "discretization"], given);
     by_reference.push_back({{"reference", reference.entry}, {"errors", given}});
@@ -229,8 +231,8 @@ json CellRunner::measured_row(const CellInput& cell) {
   const json steps = steps_json(result);
   row["errors"] = errors(result);
   if (study_.budget_copies > 0) row["error_budget"] = budgets_.of(cell, result);
-  if (!steps.empty()) {
-    if (asked_for("kkt", study_.errors)) row["errors"]["kkt"] = steps.back()["kkt"];
+  if (!steps.empty() && asked_for("kkt", study_.errors)) row["errors"]["kkt"] = steps.back()["kkt"];
+  if (!steps.empty() && has_ended(result)) {
     row["responses"] = steps.back()["responses"];
     row["scales"] = scales_json(result);
     if (steps.back().contains("sensitivities")) row["sensitivities"] = steps.back()["sensitivities"];

@@ -7,6 +7,9 @@ import importlib.util
 import pathlib
 import sys
 import unittest
+import unittest.mock
+
+import numpy as np
 
 EXAMPLES = pathlib.Path(__file__).parents[2] / "studies" / "examples"
 sys.path.insert(0, str(EXAMPLES))
@@ -22,6 +25,26 @@ class Examples(unittest.TestCase):
         for name, value in found.items():  # the noise is 0.2 % of the force, of 60 steps
             self.assertLess(abs(value / identify.HIDDEN[name] - 1), 0.002, name)
         self.assertEqual(stuck["mu"], 5.0)
+
+    @needs_nlopt
+    def test_a_search_survives_trials_without_a_solution(self):
+        import identify
+        import stickslip
+        simulate, lost = identify.simulate, []
+
+        def fails_beyond(values):
+            if values["k"] > 140:  # the first step from 60 goes to 1200, the bound; the hidden one is 137
+                lost.append(values)
+                raise stickslip.NotConverged(stickslip.run(identify.SCENE, check=False))
+            return simulate(values)
+
+        curve, _ = simulate(identify.HIDDEN)
+        with unittest.mock.patch.object(identify, "simulate", fails_beyond):
+            found, misfit, _ = identify.identify(curve, {"mu": 0.2, "k": 60.0})
+        self.assertGreater(len(lost), 0)
+        self.assertTrue(np.isfinite(misfit))
+        for name, value in found.items():
+            self.assertLess(abs(value / identify.HIDDEN[name] - 1), 1e-4, name)  # the search ends at 1e-8 of x
 
     @needs_nlopt
     def test_a_shaped_floor_evens_out_the_pressure(self):

@@ -242,6 +242,25 @@ class Figures(InFolder):
         np.testing.assert_allclose(line.get_ydata(), [5], rtol=1e-13)  # the closed form's F - k g0
         self.assertEqual(given.get_title(), "stop, t = 1")
 
+    def test_tractions_of_a_step_without_a_solution_are_drawn_on_request_alone(self):
+        scene = json.loads(json.dumps(self.PUSHED))
+        result = stickslip.run(scene, check=False)
+        self.assertEqual(result.failed_at, 1)
+        with self.assertRaisesRegex(ValueError, "there is no solution at t = 1 .*step 0 is the last that has one"):
+            plots.tractions(result)
+        self.assertEqual(plots.tractions(result, step=0).get_title(), "sole, t = 0.5")
+        axes = plots.tractions(result, iterate=True)
+        self.assertEqual(axes.get_title(), f"no solution ({result.status}), last iterate, t = 1")
+        self.assertEqual({line.get_linestyle() for line in axes.get_lines() if line.get_label() != "slip"}, {"--"})
+
+    PUSHED = {"bodies": {"block": {"mesh": {"box": {"min": [0, 0], "max": [4, 2], "cells": [6, 3]}},
+                                   "material": {"linear_elastic": {"E": 1000, "nu": 0.3}}}},
+              "obstacles": {"floor": {"plane": {"point": [0, 0], "normal": [0, 1]}}},
+              "contacts": {"sole": {"slave": "block.bottom", "master": "floor", "friction": 0.3}},
+              "loads": [{"on": "block.top", "traction": [0, -5]},
+                        {"on": "block.top", "traction": [2, 0], "history": [[0, 0], [0.5, 0], [1, 1]]}],
+              "time": {"end": 1, "steps": 2}, "method": {"monolithic_al": {}}}
+
     def test_work_precision_draws_each_method_against_its_work(self):
         rows = self.study()
         one = [row for row in rows if row["/loads/0/force/0"] == 15]

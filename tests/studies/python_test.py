@@ -262,18 +262,40 @@ class Input(unittest.TestCase):
     def test_a_failed_solve_is_a_status_and_keeps_what_there_is(self):
         scene = plate(3)
         scene["loads"][0]["traction"] = [2, -5]  # more than friction can hold
-        result = stickslip.run(scene)
+        result = stickslip.run(scene, check=False)
         self.assertFalse(result.converged)
         self.assertNotEqual(result.message, "")
         self.assertEqual(result.document["status"], result.status)
         self.assertEqual(len(result.times), len(result.document["steps"]))
 
-    def test_a_failed_solve_is_raised_where_that_is_asked_for(self):
+    def test_an_iterate_of_a_failed_solve_is_no_answer(self):
         scene = plate(3)
-        self.assertTrue(stickslip.run(scene, check=True).converged)
+        scene["loads"][0]["traction"] = [2, -5]
+        scene["loads"][0]["history"] = [[0, 0], [0.5, 0], [1, 1]]
+        scene["loads"].append({"on": "block.top", "traction": [0, -5]})
+        scene["time"] = {"end": 1, "steps": 2}
+        scene["parameters"] = {"mu": "/contacts/sole/friction"}
+        result = stickslip.run(scene, check=False)
+        self.assertEqual(result.failed_at, 1)
+        self.assertEqual(len(result.times), 2)
+        for name, values in result.responses.items():
+            self.assertTrue(np.isfinite(values[0]) and np.isnan(values[1]), name)
+            self.assertTrue(np.isnan(result.sensitivities[name]["mu"][1]), name)
+        self.assertNotIn("responses", result.document["steps"][1])
+        self.assertEqual(set(result.document["steps"][1]["iterate"]["responses"]), set(result.responses))
+        for of in (result.displacement, lambda **more: result.contact("sole", **more)):
+            with self.assertRaisesRegex(ValueError, "there is no solution at t = 1 .*step 0 is the last"):
+                of()
+            of(step=0)
+            of(iterate=True)
+        self.assertIsNone(stickslip.run(plate(3)).failed_at)
+
+    def test_a_failed_solve_is_raised(self):
+        scene = plate(3)
+        self.assertTrue(stickslip.run(scene).converged)
         scene["loads"][0]["traction"] = [2, -5]
         with self.assertRaises(stickslip.NotConverged) as caught:
-            stickslip.run(scene, check=True)
+            stickslip.run(scene)
         result = caught.exception.result
         self.assertEqual(str(caught.exception), f"{result.status}: {result.message}")
         self.assertFalse(result.converged)

@@ -75,7 +75,7 @@ def solve(program, scene, method, seconds, keep):
             result = json.loads(out.stdout)
         except json.JSONDecodeError:
             return f"exit {out.returncode}", out.stderr.strip(), []
-        return result["status"], result["message"], [step["responses"] for step in result["steps"]]
+        return result["status"], result["message"], [step["responses"] for step in result["steps"] if "responses" in step]
 
 
 def values_of(steps):

@@ -26,7 +26,9 @@ class ReportOfARun : public recorded::StudyOnDisk {
   /// What `run --report` leaves of a shipped scene, and its page without scripts.
   std::string page_of(const std::string& scene, bool with_picture = true) {
     const auto document = cases::load(scene_files / (scene + ".json"));
-    const auto result = cases::run(document, document["method"], scene_files / (scene + ".json"));
+    return page_of(cases::run(document, document["method"], scene_files / (scene + ".json")), with_picture);
+  }
+  std::string page_of(const CaseResult& result, bool with_picture = true) {
     std::ofstream(directory_ / "result.json") << result_json(result, "").dump();
     if (with_picture) {
       json drawn = picture_json(result);
@@ -132,6 +134,58 @@ TEST_F(ReportOfARun, EscapesHostileNames) {
   const std::string html = written();
   for (const auto& tag : recorded::tags_of(html)) EXPECT_NE(tag.name, "img");
   EXPECT_THAT(html, HasSubstr("&lt;img src=x"));
+}
+
+/// A block that is pressed, and then pushed by more than friction can hold, in `steps` steps; of one, the first fails.
+CaseResult pushed_away(int steps) {
+  const json scene = {{"bodies",
+                       {{"b",
+                         {{"mesh", {{"box", {{"min", {0, 0}}, {"max", {2, 1}}, {"cells", {8, 2}}}}}},
+                          {"material", {{"linear_elastic", {{"E", 1000}, {"nu", 0.3}}}}}}}}},
+                      {"obstacles", {{"floor", {{"plane", {{"point", {0, 0}}, {"normal", {0, 1}}}}}}}},
+                      {"contacts", {{"sole", {{"slave", "b.bottom"}, {"master", "floor"}, {"friction", 0.3}}}}},
+                      {"loads",
+                       {{{"on", "b.top"}, {"traction", {0, -10}}},
+                        {{"on", "b.top"}, {"traction", {40, 0}}, {"history", {{0, 0}, {0.5, 0.05}, {1, 1}}}}}},
+                      {"time", {{"end", 1}, {"steps", steps}}},
+                      {"responses",
+                       {{"n", {{"contact_force", {{"contact", "sole"}, {"component", "normal"}}}}},
+                        {"aside", {{"displacement", {{"on", "b.top"}, {"component", "x"}}}}}}},
+                      {"objectives", {{"J", {{"of", "aside"}, {"sum", true}}}}},
+                      {"parameters", {{"mu", "/contacts/sole/friction"}}}};
+  return cases::run(scene, {{"monolithic_al", json::object()}}, "pushed.json");
+}
+
+TEST_F(ReportOfARun, WithoutASolutionShowsTheLastStepThatHasOneUnderABanner) {
+  const auto result = pushed_away(2);
+  ASSERT_EQ(result.status(), Status::no_equilibrium);
+  const json document = json::parse(result_json(result, "").dump());
+  const json &solved = document["steps"][0], &failed = document["steps"].back();
+  EXPECT_TRUE(solved.contains("responses") && solved.contains("sensitivities") && solved.contains("margins"));
+  for (const char* answer : {"responses", "sensitivities", "one_sided", "differentiable", "contacts", "margins"})
+    EXPECT_FALSE(failed.contains(answer)) << answer;
+  EXPECT_TRUE(failed["iterate"]["responses"].contains("n") && failed["iterate"]["contacts"].contains("sole"));
+  EXPECT_TRUE(document["objectives"]["J"]["value"].is_null());
+  const json picture = picture_json(result);
+  const auto& x = result.steps[0].increment->state.displacement;
+  EXPECT_EQ(field_files(result, 1), (std::vector<std::string>{"fields.pvd", "fields_0001.vtu"}));
+  EXPECT_EQ(film_json(result)["times"], json::parse("[0.5]"));
+  EXPECT_NE(picture.dump().find(json(x[x.size() - 2]).dump()), std::string::npos);
+  const std::string html = page_of(result);
+  EXPECT_THAT(html,
+              AllOf(HasSubstr("<p class=\"banner\"><strong>No solution at t = 1: no equilibrium.</strong> What is "
+                              "shown is the last step that converged, t = 0.5.</p>"),
+                    HasSubstr("Responses at the last step that converged, and their derivatives"),
+                    HasSubstr("id=\"overview\"")));
+}
+
+TEST_F(ReportOfARun, WithoutAnySolutionShowsTheStartUnderABanner) {
+  const auto result = pushed_away(1);
+  ASSERT_EQ(result.steps.size(), 1u);
+  EXPECT_EQ(field_files(result, 1), std::vector<std::string>{"fields.pvd"});
+  const std::string html = page_of(result);
+  EXPECT_THAT(html, AllOf(HasSubstr("No step before it converged: what is shown is the start."),
+                          HasSubstr("id=\"overview\""), Not(HasSubstr("<caption>Responses"))));
 }
 
 TEST_F(ReportOfARun, SaysThatAnEditedResultIsNone) {

@@ -124,6 +124,58 @@ TEST(SeveralSolutions, AreToldOfAPointThatBeginsOnAVertex) {
   EXPECT_THAT(warnings(turned, monolithic), Not(Contains(leaves)));
 }
 
+/// Bars in a row that lie a little above a rough floor sag onto it: which of them slide, and how far, depends on the
+/// way.
+TEST(SeveralSolutions, AreToldOfBarsThatBeginAsAMechanism) {
+  const auto folds = testing::AllOf(has_code(WarningCode::non_unique), testing::Field(&Warning::where, "b"),
+                                    testing::Field(&Warning::value, 1));
+  const auto chain = [](int cells, const char* strain) {
+    return json{{"strain", strain},
+                {"bodies",
+                 {{"b",
+                   {{"mesh", {{"line", {{"from", {0, 0}}, {"to", {2.4, 0.03}}, {"cells", cells}}}}},
+                    {"element", "bar"},
+                    {"area", 0.8},
+                    {"material", {{"linear_elastic", {{"E", 1000}, {"nu", 0}}}}}}}}},
+                {"obstacles", {{"floor", {{"plane", {{"point", {0, 0}}, {"normal", {0, 1}}}}}}}},
+                {"contacts", {{"c", {{"slave", "b.nodes"}, {"master", "floor"}, {"friction", 0.3}}}}},
+                {"supports", {{{"on", "b.end"}, {"move", {{"x", {{0, 0}, {1, -0.04}}}, {"y", 0}}}}}},
+                {"loads", {{{"on", "b.nodes"}, {"force", {0, -4}}, {"history", {{0, 0.1}, {1, 1}}}}}},
+                {"time", {{"end", 1}, {"steps", 2}}}};
+  };
+  for (const auto& method : {penalty, uzawa, monolithic}) {
+    EXPECT_THAT(warnings(chain(11, "finite"), method), Contains(folds)) << method;
+    EXPECT_THAT(warnings(chain(1, "finite"), method), Not(Contains(folds))) << method;  // it turns as a whole
+  }
+  json frictionless = chain(11, "finite");
+  frictionless["contacts"]["c"].erase("friction");
+  EXPECT_THAT(warnings(frictionless, monolithic), Not(Contains(folds)));
+}
+
+/// The corner at (1, 1) of one square is moved inwards along the diagonal: beyond the other diagonal it is folded.
+TEST(FoldedElements, AreToldWhereNoIntegrationPointSeesThem) {
+  const auto corner = [](const char* on, double by) {
+    return json{{"on", on}, {"move", {{"x", {{0, 0}, {1, by}}}, {"y", {{0, 0}, {1, by}}}}}};
+  };
+  for (const auto& [by, folded] : {std::pair{-0.45, false}, {-0.55, true}}) {
+    json scene = {{"strain", "finite"},
+                  {"bodies",
+                   {{"b",
+                     {{"mesh", {{"box", {{"min", {0, 0}}, {"max", {1, 1}}, {"cells", {1, 1}}}}}},
+                      {"material", {{"neo_hookean", {{"E", 1}, {"nu", 0.3}}}}}}}}},
+                  {"supports", json::array()},
+                  {"time", {{"end", 1}, {"steps", 4}}}};
+    for (const char* on : {"b.left & b.bottom", "b.right & b.bottom", "b.left & b.top"})
+      scene["supports"].push_back(corner(on, 0));
+    scene["supports"].push_back(corner("b.right & b.top", by));
+    const auto told = has_code(WarningCode::folded_element);
+    if (folded)
+      EXPECT_THAT(warnings(scene, monolithic), Contains(told));
+    else
+      EXPECT_THAT(warnings(scene, monolithic), Not(Contains(told)));
+  }
+}
+
 TEST(SoftPenalty, IsToldWhereItsSpringsYieldBesideTheBodies) {
   const json scene = block_on_a_soft_slab(1, 100);
   const auto soft = has_code(WarningCode::soft_penalty);

@@ -13,10 +13,10 @@ Arrays = Dict[str, np.ndarray]
 
 
 class NotConverged(RuntimeError):
-    """A run that ended without a solution, raised where `check=True` asks for it. str() is its status and message."""
+    """A run that ended without a solution: `run` raises it unless `check=False`. str() is its status and message."""
 
     result: "Result"
-    """What there is of it."""
+    """What there is of it: the steps before."""
 
     def __init__(self, result: "Result"):
         super().__init__(result)
@@ -47,6 +47,9 @@ class Result:
         Title of the scene; "penalty", "uzawa_al" or "monolithic_al".
     times : ndarray, (steps,)
         End of each step; a step that failed is the last.
+    failed_at : float or None
+        Time of the step that has no solution. Its responses and derivatives are NaN, for the last iterate of Newton's
+        method is no answer; `displacement` and `contact` give it with `iterate=True` alone.
     responses : dict of ndarray, (steps,)
         By name.
     sensitivities : dict of dict of ndarray, (steps,)
@@ -65,6 +68,7 @@ class Result:
     title: str
     method: str
     times: np.ndarray
+    failed_at: Optional[float]
     responses: Arrays
     sensitivities: Dict[str, Arrays]
     coordinates: np.ndarray
@@ -79,6 +83,7 @@ class Result:
         (self.method,) = document["method"]
         self.notes = state["notes"]
         self.times = state["times"]
+        self.failed_at = state["failed_at"]
         self.responses = state["responses"]
         self.sensitivities = state["sensitivities"]
         self.coordinates = state["coordinates"]
@@ -108,12 +113,14 @@ class Result:
         """Names of the contacts, as `contact` takes them."""
         return list(self._contacts)
 
-    def displacement(self, step: int = -1) -> np.ndarray:
+    def displacement(self, step: int = -1, iterate: bool = False) -> np.ndarray:
         """Displacement of the nodes at the end of a step, (nodes, dimension).
 
-        IndexError where there is no such step, ValueError where its state was let go (`sensitivity/memory`).
+        `iterate`: of a step without a solution the last iterate of Newton's method, which is no answer but may show why
+        it failed. IndexError where there is no such step, ValueError where it has no solution or its state was let go
+        (`sensitivity/memory`).
         """
-        displacement = self._displacements[_arguments.step(step, len(self.times))]
+        displacement = self._displacements[self._solved(step, iterate)]
         if displacement is None:
             raise ValueError('its state was let go: raise "memory" of "sensitivity", or ask "output" for its fields')
         return displacement
@@ -130,8 +137,8 @@ class Result:
             raise ValueError(f"the derivatives were not found: {self.message}")
         raise _no_name("parameter", parameter, self._displacement_derivatives)
 
-    def contact(self, name: str, step: int = -1) -> Arrays:
-        """The points of a contact at the end of a step, by key.
+    def contact(self, name: str, step: int = -1, iterate: bool = False) -> Arrays:
+        """The points of a contact at the end of a step, by key. `iterate`: as of `displacement`.
 
         nodes : (points,), slave node of each, a row of `coordinates`
         state : (points,), 0 open, 1 stick, 2 slip
@@ -142,12 +149,22 @@ class Result:
         slip : (points, tangents), of the last increment, along the same tangents
         area : (points,), tributary area; a force is the sum of traction times area
 
-        KeyError where there is no such contact, IndexError where there is no such step.
+        KeyError where there is no such contact, IndexError where there is no such step, ValueError where it has no
+        solution.
         """
         _arguments.text(name, "name", "the name of a contact")
         if name not in self._contacts:
             raise _no_name("contact", name, self._contacts)
-        return self._contacts[name][_arguments.step(step, len(self.times))]
+        return self._contacts[name][self._solved(step, iterate)]
+
+    def _solved(self, step: Any, iterate: Any) -> int:
+        number = _arguments.step(step, len(self.times))
+        if self.failed_at is not None and number % len(self.times) == len(self.times) - 1 \
+                and not _arguments.flag(iterate, "iterate"):
+            before = f"step {len(self.times) - 2} is the last that has one" if len(self.times) > 1 else "no step has one"
+            raise ValueError(f"there is no solution at t = {self.failed_at:g} ({self.status}): {before}; iterate=True "
+                             f"gives the last iterate, which is none")
+        return number
 
     def __repr__(self) -> str:
         end = f" to t = {self.times[-1]:g}" if len(self.times) else ""
@@ -203,7 +220,7 @@ class Gradcheck:
 
 
 def run(scene: Scene, method: Optional[str] = None, set: Mapping[str, Any] = {},
-        folder: Union[str, "PathLike[str]", None] = None, check: bool = False) -> Result:
+        folder: Union[str, "PathLike[str]", None] = None, check: bool = True) -> Result:
     """Simulates a scene.
 
     Parameters
@@ -218,7 +235,8 @@ def run(scene: Scene, method: Optional[str] = None, set: Mapping[str, Any] = {},
     folder
         Where result.json and the fields (.vtu) are written; None: nowhere.
     check
-        Raise NotConverged where there is no solution. Without it the status of the result says so.
+        Raise NotConverged where the run failed. If False, the status of the result says so, and the step without a
+        solution has NaN for its responses and derivatives.
 
     Raises InputError with all faults of the scene, TypeError where an argument is of another type, OSError where the
     disk refuses. Other threads of Python run while it solves; Ctrl-C ends it after the step at hand.

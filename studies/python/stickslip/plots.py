@@ -22,12 +22,14 @@ EXACT = 1e-16
 """Where an error of exactly 0 is drawn: below every error that rounding leaves."""
 
 
-def tractions(result: Result, contact: Optional[str] = None, step: int = -1, ax: Any = None) -> Any:
+def tractions(result: Result, contact: Optional[str] = None, step: int = -1, ax: Any = None,
+              iterate: bool = False) -> Any:
     """Pressure, and shear where there is friction, along a contact at the end of a step; points that slip are marked.
 
     The abscissa is the initial coordinate along which the contact is longest. Shear in 2D has its sign, that of the
     force on the slave along the contact's tangent; in 3D, which has two tangents, it is its size. `contact` may be left
-    out where the scene has one.
+    out where the scene has one. A step without a solution is refused (ValueError); `iterate=True` draws its last iterate,
+    dashed and named so.
     """
     if not isinstance(result, Result):
         raise _arguments.wrong_type("result", result, "what run() gives, a stickslip.Result")
@@ -35,19 +37,22 @@ def tractions(result: Result, contact: Optional[str] = None, step: int = -1, ax:
         if len(result.contacts) != 1:
             raise ValueError(f"contact is to be one of {', '.join(result.contacts)}")
         (contact,) = result.contacts
-    table = result.contact(contact, step)
+    table = result.contact(contact, step, iterate)
+    failed = result.failed_at is not None and result.times[step] == result.failed_at
+    line = "--" if failed else "-"
     places = result.coordinates[table["nodes"]]
     axis = int(np.argmax(np.ptp(places, axis=0)))
     order = np.argsort(places[:, axis], kind="stable")
     x, pressure, state = places[order, axis], table["pressure"][order], table["state"][order]
     ax = plt.subplots()[1] if ax is None else _axes(ax)
-    ax.plot(x, pressure, "k-", label="pressure")
+    ax.plot(x, pressure, line, color="k", label="pressure")
     if tangents := table["shear"].shape[1]:
         shear = table["shear"][order, 0] if tangents == 1 else np.linalg.norm(table["shear"][order], axis=1)
         slips = state == STATES.index("slip")
-        ax.plot(x, shear, "-", color="tab:red", label="shear" if tangents == 1 else "|shear|")
+        ax.plot(x, shear, line, color="tab:red", label="shear" if tangents == 1 else "|shear|")
         ax.plot(x[slips], shear[slips], "o", color="tab:red", markersize=4, label="slip")
-    ax.set(title=f"{contact}, t = {result.times[step]:g}", xlabel="xyz"[axis], ylabel="force per area")
+    what = f"no solution ({result.status}), last iterate" if failed else contact
+    ax.set(title=f"{what}, t = {result.times[step]:g}", xlabel="xyz"[axis], ylabel="force per area")
     ax.legend()
     return ax
 
@@ -87,8 +92,8 @@ def work_precision(study: Table, of: str = "response", against: str = "enforceme
         "work" in factorisations, "seconds", or a column of counts. Of sensitivities the first two are those of the
         solution and its derivatives together.
 
-    Runs that did not converge are crosses and on no curve. Errors of exactly 0 are drawn at 1e-16. ValueError where no
-    row has such an error.
+    Runs that did not converge are crosses and on no curve; those that have no error, as they found no solution, are at
+    the upper edge. Errors of exactly 0 are drawn at 1e-16. ValueError where no row has such an error.
     """
     for name, value, allowed in (("of", of, '"response", "sensitivity", or one of them, as "response:press"'),
                                  ("against", against, '"enforcement" or "discretization"'),
@@ -97,12 +102,15 @@ def work_precision(study: Table, of: str = "response", against: str = "enforceme
     prefix = f"{against}:{of}" + ("" if ":" in of else ":")
     column = f"sensitivity_{work}" if of.startswith("sensitivity") and work in ("work", "seconds") else work
     curves: dict = {}
+    lost: list = []  # method and work of runs without an error
     rows = rows_of(study)
     varied = _names_of_what_varies(rows)
     for row in rows:
         variant = ", ".join(f"{words} = {row[name]}" for name, words in varied.items())
         names = [name for name in row if (name == prefix if ":" in of else name.startswith(prefix))]
         errors = [abs(row[name]) for name in names if np.isfinite(row[name])]
+        if not row["converged"] and not errors and row.get(column, 0) > 0:
+            lost.append((row["method"], row[column]))
         if errors and row.get(column, 0) > 0:
             curves.setdefault((row["method"], row["curve"], variant), []).append(
                 (row["along"], row[column], max(max(errors), EXACT), row["converged"]))
@@ -120,6 +128,8 @@ def work_precision(study: Table, of: str = "response", against: str = "enforceme
         (line,) = ax.plot(cost[converged], error[converged], linestyle=DASHES[place % len(DASHES)],
                         marker=MARKERS[place % len(MARKERS)], color=COLOURS.get(method), label=name)
         ax.plot(cost[~converged], error[~converged], "x", color=line.get_color())
+    for method, cost in lost:
+        ax.plot([cost], [1], "x", color=COLOURS.get(method), transform=ax.get_xaxis_transform(), clip_on=False)
     units = {"work": "work (factorisations)", "seconds": "seconds"}
     ax.set(xscale="log", yscale="log", xlabel=units.get(work, work.replace("_", " ")),
            ylabel=f"relative error of the {of}", title=f"{against} error".capitalize())

@@ -1,0 +1,201 @@
+#include "studies/run/solution_warnings.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <span>
+
+#include "methods/diagnosis.hpp"
+#include "methods/residuals.hpp"
+#include "sensitivity/force_search.hpp"
+#include "studies/run/warnings.hpp"
+
+namespace stickslip {
+namespace {
+
+void add_loose_bodies(const CaseResult& result, std::vector<Warning>& warnings) {
+  if (const Body* const loose = loose_body(result.problem->model))
+    warnings.push_back({WarningCode::non_unique, loose->name, 0, "add a support or a contact",
+                        loose->name + " may be anywhere: no support holds it and no contact touches it; it is left "
+                                      "where it is"});
+}
+
+/// Steps with other solutions than the one that was taken, where these were counted, or with tangents that belong to
+/// problems of which some have several.
+void add_other_solutions(const CaseResult& result, std::vector<Warning>& warnings) {
+  std::size_t most = 0, several = 0, uncounted = 0;
+  double first = 0;
+  const std::span increments(result.trajectory.increments.data(), result.trajectory.solved_count());
+  for (const auto& increment : increments) {
+    if (increment.reversed && !increment.counted) ++uncounted;
+    if (increment.others.empty()) continue;
+    if (several++ == 0) first = increment.time;
+    most = std::max(most, 1 + increment.others.size());
+  }
+  const std::string remedy =
+      "look at `solutions`, and whether friction this high is meant; smaller steps follow a branch";
+  if (several > 0)
+    warnings.push_back(
+        {WarningCode::non_unique, "", static_cast<double>(most), remedy,
+         fmt::format("{} of {} increments have several solutions, up to {}, the first at t = {:.6g}; the one "
+                     "is taken in which the motion from the last increment comes to rest",
+                     several, increments.size(), most, first)});
+  for (const auto& increment : increments)
+    if (increment.jump)
+      warnings.push_back({WarningCode::branch_ends, "", *increment.jump,
+                          "control a displacement in place of a force, or lower the friction",
+                          fmt::format("the branch of solutions ends at t = {:.4g}, and the bodies jump to another one",
+                                      *increment.jump)});
+  if (several == 0 && uncounted > 0)
+    warnings.push_back(
+        {WarningCode::non_unique, "", 1, remedy,
+         fmt::format("{} of {} increments met tangents whose determinant has the other sign: there may be "
+                     "other solutions",
+                     uncounted, increments.size())});
+}
+
+/// Contacts whose forces equilibrium leaves open, and points on a vertex.
+void add_undetermined_contacts(const CaseResult& result, std::vector<Warning>& warnings) {
+  const auto& contacts = result.problem->model.scene.contacts;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const std::string& name = contacts[c].name;
+    const std::size_t steps = solved_steps(result).size();
+    if (const long n = steps_with(result, c, &StepResult::undetermined); n > 0)
+      warnings.push_back(
+          {WarningCode::non_unique, name, 0,
+           "take friction off one of the contacts of a node, or use fewer slave nodes on a facet of the master",
+           fmt::format("{}: in {} of {} steps the forces of its points are not determined: their constraints repeat "
+                       "one another, so that other forces balance the same loads; methods, scales and steps may settle "
+                       "on different ones",
+                       name, n, steps)});
+    if (const long n = steps_with(result, c, &StepResult::at_vertex); n > 0)
+      warnings.push_back(
+          {WarningCode::non_unique, name, 1,
+           R"(smooth the master, integrate over segments ("discretization": "segment"), or shift a mesh a little)",
+           fmt::format("{}: in {} of {} steps a point begins or ends on a vertex of the master's facets: each of "
+                       "the two facets may lead to a solution of its own, and rounding decides between them",
+                       name, n, steps)});
+  }
+}
+
+/// Bars that only their tension holds once it is there: at the start they are a mechanism, and any way that it folds
+/// may be the one of a solution.
+void add_mechanisms(const CaseResult& result, std::vector<Warning>& warnings) {
+  const auto& model = result.problem->model;
+  if (!model.effects.friction || !model.scene.finite_strain) return;
+  const auto& initial = result.trajectory.initial;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const std::string& name = model.scene.bodies[b].name;
+    if (const std::string joint =
+            detail::free_joint(model, result.problem->slots, b, initial,
+                               detail::touching_states(model, result.problem->slots, initial.contact.state));
+        !joint.empty())
+      warnings.push_back(
+          {WarningCode::non_unique, name, 1, "hold its joints until the bars are in tension, and take small steps",
+           fmt::format("{} begins as a mechanism: its joint {}, and nothing but the tension that its bars get will "
+                       "hold it; the ways in which it may fold, and the slip on each, are solutions of their own",
+                       name, joint)});
+  }
+}
+
+/// Whether an element of plane nodes at x is folded at a corner: its two edges there turn the other way. Edges with a
+/// middle are parabolas.
+bool is_folded(ElementShape shape, const std::vector<Vec<double, 2>>& x) {
+  const int corners = corners_of(shape);
+  const auto leaves = [&](int k, int to, int middle) -> Vec<double, 2> {
+    return is_quadratic(shape) ? Vec<double, 2>(4 * x[middle] - 3 * x[k] - x[to]) : Vec<double, 2>(x[to] - x[k]);
+  };
+  for (int k = 0; k < corners; ++k) {
+    const int after = (k + 1) % corners, before = (k + corners - 1) % corners;
+    const Vec<double, 2> on = leaves(k, after, corners + k), back = leaves(k, before, corners + before);
+    if (on[0] * back[1] - on[1] * back[0] <= 0) return true;
+  }
+  return false;
+}
+
+/// Bodies at finite strain with folded elements in a state that is kept.
+void add_folded_elements(const CaseResult& result, std::vector<Warning>& warnings) {
+  const auto& [model, slots, unused] = *result.problem;
+  if (!model.scene.finite_strain || model.dimension != 2) return;
+  for (const auto& body : model.bodies) {
+    if (!is_continuum(body.mesh.shape)) continue;
+    long most = 0;
+    double first = 0;
+    for (const auto& step : solved_steps(result)) {
+      const auto& u = step.increment->state.displacement;
+      long folded = 0;
+      for (int e = 0; is_whole(step.increment->state) && e < body.mesh.element_count(); ++e) {
+        std::vector<Vec<double, 2>> x;
+        for (const int node : detail::element_nodes(body, e))
+          x.push_back(slots.points.col(node).head<2>() + u.segment<2>(2 * node));
+        folded += is_folded(body.mesh.shape, x);
+      }
+      if (folded > 0 && most == 0) first = step.increment->time;
+      most = std::max(most, folded);
+    }
+    if (most == 0) continue;
+    const std::string& name = model.scene.bodies[&body - model.bodies.data()].name;
+    warnings.push_back({WarningCode::folded_element, name, static_cast<double>(most),
+                        "take smaller steps, or a finer mesh there",
+                        fmt::format("{}: {} of its elements {} folded at a corner, first at t = {:.6g}: that is no "
+                                    "deformation, and there may be another solution",
+                                    name, most, most == 1 ? "is" : "are", first)});
+  }
+}
+
+/// Springs of a penalty that yield beside the bodies: under the contact's force, as the method-blind errors measure it;
+/// and under the part of the pressures that the slave alone shares out, where more nodes of it face the master than
+/// nodes of that. It yields there by 1/k of its nodes, beside which the springs' 1/(stiffness A) is to be small.
+void add_soft_penalty(const CaseResult& result, std::vector<Warning>& warnings) {
+  constexpr double most = 0.02;
+  const auto* penalty = std::get_if<Penalty>(&result.method);
+  if (!penalty) return;
+  constexpr const char* stiffer = "raise `stiffness`, or take another method";
+  double yields = 0;
+  for (const auto& step : solved_steps(result)) yields = std::max({yields, step.kkt.gap, step.kkt.stick});
+  if (yields > most)
+    warnings.push_back({WarningCode::soft_penalty, "", yields, stiffer,
+                        fmt::format("the springs of the penalty yield by {:.2g} % of the motion of the contact, and "
+                                    "forces are off by about as much",
+                                    100 * yields)});
+  const auto& [model, slots, unused] = *result.problem;
+  const auto rho = initial_regularisation(slots, *penalty);
+  const auto shares = slave_shares(model, slots);
+  std::vector<double> softest(model.scene.contacts.size(), 0);
+  for (std::size_t p = 0; p < shares.size(); ++p)
+    softest[model.points[p].contact] =
+        std::max(softest[model.points[p].contact], shares[p] / (rho[p].normal * slots.geometry[p].area));
+  for (std::size_t c = 0; c < softest.size(); ++c)
+    if (softest[c] > most && softest[c] > 10 * yields)  // (the first sentence says the rest)
+      warnings.push_back(
+          {WarningCode::soft_penalty, model.scene.contacts[c].name, softest[c], stiffer,
+           fmt::format("{}: several nodes of a stiff slave share facets of a softer master, and the springs of the "
+                       "penalty yield by {:.2g} times what the slave does: they decide how its nodes share the force",
+                       model.scene.contacts[c].name, softest[c])});
+}
+
+}  // namespace
+
+void add_solution_warnings(const CaseResult& result, std::vector<Warning>& warnings) {
+  if (has_ended(result)) add_loose_bodies(result, warnings);
+  add_mechanisms(result, warnings);
+  add_folded_elements(result, warnings);
+  add_other_solutions(result, warnings);
+  add_undetermined_contacts(result, warnings);
+  add_soft_penalty(result, warnings);
+}
+
+const Body* loose_body(const Model& model) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const auto in_body = [&, first = model.bodies[b].first_node](int node) {
+      return node >= first && node < first + model.bodies[b].mesh.node_count;
+    };
+    const bool held = std::any_of(model.constraints.begin(), model.constraints.end(),
+                                  [&](const Constraint& c) { return in_body(c.dof / model.dimension); });
+    const bool touched = std::any_of(model.contact_nodes.begin(), model.contact_nodes.end(), in_body);
+    if (!held && !touched) return &model.scene.bodies[b];
+  }
+  return nullptr;
+}
+
+}  // namespace stickslip
