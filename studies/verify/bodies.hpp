@@ -10,19 +10,23 @@
 
 namespace stickslip::verify {
 
-/// What bodies do at a motion.
-struct Bodies {
-  Field forces;                              ///< f_int of each node
-  double largest = 0;                        ///< force of an element on a node, of all
-  double energy = 0;                         ///< stored
-  double plastic_work = 0;                   ///< of this increment
-  bool inverted = false;                     ///< whether an element is
-  std::vector<std::vector<Memory>> memory;   ///< of each body, each point
-  std::vector<std::vector<double>> volumes;  ///< likewise
+/// A point of a body, with its volume.
+struct Particle : Memory {
+  double volume = 0;
 };
 
-/// The bodies at displacements u, from the memory at the end of the last increment; empty at the start.
-Bodies deform(const Scene& scene, const Field& u, const std::vector<std::vector<Memory>>& before);
+/// What bodies do at a motion.
+struct Bodies {
+  Field forces;                                  ///< f_int of each node
+  double largest = 0;                            ///< force of an element on a node, of all
+  double energy = 0, plastic_work = 0;           ///< stored; of this increment
+  double stiffness = 0;                          ///< force per length: largest modulus times a depth
+  bool inverted = false;                         ///< whether an element is
+  std::vector<std::vector<Particle>> particles;  ///< of each body, element by element
+};
+
+/// The bodies at displacements u, from what they were at the end of the last increment; `{}` at the start.
+Bodies deform(const Scene& scene, const Field& u, const Bodies& before);
 
 /// Nodal forces of the loads at a time. A pressure follows its side at finite strain.
 Field load_forces(const Scene& scene, const Field& u, double time);

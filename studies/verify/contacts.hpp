@@ -1,5 +1,6 @@
 /// Gap, normal and slip of the places of a contact: at nodes, or weighted over segments (core/README.md, Notation,
-/// Finite strain, Segment integration). Small strain: what is faced, normal and weights are those of the start,
+/// Finite strain, A point that comes on, Segment integration). At small strain what is faced, n and weights are of the
+/// start:
 ///
 ///   g = g_0 + offset + n . w,   w = sum of weights u - u_obstacle,   slip = what w grew by, across n
 ///   finite strain:  slip = y(xi) - y(xi_last) on the master as it is now, across n; of an obstacle both in its frame
@@ -12,29 +13,24 @@
 
 namespace stickslip::verify {
 
-/// A place of contact: a slave node, or the multiplier of one.
-struct Touch {
+/// A place of contact: a slave node, or the multiplier of one. Its foot is in the frame of the master; its weights are
+/// 1 of the slave, -N_i of the master.
+struct Touch : Foot {
   int node = -1;
-  bool faces = false;                           ///< whether it faces its master
-  double area = 0;                              ///< of the start, on which its traction acts
-  double gap = 0;                               ///< negative: penetration
-  Vec3 normal = Vec3::UnitY();                  ///< out of the master
-  Vec3 slip = Vec3::Zero();                     ///< of this increment, across the normal
-  double opening = 0;                           ///< of this increment, of the gap
-  bool slip_known = false;                      ///< false: it faced nothing before
-  Vec3 carried = Vec3::Zero();                  ///< motion of an obstacle's surface there in this increment
-  std::vector<std::pair<int, double>> weights;  ///< of nodes: 1 of the slave, -N_i of the master
-  Vec3 foot = Vec3::Zero();                     ///< in the frame of the master
-  Place place;
-  double along = 0;              ///< Z of segments
-  Vec3 tangent = Vec3::Zero();   ///< m of segments
-  Vec3 relative = Vec3::Zero();  ///< w of small strain
+  double area = 0;                                       ///< of the start, on which its traction acts
+  Vec3 slip = Vec3::Zero();                              ///< of this increment, across the normal
+  bool slip_known = false;                               ///< false: it faced nothing before
+  double opening = 0;                                    ///< of the gap in this increment
+  Vec3 carried = Vec3::Zero();                           ///< motion of an obstacle's surface there in this increment
+  Vec3 relative = Vec3::Zero(), tangent = Vec3::Zero();  ///< w of small strain; m of segments
+  double along = 0;                                      ///< Z of segments
 };
 
 /// A contact of a slave side and a master.
 class Contact {
  public:
-  Contact(const Scene& scene, std::string name, const Json& of, const Json& contact);
+  /// `sides`: {"of": entry of the scene, "slave", "master"}.
+  Contact(const Scene& scene, const std::string& called, const Json& sides);
   /// All places at displacements. Call it in order of time.
   std::vector<Touch> advance(const Field& u, double time);
 
@@ -43,20 +39,18 @@ class Contact {
   bool itself;  ///< it is a side that touches itself
 
  private:
-  /// Part of a slave facet that faces one facet of the master, and the node whose multiplier acts there.
+  /// Part of a slave facet that faces one patch of the master (-1: an obstacle without patches), and the node whose
+  /// multiplier acts there; `sole`: the other node carries none.
   struct Piece {
-    int first, second, carrier, patch;  ///< patch -1: an obstacle without facets
+    int first, second, carrier, patch;
     double from, to;
-    bool sole;  ///< the other node carries no multiplier
+    bool sole;
   };
   Seeker seeker(int node, const Field& x) const;
-  void add_pieces(const std::array<int, 2>& facet, const Field& x, const Eigen::Matrix2Xd& at,
-                  std::vector<Piece>& all) const;
-  void integrate(const Piece& piece, const Field& x, const Eigen::Matrix2Xd& at, Touch& touch, double& share) const;
-  Touch on_pieces(int node, const std::vector<Piece>& pieces, const Field& x, const Eigen::Matrix2Xd& at) const;
-  Touch at_node(int node, const Field& x, const Eigen::Matrix2Xd& at) const;
-  void move_small(Touch& touch, const Touch& last, const Field& u, double time) const;
-  void move_finite(Touch& touch, const Touch& last, const Eigen::Matrix2Xd& at, double time) const;
+  void cut(const std::array<int, 2>& facet, const Field& x, const Places& at, std::vector<Piece>& all) const;
+  void integrate(const Piece& piece, const Field& x, const Places& at, Touch& touch, double& share) const;
+  Touch on_pieces(int node, const std::vector<Piece>& pieces, const Field& x, const Places& at) const;
+  void move(Touch& touch, const Touch& last, const Field& u, const Places& at, double time) const;
 
   const Scene& scene_;
   const Body& body_;

@@ -6,66 +6,59 @@
 namespace stickslip::verify {
 namespace {
 
-/// Gauss points of an element: r, s, weight. Rules of full rank: three points of Q8 each way, three of T3 of
-/// revolution.
-std::vector<std::array<double, 3>> rule(const std::string& element, bool of_revolution) {
-  if (element == "T3" && !of_revolution) return {{1.0 / 3, 1.0 / 3, 0.5}};
-  if (element[0] == 'T') return {{1.0 / 6, 1.0 / 6, 1.0 / 6}, {2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}};
-  std::vector<std::array<double, 2>> line{{-std::sqrt(1.0 / 3), 1}, {std::sqrt(1.0 / 3), 1}};
-  if (element == "Q8") line = {{-std::sqrt(0.6), 5.0 / 9}, {0, 8.0 / 9}, {std::sqrt(0.6), 5.0 / 9}};
-  std::vector<std::array<double, 3>> points;
-  for (const auto& [r, weight] : line)
-    for (const auto& [s, other] : line) points.push_back({r, s, weight * other});
+/// The polynomials r^a s^b of T3, T6, Q4 and Q8 at a place, and their derivatives by r and s.
+Field polynomials(const Body& body, const Vec2& at) {
+  static const Eigen::Matrix2Xi triangle{{0, 1, 0, 2, 1, 0}, {0, 0, 1, 0, 1, 2}},
+      square{{0, 1, 0, 1, 2, 0, 2, 1}, {0, 0, 1, 1, 0, 2, 1, 2}};
+  Field rows(3, natural_nodes(body).cols());
+  for (Eigen::Index k = 0; k < rows.cols(); ++k) {
+    const int a = (body.corners() == 3 ? triangle : square)(0, k), b = (body.corners() == 3 ? triangle : square)(1, k);
+    const auto power = [&](int i, int p) { return p > 0 ? std::pow(at[i], p) : 1.0; };
+    rows.col(k) << power(0, a) * power(1, b), a * power(0, a - 1) * power(1, b), b * power(0, a) * power(1, b - 1);
+  }
+  return rows;
+}
+
+/// r, s, weight. Rules of full rank: three points of Q8 each way, three of T3 of revolution.
+std::vector<Vec3> rule(const Body& body, bool of_revolution) {
+  if (body.element == "T3" && !of_revolution) return {{1.0 / 3, 1.0 / 3, 0.5}};
+  if (body.corners() == 3)
+    return {{1.0 / 6, 1.0 / 6, 1.0 / 6}, {2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}};
+  std::vector<Vec3> points;
+  for (const auto& along : edge_points(body.quadratic() ? 3 : 2, true))
+    for (const auto& across : edge_points(body.quadratic() ? 3 : 2, true))
+      points.emplace_back(2 * along.s - 1, 2 * across.s - 1, 4 * along.weight * across.weight);
   return points;
-}
-
-constexpr double R[4] = {-1, 1, 1, -1}, S[4] = {-1, -1, 1, 1};  ///< corners of a square
-
-/// Linear functions of the corners: value, slopes by r and s.
-std::vector<Vec3> linear(bool triangle, double r, double s) {
-  if (triangle) return {{1 - r - s, -1, -1}, {r, 1, 0}, {s, 0, 1}};
-  std::vector<Vec3> N;
-  for (int a = 0; a < 4; ++a)
-    N.emplace_back((1 + R[a] * r) * (1 + S[a] * s) / 4, R[a] * (1 + S[a] * s) / 4, S[a] * (1 + R[a] * r) / 4);
-  return N;
-}
-
-/// The function of the middle between corners a and b.
-Vec3 middle(const std::vector<Vec3>& N, std::size_t a, std::size_t b, double r, double s) {
-  if (N.size() == 3)
-    return {4 * N[a][0] * N[b][0], 4 * (N[a][0] * N[b][1] + N[b][0] * N[a][1]),
-            4 * (N[a][0] * N[b][2] + N[b][0] * N[a][2])};
-  const double m = (R[a] + R[b]) / 2, n = (S[a] + S[b]) / 2;  // where the middle is
-  if (m == 0) return {(1 - r * r) * (1 + n * s) / 2, -r * (1 + n * s), n * (1 - r * r) / 2};
-  return {(1 - s * s) * (1 + m * r) / 2, m * (1 - s * s) / 2, -s * (1 + m * r)};
 }
 
 }  // namespace
 
-Shape shape(const std::string& element, double r, double s) {
-  auto N = linear(element[0] == 'T', r, s);
-  if (element == "T6" || element == "Q8") {  // a middle takes half of itself off its two corners
-    const auto corners = N;
-    for (std::size_t a = 0; a < corners.size(); ++a) {
-      const std::size_t b = (a + 1) % corners.size();
-      N.push_back(middle(corners, a, b, r, s));
-      N[a] -= N.back() / 2;
-      N[b] -= N.back() / 2;
-    }
-  }
-  const Eigen::Map<const Eigen::Matrix3Xd> all(N[0].data(), 3, static_cast<Eigen::Index>(N.size()));
-  return {all.row(0), all.bottomRows<2>()};
+Places natural_nodes(const Body& body) {
+  static const Places triangle{{0, 1, 0, 0.5, 0.5, 0}, {0, 0, 1, 0, 0.5, 0.5}},
+      square{{-1, 1, 1, -1, 0, 1, 0, -1}, {-1, -1, 1, 1, -1, 0, 1, 0}};
+  const auto nodes = static_cast<Eigen::Index>(body.corners() * (body.quadratic() ? 2 : 1));
+  return (body.corners() == 3 ? triangle : square).leftCols(nodes);
 }
 
-std::vector<Point> points_of(const Scene& scene, const Body& body, const std::vector<int>& element) {
-  const Eigen::Matrix2Xd X = scene.points(Eigen::seqN(0, 2), element);
+Shape shape(const Body& body, const Vec2& at) {
+  const Places nodes = natural_nodes(body);
+  Eigen::MatrixXd at_nodes(nodes.cols(), nodes.cols());
+  for (Eigen::Index a = 0; a < nodes.cols(); ++a) at_nodes.row(a) = polynomials(body, nodes.col(a)).row(0);
+  const Field N = polynomials(body, at) * at_nodes.inverse();
+  return {N.row(0), N.bottomRows<2>().transpose()};
+}
+
+std::vector<Point> points_of(const Scene& scene, const Body& body, const Nodes& element) {
+  static std::map<std::pair<std::string, bool>, std::vector<std::pair<Shape, double>>> known;
+  auto& shapes = known[{body.element, scene.axisymmetric}];
+  if (shapes.empty())
+    for (const auto& at : rule(body, scene.axisymmetric)) shapes.emplace_back(shape(body, at.head<2>()), at[2]);
+  const Places X = scene.points(Eigen::seqN(0, 2), element);
   std::vector<Point> points;
-  for (const auto& [r, s, weight] : rule(body.element, scene.axisymmetric)) {
-    const Shape at = shape(body.element, r, s);
-    const Eigen::Matrix2d jacobian = X * at.gradient.transpose();
-    const double radius = X.row(0).dot(at.value);
-    points.push_back({at.value, at.gradient.transpose() * jacobian.inverse(), radius,
-                      jacobian.determinant() * weight * scene.depth(body, radius)});
+  for (const auto& [at, weight] : shapes) {
+    const Eigen::Matrix2d jacobian = X * at.gradient;
+    const double radius = X.row(0).dot(at.value), volume = jacobian.determinant() * weight * scene.depth(body, radius);
+    points.push_back({{at.value, at.gradient * jacobian.inverse()}, radius, volume});
   }
   return points;
 }
@@ -81,17 +74,17 @@ std::vector<EdgePoint> edge_points(std::size_t nodes, bool of_revolution) {
   return {at(0.5, 1)};
 }
 
-std::array<double, 3> edge_areas(const Scene& scene, const Body& body, const std::vector<int>& edge) {
-  std::array<double, 3> areas{0, 0, 0};
-  for (const auto& point : edge_points(edge.size(), scene.axisymmetric)) {
-    Vec3 x = Vec3::Zero(), tau = x;
-    for (std::size_t a = 0; a < edge.size(); ++a) {
-      x += point.value[a] * scene.points.col(edge[a]);
-      tau += point.slope[a] * scene.points.col(edge[a]);
+std::map<int, double> areas_of(const Scene& scene, const Body& body, const Side& side) {
+  std::map<int, double> areas;
+  for (const auto& edge : side.edges)
+    for (const auto& point : edge_points(edge.size(), scene.axisymmetric)) {
+      const auto n = static_cast<Eigen::Index>(edge.size());
+      const Field X = scene.points(Eigen::all, edge);
+      const double dA =
+          point.weight * (X * point.slope.head(n)).norm() * scene.depth(body, X.row(0) * point.value.head(n));
+      for (Eigen::Index a = 0; a < n; ++a)
+        if (side.has(edge[a])) areas[edge[a]] += point.value[a] * dA;
     }
-    for (std::size_t a = 0; a < edge.size(); ++a)
-      areas[a] += point.value[a] * point.weight * tau.norm() * scene.depth(body, x[0]);
-  }
   return areas;
 }
 

@@ -7,8 +7,6 @@
 namespace stickslip::verify {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 /// A function of a symmetric tensor, by its principal values.
 template <class F>
 Mat3 of_principal(const Mat3& tensor, F&& f) {
@@ -16,29 +14,24 @@ Mat3 of_principal(const Mat3& tensor, F&& f) {
   return eigen.eigenvectors() * eigen.eigenvalues().unaryExpr(f).asDiagonal() * eigen.eigenvectors().transpose();
 }
 
-/// Takes a trial elastic strain back to the bound; returns the plastic work. The same in logarithms.
-double return_to_bound(const Material& material, Mat3& e, Memory& memory) {
-  const Mat3 dev = 2 * material.G * (e - e.trace() / 3 * Mat3::Identity());
-  const double q = std::sqrt(1.5) * dev.norm(), d = material.growth(q, 3 * material.G, memory.equivalent);
-  if (d == 0) return 0;
-  e -= 1.5 * d / q * dev;
+/// Kirchhoff stress, and energy, of an elastic strain e; of metal it is taken back to the bound first.
+Mat3 hooke(const Material& material, Mat3& e, Memory& memory, Answer& answer) {
+  const Mat3 I = Mat3::Identity(), dev = 2 * material.G * (e - e.trace() / 3 * I);
+  const double q = std::sqrt(1.5) * dev.norm();
+  const double d = material.plastic ? material.growth(q, 3 * material.G, memory.equivalent) : 0;
+  if (d > 0) e -= 1.5 * d / q * dev;
   memory.equivalent += d;
-  return (q - 3 * material.G * d) * d;
-}
-
-/// Hooke's law; adds the energy.
-Mat3 hooke(const Material& material, const Mat3& e, Answer& answer) {
+  answer.plastic_work = (q - 3 * material.G * d) * d;
   answer.energy = material.lame / 2 * e.trace() * e.trace() + material.G * e.squaredNorm();
-  return material.lame * e.trace() * Mat3::Identity() + 2 * material.G * e;
+  return material.lame * e.trace() * I + 2 * material.G * e;
 }
 
 /// `stretch`: F F^T - I.
-Mat3 neo_hookean(const Material& material, const Mat3& H, const Mat3& stretch, Answer& answer) {
+Mat3 neo_hooke(const Material& material, const Mat3& H, const Mat3& stretch, Answer& answer) {
   const double change = volume_change(H), log = std::log1p(change), lame = material.lame;
-  answer.energy = lame / 2 * (material.log_volume ? log * log : change * change) +
-                  material.G * (H.trace() + H.squaredNorm() / 2 - log);
-  const double pressure = lame * (material.log_volume ? log : change * (1 + change));
-  return material.G * stretch + pressure * Mat3::Identity();
+  const double volume = material.log_volume ? log * log : change * change;
+  answer.energy = lame / 2 * volume + material.G * (H.trace() + H.squaredNorm() / 2 - log);
+  return material.G * stretch + lame * (material.log_volume ? log : change * (1 + change)) * Mat3::Identity();
 }
 
 }  // namespace
@@ -53,31 +46,20 @@ Material::Material(const Json& json) {
   plastic = json.begin().key() == "j2_plastic";
   if (!plastic) return;
   const Json& hardening = given.at("hardening");
-  if (hardening.is_number())
-    slope_ = hardening;
-  else
-    rows_ = hardening.get<std::vector<std::array<double, 2>>>();
-  if (rows_.empty() || rows_[0][0] > 0) rows_.insert(rows_.begin(), {0, given.at("yield").get<double>()});
-}
-
-double Material::bound(double a) const {
-  for (std::size_t k = 1; k < rows_.size(); ++k) {
-    const auto& [from, low] = rows_[k - 1];
-    const auto& [to, high] = rows_[k];
-    if (a < to) return low + (a - from) / (to - from) * (high - low);
-  }
-  return rows_.back()[1] + slope_ * (a - rows_.back()[0]);
+  if (hardening.is_array()) rows = hardening.get<std::vector<std::array<double, 2>>>();
+  if (rows.empty() || rows[0][0] > 0) rows.insert(rows.begin(), {0, given.at("yield").get<double>()});
+  constexpr double far = 1e6;  // as good as infinity for a strain
+  rows.push_back({far, rows.back()[1] + (hardening.is_number() ? hardening.get<double>() : 0) * far});
 }
 
 double Material::growth(double q, double modulus, double a) const {
-  if (!(q > bound(a))) return 0;
-  double from = a, to = infinity;  // the piece of the table on which the excess, straight on each, ends
-  for (const auto& [at, limit] : rows_)
-    if (at > from && q - modulus * (at - a) > limit) from = at;
-  for (const auto& [at, limit] : rows_)
-    if (at > from) to = std::min(to, at);
-  const double rise = to < infinity ? (bound(to) - bound(from)) / (to - from) : slope_;
-  return from - a + (q - modulus * (from - a) - bound(from)) / (modulus + rise);
+  for (std::size_t k = 1; k < rows.size(); ++k) {  // piece by piece, on each of which the bound is straight
+    const auto [from, low] = rows[k - 1];
+    const auto [to, high] = rows[k];
+    const double slope = (high - low) / (to - from), d = (q - low - slope * (a - from)) / (modulus + slope);
+    if (a < to && (d <= 0 || a + d <= to)) return std::max(d, 0.0);
+  }
+  return 0;
 }
 
 double volume_change(const Mat3& H) {
@@ -89,26 +71,23 @@ Answer respond(const Material& material, const Mat3& H, bool finite, Memory& mem
   if (!finite) {
     const Mat3 trial = (H + H.transpose()) / 2 - memory.strain;
     Mat3 e = trial;
-    if (material.plastic) answer.plastic_work = return_to_bound(material, e, memory);
+    answer.stress = hooke(material, e, memory, answer);
     memory.strain += trial - e;
-    answer.stress = hooke(material, e, answer);
     return answer;
   }
   answer.inverted = !(volume_change(H) > -1);
   if (answer.inverted) return answer;
   const Mat3 F = Mat3::Identity() + H, inverse = F.inverse(), stretch = H + H.transpose() + H * H.transpose();
   if (!material.plastic) {
-    answer.stress = neo_hookean(material, H, stretch, answer) * inverse.transpose();
+    answer.stress = neo_hooke(material, H, stretch, answer) * inverse.transpose();
     return answer;
   }
   const Mat3 trial = stretch + F * memory.strain * F.transpose();  // F C_p^-1 F^T - I
   Mat3 e = of_principal(trial, [](double x) { return std::log1p(x) / 2; });
-  answer.plastic_work = return_to_bound(material, e, memory);
-  if (answer.plastic_work > 0) {
-    const Mat3 left = of_principal(e, [](double x) { return std::expm1(2 * x); });
-    memory.strain = inverse * (left - stretch) * inverse.transpose();
-  }
-  answer.stress = hooke(material, e, answer) * inverse.transpose();
+  answer.stress = hooke(material, e, memory, answer) * inverse.transpose();
+  if (answer.plastic_work > 0)
+    memory.strain =
+        inverse * (of_principal(e, [](double x) { return std::expm1(2 * x); }) - stretch) * inverse.transpose();
   return answer;
 }
 

@@ -1,11 +1,10 @@
 /// Laws of materials, from their formulas (core/README.md, Plasticity, Plane stress). H = F - I is the displacement
 /// gradient, 3 x 3; lame = E nu / ((1 + nu) (1 - 2 nu)), G = E / (2 (1 + nu)).
 ///
-///   linear        sigma = lame tr(e) I + 2 G e,                       e = sym H
-///   neo-Hookean   P = (G (F F^T - I) + V U'(V) I) F^-T,               U = lame/2 (V - 1)^2 or lame/2 (ln V)^2, V = det
-///   F J2            q = sqrt(3/2) |dev tau| <= bound(a),                e -= d n,  n = 3/2 dev tau / q,  a += d
-///                 small: e = sym H - e_p;  finite: e = ln(F C_p^-1 F^T) / 2,  P = tau F^-T
-/// [SH98: Simo and Hughes, Computational Inelasticity; S92: Simo, 1992]
+///   linear        sigma = lame tr(e) I + 2 G e,             e = sym H
+///   neo-Hookean   P = (G (F F^T - I) + V U'(V) I) F^-T,     U = lame/2 (V - 1)^2 or lame/2 (ln V)^2, V = det F
+///   J2 [SH98]     q = sqrt(3/2) |dev tau| <= bound(a),      e -= d n,  n = 3/2 dev tau / q,  a += d
+///                 small: e = sym H - e_p;  finite [S92]: e = ln(F C_p^-1 F^T) / 2,  P = tau F^-T
 #pragma once
 
 #include "studies/verify/scene.hpp"
@@ -21,11 +20,7 @@ struct Material {
 
   double lame = 0, G = 0, E = 0;
   bool log_volume = false, plastic = false;
-
- private:
-  double bound(double a) const;
-  std::vector<std::array<double, 2>> rows_;  ///< (equivalent plastic strain, bound), from 0 on
-  double slope_ = 0;                         ///< of hardening behind the last row
+  std::vector<std::array<double, 2>> rows;  ///< (equivalent plastic strain, bound), from 0 to infinity
 };
 
 /// What a point remembers: plastic strain (at finite strain C_p^-1 - I), and the equivalent plastic strain.
@@ -36,9 +31,8 @@ struct Memory {
 
 /// A point at a motion. The memory of the point has moved along.
 struct Answer {
-  Mat3 stress = Mat3::Zero();  ///< Cauchy at small strain, first Piola-Kirchhoff at finite strain
-  double energy = 0;           ///< stored, per volume
-  double plastic_work = 0;     ///< of the increment, per volume: q d
+  Mat3 stress = Mat3::Zero();           ///< Cauchy at small strain, first Piola-Kirchhoff at finite strain
+  double energy = 0, plastic_work = 0;  ///< per volume: stored; q d of the increment
   bool inverted = false;
 };
 Answer respond(const Material& material, const Mat3& H, bool finite, Memory& memory);

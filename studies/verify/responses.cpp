@@ -11,95 +11,94 @@ namespace {
 /// Pairs of a sample and its weight in the mean.
 using Samples = std::vector<std::array<double, 2>>;
 
-std::optional<double> taken(const Samples& samples, const std::string& take) {
+std::optional<double> taken(const Samples& samples, const Json& how) {
   if (samples.empty()) return std::nullopt;
-  double sum = 0, total = 0;
-  for (const auto& [sample, weight] : samples) sum += weight * sample, total += weight;
-  if (take == "mean") return sum / total;
+  const std::string take = how.value("take", "mean");
   const auto [least, largest] = std::minmax_element(samples.begin(), samples.end());
-  return (take == "max" ? *largest : *least)[0];
+  if (take != "mean") return (take == "max" ? *largest : *least)[0];
+  double sum = 0, total = 0;
+  for (const auto& [sample, weight] : samples) {
+    sum += weight * sample;
+    total += weight;
+  }
+  return sum / total;
 }
 
-/// A force along an axis, or its moment about a point.
-double part_of(const Json& how, const Vec3& force, const Vec3& x) {
+/// A vector along an axis; a force at a place also about a point.
+double part_of(const Json& how, const Vec3& v, const Vec3& at = Vec3::Zero()) {
   const std::string component = how.at("component");
-  return component == "moment" ? (x - vec3(how.at("about"))).cross(force)[2] : force[component[0] - 'x'];
+  return component == "moment" ? (at - vec3(how.at("about"))).cross(v)[2] : v[component[0] - 'x'];
 }
 
 /// Displacement at a place of the start, in the element that holds it.
 std::optional<Vec3> displacement_at(const State& state, const Json& how) {
   const Vec3 X = vec3(how.at("at"));
+  const Body* only = how.contains("on") ? &state.scene.body(how["on"]) : nullptr;
   for (const auto& body : state.scene.bodies)
-    for (const auto& element : body.elements) {
-      if (how.contains("on") && body.name != state.scene.body(how["on"].get<std::string>()).name) break;
-      if (!body.solid()) {
-        for (const int node : element)
-          if ((state.scene.points.col(node) - X).norm() <= 1e-9 * (1 + X.norm())) return state.u.col(node);
-        continue;
-      }
-      const Eigen::Matrix2Xd nodes = state.scene.points(Eigen::seqN(0, 2), element);
-      const double size = (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).norm();
-      if ((nodes.rowwise().mean() - X.head<2>()).norm() > size) continue;
-      Vec2 r(element.size() % 3 == 0 ? 0.3 : 0, element.size() % 3 == 0 ? 0.3 : 0);
+    for (const auto& element : only&& only != &body ? std::vector<Nodes>{} : body.elements) {
+      const Field nodes = state.scene.points(Eigen::all, element);
+      const auto off = (nodes.colwise() - X).colwise().norm();
+      Eigen::Index nearest = 0;
+      const double distance = off.minCoeff(&nearest), size = off.maxCoeff();
+      if (distance <= at_end * size) return Vec3(state.u.col(element[nearest]));
+      if (!body.solid() || distance > (nodes.colwise() - nodes.col(0)).colwise().norm().maxCoeff()) continue;
+      Vec2 r = natural_nodes(body).rowwise().mean();
       for (int k = 0; k < 20; ++k) {
-        const Shape at = shape(body.element, r[0], r[1]);
-        r += (nodes * at.gradient.transpose()).eval().inverse() * (X.head<2>() - nodes * at.value);
+        const Shape at = shape(body, r);
+        r += (nodes.topRows<2>() * at.gradient).inverse() * (X - nodes * at.value).head<2>();
       }
-      const bool triangle = body.element[0] == 'T';
-      const bool in = triangle ? r.minCoeff() >= -1e-6 && r.sum() <= 1 + 1e-6 : r.cwiseAbs().maxCoeff() <= 1 + 1e-6;
-      if (in) return Vec3(state.u(Eigen::all, element) * shape(body.element, r[0], r[1]).value);
+      const double past = body.corners() == 3 ? std::max(-r.minCoeff(), r.sum() - 1) : r.cwiseAbs().maxCoeff() - 1;
+      if (past <= 1e-6) return Vec3(state.u(Eigen::all, element) * shape(body, r).value);
     }
   return std::nullopt;
 }
 
-/// a = 2 sqrt(sum f x^2 / sum f) of nodal forces f, sqrt(5/2 ...) of revolution.
-std::optional<double> half_width(const State& state, const std::vector<const Placed*>& places, const Json& how) {
-  const bool rings = state.scene.axisymmetric;
+/// a = 2 sqrt(sum f x^2 / sum f) of nodal forces f, about a point or their centre; of revolution sqrt(5/2 ...).
+double half_width(const State& state, const std::vector<const Placed*>& placed, const Json& how) {
+  const Field places = state.scene.places(state.u);
   double force = 0, moment = 0;
   Vec3 middle = Vec3::Zero(), normal = middle;
-  int closed = 0;
-  for (const auto* placed : places) {
-    const double f = placed->touch.area * placed->pressure();
+  long closed = 0;
+  for (const auto* one : placed) {
+    const double f = one->touch.area * one->pressure();
     closed += f > 0;
     force += f;
-    middle += f * state.scene.place(placed->touch.node, state.u);
-    normal += f * placed->touch.normal;
+    middle += f * places.col(one->touch.node);
+    normal += f * one->touch.normal;
   }
+  const bool rings = state.scene.axisymmetric;
   if (closed < (rings ? 1 : 2)) return 0;
   middle = how.contains("about") ? vec3(how["about"]) : Vec3(middle / force);
-  for (const auto* placed : places) {
-    const Vec3 x = state.scene.place(placed->touch.node, state.u);
+  for (const auto* one : placed) {
+    const Vec3 x = places.col(one->touch.node);
     const double arm = rings ? x[0] : normal.normalized().cross(x - middle)[2];
-    moment += placed->touch.area * placed->pressure() * arm * arm;
+    moment += one->touch.area * one->pressure() * arm * arm;
   }
   return std::sqrt((rings ? 2.5 : 4) * moment / force);
 }
 
 std::optional<double> of_contact(const State& state, const std::string& kind, const Json& how) {
-  const std::string name = how.at("contact"), take = how.value("take", "mean");
-  if (kind == "dissipation") {
-    const auto found = state.heat.find(name);
-    return found == state.heat.end() ? 0 : found->second;
-  }
-  std::vector<const Placed*> places;
-  for (const auto& placed : state.places)
-    if (placed.contact->name == name || placed.contact->group == name) places.push_back(&placed);
-  if (kind == "contact_half_width") return half_width(state, places, how);
+  const std::string name = how.at("contact");
+  if (kind == "dissipation") return state.heat.contains(name) ? state.heat.at(name) : 0;
+  std::vector<const Placed*> placed;
+  for (const auto& one : state.placed)
+    if (one.contact->name == name || one.contact->group == name) placed.push_back(&one);
+  if (kind == "contact_half_width") return half_width(state, placed, how);
+  const Field places = state.scene.places(state.u);
   double sum = 0;
   Samples samples;
-  for (const auto* placed : places) {
-    const Touch& touch = placed->touch;
-    const Vec3 force = touch.area * placed->traction;
+  for (const auto* one : placed) {
+    const Touch& touch = one->touch;
     if (kind == "gap") samples.push_back({touch.gap, touch.area});
-    if (kind == "contact_pressure") samples.push_back({placed->pressure(), touch.area});
-    if (kind == "slip" && placed->contact->given.contains("friction")) samples.push_back({placed->slid, touch.area});
+    if (kind == "contact_pressure") samples.push_back({one->pressure(), touch.area});
+    if (kind == "slip" && one->contact->given.contains("friction")) samples.push_back({one->slid, touch.area});
     if (kind != "contact_force") continue;
     Vec3 x = Vec3::Zero();
     for (const auto& [node, weight] : touch.weights)
-      if (weight > 0) x += weight * state.scene.place(node, state.u);
-    sum += how.at("component") == "normal" ? force.dot(touch.normal) : part_of(how, force, x);
+      if (weight > 0) x += weight * places.col(node);
+    sum += touch.area * (how.at("component") == "normal" ? one->pressure() : part_of(how, one->traction, x));
   }
-  return kind == "contact_force" ? sum : taken(samples, take);
+  return kind == "contact_force" ? sum : taken(samples, how);
 }
 
 }  // namespace
@@ -107,27 +106,28 @@ std::optional<double> of_contact(const State& state, const std::string& kind, co
 std::optional<double> measure(const State& state, const Json& response) {
   const std::string kind = response.begin().key();
   const Json& how = response.begin().value();
-  const std::string take = how.value("take", "mean");
   if (kind == "strain_energy") return state.bodies.energy;
   if (how.contains("at")) {
     const auto u = kind == "displacement" ? displacement_at(state, how) : std::nullopt;
-    return u ? std::optional((*u)[how.at("component").get<std::string>()[0] - 'x']) : std::nullopt;
+    return u ? std::optional(part_of(how, *u)) : std::nullopt;
   }
   if (how.contains("contact")) return of_contact(state, kind, how);
-  const std::string on = how.at("on");
   Samples samples;
-  double sum = 0;
-  for (std::size_t b = 0; kind == "plastic_strain" && b < state.scene.bodies.size(); ++b)
-    for (std::size_t q = 0; state.scene.bodies[b].name == on && q < state.bodies.memory[b].size(); ++q)
-      samples.push_back({state.bodies.memory[b][q].equivalent, state.bodies.volumes[b][q]});
-  if (kind == "plastic_strain") return taken(samples, take);
-  for (const int node : state.scene.side(on).nodes) {
-    if (kind == "reaction")
-      sum += part_of(how, state.held.col(node), state.scene.place(node, state.u));
-    else
-      samples.push_back({state.u(how.at("component").get<std::string>()[0] - 'x', node), 1});
+  if (kind == "plastic_strain") {
+    for (std::size_t b = 0; b < state.scene.bodies.size(); ++b)
+      for (const auto& particle : state.bodies.particles[b])
+        if (state.scene.bodies[b].name == how.at("on")) samples.push_back({particle.equivalent, particle.volume});
+    return taken(samples, how);
   }
-  return kind == "reaction" ? sum : taken(samples, take);
+  const Field places = state.scene.places(state.u);
+  double sum = 0;
+  for (const int node : state.scene.side(how.at("on")).nodes) {
+    if (kind == "reaction")
+      sum += part_of(how, state.held.col(node), places.col(node));
+    else
+      samples.push_back({part_of(how, state.u.col(node)), 1});
+  }
+  return kind == "reaction" ? sum : taken(samples, how);
 }
 
 }  // namespace stickslip::verify

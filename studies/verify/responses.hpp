@@ -6,13 +6,15 @@
 
 namespace stickslip::verify {
 
-/// A place of contact with its traction.
+/// A place of contact with its traction on the slave, force per area of the start.
 struct Placed {
-  const Contact* contact;
+  const Contact* contact = nullptr;
   Touch touch;
-  Vec3 traction;    ///< on the slave, force per area of the start
-  double slid = 0;  ///< slip since the start along e = (-n_y, n_x)
+  Vec3 traction = Vec3::Zero();
+  Vec2 compliance = Vec2::Zero();  ///< of the springs of a penalty, normal and tangential; zero: multipliers
+  double slid = 0;                 ///< slip since the start along e = (-n_y, n_x)
   double pressure() const { return traction.dot(touch.normal); }
+  Vec3 friction() const { return traction - pressure() * touch.normal; }
 };
 
 /// What responses are measured on.
@@ -20,9 +22,9 @@ struct State {
   const Scene& scene;
   const Field& u;
   const Bodies& bodies;
-  std::vector<Placed> places;
-  Field held;                          ///< forces of the supports
-  std::map<std::string, double> heat;  ///< work of plastic slip since the start, of each contact and group
+  std::vector<Placed> placed = {};
+  Field held = {};                          ///< forces of the supports
+  std::map<std::string, double> heat = {};  ///< of plastic slip since the start, of contacts and groups; NaN: not known
 };
 
 /// The value of a response; none of those that are not measured again.

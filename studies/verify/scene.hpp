@@ -19,40 +19,35 @@ using Json = nlohmann::json;
 using Vec2 = Eigen::Vector2d;
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
-using Field = Eigen::Matrix3Xd;  ///< a vector a node
+using Nodes = std::vector<int>;
+using Field = Eigen::Matrix3Xd;   ///< a vector a node
+using Places = Eigen::Matrix2Xd;  ///< the same in a plane
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// The time before a run, when nothing has moved yet: a motion that is there at the time 0 is made in the first step.
+constexpr double at_rest = -infinity;
 
 /// A file that cannot be read, or does not fit the scene.
 struct BadFile : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The time before a run, when nothing has moved yet: a motion that is there at the time 0 is made in the first step.
-constexpr double at_rest = -std::numeric_limits<double>::infinity();
+Vec3 vec3(const Json& json);                                 ///< of two or three numbers
+const Json& part(const Json& json, const std::string& key);  ///< an empty object where the key is missing
 
 /// A value in time: a number, or a table that is linear between its rows, and may be repeated.
-class Value {
- public:
-  explicit Value(const Json& json);
-  double at(double time) const;
+double value_at(const Json& value, double time);
 
- private:
-  std::vector<std::array<double, 2>> rows_;
-  double repeats_ = 1;
-};
-
-/// A rigid motion: a displacement by axis, and a turn by an angle, x = c + R (X - c) + move.
+/// A rigid motion x = c + R (X - c) + move of a support or an obstacle, by the axes and the angle that it prescribes.
 struct Motion {
-  std::array<std::optional<Value>, 3> move;
-  std::optional<Value> angle;  ///< degrees
-  Vec3 center = Vec3::Zero(), axis = Vec3::UnitZ();
-
-  Motion() = default;
-  explicit Motion(const Json& json);
+  Json move, rotate;
+  explicit Motion(const Json& json) : move(part(json, "move")), rotate(part(json, "rotate")) {}
+  bool prescribes(int axis) const { return !rotate.empty() || move.contains(std::string(1, "xyz"[axis])); }
+  Vec3 center() const { return rotate.empty() ? Vec3(0, 0, 0) : vec3(rotate.at("center")); }
+  Vec3 angle(double time) const;  ///< radians about an axis
   Mat3 turn(double time) const;
-  Vec3 shift(double time) const;
   /// Displacement of what is at X at the start; where strains are small, linear in the angle.
   Vec3 displacement(const Vec3& X, double time, bool finite) const;
-  Vec3 forth(const Vec3& X, double time) const { return X + displacement(X, time, true); }
   Vec3 back(const Vec3& x, double time) const;  ///< where it was at the start
 };
 
@@ -60,17 +55,19 @@ struct Body {
   std::string name, element;
   double thickness = 1, area = 1;  ///< of a body in a plane; of bars
   Json material;                   ///< {name: numbers}
-  std::vector<std::vector<int>> elements;
-  std::map<std::string, std::vector<int>> sides;
-  std::vector<std::vector<int>> edges;  ///< of the boundary, the solid on the left: two ends, and a middle
+  std::vector<Nodes> elements;
+  std::map<std::string, Nodes> sides;
+  std::vector<Nodes> edges = {};  ///< of the boundary, the solid on the left: two ends, and a middle
   bool quadratic() const { return element == "Q8" || element == "T6"; }
   bool solid() const { return element != "bar" && element != "point"; }
+  std::size_t corners() const { return element[0] == 'T' ? 3 : 4; }
 };
 
 /// Nodes of a side, and the edges of the boundary that belong to it.
 struct Side {
   std::set<int> nodes;
-  std::vector<std::vector<int>> edges;
+  std::vector<Nodes> edges;
+  bool has(int node) const { return nodes.contains(node); }
 };
 
 struct Scene {
@@ -89,17 +86,8 @@ struct Scene {
   double depth(const Body& body, double x) const;
   /// Whether a node is on the axis of revolution, where it has no radial motion.
   bool on_axis(int node) const;
-  /// Where a node counts as being: at small strain at its place of the start.
-  Vec3 place(int node, const Field& u) const { return points.col(node) + (finite ? 1.0 : 0.0) * u.col(node); }
-
- private:
-  Side named(const std::string& word) const;
+  /// Where nodes count as being: at small strain at their places of the start.
+  Field places(const Field& u) const { return points + (finite ? 1.0 : 0.0) * u; }
 };
-
-/// A list of two or three numbers.
-Vec3 vec3(const Json& json);
-
-/// An object of the scene, or an empty one where the key is missing.
-const Json& part(const Json& json, const char* key);
 
 }  // namespace stickslip::verify
