@@ -10,12 +10,12 @@ Contact::Contact(const Scene& scene, const std::string& called, const Json& side
       group(sides.at("of")),
       given(scene.json.at("contacts").at(group)),
       itself(sides.at("slave") == sides.at("master")),
+      segment(given.value("discretization", "node") == "segment"),
       scene_(scene),
       body_(scene.body(sides.at("slave"))),
       side_(scene.side(sides.at("slave"))),
       master_(scene, given, sides.at("slave"), sides.at("master")),
-      areas_(areas_of(scene, body_, side_)),
-      segment_(given.value("discretization", "node") == "segment") {
+      areas_(areas_of(scene, body_, side_)) {
   for (const auto& edge : side_.edges) {
     if (edge.size() == 3) facets_.push_back({edge[0], edge[2]});
     facets_.push_back({edge.size() == 3 ? edge[2] : edge[0], edge[1]});
@@ -23,7 +23,7 @@ Contact::Contact(const Scene& scene, const std::string& called, const Json& side
   for (const int node : side_.nodes)
     if (side_.edges.empty()) areas_[node] = body_.element == "bar" ? body_.area : 1;
   std::erase_if(areas_, [&](const auto& of) {  // (no area is left on the axis)
-    return segment_ ? of.second == 0 : body_.quadratic() && scene.axisymmetric && scene.points(0, of.first) == 0;
+    return segment ? of.second == 0 : body_.quadratic() && scene.axisymmetric && scene.points(0, of.first) == 0;
   });
   std::vector<Seeker> seekers;
   for (const auto& [node, area] : areas_) seekers.push_back(seeker(node, scene.points));
@@ -156,7 +156,7 @@ void Contact::move(Touch& touch, const Touch& last, const Field& u, const Places
     for (const auto& [node, weight] : touch.weights) touch.relative += weight * u.col(node);
     touch.gap += touch.normal.dot(touch.relative);
     touch.slip = touch.relative - last.relative;
-  } else if (segment_ && !master_.patches.empty()) {
+  } else if (segment && !master_.patches.empty()) {
     const double way = touch.along - last.along;
     touch.slip = (master_.loop > 0 ? std::remainder(way, master_.loop) : way) * touch.tangent;
   } else {
@@ -181,10 +181,10 @@ std::vector<Touch> Contact::advance(const Field& u, double time) {
   const auto at = master_.vertices(scene_.finite ? u : Field::Zero(3, u.cols()));
   std::vector<Piece> pieces;
   for (const auto& facet : facets_)
-    if (segment_ && search) cut(facet, x, at, pieces);
+    if (segment && search) cut(facet, x, at, pieces);
   for (const auto& [node, area] : areas_) {
-    if (search && segment_) start_[node] = on_pieces(node, pieces, x, at);
-    if (search && !segment_) {
+    if (search && segment) start_[node] = on_pieces(node, pieces, x, at);
+    if (search && !segment) {
       start_[node] = {master_.foot(seeker(node, x), at), node, area};
       start_[node].weights.emplace_back(node, 1);
     }

@@ -35,8 +35,8 @@ class Contact {
   std::vector<Touch> advance(const Field& u, double time);
 
   std::string name, group;
-  Json given;   ///< its entry in the scene
-  bool itself;  ///< it is a side that touches itself
+  Json given;            ///< its entry in the scene
+  bool itself, segment;  ///< it is a side that touches itself; it is integrated over segments
 
  private:
   /// Part of a slave facet that faces one patch of the master (-1: an obstacle without patches), and the node whose
@@ -58,7 +58,6 @@ class Contact {
   Master master_;
   std::vector<std::array<int, 2>> facets_;
   std::map<int, double> areas_;
-  bool segment_;
   std::map<int, Touch> start_, last_;
   double last_time_ = at_rest;
 };

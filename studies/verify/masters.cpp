@@ -7,7 +7,7 @@
 namespace stickslip::verify {
 namespace {
 
-/// Powers of xi against vertices: facets; Catmull-Rom, through the vertices (C1); cubic B-spline, near them (C2).
+/// Powers of xi against vertices: facets; Catmull-Rom, through the vertices; cubic B-spline, near them.
 const Eigen::Matrix4d shapes[3] = {Eigen::Matrix4d{{0, 1, 0, 0}, {0, -1, 1, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}},
                                    Eigen::Matrix4d{{0, 2, 0, 0}, {-1, 0, 1, 0}, {2, -5, 4, -1}, {-1, 3, -3, 1}} / 2,
                                    Eigen::Matrix4d{{1, 4, 1, 0}, {-3, 0, 3, 0}, {3, -6, 3, 0}, {-1, 3, -3, 1}} / 6};
@@ -126,7 +126,7 @@ bool Master::may_face(const Seeker& seeker, int p, const Places& at) const {
   const Line line(at, patches[p]);
   const Vec2 x = seeker.x.head<2>(), across = right_of(line.tau);
   const double against = seeker.outward.dot(across), xi = line.xi(x);
-  if (!itself_) return !(against > 0);
+  if (!itself_) return frozen_ || !(against > 0);
   for (const int v : patches[p].vertex)
     if (nodes[v] == seeker.node) return false;
   const bool beside = (x - line.from).dot(across) >= 0 || (xi >= -0.5 && xi <= 1.5);
@@ -221,6 +221,7 @@ Foot Master::foot(const Seeker& seeker, const Places& at) const {
     const double s = foot.place.xi;
     const Eigen::Vector4d N = patch.shape.transpose() * Eigen::Vector4d(1, s, s * s, s * s * s);
     for (int i = 0; i < 4 && !rigid(); ++i) foot.weights.emplace_back(nodes[patch.vertex[i]], -N[i]);
+    if (frozen_ && !rigid()) foot.faces = !(seeker.outward.dot(foot.normal.head<2>()) > 0);  // else it looks away
     if (frozen_) share_vertex(seeker, at, foot);
     if (!scene_.finite && !rigid() && !seeker.outward.isZero())  // between two solids: the bisector of their normals
       foot.normal = (foot.normal - in_space(seeker.outward).normalized()).normalized();

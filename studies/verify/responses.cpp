@@ -91,11 +91,12 @@ std::optional<double> of_contact(const State& state, const std::string& kind, co
     const Touch& touch = one->touch;
     if (kind == "gap") samples.push_back({touch.gap, touch.area});
     if (kind == "contact_pressure") samples.push_back({one->pressure(), touch.area});
-    if (kind == "slip" && one->contact->given.contains("friction")) samples.push_back({one->slid, touch.area});
+    if (kind == "slip" && one->contact->given.contains("friction") && !state.scene.on_axis(touch.node))
+      samples.push_back({one->slid, touch.area});
     if (kind != "contact_force") continue;
-    Vec3 x = Vec3::Zero();
+    Vec3 x = Vec3::Zero();  // the force is shared by the slave's nodes
     for (const auto& [node, weight] : touch.weights)
-      if (weight > 0) x += weight * places.col(node);
+      if (one->contact->segment ? weight > 0 : node == touch.node) x += weight * places.col(node);
     sum += touch.area * (how.at("component") == "normal" ? one->pressure() : part_of(how, one->traction, x));
   }
   return kind == "contact_force" ? sum : taken(samples, how);
