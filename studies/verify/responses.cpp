@@ -53,8 +53,9 @@ std::optional<Vec3> displacement_at(const State& state, const Json& how) {
   return std::nullopt;
 }
 
-/// a = 2 sqrt(sum f x^2 / sum f) of nodal forces f, about a point or their centre; of revolution sqrt(5/2 ...).
-double half_width(const State& state, const std::vector<const Placed*>& placed, const Json& how) {
+/// a = 2 sqrt(sum f x^2 / sum f) of nodal forces f, about a point or their centre; of revolution sqrt(5/2 ...). None
+/// where a plane of symmetry may be what it is measured from: where supports hold nodes of the contact.
+std::optional<double> half_width(const State& state, const std::vector<const Placed*>& placed, const Json& how) {
   const Field places = state.scene.places(state.u);
   double force = 0, moment = 0;
   Vec3 middle = Vec3::Zero(), normal = middle;
@@ -68,6 +69,10 @@ double half_width(const State& state, const std::vector<const Placed*>& placed, 
   }
   const bool rings = state.scene.axisymmetric;
   if (closed < (rings ? 1 : 2)) return 0;
+  for (const auto& support : part(state.scene.json, "supports"))
+    for (const auto* one : placed)
+      if (!rings && !how.contains("about") && state.scene.side(support.at("on")).has(one->touch.node))
+        return std::nullopt;
   middle = how.contains("about") ? vec3(how["about"]) : Vec3(middle / force);
   for (const auto* one : placed) {
     const Vec3 x = places.col(one->touch.node);
