@@ -114,8 +114,8 @@ class Judge {
     const Field before = std::exchange(u_, displacements(increment.at("displacement")));
     bodies_ = deform(scene_, u_, bodies_);
     note(step, elements, bodies_.inverted, "of a body");
-    L_ = std::max(L_, u_.cwiseAbs().maxCoeff());
     const Field loads = load_forces(scene_, u_, step.time);
+    L_ = std::max({L_, u_.cwiseAbs().maxCoeff(), loads.colwise().norm().maxCoeff() * over(bodies_.stiffness)});
     const auto held = supports_at(scene_, step.time);
     State state{scene_, u_, bodies_, places(part(increment, "contacts"), bodies_.forces - loads, held, step)};
     Field contact = Field::Zero(3, u_.cols());
@@ -178,7 +178,8 @@ class Judge {
           placed.traction = held.contains(touch.node) ? Vec3(force - held.at(touch.node).taken(force)) : force;
           placed.traction /= touch.area;
         }
-        T_ = std::max(T_, placed.traction.norm());
+        T_ =
+            std::max({T_, placed.traction.norm(), touch.area > 0 ? rounding * bodies_.stiffness * L_ / touch.area : 0});
         all.push_back(placed);
         index.erase(touch.node);
       }
@@ -280,7 +281,7 @@ class Judge {
     work_ += done;
     spent_ += bodies_.plastic_work;
     size_ += std::abs(done) + bodies_.plastic_work;
-    const double scale = std::max(size_, equilibrium.allowed * bodies_.stiffness * L_ * L_);
+    const double scale = std::max({size_, bodies_.energy, equilibrium.allowed * bodies_.stiffness * L_ * L_});
     note(step, energy, std::abs(work_ - bodies_.energy - spent_) * over(scale),
          fmt::format("work {:.6g}, stored {:.6g}, dissipated {:.6g}", work_, bodies_.energy, spent_),
          std::min(1.0, slack_ * over(scale) + energy.allowed));
