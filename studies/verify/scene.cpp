@@ -26,6 +26,22 @@ std::vector<Nodes> boundary_of(const Body& body) {
   return edges;
 }
 
+/// Throws where elements are of no known kind or have other nodes than it, or where nodes are not there.
+void check(const Body& body, Eigen::Index nodes) {
+  static const std::map<std::string, std::size_t> sizes{
+      {"point", 2}, {"bar", 2}, {"T3", 3}, {"T6", 6}, {"Q4", 4}, {"Q4_mean_dilatation", 4}, {"Q8", 8}};
+  auto lists = body.elements;
+  for (const auto& [name, side] : body.sides) lists.push_back(side);
+  for (const auto& list : lists)
+    for (const int node : list)
+      if (node < 0 || node >= nodes) throw BadFile(body.name + " has a node that is not there");
+  for (const auto& element : body.elements)
+    if (!sizes.contains(body.element) || element.size() != sizes.at(body.element))
+      throw BadFile(body.name + " has an element that is no " + body.element);
+  if (body.element == "point" && (!body.sides.contains("node") || !body.sides.contains("anchor")))
+    throw BadFile(body.name + " has no node or no anchor");
+}
+
 Side named(const Scene& scene, const std::string& word) {
   const Body& body = scene.body(word);
   const auto dot = word.find('.');
@@ -114,9 +130,7 @@ Scene::Scene(const Json& scene, const Json& mesh) : json(scene) {
               given.at("material"),
               made.at("elements"),
               made.at("sides")};
-    for (const auto& element : body.elements)
-      for (const int node : element)
-        if (node < 0 || node >= points.cols()) throw BadFile("an element of " + name + " has a node that is not there");
+    check(body, points.cols());
     if (body.element != "point") body.edges = body.solid() ? boundary_of(body) : body.elements;
     std::set<int> all;
     for (const auto& edge : body.edges) all.insert(edge.begin(), edge.end());

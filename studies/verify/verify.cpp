@@ -145,6 +145,7 @@ class Judge {
   };
 
   std::string at(int node) const {
+    if (node < 0 || node >= u_.cols()) throw BadFile(fmt::format("the mesh has no node {}", node));
     return fmt::format("node {}, ({:.6g}, {:.6g}) at the start", node, scene_.points(0, node), scene_.points(1, node));
   }
   static double over(double scale) { return scale > 0 ? 1 / scale : 1; }
