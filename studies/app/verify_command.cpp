@@ -24,7 +24,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-json read_file(const fs::path& file) {
+json parsed_file(const fs::path& file) {
   std::ifstream stream(file);
   if (!stream) throw InputFault(file.string() + ": cannot be read");
   try {
@@ -35,7 +35,7 @@ json read_file(const fs::path& file) {
 }
 
 json read_solution(const fs::path& file) {
-  json solution = read_file(file);
+  json solution = parsed_file(file);
   if (!solution.is_object() || solution.value("schema", "") != "stickslip_solution" ||
       solution.value("version", 0) != 1)
     throw InputFault(file.string() + R"(: must have "schema": "stickslip_solution" and "version": 1)");
@@ -141,7 +141,7 @@ void print_faults(const verify::Certificate& certificate) {
 /// The solution to be checked; its scene and mesh are those of the run.
 verify::Certificate certificate_of(const VerifyArguments& arguments) {
   const fs::path directory = arguments.directory;
-  const json result = read_file(directory / "result.json");
+  const json result = parsed_file(directory / "result.json");
   const json left_out = result.value("solution", json::object()).value("left_out", json());
   if (left_out.is_string())
     throw InputFault((directory / "solution.json").string() + ": was left out: " + left_out.get<std::string>());

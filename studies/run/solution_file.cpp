@@ -15,14 +15,14 @@ namespace stickslip {
 namespace {
 
 /// JSON as it grows. Keys need no escapes but those of names, which quoted() adds.
-class Writer {
+class SolutionWriter {
  public:
-  Writer& raw(std::string_view text) {
+  SolutionWriter& raw(std::string_view text) {
     text_ += text;
     return *this;
   }
-  Writer& quoted(const std::string& name) { return raw(nlohmann::json(name).dump()); }
-  Writer& number(double value) {
+  SolutionWriter& quoted(const std::string& name) { return raw(nlohmann::json(name).dump()); }
+  SolutionWriter& number(double value) {
     if (!std::isfinite(value)) return raw("null");
     char digits[32];
     text_.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
@@ -30,7 +30,7 @@ class Writer {
   }
   /// Items between brackets; `write(item)` writes one.
   template <class Items, class Write>
-  Writer& list(const Items& items, Write&& write) {
+  SolutionWriter& list(const Items& items, Write&& write) {
     raw("[");
     bool first = true;
     for (const auto& item : items) {
@@ -40,7 +40,7 @@ class Writer {
     return raw("]");
   }
   template <class Numbers>
-  Writer& numbers(const Numbers& values) {
+  SolutionWriter& numbers(const Numbers& values) {
     return list(values, [&](double value) { number(value); });
   }
   const std::string& text() const { return text_; }
@@ -68,7 +68,7 @@ std::string_view element_name(const BodyMesh& body) {
   return "";
 }
 
-void write_body(Writer& out, const BodyMesh& body) {
+void write_solution_body(SolutionWriter& out, const BodyMesh& body) {
   const auto node = [&](int local) { out.number(body.first_node + local); };
   std::vector<int> elements(body.mesh.element_count());
   for (std::size_t e = 0; e < elements.size(); ++e) elements[e] = static_cast<int>(e);
@@ -87,12 +87,12 @@ void write_body(Writer& out, const BodyMesh& body) {
   out.raw("}}");
 }
 
-void write_mesh(Writer& out, const Problem& problem) {
+void write_solution_mesh(SolutionWriter& out, const Problem& problem) {
   const auto& [model, slots, seconds] = problem;
   out.raw(R"({"nodes":)").list(slots.points.colwise(), [&](const auto& x) { out.numbers(x); }).raw(R"(,"bodies":{)");
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     out.raw(b > 0 ? ",\n" : "\n").quoted(model.scene.bodies[b].name).raw(":");
-    write_body(out, model.bodies[b]);
+    write_solution_body(out, model.bodies[b]);
   }
   out.raw(R"(},"contacts":{)");
   bool first = true;
@@ -111,7 +111,7 @@ RegularisationField<double> springs_of(const CaseResult& result, const Increment
   return adapted(initial_regularisation(result.problem->slots, *penalty), increment.rho_factor);
 }
 
-void write_contact(Writer& out, const CaseResult& result, const Increment<double>& increment, int contact) {
+void write_contact(SolutionWriter& out, const CaseResult& result, const Increment<double>& increment, int contact) {
   const auto& model = result.problem->model;
   std::vector<int> points;
   for (std::size_t p = 0; p < model.points.size(); ++p)
@@ -130,7 +130,7 @@ void write_contact(Writer& out, const CaseResult& result, const Increment<double
 }
 
 /// Mean equivalent plastic strains of the elements of each body that flows.
-void write_flow(Writer& out, const Problem& problem, const State<double>& state) {
+void write_flow(SolutionWriter& out, const Problem& problem, const State<double>& state) {
   const auto& [model, slots, seconds] = problem;
   out.raw(R"(,"plastic_strain":{)");
   bool first = true;
@@ -142,7 +142,7 @@ void write_flow(Writer& out, const Problem& problem, const State<double>& state)
   out.raw("}");
 }
 
-void write_increment(Writer& out, const CaseResult& result, const Increment<double>& increment) {
+void write_increment(SolutionWriter& out, const CaseResult& result, const Increment<double>& increment) {
   const auto& contacts = result.problem->model.scene.contacts;
   out.raw(R"({"time":)").number(increment.time).raw(R"(,"status":")").raw(name_of(increment.status));
   out.raw(R"(","displacement":)").numbers(increment.state.displacement).raw(R"(,"contacts":{)");
@@ -158,10 +158,10 @@ void write_increment(Writer& out, const CaseResult& result, const Increment<doub
 }  // namespace
 
 SolutionFile solution_file(const CaseResult& result, const nlohmann::json& scene, std::size_t largest) {
-  Writer out;
+  SolutionWriter out;
   out.raw(R"({"schema":"stickslip_solution","version":1,)").raw("\n\"scene\":").raw(scene.dump());
   out.raw(",\n\"mesh\":");
-  write_mesh(out, *result.problem);
+  write_solution_mesh(out, *result.problem);
   out.raw(",\n\"increments\":[");
   const std::size_t solved = result.trajectory.solved_count();
   for (std::size_t n = 0; n < solved; ++n) {

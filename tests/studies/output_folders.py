@@ -18,8 +18,8 @@ from pathlib import Path
 
 PROGRAM, SOURCE = sys.argv[1], Path(sys.argv[2])
 SCENES = SOURCE / "studies" / "scenes"
-RUN = ["result.json", "fields.pvd", "fields_0060.vtu", "solution.json", "picture.json", "report.html", "trace.csv", "cones.svg",
-       "figures/mine.svg", "figures/mine.pdf", "figures/mine.pgf", "figures/mine.csv"]
+RUN = ["result.json", "fields.pvd", "fields_0060.vtu", "solution.json", "picture.json", "report.html", "trace.csv",
+       "cones.svg", "figures/mine.svg", "figures/mine.pdf", "figures/mine.pgf", "figures/mine.csv"]
 STUDY = ["study.json", "results.jsonl", "timings.jsonl", "results.stale.jsonl", "fields.pvd", "fields_0001.vtu",
          "picture.json", "report.html", *RUN[-4:]]
 EXPORT = ["K.mtx", "G.mtx", "lambda.mtx", "f.mtx", "u.mtx", "g.mtx", "rows.csv", "points.csv", "README"]
