@@ -142,6 +142,7 @@ json write_run(const std::filesystem::path& directory, const RunArguments& argum
   json document = write_result(directory, simulation, result, written);
   if (arguments.report) write_run_report(directory);
   add_files(directory, result_files(simulation, result), names);
+  if (document["solution"].contains("file")) add_files(directory, {"solution.json"}, names);
   add_files(directory, traced, names);
   if (arguments.report) add_files(directory, {"picture.json", "report.html", "figures/"}, names);
   return document;

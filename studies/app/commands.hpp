@@ -28,6 +28,12 @@ struct CompareArguments {
   bool json = false;
 };
 
+struct VerifyArguments {
+  std::string directory;
+  std::string solution;  ///< file of another program's solution; empty: that of the run
+  bool json = false;
+};
+
 int run_command(const RunArguments& arguments);
 int explain_command(const RunArguments& arguments);
 int gradcheck_command(const RunArguments& arguments);
@@ -36,6 +42,7 @@ int schema_command(const std::string& kind);  ///< "scene" or "study"
 int study_command(const StudyArguments& arguments);
 int merge_command(const std::vector<std::string>& directories, const std::string& output);
 int compare_command(const CompareArguments& arguments);
+int verify_command(const VerifyArguments& arguments);
 int report_command(const std::string& directory);
 
 }  // namespace stickslip

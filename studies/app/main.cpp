@@ -36,6 +36,7 @@ struct Arguments {
   RunArguments run, explain, gradcheck;
   StudyArguments study;
   CompareArguments compare;
+  VerifyArguments verify;
   std::vector<std::string> shards;
   std::string directory, merged, schema_of = "scene";
   bool methods_json = false;
@@ -138,6 +139,12 @@ void add_compare(CLI::App& command, CompareArguments& compare) {
   command.add_flag("--json", compare.json, "one JSON document on standard output and nothing else");
 }
 
+void add_verify(CLI::App& command, VerifyArguments& verify) {
+  command.add_option("DIR", verify.directory, "directory of a run")->required();
+  command.add_option("--solution", verify.solution, "solution of another program, in place of the run's (JSON)");
+  command.add_flag("--json", verify.json, "one JSON document on standard output and nothing else");
+}
+
 /// Adds all commands, in the order of the help. `given` must outlive the actions.
 Actions add_commands(CLI::App& app, Arguments& given) {
   Actions actions;
@@ -166,6 +173,9 @@ Actions add_commands(CLI::App& app, Arguments& given) {
   add_scene(add("gradcheck", "hold every sensitivity against differences",
                 [&] { return on_standard_output(gradcheck_command(given.gradcheck)); }),
             given.gradcheck);
+  add_verify(add("verify", "check a result by its files alone: equilibrium, contact, friction, energy",
+                 [&] { return on_standard_output(verify_command(given.verify)); }),
+             given.verify);
   add("report", "rebuild report.html of a study or a run from recorded results",
       [&] { return with_files(report_command(given.directory)); })
       .add_option("DIR", given.directory, "directory of a study or a run")

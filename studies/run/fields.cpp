@@ -183,22 +183,10 @@ void append_contact_fields(VtuData& data, const Problem& problem, const State<do
 
 /// Mean equivalent plastic strain of each element, one row.
 Matrix<double> element_plastic_strain(const Problem& problem, const State<double>& state) {
-  const auto& model = problem.model;
   std::vector<double> means;
-  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
-    std::vector<std::pair<double, double>> points;  // strain times volume, volume
-    for_each_plastic_strain(model, problem.slots, b, state.history.bodies,
-                            [&](double strain, double volume) { points.emplace_back(strain * volume, volume); });
-    const int elements = model.bodies[b].mesh.element_count();
-    const std::size_t each = points.size() / elements;
-    for (int e = 0; e < elements; ++e) {
-      double sum = 0, volume = 0;
-      for (std::size_t k = e * each; k < (e + 1) * each; ++k) {
-        sum += points[k].first;
-        volume += points[k].second;
-      }
-      means.push_back(each > 0 ? sum / volume : 0);
-    }
+  for (std::size_t b = 0; b < problem.model.bodies.size(); ++b) {
+    const auto of_body = mean_plastic_strains(problem, state, static_cast<int>(b));
+    means.insert(means.end(), of_body.begin(), of_body.end());
   }
   return Eigen::Map<const Vector<double>>(means.data(), static_cast<Eigen::Index>(means.size())).transpose();
 }
@@ -329,6 +317,23 @@ bool contacts_share_nodes(const Model& model) {
     if (first < 0) first = point.contact;
     return first != point.contact;
   });
+}
+
+std::vector<double> mean_plastic_strains(const Problem& problem, const State<double>& state, int body) {
+  std::vector<std::pair<double, double>> points;  // strain times volume, volume
+  for_each_plastic_strain(problem.model, problem.slots, body, state.history.bodies,
+                          [&](double strain, double volume) { points.emplace_back(strain * volume, volume); });
+  std::vector<double> means(problem.model.bodies[body].mesh.element_count(), 0);
+  const std::size_t each = points.size() / means.size();
+  for (std::size_t e = 0; each > 0 && e < means.size(); ++e) {
+    double sum = 0, volume = 0;
+    for (std::size_t k = e * each; k < (e + 1) * each; ++k) {
+      sum += points[k].first;
+      volume += points[k].second;
+    }
+    means[e] = sum / volume;
+  }
+  return means;
 }
 
 Vector<double> traction_vector(const Problem& problem, const State<double>& state, int p) {

@@ -37,6 +37,9 @@ bool contacts_share_nodes(const Model& model);
 /// Force per area on the slave at contact point p.
 Vector<double> traction_vector(const Problem& problem, const State<double>& state, int p);
 
+/// Mean equivalent plastic strain of each element of a body; 0 where it does not flow.
+std::vector<double> mean_plastic_strains(const Problem& problem, const State<double>& state, int body);
+
 /// The last step as the report's picture: points, elements, displacement, von Mises stress, contact points, obstacles
 /// as at the start with what they moved by since, and the kinds of the responses by name.
 nlohmann::json picture_json(const CaseResult& result);

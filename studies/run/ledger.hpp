@@ -38,7 +38,7 @@ using Ledger = std::vector<LedgerRow>;
 /// What a run wrote beside result.json.
 struct Written {
   long files = 0;
-  double fields = 0, picture = 0, trace = 0;  ///< bytes
+  double fields = 0, solution = 0, picture = 0, trace = 0;  ///< bytes
   double seconds = 0;
 };
 

@@ -12,6 +12,7 @@
 #include "studies/run/fields.hpp"
 #include "studies/run/ledger_parts.hpp"
 #include "studies/run/simulation.hpp"
+#include "studies/run/solution_file.hpp"
 
 namespace stickslip {
 namespace {
@@ -352,6 +353,16 @@ double field_steps(const OutputOptions& output, double steps) {
   return 0;
 }
 
+/// Bytes of solution.json: of a step its displacements and tractions, in some 20 digits, signs and commas each; of the
+/// mesh coordinates, and the nodes of the elements. 0 where it is left out.
+double solution_bytes(const Model& model, double connectivity, double steps) {
+  constexpr double digits = 20, of_integers = 7;
+  const double tractions = static_cast<double>(model.points.size()) * (digits * model.dimension + of_integers);
+  const double bytes =
+      steps * (digits * model.dof_count() + tractions) + digits * model.dof_count() + of_integers * connectivity + 2000;
+  return bytes > static_cast<double>(largest_solution) ? 0 : bytes;
+}
+
 LedgerRow files_row(const Input& input, const Model& model, const Size& n) {
   // Base 64 of doubles and integers: of a node its place, displacement and fields of contact (of all contacts, and of
   // each where some share nodes), of an element its nodes, place, kind, body and stresses, at the last step
@@ -367,11 +378,13 @@ LedgerRow files_row(const Input& input, const Model& model, const Size& n) {
   const double numbers = (6 + of_contact * sets) * model.node_count + connectivity + 10 * element_count(model);
   const double bytes =
       files * (head + base64 * real_bytes * numbers) + base64 * real_bytes * 3 * n.parameters * model.node_count;
+  const double solution = n.whole < n.states ? 0 : solution_bytes(model, connectivity, n.steps);  // (states let go)
   return {"output",
           true,
           {},
-          {{"fields", bytes, within * n.path}, {"picture", 0}, {"trace", 0}},
-          {{"files", files + 1, input.output.fields == OutputOptions::Fields::last ? exactly : n.path}},
+          {{"fields", bytes, within * n.path}, {"solution", solution, within * n.path}, {"picture", 0}, {"trace", 0}},
+          {{"files", files + (solution > 0 ? 2 : 1),
+            input.output.fields == OutputOptions::Fields::last ? exactly : n.path}},
           not_apart};
 }
 

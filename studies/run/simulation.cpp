@@ -9,6 +9,7 @@
 #include "studies/io/input_fault.hpp"
 #include "studies/io/printing.hpp"
 #include "studies/run/fields.hpp"
+#include "studies/run/solution_file.hpp"
 
 namespace stickslip {
 namespace {
@@ -112,14 +113,26 @@ OutputFolder folder_of_run(const std::filesystem::path& directory, const std::ve
   if (holds(directory, "study.json"))
     throw InputFault(directory.string() + ": holds a study; -o DIR writes to another directory");
   std::vector<std::string> names(others);
-  names.emplace_back("result.json");
+  names.insert(names.end(), {"result.json", "solution.json"});
   names.insert(names.end(), std::begin(field_names), std::end(field_names));
   return {directory, names};
 }
 
 void remove_run(const std::filesystem::path& directory) {
-  remove_outputs(directory, {"result.json", "fields.pvd", "fields_#.vtu", "picture.json", "report.html", "figures/*",
-                             "trace.csv", "cones.svg"});
+  remove_outputs(directory, {"result.json", "solution.json", "fields.pvd", "fields_#.vtu", "picture.json", "report.html",
+                             "figures/*", "trace.csv", "cones.svg"});
+}
+
+/// Writes solution.json, or nothing where it would be too large; returns what result.json says of it.
+nlohmann::json write_solution(const std::filesystem::path& directory, const Simulation& simulation,
+                              const CaseResult& result, Written& written) {
+  const Stopwatch time(written.seconds);
+  const auto [text, left_out] = solution_file(result, simulation.input.document);
+  if (!left_out.empty()) return {{"left_out", left_out}};
+  write_output(directory / "solution.json", text);
+  written.solution = static_cast<double>(text.size());
+  ++written.files;
+  return {{"file", "solution.json"}};
 }
 
 nlohmann::json write_result(const std::filesystem::path& directory, const Simulation& simulation,
@@ -133,7 +146,9 @@ nlohmann::json write_result(const std::filesystem::path& directory, const Simula
   const auto fields = field_files(result, every);
   written.files += static_cast<long>(fields.size());
   written.fields = file_bytes(directory, fields);
+  const auto solution = write_solution(directory, simulation, result, written);
   auto document = result_json(result, canonical_text(simulation.input));
+  document["solution"] = solution;
   document["cost"]["seconds"]["output"] = written.seconds;
   document["ledger"] = ledger_json(ledger(result, written));
   write_output(directory / "result.json", json_text(document, 2) + "\n");

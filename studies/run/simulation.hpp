@@ -49,8 +49,8 @@ OutputFolder folder_of_run(const std::filesystem::path& directory, const std::ve
 /// Deletes what an earlier run left, which would mix with the files of the next.
 void remove_run(const std::filesystem::path& directory);
 
-/// Writes DIR/fields.pvd with its .vtu files, and then DIR/result.json (write_output). Returns the content of
-/// result.json (docs/results.md). `before`: files already written, for its ledger. Throws std::system_error if writing
+/// Writes DIR/fields.pvd with its .vtu files, DIR/solution.json where it is not too large, and then DIR/result.json
+/// (write_output). Returns the content of result.json (docs/results.md). `before`: files already written, for its ledger. Throws std::system_error if writing
 /// fails. pre: remove_run()
 nlohmann::json write_result(const std::filesystem::path& directory, const Simulation& simulation,
                             const CaseResult& result, const Written& before = {});
@@ -58,7 +58,7 @@ nlohmann::json write_result(const std::filesystem::path& directory, const Simula
 /// Bytes of files in a directory.
 double file_bytes(const std::filesystem::path& directory, const std::vector<std::string>& files);
 
-/// Names of the files that write_result writes.
+/// Names of the files that write_result writes, but for solution.json, of which result.json says whether it is there.
 std::vector<std::string> result_files(const Simulation& simulation, const CaseResult& result);
 
 }  // namespace stickslip

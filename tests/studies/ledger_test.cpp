@@ -302,7 +302,8 @@ TEST(Ledger, CountsWhatIsWritten) {
   fs::create_directories(directory);
   const auto result = simulate(*simulation);
   const json written = write_result(directory, *simulation, result)["ledger"].back();
-  double bytes = 0, files = 0;
+  double bytes = 0, files = 1;
+  const auto solution = static_cast<double>(fs::file_size(directory / "solution.json"));
   for (const auto& entry : fs::directory_iterator(directory)) {
     if (!entry.path().filename().string().starts_with("fields")) continue;
     bytes += static_cast<double>(entry.file_size());
@@ -310,9 +311,11 @@ TEST(Ledger, CountsWhatIsWritten) {
   }
   EXPECT_EQ(written["effect"], "output");
   EXPECT_EQ(written["memory"]["fields"], bytes);
+  EXPECT_EQ(written["memory"]["solution"], solution);
   EXPECT_EQ(written["counts"]["files"], files);
   const Ledger foretold = forecast(simulation->input, *simulation->problem);
-  expect_amounts_foretold(row(foretold, "output").memory, {{"fields", bytes}, {"picture"}, {"trace"}}, "output");
+  expect_amounts_foretold(row(foretold, "output").memory, {{"fields", bytes}, {"solution", solution}, {"picture"}, {"trace"}},
+                          "output");
   expect_amounts_foretold(row(foretold, "output").counts, {{"files", files}}, "output");
   EXPECT_FALSE(row(ledger(result), "output").on);
 }

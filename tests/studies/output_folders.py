@@ -18,8 +18,8 @@ from pathlib import Path
 
 PROGRAM, SOURCE = sys.argv[1], Path(sys.argv[2])
 SCENES = SOURCE / "studies" / "scenes"
-RUN = ["result.json", "fields.pvd", "fields_0060.vtu", "picture.json", "report.html", "trace.csv", "cones.svg",
-       "figures/mine.svg", "figures/mine.pdf", "figures/mine.pgf", "figures/mine.csv"]
+RUN = ["result.json", "fields.pvd", "fields_0060.vtu", "solution.json", "picture.json", "report.html", "trace.csv",
+       "cones.svg", "figures/mine.svg", "figures/mine.pdf", "figures/mine.pgf", "figures/mine.csv"]
 STUDY = ["study.json", "results.jsonl", "timings.jsonl", "results.stale.jsonl", "fields.pvd", "fields_0001.vtu",
          "picture.json", "report.html", *RUN[-4:]]
 EXPORT = ["K.mtx", "G.mtx", "lambda.mtx", "f.mtx", "u.mtx", "g.mtx", "rows.csv", "points.csv", "README"]
@@ -65,14 +65,14 @@ def files_of_others(work):
     folder = work / "run"
     fill(folder, RUN + BESIDE)
     refused(folder, "run", scene, "-o", folder, "--report", "--trace", names=RUN)
-    refused(folder, "run", scene, "-o", folder, names=RUN[:3])
-    for name in RUN[:3]:
+    refused(folder, "run", scene, "-o", folder, names=RUN[:4])
+    for name in RUN[:4]:
         (folder / name).unlink()
     before = content(folder)  # of which a run without a report needs no name
     for _ in range(2):
         run("run", scene, "-o", folder)
     after = content(folder)
-    if any(after[name] != before[name] for name in before) or set(after) - set(before) != {*RUN[:3], ".stickslip"}:
+    if any(after[name] != before[name] for name in before) or set(after) - set(before) != {*RUN[:4], ".stickslip"}:
         sys.exit(f"a run touched files of others: {after.keys() ^ before.keys()}")
 
     folder = work / "study"

@@ -4,6 +4,7 @@
 #
 #   core <- methods <- sensitivity <- studies; within core: algebra, mesh <- solids, contact <- model;
 #   within studies: io <- input <- run <- report <- sweep <- app, and what python needs of them.
+#   studies/verify, which checks what all others find, shares nothing with them.
 #   core/model/scene.hpp, the plain description of a scene, is open to mesh and contact.
 #   Below studies/ there is no JSON and no printing; solver libraries are seen by core/algebra alone.
 set -euo pipefail
@@ -23,12 +24,13 @@ allowed() {
     studies/run) echo '(core|methods|sensitivity|studies/(io|input|run|version\.hpp))' ;;
     studies/report) echo 'studies/(io|input|report)/|core/contact/friction_law\.hpp' ;;
     studies/sweep) echo '(core|methods|sensitivity|studies/(io|input|run|report|sweep|version\.hpp))' ;;
-    studies/app) echo '(core|methods|sensitivity|studies/(io|input|run|report|sweep|app))/' ;;
+    studies/verify) echo 'studies/verify/' ;;
+    studies/app) echo '(core|methods|sensitivity|studies/(io|input|run|report|sweep|verify|app))/' ;;
     studies/python) echo '(core|methods|sensitivity|studies)/' ;;
   esac
 }
 folders="core/algebra core/mesh core/solids core/contact core/model methods sensitivity
-  studies/io studies/input studies/run studies/report studies/sweep studies/app studies/python"
+  studies/io studies/input studies/run studies/report studies/sweep studies/verify studies/app studies/python"
 solver_headers='<(cholmod|umfpack|dmumps_c|SuiteSparse_config)[^>]*>'
 printing='<(nlohmann|fmt|CLI)/|<(iostream|print)>|\b(printf|fprintf|puts) *\(|\b(cout|cerr)\b'
 
@@ -60,7 +62,7 @@ self_test() {
   tree=$(mktemp -d)
   trap 'rm -rf "$tree"' EXIT
   mkdir -p "$tree"/core/{algebra,mesh,solids,contact,model} "$tree"/{methods,sensitivity} \
-    "$tree"/studies/{io,input,run,report,sweep,app}
+    "$tree"/studies/{io,input,run,report,sweep,verify,app}
   echo '#include "core/algebra/scalar.hpp"' >"$tree/studies/io/good.cpp"
   echo '#include "studies/report/report.hpp"' >"$tree/studies/sweep/good.cpp"
   echo '#include "core/model/scene.hpp"' >"$tree/core/mesh/good.hpp"
@@ -89,6 +91,8 @@ studies/input #include "studies/run/case.hpp"
 studies/run #include "studies/sweep/study.hpp"
 studies/report #include "studies/run/case.hpp"
 studies/sweep #include "studies/app/commands.hpp"
+studies/verify #include "core/mesh/mesh.hpp"
+studies/verify #include "studies/io/numerals.hpp"
 CASES
 }
 

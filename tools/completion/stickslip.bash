@@ -4,7 +4,7 @@ _stickslip() {
   local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} command=${COMP_WORDS[1]:-} options=
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    mapfile -t COMPREPLY < <(compgen -W "run study merge compare explain gradcheck report methods schema --help --version" -- "$word")
+    mapfile -t COMPREPLY < <(compgen -W "run study merge compare explain gradcheck verify report methods schema --help --version" -- "$word")
     return
   fi
   case $command in
@@ -14,6 +14,7 @@ _stickslip() {
     compare) options="--help --relative --rounding --json" ;;
     explain) options="--help --method --set --json" ;;
     gradcheck) options="--help --method --set --json" ;;
+    verify) options="--help --solution --json" ;;
     report) options="--help" ;;
     methods) options="--help --json" ;;
     schema) options="--help" ;;
@@ -27,6 +28,9 @@ _stickslip() {
     -o | --output | --export)
       mapfile -t COMPREPLY < <(compgen -d -- "$word")
       return ;;
+    --solution)
+      mapfile -t COMPREPLY < <(compgen -d -- "$word"; compgen -f -X '!*.json' -- "$word")
+      return ;;
   esac
   if [[ $word == -* ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$options" -- "$word")
@@ -36,7 +40,7 @@ _stickslip() {
     run | study | explain | gradcheck)
       compopt -o filenames 2>/dev/null
       mapfile -t COMPREPLY < <(compgen -d -- "$word"; compgen -f -X '!*.json' -- "$word") ;;
-    merge | compare | report)
+    merge | compare | verify | report)
       compopt -o filenames 2>/dev/null
       mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
     schema)

@@ -1,0 +1,202 @@
+#include "studies/verify/contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stickslip::verify {
+
+Contact::Contact(const Scene& scene, const std::string& called, const Json& sides)
+    : name(called),
+      group(sides.at("of")),
+      given(scene.json.at("contacts").at(group)),
+      itself(sides.at("slave") == sides.at("master")),
+      segment(given.value("discretization", "node") == "segment"),
+      scene_(scene),
+      body_(scene.body(sides.at("slave"))),
+      side_(scene.side(sides.at("slave"))),
+      master_(scene, given, sides.at("slave"), sides.at("master")),
+      areas_(areas_of(scene, body_, side_)) {
+  for (const auto& edge : side_.edges) {
+    if (edge.size() == 3) facets_.push_back({edge[0], edge[2]});
+    facets_.push_back({edge.size() == 3 ? edge[2] : edge[0], edge[1]});
+  }
+  for (const int node : side_.nodes)
+    if (side_.edges.empty()) areas_[node] = body_.element == "bar" ? body_.area : 1;
+  std::erase_if(areas_, [&](const auto& of) {  // (no area is left on the axis)
+    return segment ? of.second == 0 : body_.quadratic() && scene.axisymmetric && scene.points(0, of.first) == 0;
+  });
+  std::vector<Seeker> seekers;
+  for (const auto& [node, area] : areas_) seekers.push_back(seeker(node, scene.points));
+  if (itself) master_.set_walls(seekers);
+  advance(Field::Zero(3, scene.points.cols()), at_rest);  // slip is measured from the start
+}
+
+Seeker Contact::seeker(int node, const Field& x) const {
+  Seeker seeker{node, x.col(node), Vec2::Zero()};
+  for (const auto& [a, b] : facets_)
+    if (body_.solid() && (a == node || b == node)) seeker.outward += right_of((x.col(b) - x.col(a)).head<2>());
+  return seeker;
+}
+
+/// Cuts a slave facet where master facets end, seen along its normal; each part faces the nearest of them.
+void Contact::cut(const std::array<int, 2>& facet, const Field& x, const Places& at, std::vector<Piece>& all) const {
+  const auto [first, second] = facet;
+  const Vec2 a = x.col(first).head<2>(), tau = x.col(second).head<2>() - a, nu = right_of(tau).normalized();
+  const auto add = [&](double from, double to, int patch) {
+    for (const int node : facet)
+      if (side_.has(node))
+        all.push_back({first, second, node, patch, from, to, !side_.has(node == first ? second : first)});
+  };
+  if (master_.patches.empty()) return add(0, 1, -1);
+  std::vector<std::array<double, 2>> shadows(master_.patches.size(), {1, 0});  // of each patch on the facet
+  std::set<double> breaks{0, 1};
+  for (std::size_t p = 0; p < shadows.size(); ++p) {
+    const Patch& patch = master_.patches[p];
+    const Vec2 c = at.col(patch.vertex[1]), d = at.col(patch.vertex[2]);
+    const auto cast = [&](const Vec2& y, bool is_free) {  // sides that end together, do so to 1e-6 of a facet
+      const double xi = (y - a).dot(tau) / tau.squaredNorm(), end = std::clamp(std::round(xi), 0.0, 1.0);
+      return is_free && scene_.finite && std::abs(xi - end) <= 1e-6 ? end : xi;
+    };
+    const double low = cast(d, patch.next < 0), high = cast(c, patch.previous < 0);
+    if (nu.dot(right_of(d - c)) >= -at_end * (d - c).norm() || std::min(high, 1 - low) <= at_end ||
+        high - low <= at_end)
+      continue;
+    shadows[p] = {low, high};
+    for (const double xi : {low, high})
+      if (xi > at_end && xi < 1 - at_end) breaks.insert(xi);
+  }
+  for (auto to = std::next(breaks.begin()); to != breaks.end(); ++to) {
+    const double from = *std::prev(to), middle = (from + *to) / 2;
+    double least = infinity;
+    int facing = -1;
+    for (std::size_t p = 0; p < shadows.size(); ++p) {
+      if (shadows[p][0] > middle || shadows[p][1] < middle) continue;
+      const Vec2 c = at.col(master_.patches[p].vertex[1]), along = at.col(master_.patches[p].vertex[2]) - c;
+      const Vec2 off = a + middle * tau - c;
+      const double distance = (cross(off, nu) / cross(along, nu) * along - off).norm();
+      if (distance < least) facing = static_cast<int>(p);
+      least = std::min(least, distance);
+    }
+    if (facing >= 0 && *to - from > at_end) add(from, *to, facing);
+  }
+}
+
+/// Adds int psi ... dA of a piece, by three Gauss points.
+void Contact::integrate(const Piece& piece, const Field& x, const Places& at, Touch& touch, double& share) const {
+  const auto& [first, second, carrier, p, from, to, sole] = piece;
+  const Vec3 A = scene_.points.col(first), T = scene_.points.col(second) - A, tau = x.col(second) - x.col(first);
+  const Vec2 nu = right_of(tau.head<2>()).normalized();
+  for (const auto& point : edge_points(3, false)) {
+    const double s = from + (to - from) * point.s, psi = sole ? 1 : carrier == first ? 1 - s : s;
+    const double length = psi * (to - from) * point.weight * T.norm(),
+                 dA = length * scene_.depth(body_, A[0] + s * T[0]);
+    const Vec3 x_s = x.col(first) + s * tau;
+    Foot foot;
+    if (p < 0) {
+      foot = master_.foot({carrier, x_s, nu}, at);
+    } else {
+      const Patch& patch = master_.patches[p];
+      const Vec2 c = at.col(patch.vertex[1]), edge = at.col(patch.vertex[2]) - c;
+      const double eta = cross(x_s.head<2>() - c, nu) / cross(edge, nu);
+      foot.y = in_space(c + eta * edge);
+      foot.normal = in_space(right_of(edge).normalized() - (master_.rigid() ? 0 : 1) * nu);
+      touch.tangent += dA / patch.length * in_space(edge);
+      touch.along += dA * (patch.arc + eta * patch.length + (carrier == first ? s : s - 1) * T.norm());
+      if (!master_.rigid())
+        foot.weights = {{master_.nodes[patch.vertex[1]], eta - 1}, {master_.nodes[patch.vertex[2]], -eta}};
+    }
+    share += length;
+    touch.area += dA;
+    touch.relative += dA * (x_s - foot.y);
+    touch.normal += dA * foot.normal;
+    touch.y += dA * foot.y;
+    foot.weights.insert(foot.weights.end(), {{first, 1 - s}, {second, s}});
+    for (const auto& [node, weight] : foot.weights) touch.weights.emplace_back(node, dA * weight);
+  }
+}
+
+Touch Contact::on_pieces(int node, const std::vector<Piece>& pieces, const Field& x, const Places& at) const {
+  Touch touch;
+  touch.normal.setZero();
+  double share = 0, whole = 0;  // lengths
+  for (const auto& [first, second] : facets_)
+    if (first == node || second == node)
+      whole += (scene_.points.col(second) - scene_.points.col(first)).norm() *
+               (side_.has(first) && side_.has(second) ? 0.5 : 1);
+  for (const auto& piece : pieces)
+    if (piece.carrier == node) integrate(piece, x, at, touch, share);
+  const bool along_curve = scene_.finite && !master_.patches.empty();
+  if (share <= (along_curve ? 0.01 : 1e-12) * whole) {
+    touch = {master_.foot(seeker(node, x), at), node};
+    touch.gap = (x.col(node) - touch.y).norm();
+    touch.faces = false;
+    return touch;
+  }
+  touch.faces = true;
+  touch.node = node;
+  touch.normal = (along_curve ? in_space(right_of(touch.tangent.head<2>())) : touch.normal).normalized();
+  touch.gap = touch.relative.dot(touch.normal) / touch.area;
+  touch.y /= touch.area;
+  touch.tangent /= touch.area;
+  touch.along /= touch.area;
+  for (auto& [n, weight] : touch.weights) weight /= touch.area;
+  return touch;
+}
+
+/// What a place did since the last increment. Its gap and normal are those in the frame of the master, at small strain
+/// those of the start.
+void Contact::move(Touch& touch, const Touch& last, const Field& u, const Places& at, double time) const {
+  const Motion& motion = master_.motion;
+  const bool on_curve = touch.place.patch >= 0 && last.place.patch >= 0;
+  touch.carried =
+      motion.displacement(touch.y, time, scene_.finite) - motion.displacement(touch.y, last_time_, scene_.finite);
+  touch.slip_known = touch.faces && (last.faces || on_curve || !scene_.finite);
+  if (!scene_.finite) {
+    touch.relative = -motion.displacement(touch.y, time, false);
+    for (const auto& [node, weight] : touch.weights) touch.relative += weight * u.col(node);
+    touch.gap += touch.normal.dot(touch.relative);
+    touch.slip = touch.relative - last.relative;
+  } else if (segment && !master_.patches.empty()) {
+    const double way = touch.along - last.along;
+    touch.slip = (master_.loop > 0 ? std::remainder(way, master_.loop) : way) * touch.tangent;
+  } else {
+    touch.slip = touch.y - (on_curve ? in_space(master_.position(at, last.place)) : last.y);
+  }
+  if (scene_.finite) {
+    touch.normal = motion.turn(time) * touch.normal;
+    touch.slip = motion.turn(time) * touch.slip;
+  }
+  touch.slip -= touch.normal.dot(touch.slip) * touch.normal;
+  if (touch.faces) touch.gap += given.value("offset", 0.0);
+  touch.opening = touch.faces && last.faces ? touch.gap - last.gap : 0;
+}
+
+std::vector<Touch> Contact::advance(const Field& u, double time) {
+  const bool search = scene_.finite || start_.empty();
+  Field x = scene_.points;  // in the frame of the master
+  std::set<int> nodes = side_.nodes;
+  for (const auto& facet : facets_) nodes.insert(facet.begin(), facet.end());
+  for (const int node : nodes)
+    if (scene_.finite) x.col(node) = master_.motion.back(x.col(node) + u.col(node), time);
+  const auto at = master_.vertices(scene_.finite ? u : Field::Zero(3, u.cols()));
+  std::vector<Piece> pieces;
+  for (const auto& facet : facets_)
+    if (segment && search) cut(facet, x, at, pieces);
+  for (const auto& [node, area] : areas_) {
+    if (search && segment) start_[node] = on_pieces(node, pieces, x, at);
+    if (search && !segment) {
+      start_[node] = {master_.foot(seeker(node, x), at), node, area};
+      start_[node].weights.emplace_back(node, 1);
+    }
+  }
+  std::vector<Touch> touches;
+  for (const auto& [node, start] : start_) {
+    touches.push_back(start);
+    move(touches.back(), last_.contains(node) ? last_[node] : start, u, at, time);
+    last_[node] = touches.back();
+  }
+  last_time_ = time;
+  return touches;
+}
+
+}  // namespace stickslip::verify

@@ -1,0 +1,246 @@
+#include "studies/verify/masters.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace stickslip::verify {
+namespace {
+
+/// Powers of xi against vertices: facets; Catmull-Rom, through the vertices; cubic B-spline, near them.
+const Eigen::Matrix4d shapes[3] = {Eigen::Matrix4d{{0, 1, 0, 0}, {0, -1, 1, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}},
+                                   Eigen::Matrix4d{{0, 2, 0, 0}, {-1, 0, 1, 0}, {2, -5, 4, -1}, {-1, 3, -3, 1}} / 2,
+                                   Eigen::Matrix4d{{1, 4, 1, 0}, {-3, 0, 3, 0}, {3, -6, 3, 0}, {-1, 3, -3, 1}} / 6};
+
+/// A patch as a straight line.
+struct Line {
+  Vec2 from, tau;
+  Line(const Places& at, const Patch& patch)
+      : from(at.col(patch.vertex[1])), tau(at.col(patch.vertex[2]) - at.col(patch.vertex[1])) {}
+  double xi(const Vec2& x) const { return (x - from).dot(tau) / tau.squaredNorm(); }
+  double distance(const Vec2& x) const { return (x - from - std::clamp(xi(x), 0.0, 1.0) * tau).norm(); }
+};
+
+}  // namespace
+
+Master::Master(const Scene& scene, const Json& contact, const std::string& slave, const std::string& master)
+    : motion(part(part(scene.json, "obstacles"), master)), scene_(scene), itself_(slave == master) {
+  const Json surface = contact.value("surface", Json("faceted"));
+  const std::string kind = surface.is_object() ? surface.value("smooth", "catmull_rom") : surface.get<std::string>();
+  smooth_ = kind == "faceted" ? 0 : kind == "b_spline" ? 2 : 1;
+  frozen_ = !scene.finite && smooth_ == 0 && !contact.contains("between") && !itself_;
+  obstacle_ = part(part(scene.json, "obstacles"), master);
+  const auto add = [&](int from, int to) { patches.push_back({{from, from, to, to}}); };
+  if (obstacle_.contains("polyline")) {  // the solid is on its right
+    const Json& points = obstacle_["polyline"].at("points");
+    const bool closed = points.front() == points.back();
+    const int count = static_cast<int>(points.size()) - closed;
+    polyline_.resize(2, count);
+    for (int v = 0; v < count; ++v) polyline_.col(v) = vec3(points[v]).head<2>();
+    for (int v = 0; v + 1 < count + closed; ++v) add((v + 1) % count, v);
+  }
+  std::map<int, int> number;
+  const auto vertex = [&](int node) {
+    if (number.emplace(node, static_cast<int>(nodes.size())).second) nodes.push_back(node);
+    return number[node];
+  };
+  for (const auto& edge : obstacle_.empty() ? scene.side(master).edges : std::vector<Nodes>{}) {
+    const int first = vertex(edge[0]), middle = edge.size() == 3 ? vertex(edge[2]) : first;
+    if (middle != first) add(first, middle);
+    add(middle, vertex(edge[1]));
+  }
+  link(surface.is_object() ? surface.value("corner", 30.0) : 30.0);
+}
+
+/// Neighbours of the patches, corners, and lengths along the master at the start.
+void Master::link(double corner) {
+  const auto at = vertices(Field::Zero(3, scene_.points.cols()));
+  std::map<int, int> starts;
+  for (std::size_t p = 0; p < patches.size(); ++p) starts[patches[p].vertex[1]] = static_cast<int>(p);
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    Patch& patch = patches[p];
+    patch.length = Line(at, patch).tau.norm();
+    if (!starts.contains(patch.vertex[2])) continue;
+    Patch& other = patches[patch.next = starts[patch.vertex[2]]];
+    other.previous = static_cast<int>(p);
+    const double cosine = Line(at, patch).tau.normalized().dot(Line(at, other).tau.normalized());
+    patch.goes_on[1] = other.goes_on[0] = smooth_ > 0 && cosine >= std::cos(corner * std::numbers::pi / 180);
+    if (!patch.goes_on[1]) continue;
+    patch.vertex[3] = other.vertex[2];
+    other.vertex[0] = patch.vertex[1];
+  }
+  for (auto& patch : patches) {  // a vertex that is missing is 2 y_1 - y_2
+    patch.shape = shapes[smooth_];
+    for (const auto& [end, near, far] : {std::array{0, 1, 2}, {3, 2, 1}}) {
+      if (patch.goes_on[end / 3]) continue;
+      patch.shape.col(near) += 2 * patch.shape.col(end);
+      patch.shape.col(far) -= patch.shape.col(end);
+      patch.shape.col(end).setZero();
+    }
+  }
+  for (const bool loops : {false, true})  // from where a chain begins, then from the first patch of a loop
+    for (std::size_t first = 0; first < patches.size(); ++first) {
+      double length = 0;
+      for (int p = static_cast<int>(first); (loops || patches[first].previous < 0) && p >= 0 && patches[p].arc < 0;) {
+        patches[p].arc = length;
+        length += patches[p].length;
+        p = patches[p].next;
+      }
+      if (loops) loop = std::max(loop, length);
+    }
+}
+
+Places Master::vertices(const Field& u) const {
+  return rigid() ? polyline_ : Places((scene_.points + u)(Eigen::seqN(0, 2), nodes));
+}
+
+Vec2 Master::position(const Places& at, const Place& place, int derivative) const {
+  const double s = place.xi;
+  const Eigen::Vector4d powers[3] = {{1, s, s * s, s * s * s}, {0, 1, 2 * s, 3 * s * s}, {0, 0, 2, 6 * s}};
+  const Patch& patch = patches[place.patch];
+  return at(Eigen::all, patch.vertex) * (patch.shape.transpose() * powers[derivative]);
+}
+
+void Master::set_walls(const std::vector<Seeker>& seekers) {
+  const auto at = vertices(Field::Zero(3, scene_.points.cols()));
+  for (const auto& [node, x, outward] : seekers) {
+    const Vec2 from = x.head<2>(), inward = -outward.normalized();
+    double thickness = infinity;
+    for (const auto& patch : patches) {
+      const Line line(at, patch);
+      const double a = cross(inward, line.from - from), b = a + cross(inward, line.tau);
+      if (nodes[patch.vertex[1]] == node || nodes[patch.vertex[2]] == node || a * b > 0 || a == b) continue;
+      const double depth = (line.from - from + a / (a - b) * line.tau).dot(inward);
+      if (depth > 0) thickness = std::min(thickness, depth);
+    }
+    for (const auto& patch : patches) {
+      const Line line(at, patch);
+      const bool is_behind = cross(from - line.from, line.tau) < -at_end * line.tau.squaredNorm();
+      const double distance = std::min(line.distance(from), line.distance(from + thickness * inward));
+      walls_[node].push_back(thickness < infinity && is_behind && distance < 2 * thickness + patch.length);
+    }
+  }
+}
+
+bool Master::may_face(const Seeker& seeker, int p, const Places& at) const {
+  const Line line(at, patches[p]);
+  const Vec2 x = seeker.x.head<2>(), across = right_of(line.tau);
+  const double against = seeker.outward.dot(across), xi = line.xi(x);
+  if (!itself_) return frozen_ || !(against > 0);
+  for (const int v : patches[p].vertex)
+    if (nodes[v] == seeker.node) return false;
+  const bool beside = (x - line.from).dot(across) >= 0 || (xi >= -0.5 && xi <= 1.5);
+  return !walls_.at(seeker.node)[p] && against <= -0.5 * seeker.outward.norm() * line.tau.norm() && beside;
+}
+
+/// The closest place of all patches, 0 <= xi <= 1; where two end in it, that on whose side of their bisector the point
+/// is.
+Place Master::closest(const Seeker& seeker, const Places& at) const {
+  Place best;
+  double least = infinity, least_past = 0;  // distance; how far the point is past the end of the patch
+  const Vec2 x = seeker.x.head<2>();
+  for (int p = 0; p < static_cast<int>(patches.size()); ++p) {
+    const Line line(at, patches[p]);
+    if (line.distance(x) > least + 2 * line.tau.norm() || !may_face(seeker, p, at)) continue;
+    Place place{p, std::clamp(line.xi(x), 0.0, 1.0)};
+    for (int k = 0; k < 50 && smooth_ > 0; ++k) {  // Newton's method for (x - y) . y' = 0
+      const Vec2 off = x - position(at, place), slope = position(at, place, 1);
+      const double step = off.dot(slope) / std::abs(slope.squaredNorm() - off.dot(position(at, place, 2)));
+      const double last = std::exchange(place.xi, std::clamp(place.xi + std::clamp(step, -0.5, 0.5), 0.0, 1.0));
+      if (std::abs(place.xi - last) < 1e-15) break;
+    }
+    const Vec2 off = x - position(at, place);
+    const double past = std::abs(off.dot(position(at, place, 1).normalized())), band = at_end * line.tau.norm();
+    if (off.norm() >= least - band && !(off.norm() <= least + band && past < least_past)) continue;
+    best = place;
+    least = off.norm();
+    least_past = past;
+  }
+  return best;
+}
+
+/// What a point faces: at a corner also past the end of a patch, and a little past a free end; inside of a master by
+/// one face only where it is outside by none that is nearer.
+Place Master::find(const Seeker& seeker, const Places& at) const {
+  const Vec2 x = seeker.x.head<2>();
+  const auto facing = [&](const Vec2& outward) {
+    Place place = closest({seeker.node, seeker.x, outward}, at);
+    const bool end = place.xi == 1;
+    if (place.patch < 0 || (place.xi > 0 && !end) || patches[place.patch].goes_on[end]) return place;
+    for (int k = 0; k < 20; ++k) {
+      const Vec2 off = x - position(at, place), slope = position(at, place, 1);
+      place.xi += off.dot(slope) / (slope.squaredNorm() - off.dot(position(at, place, 2)));
+    }
+    const int other = end ? patches[place.patch].next : patches[place.patch].previous;
+    const bool is_free = other < 0 || !may_face({seeker.node, seeker.x, outward}, other, at);
+    const double past = end ? place.xi - 1 : -place.xi, still_faced = frozen_ ? 1e-6 : 0.01;  // of a facet
+    return is_free && past > still_faced ? Place{} : place;
+  };
+  const auto inside = [&](const Place& place) {
+    return (x - position(at, place)).dot(right_of(position(at, place, 1))) < 0;
+  };
+  const Place place = facing(seeker.outward);
+  if (place.patch < 0 || itself_ || frozen_ || !inside(place) || seeker.outward.isZero()) return place;
+  const Place any = facing(Vec2::Zero());
+  return any.patch >= 0 && !inside(any) ? Place{} : place;
+}
+
+/// Small strain, at a vertex of facets: the bisector of the two, and half of the slide along each of them.
+void Master::share_vertex(const Seeker& seeker, const Places& at, Foot& foot) const {
+  const bool end = foot.place.xi > 1 - at_end;
+  const Patch& patch = patches[foot.place.patch];
+  const int other = end ? patch.next : patch.previous;
+  if (other < 0 || (!end && foot.place.xi > at_end)) return;
+  const Patch &first = end ? patch : patches[other], &second = end ? patches[other] : patch;
+  const Line before(at, first), after(at, second);
+  foot.y = in_space(after.from);
+  foot.normal = in_space(right_of(before.tau.normalized() + after.tau.normalized()).normalized());
+  if (rigid()) return;
+  const Vec2 off = seeker.x.head<2>() - after.from;
+  const auto half = [&](const Line& line) {
+    const double slide = off.dot(line.tau) / line.tau.squaredNorm();
+    return std::abs(slide) > at_end ? 0 : slide / 2;
+  };
+  const double back = half(before), on = half(after);
+  foot.weights = {
+      {nodes[second.vertex[1]], on - back - 1}, {nodes[first.vertex[1]], back}, {nodes[second.vertex[2]], -on}};
+}
+
+Foot Master::foot(const Seeker& seeker, const Places& at) const {
+  Foot foot;
+  if (!patches.empty()) {
+    foot.place = find(seeker, at);
+    foot.faces = foot.place.patch >= 0;
+    if (!foot.faces) foot.place = closest({seeker.node, seeker.x, itself_ ? seeker.outward : Vec2(0, 0)}, at);
+    if (foot.place.patch < 0) return foot;
+    foot.y = in_space(position(at, foot.place));
+    foot.normal = in_space(right_of(position(at, foot.place, 1)).normalized());
+    foot.gap = (seeker.x - foot.y).norm();
+    if (!foot.faces) return foot;
+    const Patch& patch = patches[foot.place.patch];
+    const double s = foot.place.xi;
+    const Eigen::Vector4d N = patch.shape.transpose() * Eigen::Vector4d(1, s, s * s, s * s * s);
+    for (int i = 0; i < 4 && !rigid(); ++i) foot.weights.emplace_back(nodes[patch.vertex[i]], -N[i]);
+    if (frozen_ && !rigid()) foot.faces = !(seeker.outward.dot(foot.normal.head<2>()) > 0);  // else it looks away
+    if (frozen_) share_vertex(seeker, at, foot);
+    if (!scene_.finite && !rigid() && !seeker.outward.isZero())  // between two solids: the bisector of their normals
+      foot.normal = (foot.normal - in_space(seeker.outward).normalized()).normalized();
+    foot.gap = foot.normal.dot(seeker.x - foot.y);
+    return foot;
+  }
+  foot.faces = true;
+  if (obstacle_.contains("plane")) {
+    foot.normal = vec3(obstacle_["plane"].at("normal")).stableNormalized();
+    foot.gap = foot.normal.dot(seeker.x - vec3(obstacle_["plane"].at("point")));
+  } else {
+    const Json& circle = obstacle_.at("circle");
+    const double side = circle.value("inside", false) ? -1 : 1;
+    const Vec3 arm = seeker.x - vec3(circle.at("center"));
+    foot.normal = side * arm.normalized();
+    foot.gap = side * (arm.norm() - circle.at("radius").get<double>());
+  }
+  foot.y = seeker.x - foot.gap * foot.normal;
+  return foot;
+}
+
+}  // namespace stickslip::verify

@@ -1,0 +1,93 @@
+/// A scene and a mesh as `verify` reads them: from JSON alone, by code that shares nothing with the solver. Vectors
+/// have three components; in a plane the third is zero. What keys mean: docs/scene.md, docs/verify.md.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace stickslip::verify {
+
+using Json = nlohmann::json;
+using Vec2 = Eigen::Vector2d;
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
+using Nodes = std::vector<int>;
+using Field = Eigen::Matrix3Xd;   ///< a vector a node
+using Places = Eigen::Matrix2Xd;  ///< the same in a plane
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// The time before a run, when nothing has moved yet: a motion that is there at the time 0 is made in the first step.
+constexpr double at_rest = -infinity;
+
+/// A file that cannot be read, or does not fit the scene.
+struct BadFile : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+Vec3 vec3(const Json& json);                                 ///< of two or three numbers
+const Json& part(const Json& json, const std::string& key);  ///< an empty object where the key is missing
+
+/// A value in time: a number, or a table that is linear between its rows, and may be repeated.
+double value_at(const Json& value, double time);
+
+/// A rigid motion x = c + R (X - c) + move of a support or an obstacle, by the axes and the angle that it prescribes.
+struct Motion {
+  Json move, rotate;
+  explicit Motion(const Json& json) : move(part(json, "move")), rotate(part(json, "rotate")) {}
+  bool prescribes(int axis) const { return !rotate.empty() || move.contains(std::string(1, "xyz"[axis])); }
+  Vec3 center() const { return rotate.empty() ? Vec3(0, 0, 0) : vec3(rotate.at("center")); }
+  Vec3 angle(double time) const;  ///< radians about an axis
+  Mat3 turn(double time) const;
+  /// Displacement of what is at X at the start; where strains are small, linear in the angle.
+  Vec3 displacement(const Vec3& X, double time, bool finite) const;
+  Vec3 back(const Vec3& x, double time) const;  ///< where it was at the start
+};
+
+struct Body {
+  std::string name, element;
+  double thickness = 1, area = 1;  ///< of a body in a plane; of bars
+  Json material;                   ///< {name: numbers}
+  std::vector<Nodes> elements;
+  std::map<std::string, Nodes> sides;
+  std::vector<Nodes> edges = {};  ///< of the boundary, the solid on the left: two ends, and a middle
+  bool quadratic() const { return element == "Q8" || element == "T6"; }
+  bool solid() const { return element != "bar" && element != "point"; }
+  std::size_t corners() const { return element[0] == 'T' ? 3 : 4; }
+};
+
+/// Nodes of a side, and the edges of the boundary that belong to it.
+struct Side {
+  std::set<int> nodes;
+  std::vector<Nodes> edges;
+  bool has(int node) const { return nodes.contains(node); }
+};
+
+struct Scene {
+  Json json;
+  bool finite = false, axisymmetric = false, plane_stress = false;
+  int dimension = 2;
+  Field points;  ///< of all nodes at the start
+  std::vector<Body> bodies;
+
+  Scene(const Json& scene, const Json& mesh);
+  const Body& body(const std::string& expression) const;  ///< that a side expression begins with
+  /// `block.left`, `block.left & block.bottom` (what both share), `block.left - block.top` (without the nodes of the
+  /// other; edges stay as long as one of their nodes does).
+  Side side(const std::string& expression) const;
+  /// What a length at the radius x is multiplied by to be an area.
+  double depth(const Body& body, double x) const;
+  /// Whether a node is on the axis of revolution, where it has no radial motion.
+  bool on_axis(int node) const;
+  /// Where nodes count as being: at small strain at their places of the start.
+  Field places(const Field& u) const { return points + (finite ? 1.0 : 0.0) * u; }
+};
+
+}  // namespace stickslip::verify

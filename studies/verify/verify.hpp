@@ -1,0 +1,34 @@
+/// Certificates: whether displacements and tractions are a solution of a scene, judged from files alone by code that
+/// shares nothing with the solver (docs/verify.md). A solution of another program gets the same certificate.
+#pragma once
+
+#include "studies/verify/scene.hpp"
+
+namespace stickslip::verify {
+
+/// The worst violation of a law at one time, over what it is measured by.
+struct Finding {
+  std::string law, where;  ///< where: in words of the scene
+  double value = 0, allowed = 0;
+  std::string why;  ///< why so much is allowed
+  bool holds() const { return value <= allowed; }
+};
+
+struct Step {
+  double time = 0;
+  std::vector<Finding> findings;
+  const Finding& worst() const;  ///< of the law that is broken most, over what is allowed
+  bool holds() const { return worst().holds(); }
+};
+
+struct Certificate {
+  std::vector<Step> steps;
+  std::vector<std::string> remarks;  ///< what could not be checked, and why
+  bool holds() const;
+};
+
+/// Checks a solution (docs/verify.md has its keys) of a scene on a mesh. `result`: result.json, whose responses are
+/// measured again; null: of another program. Throws BadFile, or what nlohmann/json throws of keys that are missing.
+Certificate certify(const Json& scene, const Json& mesh, const Json& solution, const Json& result);
+
+}  // namespace stickslip::verify
