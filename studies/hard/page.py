@@ -27,6 +27,10 @@ def short(value):
     return str(value)
 
 
+def plural(count, word):
+    return f"{count} {word}" if count == 1 else f"{count} {word}s"
+
+
 def error_text(error):
     if error is None:
         return ""
@@ -51,7 +55,7 @@ def _checks(row):
         return ""
     lines = []
     for check in row["checks"]:
-        verdict = '<span class="good">holds</span>' if check["holds"] else '<span class="bad">does not hold</span>'
+        verdict = '<span class="good">&#10003;</span>' if check["holds"] else '<span class="bad">&#10007; wrong</span>'
         within = f" within {check['tolerance']:g}" if check["tolerance"] else ""
         lines.append(f"<tr><td>{escape(check['what'])}</td><td>{escape(short(check['got']))}</td>"
                      f"<td>{escape(check['expected'])}{within}</td><td>{error_text(check['error'])}</td>"
@@ -87,7 +91,7 @@ def _method(folder, row, change):
             f"<li><b>{escape(w['code'])}</b> {escape(w['text'])}</li>" for w in row["warnings"]) + "</ul>")
     if row["certificate_text"]:
         parts.append(f"<p>certificate</p><pre>{escape(row['certificate_text'])}</pre>")
-    counts = [f"{sum(row['newton'])} iterations in {row['steps']} steps" if row.get("newton") else "",
+    counts = [f"{sum(row['newton'])} iterations in {plural(row['steps'], 'step')}" if row.get("newton") else "",
               f"{sum(row['augmentations'])} augmentations" if sum(row.get("augmentations", [])) else "",
               f"{row['cutbacks']} cuts of steps" if row.get("cutbacks") else "", f"{row['seconds']:.2f} s"]
     parts.append(f"<p class=\"dim\">{', '.join(filter(None, counts))}</p>")
