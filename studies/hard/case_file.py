@@ -140,7 +140,8 @@ def _tolerance(text):
 
 
 def _answer(key, value):
-    """`answer [one_sided] NAME [at TIME] [METHOD...]: VALUE[, VALUE] within TOLERANCE [of SCALE]`, or `at least VALUE`."""
+    """`answer [one_sided] NAME [at TIME] [METHOD...]: VALUE[, VALUE] within TOLERANCE [of SCALE]`, or a bound,
+    `at least VALUE` or `at most VALUE`."""
     words = key.split()[1:]
     one_sided = bool(words) and words[0] == "one_sided"
     words = words[one_sided:]

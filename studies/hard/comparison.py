@@ -13,7 +13,7 @@ def read_earlier(folder):
 
 
 def compare(earlier, rows):
-    """A sentence for each run that changed, by CASE.METHOD: verdict, status, error, iterations, warnings; not seconds."""
+    """Words for each run that changed, by CASE.METHOD: verdict, status, error, iterations, warnings; not seconds."""
     before = {f"{row['case']}.{row['method']}": row for row in earlier["rows"]}
     changes = {}
     for row in rows:

@@ -67,7 +67,8 @@ def check_count(row, count):
     limit = count.values[0]
     holds = got is not None and (got >= limit if count.kind == "at least" else got <= limit)
     name = {"newton": "iterations of a step", "augmentations": "augmentations of a step"}.get(count.name, count.name)
-    return {"what": name, "got": got, "expected": f"{count.kind} {limit:g}", "tolerance": 0, "error": None, "holds": holds}
+    return {"what": name, "got": got, "expected": f"{count.kind} {limit:g}", "tolerance": 0, "error": None,
+            "holds": holds}
 
 
 def check_solutions(row, solutions):
@@ -167,6 +168,6 @@ def _check_agreement(rows, agreement):
         error = abs(value - middle) / scale
         warned = {warning["code"] for warning in row["warnings"]} & set(agreement.unless)
         row["checks"].append({
-            "what": f"{agreement.name}, as by other methods", "got": value, "expected": f"{middle:.10g}", "error": error,
-            "tolerance": agreement.tolerance, "holds": error <= agreement.tolerance or bool(warned)})
+            "what": f"{agreement.name}, as by other methods", "got": value, "expected": f"{middle:.10g}",
+            "error": error, "tolerance": agreement.tolerance, "holds": error <= agreement.tolerance or bool(warned)})
         _close(row)

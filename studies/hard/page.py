@@ -78,7 +78,8 @@ def _figure(folder, path, caption):
 
 def _method(folder, row, change):
     run = folder / "runs" / f"{row['case']}.{row['method']}"
-    parts = [f"<h3>{row['method']}: {escape(row['status'])}</h3>", f"<p class=\"dim\">expected: {escape(row['expected'])}</p>"]
+    parts = [f"<h3>{row['method']}: {escape(row['status'])}</h3>",
+             f"<p class=\"dim\">expected: {escape(row['expected'])}</p>"]
     if row["faults"]:
         parts.append('<ul class="bad">' + "".join(f"<li>{escape(fault)}</li>" for fault in row["faults"]) + "</ul>")
     if change:
@@ -151,7 +152,8 @@ def page_text(folder, cases, rows, head, about, changes, compared):
         f"<section><h2>{escape(group)}</h2>{columns}\n"
         + "".join(_case(folder, case, by_case[case.name], changes) for case in own) + "</section>"
         for group, own in groups.items())
-    since = f"<p>{len(changes)} runs changed since the earlier suite; what changed stands in italics.</p>" if compared else ""
+    since = (f"<p>{len(changes)} runs changed since the earlier suite; what changed stands in italics.</p>"
+             if compared else "")
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"/><meta name="viewport" content="width=device-width, initial-scale=1"/>
 <title>Hard cases</title><style>

@@ -3,12 +3,15 @@
 STICKSLIP_PROGRAM=build/release/stickslip python3 tests/studies/hard_test.py
 """
 
+import base64
 import contextlib
 import html.parser
 import io
 import json
 import os
 import pathlib
+import re
+import struct
 import sys
 import tempfile
 import textwrap
@@ -76,7 +79,8 @@ class Folder(unittest.TestCase):
         return code, output.getvalue(), errors.getvalue()
 
     def rows(self):
-        return {(row["case"], row["method"]): row for row in json.loads((self.out / "results.json").read_text())["rows"]}
+        rows = json.loads((self.out / "results.json").read_text())["rows"]
+        return {(row["case"], row["method"]): row for row in rows}
 
     def fake(self, body):
         """A program in Python that does as `body` says, `out` the folder of a run."""
@@ -106,8 +110,8 @@ class Parser(Folder):
         return str(caught.exception).replace(str(self.cases) + os.sep, "").splitlines()
 
     def test_reads_all_that_a_case_may_say(self):
-        case = case_file.read_case(self.write("a", HEADER.replace("uzawa_al: converged", 'uzawa_al: cap | cycle "a wall"')
-                                              + ANSWERS + textwrap.dedent("""\
+        header = HEADER.replace("uzawa_al: converged", 'uzawa_al: cap | cycle "a wall"')
+        case = case_file.read_case(self.write("a", header + ANSWERS + textwrap.dedent("""\
             // case: C8
             // Note: this one
             //   goes on.
@@ -134,9 +138,10 @@ class Parser(Folder):
                          [("u", ("non_unique",)), ("press", ("non_unique",))])
 
     def test_names_every_fault_with_its_line(self):
-        self.assertEqual(self.faults("// Hard: x\n// expekt penalty: converged\n// expect uzawa: converged\n// just text\n"), [
-            "a.json:2: expekt penalty: unknown key; allowed: Hard, Must, Note, group, case, from, expect, warns, answer, "
-            "count, solution, agree, like; go on with a line by three blanks or more",
+        header = "// Hard: x\n// expekt penalty: converged\n// expect uzawa: converged\n// just text\n"
+        self.assertEqual(self.faults(header), [
+            "a.json:2: expekt penalty: unknown key; allowed: Hard, Must, Note, group, case, from, expect, warns, "
+            "answer, count, solution, agree, like; go on with a line by three blanks or more",
             'a.json:3: expect uzawa: unknown method "uzawa"; allowed: penalty, uzawa_al, monolithic_al',
             'a.json:4: expected "// KEY: VALUE" or an indented line that goes on, not "just text"',
             'a.json:1: has no "// Must: ..."', 'a.json:1: has no "// group: ..."',
@@ -158,14 +163,15 @@ class Parser(Folder):
             with self.subTest(line):
                 self.assertIn(told, "\n".join(self.faults(HEADER + "// from: here\n" + line + "\n")))
         self.assertIn("has answers, and no", self.faults(HEADER + "// answer u: 1 within 1\n")[0])
-        self.assertIn('unknown status "solved"', self.faults(HEADER.replace("penalty: converged", "penalty: solved"))[0])
+        header = HEADER.replace("penalty: converged", "penalty: solved")
+        self.assertIn('unknown status "solved"', self.faults(header)[0])
 
     def test_reads_every_case_of_the_suite(self):
         cases = case_file.read_cases(SUITE)
         self.assertGreater(len(cases), 100)
         for case in cases:
             self.assertEqual(sorted(case.expect), sorted(case_file.METHODS), case.name)
-            for match in case_file.re.findall(r'"gmsh": "([^"]+)"', case.path.read_text()):
+            for match in re.findall(r'"gmsh": "([^"]+)"', case.path.read_text()):
                 self.assertTrue((SUITE / match).is_file(), f"{case.name}: {match}")
 
 
@@ -192,7 +198,7 @@ class Judgement(unittest.TestCase):
                 ("// answer u: 2 within 1e-9\n", True), ("// answer u: 2.1 within 1e-2\n", False),
                 ("// answer u at 0.5: 1 within 1e-9\n", True), ("// answer u at 0.7: 1 within 1e-9\n", False),
                 ("// answer u: 2.1 within 1e-2 of 100\n", True), ("// answer u-v: -1 within 1e-9\n", True),
-                ("// answer u: at most 1.9\n", False), ("// answer u: 7 within 1e-9\n// answer v uzawa_al: 0 within 0\n", False),
+                ("// answer u: at most 1.9\n", False), ("// answer v uzawa_al: 0 within 0\n", True),
                 ("// answer one_sided u/F: 0, none within 1e-9\n", True),
                 ("// answer one_sided u/F: 0, 1 within 1e-9\n", False),
                 ("// count newton: at most 3\n", True), ("// count newton: at most 2\n", False),
@@ -217,11 +223,10 @@ class Judgement(unittest.TestCase):
     def test_sees_numbers_that_are_none(self):
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
-            gap, force = (run_case.base64.b64encode(b"\x08" + b"\0" * 7 + run_case.struct.pack("<d", float("nan"))).decode()
-                          for _ in range(2))
-            (folder / "fields_0001.vtu").write_text(
-                f'<DataArray type="Float64" Name="gap" NumberOfComponents="1" format="binary">{gap}</DataArray>\n'
-                f'<DataArray type="Float64" Name="stress" NumberOfComponents="1" format="binary">{force}</DataArray>')
+            data = base64.b64encode(struct.pack("<Qd", 8, float("nan"))).decode()
+            (folder / "fields_0001.vtu").write_text("\n".join(
+                f'<DataArray type="Float64" Name="{name}" NumberOfComponents="1" format="binary">{data}</DataArray>'
+                for name in ("gap", "stress")))
             (folder / "a.csv").write_text("x,y\n1,nan\n")
             (folder / "b.csv").write_text("x,infinite\n1,2\n")
             self.assertEqual(run_case.not_a_number(folder), ["a.csv holds nan", "fields_0001.vtu: stress holds nan"])
