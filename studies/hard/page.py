@@ -21,7 +21,7 @@ def short(value):
     if isinstance(value, bool) or value is None:
         return "none" if value is None else str(value)
     if isinstance(value, float):
-        return f"{value:.10g}"
+        return f"{value:.9g}"
     if isinstance(value, list):
         return ", ".join(short(one) for one in value)
     return str(value)
@@ -34,7 +34,9 @@ def plural(count, word):
 def error_text(error):
     if error is None:
         return ""
-    return "no number" if math.isinf(error) else f"{error:.1e}"
+    if math.isinf(error):
+        return "no number"
+    return f"{error:.1e}" if error else "0"
 
 
 def _cell(row, change):
@@ -45,6 +47,8 @@ def _cell(row, change):
     parts.append(f"{row['seconds']:.1f} s")
     if row["certificate"]:
         parts.append(f"certificate {row['certificate']}")
+    if row["faults"] and not row["faults"][0].startswith("status "):
+        parts.append(row["faults"][0])
     changed = f'<span class="changed">{escape(change)}</span>' if change else ""
     return (f'<span class="cell {"green" if row["green"] else "red"}"><span class="method-name">{row["method"]}</span>'
             f'<b>{mark} {escape(row["status"].replace("_", " "))}</b> {escape(", ".join(parts))}{changed}</span>')
@@ -55,12 +59,11 @@ def _checks(row):
         return ""
     lines = []
     for check in row["checks"]:
-        verdict = '<span class="good">&#10003;</span>' if check["holds"] else '<span class="bad">&#10007; wrong</span>'
-        within = f" within {check['tolerance']:g}" if check["tolerance"] else ""
-        lines.append(f"<tr><td>{escape(check['what'])}</td><td>{escape(short(check['got']))}</td>"
-                     f"<td>{escape(check['expected'])}{within}</td><td>{error_text(check['error'])}</td>"
-                     f"<td>{verdict}</td></tr>")
-    return ('<div class="scroll"><table><tr><th>what</th><th>found</th><th>right</th><th>error</th><th></th></tr>'
+        verdict = '<span class="good">&#10003;</span>' if check["holds"] else '<span class="bad">&#10007;</span>'
+        error = error_text(check["error"]) + (f"<br/>of {check['tolerance']:g}" if check["tolerance"] else "")
+        lines.append(f"<tr><td>{verdict}</td><td>{escape(check['what'])}</td><td>{escape(short(check['got']))}</td>"
+                     f"<td>{escape(check['expected'])}</td><td>{error}</td></tr>")
+    return ('<div class="scroll"><table><tr><th></th><th>what</th><th>found</th><th>right</th><th>error</th></tr>'
             + "".join(lines) + "</table></div>")
 
 
@@ -117,7 +120,7 @@ def _case(folder, case, rows, changes):
     sentences = [f"<p><b>Hard:</b> {escape(case.hard)}</p>", f"<p><b>Must:</b> {escape(case.must)}</p>"]
     sentences += [f"<p>{escape(note)}</p>" for note in case.notes]
     if case.case:
-        sentences.append(f'<p class="dim">Case {escape(case.case)} of tests/README.md.</p>')
+        sentences.append(f'<p class="dim">In the list of verification problems: {escape(case.case)}.</p>')
     if case.source:
         sentences.append(f'<p class="dim">The answers are from: {escape(case.source)}</p>')
     methods = "".join(_method(folder, row, changes.get(f"{row['case']}.{row['method']}")) for row in rows)
