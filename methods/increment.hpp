@@ -140,12 +140,18 @@ inline PrescribedFacets prescribed_facets(const Model& model, int contact) {
   return facets;
 }
 
-/// Two facets that supports move through one another at a time: of the pairs that cross, the one that overlaps the
-/// most, in words of the scene; empty if there is none. With present geometry; at small strain the points alone tell.
+/// Two facets that supports move through one another, and how far.
+struct Crossing {
+  double overlap = 0;  ///< length; 0: no facets cross
+  std::string words;   ///< of the scene
+};
+
+/// Of the pairs of facets that cross at a time the one that overlaps the most. With present geometry; at small strain
+/// the points alone tell.
 template <class T>
-std::string crossing_facets(const Model& model, const Slots<T>& slots, double time) {
+Crossing crossing_facets(const Model& model, const Slots<T>& slots, double time) {
   constexpr double rounding = 1e-9;  // of a facet
-  if (!model.effects.current_geometry || !model.effects.deformable_master) return "";
+  if (!model.effects.current_geometry || !model.effects.deformable_master) return {};
   Vector<T> displacement = Vector<T>::Constant(model.dof_count(), T(0));
   prescribe(model, slots, time, displacement);
   const auto start = [&](int node) { return values(slots.points.col(node).template head<2>()); };
@@ -156,8 +162,7 @@ std::string crossing_facets(const Model& model, const Slots<T>& slots, double ti
     const Vec<double, 2> along = b - a, arm = x - a;
     return (along[0] * arm[1] - along[1] * arm[0]) / along.norm();
   };
-  double worst = 0;
-  std::string words;
+  Crossing crossing;
   for (int c = 0; c < static_cast<int>(model.scene.contacts.size()); ++c) {
     const auto facets = prescribed_facets(model, c);
     for (const auto& [a, b] : facets.slave)
@@ -168,23 +173,26 @@ std::string crossing_facets(const Model& model, const Slots<T>& slots, double ti
         if (distances[0] * distances[1] >= 0 || distances[2] * distances[3] >= 0) continue;
         double overlap = std::numeric_limits<double>::infinity();
         for (double x : distances) overlap = std::min(overlap, std::abs(x));
-        if (overlap <= std::max(worst, rounding * std::max((B - A).norm(), (E - D).norm()))) continue;
-        worst = overlap;
+        if (overlap <= std::max(crossing.overlap, rounding * std::max((B - A).norm(), (E - D).norm()))) continue;
+        crossing.overlap = overlap;
         const auto named = [&](int node) {
           return "(" + short_number(start(node)[0]) + ", " + short_number(start(node)[1]) + ")";
         };
-        words = model.scene.contacts[c].name + ": the facets from " + named(a) + " to " + named(b) + " and from " +
-                named(d) + " to " + named(e) + " cross and overlap by " + short_number(worst) +
-                ", and supports prescribe the motion of both: no traction can prevent that";
+        crossing.words = model.scene.contacts[c].name + ": the facets from " + named(a) + " to " + named(b) +
+                         " and from " + named(d) + " to " + named(e) + " cross and overlap by " +
+                         short_number(overlap) +
+                         ", and supports prescribe the motion of both: no traction can prevent that";
       }
   }
-  return words;
+  return crossing;
 }
 
-/// Whether supports move facets through one another between two times.
+/// Whether supports move facets through one another between two times, or further.
 template <class T>
 bool cross_between(const Model& model, const Slots<T>& slots, double start, double end) {
-  return crossing_facets(model, slots, start).empty() && !crossing_facets(model, slots, end).empty();
+  constexpr double rounding = 1e-6;
+  const double crossed = crossing_facets(model, slots, end).overlap;
+  return crossed > 0 && crossed > (1 + rounding) * crossing_facets(model, slots, start).overlap;
 }
 
 /// What supports alone push into one another, in words; empty if there is none. A point that penetrates counts if the
@@ -194,7 +202,7 @@ std::string prescribed_overlap(const Model& model, const Slots<T>& slots, double
                                const State<T>& state) {
   if (prevents_penetration)
     if (std::string point = prescribed_penetration(model, slots, state); !point.empty()) return point;
-  return crossing_facets(model, slots, time);
+  return crossing_facets(model, slots, time).words;
 }
 
 }  // namespace stickslip

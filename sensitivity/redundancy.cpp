@@ -87,8 +87,9 @@ std::vector<int> without_lone_points(std::vector<int> left, const std::vector<Ro
   return left;
 }
 
-/// The rows that stand in some combination of rows that vanishes.
-std::vector<char> in_combinations(const Rows& rows) {
+/// The rows that stand in some combination of rows that vanishes. `bare`: rows of normal constraints that bear nothing
+/// and can only come to press; where there is one combination alone, it must not have these with both signs.
+std::vector<char> in_combinations(const Rows& rows, const std::vector<char>& bare) {
   std::map<int, int> column;
   for (const auto& row : rows)
     for (const auto& [dof, weight] : row) column.try_emplace(dof, static_cast<int>(column.size()));
@@ -104,8 +105,14 @@ std::vector<char> in_combinations(const Rows& rows) {
   factor.setThreshold(independent);
   if (factor.dimensionOfKernel() == 0) return in;
   const Eigen::MatrixXd kernel = factor.kernel();
-  for (Eigen::Index k = 0; k < height; ++k)
-    in[k] = kernel.row(k).cwiseAbs().maxCoeff() > independent * kernel.cwiseAbs().maxCoeff();
+  const double least = independent * kernel.cwiseAbs().maxCoeff();
+  bool pushes = false, pulls = false;
+  for (Eigen::Index k = 0; k < height; ++k) {
+    in[k] = kernel.row(k).cwiseAbs().maxCoeff() > least;
+    pushes |= bare[k] && kernel(k, 0) > least;
+    pulls |= bare[k] && kernel(k, 0) < -least;
+  }
+  if (kernel.cols() == 1 && pushes && pulls) in.assign(rows.size(), 0);
   return in;
 }
 
@@ -236,6 +243,10 @@ std::vector<char> ForceSearch::undetermined(const State<double>& state, const st
   };
   if (std::none_of(suspects_.begin(), suspects_.end(), presses)) return {};
   const double still = nothing * reach;
+  const auto touches = [&](int p) {  // and may press as well, if another point presses more
+    return !presses(p) && -field.traction[points[p].multiplier] >= -nothing * pressed &&
+           std::abs(field.gap[p]) <= still;
+  };
   const auto sticks = [&](int p) {  // a point on its cone may stick as well, if it does not move
     if (field.state[p] == ContactState::stick || points[p].tangents == 0) return points[p].tangents > 0;
     if (slots_.friction[points[p].contact].bears_nothing()) return false;
@@ -248,21 +259,23 @@ std::vector<char> ForceSearch::undetermined(const State<double>& state, const st
   std::vector<Rows> rows(points.size());
   std::vector<std::vector<int>> nodes(points.size());
   for (int p = 0; p < static_cast<int>(points.size()); ++p) {
-    if (!presses(p)) continue;
+    if (!presses(p) && !touches(p)) continue;
     nodes[p] = nodes_in(model_, field, p);
-    rows[p] = rows_of(model_, slots_, geometry_in(field, slots_, p), p, sticks(p) ? points[p].components() : 1,
-                      nodes[p], decided);
+    rows[p] = rows_of(model_, slots_, geometry_in(field, slots_, p), p,
+                      presses(p) && sticks(p) ? points[p].components() : 1, nodes[p], decided);
     drop_stiff(stiff_, model_.dimension, rows[p]);
     closed.push_back(p);
   }
   Rows joined;
   std::vector<int> contact_of;
+  std::vector<char> bare;
   for (int p : without_lone_points(std::move(closed), rows, nodes, model_)) {
     joined.insert(joined.end(), rows[p].begin(), rows[p].end());
     contact_of.resize(joined.size(), points[p].contact);
+    bare.resize(joined.size(), !presses(p));
   }
   if (joined.size() > most) return {};
-  const auto in = in_combinations(joined);
+  const auto in = in_combinations(joined, bare);
   if (std::none_of(in.begin(), in.end(), [](char c) { return c != 0; })) return {};
   std::vector<char> contacts(model_.scene.contacts.size(), 0);
   for (std::size_t k = 0; k < in.size(); ++k) contacts[contact_of[k]] |= in[k];

@@ -47,9 +47,11 @@ bool is_held(const Model& model, const Slots<T>& slots, int node, const Vector<d
 /// k_i from the slave's and the master's stiffness: their harmonic mean, as of springs in series, but at least a tenth
 /// of the slave's, and at most 1e3 of the mean. Why: the master's nodes leave several slave nodes on one facet a way to
 /// shift their pressures among themselves, which the slave alone resists. Springs that are soft beside it would decide
-/// about that share. Where supports hold one side along a direction of the contact, the other alone yields there, and
-/// k_i is its stiffness. Where each yields alone along another direction, k_i is their sum. Supports decide, not sizes:
-/// k_i is smooth in both, but where the slave is 19 or 2e4 times as stiff.
+/// about that share. A slave that is stiffer by more than 1e7 rounds by more than its master bears, which stiff springs
+/// would carry into it: there the bound of 1e3 falls as the ratio grows, to 1. Where supports hold one side along a
+/// direction of the contact, the other alone yields there, and k_i is its stiffness. Where each yields alone along
+/// another direction, k_i is their sum. Supports decide, not sizes: k_i is smooth in both, but where the slave is 19 or
+/// 2e4 times as stiff, or more than 1e7 times.
 template <class T>
 T stiffness_between(const Model& model, const Slots<T>& slots, int p, const T& slave, const T& master) {
   const auto& point = model.points[p];
@@ -68,7 +70,9 @@ T stiffness_between(const Model& model, const Slots<T>& slots, int p, const T& s
   if (slave_yields && master_yields) return slave + master;
   if (slave_yields) return slave;
   if (master_yields) return master;
-  const T mean = T(2) * slave * master / (slave + master), tenth = T(0.1) * slave, most = T(1e3) * mean;
+  const T mean = T(2) * slave * master / (slave + master), tenth = T(0.1) * slave;
+  const double rounds = std::clamp(1e10 * value(master) / value(slave), 1.0, 1e3);
+  const T most = T(rounds) * mean;
   if (value(tenth) <= value(mean)) return mean;
   return value(tenth) < value(most) ? tenth : most;
 }

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "studies/app/certificate.hpp"
 #include "studies/app/exit_codes.hpp"
 #include "studies/app/recorded.hpp"
 #include "studies/app/say.hpp"
@@ -140,10 +141,14 @@ json write_run(const std::filesystem::path& directory, const RunArguments& argum
   const auto traced = write_trace(directory, *simulation.problem, trace, written);
   if (arguments.report) write_picture(directory, result, written);
   json document = write_result(directory, simulation, result, written);
+  const bool has_solution = document["solution"].contains("file"), certified = arguments.report && has_solution;
+  if (certified)
+    write_output(directory / "certificate.json", json_text(certificate_json(certificate_of(directory)), 2) + "\n");
   if (arguments.report) write_run_report(directory);
   add_files(directory, result_files(simulation, result), names);
-  if (document["solution"].contains("file")) add_files(directory, {"solution.json"}, names);
+  if (has_solution) add_files(directory, {"solution.json"}, names);
   add_files(directory, traced, names);
+  if (certified) add_files(directory, {"certificate.json"}, names);
   if (arguments.report) add_files(directory, {"picture.json", "report.html", "figures/"}, names);
   return document;
 }
@@ -153,7 +158,7 @@ std::vector<OutputFolder> folders_of_run(const std::filesystem::path& directory,
                                          bool writes) {
   std::vector<std::string> names, exported;
   if (arguments.report) names = report_files();
-  if (arguments.report) names.emplace_back("picture.json");
+  if (arguments.report) names.insert(names.end(), {"picture.json", "certificate.json"});
   if (arguments.trace) names.insert(names.end(), {"trace.csv", "cones.svg"});
   if (!arguments.export_to.empty()) exported = exported_files();
   using std::filesystem::weakly_canonical;

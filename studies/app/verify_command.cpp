@@ -1,120 +1,20 @@
 /// The verify command: reads a result, or the solution of another program, and prints its certificate (docs/verify.md).
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
 
+#include "studies/app/certificate.hpp"
 #include "studies/app/commands.hpp"
 #include "studies/app/exit_codes.hpp"
 #include "studies/app/recorded.hpp"
 #include "studies/app/say.hpp"
-#include "studies/io/atomic_file.hpp"
-#include "studies/io/input_fault.hpp"
 #include "studies/io/json_document.hpp"
 #include "studies/io/printing.hpp"
-#include "studies/verify/verify.hpp"
 
 namespace stickslip {
 namespace {
-
-using nlohmann::json;
-namespace fs = std::filesystem;
-
-json parsed_file(const fs::path& file) {
-  std::ifstream stream(file);
-  if (!stream) throw InputFault(file.string() + ": cannot be read");
-  try {
-    return json::parse(stream);
-  } catch (const json::exception& fault) {
-    throw InputFault(file.string() + ": " + fault.what());
-  }
-}
-
-json read_solution(const fs::path& file) {
-  json solution = parsed_file(file);
-  if (!solution.is_object() || solution.value("schema", "") != "stickslip_solution" ||
-      solution.value("version", 0) != 1)
-    throw InputFault(file.string() + R"(: must have "schema": "stickslip_solution" and "version": 1)");
-  return solution;
-}
-
-/// The node of the mesh for each node of another program: by its place, and by its body where several nodes share one.
-class NodeMatch {
- public:
-  NodeMatch(const json& mesh, const json& solution) : nodes_(mesh.at("nodes")) {
-    for (const auto& [name, body] : mesh.at("bodies").items())
-      for (const auto& element : body.at("elements"))
-        for (const int node : element) body_of_[node] = name;
-    for (const auto& [name, nodes] : solution.value("bodies", json::object()).items())
-      for (const int node : nodes) given_body_[node] = name;
-    const json& places = solution.at("nodes");
-    for (std::size_t n = 0; n < places.size(); ++n) match_.push_back(find(places[n], static_cast<int>(n)));
-  }
-  int operator[](int node) const { return match_.at(node); }
-  std::size_t size() const { return match_.size(); }
-
- private:
-  int find(const json& place, int n) const {
-    int found = -1;
-    double size = 0;
-    for (const auto& node : nodes_) size = std::max(size, std::abs(node[0].get<double>()));
-    for (std::size_t m = 0; m < nodes_.size(); ++m) {
-      double off = 0;
-      for (std::size_t i = 0; i < place.size(); ++i)
-        off = std::max(off, std::abs(nodes_[m].at(i).get<double>() - place[i].get<double>()));
-      const auto body = given_body_.find(n);
-      if (off > same_place * size) continue;
-      if (body != given_body_.end() && body->second != body_of_.at(static_cast<int>(m))) continue;
-      if (found >= 0)
-        throw InputFault(
-            fmt::format("node {} of the solution is where several nodes are; \"bodies\" must name its body", n));
-      found = static_cast<int>(m);
-    }
-    if (found < 0) throw InputFault(fmt::format("node {} of the solution is where the mesh has none", n));
-    return found;
-  }
-
-  static constexpr double same_place = 1e-6;  ///< of the largest coordinate: files have six digits and more
-  const json& nodes_;
-  std::map<int, std::string> body_of_, given_body_;
-  std::vector<int> match_;
-};
-
-/// A solution with the nodes of the mesh in place of its own.
-void renumber(const json& mesh, json& solution) {
-  if (!solution.contains("nodes")) return;
-  const NodeMatch match(mesh, solution);
-  const std::size_t dimension = mesh.at("nodes").at(0).size();
-  for (auto& increment : solution.at("increments")) {
-    const json given = increment.at("displacement");
-    if (given.size() != match.size() * dimension) throw InputFault("a displacement has not as many numbers as nodes");
-    json& own = increment["displacement"] = std::vector<double>(mesh.at("nodes").size() * dimension, NAN);
-    for (std::size_t n = 0; n < match.size(); ++n)
-      for (std::size_t i = 0; i < dimension; ++i)
-        own[match[static_cast<int>(n)] * dimension + i] = given[n * dimension + i];
-    for (auto& [name, contact] : increment.value("contacts", json::object()).items())
-      for (auto& node : increment["contacts"][name].at("nodes")) node = match[node.get<int>()];
-  }
-}
-
-json to_json(const verify::Certificate& certificate) {
-  json steps = json::array();
-  for (const auto& step : certificate.steps) {
-    json laws = json::object();
-    for (const auto& [law, where, value, allowed, why] : step.findings)
-      laws[law] = {{"value", std::isfinite(value) ? json(value) : json(nullptr)},
-                   {"allowed", allowed},
-                   {"where", where},
-                   {"why", why},
-                   {"holds", value <= allowed}};
-    steps.push_back({{"time", step.time}, {"holds", step.holds()}, {"laws", laws}});
-  }
-  return {{"holds", certificate.holds()}, {"remarks", certificate.remarks}, {"steps", steps}};
-}
 
 void print(const verify::Certificate& certificate) {
   say(std::cout, "{:>10}  {:<13}  {:<20} {:>9} {:>9}\n", "time", "", "nearest to its bound", "error", "allowed");
@@ -138,42 +38,13 @@ void print_faults(const verify::Certificate& certificate) {
         printable(fault.second->where), fault.second->value, fault.second->allowed, fault.second->why);
 }
 
-/// The solution to be checked; its scene and mesh are those of the run.
-verify::Certificate certificate_of(const VerifyArguments& arguments) {
-  const fs::path directory = arguments.directory;
-  const json result = parsed_file(directory / "result.json");
-  const json left_out = result.value("solution", json::object()).value("left_out", json());
-  if (left_out.is_string())
-    throw InputFault((directory / "solution.json").string() + ": was left out: " + left_out.get<std::string>());
-  const json own = read_solution(directory / "solution.json");
-  if (arguments.solution.empty()) return verify::certify(own.at("scene"), own.at("mesh"), own, result);
-  json other = read_solution(arguments.solution);
-  renumber(own.at("mesh"), other);
-  auto certificate = verify::certify(own.at("scene"), own.at("mesh"), other, json::object());
-  const double accuracy = other.value("accuracy", 0.0);
-  for (auto& step : certificate.steps)
-    for (auto& finding : step.findings)
-      if (finding.allowed > 0 && finding.allowed < accuracy) {
-        finding.allowed = accuracy;
-        finding.why = "the accuracy that the solution claims";
-      }
-  return certificate;
-}
-
 }  // namespace
 
 int verify_command(const VerifyArguments& arguments) {
   check_recorded(arguments.directory);
-  verify::Certificate certificate;
-  try {
-    certificate = certificate_of(arguments);
-  } catch (const verify::BadFile& fault) {
-    throw InputFault(arguments.directory + ": " + fault.what());
-  } catch (const json::exception& fault) {
-    throw InputFault(arguments.directory + ": is not as docs/verify.md says: " + fault.what());
-  }
+  const auto certificate = certificate_of(arguments.directory, arguments.solution);
   if (arguments.json)
-    std::cout << json_text(to_json(certificate), 2) << '\n';
+    std::cout << json_text(certificate_json(certificate), 2) << '\n';
   else
     print(certificate);
   print_faults(certificate);

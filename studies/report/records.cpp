@@ -221,6 +221,7 @@ Study read_run(const std::filesystem::path& directory) {
   json result = read_json(directory / "result.json");
   if (!result.is_object()) throw InputFault((directory / "result.json").string() + ": is no result of a run");
   study.picture = read_json(directory / "picture.json");
+  study.certificate = read_json(directory / "certificate.json");
   study.description = {{"title", text_at(at(result, "scene"), "title")}};
   const json& steps = array_at(result, "steps");
   const auto solved =

@@ -42,6 +42,7 @@ struct Cell {
 struct Study {
   nlohmann::json description;           ///< study.json; null where missing
   nlohmann::json picture;               ///< picture.json; null where missing
+  nlohmann::json certificate;           ///< certificate.json; null where missing
   std::vector<Cell> cells;              ///< in recorded order; of an id recorded twice, the last
   std::vector<std::string> families;    ///< in order of appearance
   std::vector<std::string> variants;    ///< in order of appearance

@@ -219,7 +219,10 @@ LedgerRow output_row(const Written& written) {
   return {"output",
           written.files > 0,
           {},
-          {{"fields", written.fields}, {"solution", written.solution}, {"picture", written.picture}, {"trace", written.trace}},
+          {{"fields", written.fields},
+           {"solution", written.solution},
+           {"picture", written.picture},
+           {"trace", written.trace}},
           {{"files", static_cast<double>(written.files)}},
           written.seconds};
 }

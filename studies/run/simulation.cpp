@@ -119,8 +119,8 @@ OutputFolder folder_of_run(const std::filesystem::path& directory, const std::ve
 }
 
 void remove_run(const std::filesystem::path& directory) {
-  remove_outputs(directory, {"result.json", "solution.json", "fields.pvd", "fields_#.vtu", "picture.json", "report.html",
-                             "figures/*", "trace.csv", "cones.svg"});
+  remove_outputs(directory, {"result.json", "solution.json", "fields.pvd", "fields_#.vtu", "picture.json",
+                             "certificate.json", "report.html", "figures/*", "trace.csv", "cones.svg"});
 }
 
 /// Writes solution.json, or nothing where it would be too large; returns what result.json says of it.

@@ -50,8 +50,8 @@ OutputFolder folder_of_run(const std::filesystem::path& directory, const std::ve
 void remove_run(const std::filesystem::path& directory);
 
 /// Writes DIR/fields.pvd with its .vtu files, DIR/solution.json where it is not too large, and then DIR/result.json
-/// (write_output). Returns the content of result.json (docs/results.md). `before`: files already written, for its ledger. Throws std::system_error if writing
-/// fails. pre: remove_run()
+/// (write_output). Returns the content of result.json (docs/results.md). `before`: files already written, for its
+/// ledger. Throws std::system_error if writing fails. pre: remove_run()
 nlohmann::json write_result(const std::filesystem::path& directory, const Simulation& simulation,
                             const CaseResult& result, const Written& before = {});
 

@@ -314,8 +314,8 @@ TEST(Ledger, CountsWhatIsWritten) {
   EXPECT_EQ(written["memory"]["solution"], solution);
   EXPECT_EQ(written["counts"]["files"], files);
   const Ledger foretold = forecast(simulation->input, *simulation->problem);
-  expect_amounts_foretold(row(foretold, "output").memory, {{"fields", bytes}, {"solution", solution}, {"picture"}, {"trace"}},
-                          "output");
+  expect_amounts_foretold(row(foretold, "output").memory,
+                          {{"fields", bytes}, {"solution", solution}, {"picture"}, {"trace"}}, "output");
   expect_amounts_foretold(row(foretold, "output").counts, {{"files", files}}, "output");
   EXPECT_FALSE(row(ledger(result), "output").on);
 }

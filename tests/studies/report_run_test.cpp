@@ -138,21 +138,22 @@ TEST_F(ReportOfARun, EscapesHostileNames) {
 
 /// A block that is pressed, and then pushed by more than friction can hold, in `steps` steps; of one, the first fails.
 CaseResult pushed_away(int steps) {
-  const json scene = {{"bodies",
-                       {{"b",
-                         {{"mesh", {{"box", {{"min", {0, 0}}, {"max", {2, 1}}, {"cells", {8, 2}}}}}},
-                          {"material", {{"linear_elastic", {{"E", 1000}, {"nu", 0.3}}}}}}}}},
-                      {"obstacles", {{"floor", {{"plane", {{"point", {0, 0}}, {"normal", {0, 1}}}}}}}},
-                      {"contacts", {{"sole", {{"slave", "b.bottom"}, {"master", "floor"}, {"friction", 0.3}}}}},
-                      {"loads",
-                       {{{"on", "b.top"}, {"traction", {0, -10}}},
-                        {{"on", "b.top"}, {"traction", {40, 0}}, {"history", {{0, 0}, {0.5, 0.05}, {1, 1}}}}}},
-                      {"time", {{"end", 1}, {"steps", steps}}},
-                      {"responses",
-                       {{"n", {{"contact_force", {{"contact", "sole"}, {"component", "normal"}}}}},
-                        {"aside", {{"displacement", {{"on", "b.top"}, {"component", "x"}}}}}}},
-                      {"objectives", {{"J", {{"of", "aside"}, {"sum", true}}}}},
-                      {"parameters", {{"mu", "/contacts/sole/friction"}}}};
+  const json scene = {
+      {"bodies",
+       {{"b",
+         {{"mesh", {{"box", {{"min", {0, 0}}, {"max", {2, 1}}, {"cells", {8, 2}}}}}},
+          {"material", {{"linear_elastic", {{"E", 1000}, {"nu", 0.3}}}}}}}}},
+      {"obstacles", {{"floor", {{"plane", {{"point", {0, 0}}, {"normal", {0, 1}}}}}}}},
+      {"contacts", {{"sole", {{"slave", "b.bottom"}, {"master", "floor"}, {"friction", 0.3}}}}},
+      {"loads",
+       {{{"on", "b.top"}, {"traction", {0, -10}}},
+        {{"on", "b.top"}, {"traction", {40, 0}}, {"history", {{0, 0}, {0.5, steps == 1 ? 0.5 : 0.05}, {1, 1}}}}}},
+      {"time", {{"end", 1}, {"steps", steps}}},
+      {"responses",
+       {{"n", {{"contact_force", {{"contact", "sole"}, {"component", "normal"}}}}},
+        {"aside", {{"displacement", {{"on", "b.top"}, {"component", "x"}}}}}}},
+      {"objectives", {{"J", {{"of", "aside"}, {"sum", true}}}}},
+      {"parameters", {{"mu", "/contacts/sole/friction"}}}};
   return cases::run(scene, {{"monolithic_al", json::object()}}, "pushed.json");
 }
 

@@ -56,6 +56,20 @@ TEST(SeveralSolutions, AreToldOfANodeThatFrictionHoldsInTwoContacts) {
   }
 }
 
+/// A point between two walls without any room: only the difference of their forces is determined.
+TEST(SeveralSolutions, AreToldOfANodeBetweenTwoWalls) {
+  json scene = groove(0);
+  scene["obstacles"] = {{"l", {{"plane", {{"point", {0, 0}}, {"normal", {1, 0}}}}}},
+                        {"r", {{"plane", {{"point", {0, 0}}, {"normal", {-1, 0}}}}}}};
+  for (auto& contact : scene["contacts"]) contact.erase("friction");
+  for (const auto& method : {uzawa, monolithic}) {
+    EXPECT_THAT(warnings(scene, method), Contains(is_undetermined("a"))) << method;
+    EXPECT_THAT(warnings(scene, method), Contains(is_undetermined("b"))) << method;
+  }
+  scene["obstacles"]["l"]["plane"]["normal"] = {1, 0.5};  // wider above: it is held by the right one alone
+  EXPECT_THAT(warnings(scene, monolithic), Not(Contains(is_undetermined("a"))));
+}
+
 TEST(SeveralSolutions, AreNotToldOfANodeInTwoContactsWithoutFriction) {
   for (const json& method : {penalty, uzawa, monolithic}) EXPECT_THAT(warnings(groove(0), method), IsEmpty()) << method;
 }

@@ -33,7 +33,7 @@ double share(double ratio, const char* method, const char* engine) {
   const auto result = cases::run(block_on_slab(ratio, engine), {{method, json::object()}}, "block.json");
   EXPECT_TRUE(is_converged(result.trajectory.status)) << method << " " << engine << result.trajectory.message;
   const auto& responses = result.steps.back().responses;
-  return responses[1] / responses[0];
+  return responses[0] / responses[1];  // Fx, N
 }
 
 TEST(AStiffBodyOnASoftOne, HasTheFrictionThatExactContactHasByTheDefaultPenalty) {
