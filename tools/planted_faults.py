@@ -82,7 +82,7 @@ FAULTS = [
     ("segments with the master's normal alone", "core/contact/segments.hpp",
      "foot.normal[i] - <<<(rigid ? T(0) : nu[i])>>>)", "T(0)"),
     ("no tie length", "core/model/pairing.cpp", "point.tie_length = <<<8>>> * unit_roundoff", "0"),
-    ("facing nodes that look the same way", "core/model/pairing.cpp", "-tau[0])) >= <<<0>>>)", "1e300"),
+    ("facing nodes that look the same way", "core/model/pairing.cpp", "-tau[0])) < <<<0>>>;", "1e300"),
     # bodies, loads, supports
     ("plane stress as plane strain", "core/solids/linear_elastic.hpp",
      "space == Space::plane_stress) lame = <<<lame_of_plane_stress(lame, shear)>>>;", "T(lame)"),
@@ -112,7 +112,7 @@ FAULTS = [
     ("thickness without its derivative", "core/model/slots_impl.hpp",
      "plane ? <<<numbers(model.scene.bodies[b].thickness)>>> : T(1)",
      "T(value(numbers(model.scene.bodies[b].thickness)))"),
-    ("nodal stiffness halved between bodies", "core/model/slots_impl.hpp", "return T(<<<2>>>) * slave * master", "1"),
+    ("nodal stiffness halved between bodies", "core/model/slots_impl.hpp", "mean = T(<<<2>>>) * slave * master", "1"),
     ("rho of the side that a support holds", "core/model/slots_impl.hpp",
      "if (slave_yields) return <<<slave>>>;", "master"),
     ("a strain energy without the inside", "sensitivity/differentiate.cpp",

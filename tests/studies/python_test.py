@@ -270,7 +270,7 @@ class Input(unittest.TestCase):
 
     def test_an_iterate_of_a_failed_solve_is_no_answer(self):
         scene = plate(3)
-        scene["loads"][0]["traction"] = [2, -5]
+        scene["loads"][0]["traction"] = [2, 0]
         scene["loads"][0]["history"] = [[0, 0], [0.5, 0], [1, 1]]
         scene["loads"].append({"on": "block.top", "traction": [0, -5]})
         scene["time"] = {"end": 1, "steps": 2}
