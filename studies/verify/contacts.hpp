@@ -8,8 +8,8 @@
 ///              m_j = 1/A_j int psi_j dy/dS dA,   Z_j = 1/A_j int psi_j (S(y) + S_s) dA
 #pragma once
 
-#include "studies/verify/elements.hpp"
 #include "studies/verify/masters.hpp"
+#include "studies/verify/solids.hpp"
 
 namespace stickslip::verify {
 

@@ -1,8 +1,8 @@
 /// Responses of a state, measured again (docs/scene.md, Responses).
 #pragma once
 
-#include "studies/verify/bodies.hpp"
 #include "studies/verify/contacts.hpp"
+#include "studies/verify/solids.hpp"
 
 namespace stickslip::verify {
 
