@@ -113,6 +113,15 @@ Vec3 Motion::back(const Vec3& x, double time) const {
   return rotate.empty() ? shifted : Vec3(center() + turn(time).transpose() * (shifted - center()));
 }
 
+Facets facets_of(const Side& side) {
+  Facets facets;
+  for (const auto& edge : side.edges) {
+    if (edge.size() == 3) facets.push_back({edge[0], edge[2]});
+    facets.push_back({edge.back() == edge[1] ? edge[0] : edge[2], edge[1]});
+  }
+  return facets;
+}
+
 Scene::Scene(const Json& scene, const Json& mesh) : json(scene) {
   const std::string space = scene.value("space", "plane_strain");
   finite = scene.value("strain", "small") == "finite";

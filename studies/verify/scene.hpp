@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <map>
@@ -69,6 +70,10 @@ struct Side {
   std::vector<Nodes> edges;
   bool has(int node) const { return nodes.contains(node); }
 };
+
+/// The ends of the edges of a side; of edges with a middle, those of their halves.
+using Facets = std::vector<std::array<int, 2>>;
+Facets facets_of(const Side& side);
 
 struct Scene {
   Json json;
