@@ -87,11 +87,14 @@ void Contact::integrate(const Piece& piece, const Field& x, const Places& at, To
     const double length = psi * (to - from) * point.weight * T.norm(),
                  dA = length * scene_.depth(body_, A[0] + s * T[0]);
     const Vec3 x_s = x.col(first) + s * tau;
-    const Line line = p < 0 ? Line{} : master_.patches[p].line(at);
-    const double eta = cross(x_s.head<2>() - line.from, nu) / cross(line.tau, nu);
-    Foot foot = p < 0 ? master_.foot({carrier, x_s, nu}, at) : master_.foot({p, eta}, at);
-    if (p >= 0) {
+    Foot foot;
+    if (p < 0) {
+      foot = master_.foot({carrier, x_s, nu}, at);
+    } else {
       const Patch& patch = master_.patches[p];
+      const Line line = patch.line(at);
+      const double eta = cross(x_s.head<2>() - line.from, nu) / cross(line.tau, nu);
+      foot = master_.foot({p, eta}, at);
       if (!master_.rigid()) foot.normal -= in_space(nu);
       touch.tangent += dA / patch.length * in_space(line.tau);
       touch.along += dA * (patch.arc + eta * patch.length + (carrier == first ? s : s - 1) * T.norm());

@@ -30,7 +30,8 @@ struct Line {
 
 /// From vertex 1 to vertex 2; 0 and 3 are their neighbours, where the master is smooth there.
 struct Patch {
-  Nodes vertex;
+  std::array<int, 4> vertex;  ///< nodes, or points of an obstacle's polyline
+
   int previous = -1, next = -1;                     ///< patches; -1: a free end
   std::array<bool, 2> goes_on = {false, false};     ///< smoothly, into the previous and the next patch
   Eigen::Matrix4d shape = Eigen::Matrix4d::Zero();  ///< N_i = column i times (1, xi, xi^2, xi^3)
@@ -62,7 +63,7 @@ class Master {
  public:
   /// `slave`: side expression; the same as `master` where a side touches itself.
   Master(const Scene& scene, const Json& contact, const std::string& slave, const std::string& master);
-  bool rigid() const { return nodes_.empty(); }
+  bool rigid() const { return !obstacle_.empty(); }
   Places vertices(const Field& x) const;  ///< where they are, of nodes at x
   Vec2 position(const Places& at, const Place& place, int derivative = 0) const;
   Foot foot(const Seeker& seeker, const Places& at) const;
@@ -83,7 +84,6 @@ class Master {
 
   const Scene& scene_;
   Json obstacle_;                           ///< empty: the master deforms
-  Nodes nodes_;                             ///< of its vertices then
   Places polyline_;                         ///< points of an obstacle
   int smooth_ = 0;                          ///< 0: facets, 1: Catmull-Rom, 2: B-spline
   bool itself_ = false, frozen_ = false;    ///< frozen: facets of the start, at small strain

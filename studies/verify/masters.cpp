@@ -30,13 +30,7 @@ Master::Master(const Scene& scene, const Json& contact, const std::string& slave
     for (int v = 0; v < count; ++v) polyline_.col(v) = vec3(points[v]).head<2>();
     for (int v = 0; v + 1 < count + closed; ++v) add((v + 1) % count, v);
   }
-  std::map<int, int> number;
-  const auto vertex = [&](int node) {
-    if (number.emplace(node, static_cast<int>(nodes_.size())).second) nodes_.push_back(node);
-    return number[node];
-  };
-  for (const auto& [first, second] : obstacle_.empty() ? facets_of(scene.side(master)) : Facets{})
-    add(vertex(first), vertex(second));
+  for (const auto& [first, second] : rigid() ? Facets{} : facets_of(scene.side(master))) add(first, second);
   link(surface.is_object() ? surface.value("corner", 30.0) : 30.0);
 }
 
@@ -78,7 +72,7 @@ void Master::link(double corner) {
     }
 }
 
-Places Master::vertices(const Field& x) const { return rigid() ? polyline_ : Places(x(Eigen::seqN(0, 2), nodes_)); }
+Places Master::vertices(const Field& x) const { return rigid() ? polyline_ : Places(x.topRows<2>()); }
 
 Vec2 Master::position(const Places& at, const Place& place, int derivative) const {
   const double s = place.xi;
@@ -95,7 +89,7 @@ void Master::set_walls(const std::vector<Seeker>& seekers) {
     for (const auto& patch : patches) {
       const Line line = patch.line(at);
       const double a = cross(inward, line.from - from), b = a + cross(inward, line.tau);
-      if (nodes_[patch.vertex[1]] == node || nodes_[patch.vertex[2]] == node || a * b > 0 || a == b) continue;
+      if (patch.vertex[1] == node || patch.vertex[2] == node || a * b > 0 || a == b) continue;
       const double depth = (line.from - from + a / (a - b) * line.tau).dot(inward);
       if (depth > 0) thickness = std::min(thickness, depth);
     }
@@ -114,7 +108,7 @@ bool Master::may_face(const Seeker& seeker, int p, const Places& at) const {
   const double against = seeker.outward.dot(across), xi = line.xi(x);
   if (!itself_) return frozen_ || !(against > 0);
   for (const int v : patches[p].vertex)
-    if (nodes_[v] == seeker.node) return false;
+    if (v == seeker.node) return false;
   const bool beside = (x - line.from).dot(across) >= 0 || (xi >= -0.5 && xi <= 1.5);
   return !walls_.at(seeker.node)[p] && against <= -0.5 * seeker.outward.norm() * line.tau.norm() && beside;
 }
@@ -188,8 +182,7 @@ void Master::share_vertex(const Seeker& seeker, const Places& at, Foot& foot) co
     return std::abs(slide) > at_end ? 0 : slide / 2;
   };
   const double back = half(before), on = half(after);
-  foot.weights = {
-      {nodes_[second.vertex[1]], on - back - 1}, {nodes_[first.vertex[1]], back}, {nodes_[second.vertex[2]], -on}};
+  foot.weights = {{second.vertex[1], on - back - 1}, {first.vertex[1], back}, {second.vertex[2], -on}};
 }
 
 Foot Master::foot(const Place& place, const Places& at) const {
@@ -197,7 +190,7 @@ Foot Master::foot(const Place& place, const Places& at) const {
   const double s = place.xi;
   const Eigen::Vector4d N = shape.transpose() * Eigen::Vector4d(1, s, s * s, s * s * s);
   Foot foot{true, in_space(position(at, place)), in_space(right_of(position(at, place, 1)).normalized()), 0, place};
-  for (int i = 0; i < 4 && !rigid(); ++i) foot.weights.emplace_back(nodes_[vertex[i]], -N[i]);
+  for (int i = 0; i < 4 && !rigid(); ++i) foot.weights.emplace_back(vertex[i], -N[i]);
   return foot;
 }
 

@@ -113,6 +113,13 @@ Vec3 Motion::back(const Vec3& x, double time) const {
   return rotate.empty() ? shifted : Vec3(center() + turn(time).transpose() * (shifted - center()));
 }
 
+Mat3 Body::stiffness() const {
+  const Json& rows = material.begin().value().at("stiffness");
+  Mat3 K = Mat3::Zero();
+  for (std::size_t i = 0; i < rows.size(); ++i) K.row(i) = vec3(rows[i]);
+  return K;
+}
+
 Facets facets_of(const Side& side) {
   Facets facets;
   for (const auto& edge : side.edges) {

@@ -62,6 +62,7 @@ struct Body {
   bool quadratic() const { return element == "Q8" || element == "T6"; }
   bool solid() const { return element != "bar" && element != "point"; }
   std::size_t corners() const { return element[0] == 'T' ? 3 : 4; }
+  Mat3 stiffness() const;  ///< of a spring
 };
 
 /// Nodes of a side, and the edges of the boundary that belong to it.

@@ -71,46 +71,32 @@ Mat3 of_principal(const Mat3& tensor, F&& f) {
   return eigen.eigenvectors() * eigen.eigenvalues().unaryExpr(f).asDiagonal() * eigen.eigenvectors().transpose();
 }
 
-/// Kirchhoff stress, and energy, of an elastic strain e; of metal it is taken back to the bound first.
-Mat3 hooke(const Material& material, Mat3& e, Particle& particle, Answer& answer) {
-  const Mat3 I = Mat3::Identity(), dev = 2 * material.G * (e - e.trace() / 3 * I);
-  const double q = std::sqrt(1.5) * dev.norm(), d = material.growth(q, 3 * material.G, particle.equivalent);
-  if (d > 0) e -= 1.5 * d / q * dev;
-  particle.equivalent += d;
-  answer.plastic_work = (q - 3 * material.G * d) * d;
-  answer.energy = material.lame / 2 * e.trace() * e.trace() + material.G * e.squaredNorm();
-  return material.lame * e.trace() * I + 2 * material.G * e;
-}
-
-/// Kirchhoff stress, and energy, of rubber; `stretch`: F F^T - I.
-Mat3 neo_hooke(const Material& material, const Mat3& H, const Mat3& stretch, Answer& answer) {
-  const double change = volume_change(H), log = std::log1p(change), lame = material.lame;
-  const double volume = material.log_volume ? log * log : change * change;
-  answer.energy = lame / 2 * volume + material.G * (H.trace() + H.squaredNorm() / 2 - log);
-  return material.G * stretch + lame * (material.log_volume ? log : change * (1 + change)) * Mat3::Identity();
-}
-
 Answer respond(const Material& material, const Mat3& H, bool finite, Particle& particle) {
   Answer answer;
-  if (!finite) {
-    const Mat3 trial = (H + H.transpose()) / 2 - particle.strain;
-    Mat3 e = trial;
-    answer.stress = hooke(material, e, particle, answer);
-    particle.strain += trial - e;
-    return answer;
-  }
-  answer.inverted = !(volume_change(H) > -1);
+  const double change = volume_change(H), lame = material.lame, G = material.G;
+  answer.inverted = finite && !(change > -1);
   if (answer.inverted) return answer;
-  const Mat3 F = Mat3::Identity() + H, inverse = F.inverse(), stretch = H + H.transpose() + H * H.transpose();
-  if (!material.plastic) {
-    answer.stress = neo_hooke(material, H, stretch, answer) * inverse.transpose();
+  const Mat3 I = Mat3::Identity(), F = I + H, stretch = H + H.transpose() + H * H.transpose();
+  const Mat3 inverse = finite ? Mat3(F.inverse()) : I;
+  if (finite && !material.plastic) {
+    const double log = std::log1p(change), grown = material.log_volume ? log : change;
+    answer.energy = lame / 2 * grown * grown + G * (H.trace() + H.squaredNorm() / 2 - log);
+    answer.stress = (G * stretch + lame * grown * (material.log_volume ? 1 : 1 + change) * I) * inverse.transpose();
     return answer;
   }
-  const Mat3 trial = stretch + F * particle.strain * F.transpose();  // F C_p^-1 F^T - I
-  Mat3 e = of_principal(trial, [](double x) { return std::log1p(x) / 2; });
-  answer.stress = hooke(material, e, particle, answer) * inverse.transpose();
-  const Mat3 elastic = of_principal(e, [](double x) { return std::expm1(2 * x); });
-  if (answer.plastic_work > 0) particle.strain = inverse * (elastic - stretch) * inverse.transpose();
+  const Mat3 small = (H + H.transpose()) / 2, trial = stretch + F * particle.strain * F.transpose();
+  Mat3 e = finite ? of_principal(trial, [](double x) { return std::log1p(x) / 2; }) : Mat3(small - particle.strain);
+  const Mat3 dev = 2 * G * (e - e.trace() / 3 * I);
+  const double q = std::sqrt(1.5) * dev.norm(), d = material.growth(q, 3 * G, particle.equivalent);
+  if (d > 0) {  // back to the bound
+    e -= 1.5 * d / q * dev;
+    const Mat3 elastic = of_principal(e, [](double x) { return std::expm1(2 * x); });
+    particle.strain = finite ? Mat3(inverse * (elastic - stretch) * inverse.transpose()) : Mat3(small - e);
+    particle.equivalent += d;
+  }
+  answer.plastic_work = (q - 3 * G * d) * d;
+  answer.energy = lame / 2 * e.trace() * e.trace() + G * e.squaredNorm();
+  answer.stress = (lame * e.trace() * I + 2 * G * e) * inverse.transpose();
   return answer;
 }
 
@@ -251,35 +237,6 @@ Field bar_forces(const Scene& scene, const Body& body, const Nodes& bar, const F
   return material.E * body.area * (trial - flow) / length * now * difference.transpose();
 }
 
-void deform_body(const Scene& scene, const Body& body, const Field& u, std::vector<Particle>& particles,
-                 Bodies& bodies) {
-  const Json& numbers = body.material.begin().value();
-  const bool is_bar = body.element == "bar";
-  const double depth = is_bar ? body.area : scene.depth(body, scene.points.row(0).maxCoeff());
-  bodies.stiffness = std::max(bodies.stiffness, numbers.value("E", 0.0) * depth);
-  const auto add = [&](const Nodes& nodes, const Field& forces) {
-    bodies.forces(Eigen::all, nodes) += forces;
-    bodies.largest = std::max(bodies.largest, forces.colwise().norm().maxCoeff());
-  };
-  for (std::size_t e = 0; e < body.elements.size(); ++e) {
-    const Nodes& element = body.elements[e];
-    const auto points = body.solid() ? points_of(scene, body, element) : std::vector<Point>{};
-    const std::size_t each = is_bar ? 1 : points.size();
-    particles.resize(body.elements.size() * each);
-    Particle* own = particles.data() + e * each;
-    if (body.solid()) add(element, solid_forces(scene, body, points, u(Eigen::all, element), own, bodies));
-    if (is_bar) add(element, bar_forces(scene, body, element, u(Eigen::all, element), *own, bodies));
-  }
-  if (body.element != "point") return;
-  const Nodes ends{body.sides.at("anchor").at(0), body.sides.at("node").at(0)};
-  const Vec3 d = u.col(ends[1]) - u.col(ends[0]);
-  Mat3 K = Mat3::Zero();
-  for (std::size_t i = 0; i < numbers.at("stiffness").size(); ++i) K.row(i) = vec3(numbers["stiffness"][i]);
-  bodies.stiffness = std::max(bodies.stiffness, K.maxCoeff());
-  bodies.energy += d.dot(K * d) / 2;
-  add(ends, K * d * Eigen::RowVector2d(-1, 1));
-}
-
 // --- loads -----------------------------------------------------------------------------------------------------------
 
 /// int N f dA of the nodes of a side, of edges at `places`; f: of an edge, a Gauss point of it and dx / ds.
@@ -379,8 +336,32 @@ Bodies deform(const Scene& scene, const Field& u, const Bodies& before) {
   bodies.forces = Field::Zero(3, u.cols());
   bodies.particles = before.particles;
   bodies.particles.resize(scene.bodies.size());
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
-    deform_body(scene, scene.bodies[b], u, bodies.particles[b], bodies);
+  const auto add = [&](const Nodes& nodes, const Field& forces) {
+    bodies.forces(Eigen::all, nodes) += forces;
+    bodies.largest = std::max(bodies.largest, forces.colwise().norm().maxCoeff());
+  };
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Body& body = scene.bodies[b];
+    if (body.element == "point") {
+      const Nodes ends{body.sides.at("anchor").at(0), body.sides.at("node").at(0)};
+      const Vec3 d = u(Eigen::all, ends) * Vec2(-1, 1), force = body.stiffness() * d;
+      bodies.stiffness = std::max(bodies.stiffness, body.stiffness().maxCoeff());
+      bodies.energy += d.dot(force) / 2;
+      add(ends, force * Eigen::RowVector2d(-1, 1));
+      continue;
+    }
+    const double depth = body.solid() ? scene.depth(body, scene.points.row(0).maxCoeff()) : body.area;
+    bodies.stiffness = std::max(bodies.stiffness, Material(body.material).E * depth);
+    for (std::size_t e = 0; e < body.elements.size(); ++e) {
+      const Field moved = u(Eigen::all, body.elements[e]);
+      const auto points = body.solid() ? points_of(scene, body, body.elements[e]) : std::vector<Point>{};
+      const std::size_t each = body.solid() ? points.size() : 1;
+      bodies.particles[b].resize(body.elements.size() * each);
+      Particle* own = &bodies.particles[b][e * each];
+      add(body.elements[e], body.solid() ? solid_forces(scene, body, points, moved, own, bodies)
+                                         : bar_forces(scene, body, body.elements[e], moved, *own, bodies));
+    }
+  }
   return bodies;
 }
 
