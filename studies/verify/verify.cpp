@@ -165,8 +165,8 @@ class Judge {
           const Vec3 free = held.contains(touch.node) ? Vec3(force - taken(held.at(touch.node), force)) : force;
           placed.traction = free / touch.area;
         }
-        T_ =
-            std::max({T_, placed.traction.norm(), touch.area > 0 ? rounding * bodies_.stiffness * L_ / touch.area : 0});
+        const double least = touch.area > 0 ? rounding * bodies_.stiffness * L_ / touch.area : 0;
+        T_ = std::max({T_, placed.traction.norm(), least});
         all.push_back(placed);
         index.erase(touch.node);
       }
@@ -250,12 +250,11 @@ class Judge {
     for (Eigen::Index n = 0; n < u_.cols(); ++n) moment += arms.col(n).cross(forces_of.col(n));
     if (scene_.axisymmetric) sum[0] = 0;
     const double all = F_ + forces_of.colwise().norm().sum(), many = std::sqrt(static_cast<double>(u_.cols()));
-    note(step, forces, sum.norm() * over(all), "of loads, supports and contacts", many * forces.allowed);
-    const bool springs =
-        std::any_of(scene_.bodies.begin(), scene_.bodies.end(), [](const Body& b) { return b.element == "point"; });
+    const std::string what = "of loads, supports and contacts";
+    note(step, forces, sum.norm() * over(all), what, many * forces.allowed);
+    const bool springs = std::ranges::count(scene_.bodies, "point", &Body::element) > 0;
     if (scene_.axisymmetric || (scene_.finite && springs)) return;  // (a spring at its anchor has a moment of its own)
-    note(step, moments, moment.norm() * over(all * arms.colwise().norm().maxCoeff()), "of loads, supports and contacts",
-         many * moments.allowed);
+    note(step, moments, moment.norm() * over(all * arms.colwise().norm().maxCoeff()), what, many * moments.allowed);
   }
 
   /// work = stored + dissipated, from the start.
@@ -280,11 +279,12 @@ class Judge {
       const std::string kind = what.begin().key();
       const double again = measure(state, what).value_or(NAN), known = value.is_number() ? value.get<double>() : NAN;
       if (std::isnan(again)) unmeasured.insert(name);
-      const std::map<std::string, double> natural{
-          {"reaction", F_},         {"contact_force", F_},           {"displacement", L_}, {"gap", L_}, {"slip", L_},
-          {"contact_pressure", T_}, {"plastic_strain", least_strain}};
+      std::map<std::string, double> natural{
+          {"reaction", F_}, {"contact_force", F_},    {"displacement", L_},
+          {"gap", L_},      {"contact_pressure", T_}, {"plastic_strain", least_strain},
+          {"slip", L_}};
       double& scale = largest_[kind];
-      scale = std::max({scale, std::abs(again), natural.contains(kind) ? natural.at(kind) : size_ * rounding});
+      scale = std::max({scale, std::abs(again), natural.emplace(kind, size_ * rounding).first->second});
       if (std::isnan(again)) continue;
       note(step, responses, std::abs(known - again) * over(scale),
            fmt::format("\"{}\" is {:.9g}, not {:.9g}", name, again, known));
@@ -295,15 +295,14 @@ class Judge {
   void check_flow(const Json& given, Step& step) {
     for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
       const Json& means = part(given, scene_.bodies[b].name);
-      const auto& particles = bodies_.particles[b];
+      auto particle = bodies_.particles[b].begin();
       double largest = least_strain;
-      for (const auto& particle : particles) largest = std::max(largest, particle.equivalent);
+      for (const auto& one : bodies_.particles[b]) largest = std::max(largest, one.equivalent);
       for (std::size_t e = 0; e < means.size(); ++e) {
-        const std::size_t each = particles.size() / means.size();
         double sum = 0, volume = 0;
-        for (std::size_t q = e * each; q < (e + 1) * each; ++q) {
-          sum += particles[q].equivalent * particles[q].volume;
-          volume += particles[q].volume;
+        for (std::size_t q = 0; q < bodies_.particles[b].size() / means.size(); ++q, ++particle) {
+          sum += particle->equivalent * particle->volume;
+          volume += particle->volume;
         }
         note(step, flow, std::abs(means[e].get<double>() - sum / volume) / largest,
              fmt::format("{}, element {}", scene_.bodies[b].name, e));
@@ -339,15 +338,12 @@ std::vector<double> asked_times(const Json& scene) {
 }  // namespace
 
 const Finding& Step::worst() const {
-  return *std::max_element(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
-    const auto over = [](const Finding& f) { return f.allowed > 0 ? f.value / f.allowed : f.value > 0 ? infinity : 0; };
-    return over(a) < over(b);
+  return *std::ranges::max_element(findings, {}, [](const Finding& f) {
+    return f.allowed > 0 ? f.value / f.allowed : f.value > 0 ? infinity : 0;
   });
 }
 
-bool Certificate::holds() const {
-  return !steps.empty() && std::all_of(steps.begin(), steps.end(), [](const Step& s) { return s.holds(); });
-}
+bool Certificate::holds() const { return !steps.empty() && std::ranges::all_of(steps, &Step::holds); }
 
 Certificate certify(const Json& scene, const Json& mesh, const Json& solution, const Json& result) {
   Certificate certificate;
@@ -355,8 +351,8 @@ Certificate certify(const Json& scene, const Json& mesh, const Json& solution, c
   std::map<double, Json> measured;
   std::vector<double> asked = asked_times(scene);
   for (const auto& step : result.value("steps", Json::array())) {
-    measured[step.at("time")] = step.value("responses", Json());
     asked.push_back(step.at("time"));
+    measured[asked.back()] = step.value("responses", Json());
   }
   std::set<double> there{-infinity};
   for (const auto& increment : solution.at("increments")) {
@@ -364,8 +360,7 @@ Certificate certify(const Json& scene, const Json& mesh, const Json& solution, c
     if (!(time > *there.rbegin()) && !scene.at("time").contains("control"))
       throw BadFile("times of increments do not increase");
     there.insert(time);
-    const auto found = measured.find(time);
-    certificate.steps.push_back(judge.read(increment, found == measured.end() ? Json() : found->second));
+    certificate.steps.push_back(judge.read(increment, measured[time]));
   }
   if (certificate.steps.empty()) certificate.steps.push_back({0, {}});
   Step& last = certificate.steps.back();
