@@ -1,9 +1,7 @@
-#include "studies/verify/contacts.hpp"
-
 #include <algorithm>
 #include <cmath>
 
-#include "studies/verify/solids.hpp"
+#include "studies/verify/state.hpp"
 
 namespace stickslip::verify {
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "studies/verify/contacts.hpp"
+#include "studies/verify/state.hpp"
 
 namespace stickslip::verify {
 namespace {

@@ -1,9 +1,9 @@
-#include "studies/verify/responses.hpp"
-
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include "studies/verify/state.hpp"
 
 namespace stickslip::verify {
 namespace {

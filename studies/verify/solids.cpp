@@ -1,9 +1,9 @@
-#include "studies/verify/solids.hpp"
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include "studies/verify/state.hpp"
 
 namespace stickslip::verify {
 namespace {
@@ -126,12 +126,11 @@ Answer respond_in_plane_stress(const Material& material, Mat3& H, bool finite, P
 Field polynomials(const Body& body, const Vec2& at) {
   static const Places triangle{{0, 1, 0, 2, 1, 0}, {0, 0, 1, 0, 1, 2}},
       square{{0, 1, 0, 1, 2, 0, 2, 1}, {0, 0, 1, 1, 0, 2, 1, 2}};
-  Field rows(3, natural_nodes(body).cols());
-  for (Eigen::Index k = 0; k < rows.cols(); ++k) {
-    const Vec2 power = (body.corners() == 3 ? triangle : square).col(k), less = (power.array() - 1).max(0);
-    const double a = power[0], b = power[1], r = std::pow(at[0], a), s = std::pow(at[1], b);
-    rows.col(k) << r * s, a * std::pow(at[0], less[0]) * s, b * r * std::pow(at[1], less[1]);
-  }
+  const Eigen::Array2Xd p = (body.corners() == 3 ? triangle : square).leftCols(natural_nodes(body).cols());
+  const Eigen::Array2Xd power = at.array().replicate(1, p.cols()).pow(p),
+                        slope = p * at.array().replicate(1, p.cols()).pow((p - 1).max(0));
+  Field rows(3, p.cols());
+  rows << power.row(0) * power.row(1), slope.row(0) * power.row(1), power.row(0) * slope.row(1);
   return rows;
 }
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "studies/verify/responses.hpp"
+#include "studies/verify/state.hpp"
 
 namespace stickslip::verify {
 namespace {

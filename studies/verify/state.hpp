@@ -1,20 +1,74 @@
-/// Masters, the foot of a point on them by the plainest search there is, every point against every facet, and the gap,
-/// normal and slip of the places of a contact: at nodes, or weighted over segments (core/README.md, Notation, Along a
-/// curve, Finite strain, A side that touches itself, A point that comes on, Segment integration). All in the frame of
-/// the master: of an obstacle the one that moves with it. At small strain what is faced, n and weights are of the
-/// start.
-///
-///   y(xi) = sum N_i(xi) y_i,   (x - y) . y' = 0,   n across y',   g = n . (x - y)      on facets and smooth patches
-///   g = n . (x - p);   g = +- (|x - c| - r)                                            on a plane; a circle
-///   small strain:   g = g_0 + offset + n . w,   w = sum of weights u - u_obstacle,   slip = what w grew by, across n
-///   finite strain:  slip = y(xi) - y(xi_last) on the master as it is now, across n; of an obstacle both in its frame
-///   segments:  g_j = n_j . 1/A_j int psi_j (x_s - y) dA,   along a master slip = |m_j| (Z_j - Z_j,last), e_j along
-///              m_j = 1/A_j int psi_j dy/dS dA,   Z_j = 1/A_j int psi_j (S(y) + S_s) dA
+/// What a state is made of: elements, bodies and loads; masters, and places of contact on them; and responses, measured
+/// again (docs/scene.md, Responses). The sources have the laws of materials.
 #pragma once
 
 #include "studies/verify/scene.hpp"
 
 namespace stickslip::verify {
+
+// --- solids ----------------------------------------------------------------------------------------------------------
+// Elements, bodies and loads, without tangents, which a check does not need (core/README.md, Elements, Shares).
+// Corners come first, then the middles of the sides in turn, counter-clockwise. A square is [-1, 1]^2, a triangle r, s
+// >= 0, r + s <= 1.
+//
+//   f_a = int P grad N_a dV,   of revolution + e_r int P_33 N_a / R dV,   H = sum u_a (x) grad N_a,  H_33 = u_r / R
+//   mean dilatation: F -> (theta / J)^(1/3) F, theta the mean of J; small: H -> H + (theta - tr H) / 3 I  [H80, MOS90]
+//   bar:  N = E A e,  e = (T.d + d.d / 2) / L^2 at finite strain, T.d / L^2 at small;  spring: f = K (u - u_anchor)
+
+Places natural_nodes(const Body& body);  ///< r, s of each node of an element
+
+/// Shape functions N at a place: the polynomials that are 1 at their node and 0 at the others; their gradients by r, s.
+struct Shape {
+  Eigen::VectorXd value;
+  Eigen::MatrixX2d gradient;
+};
+Shape shape(const Body& body, const Vec2& at);
+
+/// A Gauss point of an edge: weight, place from its first end to its second, shape functions and their slopes.
+struct EdgePoint {
+  double weight, s;
+  Eigen::VectorXd value, slope;
+};
+std::vector<EdgePoint> edge_points(std::size_t nodes, bool of_revolution);
+
+/// Areas of the start that belong to the nodes of a side: int N dA; 1 of each where it has no edges.
+std::map<int, double> areas_of(const Scene& scene, const Body& body, const Side& side);
+
+/// What a point of a body remembers: plastic strain (at finite strain C_p^-1 - I), and the equivalent plastic strain.
+struct Particle {
+  Mat3 strain = Mat3::Zero();
+  double equivalent = 0, volume = 0;
+};
+
+/// What bodies do at a motion.
+struct Bodies {
+  Field forces;                                  ///< f_int of each node
+  double largest = 0;                            ///< force of an element on a node, of all
+  double energy = 0, plastic_work = 0;           ///< stored; of this increment
+  double stiffness = 0;                          ///< force per length: largest modulus times a depth
+  bool inverted = false;                         ///< whether an element is
+  std::vector<std::vector<Particle>> particles;  ///< of each body, element by element
+};
+
+/// The bodies at displacements u, from what they were at the end of the last increment; `{}` at the start.
+Bodies deform(const Scene& scene, const Field& u, const Bodies& before);
+
+/// Nodal forces of the loads at a time. A pressure follows its side at finite strain.
+Field load_forces(const Scene& scene, const Field& u, double time);
+
+// --- contacts --------------------------------------------------------------------------------------------------------
+// Masters, the foot of a point on them by the plainest search there is, every point against every facet, and the gap,
+// normal and slip of the places of a contact: at nodes, or weighted over segments (core/README.md, Notation, Along a
+// curve, Finite strain, A side that touches itself, A point that comes on, Segment integration). All in the frame of
+// the master: of an obstacle the one that moves with it. At small strain what is faced, n and weights are of the
+// start.
+//
+//   y(xi) = sum N_i(xi) y_i,   (x - y) . y' = 0,   n across y',   g = n . (x - y)      on facets and smooth patches
+//   g = n . (x - p);   g = +- (|x - c| - r)                                            on a plane; a circle
+//   small strain:   g = g_0 + offset + n . w,   w = sum of weights u - u_obstacle,   slip = what w grew by, across n
+//   finite strain:  slip = y(xi) - y(xi_last) on the master as it is now, across n; of an obstacle both in its frame
+//   segments:  g_j = n_j . 1/A_j int psi_j (x_s - y) dA,   along a master slip = |m_j| (Z_j - Z_j,last), e_j along
+//              m_j = 1/A_j int psi_j dy/dS dA,   Z_j = 1/A_j int psi_j (S(y) + S_s) dA
 
 constexpr double at_end = 1e-9;  ///< share of a facet within which a foot is at its end: rounding of coordinates
 
@@ -137,5 +191,31 @@ class Contact {
   std::map<int, Touch> last_;
   double last_time_ = at_rest;
 };
+
+// --- responses -------------------------------------------------------------------------------------------------------
+
+/// A place of contact with its traction on the slave, force per area of the start.
+struct Placed {
+  const Contact* contact = nullptr;
+  Touch touch;
+  Vec3 traction = Vec3::Zero();
+  Vec2 compliance = Vec2::Zero();  ///< of the springs of a penalty, normal and tangential; zero: multipliers
+  double slid = 0;                 ///< slip since the start along e = (-n_y, n_x)
+  double pressure() const { return traction.dot(touch.normal); }
+  Vec3 friction() const { return traction - pressure() * touch.normal; }
+};
+
+/// What responses are measured on.
+struct State {
+  const Scene& scene;
+  const Field& u;
+  const Bodies& bodies;
+  std::vector<Placed> placed = {};
+  Field held = {};                          ///< forces of the supports
+  std::map<std::string, double> heat = {};  ///< of plastic slip since the start, of contacts and groups; NaN: not known
+};
+
+/// The value of a response; none of those that are not measured again.
+std::optional<double> measure(const State& state, const Json& response);
 
 }  // namespace stickslip::verify
