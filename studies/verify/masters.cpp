@@ -195,33 +195,32 @@ Foot Master::foot(const Place& place, const Places& at) const {
 }
 
 Foot Master::foot(const Seeker& seeker, const Places& at) const {
-  Foot foot;
-  if (!patches.empty()) {
-    const Place faced = find(seeker, at);
-    const Place place =
-        faced.patch >= 0 ? faced : closest({seeker.node, seeker.x, itself_ ? seeker.outward : Vec2(0, 0)}, at);
-    if (place.patch < 0) return foot;
-    foot = this->foot(place, at);
-    if (faced.patch < 0) return {false, foot.y, foot.normal, (seeker.x - foot.y).norm(), place};
-    if (frozen_ && !rigid()) foot.faces = !(seeker.outward.dot(foot.normal.head<2>()) > 0);  // else it looks away
-    if (frozen_) share_vertex(seeker, at, foot);
-    if (!scene_.finite && !rigid() && !seeker.outward.isZero())  // between two solids: the bisector of their normals
-      foot.normal = (foot.normal - in_space(seeker.outward).normalized()).normalized();
-    foot.gap = foot.normal.dot(seeker.x - foot.y);
+  const auto& [node, x, outward] = seeker;
+  if (patches.empty()) {
+    Foot foot{true};
+    if (obstacle_.contains("plane")) {
+      foot.normal = vec3(obstacle_["plane"].at("normal")).stableNormalized();
+      foot.gap = foot.normal.dot(x - vec3(obstacle_["plane"].at("point")));
+    } else {
+      const Json& circle = obstacle_.at("circle");
+      const double side = circle.value("inside", false) ? -1 : 1;
+      const Vec3 arm = x - vec3(circle.at("center"));
+      foot.normal = side * arm.normalized();
+      foot.gap = side * (arm.norm() - circle.at("radius").get<double>());
+    }
+    foot.y = x - foot.gap * foot.normal;
     return foot;
   }
-  foot.faces = true;
-  if (obstacle_.contains("plane")) {
-    foot.normal = vec3(obstacle_["plane"].at("normal")).stableNormalized();
-    foot.gap = foot.normal.dot(seeker.x - vec3(obstacle_["plane"].at("point")));
-  } else {
-    const Json& circle = obstacle_.at("circle");
-    const double side = circle.value("inside", false) ? -1 : 1;
-    const Vec3 arm = seeker.x - vec3(circle.at("center"));
-    foot.normal = side * arm.normalized();
-    foot.gap = side * (arm.norm() - circle.at("radius").get<double>());
-  }
-  foot.y = seeker.x - foot.gap * foot.normal;
+  const Place faced = find(seeker, at);
+  const Place place = faced.patch >= 0 ? faced : closest({node, x, itself_ ? outward : Vec2(0, 0)}, at);
+  if (place.patch < 0) return {};
+  Foot foot = this->foot(place, at);
+  if (faced.patch < 0) return {false, foot.y, foot.normal, (x - foot.y).norm(), place};
+  if (frozen_ && !rigid()) foot.faces = !(outward.dot(foot.normal.head<2>()) > 0);  // else it looks away
+  if (frozen_) share_vertex(seeker, at, foot);
+  if (!scene_.finite && !rigid() && !outward.isZero())  // between two solids: the bisector of their normals
+    foot.normal = (foot.normal - in_space(outward).normalized()).normalized();
+  foot.gap = foot.normal.dot(x - foot.y);
   return foot;
 }
 

@@ -35,11 +35,11 @@ std::optional<Vec3> displacement_at(const State& state, const Json& how) {
   const std::string only = how.contains("on") ? state.scene.body(how["on"]).name : "";
   for (const auto& body : state.scene.bodies)
     for (const auto& element : body.elements) {
+      if (!only.empty() && only != body.name) continue;
       const Field nodes = state.scene.points(Eigen::all, element);
       const auto off = (nodes.colwise() - X).colwise().norm();
       Eigen::Index nearest = 0;
       const double distance = off.minCoeff(&nearest), size = off.maxCoeff();
-      if (!only.empty() && only != body.name) continue;
       if (distance <= at_end * size) return Vec3(state.u.col(element[nearest]));
       if (!body.solid() || distance > (nodes.colwise() - nodes.col(0)).colwise().norm().maxCoeff()) continue;
       Vec2 r = natural_nodes(body).rowwise().mean();
@@ -60,7 +60,7 @@ std::optional<double> half_width(const State& state, const std::vector<const Pla
   Field x(3, placed.size()), normals = x;
   Eigen::VectorXd f(placed.size());
   for (std::size_t k = 0; k < placed.size(); ++k) {
-    x.col(k) = state.scene.places(state.u).col(placed[k]->touch.node);
+    x.col(k) = state.place(placed[k]->touch.node);
     normals.col(k) = placed[k]->touch.normal;
     f[k] = placed[k]->touch.area * placed[k]->pressure();
   }
@@ -85,7 +85,7 @@ std::optional<double> at_place(const State& state, const Placed& placed, const s
   if (kind != "contact_force") return std::nullopt;
   Vec3 x = Vec3::Zero();  // the force is shared by the slave's nodes
   for (const auto& [node, weight] : touch.weights)
-    if (placed.contact->segment ? weight > 0 : node == touch.node) x += weight * state.scene.places(state.u).col(node);
+    if (placed.contact->segment ? weight > 0 : node == touch.node) x += weight * state.place(node);
   return touch.area * (how.at("component") == "normal" ? placed.pressure() : part_of(how, placed.traction, x));
 }
 
@@ -99,8 +99,9 @@ std::optional<double> measure(const State& state, const Json& response) {
   if (kind == "strain_energy") return state.bodies.energy;
   if (how.contains("at")) {
     const auto u = kind == "displacement" ? displacement_at(state, how) : std::nullopt;
-    if (u) samples.push_back({part_of(how, *u), 1});
-  } else if (how.contains("contact")) {
+    return u ? std::optional(part_of(how, *u)) : std::nullopt;
+  }
+  if (how.contains("contact")) {
     const std::string name = how["contact"];
     if (kind == "dissipation") return state.heat.contains(name) ? state.heat.at(name) : 0;
     std::vector<const Placed*> placed;
@@ -114,9 +115,8 @@ std::optional<double> measure(const State& state, const Json& response) {
       for (const auto& particle : state.bodies.particles[b])
         if (state.scene.bodies[b].name == how.at("on")) samples.push_back({particle.equivalent, particle.volume});
   } else {
-    const Field places = state.scene.places(state.u);
     for (const int node : state.scene.side(how.at("on")).nodes)
-      samples.push_back({part_of(how, (force ? state.held : state.u).col(node), places.col(node)), 1});
+      samples.push_back({part_of(how, (force ? state.held : state.u).col(node), state.place(node)), 1});
   }
   return taken(samples, force ? "sum" : how.value("take", "mean"));
 }

@@ -2,14 +2,15 @@
 /// again (docs/scene.md, Responses). The sources have the laws of materials.
 #pragma once
 
+#include <algorithm>
+
 #include "studies/verify/scene.hpp"
 
 namespace stickslip::verify {
 
 // --- solids ----------------------------------------------------------------------------------------------------------
-// Elements, bodies and loads, without tangents, which a check does not need (core/README.md, Elements, Shares).
-// Corners come first, then the middles of the sides in turn, counter-clockwise. A square is [-1, 1]^2, a triangle r, s
-// >= 0, r + s <= 1.
+// Without tangents, which a check does not need (core/README.md, Elements, Shares). Corners come first, then the
+// middles of the sides in turn, counter-clockwise. A square is [-1, 1]^2, a triangle r, s >= 0, r + s <= 1.
 //
 //   f_a = int P grad N_a dV,   of revolution + e_r int P_33 N_a / R dV,   H = sum u_a (x) grad N_a,  H_33 = u_r / R
 //   mean dilatation: F -> (theta / J)^(1/3) F, theta the mean of J; small: H -> H + (theta - tr H) / 3 I  [H80, MOS90]
@@ -213,6 +214,7 @@ struct State {
   std::vector<Placed> placed = {};
   Field held = {};                          ///< forces of the supports
   std::map<std::string, double> heat = {};  ///< of plastic slip since the start, of contacts and groups; NaN: not known
+  Vec3 place(int node) const { return scene.points.col(node) + (scene.finite ? 1.0 : 0.0) * u.col(node); }
 };
 
 /// The value of a response; none of those that are not measured again.
