@@ -1,7 +1,7 @@
-#include "studies/verify/contacts.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "studies/verify/state.hpp"
 
 namespace stickslip::verify {
 
@@ -15,13 +15,10 @@ Contact::Contact(const Scene& scene, const std::string& called, const Json& side
       body_(scene.body(sides.at("slave"))),
       side_(scene.side(sides.at("slave"))),
       master_(scene, given, sides.at("slave"), sides.at("master")),
+      facets_(facets_of(side_)),
       areas_(areas_of(scene, body_, side_)) {
-  for (const auto& edge : side_.edges) {
-    if (edge.size() == 3) facets_.push_back({edge[0], edge[2]});
-    facets_.push_back({edge.size() == 3 ? edge[2] : edge[0], edge[1]});
-  }
-  for (const int node : side_.nodes)
-    if (side_.edges.empty()) areas_[node] = body_.element == "bar" ? body_.area : 1;
+  for (auto& [node, area] : areas_)
+    if (side_.edges.empty() && body_.element == "bar") area = body_.area;
   std::erase_if(areas_, [&](const auto& of) {  // (no area is left on the axis)
     return segment ? of.second == 0 : body_.quadratic() && scene.axisymmetric && scene.points(0, of.first) == 0;
   });
@@ -41,43 +38,40 @@ Seeker Contact::seeker(int node, const Field& x) const {
 /// Cuts a slave facet where master facets end, seen along its normal; each part faces the nearest of them.
 void Contact::cut(const std::array<int, 2>& facet, const Field& x, const Places& at, std::vector<Piece>& all) const {
   const auto [first, second] = facet;
-  const Vec2 a = x.col(first).head<2>(), tau = x.col(second).head<2>() - a, nu = right_of(tau).normalized();
+  const Line slave{x.col(first).head<2>(), x.col(second).head<2>()};
+  const Vec2 nu = right_of(slave.tau).normalized();
   const auto add = [&](double from, double to, int patch) {
     for (const int node : facet)
       if (side_.has(node))
         all.push_back({first, second, node, patch, from, to, !side_.has(node == first ? second : first)});
   };
   if (master_.patches.empty()) return add(0, 1, -1);
-  std::vector<std::array<double, 2>> shadows(master_.patches.size(), {1, 0});  // of each patch on the facet
+  std::map<int, std::array<double, 2>> shadows;  // on the facet, of the patches that it may face
   std::set<double> breaks{0, 1};
-  for (std::size_t p = 0; p < shadows.size(); ++p) {
+  for (int p = 0; p < std::ssize(master_.patches); ++p) {
     const Patch& patch = master_.patches[p];
-    const Vec2 c = at.col(patch.vertex[1]), d = at.col(patch.vertex[2]);
+    const Line line = patch.line(at);
     const auto cast = [&](const Vec2& y, bool is_free) {  // sides that end together, do so to 1e-6 of a facet
-      const double xi = (y - a).dot(tau) / tau.squaredNorm(), end = std::clamp(std::round(xi), 0.0, 1.0);
+      const double xi = slave.xi(y), end = std::clamp(std::round(xi), 0.0, 1.0);
       return is_free && scene_.finite && std::abs(xi - end) <= 1e-6 ? end : xi;
     };
-    const double low = cast(d, patch.next < 0), high = cast(c, patch.previous < 0);
-    if (nu.dot(right_of(d - c)) >= -at_end * (d - c).norm() || std::min(high, 1 - low) <= at_end ||
-        high - low <= at_end)
-      continue;
+    const double low = cast(line.to, patch.next < 0), high = cast(line.from, patch.previous < 0);
+    const bool is_opposite = nu.dot(right_of(line.tau)) < -at_end * line.tau.norm();
+    if (!is_opposite || std::min({high, 1 - low, high - low}) <= at_end) continue;
     shadows[p] = {low, high};
     for (const double xi : {low, high})
       if (xi > at_end && xi < 1 - at_end) breaks.insert(xi);
   }
   for (auto to = std::next(breaks.begin()); to != breaks.end(); ++to) {
     const double from = *std::prev(to), middle = (from + *to) / 2;
-    double least = infinity;
-    int facing = -1;
-    for (std::size_t p = 0; p < shadows.size(); ++p) {
-      if (shadows[p][0] > middle || shadows[p][1] < middle) continue;
-      const Vec2 c = at.col(master_.patches[p].vertex[1]), along = at.col(master_.patches[p].vertex[2]) - c;
-      const Vec2 off = a + middle * tau - c;
-      const double distance = (cross(off, nu) / cross(along, nu) * along - off).norm();
-      if (distance < least) facing = static_cast<int>(p);
-      least = std::min(least, distance);
+    std::pair<double, int> nearest{infinity, -1};
+    for (const auto& [p, shadow] : shadows) {
+      if (shadow[0] > middle || shadow[1] < middle) continue;
+      const Line line = master_.patches[p].line(at);
+      const Vec2 off = slave.from + middle * slave.tau - line.from;
+      nearest = std::min(nearest, {(cross(off, nu) / cross(line.tau, nu) * line.tau - off).norm(), p});
     }
-    if (facing >= 0 && *to - from > at_end) add(from, *to, facing);
+    if (nearest.second >= 0 && *to - from > at_end) add(from, *to, nearest.second);
   }
 }
 
@@ -96,14 +90,12 @@ void Contact::integrate(const Piece& piece, const Field& x, const Places& at, To
       foot = master_.foot({carrier, x_s, nu}, at);
     } else {
       const Patch& patch = master_.patches[p];
-      const Vec2 c = at.col(patch.vertex[1]), edge = at.col(patch.vertex[2]) - c;
-      const double eta = cross(x_s.head<2>() - c, nu) / cross(edge, nu);
-      foot.y = in_space(c + eta * edge);
-      foot.normal = in_space(right_of(edge).normalized() - (master_.rigid() ? 0 : 1) * nu);
-      touch.tangent += dA / patch.length * in_space(edge);
+      const Line line = patch.line(at);
+      const double eta = cross(x_s.head<2>() - line.from, nu) / cross(line.tau, nu);
+      foot = master_.foot({p, eta}, at);
+      if (!master_.rigid()) foot.normal -= in_space(nu);
+      touch.tangent += dA / patch.length * in_space(line.tau);
       touch.along += dA * (patch.arc + eta * patch.length + (carrier == first ? s : s - 1) * T.norm());
-      if (!master_.rigid())
-        foot.weights = {{master_.nodes[patch.vertex[1]], eta - 1}, {master_.nodes[patch.vertex[2]], -eta}};
     }
     share += length;
     touch.area += dA;
@@ -172,28 +164,20 @@ void Contact::move(Touch& touch, const Touch& last, const Field& u, const Places
 }
 
 std::vector<Touch> Contact::advance(const Field& u, double time) {
-  const bool search = scene_.finite || start_.empty();
-  Field x = scene_.points;  // in the frame of the master
-  std::set<int> nodes = side_.nodes;
-  for (const auto& facet : facets_) nodes.insert(facet.begin(), facet.end());
-  for (const int node : nodes)
-    if (scene_.finite) x.col(node) = master_.motion.back(x.col(node) + u.col(node), time);
-  const auto at = master_.vertices(scene_.finite ? u : Field::Zero(3, u.cols()));
+  Field x = scene_.places(u);  // in the frame of the master
+  for (Eigen::Index n = 0; n < x.cols() && scene_.finite && master_.rigid(); ++n)
+    x.col(n) = master_.motion.back(x.col(n), time);
+  const auto at = master_.vertices(x);
   std::vector<Piece> pieces;
   for (const auto& facet : facets_)
-    if (segment && search) cut(facet, x, at, pieces);
-  for (const auto& [node, area] : areas_) {
-    if (search && segment) start_[node] = on_pieces(node, pieces, x, at);
-    if (search && !segment) {
-      start_[node] = {master_.foot(seeker(node, x), at), node, area};
-      start_[node].weights.emplace_back(node, 1);
-    }
-  }
+    if (segment) cut(facet, x, at, pieces);
   std::vector<Touch> touches;
-  for (const auto& [node, start] : start_) {
-    touches.push_back(start);
-    move(touches.back(), last_.contains(node) ? last_[node] : start, u, at, time);
-    last_[node] = touches.back();
+  for (const auto& [node, area] : areas_) {
+    Touch touch = segment ? on_pieces(node, pieces, x, at) : Touch{master_.foot(seeker(node, x), at), node, area};
+    if (!segment) touch.weights.emplace_back(node, 1);
+    const Touch last = last_.contains(node) ? last_[node] : touch;
+    move(touch, last, u, at, time);
+    touches.push_back(last_[node] = touch);
   }
   last_time_ = time;
   return touches;

@@ -1,8 +1,8 @@
-#include "studies/verify/masters.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "studies/verify/state.hpp"
 
 namespace stickslip::verify {
 namespace {
@@ -11,15 +11,6 @@ namespace {
 const Eigen::Matrix4d shapes[3] = {Eigen::Matrix4d{{0, 1, 0, 0}, {0, -1, 1, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}},
                                    Eigen::Matrix4d{{0, 2, 0, 0}, {-1, 0, 1, 0}, {2, -5, 4, -1}, {-1, 3, -3, 1}} / 2,
                                    Eigen::Matrix4d{{1, 4, 1, 0}, {-3, 0, 3, 0}, {3, -6, 3, 0}, {-1, 3, -3, 1}} / 6};
-
-/// A patch as a straight line.
-struct Line {
-  Vec2 from, tau;
-  Line(const Places& at, const Patch& patch)
-      : from(at.col(patch.vertex[1])), tau(at.col(patch.vertex[2]) - at.col(patch.vertex[1])) {}
-  double xi(const Vec2& x) const { return (x - from).dot(tau) / tau.squaredNorm(); }
-  double distance(const Vec2& x) const { return (x - from - std::clamp(xi(x), 0.0, 1.0) * tau).norm(); }
-};
 
 }  // namespace
 
@@ -39,31 +30,22 @@ Master::Master(const Scene& scene, const Json& contact, const std::string& slave
     for (int v = 0; v < count; ++v) polyline_.col(v) = vec3(points[v]).head<2>();
     for (int v = 0; v + 1 < count + closed; ++v) add((v + 1) % count, v);
   }
-  std::map<int, int> number;
-  const auto vertex = [&](int node) {
-    if (number.emplace(node, static_cast<int>(nodes.size())).second) nodes.push_back(node);
-    return number[node];
-  };
-  for (const auto& edge : obstacle_.empty() ? scene.side(master).edges : std::vector<Nodes>{}) {
-    const int first = vertex(edge[0]), middle = edge.size() == 3 ? vertex(edge[2]) : first;
-    if (middle != first) add(first, middle);
-    add(middle, vertex(edge[1]));
-  }
+  for (const auto& [first, second] : rigid() ? Facets{} : facets_of(scene.side(master))) add(first, second);
   link(surface.is_object() ? surface.value("corner", 30.0) : 30.0);
 }
 
 /// Neighbours of the patches, corners, and lengths along the master at the start.
 void Master::link(double corner) {
-  const auto at = vertices(Field::Zero(3, scene_.points.cols()));
+  const auto at = vertices(scene_.points);
   std::map<int, int> starts;
   for (std::size_t p = 0; p < patches.size(); ++p) starts[patches[p].vertex[1]] = static_cast<int>(p);
   for (std::size_t p = 0; p < patches.size(); ++p) {
     Patch& patch = patches[p];
-    patch.length = Line(at, patch).tau.norm();
+    patch.length = patch.line(at).tau.norm();
     if (!starts.contains(patch.vertex[2])) continue;
     Patch& other = patches[patch.next = starts[patch.vertex[2]]];
     other.previous = static_cast<int>(p);
-    const double cosine = Line(at, patch).tau.normalized().dot(Line(at, other).tau.normalized());
+    const double cosine = patch.line(at).tau.normalized().dot(other.line(at).tau.normalized());
     patch.goes_on[1] = other.goes_on[0] = smooth_ > 0 && cosine >= std::cos(corner * std::numbers::pi / 180);
     if (!patch.goes_on[1]) continue;
     patch.vertex[3] = other.vertex[2];
@@ -90,9 +72,7 @@ void Master::link(double corner) {
     }
 }
 
-Places Master::vertices(const Field& u) const {
-  return rigid() ? polyline_ : Places((scene_.points + u)(Eigen::seqN(0, 2), nodes));
-}
+Places Master::vertices(const Field& x) const { return rigid() ? polyline_ : Places(x.topRows<2>()); }
 
 Vec2 Master::position(const Places& at, const Place& place, int derivative) const {
   const double s = place.xi;
@@ -102,19 +82,19 @@ Vec2 Master::position(const Places& at, const Place& place, int derivative) cons
 }
 
 void Master::set_walls(const std::vector<Seeker>& seekers) {
-  const auto at = vertices(Field::Zero(3, scene_.points.cols()));
+  const auto at = vertices(scene_.points);
   for (const auto& [node, x, outward] : seekers) {
     const Vec2 from = x.head<2>(), inward = -outward.normalized();
     double thickness = infinity;
     for (const auto& patch : patches) {
-      const Line line(at, patch);
+      const Line line = patch.line(at);
       const double a = cross(inward, line.from - from), b = a + cross(inward, line.tau);
-      if (nodes[patch.vertex[1]] == node || nodes[patch.vertex[2]] == node || a * b > 0 || a == b) continue;
+      if (patch.vertex[1] == node || patch.vertex[2] == node || a * b > 0 || a == b) continue;
       const double depth = (line.from - from + a / (a - b) * line.tau).dot(inward);
       if (depth > 0) thickness = std::min(thickness, depth);
     }
     for (const auto& patch : patches) {
-      const Line line(at, patch);
+      const Line line = patch.line(at);
       const bool is_behind = cross(from - line.from, line.tau) < -at_end * line.tau.squaredNorm();
       const double distance = std::min(line.distance(from), line.distance(from + thickness * inward));
       walls_[node].push_back(thickness < infinity && is_behind && distance < 2 * thickness + patch.length);
@@ -123,12 +103,12 @@ void Master::set_walls(const std::vector<Seeker>& seekers) {
 }
 
 bool Master::may_face(const Seeker& seeker, int p, const Places& at) const {
-  const Line line(at, patches[p]);
+  const Line line = patches[p].line(at);
   const Vec2 x = seeker.x.head<2>(), across = right_of(line.tau);
   const double against = seeker.outward.dot(across), xi = line.xi(x);
   if (!itself_) return frozen_ || !(against > 0);
   for (const int v : patches[p].vertex)
-    if (nodes[v] == seeker.node) return false;
+    if (v == seeker.node) return false;
   const bool beside = (x - line.from).dot(across) >= 0 || (xi >= -0.5 && xi <= 1.5);
   return !walls_.at(seeker.node)[p] && against <= -0.5 * seeker.outward.norm() * line.tau.norm() && beside;
 }
@@ -140,7 +120,7 @@ Place Master::closest(const Seeker& seeker, const Places& at) const {
   double least = infinity, least_past = 0;  // distance; how far the point is past the end of the patch
   const Vec2 x = seeker.x.head<2>();
   for (int p = 0; p < static_cast<int>(patches.size()); ++p) {
-    const Line line(at, patches[p]);
+    const Line line = patches[p].line(at);
     if (line.distance(x) > least + 2 * line.tau.norm() || !may_face(seeker, p, at)) continue;
     Place place{p, std::clamp(line.xi(x), 0.0, 1.0)};
     for (int k = 0; k < 50 && smooth_ > 0; ++k) {  // Newton's method for (x - y) . y' = 0
@@ -192,7 +172,7 @@ void Master::share_vertex(const Seeker& seeker, const Places& at, Foot& foot) co
   const int other = end ? patch.next : patch.previous;
   if (other < 0 || (!end && foot.place.xi > at_end)) return;
   const Patch &first = end ? patch : patches[other], &second = end ? patches[other] : patch;
-  const Line before(at, first), after(at, second);
+  const Line before = first.line(at), after = second.line(at);
   foot.y = in_space(after.from);
   foot.normal = in_space(right_of(before.tau.normalized() + after.tau.normalized()).normalized());
   if (rigid()) return;
@@ -202,44 +182,45 @@ void Master::share_vertex(const Seeker& seeker, const Places& at, Foot& foot) co
     return std::abs(slide) > at_end ? 0 : slide / 2;
   };
   const double back = half(before), on = half(after);
-  foot.weights = {
-      {nodes[second.vertex[1]], on - back - 1}, {nodes[first.vertex[1]], back}, {nodes[second.vertex[2]], -on}};
+  foot.weights = {{second.vertex[1], on - back - 1}, {first.vertex[1], back}, {second.vertex[2], -on}};
+}
+
+Foot Master::foot(const Place& place, const Places& at) const {
+  const auto& [vertex, previous, next, goes_on, shape, length, arc] = patches[place.patch];
+  const double s = place.xi;
+  const Eigen::Vector4d N = shape.transpose() * Eigen::Vector4d(1, s, s * s, s * s * s);
+  Foot foot{true, in_space(position(at, place)), in_space(right_of(position(at, place, 1)).normalized()), 0, place};
+  for (int i = 0; i < 4 && !rigid(); ++i) foot.weights.emplace_back(vertex[i], -N[i]);
+  return foot;
 }
 
 Foot Master::foot(const Seeker& seeker, const Places& at) const {
-  Foot foot;
-  if (!patches.empty()) {
-    foot.place = find(seeker, at);
-    foot.faces = foot.place.patch >= 0;
-    if (!foot.faces) foot.place = closest({seeker.node, seeker.x, itself_ ? seeker.outward : Vec2(0, 0)}, at);
-    if (foot.place.patch < 0) return foot;
-    foot.y = in_space(position(at, foot.place));
-    foot.normal = in_space(right_of(position(at, foot.place, 1)).normalized());
-    foot.gap = (seeker.x - foot.y).norm();
-    if (!foot.faces) return foot;
-    const Patch& patch = patches[foot.place.patch];
-    const double s = foot.place.xi;
-    const Eigen::Vector4d N = patch.shape.transpose() * Eigen::Vector4d(1, s, s * s, s * s * s);
-    for (int i = 0; i < 4 && !rigid(); ++i) foot.weights.emplace_back(nodes[patch.vertex[i]], -N[i]);
-    if (frozen_ && !rigid()) foot.faces = !(seeker.outward.dot(foot.normal.head<2>()) > 0);  // else it looks away
-    if (frozen_) share_vertex(seeker, at, foot);
-    if (!scene_.finite && !rigid() && !seeker.outward.isZero())  // between two solids: the bisector of their normals
-      foot.normal = (foot.normal - in_space(seeker.outward).normalized()).normalized();
-    foot.gap = foot.normal.dot(seeker.x - foot.y);
+  const auto& [node, x, outward] = seeker;
+  if (patches.empty()) {
+    Foot foot{true};
+    if (obstacle_.contains("plane")) {
+      foot.normal = vec3(obstacle_["plane"].at("normal")).stableNormalized();
+      foot.gap = foot.normal.dot(x - vec3(obstacle_["plane"].at("point")));
+    } else {
+      const Json& circle = obstacle_.at("circle");
+      const double side = circle.value("inside", false) ? -1 : 1;
+      const Vec3 arm = x - vec3(circle.at("center"));
+      foot.normal = side * arm.normalized();
+      foot.gap = side * (arm.norm() - circle.at("radius").get<double>());
+    }
+    foot.y = x - foot.gap * foot.normal;
     return foot;
   }
-  foot.faces = true;
-  if (obstacle_.contains("plane")) {
-    foot.normal = vec3(obstacle_["plane"].at("normal")).stableNormalized();
-    foot.gap = foot.normal.dot(seeker.x - vec3(obstacle_["plane"].at("point")));
-  } else {
-    const Json& circle = obstacle_.at("circle");
-    const double side = circle.value("inside", false) ? -1 : 1;
-    const Vec3 arm = seeker.x - vec3(circle.at("center"));
-    foot.normal = side * arm.normalized();
-    foot.gap = side * (arm.norm() - circle.at("radius").get<double>());
-  }
-  foot.y = seeker.x - foot.gap * foot.normal;
+  const Place faced = find(seeker, at);
+  const Place place = faced.patch >= 0 ? faced : closest({node, x, itself_ ? outward : Vec2(0, 0)}, at);
+  if (place.patch < 0) return {};
+  Foot foot = this->foot(place, at);
+  if (faced.patch < 0) return {false, foot.y, foot.normal, (x - foot.y).norm(), place};
+  if (frozen_ && !rigid()) foot.faces = !(outward.dot(foot.normal.head<2>()) > 0);  // else it looks away
+  if (frozen_) share_vertex(seeker, at, foot);
+  if (!scene_.finite && !rigid() && !outward.isZero())  // between two solids: the bisector of their normals
+    foot.normal = (foot.normal - in_space(outward).normalized()).normalized();
+  foot.gap = foot.normal.dot(x - foot.y);
   return foot;
 }
 

@@ -1,9 +1,9 @@
-#include "studies/verify/responses.hpp"
-
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include "studies/verify/state.hpp"
 
 namespace stickslip::verify {
 namespace {
@@ -11,17 +11,16 @@ namespace {
 /// Pairs of a sample and its weight in the mean.
 using Samples = std::vector<std::array<double, 2>>;
 
-std::optional<double> taken(const Samples& samples, const Json& how) {
-  if (samples.empty()) return std::nullopt;
-  const std::string take = how.value("take", "mean");
-  const auto [least, largest] = std::minmax_element(samples.begin(), samples.end());
-  if (take != "mean") return (take == "max" ? *largest : *least)[0];
+std::optional<double> taken(const Samples& samples, const std::string& take) {
   double sum = 0, total = 0;
   for (const auto& [sample, weight] : samples) {
     sum += weight * sample;
     total += weight;
   }
-  return sum / total;
+  if (take == "sum") return sum;
+  if (samples.empty()) return std::nullopt;
+  const auto [least, largest] = std::minmax_element(samples.begin(), samples.end());
+  return take == "mean" ? sum / total : (take == "max" ? *largest : *least)[0];
 }
 
 /// A vector along an axis; a force at a place also about a point.
@@ -33,9 +32,10 @@ double part_of(const Json& how, const Vec3& v, const Vec3& at = Vec3::Zero()) {
 /// Displacement at a place of the start, in the element that holds it.
 std::optional<Vec3> displacement_at(const State& state, const Json& how) {
   const Vec3 X = vec3(how.at("at"));
-  const Body* only = how.contains("on") ? &state.scene.body(how["on"]) : nullptr;
+  const std::string only = how.contains("on") ? state.scene.body(how["on"]).name : "";
   for (const auto& body : state.scene.bodies)
-    for (const auto& element : only&& only != &body ? std::vector<Nodes>{} : body.elements) {
+    for (const auto& element : body.elements) {
+      if (!only.empty() && only != body.name) continue;
       const Field nodes = state.scene.points(Eigen::all, element);
       const auto off = (nodes.colwise() - X).colwise().norm();
       Eigen::Index nearest = 0;
@@ -56,55 +56,37 @@ std::optional<Vec3> displacement_at(const State& state, const Json& how) {
 /// a = 2 sqrt(sum f x^2 / sum f) of nodal forces f, about a point or their centre; of revolution sqrt(5/2 ...). None
 /// where a plane of symmetry may be what it is measured from: where supports hold nodes of the contact.
 std::optional<double> half_width(const State& state, const std::vector<const Placed*>& placed, const Json& how) {
-  const Field places = state.scene.places(state.u);
-  double force = 0, moment = 0;
-  Vec3 middle = Vec3::Zero(), normal = middle;
-  long closed = 0;
-  for (const auto* one : placed) {
-    const double f = one->touch.area * one->pressure();
-    closed += f > 0;
-    force += f;
-    middle += f * places.col(one->touch.node);
-    normal += f * one->touch.normal;
+  const bool rings = state.scene.axisymmetric, has_center = how.contains("about");
+  Field x(3, placed.size()), normals = x;
+  Eigen::VectorXd f(placed.size());
+  for (std::size_t k = 0; k < placed.size(); ++k) {
+    x.col(k) = state.place(placed[k]->touch.node);
+    normals.col(k) = placed[k]->touch.normal;
+    f[k] = placed[k]->touch.area * placed[k]->pressure();
   }
-  const bool rings = state.scene.axisymmetric;
-  if (closed < (rings ? 1 : 2)) return 0;
+  if ((f.array() > 0).count() < (rings ? 1 : 2)) return 0;
   for (const auto& support : part(state.scene.json, "supports"))
     for (const auto* one : placed)
-      if (!rings && !how.contains("about") && state.scene.side(support.at("on")).has(one->touch.node))
-        return std::nullopt;
-  middle = how.contains("about") ? vec3(how["about"]) : Vec3(middle / force);
-  for (const auto* one : placed) {
-    const Vec3 x = places.col(one->touch.node);
-    const double arm = rings ? x[0] : normal.normalized().cross(x - middle)[2];
-    moment += one->touch.area * one->pressure() * arm * arm;
-  }
-  return std::sqrt((rings ? 2.5 : 4) * moment / force);
+      if (!rings && !has_center && state.scene.side(support.at("on")).has(one->touch.node)) return std::nullopt;
+  const Vec3 normal = (normals * f).normalized(), along = rings ? Vec3(1, 0, 0) : Vec3(-normal[1], normal[0], 0),
+             middle = rings        ? Vec3(0, 0, 0)
+                      : has_center ? vec3(how["about"])
+                                   : Vec3(x * f / f.sum());
+  return std::sqrt((rings ? 2.5 : 4) * f.dot(((x.colwise() - middle).transpose() * along).cwiseAbs2()) / f.sum());
 }
 
-std::optional<double> of_contact(const State& state, const std::string& kind, const Json& how) {
-  const std::string name = how.at("contact");
-  if (kind == "dissipation") return state.heat.contains(name) ? state.heat.at(name) : 0;
-  std::vector<const Placed*> placed;
-  for (const auto& one : state.placed)
-    if (one.contact->name == name || one.contact->group == name) placed.push_back(&one);
-  if (kind == "contact_half_width") return half_width(state, placed, how);
-  const Field places = state.scene.places(state.u);
-  double sum = 0;
-  Samples samples;
-  for (const auto* one : placed) {
-    const Touch& touch = one->touch;
-    if (kind == "gap") samples.push_back({touch.gap, touch.area});
-    if (kind == "contact_pressure") samples.push_back({one->pressure(), touch.area});
-    if (kind == "slip" && one->contact->given.contains("friction") && !state.scene.on_axis(touch.node))
-      samples.push_back({one->slid, touch.area});
-    if (kind != "contact_force") continue;
-    Vec3 x = Vec3::Zero();  // the force is shared by the slave's nodes
-    for (const auto& [node, weight] : touch.weights)
-      if (one->contact->segment ? weight > 0 : node == touch.node) x += weight * places.col(node);
-    sum += touch.area * (how.at("component") == "normal" ? one->pressure() : part_of(how, one->traction, x));
-  }
-  return kind == "contact_force" ? sum : taken(samples, how);
+/// What a place of contact adds to a response; none: it does not count.
+std::optional<double> at_place(const State& state, const Placed& placed, const std::string& kind, const Json& how) {
+  const Touch& touch = placed.touch;
+  if (kind == "gap") return touch.gap;
+  if (kind == "contact_pressure") return placed.pressure();
+  const bool slides = placed.contact->given.contains("friction") && !state.scene.on_axis(touch.node);
+  if (kind == "slip") return slides ? std::optional(placed.slid) : std::nullopt;
+  if (kind != "contact_force") return std::nullopt;
+  Vec3 x = Vec3::Zero();  // the force is shared by the slave's nodes
+  for (const auto& [node, weight] : touch.weights)
+    if (placed.contact->segment ? weight > 0 : node == touch.node) x += weight * state.place(node);
+  return touch.area * (how.at("component") == "normal" ? placed.pressure() : part_of(how, placed.traction, x));
 }
 
 }  // namespace
@@ -112,28 +94,31 @@ std::optional<double> of_contact(const State& state, const std::string& kind, co
 std::optional<double> measure(const State& state, const Json& response) {
   const std::string kind = response.begin().key();
   const Json& how = response.begin().value();
+  const bool force = kind == "contact_force" || kind == "reaction";
+  Samples samples;
   if (kind == "strain_energy") return state.bodies.energy;
   if (how.contains("at")) {
     const auto u = kind == "displacement" ? displacement_at(state, how) : std::nullopt;
     return u ? std::optional(part_of(how, *u)) : std::nullopt;
   }
-  if (how.contains("contact")) return of_contact(state, kind, how);
-  Samples samples;
-  if (kind == "plastic_strain") {
+  if (how.contains("contact")) {
+    const std::string name = how["contact"];
+    if (kind == "dissipation") return state.heat.contains(name) ? state.heat.at(name) : 0;
+    std::vector<const Placed*> placed;
+    for (const auto& one : state.placed)
+      if (one.contact->name == name || one.contact->group == name) placed.push_back(&one);
+    if (kind == "contact_half_width") return half_width(state, placed, how);
+    for (const auto* one : placed)
+      if (const auto value = at_place(state, *one, kind, how)) samples.push_back({*value, force ? 1 : one->touch.area});
+  } else if (kind == "plastic_strain") {
     for (std::size_t b = 0; b < state.scene.bodies.size(); ++b)
       for (const auto& particle : state.bodies.particles[b])
         if (state.scene.bodies[b].name == how.at("on")) samples.push_back({particle.equivalent, particle.volume});
-    return taken(samples, how);
+  } else {
+    for (const int node : state.scene.side(how.at("on")).nodes)
+      samples.push_back({part_of(how, (force ? state.held : state.u).col(node), state.place(node)), 1});
   }
-  const Field places = state.scene.places(state.u);
-  double sum = 0;
-  for (const int node : state.scene.side(how.at("on")).nodes) {
-    if (kind == "reaction")
-      sum += part_of(how, state.held.col(node), places.col(node));
-    else
-      samples.push_back({part_of(how, state.u.col(node)), 1});
-  }
-  return kind == "reaction" ? sum : taken(samples, how);
+  return taken(samples, force ? "sum" : how.value("take", "mean"));
 }
 
 }  // namespace stickslip::verify

@@ -46,16 +46,15 @@ Side named(const Scene& scene, const std::string& word) {
   const Body& body = scene.body(word);
   const auto dot = word.find('.');
   Side side;
-  if (dot == std::string::npos) {
+  if (dot == std::string::npos)
     for (const auto& element : body.elements) side.nodes.insert(element.begin(), element.end());
-  } else {
-    const auto found = body.sides.find(word.substr(dot + 1));
-    if (found == body.sides.end()) throw BadFile("the mesh has no side \"" + word + "\"");
+  else if (const auto found = body.sides.find(word.substr(dot + 1)); found != body.sides.end())
     side.nodes = {found->second.begin(), found->second.end()};
-  }
+  else
+    throw BadFile("the mesh has no side \"" + word + "\"");
   const bool is_chain = body.element == "bar" && side.nodes.size() > 1;  // with bars of which it has one end
   for (const auto& edge : body.edges) {
-    const auto in = std::count_if(edge.begin(), edge.end(), [&](int node) { return side.has(node); });
+    const auto in = std::ranges::count_if(edge, [&](int node) { return side.has(node); });
     if (is_chain ? in > 0 : in == std::ssize(edge)) side.edges.push_back(edge);
   }
   return side;
@@ -113,6 +112,22 @@ Vec3 Motion::back(const Vec3& x, double time) const {
   return rotate.empty() ? shifted : Vec3(center() + turn(time).transpose() * (shifted - center()));
 }
 
+Mat3 Body::stiffness() const {
+  const Json& rows = material.begin().value().at("stiffness");
+  Mat3 K = Mat3::Zero();
+  for (std::size_t i = 0; i < rows.size(); ++i) K.row(i) = vec3(rows[i]);
+  return K;
+}
+
+Facets facets_of(const Side& side) {
+  Facets facets;
+  for (const auto& edge : side.edges) {
+    if (edge.size() == 3) facets.push_back({edge[0], edge[2]});
+    facets.push_back({edge.back() == edge[1] ? edge[0] : edge[2], edge[1]});
+  }
+  return facets;
+}
+
 Scene::Scene(const Json& scene, const Json& mesh) : json(scene) {
   const std::string space = scene.value("space", "plane_strain");
   finite = scene.value("strain", "small") == "finite";
@@ -156,8 +171,8 @@ Side Scene::side(const std::string& expression) const {
     const bool keep = operation == "&";
     std::erase_if(side.nodes, [&](int node) { return other.has(node) != keep; });
     std::erase_if(side.edges, [&](const Nodes& edge) {
-      if (keep) return std::find(other.edges.begin(), other.edges.end(), edge) == other.edges.end();
-      return std::none_of(edge.begin(), edge.end(), [&](int node) { return side.has(node); });
+      return keep ? std::ranges::count(other.edges, edge) == 0
+                  : std::ranges::none_of(edge, [&](int node) { return side.has(node); });
     });
   }
   return side;

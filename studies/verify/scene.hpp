@@ -61,6 +61,7 @@ struct Body {
   bool quadratic() const { return element == "Q8" || element == "T6"; }
   bool solid() const { return element != "bar" && element != "point"; }
   std::size_t corners() const { return element[0] == 'T' ? 3 : 4; }
+  Mat3 stiffness() const;  ///< of a spring
 };
 
 /// Nodes of a side, and the edges of the boundary that belong to it.
@@ -69,6 +70,10 @@ struct Side {
   std::vector<Nodes> edges;
   bool has(int node) const { return nodes.contains(node); }
 };
+
+/// The ends of the edges of a side; of edges with a middle, those of their halves.
+using Facets = std::vector<std::array<int, 2>>;
+Facets facets_of(const Side& side);
 
 struct Scene {
   Json json;

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "studies/verify/responses.hpp"
+#include "studies/verify/state.hpp"
 
 namespace stickslip::verify {
 namespace {
@@ -44,33 +44,22 @@ constexpr double rounding = 1e-6;  ///< of a stiffness times a motion: the least
 
 /// Notes a violation, of which the worst is kept.
 void note(Step& step, const Law& law, double value, const std::string& where, double allowed = -1) {
+  auto found = std::find_if(step.findings.begin(), step.findings.end(), [&](auto& f) { return f.law == law.name; });
+  if (found == step.findings.end()) found = step.findings.insert(found, {law.name, where, -infinity, 0, law.why});
   if (!std::isfinite(value)) value = infinity;
-  const auto is_same = [&](const Finding& finding) { return finding.law == law.name; };
-  const auto found = std::find_if(step.findings.begin(), step.findings.end(), is_same);
-  if (found != step.findings.end() && found->value >= value) return;
-  const Finding finding{law.name, where, std::max(value, 0.0), allowed < 0 ? law.allowed : allowed, law.why};
-  if (found == step.findings.end())
-    step.findings.push_back(finding);
-  else
-    *found = finding;
+  if (found->value < value)
+    *found = {law.name, where, std::max(value, 0.0), allowed < 0 ? law.allowed : allowed, law.why};
 }
 
-/// Directions in which supports hold a node, and the motions that they prescribe.
-struct Held {
-  std::vector<Vec3> directions;
-  std::vector<double> values;
-  void hold(const Vec3& direction, double value) {
-    directions.push_back(direction.normalized());
-    values.push_back(value);
-  }
-  bool holds(int axis) const { return std::count(directions.begin(), directions.end(), Vec3::Unit(axis)) > 0; }
-  /// The part of a force that supports take.
-  Vec3 taken(const Vec3& force) const {
-    Field N(3, static_cast<Eigen::Index>(directions.size()));
-    for (std::size_t k = 0; k < directions.size(); ++k) N.col(static_cast<Eigen::Index>(k)) = directions[k];
-    return N * N.completeOrthogonalDecomposition().solve(force);
-  }
-};
+/// Directions in which supports hold a node, each with the motion that it prescribes.
+using Held = std::vector<std::pair<Vec3, double>>;
+
+/// The part of a force that supports take.
+Vec3 taken(const Held& held, const Vec3& force) {
+  Field N(3, held.size());
+  for (std::size_t k = 0; k < held.size(); ++k) N.col(k) = held[k].first;
+  return N * N.completeOrthogonalDecomposition().solve(force);
+}
 
 std::map<int, Held> supports_at(const Scene& scene, double time) {
   std::map<int, Held> held;
@@ -79,16 +68,19 @@ std::map<int, Held> supports_at(const Scene& scene, double time) {
     for (const int node : scene.side(support.at("on")).nodes) {
       const Vec3 u = motion.displacement(scene.points.col(node), time, scene.finite);
       if (support.contains("along"))
-        held[node].hold(vec3(support["along"]), value_at(support.value("value", Json(0.0)), time));
+        held[node].emplace_back(vec3(support["along"]).normalized(), value_at(support.value("value", Json(0.0)), time));
       for (int i = 0; i < scene.dimension; ++i)
-        if (motion.prescribes(i)) held[node].hold(Vec3::Unit(i), u[i]);
+        if (motion.prescribes(i)) held[node].emplace_back(Vec3::Unit(i), u[i]);
     }
   }
   for (const auto& body : scene.bodies)
-    for (int i = 0; body.element == "point" && i < scene.dimension; ++i)
-      if (Held& anchor = held[body.sides.at("anchor")[0]]; !anchor.holds(i)) anchor.hold(Vec3::Unit(i), 0);
+    for (int i = 0; body.element == "point" && i < scene.dimension; ++i) {
+      Held& anchor = held[body.sides.at("anchor")[0]];
+      if (std::ranges::count(anchor, Vec3(Vec3::Unit(i)), &Held::value_type::first) == 0)
+        anchor.emplace_back(Vec3::Unit(i), 0);
+    }
   for (int n = 0; n < scene.points.cols(); ++n)
-    if (scene.on_axis(n)) held[n].hold(Vec3::UnitX(), 0);
+    if (scene.on_axis(n)) held[n].emplace_back(Vec3::UnitX(), 0);
   return held;
 }
 
@@ -138,12 +130,6 @@ class Judge {
   std::set<std::string> unmeasured;  ///< names of responses that were not measured again
 
  private:
-  /// Of a place at the end of the last increment: force of its pressure, and of its friction; friction per area.
-  struct Past {
-    double pressing = 0, slid = 0;
-    Vec3 rubbing = Vec3::Zero(), friction = Vec3::Zero();
-  };
-
   std::string at(int node) const {
     if (node < 0 || node >= u_.cols()) throw BadFile(fmt::format("the mesh has no node {}", node));
     return fmt::format("node {}, ({:.6g}, {:.6g}) at the start", node, scene_.points(0, node), scene_.points(1, node));
@@ -176,11 +162,11 @@ class Judge {
         placed.touch = touch;
         if (of.empty() && touch.faces) {
           const Vec3 force = residual.col(touch.node);
-          placed.traction = held.contains(touch.node) ? Vec3(force - held.at(touch.node).taken(force)) : force;
-          placed.traction /= touch.area;
+          const Vec3 free = held.contains(touch.node) ? Vec3(force - taken(held.at(touch.node), force)) : force;
+          placed.traction = free / touch.area;
         }
-        T_ =
-            std::max({T_, placed.traction.norm(), touch.area > 0 ? rounding * bodies_.stiffness * L_ / touch.area : 0});
+        const double least = touch.area > 0 ? rounding * bodies_.stiffness * L_ / touch.area : 0;
+        T_ = std::max({T_, placed.traction.norm(), least});
         all.push_back(placed);
         index.erase(touch.node);
       }
@@ -195,7 +181,7 @@ class Judge {
     const Touch& touch = placed.touch;
     const std::string where = placed.contact->name + ", " + at(touch.node);
     const double p = placed.pressure(), gap = touch.gap + placed.compliance[0] * std::max(p, 0.0);
-    Past& past = past_[{placed.contact->name, touch.node}];
+    Placed& past = past_[{placed.contact->name, touch.node}];
     if (!touch.faces) {
       note(step, place, placed.traction.norm() * over(T_), where + ", which faces nothing");
       past = {};
@@ -205,11 +191,13 @@ class Judge {
     note(step, tension, -p * over(T_), where);
     if (p > overlap.allowed * T_) note(step, complementarity, gap * over(L_), where);
     const Vec3 e(-touch.normal[1], touch.normal[0], 0);
-    placed.slid = past.slid += touch.slip.dot(e);
-    for (Vec3* last : {&past.friction, &past.rubbing})  // the component along the tangent is carried on
-      if (scene_.finite && scene_.dimension == 2) *last = std::copysign(last->norm(), last->dot(e)) * e;
-    check_friction(placed, past.friction, where, step);
-    add_work(placed, past);
+    placed.slid = past.slid + touch.slip.dot(e);
+    Vec3 last = past.friction();  // its component along the tangent is carried on
+    if (scene_.finite && scene_.dimension == 2) last = std::copysign(last.norm(), last.dot(e)) * e;
+    check_friction(placed, last, where, step);
+    add_work(touch, touch.area * placed.friction(), past.touch.area * last, touch.area * p,
+             past.touch.area * past.pressure());
+    past = placed;
   }
 
   void check_friction(const Placed& placed, const Vec3& last, const std::string& where, Step& step) {
@@ -231,27 +219,25 @@ class Judge {
     for (const auto& name : names) heat_[name] -= touch.area * s.dot(slid);
   }
 
-  /// Work of a place in the increment, by the mean of the forces at its ends.
-  void add_work(const Placed& placed, Past& past) {
-    const Touch& touch = placed.touch;
-    const double pressing = touch.area * placed.pressure(), pressed = (pressing + past.pressing) / 2;
-    const Vec3 rubbing = touch.area * placed.friction(), rubbed = (rubbing + past.rubbing) / 2;
-    const double carried = (rubbed + pressed * touch.normal).dot(touch.carried);
-    work_ += carried + pressed * touch.opening;
-    spent_ -= rubbed.dot(touch.slip);
-    size_ += std::abs(carried) + std::abs(pressed * touch.opening) + std::abs(rubbed.dot(touch.slip));
-    slack_ += (std::abs(pressing - past.pressing) + (rubbing - past.rubbing).norm()) / 2 *
+  /// Work of a place in the increment, by the mean of the forces at its ends: of friction, and of pressure.
+  void add_work(const Touch& touch, const Vec3& rubbing, const Vec3& rubbed, double pressing, double pressed) {
+    const Vec3 friction = (rubbing + rubbed) / 2;
+    const double pressure = (pressing + pressed) / 2, opened = pressure * touch.opening,
+                 carried = (friction + pressure * touch.normal).dot(touch.carried), slid = friction.dot(touch.slip);
+    work_ += carried + opened;
+    spent_ -= slid;
+    size_ += std::abs(carried) + std::abs(opened) + std::abs(slid);
+    slack_ += (std::abs(pressing - pressed) + (rubbing - rubbed).norm()) / 2 *
               (touch.carried.norm() + std::abs(touch.opening) + touch.slip.norm());
-    past = {pressing, past.slid, rubbing, placed.friction()};
   }
 
   /// Supports and equilibrium; `residual`: f_int - loads - contact, of which supports take their part.
   void check_nodes(const std::map<int, Held>& held, const Field& residual, State& state, Step& step) {
     state.held = Field::Zero(3, u_.cols());
     for (const auto& [node, holds] : held) {
-      state.held.col(node) = holds.taken(residual.col(node));
-      for (std::size_t k = 0; k < holds.values.size(); ++k)
-        note(step, supports, std::abs(holds.directions[k].dot(u_.col(node)) - holds.values[k]) * over(L_), at(node));
+      state.held.col(node) = taken(holds, residual.col(node));
+      for (const auto& [direction, value] : holds)
+        note(step, supports, std::abs(direction.dot(u_.col(node)) - value) * over(L_), at(node));
     }
     Eigen::Index worst = 0;
     const double off = (residual - state.held).colwise().norm().maxCoeff(&worst);
@@ -264,12 +250,11 @@ class Judge {
     for (Eigen::Index n = 0; n < u_.cols(); ++n) moment += arms.col(n).cross(forces_of.col(n));
     if (scene_.axisymmetric) sum[0] = 0;
     const double all = F_ + forces_of.colwise().norm().sum(), many = std::sqrt(static_cast<double>(u_.cols()));
-    note(step, forces, sum.norm() * over(all), "of loads, supports and contacts", many * forces.allowed);
-    const bool springs =
-        std::any_of(scene_.bodies.begin(), scene_.bodies.end(), [](const Body& b) { return b.element == "point"; });
+    const std::string what = "of loads, supports and contacts";
+    note(step, forces, sum.norm() * over(all), what, many * forces.allowed);
+    const bool springs = std::ranges::count(scene_.bodies, "point", &Body::element) > 0;
     if (scene_.axisymmetric || (scene_.finite && springs)) return;  // (a spring at its anchor has a moment of its own)
-    note(step, moments, moment.norm() * over(all * arms.colwise().norm().maxCoeff()), "of loads, supports and contacts",
-         many * moments.allowed);
+    note(step, moments, moment.norm() * over(all * arms.colwise().norm().maxCoeff()), what, many * moments.allowed);
   }
 
   /// work = stored + dissipated, from the start.
@@ -294,11 +279,12 @@ class Judge {
       const std::string kind = what.begin().key();
       const double again = measure(state, what).value_or(NAN), known = value.is_number() ? value.get<double>() : NAN;
       if (std::isnan(again)) unmeasured.insert(name);
-      const std::map<std::string, double> natural{
-          {"reaction", F_},         {"contact_force", F_},           {"displacement", L_}, {"gap", L_}, {"slip", L_},
-          {"contact_pressure", T_}, {"plastic_strain", least_strain}};
+      std::map<std::string, double> natural{
+          {"reaction", F_}, {"contact_force", F_},    {"displacement", L_},
+          {"gap", L_},      {"contact_pressure", T_}, {"plastic_strain", least_strain},
+          {"slip", L_}};
       double& scale = largest_[kind];
-      scale = std::max({scale, std::abs(again), natural.contains(kind) ? natural.at(kind) : size_ * rounding});
+      scale = std::max({scale, std::abs(again), natural.emplace(kind, size_ * rounding).first->second});
       if (std::isnan(again)) continue;
       note(step, responses, std::abs(known - again) * over(scale),
            fmt::format("\"{}\" is {:.9g}, not {:.9g}", name, again, known));
@@ -309,15 +295,14 @@ class Judge {
   void check_flow(const Json& given, Step& step) {
     for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
       const Json& means = part(given, scene_.bodies[b].name);
-      const auto& particles = bodies_.particles[b];
+      auto particle = bodies_.particles[b].begin();
       double largest = least_strain;
-      for (const auto& particle : particles) largest = std::max(largest, particle.equivalent);
+      for (const auto& one : bodies_.particles[b]) largest = std::max(largest, one.equivalent);
       for (std::size_t e = 0; e < means.size(); ++e) {
-        const std::size_t each = particles.size() / means.size();
         double sum = 0, volume = 0;
-        for (std::size_t q = e * each; q < (e + 1) * each; ++q) {
-          sum += particles[q].equivalent * particles[q].volume;
-          volume += particles[q].volume;
+        for (std::size_t q = 0; q < bodies_.particles[b].size() / means.size(); ++q, ++particle) {
+          sum += particle->equivalent * particle->volume;
+          volume += particle->volume;
         }
         note(step, flow, std::abs(means[e].get<double>() - sum / volume) / largest,
              fmt::format("{}, element {}", scene_.bodies[b].name, e));
@@ -328,8 +313,8 @@ class Judge {
   Scene scene_;
   std::vector<Contact> contacts_;
   Bodies bodies_;
-  Field u_, outer_, contact_;  ///< displacements, forces from outside and of contact
-  std::map<std::pair<std::string, int>, Past> past_;
+  Field u_, outer_, contact_;                           ///< displacements, forces from outside and of contact
+  std::map<std::pair<std::string, int>, Placed> past_;  ///< of the last increment
   std::map<std::string, double> heat_, largest_;        ///< of contacts; of kinds of responses
   double F_ = 0, L_ = 0, T_ = 0;                        ///< largest force, motion, traction
   double work_ = 0, spent_ = 0, slack_ = 0, size_ = 0;  ///< energies: done, dissipated, not known, of all parts
@@ -353,15 +338,12 @@ std::vector<double> asked_times(const Json& scene) {
 }  // namespace
 
 const Finding& Step::worst() const {
-  return *std::max_element(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
-    const auto over = [](const Finding& f) { return f.allowed > 0 ? f.value / f.allowed : f.value > 0 ? infinity : 0; };
-    return over(a) < over(b);
+  return *std::ranges::max_element(findings, {}, [](const Finding& f) {
+    return f.allowed > 0 ? f.value / f.allowed : f.value > 0 ? infinity : 0;
   });
 }
 
-bool Certificate::holds() const {
-  return !steps.empty() && std::all_of(steps.begin(), steps.end(), [](const Step& s) { return s.holds(); });
-}
+bool Certificate::holds() const { return !steps.empty() && std::ranges::all_of(steps, &Step::holds); }
 
 Certificate certify(const Json& scene, const Json& mesh, const Json& solution, const Json& result) {
   Certificate certificate;
@@ -369,8 +351,8 @@ Certificate certify(const Json& scene, const Json& mesh, const Json& solution, c
   std::map<double, Json> measured;
   std::vector<double> asked = asked_times(scene);
   for (const auto& step : result.value("steps", Json::array())) {
-    measured[step.at("time")] = step.value("responses", Json());
     asked.push_back(step.at("time"));
+    measured[asked.back()] = step.value("responses", Json());
   }
   std::set<double> there{-infinity};
   for (const auto& increment : solution.at("increments")) {
@@ -378,8 +360,7 @@ Certificate certify(const Json& scene, const Json& mesh, const Json& solution, c
     if (!(time > *there.rbegin()) && !scene.at("time").contains("control"))
       throw BadFile("times of increments do not increase");
     there.insert(time);
-    const auto found = measured.find(time);
-    certificate.steps.push_back(judge.read(increment, found == measured.end() ? Json() : found->second));
+    certificate.steps.push_back(judge.read(increment, measured[time]));
   }
   if (certificate.steps.empty()) certificate.steps.push_back({0, {}});
   Step& last = certificate.steps.back();

@@ -1,0 +1,394 @@
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "studies/verify/state.hpp"
+
+namespace stickslip::verify {
+namespace {
+
+// --- laws of materials -----------------------------------------------------------------------------------------------
+// From their formulas (core/README.md, Plasticity, Plane stress). H = F - I is the displacement gradient, 3 x 3;
+// lame = E nu / ((1 + nu) (1 - 2 nu)), G = E / (2 (1 + nu)).
+//
+//   linear        sigma = lame tr(e) I + 2 G e,             e = sym H
+//   neo-Hookean   P = (G (F F^T - I) + V U'(V) I) F^-T,     U = lame/2 (V - 1)^2 or lame/2 (ln V)^2, V = det F
+//   J2 [SH98]     q = sqrt(3/2) |dev tau| <= bound(a),      e -= d n,  n = 3/2 dev tau / q,  a += d
+//                 small: e = sym H - e_p;  finite [S92]: e = ln(F C_p^-1 F^T) / 2,  P = tau F^-T
+
+/// The numbers of a material.
+struct Material {
+  double lame = 0, G = 0, E = 0;
+  bool log_volume = false, plastic = false;
+  std::vector<std::array<double, 2>> rows;  ///< (equivalent plastic strain, bound), from 0 to infinity
+
+  explicit Material(const Json& json) {
+    const Json& given = json.begin().value();
+    const double nu = given.at("nu");
+    E = given.at("E");
+    lame = E * nu / ((1 + nu) * (1 - 2 * nu));
+    G = E / (2 * (1 + nu));
+    log_volume = given.value("volumetric", "quadratic") == "log";
+    plastic = json.begin().key() == "j2_plastic";
+    if (!plastic) return;
+    const Json& hardening = given.at("hardening");
+    if (hardening.is_array()) rows = hardening.get<std::vector<std::array<double, 2>>>();
+    if (rows.empty() || rows[0][0] > 0) rows.insert(rows.begin(), {0, given.at("yield").get<double>()});
+    constexpr double far = 1e6;  // as good as infinity for a strain
+    rows.push_back({far, rows.back()[1] + (hardening.is_number() ? hardening.get<double>() : 0) * far});
+  }
+
+  /// Growth d >= 0 of the equivalent plastic strain a where the trial q falls by `modulus` per growth:
+  /// q - modulus d = bound(a + d).
+  double growth(double q, double modulus, double a) const {
+    for (std::size_t k = 1; k < rows.size(); ++k) {  // piece by piece, on each of which the bound is straight
+      const auto [from, low] = rows[k - 1];
+      const auto [to, high] = rows[k];
+      const double slope = (high - low) / (to - from), d = (q - low - slope * (a - from)) / (modulus + slope);
+      if (a < to && (d <= 0 || a + d <= to)) return std::max(d, 0.0);
+    }
+    return 0;
+  }
+};
+
+/// A point at a motion.
+struct Answer {
+  Mat3 stress = Mat3::Zero();           ///< Cauchy at small strain, first Piola-Kirchhoff at finite strain
+  double energy = 0, plastic_work = 0;  ///< per volume: stored; q d of the increment
+  bool inverted = false;
+};
+
+/// det(I + H) - 1, without loss of digits where H is small.
+double volume_change(const Mat3& H) {
+  return H.trace() + (H.trace() * H.trace() - (H * H).trace()) / 2 + H.determinant();
+}
+
+/// A function of a symmetric tensor, by its principal values.
+template <class F>
+Mat3 of_principal(const Mat3& tensor, F&& f) {
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen((tensor + tensor.transpose()) / 2);
+  return eigen.eigenvectors() * eigen.eigenvalues().unaryExpr(f).asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+Answer respond(const Material& material, const Mat3& H, bool finite, Particle& particle) {
+  Answer answer;
+  const double change = volume_change(H), lame = material.lame, G = material.G;
+  answer.inverted = finite && !(change > -1);
+  if (answer.inverted) return answer;
+  const Mat3 I = Mat3::Identity(), F = I + H, stretch = H + H.transpose() + H * H.transpose();
+  const Mat3 inverse = finite ? Mat3(F.inverse()) : I;
+  if (finite && !material.plastic) {
+    const double log = std::log1p(change), grown = material.log_volume ? log : change;
+    answer.energy = lame / 2 * grown * grown + G * (H.trace() + H.squaredNorm() / 2 - log);
+    answer.stress = (G * stretch + lame * grown * (material.log_volume ? 1 : 1 + change) * I) * inverse.transpose();
+    return answer;
+  }
+  const Mat3 small = (H + H.transpose()) / 2, trial = stretch + F * particle.strain * F.transpose();
+  Mat3 e = finite ? of_principal(trial, [](double x) { return std::log1p(x) / 2; }) : Mat3(small - particle.strain);
+  const Mat3 dev = 2 * G * (e - e.trace() / 3 * I);
+  const double q = std::sqrt(1.5) * dev.norm(), d = material.growth(q, 3 * G, particle.equivalent);
+  if (d > 0) {  // back to the bound
+    e -= 1.5 * d / q * dev;
+    const Mat3 elastic = of_principal(e, [](double x) { return std::expm1(2 * x); });
+    particle.strain = finite ? Mat3(inverse * (elastic - stretch) * inverse.transpose()) : Mat3(small - e);
+    particle.equivalent += d;
+  }
+  answer.plastic_work = (q - 3 * G * d) * d;
+  answer.energy = lame / 2 * e.trace() * e.trace() + G * e.squaredNorm();
+  answer.stress = (lame * e.trace() * I + 2 * G * e) * inverse.transpose();
+  return answer;
+}
+
+/// The same without stress across the plane; H(2, 2) is what makes it so.
+Answer respond_in_plane_stress(const Material& material, Mat3& H, bool finite, Particle& particle) {
+  const auto across = [&](double h) {  // rises with h
+    Particle tried = particle;
+    H(2, 2) = h;
+    const auto answer = respond(material, H, finite, tried);
+    return answer.inverted ? -infinity : answer.stress(2, 2);
+  };
+  const double guess = -material.lame / (material.lame + 2 * material.G) * (H(0, 0) + H(1, 1));
+  double span = std::max({H.topLeftCorner<2, 2>().norm(), particle.equivalent, 1e-12}) / 2;
+  double low = guess - span, high = guess + span;
+  while (across(low) > 0 && span < 1e9) low -= span *= 2;
+  while (across(high) < 0 && span < 1e9) high += span *= 2;
+  for (int k = 0; k < 100; ++k) {
+    const double middle = low + (high - low) / 2;
+    (across(middle) < 0 ? low : high) = middle;
+  }
+  return respond(material, H, finite, particle);
+}
+
+// --- elements --------------------------------------------------------------------------------------------------------
+
+/// The polynomials r^a s^b of T3, T6, Q4 and Q8 at a place, and their derivatives by r and s.
+Field polynomials(const Body& body, const Vec2& at) {
+  static const Places triangle{{0, 1, 0, 2, 1, 0}, {0, 0, 1, 0, 1, 2}},
+      square{{0, 1, 0, 1, 2, 0, 2, 1}, {0, 0, 1, 1, 0, 2, 1, 2}};
+  const Eigen::Array2Xd p = (body.corners() == 3 ? triangle : square).leftCols(natural_nodes(body).cols());
+  const Eigen::Array2Xd power = at.array().replicate(1, p.cols()).pow(p),
+                        slope = p * at.array().replicate(1, p.cols()).pow((p - 1).max(0));
+  Field rows(3, p.cols());
+  rows << power.row(0) * power.row(1), slope.row(0) * power.row(1), power.row(0) * slope.row(1);
+  return rows;
+}
+
+/// r, s, weight. Rules of full rank: three points of Q8 each way, three of T3 of revolution.
+std::vector<Vec3> rule(const Body& body, bool of_revolution) {
+  if (body.element == "T3" && !of_revolution) return {{1.0 / 3, 1.0 / 3, 0.5}};
+  if (body.corners() == 3)
+    return {{1.0 / 6, 1.0 / 6, 1.0 / 6}, {2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}};
+  std::vector<Vec3> points;
+  const auto each_way = edge_points(body.quadratic() ? 3 : 2, true);
+  for (const auto& along : each_way)
+    for (const auto& across : each_way)
+      points.emplace_back(2 * along.s - 1, 2 * across.s - 1, 4 * along.weight * across.weight);
+  return points;
+}
+
+/// A Gauss point of an element, with gradients by coordinates of the start, and N / R of revolution.
+struct Point {
+  Eigen::VectorXd value;
+  Eigen::MatrixX3d gradient;
+  Eigen::VectorXd hoop;
+  double volume;
+
+  Point(const Scene& scene, const Body& body, const Nodes& element, const Shape& at, double weight) : value(at.value) {
+    const Places X = scene.points(Eigen::seqN(0, 2), element);
+    const Eigen::Matrix2d jacobian = X * at.gradient;
+    const double radius = X.row(0).dot(value);
+    gradient.setZero(value.size(), 3);
+    gradient.leftCols<2>() = at.gradient * jacobian.inverse();
+    hoop = (scene.axisymmetric ? 1 / radius : 0) * value;
+    volume = jacobian.determinant() * weight * scene.depth(body, radius);
+  }
+  Mat3 displacement_gradient(const Field& u) const {
+    return u * gradient + u.row(0).dot(hoop) * Vec3::UnitZ() * Vec3::UnitZ().transpose();
+  }
+  Field forces(const Mat3& stress) const {
+    return volume * (stress * gradient.transpose() + stress(2, 2) * Vec3::UnitX() * hoop.transpose());
+  }
+};
+
+std::vector<Point> points_of(const Scene& scene, const Body& body, const Nodes& element) {
+  static std::map<std::pair<std::string, bool>, std::vector<std::pair<Shape, double>>> known;
+  auto& shapes = known[{body.element, scene.axisymmetric}];
+  if (shapes.empty())
+    for (const auto& at : rule(body, scene.axisymmetric)) shapes.emplace_back(shape(body, at.head<2>()), at[2]);
+  std::vector<Point> points;
+  for (const auto& [at, weight] : shapes) points.emplace_back(scene, body, element, at, weight);
+  return points;
+}
+
+// --- bodies ----------------------------------------------------------------------------------------------------------
+
+/// Forces of an element of a solid body.
+Field solid_forces(const Scene& scene, const Body& body, const std::vector<Point>& points, const Field& u,
+                   Particle* particles, Bodies& bodies) {
+  const Material material(body.material);
+  const bool finite = scene.finite, mean = body.element == "Q4_mean_dilatation";
+  const Mat3 I = Mat3::Identity();
+  const auto change = [&](const Mat3& H) { return finite ? volume_change(H) : H.trace(); };
+  double whole = 0, theta = 0;  // volume, and mean of J - 1 or tr H
+  for (const auto& point : points) {
+    whole += point.volume;
+    theta += point.volume * change(point.displacement_gradient(u));
+  }
+  theta /= whole;
+  Field forces = Field::Zero(3, u.cols()), varied = forces;  // varied: d theta / du
+  double pressure = 0;                                       // int tr tau / 3 dV
+  for (std::size_t q = 0; q < points.size(); ++q) {
+    const Mat3 H = points[q].displacement_gradient(u), F = finite ? Mat3(I + H) : I;
+    const double ratio = finite ? (1 + change(H)) / (1 + theta) : 1;
+    Mat3 h = H;
+    if (mean) h += (finite ? std::expm1((std::log1p(theta) - std::log1p(change(H))) / 3) : (theta - change(H)) / 3) * F;
+    const auto answer = scene.plane_stress ? respond_in_plane_stress(material, h, finite, particles[q])
+                                           : respond(material, h, finite, particles[q]);
+    const double volume = particles[q].volume = points[q].volume;
+    bodies.inverted |= answer.inverted;
+    bodies.energy += answer.energy * volume;
+    bodies.plastic_work += answer.plastic_work * volume;
+    const Mat3 tau = finite ? Mat3(answer.stress * (I + h).transpose()) : answer.stress;
+    const Mat3 back = F.inverse().transpose(), round = mean ? Mat3(tau.trace() / 3 * I) : Mat3::Zero();
+    forces += points[q].forces(mean ? Mat3((tau - round) * back) : answer.stress);
+    pressure += round(0, 0) * volume;
+    varied += points[q].forces(ratio / whole * back);
+  }
+  return forces + pressure * varied;
+}
+
+/// Forces of a bar on its ends.
+Field bar_forces(const Scene& scene, const Body& body, const Nodes& bar, const Field& u, Particle& particle,
+                 Bodies& bodies) {
+  const Material material(body.material);
+  const Vec2 difference(-1, 1);
+  const Vec3 axis = scene.points(Eigen::all, bar) * difference, d = u * difference;
+  const double length = axis.norm(), stretch = axis.dot(d) + (scene.finite ? d.squaredNorm() / 2 : 0);
+  const double trial = stretch / axis.squaredNorm() - particle.strain(0, 0), q = material.E * std::abs(trial);
+  const double growth = material.growth(q, material.E, particle.equivalent), flow = std::copysign(growth, trial);
+  particle.strain(0, 0) += flow;
+  particle.equivalent += growth;
+  particle.volume = body.area * length;
+  bodies.plastic_work += (q - material.E * growth) * growth * particle.volume;
+  bodies.energy += material.E * (trial - flow) * (trial - flow) / 2 * particle.volume;
+  const Vec3 now = axis + (scene.finite ? 1.0 : 0.0) * d;
+  return material.E * body.area * (trial - flow) / length * now * difference.transpose();
+}
+
+// --- loads -----------------------------------------------------------------------------------------------------------
+
+/// int N f dA of the nodes of a side, of edges at `places`; f: of an edge, a Gauss point of it and dx / ds.
+template <class F>
+Field over_side(const Scene& scene, const Body& body, const Side& side, const Field& places, F&& f) {
+  Field sums = Field::Zero(3, places.cols());
+  for (const auto& edge : side.edges)
+    for (const auto& point : edge_points(edge.size(), scene.axisymmetric)) {
+      const Field at = places(Eigen::all, edge);
+      const double depth = scene.depth(body, at.row(0).dot(point.value));
+      const Vec3 value = f(edge, point, Vec3(at * point.slope));
+      for (std::size_t a = 0; a < edge.size(); ++a)
+        if (side.has(edge[a])) sums.col(edge[a]) += point.weight * depth * point.value[a] * value;
+    }
+  return sums;
+}
+
+/// Present stretch of the thickness at a place of an edge, of rubber in plane stress: F_33 of the element behind.
+double thickness_stretch(const Scene& scene, const Body& body, const Nodes& edge, double s, const Field& u) {
+  const Places natural = natural_nodes(body);
+  for (const auto& element : body.elements)
+    for (std::size_t c = 0; c < body.corners(); ++c) {
+      const std::size_t d = (c + 1) % body.corners();
+      if (element[c] != edge[0] || element[d] != edge[1]) continue;
+      const Point point(scene, body, element, shape(body, (1 - s) * natural.col(c) + s * natural.col(d)), 0);
+      Mat3 H = point.displacement_gradient(u(Eigen::all, element));
+      Particle none;
+      respond_in_plane_stress(Material(body.material), H, true, none);
+      return 1 + H(2, 2);
+    }
+  return 1;
+}
+
+void add_body_force(const Scene& scene, const Body& body, const Vec3& f, Field& forces) {
+  for (const auto& element : body.elements)
+    if (body.element == "bar")
+      for (const int node : element)
+        forces.col(node) += body.area * (scene.points.col(element[1]) - scene.points.col(element[0])).norm() / 2 * f;
+    else
+      for (const auto& point : points_of(scene, body, element))
+        forces(Eigen::all, element) += point.volume * f * point.value.transpose();
+}
+
+/// The factor of a load: its history, which along a path by arc length goes on straight, in proportion to the time.
+double factor_of(const Scene& scene, std::size_t index, const Json& load, double time) {
+  const Json& when = scene.json.at("time");
+  const double end = when.value("end", 0.0);
+  const std::size_t driven = part(part(when, "control"), "arc_length").value("load", std::size_t{0});
+  const bool along_path = when.contains("control") && index == driven;
+  const double factor = load.contains("history") ? value_at(load["history"], along_path ? end : time) : 1;
+  return along_path ? factor * time / end : factor;
+}
+
+}  // namespace
+
+Places natural_nodes(const Body& body) {
+  static const Places triangle{{0, 1, 0, 0.5, 0.5, 0}, {0, 0, 1, 0, 0.5, 0.5}},
+      square{{-1, 1, 1, -1, 0, 1, 0, -1}, {-1, -1, 1, 1, -1, 0, 1, 0}};
+  const auto nodes = static_cast<Eigen::Index>(body.corners() * (body.quadratic() ? 2 : 1));
+  return (body.corners() == 3 ? triangle : square).leftCols(nodes);
+}
+
+Shape shape(const Body& body, const Vec2& at) {
+  const Places nodes = natural_nodes(body);
+  Eigen::MatrixXd at_nodes(nodes.cols(), nodes.cols());
+  for (Eigen::Index a = 0; a < nodes.cols(); ++a) at_nodes.row(a) = polynomials(body, nodes.col(a)).row(0);
+  const Field N = polynomials(body, at) * at_nodes.inverse();
+  return {N.row(0), N.bottomRows<2>().transpose()};
+}
+
+std::vector<EdgePoint> edge_points(std::size_t nodes, bool of_revolution) {
+  const auto at = [&](double s, double weight) -> EdgePoint {
+    if (nodes == 2) return {weight, s, Vec2(1 - s, s), Vec2(-1, 1)};
+    return {weight, s, Vec3((1 - s) * (1 - 2 * s), s * (2 * s - 1), 4 * s * (1 - s)),
+            Vec3(4 * s - 3, 4 * s - 1, 4 - 8 * s)};
+  };
+  const double two = std::sqrt(3.0) / 6, three = std::sqrt(0.6) / 2;
+  if (nodes == 3) return {at(0.5 - three, 5.0 / 18), at(0.5, 8.0 / 18), at(0.5 + three, 5.0 / 18)};
+  if (of_revolution) return {at(0.5 - two, 0.5), at(0.5 + two, 0.5)};
+  return {at(0.5, 1)};
+}
+
+std::map<int, double> areas_of(const Scene& scene, const Body& body, const Side& side) {
+  const auto length = [](const Nodes&, const EdgePoint&, const Vec3& tau) { return Vec3(tau.norm(), 0, 0); };
+  const Field sums = over_side(scene, body, side, scene.points, length);
+  std::map<int, double> areas;
+  for (const auto& edge : side.edges)
+    for (const int node : edge)
+      if (side.has(node)) areas[node] = sums(0, node);
+  for (const int node : side.nodes)
+    if (side.edges.empty()) areas[node] = 1;
+  return areas;
+}
+
+Bodies deform(const Scene& scene, const Field& u, const Bodies& before) {
+  Bodies bodies;
+  bodies.forces = Field::Zero(3, u.cols());
+  bodies.particles = before.particles;
+  bodies.particles.resize(scene.bodies.size());
+  const auto add = [&](const Nodes& nodes, const Field& forces) {
+    bodies.forces(Eigen::all, nodes) += forces;
+    bodies.largest = std::max(bodies.largest, forces.colwise().norm().maxCoeff());
+  };
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Body& body = scene.bodies[b];
+    if (body.element == "point") {
+      const Nodes ends{body.sides.at("anchor").at(0), body.sides.at("node").at(0)};
+      const Vec3 d = u(Eigen::all, ends) * Vec2(-1, 1), force = body.stiffness() * d;
+      bodies.stiffness = std::max(bodies.stiffness, body.stiffness().maxCoeff());
+      bodies.energy += d.dot(force) / 2;
+      add(ends, force * Eigen::RowVector2d(-1, 1));
+      continue;
+    }
+    const double depth = body.solid() ? scene.depth(body, scene.points.row(0).maxCoeff()) : body.area;
+    bodies.stiffness = std::max(bodies.stiffness, Material(body.material).E * depth);
+    for (std::size_t e = 0; e < body.elements.size(); ++e) {
+      const Field moved = u(Eigen::all, body.elements[e]);
+      const auto points = body.solid() ? points_of(scene, body, body.elements[e]) : std::vector<Point>{};
+      const std::size_t each = body.solid() ? points.size() : 1;
+      bodies.particles[b].resize(body.elements.size() * each);
+      Particle* own = &bodies.particles[b][e * each];
+      add(body.elements[e], body.solid() ? solid_forces(scene, body, points, moved, own, bodies)
+                                         : bar_forces(scene, body, body.elements[e], moved, *own, bodies));
+    }
+  }
+  return bodies;
+}
+
+Field load_forces(const Scene& scene, const Field& u, double time) {
+  Field forces = Field::Zero(3, u.cols());
+  const Json& loads = part(scene.json, "loads");
+  for (std::size_t k = 0; k < loads.size(); ++k) {
+    const Json& load = loads[k];
+    const double factor = factor_of(scene, k, load, time);
+    const Body& body = scene.body(load.at("on"));
+    const Side side = scene.side(load["on"]);
+    if (load.contains("body_force")) {
+      add_body_force(scene, body, factor * vec3(load["body_force"]), forces);
+    } else if (load.contains("pressure")) {  // int p N n da, n into the body: at finite strain of the present edges
+      const double p = factor * load["pressure"].get<double>();
+      forces += over_side(scene, body, side, scene.places(u), [&](const auto& edge, const auto& at, const Vec3& tau) {
+        const bool thins = scene.finite && scene.plane_stress;
+        return Vec3(p * (thins ? thickness_stretch(scene, body, edge, at.s, u) : 1) * Vec3(-tau[1], tau[0], 0));
+      });
+    } else {  // a traction by the areas of the nodes, or a force in all that they share by these
+      const auto areas = areas_of(scene, body, side);
+      double all = 0;
+      for (const auto& [node, area] : areas) all += area;
+      const Vec3 f = factor * (load.contains("force") ? vec3(load["force"]) / all : vec3(load.at("traction")));
+      for (const auto& [node, area] : areas) forces.col(node) += area * f;
+    }
+  }
+  return forces;
+}
+
+}  // namespace stickslip::verify

@@ -1,0 +1,223 @@
+/// What a state is made of: elements, bodies and loads; masters, and places of contact on them; and responses, measured
+/// again (docs/scene.md, Responses). The sources have the laws of materials.
+#pragma once
+
+#include <algorithm>
+
+#include "studies/verify/scene.hpp"
+
+namespace stickslip::verify {
+
+// --- solids ----------------------------------------------------------------------------------------------------------
+// Without tangents, which a check does not need (core/README.md, Elements, Shares). Corners come first, then the
+// middles of the sides in turn, counter-clockwise. A square is [-1, 1]^2, a triangle r, s >= 0, r + s <= 1.
+//
+//   f_a = int P grad N_a dV,   of revolution + e_r int P_33 N_a / R dV,   H = sum u_a (x) grad N_a,  H_33 = u_r / R
+//   mean dilatation: F -> (theta / J)^(1/3) F, theta the mean of J; small: H -> H + (theta - tr H) / 3 I  [H80, MOS90]
+//   bar:  N = E A e,  e = (T.d + d.d / 2) / L^2 at finite strain, T.d / L^2 at small;  spring: f = K (u - u_anchor)
+
+Places natural_nodes(const Body& body);  ///< r, s of each node of an element
+
+/// Shape functions N at a place: the polynomials that are 1 at their node and 0 at the others; their gradients by r, s.
+struct Shape {
+  Eigen::VectorXd value;
+  Eigen::MatrixX2d gradient;
+};
+Shape shape(const Body& body, const Vec2& at);
+
+/// A Gauss point of an edge: weight, place from its first end to its second, shape functions and their slopes.
+struct EdgePoint {
+  double weight, s;
+  Eigen::VectorXd value, slope;
+};
+std::vector<EdgePoint> edge_points(std::size_t nodes, bool of_revolution);
+
+/// Areas of the start that belong to the nodes of a side: int N dA; 1 of each where it has no edges.
+std::map<int, double> areas_of(const Scene& scene, const Body& body, const Side& side);
+
+/// What a point of a body remembers: plastic strain (at finite strain C_p^-1 - I), and the equivalent plastic strain.
+struct Particle {
+  Mat3 strain = Mat3::Zero();
+  double equivalent = 0, volume = 0;
+};
+
+/// What bodies do at a motion.
+struct Bodies {
+  Field forces;                                  ///< f_int of each node
+  double largest = 0;                            ///< force of an element on a node, of all
+  double energy = 0, plastic_work = 0;           ///< stored; of this increment
+  double stiffness = 0;                          ///< force per length: largest modulus times a depth
+  bool inverted = false;                         ///< whether an element is
+  std::vector<std::vector<Particle>> particles;  ///< of each body, element by element
+};
+
+/// The bodies at displacements u, from what they were at the end of the last increment; `{}` at the start.
+Bodies deform(const Scene& scene, const Field& u, const Bodies& before);
+
+/// Nodal forces of the loads at a time. A pressure follows its side at finite strain.
+Field load_forces(const Scene& scene, const Field& u, double time);
+
+// --- contacts --------------------------------------------------------------------------------------------------------
+// Masters, the foot of a point on them by the plainest search there is, every point against every facet, and the gap,
+// normal and slip of the places of a contact: at nodes, or weighted over segments (core/README.md, Notation, Along a
+// curve, Finite strain, A side that touches itself, A point that comes on, Segment integration). All in the frame of
+// the master: of an obstacle the one that moves with it. At small strain what is faced, n and weights are of the
+// start.
+//
+//   y(xi) = sum N_i(xi) y_i,   (x - y) . y' = 0,   n across y',   g = n . (x - y)      on facets and smooth patches
+//   g = n . (x - p);   g = +- (|x - c| - r)                                            on a plane; a circle
+//   small strain:   g = g_0 + offset + n . w,   w = sum of weights u - u_obstacle,   slip = what w grew by, across n
+//   finite strain:  slip = y(xi) - y(xi_last) on the master as it is now, across n; of an obstacle both in its frame
+//   segments:  g_j = n_j . 1/A_j int psi_j (x_s - y) dA,   along a master slip = |m_j| (Z_j - Z_j,last), e_j along
+//              m_j = 1/A_j int psi_j dy/dS dA,   Z_j = 1/A_j int psi_j (S(y) + S_s) dA
+
+constexpr double at_end = 1e-9;  ///< share of a facet within which a foot is at its end: rounding of coordinates
+
+inline Vec2 right_of(const Vec2& tau) { return {tau[1], -tau[0]}; }  ///< out of a solid on the left
+inline Vec3 in_space(const Vec2& v) { return {v[0], v[1], 0}; }
+inline double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
+
+struct Line {
+  Vec2 from, to, tau = to - from;
+  double xi(const Vec2& x) const { return (x - from).dot(tau) / tau.squaredNorm(); }
+  double distance(const Vec2& x) const { return (x - from - std::clamp(xi(x), 0.0, 1.0) * tau).norm(); }
+};
+
+/// From vertex 1 to vertex 2; 0 and 3 are their neighbours, where the master is smooth there.
+struct Patch {
+  std::array<int, 4> vertex;  ///< nodes, or points of an obstacle's polyline
+
+  int previous = -1, next = -1;                     ///< patches; -1: a free end
+  std::array<bool, 2> goes_on = {false, false};     ///< smoothly, into the previous and the next patch
+  Eigen::Matrix4d shape = Eigen::Matrix4d::Zero();  ///< N_i = column i times (1, xi, xi^2, xi^3)
+  double length = 0, arc = -1;                      ///< of the start; along the master to its beginning
+  Line line(const Places& at) const { return {at.col(vertex[1]), at.col(vertex[2])}; }
+};
+
+struct Place {
+  int patch = -1;  ///< -1: none
+  double xi = 0;
+};
+
+struct Foot {
+  bool faces = false;
+  Vec3 y = Vec3::Zero(), normal = Vec3::UnitY();
+  double gap = 0;                                    ///< of what faces nothing the distance
+  Place place;                                       ///< of what faces nothing the nearest
+  std::vector<std::pair<int, double>> weights = {};  ///< -N_i of the nodes of a master that deforms
+};
+
+/// A slave point that looks for its foot.
+struct Seeker {
+  int node = -1;
+  Vec3 x = Vec3::Zero();
+  Vec2 outward = Vec2::Zero();  ///< sum of the normals of its facets, times their lengths; zero: it has none
+};
+
+class Master {
+ public:
+  /// `slave`: side expression; the same as `master` where a side touches itself.
+  Master(const Scene& scene, const Json& contact, const std::string& slave, const std::string& master);
+  bool rigid() const { return !obstacle_.empty(); }
+  Places vertices(const Field& x) const;  ///< where they are, of nodes at x
+  Vec2 position(const Places& at, const Place& place, int derivative = 0) const;
+  Foot foot(const Seeker& seeker, const Places& at) const;
+  Foot foot(const Place& place, const Places& at) const;  ///< there
+  /// What a side that touches itself does not face: its own wall. `seekers`: its points at the start.
+  void set_walls(const std::vector<Seeker>& seekers);
+
+  std::vector<Patch> patches;
+  double loop = 0;  ///< length of a closed master; 0: it is open
+  Motion motion;    ///< of an obstacle
+
+ private:
+  void link(double corner);
+  bool may_face(const Seeker& seeker, int patch, const Places& at) const;
+  Place closest(const Seeker& seeker, const Places& at) const;
+  Place find(const Seeker& seeker, const Places& at) const;
+  void share_vertex(const Seeker& seeker, const Places& at, Foot& foot) const;
+
+  const Scene& scene_;
+  Json obstacle_;                           ///< empty: the master deforms
+  Places polyline_;                         ///< points of an obstacle
+  int smooth_ = 0;                          ///< 0: facets, 1: Catmull-Rom, 2: B-spline
+  bool itself_ = false, frozen_ = false;    ///< frozen: facets of the start, at small strain
+  std::map<int, std::vector<char>> walls_;  ///< of each node, the patches of its own wall
+};
+
+/// A place of contact: a slave node, or the multiplier of one. Its weights are 1 of the slave, -N_i of the master.
+struct Touch : Foot {
+  int node = -1;
+  double area = 0;                                       ///< of the start, on which its traction acts
+  Vec3 slip = Vec3::Zero();                              ///< of this increment, across the normal
+  bool slip_known = false;                               ///< false: it faced nothing before
+  double opening = 0;                                    ///< of the gap in this increment
+  Vec3 carried = Vec3::Zero();                           ///< motion of an obstacle's surface there in this increment
+  Vec3 relative = Vec3::Zero(), tangent = Vec3::Zero();  ///< w of small strain; m of segments
+  double along = 0;                                      ///< Z of segments
+};
+
+/// A contact of a slave side and a master.
+class Contact {
+ public:
+  /// `sides`: {"of": entry of the scene, "slave", "master"}.
+  Contact(const Scene& scene, const std::string& called, const Json& sides);
+  /// All places at displacements. Call it in order of time.
+  std::vector<Touch> advance(const Field& u, double time);
+
+  std::string name, group;
+  Json given;            ///< its entry in the scene
+  bool itself, segment;  ///< it is a side that touches itself; it is integrated over segments
+
+ private:
+  /// Part of a slave facet that faces one patch of the master (-1: an obstacle without patches), and the node whose
+  /// multiplier acts there; `sole`: the other node carries none.
+  struct Piece {
+    int first, second, carrier, patch;
+    double from, to;
+    bool sole;
+  };
+  Seeker seeker(int node, const Field& x) const;
+  void cut(const std::array<int, 2>& facet, const Field& x, const Places& at, std::vector<Piece>& all) const;
+  void integrate(const Piece& piece, const Field& x, const Places& at, Touch& touch, double& share) const;
+  Touch on_pieces(int node, const std::vector<Piece>& pieces, const Field& x, const Places& at) const;
+  void move(Touch& touch, const Touch& last, const Field& u, const Places& at, double time) const;
+
+  const Scene& scene_;
+  const Body& body_;
+  Side side_;
+  Master master_;
+  std::vector<std::array<int, 2>> facets_;
+  std::map<int, double> areas_;
+  std::map<int, Touch> last_;
+  double last_time_ = at_rest;
+};
+
+// --- responses -------------------------------------------------------------------------------------------------------
+
+/// A place of contact with its traction on the slave, force per area of the start.
+struct Placed {
+  const Contact* contact = nullptr;
+  Touch touch;
+  Vec3 traction = Vec3::Zero();
+  Vec2 compliance = Vec2::Zero();  ///< of the springs of a penalty, normal and tangential; zero: multipliers
+  double slid = 0;                 ///< slip since the start along e = (-n_y, n_x)
+  double pressure() const { return traction.dot(touch.normal); }
+  Vec3 friction() const { return traction - pressure() * touch.normal; }
+};
+
+/// What responses are measured on.
+struct State {
+  const Scene& scene;
+  const Field& u;
+  const Bodies& bodies;
+  std::vector<Placed> placed = {};
+  Field held = {};                          ///< forces of the supports
+  std::map<std::string, double> heat = {};  ///< of plastic slip since the start, of contacts and groups; NaN: not known
+  Vec3 place(int node) const { return scene.points.col(node) + (scene.finite ? 1.0 : 0.0) * u.col(node); }
+};
+
+/// The value of a response; none of those that are not measured again.
+std::optional<double> measure(const State& state, const Json& response);
+
+}  // namespace stickslip::verify
