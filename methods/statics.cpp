@@ -1,6 +1,7 @@
 #include "methods/statics.hpp"
 
 #include <Eigen/QR>
+#include <algorithm>
 #include <vector>
 
 namespace stickslip {
@@ -25,6 +26,7 @@ double unbalanced_share(const RigidStatics& statics) {
   Vector<double> x = Vector<double>::Zero(A.cols());
   std::vector<int> passive;
   const auto least_squares = [&] {
+    if (passive.empty()) return Vector<double>();  // (Eigen factorises no matrix without columns)
     Matrix<double> P(A.rows(), passive.size());
     for (std::size_t k = 0; k < passive.size(); ++k) P.col(k) = A.col(passive[k]);
     return Vector<double>(P.completeOrthogonalDecomposition().solve(b));
@@ -54,6 +56,8 @@ double unbalanced_share(const RigidStatics& statics) {
       passive = std::move(kept);
       z = least_squares();
     }
+    // (without rounding the column that was added stays; if not, nothing is known)
+    if (std::find(passive.begin(), passive.end(), best) == passive.end()) return 0;
     for (std::size_t k = 0; k < passive.size(); ++k) x[passive[k]] = z[k];
   }
   return (b - A * x).norm();

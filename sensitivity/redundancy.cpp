@@ -233,9 +233,12 @@ std::vector<char> ForceSearch::undetermined(const State<double>& state, const st
   constexpr std::size_t most = 200;  // rows of a dense factorisation; more are not searched
   const auto& field = state.contact;
   const auto& points = model_.points;
-  double pressed = 0;
-  for (const auto& point : points) pressed = std::max(pressed, -field.traction[point.multiplier]);
-  const double reach = state.displacement.cwiseAbs().maxCoeff();
+  double pressed = 0, reach = state.displacement.cwiseAbs().maxCoeff();
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const double pressure = -field.traction[points[p].multiplier];
+    pressed = std::max(pressed, pressure);
+    reach = std::max(reach, pressure * slots_.geometry[p].area / slots_.stiffness[p]);  // what the node alone yields
+  }
   const auto presses = [&](int p) {
     // (a stiff node that is as near as the softer side makes the stiff one yield may press as well as not)
     if (!stiff_.empty() && stiff_[points[p].nodes[0]]) return std::abs(field.gap[p]) <= reach / stiffer;

@@ -280,9 +280,10 @@ class Judge {
       const double again = measure(state, what).value_or(NAN), known = value.is_number() ? value.get<double>() : NAN;
       if (std::isnan(again)) unmeasured.insert(name);
       std::map<std::string, double> natural{
-          {"reaction", F_}, {"contact_force", F_},    {"displacement", L_},
-          {"gap", L_},      {"contact_pressure", T_}, {"plastic_strain", least_strain},
-          {"slip", L_}};
+          {"reaction", F_}, {"contact_force", F_},          {"displacement", L_},
+          {"gap", L_},      {"contact_pressure", T_},       {"plastic_strain", least_strain},
+          {"slip", L_},     {"dissipation", 1e-3 * F_ * L_}};  // (Uzawa's updates leave heat of that kind before a
+                                                               // slip)
       double& scale = largest_[kind];
       scale = std::max({scale, std::abs(again), natural.emplace(kind, size_ * rounding).first->second});
       if (std::isnan(again)) continue;

@@ -68,5 +68,19 @@ TEST(APictureOfARunThatLetStatesGo, HasThePathsOfThoseThatAreKept) {
   EXPECT_EQ(warnings_json(few), warnings_json(all));
 }
 
+/// Of the forces that might balance the load none is left on the way of the least squares that look for them.
+TEST(APointThatNoForceIsLeftFor, EndsWithAStatus) {
+  const json scene = json::parse(R"({
+    "bodies": {"m": {"mesh": {"point": {"at": [0.10168, 0.0534822]}},
+                     "material": {"grounded_spring": {"stiffness": [[1486.39, 676.293], [676.293, 1529.81]]}}}},
+    "obstacles": {"g": {"plane": {"point": [0, 0], "normal": [0, 1]}}},
+    "contacts": {"c": {"slave": "m.node", "master": "g", "friction": {"tresca": 86.2585}}},
+    "loads": [{"on": "m.node", "force": [203.754, -178.508], "history": [[0, 0], [0.5, 0.242662], [1, -0.415671]]},
+              {"on": "m.node", "force": [0, -126.031]}],
+    "time": {"end": 1, "steps": 5}})");
+  for (const char* method : {"penalty", "uzawa_al", "monolithic_al"})
+    EXPECT_FALSE(cases::run(scene, {{method, json::object()}}, "point.json").steps.empty()) << method;
+}
+
 }  // namespace
 }  // namespace stickslip::crashes
