@@ -216,7 +216,8 @@ Increment<T> find_increment(const M& method, Run<T, E>& run, const State<T>& pre
                             const std::vector<double>& factor, double time, const WorkBound& bound,
                             bool may_move = true) {
   const RunScales before = run.account.scales;
-  if (!run.floating.empty() && is_globalised(method)) {  // a tangent that is singular sends the body anywhere
+  if (!run.floating.empty() && !run.model.points.empty() &&
+      is_globalised(method)) {  // a tangent that is singular sends the body anywhere
     auto rest = detail::follow_motion(method, run, previous, factor, time, false, bound);
     if (rest.usable()) return rest;
     run.account.scales = before;

@@ -122,6 +122,20 @@ bool drives_together(const M& method, const Run<T, E>& run, double start, double
   return cross_between(model, slots, start, end);
 }
 
+/// Ends a step to the time `target` that found no solution: the increment that failed first is then the last.
+template <class T, class E, class M>
+void give_up(const M& method, const Run<T, E>& run, double target, const FreeBodies& free, const WorkBound& bound,
+             Increment<T> failed, std::vector<Increment<T>>& increments) {
+  diagnose(run.model, run.slots, target, method.prevents_penetration, failed);
+  const auto add = [&](const std::string& words) { failed.message += (failed.message.empty() ? "" : "; ") + words; };
+  const bool is_named = failed.status == Status::no_equilibrium || failed.status == Status::infeasible;
+  if (!free.words.empty() && !is_named) add("where the step begins, " + free.words);
+  if (bound.is_spent()) add(bound.in_words());
+  failed.time = target;
+  failed.requested = true;
+  increments.push_back(std::move(failed));
+}
+
 /// Advances the trajectory to the time `target`. False if it gave up; the failed increment is then the last.
 template <class T, class E, class M>
 bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double target, bool may_cut) {
@@ -178,15 +192,9 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
     ++cutbacks;
     ++run.account.counters.cutbacks;
   }
-  diagnose(run.model, run.slots, target, method.prevents_penetration, *failed);
-  if (!free.words.empty() && failed->status != Status::no_equilibrium && failed->status != Status::infeasible)
-    failed->message += (failed->message.empty() ? "" : "; ") + std::string("where the step begins, ") + free.words;
-  if (bound.is_spent()) failed->message += (failed->message.empty() ? "" : "; ") + bound.in_words();
-  trajectory.increments.resize(start_count);
-  failed->time = target;
-  failed->requested = true;
   failed->cutbacks = cutbacks;
-  trajectory.increments.push_back(std::move(*failed));
+  trajectory.increments.resize(start_count);
+  give_up(method, run, target, free, bound, std::move(*failed), trajectory.increments);
   return false;
 }
 

@@ -1,7 +1,6 @@
 #include "methods/statics.hpp"
 
 #include <Eigen/QR>
-#include <algorithm>
 #include <vector>
 
 namespace stickslip {
@@ -56,8 +55,6 @@ double unbalanced_share(const RigidStatics& statics) {
       passive = std::move(kept);
       z = least_squares();
     }
-    // (without rounding the column that was added stays; if not, nothing is known)
-    if (std::find(passive.begin(), passive.end(), best) == passive.end()) return 0;
     for (std::size_t k = 0; k < passive.size(); ++k) x[passive[k]] = z[k];
   }
   return (b - A * x).norm();

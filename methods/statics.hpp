@@ -10,7 +10,7 @@
 namespace stickslip {
 
 /// Forces that contacts and supports can exert, one per column. Three rows per body: force along x, force along y,
-/// moment about the origin over the size of the model.
+/// moment about the middle of the model over its size.
 struct RigidStatics {
   /// Three columns per contact point, with factors >= 0: the edges n - mu e and n + mu e of its cone, and zero. If its
   /// friction law has no cone: n, -e and e.
@@ -35,77 +35,95 @@ inline bool keeps_its_normal(const Model& model, const ContactPoint& point) {
   return is_flat(obstacle.shape) && !obstacle.rotate;
 }
 
+/// Adds forces at nodes, or their moments too, to columns of RigidStatics.
+struct ForceColumns {
+  const Model& model;
+  Matrix<double> X;  ///< coordinates of the nodes
+  Vec<double, 2> centre;
+  double size;       ///< of the model
+  bool has_moments;  ///< false where arms change, and of a model that is one place
+
+  ForceColumns(const Model& model, Matrix<double> at)
+      : model(model),
+        X(std::move(at)),
+        centre((X.rowwise().maxCoeff() + X.rowwise().minCoeff()).head<2>() / 2),
+        size((X.rowwise().maxCoeff() - X.rowwise().minCoeff()).norm()),
+        has_moments(!model.scene.finite_strain && size > 0) {}
+
+  template <class Column>
+  void add(Column column, int node, const Vec<double, 2>& force) const {
+    std::size_t body = 0;
+    while (body + 1 < model.bodies.size() && node >= model.bodies[body + 1].first_node) ++body;
+    const Vec<double, 2> arm = X.col(node).head<2>() - centre;
+    const double moment = has_moments ? (arm[0] * force[1] - arm[1] * force[0]) / size : 0;
+    column.template segment<3>(3 * static_cast<Eigen::Index>(body)) += Vec<double, 3>(force[0], force[1], moment);
+  }
+};
+
+/// Sets the columns of point p, and adds the row of a law that is limited.
+template <class T>
+void add_pushes(const Slots<T>& slots, const ForceColumns& columns, std::size_t p, RigidStatics& statics) {
+  const Model& model = columns.model;
+  const auto& point = model.points[p];
+  if (!keeps_its_normal(model, point)) {
+    constexpr double third = 2 * M_PI / 3;  // three directions with factors >= 0 span all
+    for (int k = 0; k < 3; ++k) {
+      const Vec<double, 2> force(std::cos(k * third), std::sin(k * third));
+      columns.add(statics.pushes.col(3 * p + k), point.nodes[0], force);
+      if (point.obstacle < 0) columns.add(statics.pushes.col(3 * p + k), model.curves[point.curve].nodes[0], -force);
+    }
+    return;
+  }
+  const auto& geometry = slots.geometry[p];
+  const auto& law = slots.friction[point.contact];
+  const bool rough = point.tangents > 0 && !law.bears_nothing(), has_cone = !rough || law.couples();
+  const double mu = rough ? value(law.slope_at_apex()) : 0;
+  const Vec<double, 2> normal = values(geometry.normal);
+  const Vec<double, 2> along = rough ? Vec<double, 2>(values(geometry.tangents.col(0))) : Vec<double, 2>(0, 0);
+  const auto push = [&](int k, double across, double tangential) {
+    const double size = std::hypot(across, tangential);
+    for (std::size_t n = 0; n < point.nodes.size(); ++n)
+      columns.add(statics.pushes.col(3 * p + k), point.nodes[n],
+                  value(geometry.weights[n]) * Vec<double, 2>((across * normal + tangential * along) / size));
+    return tangential / size;
+  };
+  Vec<double, 3> tangential = Vec<double, 3>::Zero();
+  if (has_cone)
+    tangential.head<2>() = Vec<double, 2>(push(0, 1, -mu), push(1, 1, mu));
+  else
+    tangential = Vec<double, 3>(push(0, 1, 0), push(1, 0, -1), push(2, 0, 1));
+  if (!rough || !law.has(ContactState::limited)) return;
+  statics.tangential.conservativeResize(statics.tangential.rows() + 1, statics.pushes.cols());
+  statics.tangential.bottomRows(1).setZero();
+  statics.tangential.bottomRows(1).middleCols(3 * p, 3) = tangential.transpose();
+  statics.limit.conservativeResize(statics.tangential.rows());
+  statics.limit[statics.limit.size() - 1] = value(law.bound(T(0), ContactState::limited)) * value(geometry.area);
+}
+
 /// Rigid statics of a model at a time. At finite strain moments are left out, for arms change, and a point whose
 /// normal may turn can push in all directions: what is not balanced then cannot be balanced anywhere.
 /// pre: 2D, not axisymmetric; no load follows its side.
 template <class T>
 RigidStatics rigid_statics(const Model& model, const Slots<T>& slots, double time) {
-  const bool fixed_arms = !model.scene.finite_strain;
-  const Matrix<double> X = slots.points.unaryExpr([](const T& x) { return value(x); });
-  const double size = std::max((X.rowwise().maxCoeff() - X.rowwise().minCoeff()).norm(), 1e-300);
-  const auto body_of = [&](int node) {
-    std::size_t b = 0;
-    while (b + 1 < model.bodies.size() && node >= model.bodies[b + 1].first_node) ++b;
-    return static_cast<Eigen::Index>(b);
-  };
+  const ForceColumns columns(model, slots.points.unaryExpr([](const T& x) { return value(x); }));
   const auto rows = static_cast<Eigen::Index>(3 * model.bodies.size());
   RigidStatics statics{Matrix<double>::Zero(rows, 3 * model.points.size()),
                        Matrix<double>::Zero(rows, model.constraints.size()),
                        Vector<double>::Zero(rows),
                        {},
                        {}};
-  const auto add = [&](auto column, int node, const Vec<double, 2>& force) {
-    const auto at = X.col(node);
-    column.template segment<3>(3 * body_of(node)) +=
-        Vec<double, 3>(force[0], force[1], fixed_arms ? (at[0] * force[1] - at[1] * force[0]) / size : 0);
-  };
-  for (std::size_t p = 0; p < model.points.size(); ++p) {
-    const auto& point = model.points[p];
-    if (!keeps_its_normal(model, point)) {
-      constexpr double third = 2 * M_PI / 3;  // three directions with factors >= 0 span all
-      for (int k = 0; k < 3; ++k) {
-        const Vec<double, 2> force(std::cos(k * third), std::sin(k * third));
-        add(statics.pushes.col(3 * p + k), point.nodes[0], force);
-        if (point.obstacle < 0) add(statics.pushes.col(3 * p + k), model.curves[point.curve].nodes[0], -force);
-      }
-      continue;
-    }
-    const auto& geometry = slots.geometry[p];
-    const auto& law = slots.friction[point.contact];
-    const bool rough = point.tangents > 0 && !law.bears_nothing(), has_cone = !rough || law.couples();
-    const double mu = rough ? value(law.slope_at_apex()) : 0;
-    const Vec<double, 2> normal = values(geometry.normal);
-    const Vec<double, 2> along = rough ? Vec<double, 2>(values(geometry.tangents.col(0))) : Vec<double, 2>(0, 0);
-    const auto push = [&](int k, double across, double tangential) {
-      const double size = std::hypot(across, tangential);
-      for (std::size_t n = 0; n < point.nodes.size(); ++n)
-        add(statics.pushes.col(3 * p + k), point.nodes[n],
-            value(geometry.weights[n]) * Vec<double, 2>((across * normal + tangential * along) / size));
-      return tangential / size;
-    };
-    Vec<double, 3> tangential = Vec<double, 3>::Zero();
-    if (has_cone)
-      tangential.head<2>() = Vec<double, 2>(push(0, 1, -mu), push(1, 1, mu));
-    else
-      tangential = Vec<double, 3>(push(0, 1, 0), push(1, 0, -1), push(2, 0, 1));
-    if (!rough || !law.has(ContactState::limited)) continue;
-    statics.tangential.conservativeResize(statics.tangential.rows() + 1, statics.pushes.cols());
-    statics.tangential.bottomRows(1).setZero();
-    statics.tangential.bottomRows(1).middleCols(3 * p, 3) = tangential.transpose();
-    statics.limit.conservativeResize(statics.tangential.rows());
-    statics.limit[statics.limit.size() - 1] = value(law.bound(T(0), ContactState::limited)) * value(geometry.area);
-  }
+  for (std::size_t p = 0; p < model.points.size(); ++p) add_pushes(slots, columns, p, statics);
   for (std::size_t k = 0; k < model.constraints.size(); ++k) {
     const int dof = model.constraints[k].dof, node = dof / 2;
     const int framed = framed_index(model, node);
     Vec<double, 2> direction = Vec<double, 2>::Unit(dof % 2);
     if (framed >= 0) direction = values(slots.frames[framed]).col(dof % 2);
-    add(statics.holds.col(k), node, direction);
+    columns.add(statics.holds.col(k), node, direction);
   }
   const Vector<double> external =
       values(external_forces(model, slots, time, Vector<T>::Constant(model.dof_count(), T(0)).eval()));
   for (int node = 0; node < model.node_count; ++node)
-    add(statics.load.col(0), node, Vec<double, 2>(external.segment(2 * node, 2)));
+    columns.add(statics.load.col(0), node, Vec<double, 2>(external.segment(2 * node, 2)));
   return statics;
 }
 

@@ -34,33 +34,37 @@ json read_solution(const fs::path& file) {
   return solution;
 }
 
+/// Coordinates of nodes, [[x, y], ...] or with z.
+std::vector<std::vector<double>> coordinates_of(const json& nodes) { return nodes; }
+
 /// The node of the mesh for each node of another program: by its place, and by its body where several nodes share one.
 class NodeMatch {
  public:
-  NodeMatch(const json& mesh, const json& solution) : nodes_(mesh.at("nodes")) {
+  NodeMatch(const json& mesh, const json& solution) : nodes_(coordinates_of(mesh.at("nodes"))) {
+    for (const auto& node : nodes_)
+      for (const double x : node) near_ = std::max(near_, same_place * std::abs(x));
     for (const auto& [name, body] : mesh.at("bodies").items())
       for (const auto& element : body.at("elements"))
         for (const int node : element) body_of_[node] = name;
     for (const auto& [name, nodes] : solution.value("bodies", json::object()).items())
       for (const int node : nodes) given_body_[node] = name;
-    const json& places = solution.at("nodes");
+    const auto places = coordinates_of(solution.at("nodes"));
     for (std::size_t n = 0; n < places.size(); ++n) match_.push_back(find(places[n], static_cast<int>(n)));
   }
   int operator[](int node) const { return match_.at(node); }
   std::size_t size() const { return match_.size(); }
 
  private:
-  int find(const json& place, int n) const {
+  int find(const std::vector<double>& place, int n) const {
+    const auto body = given_body_.find(n);
     int found = -1;
-    double size = 0;
-    for (const auto& node : nodes_) size = std::max(size, std::abs(node[0].get<double>()));
     for (std::size_t m = 0; m < nodes_.size(); ++m) {
-      double off = 0;
-      for (std::size_t i = 0; i < place.size(); ++i)
-        off = std::max(off, std::abs(nodes_[m].at(i).get<double>() - place[i].get<double>()));
-      const auto body = given_body_.find(n);
-      if (off > same_place * size) continue;
-      if (body != given_body_.end() && body->second != body_of_.at(static_cast<int>(m))) continue;
+      if (place.size() != nodes_[m].size())
+        throw InputFault(fmt::format("node {} of the solution has {} coordinates, those of the mesh {}", n,
+                                     place.size(), nodes_[m].size()));
+      bool apart = false;
+      for (std::size_t i = 0; i < place.size(); ++i) apart |= !(std::abs(nodes_[m][i] - place[i]) <= near_);
+      if (apart || (body != given_body_.end() && body->second != body_of_.at(static_cast<int>(m)))) continue;
       if (found >= 0)
         throw InputFault(
             fmt::format("node {} of the solution is where several nodes are; \"bodies\" must name its body", n));
@@ -71,7 +75,8 @@ class NodeMatch {
   }
 
   static constexpr double same_place = 1e-6;  ///< of the largest coordinate: files have six digits and more
-  const json& nodes_;
+  std::vector<std::vector<double>> nodes_;
+  double near_ = 0;  ///< length
   std::map<int, std::string> body_of_, given_body_;
   std::vector<int> match_;
 };

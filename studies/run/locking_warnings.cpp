@@ -44,6 +44,26 @@ bool is_watched_for_locking(const Problem& problem, std::size_t b) {
   return moduli && may_lock(problem, b) && (moduli->flows || moduli->nu() >= nearly_incompressible);
 }
 
+/// Per element the mean over its nodes of the mean over the elements at each. `sum`: a quantity times volume, by
+/// element.
+template <class Quantity>
+std::vector<Quantity> means_around(const Mesh& mesh, const std::vector<double>& volume,
+                                   const std::vector<Quantity>& sum, const Quantity& zero) {
+  const int nodes = nodes_of(mesh.shape);
+  std::vector<double> nodal_volume(mesh.node_count, 0);
+  std::vector<Quantity> nodal(mesh.node_count, zero), around(sum.size(), zero);
+  const auto for_each_corner = [&](auto&& f) {
+    for (int e = 0; e < mesh.element_count(); ++e)
+      for (int a = 0; a < nodes; ++a) f(e, mesh.connectivity[e * nodes + a]);
+  };
+  for_each_corner([&](int e, int node) {
+    nodal_volume[node] += volume[e];
+    nodal[node] += sum[e];
+  });
+  for_each_corner([&](int e, int node) { around[e] += nodal[node] / (nodal_volume[node] * nodes); });
+  return around;
+}
+
 void add_locking(const CaseResult& result, std::vector<Warning>& warnings) {
   const auto& problem = *result.problem;
   for (std::size_t b = 0; b < problem.model.bodies.size(); ++b) {
@@ -124,23 +144,12 @@ double spurious_pressure(const Problem& problem, const State<double>& state, std
   const auto moduli = moduli_of(law);
   if (!moduli || !may_lock(problem, b)) return 0;
   const auto& mesh = problem.model.bodies[b].mesh;
-  const int nodes = nodes_of(mesh.shape);
-  Vector<double> volume = Vector<double>::Zero(mesh.element_count()), change = volume, around = volume;
+  std::vector<double> volume(mesh.element_count(), 0), change = volume;
   for_each_strain(problem, state, b, [&](int e, const auto& H, double v, const double*) {
     volume[e] += v;
     change[e] += v * H.trace();
   });
-  Vector<double> nodal_volume = Vector<double>::Zero(mesh.node_count), nodal_change = nodal_volume;
-  for (int e = 0; e < mesh.element_count(); ++e)
-    for (int a = 0; a < nodes; ++a) {
-      nodal_volume[mesh.connectivity[e * nodes + a]] += volume[e];
-      nodal_change[mesh.connectivity[e * nodes + a]] += change[e];
-    }
-  for (int e = 0; e < mesh.element_count(); ++e)
-    for (int a = 0; a < nodes; ++a) {
-      const int node = mesh.connectivity[e * nodes + a];
-      around[e] += nodal_change[node] / nodal_volume[node] / nodes;
-    }
+  const auto around = means_around(mesh, volume, change, 0.0);
   const double bulk = moduli->lame + 2 * moduli->shear / 3;
   double spurious = 0, all = 0;
   for_each_strain(problem, state, b, [&](int e, const auto& H, double v, const double* memory) {
@@ -162,7 +171,6 @@ double parasitic_shear(const Problem& problem, const State<double>& state, std::
   if (!may_lock_in_shear(problem, b)) return 0;
   const auto edges = edges_of_thin_body(mesh);
   if (edges.empty()) return 0;
-  const int nodes = nodes_of(mesh.shape);
   using Strain = Mat<double, 2>;  // in the plane; Green's at finite strain
   const auto strain_of = [&](const auto& H) {
     const Strain h = H.template topLeftCorner<2, 2>();
@@ -170,22 +178,13 @@ double parasitic_shear(const Problem& problem, const State<double>& state, std::
     if (problem.model.scene.finite_strain) strain += h.transpose() * h / 2;
     return strain;
   };
-  std::vector<double> volume(mesh.element_count(), 0), nodal_volume(mesh.node_count, 0);
-  std::vector<Strain> mean(mesh.element_count(), Strain::Zero()), nodal(mesh.node_count, Strain::Zero()), around = mean;
+  std::vector<double> volume(mesh.element_count(), 0);
+  std::vector<Strain> sum(mesh.element_count(), Strain::Zero());
   for_each_strain(problem, state, b, [&](int e, const auto& H, double v, const double*) {
     volume[e] += v;
-    mean[e] += v * strain_of(H);
+    sum[e] += v * strain_of(H);
   });
-  for (int e = 0; e < mesh.element_count(); ++e)
-    for (int a = 0; a < nodes; ++a) {
-      nodal_volume[mesh.connectivity[e * nodes + a]] += volume[e];
-      nodal[mesh.connectivity[e * nodes + a]] += mean[e];
-    }
-  for (int e = 0; e < mesh.element_count(); ++e)
-    for (int a = 0; a < nodes; ++a) {
-      const int node = mesh.connectivity[e * nodes + a];
-      around[e] += nodal[node] / (nodal_volume[node] * nodes);
-    }
+  const auto around = means_around<Strain>(mesh, volume, sum, Strain::Zero());
   double shear = 0, all = 0;
   for_each_strain(problem, state, b, [&](int e, const auto& H, double v, const double*) {
     const Strain strain = strain_of(H);

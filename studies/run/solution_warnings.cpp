@@ -121,13 +121,15 @@ void add_folded_elements(const CaseResult& result, std::vector<Warning>& warning
     if (!is_continuum(body.mesh.shape)) continue;
     long most = 0;
     double first = 0;
+    std::vector<int> nodes;
+    std::vector<Vec<double, 2>> x;
     for (const auto& step : solved_steps(result)) {
       const auto& u = step.increment->state.displacement;
       long folded = 0;
       for (int e = 0; is_whole(step.increment->state) && e < body.mesh.element_count(); ++e) {
-        std::vector<Vec<double, 2>> x;
-        for (const int node : detail::element_nodes(body, e))
-          x.push_back(slots.points.col(node).head<2>() + u.segment<2>(2 * node));
+        detail::set_element_nodes(body, e, nodes);
+        x.clear();
+        for (const int node : nodes) x.push_back(slots.points.col(node).head<2>() + u.segment<2>(2 * node));
         folded += is_folded(body.mesh.shape, x);
       }
       if (folded > 0 && most == 0) first = step.increment->time;

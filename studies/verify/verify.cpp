@@ -282,8 +282,7 @@ class Judge {
       std::map<std::string, double> natural{
           {"reaction", F_}, {"contact_force", F_},          {"displacement", L_},
           {"gap", L_},      {"contact_pressure", T_},       {"plastic_strain", least_strain},
-          {"slip", L_},     {"dissipation", 1e-3 * F_ * L_}};  // (Uzawa's updates leave heat of that kind before a
-                                                               // slip)
+          {"slip", L_},     {"dissipation", 1e-3 * F_ * L_}};  // (updates leave 1e-10 of F L)
       double& scale = largest_[kind];
       scale = std::max({scale, std::abs(again), natural.emplace(kind, size_ * rounding).first->second});
       if (std::isnan(again)) continue;

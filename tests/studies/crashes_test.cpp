@@ -68,8 +68,9 @@ TEST(APictureOfARunThatLetStatesGo, HasThePathsOfThoseThatAreKept) {
   EXPECT_EQ(warnings_json(few), warnings_json(all));
 }
 
-/// Of the forces that might balance the load none is left on the way of the least squares that look for them.
-TEST(APointThatNoForceIsLeftFor, EndsWithAStatus) {
+/// A model that is one place has no arms: moments over its size were 1e300, and the least squares that look for forces
+/// that balance the load lost all columns.
+TEST(AModelThatIsOnePlace, IsBalancedByItsSpring) {
   const json scene = json::parse(R"({
     "bodies": {"m": {"mesh": {"point": {"at": [0.10168, 0.0534822]}},
                      "material": {"grounded_spring": {"stiffness": [[1486.39, 676.293], [676.293, 1529.81]]}}}},
@@ -79,7 +80,7 @@ TEST(APointThatNoForceIsLeftFor, EndsWithAStatus) {
               {"on": "m.node", "force": [0, -126.031]}],
     "time": {"end": 1, "steps": 5}})");
   for (const char* method : {"penalty", "uzawa_al", "monolithic_al"})
-    EXPECT_FALSE(cases::run(scene, {{method, json::object()}}, "point.json").steps.empty()) << method;
+    EXPECT_EQ(cases::run(scene, {{method, json::object()}}, "point.json").status(), Status::converged) << method;
 }
 
 }  // namespace

@@ -4,8 +4,11 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <functional>
 
+#include "studies/app/certificate.hpp"
+#include "studies/io/input_fault.hpp"
 #include "studies/run/simulation.hpp"
 #include "studies/run/solution_file.hpp"
 #include "tests/studies/cases.hpp"
@@ -181,6 +184,44 @@ TEST(Verify, FindsForcesWhereAProgramGivesNone) {
   Solved solved = solve(cases::load(folder / "greco_plate.json"), "monolithic_al");
   for (auto& increment : solved.solution["increments"]) increment.erase("contacts");
   expect_holds(solved);
+}
+
+/// A column of bars along y: the size that tells places apart is that of all coordinates, and its nodes may come in any
+/// order, with the digits of a file.
+TEST(Verify, MatchesNodesOfAnotherProgramByTheirPlaces) {
+  const json scene = {{"bodies",
+                       {{"b",
+                         {{"mesh", {{"line", {{"from", {0, 0}}, {"to", {0, 3}}, {"cells", 3}}}}},
+                          {"element", "bar"},
+                          {"area", 1},
+                          {"material", {{"linear_elastic", {{"E", 10}, {"nu", 0}}}}}}}}},
+                      {"supports",
+                       {{{"on", "b.nodes"}, {"move", {{"x", 0}}}},
+                        {{"on", "b.start"}, {"move", {{"y", 0}}}},
+                        {{"on", "b.end"}, {"move", {{"y", -0.3}}}}}},
+                      {"time", {{"end", 1}, {"steps", 1}}},
+                      {"method", {{"monolithic_al", json::object()}}}};
+  const fs::path directory = fs::path(testing::TempDir()) / "nodes_of_a_peer";
+  fs::remove_all(directory);
+  fs::create_directories(directory);
+  const Simulation simulation{cases::read(scene, folder / "scene.json"), nullptr};
+  const Simulation made{simulation.input, std::make_shared<const Problem>(simulation.input.scene)};
+  write_result(directory, made, simulate(made));
+  std::ifstream in(directory / "solution.json");
+  json peer = json::parse(in);
+  peer["nodes"] = json::array();
+  json& u = peer["increments"][0]["displacement"];
+  const json own = u;
+  for (int n = 3; n >= 0; --n) {  // from the other end
+    peer["nodes"].push_back({0, n + 1e-7});
+    for (int i = 0; i < 2; ++i) u[2 * (3 - n) + i] = own[2 * n + i];
+  }
+  const std::string file = (directory / "peer.json").string();
+  std::ofstream(file) << peer.dump();
+  EXPECT_TRUE(certificate_of(directory, file).holds());
+  peer["nodes"][0][1] = 2.9;
+  std::ofstream(file) << peer.dump();
+  EXPECT_THROW(certificate_of(directory, file), InputFault);
 }
 
 TEST(Verify, RefusesWhatDoesNotFit) {
