@@ -265,6 +265,12 @@ void name_failure(const Model& model, const Slots<T>& slots, double time, bool p
     failed.message = driven_in;
     return;
   }
+  if (const int p = contradicted_point(model, slots, failed.state.contact.gap); p >= 0) {
+    failed.status = Status::infeasible;
+    failed.message = name_of_point(model, slots, p) +
+                     " has no place: the obstacles there overlap, and wherever it goes, it is inside of one of them";
+    return;
+  }
   if (failed.status == Status::no_equilibrium) {
     if (unbalanced_body(model, slots, time) != balanced)
       failed.message = detail::words_of_imbalance(model, slots, time, failed.state);

@@ -111,9 +111,10 @@ struct Equilibrium {
   ContactField<T> field;
   int iterations = 0;
   bool inexact = false;  ///< ended by `forcing`, short of the tolerance
-  /// Some tangent had a determinant of the other sign (Engine::reversed), so there may be other solutions. Only
-  /// meaningful for bodies of constant tangent.
+  /// Some tangent had a determinant of the other sign (Engine::reversed), so there may be other solutions: of bodies of
+  /// constant tangent.
   bool reversed = false;
+  bool unstable = false;  ///< the last one had: of bodies whose tangent changes
   std::vector<IterationRecord> history;
 };
 

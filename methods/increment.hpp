@@ -20,7 +20,8 @@ struct Run {
   const Slots<T>& slots;
   E& engine;
   Account account;
-  bool several = false;  ///< increments may have several solutions (methods/motion.hpp)
+  bool several = false;   ///< increments may have several solutions (methods/motion.hpp)
+  bool critical = false;  ///< increments may have a continuum of solutions, and no other several
   std::shared_ptr<Condensation<T>> condensation = nullptr;  ///< where all branches are tried; made on demand
   double start = 0;                                         ///< time at which the increment begins
   /// Per body: it is free to move where the increment begins, and nothing presses on it; empty: no body is.
@@ -66,6 +67,7 @@ void account_for(Increment<T>& increment, const Equilibrium<T>& equilibrium, int
   increment.message = equilibrium.message;
   increment.newton += equilibrium.iterations;
   increment.reversed |= equilibrium.reversed;
+  if (equilibrium.iterations > 0) increment.unstable = equilibrium.unstable;
   for (auto entry : equilibrium.history) {
     entry.augmentation = augmentation;
     increment.history.push_back(entry);

@@ -216,8 +216,8 @@ Increment<T> find_increment(const M& method, Run<T, E>& run, const State<T>& pre
                             const std::vector<double>& factor, double time, const WorkBound& bound,
                             bool may_move = true) {
   const RunScales before = run.account.scales;
-  if (!run.floating.empty() && !run.model.points.empty() &&
-      is_globalised(method)) {  // a tangent that is singular sends the body anywhere
+  const bool may_rest = !run.floating.empty() && !run.model.points.empty() && is_globalised(method);
+  if (may_rest && unbalanced_body(run.model, run.slots, time) == balanced) {  // a singular tangent sends it anywhere
     auto rest = detail::follow_motion(method, run, previous, factor, time, false, bound);
     if (rest.usable()) return rest;
     run.account.scales = before;
@@ -228,13 +228,14 @@ Increment<T> find_increment(const M& method, Run<T, E>& run, const State<T>& pre
   const bool prescribed =
       direct.status == Status::infeasible &&
       (!method.prevents_penetration || !prescribed_penetration(run.model, run.slots, direct.state).empty());
-  const bool final = prescribed || (solved && (!several || direct.cut_off)) || (!solved && bound.is_spent());
+  const bool final = prescribed || (solved && (!several || direct.cut_off));
   if (final || run.model.points.empty() || !is_globalised(method)) return direct;
   if (!solved && unbalanced_body(run.model, run.slots, time) != balanced) {
     direct.status = Status::no_equilibrium;
     return direct;
   }
-  if (!solved && (!may_move || cross_between(run.model, run.slots, run.start, time))) return direct;
+  const bool in_vain = bound.is_spent() || !may_move || cross_between(run.model, run.slots, run.start, time);
+  if (!solved && in_vain) return direct;
   const auto all = detail::try_all_branches(method, run, previous, factor, time);
   const auto take_among_all = [&] {
     return detail::take_resting_solution(method, run, previous, factor, time, direct, before, *all);

@@ -132,7 +132,9 @@ Equilibrium<T> newton(E& engine, const EquilibriumTask<T>& task, Unknowns<T> unk
     used = at.field.state;
     tangent.move_to(unknowns, at.field, iteration == 0 && predictions == 0);
     if (!tangent.factorise(unknowns, branches)) return finish({Status::singular, engine.message()});
-    result.reversed |= input.model.effects.linear_bulk && engine.reversed();
+    const bool linear = input.model.effects.linear_bulk, reversed = engine.reversed();
+    result.reversed |= linear && reversed;
+    result.unstable = !linear && reversed;
     directed = at.field;
     directed.state = branches;
     if (branches != evaluated) evaluate.take_rows_in(branches, unknowns, at);

@@ -150,12 +150,11 @@ bool is_valid(const ContactProblem& problem, const std::vector<Branch>& combinat
   return true;
 }
 
-/// Whether a determinant is negative beyond rounding. Example of rounding: two contacts at one node repeat one another,
-/// which leaves some 1e-16 of Hadamard's bound.
-bool is_reversed(const Matrix<double>& A) {
-  constexpr double rounding = 1e-12;
-  return A.determinant() < -rounding * A.colwise().norm().prod();
-}
+/// A determinant over Hadamard's bound for it.
+double share_of_determinant(const Matrix<double>& A) { return A.determinant() / A.colwise().norm().prod(); }
+
+/// A smaller share is rounding. Example: two contacts at one node repeat one another, which leaves some 1e-16.
+constexpr double rounding_of_determinants = 1e-12;
 
 }  // namespace
 
@@ -170,15 +169,18 @@ bool can_try_all_branches(const Model& model) {
   return model.dimension == 2 && model.effects.linear_bulk && model.effects.friction && !model.points.empty();
 }
 
-bool may_have_several(const ContactProblem& problem) {
+Uniqueness uniqueness_of(const ContactProblem& problem) {
   const auto r = relation(problem, 0, {});
-  bool found = false;
+  bool reversed = false, vanishes = false;
   if (r)
     for_each_combination(problem, [&](const std::vector<Branch>& combination) {
-      found = is_reversed(system_of(problem, *r, combination).matrix);
-      return !found;
+      const double share = share_of_determinant(system_of(problem, *r, combination).matrix);
+      vanishes |= std::abs(share) <= rounding_of_determinants;
+      reversed = share < -rounding_of_determinants;
+      return !reversed;
     });
-  return found;
+  if (reversed) return Uniqueness::several;
+  return vanishes && !has_repeated_constraints(problem) ? Uniqueness::critical : Uniqueness::unique;
 }
 
 std::optional<std::vector<BranchSolution>> all_solutions(const ContactProblem& problem, double alpha,
@@ -205,7 +207,7 @@ std::optional<std::vector<BranchSolution>> all_solutions(const ContactProblem& p
     solution.increment = r->moved + r->lift * (at.g - at.tau);
     solution.kinematics = at.g;
     solution.traction = at.tau.cwiseProduct(problem.weight).cwiseQuotient(problem.area);
-    solution.reversed = is_reversed(system.matrix);
+    solution.reversed = share_of_determinant(system.matrix) < -rounding_of_determinants;
     tractions.push_back(at.tau);
     solutions.push_back(std::move(solution));
     return true;

@@ -61,9 +61,14 @@ struct BranchSolution {
 /// Whether a model is 2D, has at most 4096 combinations of branches, and piecewise linear friction laws.
 bool can_try_all_branches(const Model& model);
 
-/// Whether some combination has a negative determinant. Then there are several solutions under some loads. False if
-/// bodies can move although all points stick.
-bool may_have_several(const ContactProblem& problem);
+/// What the determinants of all combinations say of the number of solutions.
+enum class Uniqueness {
+  unique,    ///< none is negative; or this is not known, as bodies can move although all points stick
+  critical,  ///< none is negative, and some vanish, though no constraints repeat one another: under some loads
+             ///< solutions are a continuum
+  several    ///< some are negative: under some loads there are several
+};
+Uniqueness uniqueness_of(const ContactProblem& problem);
 
 /// All solutions. Two whose tractions differ by less than 1e-9 of the largest count as one. None if bodies can move
 /// although all points stick.

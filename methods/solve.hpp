@@ -20,7 +20,7 @@ namespace detail {
 /// Looks for all solutions of a solved increment, if there may be several and points are few.
 template <class T, class E, class M>
 void count_solutions(const M& method, Run<T, E>& run, const State<T>& previous, double time, Increment<T>& increment) {
-  if (!run.several && !increment.reversed) return;
+  if (!run.several && !run.critical && !increment.reversed) return;
   auto all = try_all_branches(method, run, previous, increment.rho_factor, time);
   increment.counted = all.has_value();
   if (!all) return;
@@ -130,7 +130,7 @@ void give_up(const M& method, const Run<T, E>& run, double target, const FreeBod
   const auto add = [&](const std::string& words) { failed.message += (failed.message.empty() ? "" : "; ") + words; };
   const bool is_named = failed.status == Status::no_equilibrium || failed.status == Status::infeasible;
   if (!free.words.empty() && !is_named) add("where the step begins, " + free.words);
-  if (bound.is_spent()) add(bound.in_words());
+  if (bound.is_spent() && !is_named) add(bound.in_words());
   failed.time = target;
   failed.requested = true;
   increments.push_back(std::move(failed));
@@ -199,35 +199,40 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
 }
 
 /// Whether increments may have several solutions, as far as can be known before the first. Three criteria: friction may
-/// hold a body between surfaces; with few points, some combination of branches has a negative determinant; with many,
-/// mu of a point exceeds k_t / |k_nt| of its stiffness with all others held, so that it could jump on its own.
+/// hold a body between surfaces; with few points, the determinants of all combinations of branches; with many, mu of a
+/// point exceeds k_t / |k_nt| of its stiffness with all others held, so that it could jump on its own.
 template <class T, class E>
-bool may_have_several(Run<T, E>& run) {
+Uniqueness uniqueness_of(Run<T, E>& run) {
   const Model& model = run.model;
-  if (!model.effects.friction || !model.effects.linear_bulk) return false;
-  if (is_wedged(model, run.slots)) return true;
+  if (!model.effects.friction || !model.effects.linear_bulk) return Uniqueness::unique;
+  if (is_wedged(model, run.slots)) return Uniqueness::several;
   if constexpr (std::is_same_v<T, double>) {
-    if (!can_try_all_branches(model))
-      return run.condensation && run.condensation->valid() &&
-             exceeds_critical_friction(model, run.slots, run.condensation->schur());
+    if (!can_try_all_branches(model)) {
+      const bool jumps = run.condensation && run.condensation->valid() &&
+                         exceeds_critical_friction(model, run.slots, run.condensation->schur());
+      return jumps ? Uniqueness::several : Uniqueness::unique;
+    }
     if (!run.condensation)
       run.condensation = std::make_shared<Condensation<double>>(model, run.slots, Backend::automatic);
-    if (!run.condensation->valid()) return false;
+    if (!run.condensation->valid()) return Uniqueness::unique;
     const RegularisationField<double> rho(model.points.size(), {1, 1});
     const auto start = initial_state<double>(model, run.slots);
     CondensedEngine<double> engine(model, run.slots, false, ConeRadius::augmented, run.condensation);
     const ContactInput<double> input{model, run.slots, rho, start.history};
     const auto u = engine.begin(0, start.displacement, {});
-    return may_have_several(contact_problem<double>(input, engine, u, run.condensation->schur(), nullptr));
+    return uniqueness_of(contact_problem<double>(input, engine, u, run.condensation->schur(), nullptr));
   }
-  return false;
+  return Uniqueness::unique;
 }
 
 template <class T, class E, class M>
 void march(const M& method, const Model& model, const Slots<T>& slots, E& engine, const RunOptions& options,
            Workspace<T>& workspace, Trajectory<T>& trajectory) {
-  Run<T, E> run{model, slots, engine, {}, false, workspace.condensation};
-  run.several = may_have_several(run);
+  Run<T, E> run{
+      .model = model, .slots = slots, .engine = engine, .account = {}, .condensation = workspace.condensation};
+  const Uniqueness uniqueness = uniqueness_of(run);
+  run.several = uniqueness == Uniqueness::several;
+  run.critical = uniqueness == Uniqueness::critical;
   run.account.trace = options.trace;
   trajectory.initial = initial_state<T>(model, slots);
   const bool repeats = !options.replay.empty();

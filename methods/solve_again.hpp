@@ -25,7 +25,12 @@ Stretch<T> solve_again(const M& method, const Model& model, const Slots<T>& slot
   const auto& start = checkpoints.start_of(n);
   const auto own = engine.carried();
   engine.carry(std::get<typename E::Carried>(start.engine), counters);
-  Run<T, E> run{model, slots, engine, start.account, checkpoints.several(), checkpoints.condensation()};
+  Run<T, E> run{.model = model,
+                .slots = slots,
+                .engine = engine,
+                .account = start.account,
+                .several = checkpoints.several(),
+                .condensation = checkpoints.condensation()};
   Stretch<T> stretch{checkpoints.end(start.step), {}};
   Trajectory<T> part;
   part.initial = trajectory.initial;

@@ -2,6 +2,7 @@
 /// necessary for any equilibrium, and separates "cannot be solved" from "was not solved".
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "core/model/contact_assembly.hpp"
@@ -100,6 +101,14 @@ void add_pushes(const Slots<T>& slots, const ForceColumns& columns, std::size_t 
   statics.limit[statics.limit.size() - 1] = value(law.bound(T(0), ContactState::limited)) * value(geometry.area);
 }
 
+/// Direction in space of a dof in the plane.
+template <class T>
+Vec<double, 2> direction_of(const Slots<T>& slots, const Model& model, int dof) {
+  const int framed = framed_index(model, dof / 2);
+  if (framed < 0) return Vec<double, 2>::Unit(dof % 2);
+  return values(slots.frames[framed]).col(dof % 2);
+}
+
 /// Rigid statics of a model at a time. At finite strain moments are left out, for arms change, and a point whose
 /// normal may turn can push in all directions: what is not balanced then cannot be balanced anywhere.
 /// pre: 2D, not axisymmetric; no load follows its side.
@@ -113,13 +122,9 @@ RigidStatics rigid_statics(const Model& model, const Slots<T>& slots, double tim
                        {},
                        {}};
   for (std::size_t p = 0; p < model.points.size(); ++p) add_pushes(slots, columns, p, statics);
-  for (std::size_t k = 0; k < model.constraints.size(); ++k) {
-    const int dof = model.constraints[k].dof, node = dof / 2;
-    const int framed = framed_index(model, node);
-    Vec<double, 2> direction = Vec<double, 2>::Unit(dof % 2);
-    if (framed >= 0) direction = values(slots.frames[framed]).col(dof % 2);
-    columns.add(statics.holds.col(k), node, direction);
-  }
+  for (std::size_t k = 0; k < model.constraints.size(); ++k)
+    columns.add(statics.holds.col(k), model.constraints[k].dof / 2,
+                direction_of(slots, model, model.constraints[k].dof));
   const Vector<double> external =
       values(external_forces(model, slots, time, Vector<T>::Constant(model.dof_count(), T(0)).eval()));
   for (int node = 0; node < model.node_count; ++node)
@@ -145,6 +150,37 @@ int unbalanced_body(const Model& model, const Slots<T>& slots, double time) {
     if (unbalanced_share(one) > rounding) return static_cast<int>(b);
   }
   return a_group;
+}
+
+/// A contact point whose node contacts with obstacles leave no place: wherever it goes, it is inside of one. -1 if
+/// there is none, or if this is not known: normals may turn, or 3D. `gap`: of the points, in some state. By Farkas'
+/// lemma: no motion d has n_i . d >= -g_i for all i if factors y >= 0 balance the normals, sum y_i n_i = 0 but for what
+/// a support takes, while sum y_i g_i < 0.
+template <class T>
+int contradicted_point(const Model& model, const Slots<T>& slots, const Vector<T>& gap) {
+  constexpr double rounding = 1e-9;  // of the least squares
+  if (model.dimension != 2) return -1;
+  std::map<int, std::vector<int>> at;  // points by node
+  for (int p = 0; p < static_cast<int>(gap.size()); ++p) {
+    const auto& point = model.points[p];
+    if (point.obstacle >= 0 && point.nodes.size() == 1 && keeps_its_normal(model, point))
+      at[point.nodes[0]].push_back(p);
+  }
+  for (const auto& [node, points] : at) {
+    if (points.size() < 2) continue;
+    double largest = 0;
+    for (const int p : points) largest = std::max(largest, std::abs(value(gap[p])));
+    RigidStatics statics{
+        Matrix<double>::Zero(3, points.size()), Matrix<double>::Zero(3, 2), Vector<double>::Unit(3, 2), {}, {}};
+    for (std::size_t k = 0; k < points.size(); ++k)
+      statics.pushes.col(k) << values(slots.geometry[points[k]].normal),
+          (value(gap[points[k]]) + model.points[points[k]].tie_length) / largest;
+    for (int d = 0; d < 2; ++d)
+      if (model.free_index[2 * node + d] < 0)
+        statics.holds.col(d).template head<2>() = direction_of(slots, model, 2 * node + d);
+    if (largest > 0 && unbalanced_share(statics) < rounding) return points.front();
+  }
+  return -1;
 }
 
 }  // namespace stickslip

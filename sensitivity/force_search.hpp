@@ -13,6 +13,14 @@ namespace stickslip {
 /// contact.
 std::vector<double> slave_shares(const Model& model, const Slots<double>& slots);
 
+/// Forces that a state does not determine.
+struct UndeterminedForces {
+  std::vector<char> contacts;  ///< per contact, whether it has some; empty if none has
+  /// Changes of the tractions that change no balance: one a column, laid out as ContactField::traction, force per area;
+  /// the largest entry of each is the largest pressure. They span all such changes.
+  Matrix<double> changes;
+};
+
 /// Finds contacts whose forces a state does not determine: their constraints repeat one another, so that other forces,
 /// between which the conditions of contact do not decide, balance the same loads. Two examples: a node in two contacts
 /// that sticks in one of them; three nodes of a body that hardly yields on one facet of a soft one.
@@ -21,9 +29,9 @@ class ForceSearch {
   ForceSearch(const Model& model, const Slots<double>& slots);
   /// Whether constraints of the model can repeat one another at all. Otherwise no state is searched.
   bool is_called_for() const { return !suspects_.empty(); }
-  /// Per contact: whether its forces are undetermined. Empty if none are. `compliance`: per point, length^3 / force, of
-  /// the tangential springs of a penalty; empty if constraints are exact. pre: is_called_for()
-  std::vector<char> undetermined(const State<double>& state, const std::vector<double>& compliance) const;
+  /// The forces that are undetermined. `compliance`: per point, length^3 / force, of the tangential springs of a
+  /// penalty; empty if constraints are exact. pre: is_called_for()
+  UndeterminedForces undetermined(const State<double>& state, const std::vector<double>& compliance) const;
 
  private:
   const Model& model_;

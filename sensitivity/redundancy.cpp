@@ -18,9 +18,15 @@ namespace {
 /// angles of distinct constraints differ by more.
 constexpr double independent = 1e-8;
 
-/// The first `components` constraint rows of a point over the free dofs (node * D + i, in the frame of a support).
-/// Those that are `decided` elsewhere are left out.
-using Rows = std::vector<std::map<int, double>>;
+/// A constraint of a point: its place among all multipliers, and its weights on the free dofs (node * D + i, in the
+/// frame of a support).
+struct Row {
+  int multiplier = 0;
+  std::map<int, double> weights;
+};
+using Rows = std::vector<Row>;
+
+/// The rows of the first `components` constraints of a point. Those that are `decided` elsewhere are left out.
 Rows rows_of(const Model& model, const Slots<double>& slots, const PointGeometry<double>& geometry, int p,
              int components, const std::vector<int>& nodes, const std::vector<char>& decided) {
   const auto& point = model.points[p];
@@ -29,7 +35,7 @@ Rows rows_of(const Model& model, const Slots<double>& slots, const PointGeometry
   for (int c = 0; c < components; ++c) {
     if (!decided.empty() && decided[point.multiplier + c]) continue;
     const Vector<double> direction = c == 0 ? geometry.normal : geometry.tangents.col(c - 1);
-    auto& row = rows.emplace_back();
+    auto& row = rows.emplace_back(Row{point.multiplier + c, {}}).weights;
     for (std::size_t n = 0; n < nodes.size(); ++n) {
       const int node = nodes[n], framed = framed_index(model, node);
       for (int i = 0; i < D; ++i) {
@@ -46,14 +52,14 @@ template <class Counts>
 bool are_independent(const Rows& rows, Counts&& counts) {
   std::map<int, int> column;
   for (const auto& row : rows)
-    for (const auto& [dof, weight] : row)
+    for (const auto& [dof, weight] : row.weights)
       if (counts(dof)) column.try_emplace(dof, static_cast<int>(column.size()));
   const auto height = static_cast<Eigen::Index>(rows.size()), width = static_cast<Eigen::Index>(column.size());
   if (height == 0) return true;
   if (height > width) return false;
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(height, width);
   for (Eigen::Index k = 0; k < height; ++k) {
-    for (const auto& [dof, weight] : rows[k])
+    for (const auto& [dof, weight] : rows[k].weights)
       if (counts(dof)) matrix(k, column.at(dof)) = weight;
     if (matrix.row(k).norm() > 0) matrix.row(k).normalize();
   }
@@ -87,33 +93,32 @@ std::vector<int> without_lone_points(std::vector<int> left, const std::vector<Ro
   return left;
 }
 
-/// The rows that stand in some combination of rows that vanishes. `bare`: rows of normal constraints that bear nothing
-/// and can only come to press; where there is one combination alone, it must not have these with both signs.
-std::vector<char> in_combinations(const Rows& rows, const std::vector<char>& bare) {
+/// Combinations of rows that vanish: factors of the rows, one combination a column. None if there are none. `bare`:
+/// rows of normal constraints that bear nothing and can only come to press; where there is one combination alone, it
+/// must not have these with both signs.
+Matrix<double> vanishing_combinations(const Rows& rows, const std::vector<char>& bare) {
   std::map<int, int> column;
   for (const auto& row : rows)
-    for (const auto& [dof, weight] : row) column.try_emplace(dof, static_cast<int>(column.size()));
+    for (const auto& [dof, weight] : row.weights) column.try_emplace(dof, static_cast<int>(column.size()));
   const auto height = static_cast<Eigen::Index>(rows.size());
-  std::vector<char> in(rows.size(), 0);
-  if (height == 0) return in;
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(column.size()), height);  // transposed
-  for (Eigen::Index k = 0; k < height; ++k) {
-    for (const auto& [dof, weight] : rows[k]) matrix(column.at(dof), k) = weight;
-    matrix.col(k).normalize();
-  }
-  Eigen::FullPivLU<Eigen::MatrixXd> factor(matrix);
+  if (height == 0) return {};
+  Matrix<double> matrix = Matrix<double>::Zero(static_cast<Eigen::Index>(column.size()), height);  // transposed
+  for (Eigen::Index k = 0; k < height; ++k)
+    for (const auto& [dof, weight] : rows[k].weights) matrix(column.at(dof), k) = weight;
+  const Vector<double> sizes = matrix.colwise().norm();
+  Eigen::FullPivLU<Eigen::MatrixXd> factor(matrix * sizes.cwiseInverse().asDiagonal());
   factor.setThreshold(independent);
-  if (factor.dimensionOfKernel() == 0) return in;
-  const Eigen::MatrixXd kernel = factor.kernel();
+  if (factor.dimensionOfKernel() == 0) return {};
+  Matrix<double> kernel = factor.kernel();
   const double least = independent * kernel.cwiseAbs().maxCoeff();
+  kernel = (kernel.array().abs() > least).select(kernel, 0.0).eval();
   bool pushes = false, pulls = false;
   for (Eigen::Index k = 0; k < height; ++k) {
-    in[k] = kernel.row(k).cwiseAbs().maxCoeff() > least;
-    pushes |= bare[k] && kernel(k, 0) > least;
-    pulls |= bare[k] && kernel(k, 0) < -least;
+    pushes |= bare[k] && kernel(k, 0) > 0;
+    pulls |= bare[k] && kernel(k, 0) < 0;
   }
-  if (kernel.cols() == 1 && pushes && pulls) in.assign(rows.size(), 0);
-  return in;
+  if (kernel.cols() == 1 && pushes && pulls) return {};
+  return sizes.cwiseInverse().asDiagonal() * kernel;
 }
 
 /// Nodes of a slave and a master that face one another at the start.
@@ -169,8 +174,9 @@ std::vector<char> stiff_nodes(const Model& model, const Slots<double>& slots) {
 /// Drops what stands at dofs of stiff nodes, and rows of which nothing is left.
 void drop_stiff(const std::vector<char>& stiff, int dimension, Rows& rows) {
   if (!stiff.empty())
-    for (auto& row : rows) std::erase_if(row, [&](const auto& entry) { return stiff[entry.first / dimension] != 0; });
-  std::erase_if(rows, [](const auto& row) { return row.empty(); });
+    for (auto& row : rows)
+      std::erase_if(row.weights, [&](const auto& entry) { return stiff[entry.first / dimension] != 0; });
+  std::erase_if(rows, [](const auto& row) { return row.weights.empty(); });
 }
 
 }  // namespace
@@ -227,7 +233,7 @@ ForceSearch::ForceSearch(const Model& model, const Slots<double>& slots)
   }
 }
 
-std::vector<char> ForceSearch::undetermined(const State<double>& state, const std::vector<double>& compliance) const {
+UndeterminedForces ForceSearch::undetermined(const State<double>& state, const std::vector<double>& compliance) const {
   constexpr double nothing = 1e-9;   // of the largest traction and displacement: what solving leaves of none
   constexpr double elastic = 10;     // springs of a penalty slip by compliance times traction, and a little more
   constexpr std::size_t most = 200;  // rows of a dense factorisation; more are not searched
@@ -270,19 +276,26 @@ std::vector<char> ForceSearch::undetermined(const State<double>& state, const st
     closed.push_back(p);
   }
   Rows joined;
-  std::vector<int> contact_of;
+  std::vector<int> point_of;
   std::vector<char> bare;
   for (int p : without_lone_points(std::move(closed), rows, nodes, model_)) {
     joined.insert(joined.end(), rows[p].begin(), rows[p].end());
-    contact_of.resize(joined.size(), points[p].contact);
+    point_of.resize(joined.size(), p);
     bare.resize(joined.size(), !presses(p));
   }
   if (joined.size() > most) return {};
-  const auto in = in_combinations(joined, bare);
-  if (std::none_of(in.begin(), in.end(), [](char c) { return c != 0; })) return {};
-  std::vector<char> contacts(model_.scene.contacts.size(), 0);
-  for (std::size_t k = 0; k < in.size(); ++k) contacts[contact_of[k]] |= in[k];
-  return contacts;
+  const Matrix<double> combinations = vanishing_combinations(joined, bare);
+  if (combinations.size() == 0) return {};
+  UndeterminedForces found{std::vector<char>(model_.scene.contacts.size(), 0),
+                           Matrix<double>::Zero(model_.multiplier_count, combinations.cols())};
+  for (std::size_t k = 0; k < joined.size(); ++k) {
+    const auto factors = combinations.row(static_cast<Eigen::Index>(k));
+    if (factors.isZero(0)) continue;
+    found.contacts[points[point_of[k]].contact] = 1;
+    found.changes.row(joined[k].multiplier) = factors / geometry_in(field, slots_, point_of[k]).area;
+  }
+  for (auto change : found.changes.colwise()) change *= pressed / change.cwiseAbs().maxCoeff();
+  return found;
 }
 
 }  // namespace stickslip

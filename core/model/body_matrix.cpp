@@ -12,7 +12,7 @@ void RowLists::add(const std::vector<int>& rows) {
 bool is_among(const Model& model, std::size_t body, BodyKind kind) {
   if (kind == BodyKind::all) return true;
   // (at small strain a law that remembers nothing is linear)
-  const bool is_constant = !model.scene.finite_strain && model.bodies[body].memory == 0;
+  const bool is_constant = model.effects.linear_bulk || (!model.scene.finite_strain && model.bodies[body].memory == 0);
   return is_constant == (kind == BodyKind::constant);
 }
 

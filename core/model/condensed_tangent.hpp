@@ -56,6 +56,8 @@ class CondensedTangent {
   bool factorise(const std::vector<PointTangent<T>>& tangents, const Vector<double>& hold);
   /// `rows`: u over all dofs, in the frames of the nodes.
   BlockVector<T> solve(const BlockVector<T>& rows, Solving how);
+  /// ContactSystem::reversed: K_ii is positive definite.
+  bool reversed() const { return system_.reversed(); }
   /// The larger one of the bodies' and the dense system's.
   double condition_estimate();
   const std::string& message() const { return system_.message(); }

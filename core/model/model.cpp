@@ -312,6 +312,19 @@ std::string radius_fault(Space space, const Points<double>& points, const BodyMe
          "; in an axisymmetric space x is the radius, and must not be negative";
 }
 
+/// Whether nothing of a model depends on where it is, though strains are finite: points on springs against planes that
+/// do not turn.
+bool moves_linearly(const Model& model) {
+  const auto is_spring = [](const Body& body) { return std::holds_alternative<GroundedSpring>(body.material); };
+  const auto keeps_geometry = [&](const ContactPoint& point) {
+    if (point.obstacle < 0) return false;
+    const auto& obstacle = model.scene.obstacles[point.obstacle];
+    return is_flat(obstacle.shape) && !obstacle.rotate;
+  };
+  return std::all_of(model.scene.bodies.begin(), model.scene.bodies.end(), is_spring) &&
+         std::all_of(model.points.begin(), model.points.end(), keeps_geometry);
+}
+
 int Model::contact_index(const std::string& name) const {
   for (std::size_t c = 0; c < scene.contacts.size(); ++c)
     if (scene.contacts[c].name == name) return static_cast<int>(c);
@@ -372,8 +385,9 @@ Model make_model(const Scene& scene, Seconds& spent) {
   model.times = step_ends(scene);
   model.effects.sensitivity = !scene.parameters.empty();
   model.effects.plasticity = model.memory_count > 0;
-  model.effects.linear_bulk = has_constant_stiffness(scene);
-  model.effects.current_geometry = scene.finite_strain && !model.points.empty();
+  const bool is_linear = moves_linearly(model);
+  model.effects.linear_bulk = is_linear || has_constant_stiffness(scene);
+  model.effects.current_geometry = scene.finite_strain && !is_linear && !model.points.empty();
   if (model.effects.current_geometry) place_feet(model);
   return model;
 }

@@ -341,6 +341,7 @@ void SparseEngine<T>::carry(const Carried& carried, Counters& counters) {
 
 template <class T>
 bool SparseEngine<T>::reversed() const {
+  if (condenses_) return tangent_->reversed();
   const bool odd = unknown_multipliers_ && model_.multiplier_count % 2 == 1;  // each multiplier turns the sign
   return (solver_.determinant_sign() != (odd ? -1 : 1)) != update_.turns_sign();
 }

@@ -111,6 +111,8 @@ struct Increment {
   /// solutions.
   bool reversed = false;
   bool counted = false;  ///< whether all solutions of the increment were sought
+  /// The last tangent of bodies that are not linear had such a determinant: the equilibrium is not stable.
+  bool unstable = false;
   /// Other solutions. Their dissipation is that of the one taken.
   std::vector<State<T>> others;
   /// Time at which the solution jumped, because its branch ended; none: it did not jump.

@@ -40,6 +40,8 @@ std::string_view name_of(WarningCode code) {
       return "shared_place";
     case WarningCode::soft_penalty:
       return "soft_penalty";
+    case WarningCode::unstable:
+      return "unstable";
     case WarningCode::branch_ends:
       return "branch_ends";
     case WarningCode::path_goes_on:

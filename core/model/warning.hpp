@@ -22,11 +22,12 @@ enum class WarningCode {
   no_area,            ///< value: number of slave nodes that have no area
   floating_body,      ///< value: number of steps at whose end nothing holds the body
   shear_locking,      ///< value: share of a shear that varies within elements in the squared strain of the body
-  folded_element,     ///< value: number of elements that are folded at a corner
+  folded_element,     ///< value: number of elements that are folded, or nearly so
   unbalanced_moment,  ///< value: share of a response that is a moment
   held_on_facet,      ///< value: how far a point is beyond the end of its facet, in facets
   shared_place,       ///< value: number of bodies that hold the place of a response
   soft_penalty,       ///< value: share by which springs of the penalty yield beside the bodies
+  unstable,           ///< value: number of steps whose equilibrium is unstable
   branch_ends,        ///< value: time at which the solution jumps
   path_goes_on,       ///< value: share of the load at which the last step of a path ends
   non_unique          ///< value: number of solutions that are known, 1: there may be more, 0 where they are a continuum

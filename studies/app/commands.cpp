@@ -51,6 +51,11 @@ std::filesystem::path output_directory(const std::string& given, const std::stri
                        : std::filesystem::path(given);
 }
 
+/// A derivative of the table; those of what is not determined are no numbers.
+std::string derivative_in_words(double derivative) {
+  return std::isfinite(derivative) ? fmt::format("{: .6e}", derivative) : " not determined";
+}
+
 void print_summary(const CaseResult& result) {
   const auto& scene = result.problem->model.scene;
   say(std::cout, "{:>10} {:>24} {:>7} {:>7} {:>6} {:>6} {:>6} {:>10}\n", "time", "status", "newton", "augm.", "open",
@@ -76,7 +81,7 @@ void print_summary(const CaseResult& result) {
   for (std::size_t i = 0; i < scene.responses.size(); ++i) {
     say(std::cout, "  {:<20} {: .10e}", scene.responses[i].name, last.responses[i]);
     for (std::size_t j = 0; last.sensitivities.size() && j < scene.parameters.size(); ++j)
-      say(std::cout, "   d/d{} {: .6e}", scene.parameters[j].name, last.sensitivities(i, j));
+      say(std::cout, "   d/d{} {}", scene.parameters[j].name, derivative_in_words(last.sensitivities(i, j)));
     say(std::cout, "\n");
   }
   for (std::size_t i = 0; has_ended(result) && i < scene.objectives.size(); ++i) {
@@ -84,7 +89,7 @@ void print_summary(const CaseResult& result) {
     const auto& gradient = result.gradients.of_objectives;
     constexpr Eigen::Index shown = 8;
     for (Eigen::Index j = 0; j < std::min(gradient.cols(), shown); ++j)
-      say(std::cout, "   d/d{} {: .6e}", scene.parameters[j].name, gradient(i, j));
+      say(std::cout, "   d/d{} {}", scene.parameters[j].name, derivative_in_words(gradient(i, j)));
     say(std::cout, "{}\n", gradient.cols() > shown ? "   ..." : "");
   }
   if (!scene.parameters.empty() && !last.differentiable)

@@ -8,24 +8,27 @@
 
 namespace stickslip {
 
+namespace {
+
+/// A residual of the table on the terminal; a dash where it is no number, as of an iterate that overflowed.
+std::string shown(double value) { return std::isfinite(value) ? fmt::format("{:.2e}", value) : "-"; }
+
+/// A number of the file; empty where it is none.
+std::string cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
+
+}  // namespace
+
 std::string trace_table(const Trace& trace) {
   std::string text = fmt::format("{:>10} {:>6} {:>5} {:>10} {:>11} {:>10} {:>10} {:>6} {:>6} {:>6} {:>8} {:>6}\n",
                                  "time", "solve", "iter.", "residual", "equilibrium", "normal", "tangential", "open",
                                  "stick", "slip", "changed", "step");
   for (const auto& i : trace.iterates)
-    text += fmt::format(
-        "{:>10.6g} {:>6} {:>5} {:>10.2e} {:>11.2e} {:>10.2e} {:>10.2e} {:>6} {:>6} {:>6} {:>8} {:>6.3g}\n", i.time,
-        i.solve, i.number, i.record.residual, i.record.equilibrium, i.record.normal, i.record.tangential, i.record.open,
-        i.record.stick, i.record.slip, i.record.changed, i.record.step_length);
+    text += fmt::format("{:>10.6g} {:>6} {:>5} {:>10} {:>11} {:>10} {:>10} {:>6} {:>6} {:>6} {:>8} {:>6.3g}\n", i.time,
+                        i.solve, i.number, shown(i.record.residual), shown(i.record.equilibrium),
+                        shown(i.record.normal), shown(i.record.tangential), i.record.open, i.record.stick,
+                        i.record.slip, i.record.changed, i.record.step_length);
   return text;
 }
-
-namespace {
-
-/// A number of a table; empty where it is none, as of an iterate that overflowed.
-std::string cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
-
-}  // namespace
 
 std::string trace_csv(const Problem& problem, const Trace& trace) {
   const auto& points = problem.model.points;

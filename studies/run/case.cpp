@@ -44,6 +44,29 @@ void take_sides(const CaseResult& result, std::size_t n, StepResult& step) {
       if (step.has_kink(scene, result.method, i, j)) step.differentiable = false;
 }
 
+/// Takes the derivatives away of responses that are not determined.
+void refuse_open_responses(StepResult& step) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 0; i < step.open_responses.size(); ++i)
+    for (auto* of : {&step.sensitivities, &step.backward, &step.forward})
+      if (step.open_responses[i] && of->size() > 0) of->row(static_cast<Eigen::Index>(i)).setConstant(none);
+}
+
+/// And of objectives of such responses.
+void refuse_open_objectives(CaseResult& result) {
+  const Model& model = result.problem->model;
+  if (result.gradients.of_objectives.size() == 0) return;
+  Vector<double> sums = Vector<double>::Zero(model.scene.objectives.size());
+  for (const auto& step : result.steps) {
+    Vector<double> responses = Vector<double>::Zero(model.scene.responses.size());
+    for (std::size_t i = 0; i < step.open_responses.size(); ++i)
+      if (step.open_responses[i]) responses[i] = std::numeric_limits<double>::quiet_NaN();
+    add_contributions(model, result.problem->slots.numbers, step.increment->time, responses, sums);
+  }
+  for (Eigen::Index j = 0; j < sums.size(); ++j)
+    if (std::isnan(sums[j])) result.gradients.of_objectives.row(j).setConstant(sums[j]);
+}
+
 std::vector<StepResult> gather_steps(const CaseResult& result, const StepReader& reader) {
   std::vector<StepResult> steps;
   StepResult step;
@@ -60,11 +83,13 @@ std::vector<StepResult> gather_steps(const CaseResult& result, const StepReader&
     step.responses = read.responses;
     step.bodies = read.bodies;
     step.undetermined = read.undetermined;
+    step.open_responses = read.open_responses;
     step.at_vertex = read.at_vertex;
     step.contacts = read.contacts;
     if (n < result.gradients.of_responses.size()) step.sensitivities = result.gradients.of_responses[n];
     if (n < result.gradients.records.size()) step.scheme = result.gradients.records[n];
     take_sides(result, n, step);
+    refuse_open_responses(step);
     steps.push_back(std::move(step));
     step = {};
   }
@@ -280,6 +305,7 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
   result.scales = reader.accuracy().scales;
   result.objectives = objectives_of(result);
   refuse_overflow(result);
+  refuse_open_objectives(result);
   return result;
 }
 

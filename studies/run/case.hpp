@@ -47,11 +47,13 @@ struct StepResult {
   Vector<double> responses;
   std::vector<BodyMeasures> bodies;            ///< where its state may have been let go; else empty
   std::vector<ContactMeasures> contacts = {};  ///< likewise
-  std::vector<char> undetermined, at_vertex;   ///< as in a StepReading (studies/run/step_reader.hpp)
-  std::optional<SchemeRecord> scheme;          ///< of the increment; only where the scheme iterates
-  Matrix<double> sensitivities;                ///< responses x parameters; empty where there are none
-  bool differentiable = true;                  ///< both one-sided derivatives agree
-  Matrix<double> backward, forward;            ///< one-sided sensitivities, where they are known; else empty
+  /// As in a StepReading (studies/run/step_reader.hpp).
+  std::vector<char> undetermined, at_vertex, open_responses;
+  std::optional<SchemeRecord> scheme;  ///< of the increment; only where the scheme iterates
+  /// Responses x parameters; empty where there are none. No numbers of responses that are not determined.
+  Matrix<double> sensitivities;
+  bool differentiable = true;        ///< both one-sided derivatives agree
+  Matrix<double> backward, forward;  ///< one-sided sensitivities, where they are known; else empty
   /// Whether the one-sided derivatives of a response by a parameter differ by more than their rounding, or than their
   /// scheme is off by (or are no numbers). pre: there are some.
   bool has_kink(const Scene& scene, const Method& method, std::size_t response, std::size_t parameter) const;

@@ -209,6 +209,8 @@ void add_answers(const CaseResult& result, const StepResult& step, json& entry) 
   if (!scene.parameters.empty()) {
     if (scene.sensitivity_mode == SensitivityMode::direct) entry["sensitivities"] = sensitivities;
     entry["differentiable"] = step.differentiable;
+    for (std::size_t i = 0; i < step.open_responses.size(); ++i)
+      if (step.open_responses[i]) entry["undetermined"].push_back(scene.responses[i].name);
     if (!step.differentiable) entry["one_sided"] = one_sided_json(step, scene);
   }
   if (step.scheme) entry["sensitivity_scheme"] = scheme_json(*step.scheme);

@@ -3,8 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <limits>
 #include <span>
 
+#include "core/solids/shapes.hpp"
 #include "methods/diagnosis.hpp"
 #include "methods/residuals.hpp"
 #include "sensitivity/force_search.hpp"
@@ -54,6 +56,22 @@ void add_other_solutions(const CaseResult& result, std::vector<Warning>& warning
                      uncounted, increments.size())});
 }
 
+/// Steps whose equilibrium the least disturbance leaves, but along a path by arc length, which seeks such.
+void add_unstable_steps(const CaseResult& result, std::vector<Warning>& warnings) {
+  if (result.problem->model.scene.arc_length) return;
+  const auto steps = solved_steps(result);
+  const auto is_unstable = [](const StepResult& step) { return step.increment->unstable; };
+  const auto first = std::find_if(steps.begin(), steps.end(), is_unstable);
+  if (first == steps.end()) return;
+  const auto count = std::count_if(first, steps.end(), is_unstable);
+  warnings.push_back({WarningCode::unstable, "", static_cast<double>(count),
+                      "hold what may tip or buckle, or prescribe a motion in place of a force",
+                      fmt::format("in {} of {} steps, first at t = {:.6g}, the equilibrium is unstable: the bodies "
+                                  "resist some motion by less than nothing, and there is another solution to which "
+                                  "the least disturbance leads",
+                                  count, steps.size(), first->increment->time)});
+}
+
 /// Contacts whose forces equilibrium leaves open, and points on a vertex.
 void add_undetermined_contacts(const CaseResult& result, std::vector<Warning>& warnings) {
   const auto& contacts = result.problem->model.scene.contacts;
@@ -98,23 +116,33 @@ void add_mechanisms(const CaseResult& result, std::vector<Warning>& warnings) {
   }
 }
 
-/// Whether an element of plane nodes at x is folded at a corner: its two edges there turn the other way. Edges with a
-/// middle are parabolas.
-bool is_folded(ElementShape shape, const std::vector<Vec<double, 2>>& x) {
-  const int corners = corners_of(shape);
-  const auto leaves = [&](int k, int to, int middle) -> Vec<double, 2> {
-    return is_quadratic(shape) ? Vec<double, 2>(4 * x[middle] - 3 * x[k] - x[to]) : Vec<double, 2>(x[to] - x[k]);
-  };
-  for (int k = 0; k < corners; ++k) {
-    const int after = (k + 1) % corners, before = (k + corners - 1) % corners;
-    const Vec<double, 2> on = leaves(k, after, corners + k), back = leaves(k, before, corners + before);
-    if (on[0] * back[1] - on[1] * back[0] <= 0) return true;
-  }
-  return false;
+/// Least over largest of the change of volume J within an element whose plane nodes go from X to x; negative where it
+/// turns over. Of straight sides both are at corners; of curved ones they are sought on a grid of 5 x 5.
+double evenness(ElementShape shape, const std::vector<Vec<double, 2>>& X, const std::vector<Vec<double, 2>>& x) {
+  double least = std::numeric_limits<double>::infinity(), largest = 0;
+  with_shape(shape, [&]<class Shape>(Shape) {
+    constexpr int n = Shape::nodes > Shape::corners ? 4 : 1;
+    constexpr bool triangle = Shape::corners == 3;
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; j <= (triangle ? n - i : n); ++j) {
+        const double r = static_cast<double>(i) / n, s = static_cast<double>(j) / n;
+        const auto at = triangle ? Shape::at(r, s, 0) : Shape::at(2 * r - 1, 2 * s - 1, 0);
+        Mat<double, 2> before = Mat<double, 2>::Zero(), now = before;
+        for (int a = 0; a < Shape::nodes; ++a) {
+          before += X[a] * at.gradient.col(a).transpose();
+          now += x[a] * at.gradient.col(a).transpose();
+        }
+        const double J = now.determinant() / before.determinant();
+        least = std::min(least, J);
+        largest = std::max(largest, J);
+      }
+  });
+  return least / largest;
 }
 
-/// Bodies at finite strain with folded elements in a state that is kept.
+/// Bodies at finite strain with folded elements, or nearly folded ones, in a state that is kept.
 void add_folded_elements(const CaseResult& result, std::vector<Warning>& warnings) {
+  constexpr double nearly = 0.02;  // volumes that change fifty times as much within one element are not its to resolve
   const auto& [model, slots, unused] = *result.problem;
   if (!model.scene.finite_strain || model.dimension != 2) return;
   for (const auto& body : model.bodies) {
@@ -122,26 +150,29 @@ void add_folded_elements(const CaseResult& result, std::vector<Warning>& warning
     long most = 0;
     double first = 0;
     std::vector<int> nodes;
-    std::vector<Vec<double, 2>> x;
+    std::vector<Vec<double, 2>> X, x;
     for (const auto& step : solved_steps(result)) {
       const auto& u = step.increment->state.displacement;
       long folded = 0;
       for (int e = 0; is_whole(step.increment->state) && e < body.mesh.element_count(); ++e) {
         detail::set_element_nodes(body, e, nodes);
-        x.clear();
-        for (const int node : nodes) x.push_back(slots.points.col(node).head<2>() + u.segment<2>(2 * node));
-        folded += is_folded(body.mesh.shape, x);
+        X.clear(), x.clear();
+        for (const int node : nodes) {
+          X.push_back(slots.points.col(node).head<2>());
+          x.push_back(X.back() + u.segment<2>(2 * node));
+        }
+        folded += evenness(body.mesh.shape, X, x) < nearly;
       }
       if (folded > 0 && most == 0) first = step.increment->time;
       most = std::max(most, folded);
     }
     if (most == 0) continue;
     const std::string& name = model.scene.bodies[&body - model.bodies.data()].name;
-    warnings.push_back({WarningCode::folded_element, name, static_cast<double>(most),
-                        "take smaller steps, or a finer mesh there",
-                        fmt::format("{}: {} of its elements {} folded at a corner, first at t = {:.6g}: that is no "
-                                    "deformation, and there may be another solution",
-                                    name, most, most == 1 ? "is" : "are", first)});
+    warnings.push_back(
+        {WarningCode::folded_element, name, static_cast<double>(most), "take smaller steps, or a finer mesh there",
+         fmt::format("{}: {} of its elements {} folded or nearly so, first at t = {:.6g}: no integration "
+                     "point sees it, and there may be another solution",
+                     name, most, most == 1 ? "is" : "are", first)});
   }
 }
 
@@ -183,6 +214,7 @@ void add_solution_warnings(const CaseResult& result, std::vector<Warning>& warni
   add_mechanisms(result, warnings);
   add_folded_elements(result, warnings);
   add_other_solutions(result, warnings);
+  add_unstable_steps(result, warnings);
   add_undetermined_contacts(result, warnings);
   add_soft_penalty(result, warnings);
 }

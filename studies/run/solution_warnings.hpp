@@ -4,7 +4,8 @@
 ///                 solutions, or with tangents that allow several; contacts whose forces are undetermined; points on a
 ///                 vertex
 ///   branch_ends   where solutions were counted: the branch from the last increment ends
-///   folded_element  elements that are folded at a corner, where no integration point sees it
+///   unstable      steps whose equilibrium is unstable
+///   folded_element  elements that are folded where no integration point sees it
 ///   soft_penalty  springs of a penalty that yield by more than 2 % of what the bodies do, under all of a contact's
 ///                 force or under the share of it that its slave alone distributes
 #pragma once

@@ -26,6 +26,47 @@ std::vector<double> tangential_compliance(const Problem& problem, const Method& 
   return compliance;
 }
 
+/// How much a change of tractions may change a response of a kind: what is less by far is rounding. 0 where it hangs on
+/// no traction. `force`, `traction`: of the change; `extent` of the model.
+double reach_of(const Response& response, double force, double traction, double extent) {
+  switch (response.kind) {
+    case Response::Kind::reaction:
+    case Response::Kind::contact_force:
+      return force * (response.component == "moment" ? extent : 1);
+    case Response::Kind::contact_pressure:
+      return traction;
+    case Response::Kind::contact_half_width:
+      return extent;
+    default:
+      return 0;
+  }
+}
+
+/// Responses that differ where forces that a state does not determine are others.
+std::vector<char> responses_that_hang_on(const Problem& problem, const State<double>& state, double time,
+                                         const Matrix<double>& changes, const Vector<double>& values) {
+  constexpr double small = 1e-3;     // of the largest pressure: a change that lets points press
+  constexpr double rounding = 1e-9;  // of what a change could do
+  const auto& [model, slots, unused] = problem;
+  const double extent = (slots.points.rowwise().maxCoeff() - slots.points.rowwise().minCoeff()).norm();
+  std::vector<char> open(model.scene.responses.size(), 0);
+  for (const auto& change : changes.colwise()) {
+    State<double> other = state;
+    other.contact.traction += small * change;
+    double force = 0;
+    for (std::size_t p = 0; p < model.points.size(); ++p)
+      force += small * geometry_in(state.contact, slots, static_cast<int>(p)).area *
+               change.segment(model.points[p].multiplier, model.points[p].components()).norm();
+    const double traction = small * change.cwiseAbs().maxCoeff();
+    const auto changed = evaluate_responses(model, slots, other, time);
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      const double reach = reach_of(model.scene.responses[i], force, traction, extent);
+      open[i] |= reach > 0 && std::abs(changed[i] - values[i]) > rounding * reach;
+    }
+  }
+  return open;
+}
+
 }  // namespace
 
 StepReader::StepReader(const Problem& problem, const Method& method)
@@ -44,8 +85,13 @@ StepReading StepReader::read(const State<double>& before, double start, const In
     step.margins.yield = yield_margin(model, slots, {state.displacement, before.history.bodies});
   step.margins.vertex = vertex_margin(model, slots, state, increment.time);
   step.at_vertex = contacts_at_vertices(model, slots, before, start, state, increment.time, compliance_);
-  if (forces_.is_called_for()) step.undetermined = forces_.undetermined(state, compliance_);
   step.responses = evaluate_responses(model, slots, state, increment.time);
+  if (forces_.is_called_for()) {
+    auto found = forces_.undetermined(state, compliance_);
+    if (!found.contacts.empty())
+      step.open_responses = responses_that_hang_on(problem_, state, increment.time, found.changes, step.responses);
+    step.undetermined = std::move(found.contacts);
+  }
   for (std::size_t b = 0; lets_go && b < model.bodies.size(); ++b)
     step.bodies.push_back(measures_of_body(problem_, state, b));
   for (std::size_t c = 0; lets_go && c < model.scene.contacts.size(); ++c)

@@ -19,6 +19,8 @@ struct StepReading {
   /// Per contact, empty where there is none: whether its forces are undetermined (ForceSearch), and whether a point is
   /// or was on a vertex (contacts_at_vertices()).
   std::vector<char> undetermined, at_vertex;
+  /// Per response, whether it hangs on forces that are undetermined; empty where there are none.
+  std::vector<char> open_responses;
 };
 
 class StepReader {

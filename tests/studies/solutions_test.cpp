@@ -137,26 +137,79 @@ TEST(SeveralSolutions, OfTwoContactsOnOneNodeAreFoundFromEveryScale) {
   }
 }
 
-TEST(ContradictingWalls, AreInfeasibleForEveryStiffnessAlsoWhereOneAloneIsTouched) {
-  for (const bool friction : {false, true})
-    for (const double force : {-1000.0, -1.0, 0.0, 3.0}) {
-      json scene =
-          on_springs({{100, 0}, {0, 100}}, {{"w0", plane({0.001, 0}, {1, 0})}, {"w1", plane({0, 0}, {-1, 0})}},
-                     {{"c0", {{"slave", "p.node"}, {"master", "w0"}}}, {"c1", {{"slave", "p.node"}, {"master", "w1"}}}},
-                     {{{"on", "p.node"}, {"force", {force, 0}}}});
-      if (friction)
-        for (auto& contact : scene["contacts"]) contact["friction"] = 0.4;
-      for (const double stiffness : {1.0, 1e3, 1e5, 1e7})
-        EXPECT_EQ(solve(scene, {{"penalty", {{"stiffness", stiffness}}}}).status(), Status::infeasible)
-            << force << " " << stiffness << " " << friction;
+/// A point on springs and planes stands for the same at finite strain: nothing of it depends on where it is.
+TEST(PointsOnSprings, AreTheSameAtFiniteStrain) {
+  json scene = on_springs({{1, 0.5}, {0.5, 1}}, {{"f", plane({0, 0}, {0, -1})}},
+                          {{"c", {{"slave", "p.node"}, {"master", "f"}, {"friction", 3}}}},
+                          json::parse(R"([{"on": "p.node", "force": [2.5, 1]}])"));
+  for (const auto& method : methods()) {
+    scene["strain"] = "small";
+    const auto small = solve(scene, method);
+    scene["strain"] = "finite";
+    const auto finite = solve(scene, method);
+    EXPECT_TRUE(warns(finite, WarningCode::non_unique)) << method;
+    ASSERT_EQ(small.status(), finite.status()) << method;
+    EXPECT_EQ(small.steps[0].responses, finite.steps[0].responses) << method;
+    EXPECT_EQ(small.trajectory.counters.newton, finite.trajectory.counters.newton) << method;
+  }
+}
+
+/// At mu = 2 the slip to one side makes just the pressure that holds it: under this load every slip from 0 to 2 is a
+/// solution, with the pressure 1 - slip / 2. Under a smaller load the point sticks, and nothing else is a solution.
+TEST(SeveralSolutions, AreToldOfAContinuum) {
+  for (const double force : {2.0, 1.5}) {
+    const json scene = on_springs({{1, 0.5}, {0.5, 1}}, {{"f", plane({0, 0}, {0, -1})}},
+                                  {{"c", {{"slave", "p.node"}, {"master", "f"}, {"friction", 2}}}},
+                                  {{{"on", "p.node"}, {"force", {force, 1}}}});
+    for (const auto& method : methods()) {
+      const auto result = solve(scene, method);
+      ASSERT_TRUE(is_converged(result.status())) << method << result.message();
+      EXPECT_EQ(warns(result, WarningCode::non_unique), force == 2.0) << method << force;
     }
+  }
+}
+
+json between_walls(double left, double right, double force) {
+  return on_springs({{100, 0}, {0, 100}}, {{"w0", plane({left, 0}, {1, 0})}, {"w1", plane({right, 0}, {-1, 0})}},
+                    {{"c0", {{"slave", "p.node"}, {"master", "w0"}}}, {"c1", {{"slave", "p.node"}, {"master", "w1"}}}},
+                    {{{"on", "p.node"}, {"force", {force, 0}}}});
+}
+
+TEST(ContradictingWalls, AreInfeasibleForEveryMethodAndScaleAlsoWhereOneAloneIsTouched) {
+  std::vector<json> all;
+  for (const double scale : {1.0, 1e3, 1e5, 1e7}) all.push_back({{"penalty", {{"stiffness", scale}}}});
+  for (const double scale : {1e-3, 1.0, 1e3}) {
+    all.push_back({{"uzawa_al", {{"scale", scale}}}});
+    all.push_back({{"monolithic_al", {{"scale", scale}}}});
+  }
+  for (const char* strain : {"small", "finite"})
+    for (const bool friction : {false, true})
+      for (const double force : {-1000.0, -1.0, 0.0, 3.0}) {
+        json scene = between_walls(0.001, 0, force);
+        scene["strain"] = strain;
+        if (friction)
+          for (auto& contact : scene["contacts"]) contact["friction"] = 0.4;
+        for (const auto& method : all)
+          EXPECT_EQ(solve(scene, method).status(), Status::infeasible)
+              << strain << " " << force << " " << method << " " << friction;
+      }
+}
+
+/// A slot that a support across it leaves alone, and one whose third wall cuts off what the other two leave.
+TEST(ContradictingWalls, AreToldWhereASupportOrAThirdWallLeavesNoPlace) {
+  const auto on = [](const char* wall) { return json{{"slave", "p.node"}, {"master", wall}}; };
+  const json walls = {{"a", plane({0, 0}, {-1, 1})}, {"b", plane({0, 0}, {1, 1})}, {"c", plane({0, -0.001}, {0, -1})}};
+  const json load = {{{"on", "p.node"}, {"force", {0.1, -1}}}};
+  const json corner = on_springs({{100, 0}, {0, 100}}, walls, {{"a", on("a")}, {"b", on("b")}}, load);
+  json closed = on_springs({{100, 0}, {0, 100}}, walls, {{"a", on("a")}, {"b", on("b")}, {"c", on("c")}}, load);
+  for (const char* method : {"uzawa_al", "monolithic_al"}) {
+    EXPECT_TRUE(is_converged(solve(corner, {{method, json::object()}}).status())) << method;
+    EXPECT_EQ(solve(closed, {{method, json::object()}}).status(), Status::infeasible) << method;
+  }
 }
 
 TEST(ContradictingWalls, AreToldFromWallsThatLeaveRoom) {
-  json scene =
-      on_springs({{100, 0}, {0, 100}}, {{"w0", plane({-1e-6, 0}, {1, 0})}, {"w1", plane({0, 0}, {-1, 0})}},
-                 {{"c0", {{"slave", "p.node"}, {"master", "w0"}}}, {"c1", {{"slave", "p.node"}, {"master", "w1"}}}},
-                 json::parse(R"([{"on": "p.node", "force": [-1000, 0]}])"));
+  const json scene = between_walls(-1e-6, 0, -1000);
   for (const double stiffness : {1.0, 1e3, 1e5, 1e7}) {
     const auto result = solve(scene, {{"penalty", {{"stiffness", stiffness}}}});
     EXPECT_TRUE(is_converged(result.status())) << stiffness << result.message();
