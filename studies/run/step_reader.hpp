@@ -19,6 +19,7 @@ struct StepReading {
   /// Per contact, empty where there is none: whether its forces are undetermined (ForceSearch), and whether a point is
   /// or was on a vertex (contacts_at_vertices()).
   std::vector<char> undetermined, at_vertex;
+  bool at_master_kink = false;  ///< integration_margin() counts as zero: no side of a derivative is known
 };
 
 class StepReader {
