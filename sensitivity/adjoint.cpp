@@ -162,11 +162,12 @@ Vector<double> objective_values(const Model& model, const Slots<double>& slots, 
   return values;
 }
 
-Matrix<double> objective_gradients(const Model& model, const Slots<double>& slots, const Trajectory<double>& trajectory,
-                                   const Gradients& gradients) {
+Matrix<double> objective_gradients(const Model& model, const Trajectory<double>& trajectory,
+                                   const std::vector<Vector<double>>& responses,
+                                   const std::vector<Matrix<double>>& of_responses) {
   const auto& objectives = model.scene.objectives;
   const int parameters = static_cast<int>(model.scene.parameters.size());
-  if (objectives.empty() || parameters == 0 || gradients.of_responses.size() < trajectory.increments.size()) return {};
+  if (objectives.empty() || parameters == 0 || of_responses.size() < trajectory.increments.size()) return {};
   Matrix<double> of = Matrix<double>::Zero(objectives.size(), parameters);
   for (int first = 0; first < parameters; first += directions) {
     std::vector<int> block;
@@ -175,19 +176,27 @@ Matrix<double> objective_gradients(const Model& model, const Slots<double>& slot
     for (std::size_t n = 0; n < trajectory.increments.size(); ++n) {
       const auto& increment = trajectory.increments[n];
       if (!increment.requested) continue;
-      const auto values = evaluate_responses(model, slots, increment.state, increment.time);
       for (std::size_t i = 0; i < objectives.size(); ++i) {
         const auto& objective = objectives[i];
         if (!contributes(objective, increment.time, model.times.back())) continue;
-        Direction response(values[objective.response]);
-        for (std::size_t d = 0; d < block.size(); ++d)
-          response.d[d] = gradients.of_responses[n](objective.response, block[d]);
+        Direction response(responses[n][objective.response]);
+        for (std::size_t d = 0; d < block.size(); ++d) response.d[d] = of_responses[n](objective.response, block[d]);
         const Direction share = contribution(objective, response, increment.time, numbers);
         for (std::size_t d = 0; d < block.size(); ++d) of(i, block[d]) += share.d[d];
       }
     }
   }
   return of;
+}
+
+Matrix<double> objective_gradients(const Model& model, const Slots<double>& slots, const Trajectory<double>& trajectory,
+                                   const std::vector<Matrix<double>>& of_responses) {
+  if (model.scene.objectives.empty()) return {};
+  std::vector<Vector<double>> responses;
+  for (const auto& increment : trajectory.increments)
+    responses.push_back(increment.requested ? evaluate_responses(model, slots, increment.state, increment.time)
+                                            : Vector<double>());
+  return objective_gradients(model, trajectory, responses, of_responses);
 }
 
 Gradients adjoint(const Model& model, const Slots<double>& slots, const Method& method,

@@ -28,28 +28,16 @@ Vector<T> trial(const Model& model, const State<T>& state, const PointRegularisa
 
 /// Size of a derivative of a traction up to which it counts as zero: 1e-10 of the largest of
 ///
-///   the derivatives of all tractions, and of all motions times k / A
-///   1e-3 of k / A times the largest derivative of a displacement: what a rigid motion leaves of these
+///   traction_rates()
 ///   the largest traction of the run, over the size of the parameter
 ///
 /// `multiple`: rho over k / A, which magnifies the rounding of a motion.
 double negligible(const Model& model, const Slots<double>& slots, const ParameterBlock& block, double multiple,
                   const SideDirection& along) {
-  constexpr double share = 1e-10, rigid = 1e-3, roundings = 64;
-  double size = along.parameter > 0 ? along.largest_so_far / along.parameter : 0, largest_motion = 0;
-  for (const auto& u : block.current.displacement) largest_motion = std::max(largest_motion, std::abs(u.d[0]));
-  const auto& now = block.current.contact;
-  const auto& placement = block.current.history.placement;
-  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
-    const auto& point = model.points[p];
-    const double elastic = elastic_traction(slots, p);
-    const int offset = tangential_offset(model, p);
-    size = std::max({size, elastic * std::abs(now.gap[p].d[0]), rigid * elastic * largest_motion});
-    for (int c = 0; c < point.components(); ++c)
-      size = std::max(size, std::abs(now.traction[point.multiplier + c].d[0]));
-    for (int a = 0; a < point.tangents; ++a) size = std::max(size, elastic * std::abs(placement[offset + a].d[0]));
-  }
-  return std::max(share, roundings * unit_roundoff * multiple) * size;
+  constexpr double share = 1e-10, roundings = 64;
+  const double of_traction = along.parameter > 0 ? along.largest_so_far / along.parameter : 0;
+  return std::max(share, roundings * unit_roundoff * multiple) *
+         std::max(of_traction, traction_rates(model, slots, block.current)[0]);
 }
 
 /// Derivative s Dz of a trial traction along one side, and the size up to which it counts as zero. `kinematic_normal`,
@@ -123,6 +111,21 @@ double traction_scale(const Model& model, const Slots<double>& slots, const Stat
     largest = std::max(largest, elastic * norm(state.history.placement.segment(offset, model.points[p].tangents)));
   }
   return largest;
+}
+
+Direction::Gradient traction_rates(const Model& model, const Slots<double>& slots, const State<Direction>& at) {
+  constexpr double rigid = 1e-3;
+  Direction::Gradient size = Direction::Gradient::Zero(), largest_motion = size;
+  for (const auto& u : at.displacement) largest_motion = largest_motion.max(u.d.abs());
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    const auto& point = model.points[p];
+    const double elastic = elastic_traction(slots, p);
+    const int offset = tangential_offset(model, p);
+    size = size.max(elastic * at.contact.gap[p].d.abs()).max(rigid * elastic * largest_motion);
+    for (int c = 0; c < point.components(); ++c) size = size.max(at.contact.traction[point.multiplier + c].d.abs());
+    for (int a = 0; a < point.tangents; ++a) size = size.max(elastic * at.history.placement[offset + a].d.abs());
+  }
+  return size;
 }
 
 std::vector<WeakPoint> weak_points(const Model& model, const Slots<double>& slots, const State<double>& state,

@@ -39,6 +39,12 @@ double traction_scale(const Model& model, const Slots<double>& slots, const Stat
 std::vector<WeakPoint> weak_points(const Model& model, const Slots<double>& slots, const State<double>& state,
                                    const RegularisationField<double>& rho, ConeRadius cone, double largest);
 
+/// Size of the derivatives of tractions at a state, per direction: the largest of
+///
+///   the derivatives of all tractions, and of all motions times k / A
+///   1e-3 of k / A times the largest derivative of a displacement: what a rigid motion leaves of these
+Direction::Gradient traction_rates(const Model& model, const Slots<double>& slots, const State<Direction>& at);
+
 /// Branch of the projection.
 struct Branch {
   ContactState state;

@@ -1,40 +1,14 @@
 #include "sensitivity/differentiate.hpp"
 
-#include "core/model/response.hpp"
 #include "core/model/storage.hpp"
 #include "sensitivity/branch_search.hpp"
+#include "sensitivity/nearest_change.hpp"
 #include "sensitivity/one_sided.hpp"
+#include "sensitivity/response_ties.hpp"
 
 namespace stickslip {
 
 namespace {
-
-/// Derivatives of an increment. A response that is a largest or smallest value at a tie gets the derivative of one
-/// side, if the sides differ by more than the rounding of the motion.
-Matrix<double> with_ties(const Model& model, const std::vector<ParameterBlock>& blocks,
-                         const std::vector<State<Direction>>& at, Matrix<double> of, Ties side) {
-  constexpr double rounding = 1e-9;
-  const auto& responses = model.scene.responses;
-  for (int i = 0; i < static_cast<int>(responses.size()); ++i) {
-    if (!can_tie(responses[i])) continue;
-    const bool is_length = responses[i].kind != Response::Kind::contact_pressure;
-    double per_length = is_length ? 1 : 0;  // response per length
-    for (std::size_t p = 0; !is_length && p < model.points.size(); ++p) {
-      const auto& slots = blocks.front().slots;
-      per_length = std::max(per_length, value(slots.stiffness[p]) / value(slots.geometry[p].area));
-    }
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
-      const Direction on_side = evaluate_response(model, blocks[b].slots, i, at[b], {}, side);
-      Direction::Gradient motion = Direction::Gradient::Zero();
-      for (const auto& u : at[b].displacement) motion = motion.max(u.d.abs());
-      for (std::size_t d = 0; d < blocks[b].parameters.size(); ++d) {
-        double& derivative = of(i, blocks[b].parameters[d]);
-        if (std::abs(on_side.d[d] - derivative) > rounding * per_length * motion[d]) derivative = on_side.d[d];
-      }
-    }
-  }
-  return of;
-}
 
 /// Dofs outside the contact whose displacements responses read, ascending; none if all are read.
 std::optional<std::vector<int>> dofs_read_inside(const Model& model) {
@@ -166,7 +140,8 @@ struct Derivatives::Progress {
     auto displacements = displacements_of(problem, std::move(unexpanded), is_last);
     for (std::size_t k = 0; k < displacements.size(); ++k) {
       for (std::size_t b = 0; b < blocks.size(); ++b) reached[k][b].displacement = std::move(displacements[k][b]);
-      evaluate(reached[k], increments[done++].time);
+      evaluate(reached[k], increments[done].time);
+      add_nearest_change(m, increments[done++], reached[k]);
     }
     storage.states = std::max(storage.states, state_bytes(reached));
     if (is_last)
@@ -202,10 +177,29 @@ struct Derivatives::Progress {
     gradients.of_responses.push_back(gather(
         blocks, parameters(), [&](auto&, int b) -> auto& { return responses[b]; }));
     const auto& asked = model.scene.responses;
-    if (std::any_of(asked.begin(), asked.end(), can_tie)) {
-      gradients.from_below.push_back(with_ties(model, blocks, at, gradients.of_responses.back(), Ties::falling));
-      gradients.from_above.push_back(with_ties(model, blocks, at, gradients.of_responses.back(), Ties::growing));
+    if (std::none_of(asked.begin(), asked.end(), can_tie)) return;
+    for (auto* of : {&gradients.from_below, &gradients.from_above}) {
+      of->push_back(gradients.of_responses.back());
+      const Ties side = of == &gradients.from_below ? Ties::falling : Ties::growing;
+      for (std::size_t b = 0; b < blocks.size(); ++b) take_side_of_ties(model, blocks[b], at[b], side, of->back());
     }
+  }
+
+  /// pre: if bodies remember, the increment is the last that the blocks have gone through.
+  template <class M>
+  void add_nearest_change(const M& m, const Increment<double>& increment, const std::vector<State<Direction>>& at) {
+    largest = std::max(largest, traction_scale(model, slots, increment.state));
+    NearestChange nearest = no_change(model);
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      RegularisationField<Direction> springs;
+      if constexpr (!M::prevents_penetration) springs = initial_regularisation(blocks[b].slots, m);
+      const auto& before = blocks[b].current.history.bodies;  // (the blocks have gone on)
+      lower_nearest_change(model, slots,
+                           {increment.state, increment.time, largest, blocks[b], at[b], before,
+                            M::prevents_penetration ? nullptr : &springs},
+                           nearest);
+    }
+    gradients.nearest_change.push_back(std::move(nearest));
   }
 };
 

@@ -40,6 +40,9 @@ struct Gradients {
   /// The same from below and from above, for a response that is the largest or smallest of several values that tie;
   /// empty if there is no such response.
   std::vector<Matrix<double>> from_below, from_above;
+  /// Per increment: how far the nearest change of a branch is, parameters x (below, above), in their units; infinity
+  /// where there is none (sensitivity/nearest_change.hpp). Empty in adjoint mode.
+  std::vector<Matrix<double>> nearest_change;
   Matrix<double> of_objectives;       ///< objectives x parameters; empty after a failure
   std::vector<SchemeRecord> records;  ///< per increment; empty except for Uzawa
   Matrix<double> last_displacement;   ///< of the last increment: all dofs x parameters; empty after a failure

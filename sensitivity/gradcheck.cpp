@@ -105,7 +105,7 @@ namespace {
 struct Computed {
   std::vector<Matrix<double>> derivatives;
   std::vector<Matrix<double>> below, above;  ///< the same from each side, where ties or kinks make a difference
-  bool sides_known = true;                   ///< false: there are ties, and the adjoint has no sides
+  bool sides_known = true;                   ///< false: there are ties, and too many parameters for their sides
   /// Whether the two sides of an entry differ by more than `allowed`, or a side has no derivative.
   bool has_sides(Eigen::Index i, Eigen::Index n, int j, double allowed) const {
     return !below.empty() && !(std::abs(above[n](i, j) - below[n](i, j)) <= allowed);
@@ -118,27 +118,19 @@ std::optional<OneSided> sides_of(const Model& model, const Slots<double>& slots,
                                  const Trajectory<double>& trajectory, Workspace<double>& workspace,
                                  const Gradients& gradients) {
   auto sides = one_sided_derivatives(model, slots, method, trajectory, workspace);
-  if (!sides && !gradients.from_below.empty()) sides = OneSided{gradients.from_below, gradients.from_above, {}};
-  for (std::size_t n = 0; n < trajectory.increments.size(); ++n) {
-    const auto& increment = trajectory.increments[n];
+  if (!sides && !gradients.from_below.empty()) sides = OneSided{gradients.from_below, gradients.from_above};
+  if (!model.slides_along_curves() || (sides && sides->backward.empty())) return sides;
+  WholeStates states(model, slots, method, trajectory, workspace);
+  for (std::size_t n = 0; n < states.count(); ++n) {
+    const auto& increment = states.increment(n);
     if (integration_margin(model, slots, increment.state, increment.time) > weak_margin) continue;
-    if (!sides) sides = OneSided{gradients.of_responses, gradients.of_responses, {}};
+    if (!sides && gradients.of_responses.empty()) sides = OneSided{};  // of an adjoint they are not known
+    if (!sides) sides = OneSided{gradients.of_responses, gradients.of_responses};
+    if (sides->backward.empty()) return sides;
     sides->backward[n].setConstant(std::numeric_limits<double>::quiet_NaN());  // and neither is known
     sides->forward[n] = sides->backward[n];
   }
   return sides;
-}
-
-bool has_any_tie(const Model& model, const Slots<double>& slots, const Method& method,
-                 const Trajectory<double>& trajectory) {
-  double largest = 0;
-  for (std::size_t n = 0; n < trajectory.increments.size(); ++n) {
-    const auto& increment = trajectory.increments[n];
-    largest = std::max(largest, traction_scale(model, slots, increment.state));
-    const auto& previous = n == 0 ? trajectory.initial : trajectory.increments[n - 1].state;
-    if (has_ties(model, slots, method, previous, increment, largest)) return true;
-  }
-  return false;
 }
 
 Computed compute(const Model& model, const Slots<double>& slots, const Method& method,
@@ -147,7 +139,7 @@ Computed compute(const Model& model, const Slots<double>& slots, const Method& m
   const bool direct = scene.sensitivity_mode == SensitivityMode::direct;
   auto gradients = direct ? differentiate(model, slots, method, trajectory, workspace)
                           : adjoint(model, slots, method, trajectory, workspace);
-  if (direct) gradients.of_objectives = objective_gradients(model, slots, trajectory, gradients);
+  if (direct) gradients.of_objectives = objective_gradients(model, slots, trajectory, gradients.of_responses);
   const bool complete =
       direct ? gradients.of_responses.size() == trajectory.increments.size() : gradients.of_objectives.size() > 0;
   if (!complete && !gradients.message.empty()) check.message = gradients.message;
@@ -162,15 +154,16 @@ Computed compute(const Model& model, const Slots<double>& slots, const Method& m
     return all;
   };
   Computed computed{rows(gradients.of_responses, gradients.of_objectives), {}, {}};
-  if (!direct) {
-    computed.sides_known = !has_any_tie(model, slots, method, trajectory);
-    return computed;
-  }
   const auto sides = sides_of(model, slots, method, trajectory, workspace, gradients);
   if (!sides) return computed;
+  computed.sides_known = !sides->backward.empty();
+  if (!computed.sides_known) return computed;
+  std::vector<Vector<double>> values;
+  WholeStates states(model, slots, method, trajectory, workspace);
+  for (std::size_t n = 0; n < states.count(); ++n)
+    values.push_back(evaluate_responses(model, slots, states.increment(n).state, trajectory.increments[n].time));
   const auto rows_of = [&](const std::vector<Matrix<double>>& side) {
-    gradients.of_responses = side;
-    return rows(side, objective_gradients(model, slots, trajectory, gradients));
+    return rows(side, objective_gradients(model, trajectory, values, side));
   };
   computed.below = rows_of(sides->backward);
   computed.above = rows_of(sides->forward);

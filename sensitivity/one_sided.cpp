@@ -5,6 +5,7 @@
 
 #include "core/model/response.hpp"
 #include "sensitivity/branch_search.hpp"
+#include "sensitivity/response_ties.hpp"
 #include "sensitivity/sided_geometry.hpp"
 
 namespace stickslip {
@@ -62,6 +63,15 @@ bool has_ties_of(const M& method, const Model& model, const Slots<double>& slots
                      [&](const auto& sweep) { return weak(sweep.state, sweep.rho_factor); });
 }
 
+/// Whether values of a response tie in an increment, so that direct differentiation would have both sides of it.
+bool has_tied_responses(const Model& model, const Slots<double>& slots, WholeStates& states) {
+  const auto& asked = model.scene.responses;
+  if (std::none_of(asked.begin(), asked.end(), can_tie)) return false;
+  for (std::size_t n = 0; n < states.count(); ++n)
+    if (has_tied_responses(model, slots, states.increment(n).state)) return true;
+  return false;
+}
+
 /// Index of the first increment with ties; WholeStates::count() if there is none.
 std::size_t first_tie(const Model& model, const Slots<double>& slots, const Method& method,
                       const Trajectory<double>& trajectory, WholeStates& states) {
@@ -112,23 +122,20 @@ struct SideRun {
     blocks.emplace_back(model, std::vector<int>{0}, std::move(seeded_slots));
   }
 
-  /// Differentiates the increments first .. last - 1. After each, on_increment(n, increment) is called with the
-  /// derivative in blocks[0].current and the branches in `increment`. False if one has no derivative. `held`: as in
+  /// Differentiates increment n, the one after the last. Then on_increment(increment) is called with the derivative in
+  /// blocks[0].current and the branches in `increment`. False if it has no derivative. `held`: as in
   /// differentiate_side().
   template <class F>
-  bool run(std::size_t first, std::size_t last, double side, F&& on_increment, bool held = false) {
+  bool advance(std::size_t n, double side, F&& on_increment, bool held = false) {
     Differentiation<E> problem{model, slots, engine, blocks, 1, {}};
-    bool found = true;
-    for (std::size_t n = first; n < last && found; ++n) {
-      Increment<double> increment = states.increment(n);
-      const State<double>& previous = states.before(n);
-      found = differentiate_side(method, problem, previous, increment, {side, parameter, scales[n]}, held);
-      if (!found) break;
-      on_increment(n, increment);
-      std::swap(blocks[0].previous, blocks[0].current);
-    }
+    Increment<double> increment = states.increment(n);
+    const State<double>& previous = states.before(n);
+    const bool found = differentiate_side(method, problem, previous, increment, {side, parameter, scales[n]}, held);
     counters += problem.counters;
-    return found;
+    if (!found) return false;
+    on_increment(increment);
+    std::swap(blocks[0].previous, blocks[0].current);
+    return true;
   }
 };
 
@@ -147,43 +154,58 @@ std::vector<char> engaged_points(const Model& model, const Slots<double>& slots,
 /// What the slave nodes face if a parameter decreases, and if it increases.
 using Pairings = std::array<SidedPairing, 2>;
 
+/// Adds the derivatives of increment n on a side, in column `parameter`.
+void record_side(const Model& model, const Slots<double>& slots, const ParameterBlock& block,
+                 const Increment<double>& at, double side, int parameter, Matrix<double>& out) {
+  const auto& responses = model.scene.responses;
+  const auto values = evaluate_responses(model, block.slots, block.current, at.time);
+  Matrix<double> column(responses.size(), 1);
+  for (Eigen::Index i = 0; i < column.rows(); ++i) column(i, 0) = values[i].d[0];
+  take_side_of_ties(model, block, block.current, side < 0 ? Ties::falling : Ties::growing, column);
+  for (std::size_t i = 0; i < responses.size(); ++i)
+    if (!widens_at_once(model, slots, at.state, responses[i])) out(i, parameter) = column(i, 0);
+}
+
 /// Both sides of the derivatives by one parameter, in column `parameter`. `first`: index of the first increment with
 /// ties.
 template <class M, class E>
 void run_sides(const M& method, E& engine, const Model& model, const Slots<double>& slots,
                const Trajectory<double>& trajectory, WholeStates& states, std::size_t first, int parameter,
                const Pairings& pairings, OneSided& sides) {
-  const auto& responses = model.scene.responses;
-  const std::size_t count = states.count();
   const bool geometric = pairings[0].kink || pairings[1].kink;
   if (geometric) first = 0;
   SideRun start(method, model, slots, engine, trajectory, states,
                 make_slots<Direction>(model, seeded(model.scene, {parameter})),
                 std::abs(model.scene.parameters[parameter].value));
-  const auto engaged = geometric ? engaged_points(model, slots, trajectory) : std::vector<char>();
   const auto record = [&](const SideRun<M, E>& run, double side, std::size_t n) {
-    const auto& increment = trajectory.increments[n];
-    const auto& block = run.blocks[0];
-    const auto values =
-        evaluate_responses(model, block.slots, block.current, increment.time, side < 0 ? Ties::falling : Ties::growing);
-    auto& out = (side < 0 ? sides.backward : sides.forward)[n];
-    for (std::size_t i = 0; i < responses.size(); ++i)
-      if (!widens_at_once(model, slots, increment.state, responses[i])) out(i, parameter) = values[i].d[0];
+    record_side(model, slots, run.blocks[0], trajectory.increments[n], side, parameter,
+                (side < 0 ? sides.backward : sides.forward)[n]);
   };
-  const bool smooth = start.run(0, first, 1, [&](std::size_t n, auto&) {
-    record(start, -1, n);
-    record(start, +1, n);
-  });
-  for (double side : {-1.0, 1.0}) {
-    if (!smooth) break;
-    const auto& pairing = pairings[side < 0 ? 0 : 1];
-    SideRun run = start;
-    run.counters = {};
-    if (pairing.kink && !take_side(model, pairing, engaged, run.blocks[0].slots)) continue;
-    run.run(first, count, side, [&](std::size_t n, auto&) { record(run, side, n); });
-    sides.counters += run.counters;
-  }
+  bool smooth = true;
+  for (std::size_t n = 0; n < first && smooth; ++n)
+    smooth = start.advance(n, 1, [&](auto&) {
+      for (const double side : {-1.0, 1.0}) record(start, side, n);
+    });
   sides.counters += start.counters;
+  start.counters = {};
+  const auto engaged = geometric ? engaged_points(model, slots, trajectory) : std::vector<char>();
+  struct Sided {
+    double side;
+    SideRun<M, E> run;
+    bool found = true;  ///< whether it has derivatives so far
+  };
+  std::vector<Sided> runs;
+  for (const double side : {-1.0, 1.0}) {
+    const auto& pairing = pairings[side < 0 ? 0 : 1];
+    if (!smooth) break;
+    runs.push_back({side, start});
+    if (pairing.kink && !take_side(model, pairing, engaged, runs.back().run.blocks[0].slots)) runs.pop_back();
+  }
+  // (both sides at once, so that states that were let go are solved again once)
+  for (std::size_t n = first; n < states.count(); ++n)
+    for (auto& [side, run, found] : runs)
+      found = found && run.advance(n, side, [&, of = side, &by = run](auto&) { record(by, of, n); });
+  for (const auto& sided : runs) sides.counters += sided.run.counters;
 }
 
 /// Numbers of the scene with one seed, along which all parameters grow, each by its own share of its value. The shares
@@ -227,16 +249,20 @@ std::optional<OneSided> one_sided_derivatives(const Model& model, const Slots<do
   if (parameters == 0) return std::nullopt;
   WholeStates states(model, slots, method, trajectory, workspace);
   const std::size_t first = first_tie(model, slots, method, trajectory, states);
-  std::vector<Pairings> pairings;
+  OneSided sides;
+  sides.first = first;
   bool kinks = first < states.count();
+  const bool is_adjoint = model.scene.sensitivity_mode == SensitivityMode::adjoint;
+  if (is_adjoint && parameters > most_sided_parameters) return kinks ? std::optional(sides) : std::nullopt;
+  std::vector<Pairings> pairings;
   for (int j = 0; j < parameters; ++j) {
     pairings.push_back({sided_pairing(model, j, -1), sided_pairing(model, j, 1)});
     kinks |= pairings.back()[0].kink || pairings.back()[1].kink;
   }
+  if (is_adjoint && !kinks) kinks = has_tied_responses(model, slots, states);
   if (!kinks) return std::nullopt;
   const auto unknown =
       Matrix<double>::Constant(model.scene.responses.size(), parameters, std::numeric_limits<double>::quiet_NaN());
-  OneSided sides;
   sides.backward.assign(states.count(), unknown);
   sides.forward = sides.backward;
   auto both = [&](const auto& m, auto& engine) {
@@ -244,6 +270,8 @@ std::optional<OneSided> one_sided_derivatives(const Model& model, const Slots<do
       run_sides(m, engine, model, slots, trajectory, states, first, j, pairings[j], sides);
   };
   std::visit([&](const auto& m) { std::visit([&](auto& engine) { both(m, engine); }, *workspace.engine); }, method);
+  sides.counters += states.take_counters();
+  sides.repeated = states.repeated();
   return sides;
 }
 
@@ -281,7 +309,10 @@ std::optional<std::vector<TakenBranches>> consistent_at_ties(const Model& model,
         taken[n].sweeps[k] = {std::move(increment.augmented[k].state.contact),
                               std::move(increment.augmented[k].state.flow)};
     };
-    run.run(0, states.count(), 1, take, true);
+    bool found = true;
+    for (std::size_t n = 0; n < states.count() && found; ++n)
+      found = run.advance(
+          n, 1, [&](Increment<double>& increment) { take(n, increment); }, true);
     counters += run.counters;
   };
   std::visit([&](const auto& m) { std::visit([&](auto& engine) { search(m, engine); }, *workspace.engine); }, method);

@@ -45,15 +45,24 @@ Margins margins(const Model& model, const Slots<double>& slots, const State<doub
 /// The least of each margin over all points.
 Margins margins(const Model& model, const Slots<double>& slots, const State<double>& state);
 
+/// Largest number of parameters whose two sides are computed for an adjoint run. Each side takes a factorisation and a
+/// solve an increment, as direct differentiation alone would: of 50 parameters, at 4 iterations an increment, the time
+/// of some 25 runs. An adjoint is for many more.
+inline constexpr int most_sided_parameters = 50;
+
 struct OneSided {
   /// Per increment: responses x parameters, from below and from above. NaN if a side has no derivative: the response
-  /// jumps, its slope is infinite (core/README.md), or no branches were confirmed.
+  /// jumps, its slope is infinite (core/README.md), or no branches were confirmed. Empty if an adjoint run has more
+  /// than most_sided_parameters.
   std::vector<Matrix<double>> backward, forward;
+  std::size_t first = 0;  ///< the first increment with ties
   Counters counters;
+  long repeated = 0;  ///< number of increments solved again (sensitivity/whole_states.hpp)
 };
 
-/// Both sides of all derivatives. None, without any computation, unless an increment has a tie or the contact geometry
-/// a kink.
+/// Both sides of all derivatives, in either mode. None, without any computation, unless an increment has a tie or the
+/// contact geometry a kink; of an adjoint run also unless values of a response tie, whose sides direct differentiation
+/// has already.
 std::optional<OneSided> one_sided_derivatives(const Model& model, const Slots<double>& slots, const Method& method,
                                               const Trajectory<double>& trajectory, Workspace<double>& workspace);
 

@@ -55,6 +55,14 @@ VertexGeometry<T> vertex_geometry(const Model& model, const Slots<T>& slots, con
 /// Whether two patches may have a kink at their vertex: not where they join as one B-spline.
 bool has_kink(const Patch& first) { return first.smoothing != Smoothing::b_spline || !first.goes_on_after(); }
 
+constexpr double straight = 1e-6;  // sine up to which a turn is none, as in sided_geometry.cpp
+
+/// Whether derivatives jump at the end of a patch. Splines share the tangent there; theirs jump where the curvature
+/// does.
+bool changes_at(const Patch& patch, double bend) {
+  return patch.smoothing == Smoothing::none || !patch.goes_on_after() || bend > straight;
+}
+
 /// Calls f(first, second) for both ends of the patch that point p faces, if another patch joins there.
 template <class F>
 void for_each_vertex(const Model& model, const State<double>& state, int p, F&& f) {
@@ -79,7 +87,6 @@ bool reads_gaps(const Scene& scene) {
 
 std::vector<VertexTie> vertex_ties(const Model& model, const Slots<double>& slots, const State<double>& state,
                                    double time, double largest) {
-  constexpr double straight = 1e-6;  // sine up to which a turn is none, as in sided_geometry.cpp
   std::vector<VertexTie> ties;
   if (!model.slides_along_curves()) return ties;
   const bool all = reads_gaps(model.scene);
@@ -93,13 +100,25 @@ std::vector<VertexTie> vertex_ties(const Model& model, const Slots<double>& slot
     const bool bears = -state.contact.traction[point.multiplier] > weak_margin * largest;
     for_each_vertex(model, state, p, [&](int first, int second) {
       const auto at = vertex_geometry(model, slots, compact, time, p, first, second);
-      // (Splines share the tangent at a vertex. Its derivative jumps only where the curvature does.)
-      const auto& patch = model.curves[point.curve].patches[first];
-      if (patch.smoothing != Smoothing::none && patch.goes_on_after() && at.bend <= straight) return;
+      if (!changes_at(model.curves[point.curve].patches[first], at.bend)) return;
       if (std::abs(at.overshoot) <= weak_margin) ties.push_back({p, first, second, !bears || at.turn <= straight});
     });
   }
   return ties;
+}
+
+void for_each_vertex_way(const Model& model, const Slots<Direction>& slots, const Vector<Direction>& displacement,
+                         const State<double>& state, double time,
+                         const std::function<void(const Direction&, double)>& f) {
+  const Vector<Direction> compact = to_compact(model, displacement);
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    if (state.contact.state[p] == ContactState::open) continue;
+    for_each_vertex(model, state, p, [&](int first, int second) {
+      const auto at = vertex_geometry(model, slots, compact, time, p, first, second);
+      const auto& patch = model.curves[model.points[p].curve].patches[first];
+      if (changes_at(patch, at.bend)) f(at.overshoot, at.length);
+    });
+  }
 }
 
 void set_patch(const Model& model, const VertexTie& tie, int patch, State<double>& at) {

@@ -13,6 +13,8 @@
 /// Source: core/README.md.
 #pragma once
 
+#include <functional>
+
 #include "sensitivity/branches.hpp"
 
 namespace stickslip {
@@ -28,6 +30,12 @@ struct VertexTie {
 /// traction_scale() of the run so far.
 std::vector<VertexTie> vertex_ties(const Model& model, const Slots<double>& slots, const State<double>& state,
                                    double time, double largest);
+
+/// Calls f(way, length) for each end of the patch that a closed point faces, if another patch joins there with a kink:
+/// its distance past the line that separates the two, with its derivative, over the length of the first.
+void for_each_vertex_way(const Model& model, const Slots<Direction>& slots, const Vector<Direction>& displacement,
+                         const State<double>& state, double time,
+                         const std::function<void(const Direction&, double)>& f);
 
 /// Lets the point of a tie face the end of one of its patches.
 void set_patch(const Model& model, const VertexTie& tie, int patch, State<double>& at);

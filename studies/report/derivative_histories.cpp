@@ -14,13 +14,6 @@ using nlohmann::json;
 
 namespace {
 
-double size_of(const std::vector<double>& values) {
-  double size = 0;
-  for (const double value : values)
-    if (std::isfinite(value)) size = std::max(size, std::abs(value));
-  return size;
-}
-
 /// Derivatives that are rounding: over its response, each is next to nothing beside that of another response by the
 /// same parameter.
 std::set<std::string> rounding_of(const History& derivatives, const History& responses) {
@@ -73,6 +66,7 @@ std::optional<Figure> derivative_histories(const Study& study, const std::string
   std::set<std::string> rounding;
   std::size_t derivatives = 0;
   double end = 0;
+  bool has_sides = false;  // a derivative with two
   for (const bool telling : {true, false})
     for (const auto& cell : study.cells) {
       const bool chosen = std::find(shown.begin(), shown.end(), cell.label) != shown.end();
@@ -91,6 +85,8 @@ std::optional<Figure> derivative_histories(const Study& study, const std::string
       for (const auto& [name, values] : history.values) {
         base["response"] = name;
         add_history(figure.rows, base, "time", history.times, values, 2 * series.place(in_words(cell)));
+        add_sides(figure.rows, base, history.times, history.sides[name]);
+        has_sides |= !history.sides[name].empty();
       }
     }
   if (figure.rows.empty()) return std::nullopt;
@@ -98,7 +94,8 @@ std::optional<Figure> derivative_histories(const Study& study, const std::string
   add_given(figure, study, Of::sensitivities, end);
   json spec =
       curves("Derivative over time", channel("time", time_title(told), false), channel("value", "{response}", false),
-             tooltip({{"series", "run"}, {"time", "time"}, {"value", "value"}}));
+             has_sides ? tooltip({{"series", "run"}, {"time", "time"}, {"value", "value"}, {"side", "side"}})
+                       : tooltip({{"series", "run"}, {"time", "time"}, {"value", "value"}}));
   figure.panels.push_back({"", spec, "time", "value", false, false, "time", false});
   figure.title = "Histories: derivatives over time";
   figure.folded = "of any response by any parameter";
@@ -106,6 +103,8 @@ std::optional<Figure> derivative_histories(const Study& study, const std::string
                     ? "Of every step. Where a point begins to touch or to open, a derivative has a kink or a jump."
                     : "Of every step. Where a point begins to slip, to stick or to open, a derivative has a kink or a "
                       "jump, and what friction remembers goes on in it.";
+  if (has_sides)
+    figure.text += " Where it has two sides the curve ends, and a point stands for each side that has a derivative.";
   offer(figure, "Derivative", "response", first_to_show(told, rounding, response), "time");
   const auto kept = distinct(figure.rows, "response", "time").size();
   if (kept < derivatives) figure.text += fmt::format(" The first {} of {} derivatives.", kept, derivatives);

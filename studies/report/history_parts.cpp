@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "studies/report/chart_parts.hpp"
 #include "studies/report/look_up.hpp"
@@ -31,6 +32,31 @@ std::string given_name(const std::string& key, Of of) {
   return slash == std::string::npos ? "" : derivative_name(key.substr(0, slash), key.substr(slash + 1));
 }
 
+/// Takes from the curves of derivatives what is no derivative: where both sides lie apart, they stand in its place.
+void take_sides(const json& step, std::size_t place, History& history) {
+  if (at(step, "differentiable") != false) return;
+  const json& all = object_at(step, "one_sided");
+  for (const auto& [response, by] : object_at(step, "sensitivities").items())
+    for (const auto& [parameter, unused] : by.items()) {
+      const json& sides = at(at(all, response), parameter);
+      const auto side = [&](std::size_t k) {
+        return sides.is_array() && sides.size() == 2 && sides[k].is_number() ? sides[k].get<double>() : std::nan("");
+      };
+      history.sides[derivative_name(response, parameter)].push_back({place, side(0), side(1)});
+    }
+}
+
+/// Drops the sides that a reader would see as one, and ends the curves where there are others.
+void keep_what_is_apart(History& history) {
+  constexpr double unseen = 1e-6;  // of the height of a curve
+  for (auto& [name, sides] : history.sides) {
+    auto& values = history.values[name];
+    const double size = size_of(values);
+    std::erase_if(sides, [&](const DerivativeSides& of) { return std::abs(of.above - of.below) <= unseen * size; });
+    for (const DerivativeSides& of : sides) values[of.place] = std::nan("");
+  }
+}
+
 /// How far a curve goes up and down, over its largest size.
 double eventfulness(const std::vector<double>& values) {
   double way = 0, size = 0;
@@ -48,6 +74,13 @@ std::string derivative_name(const std::string& response, const std::string& para
   return "d " + response + " / d " + parameter;
 }
 
+double size_of(const std::vector<double>& values) {
+  double size = 0;
+  for (const double value : values)
+    if (std::isfinite(value)) size = std::max(size, std::abs(value));
+  return size;
+}
+
 History history_of(const Cell& cell, Of of) {
   constexpr std::size_t most = 400;
   const json& steps = array_at(cell.record, "steps");
@@ -62,8 +95,10 @@ History history_of(const Cell& cell, Of of) {
       values.resize(out.times.size() - 1, std::nan(""));
       values.push_back(value->is_number() ? value->get<double>() : std::nan(""));
     }
+    if (of == Of::sensitivities) take_sides(steps[n], out.times.size() - 1, out);
   }
   for (auto& [name, values] : out.values) values.resize(out.times.size(), std::nan(""));
+  keep_what_is_apart(out);
   return out;
 }
 
@@ -106,15 +141,39 @@ json base_of_history(const Cell& cell) {
 void add_history(json& rows, const json& base, const char* x_name, const std::vector<double>& x,
                  const std::vector<double>& y, std::size_t turn) {
   const std::size_t stride = std::max<std::size_t>(x.size() / 15, 1);
+  std::size_t part = 0;
+  bool going = false;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    if (!std::isfinite(x[i]) || !std::isfinite(y[i])) continue;
+    if (!std::isfinite(x[i]) || !std::isfinite(y[i])) {
+      part += std::exchange(going, false);
+      continue;
+    }
+    going = true;
     json r = base;
+    if (part > 0) r["line"] = text_at(base, "line") + ", part " + std::to_string(part + 1);
     r[x_name] = x[i];
     r["value"] = y[i];
     r["order"] = i;
-    r["unmarked"] = (i + turn) % stride != 0;
+    const auto is_gap = [&](std::size_t k) { return k < y.size() && !std::isfinite(y[k]); };
+    r["unmarked"] = (i + turn) % stride != 0 && !is_gap(i + 1) && !(i > 0 && is_gap(i - 1));
     rows.push_back(r);
   }
+}
+
+void add_sides(json& rows, const json& base, const std::vector<double>& times,
+               const std::vector<DerivativeSides>& sides) {
+  for (const DerivativeSides& of : sides)
+    for (const auto& [value, side] : {std::pair(of.below, "from below"), std::pair(of.above, "from above")}) {
+      if (!std::isfinite(value)) continue;
+      json r = base;
+      r["time"] = times[of.place];
+      r["value"] = value;
+      r["side"] = side;
+      r["line"] = text_at(base, "line") + ", " + side + " at step " + std::to_string(of.place);
+      r["order"] = 0;
+      r["unmarked"] = false;
+      rows.push_back(r);
+    }
 }
 
 void add_given(Figure& figure, const Study& study, Of of, double end) {

@@ -9,6 +9,7 @@
 #include "studies/io/amounts.hpp"
 #include "studies/io/wording.hpp"
 #include "studies/report/about.hpp"
+#include "studies/report/differentiability.hpp"
 #include "studies/report/headline.hpp"
 #include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
@@ -251,6 +252,7 @@ std::vector<Section> sections_of_run(const Study& run, Figures& figures) {
   return {{"solution", "The solution", solution},
           {"solver", "The solver at work",
            figures.show(std::move(convergence)) + steps_table(run) + ledger_table(run.cells.front())},
+          {"differentiability", "Where derivatives hold", figures.show(map_of_changes(run)) + table_of_margins(run)},
           {"certificate", "Certificate", certificate(run)},
           {"provenance", "Provenance", provenance(run)}};
 }

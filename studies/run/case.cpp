@@ -16,11 +16,9 @@
 namespace stickslip {
 namespace {
 
-/// Fills in the one-sided derivatives of increment n, and whether they are one.
-void take_sides(const CaseResult& result, std::size_t n, StepResult& step) {
+/// Fills in the one-sided derivatives of increment n, and whether they are one. `at_master_kink`: of its StepReading.
+void take_sides(const CaseResult& result, std::size_t n, bool at_master_kink, StepResult& step) {
   const auto& scene = result.problem->model.scene;
-  const bool has_sides = scene.sensitivity_mode == SensitivityMode::direct;
-  if (!has_sides) step.differentiable = step.margins.least() > weak_margin;
   const auto take = [&](const auto& backward, const auto& forward) {
     if (n >= backward.size()) return;
     step.backward = backward[n];
@@ -30,13 +28,13 @@ void take_sides(const CaseResult& result, std::size_t n, StepResult& step) {
     take(result.one_sided->backward, result.one_sided->forward);
   else
     take(result.gradients.from_below, result.gradients.from_above);
-  if (result.gradients.of_responses.size() > n &&
-      integration_margin(result.problem->model, result.problem->slots, step.increment->state, step.increment->time) <=
-          weak_margin) {
+  if (result.one_sided && result.one_sided->backward.empty())  // (too many parameters for their sides)
+    step.differentiable = n < result.one_sided->first;
+  if (at_master_kink) {
     step.differentiable = false;  // and neither side is known
-    const auto& like = result.gradients.of_responses[n];
-    step.backward = step.forward =
-        Matrix<double>::Constant(like.rows(), like.cols(), std::numeric_limits<double>::quiet_NaN());
+    step.backward = step.forward = Matrix<double>::Constant(static_cast<Eigen::Index>(scene.responses.size()),
+                                                            static_cast<Eigen::Index>(scene.parameters.size()),
+                                                            std::numeric_limits<double>::quiet_NaN());
   }
   if (step.backward.size() == 0) return;
   for (std::size_t i = 0; i < scene.responses.size(); ++i)
@@ -67,11 +65,19 @@ void refuse_open_objectives(CaseResult& result) {
     if (std::isnan(sums[j])) result.gradients.of_objectives.row(j).setConstant(sums[j]);
 }
 
+/// The least of the distances of increments.
+void take_nearest_change(const CaseResult& result, std::size_t n, StepResult& step) {
+  if (n >= result.gradients.nearest_change.size()) return;
+  const auto& of = result.gradients.nearest_change[n];
+  step.nearest_change = step.nearest_change.size() == 0 ? of : Matrix<double>(step.nearest_change.cwiseMin(of));
+}
+
 std::vector<StepResult> gather_steps(const CaseResult& result, const StepReader& reader) {
   std::vector<StepResult> steps;
   StepResult step;
   for (std::size_t n = 0; n < result.trajectory.increments.size(); ++n) {
     const auto& increment = result.trajectory.increments[n];
+    take_nearest_change(result, n, step);
     step.newton += increment.newton;
     step.augmentations += increment.augmentations;
     step.history.insert(step.history.end(), increment.history.begin(), increment.history.end());
@@ -88,7 +94,7 @@ std::vector<StepResult> gather_steps(const CaseResult& result, const StepReader&
     step.contacts = read.contacts;
     if (n < result.gradients.of_responses.size()) step.sensitivities = result.gradients.of_responses[n];
     if (n < result.gradients.records.size()) step.scheme = result.gradients.records[n];
-    take_sides(result, n, step);
+    take_sides(result, n, read.at_master_kink, step);
     refuse_open_responses(step);
     steps.push_back(std::move(step));
     step = {};
@@ -102,6 +108,24 @@ Vector<double> objectives_of(const CaseResult& result) {
   for (const auto& step : result.steps)
     add_contributions(model, result.problem->slots.numbers, step.increment->time, step.responses, values);
   return values;
+}
+
+/// Derivatives of the objectives on one side; of steps that have one derivative it is that of both.
+Matrix<double> side_of_objectives(const CaseResult& result, Matrix<double> StepResult::*side) {
+  const auto& model = result.problem->model;
+  std::vector<Matrix<double>> of_increments(result.trajectory.increments.size());
+  std::vector<Vector<double>> responses(of_increments.size());
+  std::size_t n = 0;
+  for (const auto& step : result.steps) {
+    while (!result.trajectory.increments[n].requested) ++n;
+    responses[n] = step.responses;
+    auto& of = of_increments[n++] = (step.*side).size() > 0 ? step.*side : step.sensitivities;
+    if (of.size() == 0)
+      of.setConstant(static_cast<Eigen::Index>(model.scene.responses.size()),
+                     static_cast<Eigen::Index>(model.scene.parameters.size()),
+                     std::numeric_limits<double>::quiet_NaN());
+  }
+  return objective_gradients(model, result.trajectory, responses, of_increments);
 }
 
 /// Says of a run that failed with a loose body why it has no answer.
@@ -125,18 +149,21 @@ bool is_adjoint(const Model& model) { return model.scene.sensitivity_mode == Sen
 /// `derivatives`: what followed the run, unless it is adjoint.
 void differentiate_case(Workspace<double>& workspace, Derivatives& derivatives, CaseResult& result) {
   const auto& [model, slots, unused] = *result.problem;
+  auto& gradients = result.gradients;
   if (is_adjoint(model)) {
-    result.gradients = adjoint(model, slots, result.method, result.trajectory, workspace);
-    return;
+    gradients = adjoint(model, slots, result.method, result.trajectory, workspace);
+  } else {
+    gradients = derivatives.finish(result.trajectory);
+    gradients.of_objectives = objective_gradients(model, slots, result.trajectory, gradients.of_responses);
   }
-  result.gradients = derivatives.finish(result.trajectory);
-  result.gradients.of_objectives = objective_gradients(model, slots, result.trajectory, result.gradients);
   {
     const Stopwatch time(result.one_sided_seconds);
     result.one_sided = one_sided_derivatives(model, slots, result.method, result.trajectory, workspace);
   }
-  result.gradients.seconds += result.one_sided_seconds;
-  if (result.one_sided) result.gradients.counters += result.one_sided->counters;
+  gradients.seconds += result.one_sided_seconds;
+  if (!result.one_sided) return;
+  gradients.counters += result.one_sided->counters;
+  gradients.repeated += result.one_sided->repeated;
 }
 
 /// What of a step that converged is not finite, in words; empty where all is.
@@ -233,11 +260,15 @@ EngineHoldings holdings(const Workspace<double>& workspace) {
 
 }  // namespace
 
-bool StepResult::has_kink(const Scene& scene, const Method& method, std::size_t response, std::size_t parameter) const {
+bool are_apart(double below, double above, double value, const Parameter& by, const Method& method) {
   const double allowed = scheme_of(method).error, rounding = allowed > 0 ? allowed : 1e-9;
-  const double below = backward(response, parameter), above = forward(response, parameter);
-  const double value = scene.parameters[parameter].value, size = value == 0 ? 0 : std::abs(responses[response] / value);
+  const double size = by.value == 0 ? 0 : std::abs(value / by.value);
   return !(std::abs(above - below) <= rounding * std::max({std::abs(below), std::abs(above), size}));
+}
+
+bool StepResult::has_kink(const Scene& scene, const Method& method, std::size_t response, std::size_t parameter) const {
+  return are_apart(backward(response, parameter), forward(response, parameter), responses[response],
+                   scene.parameters[parameter], method);
 }
 
 Problem::Problem(const Scene& scene) {
@@ -304,6 +335,11 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
   result.steps = gather_steps(result, reader);
   result.scales = reader.accuracy().scales;
   result.objectives = objectives_of(result);
+  const auto has_sides = [](const StepResult& step) { return !step.differentiable; };
+  if (has_ended(result) && std::any_of(result.steps.begin(), result.steps.end(), has_sides)) {
+    result.objectives_below = side_of_objectives(result, &StepResult::backward);
+    result.objectives_above = side_of_objectives(result, &StepResult::forward);
+  }
   refuse_overflow(result);
   refuse_open_objectives(result);
   return result;

@@ -37,6 +37,10 @@ struct ContactMeasures {
   double moment = 0;       ///< of the forces on both sides, which balance; 0 unless a response is a moment
 };
 
+/// Whether the one-sided derivatives of a value by a parameter differ by more than their rounding, or than their scheme
+/// is off by, or are no numbers.
+bool are_apart(double below, double above, double value, const Parameter& by, const Method& method);
+
 /// A step that the scene asked for, gathered from its sub-steps.
 struct StepResult {
   const Increment<double>* increment;  ///< the last of its sub-steps
@@ -54,8 +58,10 @@ struct StepResult {
   Matrix<double> sensitivities;
   bool differentiable = true;        ///< both one-sided derivatives agree
   Matrix<double> backward, forward;  ///< one-sided sensitivities, where they are known; else empty
-  /// Whether the one-sided derivatives of a response by a parameter differ by more than their rounding, or than their
-  /// scheme is off by (or are no numbers). pre: there are some.
+  /// How far the nearest change of a branch is, parameters x (below, above), in their units, the least of its
+  /// sub-steps; empty where there are no derivatives of it (Gradients::nearest_change).
+  Matrix<double> nearest_change = {};
+  /// Whether the one-sided derivatives of a response by a parameter are_apart(). pre: there are some.
   bool has_kink(const Scene& scene, const Method& method, std::size_t response, std::size_t parameter) const;
 };
 
@@ -68,6 +74,8 @@ struct CaseResult {
   std::vector<StepResult> steps;
   KktScales scales;           ///< of the last increment
   Vector<double> objectives;  ///< their values
+  /// One-sided derivatives of the objectives, objectives x parameters; empty where all steps have one derivative.
+  Matrix<double> objectives_below, objectives_above;
   double condition_estimate = 0;
   long nonzeros = 0;
   EngineHoldings engine;  ///< at the end of the solution, before its derivatives

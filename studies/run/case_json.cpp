@@ -52,6 +52,16 @@ json one_sided_json(const StepResult& step, const Scene& scene) {
   return out;
 }
 
+/// {parameter: [below, above]}; null where nothing changes.
+json nearest_change_json(const StepResult& step, const Scene& scene) {
+  json out = json::object();
+  for (std::size_t j = 0; j < scene.parameters.size(); ++j) {
+    const auto row = static_cast<Eigen::Index>(j);
+    out[scene.parameters[j].name] = {finite(step.nearest_change(row, 0)), finite(step.nearest_change(row, 1))};
+  }
+  return out;
+}
+
 json scheme_json(const SchemeRecord& record) {
   json out = {{"passes", record.passes}, {"oversize", record.oversize}};
   if (record.contraction > 0) out["contraction"] = finite(record.contraction);
@@ -146,6 +156,24 @@ json scales_json(const CaseResult& result) {
   return out;
 }
 
+namespace {
+
+/// {parameter: [from below, from above]} of all; null where the sides of objective i are one.
+json sides_of_objective(const CaseResult& result, Eigen::Index i) {
+  const auto& parameters = result.problem->model.scene.parameters;
+  json out;
+  bool apart = false;
+  for (std::size_t j = 0; result.objectives_below.size() > 0 && j < parameters.size(); ++j) {
+    const auto column = static_cast<Eigen::Index>(j);
+    const double below = result.objectives_below(i, column), above = result.objectives_above(i, column);
+    out[parameters[j].name] = {finite(below), finite(above)};
+    apart |= are_apart(below, above, result.objectives[i], parameters[j], result.method);
+  }
+  return apart ? out : json(nullptr);
+}
+
+}  // namespace
+
 json objectives_json(const CaseResult& result) {
   const auto& scene = result.problem->model.scene;
   json out = json::object();
@@ -154,6 +182,8 @@ json objectives_json(const CaseResult& result) {
     entry["value"] = has_ended(result) ? finite(result.objectives[i]) : json(nullptr);
     for (std::size_t j = 0; result.gradients.of_objectives.size() && j < scene.parameters.size(); ++j)
       entry["gradient"][scene.parameters[j].name] = finite(result.gradients.of_objectives(i, j));
+    if (json sides = sides_of_objective(result, static_cast<Eigen::Index>(i)); !sides.is_null())
+      entry["one_sided"] = std::move(sides);
   }
   return out;
 }
@@ -212,6 +242,7 @@ void add_answers(const CaseResult& result, const StepResult& step, json& entry) 
     for (std::size_t i = 0; i < step.open_responses.size(); ++i)
       if (step.open_responses[i]) entry["undetermined"].push_back(scene.responses[i].name);
     if (!step.differentiable) entry["one_sided"] = one_sided_json(step, scene);
+    if (step.nearest_change.size() > 0) entry["nearest_change"] = nearest_change_json(step, scene);
   }
   if (step.scheme) entry["sensitivity_scheme"] = scheme_json(*step.scheme);
 }
@@ -327,6 +358,7 @@ json result_json(const CaseResult& result, const std::string& scene_text) {
   out["ledger"] = ledger_json(ledger(result));
   out["warnings"] = warnings_json(result);
   out["size"] = size_json(result);
+  for (const auto& parameter : model.scene.parameters) out["parameters"][parameter.name] = parameter.value;
   out["steps"] = steps_json(result);
   if (json solutions = solutions_json(result); !solutions.empty()) out["solutions"] = std::move(solutions);
   if (!model.scene.objectives.empty()) out["objectives"] = objectives_json(result);

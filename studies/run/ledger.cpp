@@ -46,7 +46,8 @@ double kept_iterations(const Trajectory<double>& trajectory) {
 
 double derivative_bytes(const Gradients& gradients) {
   long bytes = bytes_of(gradients.of_objectives) + bytes_of(gradients.last_displacement);
-  for (const auto* list : {&gradients.of_responses, &gradients.from_below, &gradients.from_above})
+  for (const auto* list :
+       {&gradients.of_responses, &gradients.from_below, &gradients.from_above, &gradients.nearest_change})
     for (const auto& matrix : *list) bytes += bytes_of(matrix);
   return static_cast<double>(bytes);
 }

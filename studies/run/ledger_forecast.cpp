@@ -181,7 +181,8 @@ LedgerRow direct_row(const Problem& problem, const Size& n) {
            {"states", together * blocks * state, within * n.path * n.moving},
            {"solves", together * solve, within * n.path},
            {"sweeps", 0, on && n.truncated ? not_known : exactly},
-           {"derivatives", real_bytes * p * ((ties ? 3 : 1) * n.steps * n.responses + n.dofs + n.objectives), n.path}},
+           {"derivatives", real_bytes * p * (n.steps * ((ties ? 3 : 1) * n.responses + 2) + n.dofs + n.objectives),
+            n.path}},  // (2: the nearest change of a branch, below and above)
           derivative_counts(n, p, 2 * blocks),
           on ? not_apart : 0};
 }

@@ -84,6 +84,8 @@ StepReading StepReader::read(const State<double>& before, double start, const In
   if (model.effects.plasticity && flows_on(before, state))
     step.margins.yield = yield_margin(model, slots, {state.displacement, before.history.bodies});
   step.margins.vertex = vertex_margin(model, slots, state, increment.time);
+  step.at_master_kink =
+      step.margins.vertex <= weak_margin && integration_margin(model, slots, state, increment.time) <= weak_margin;
   step.at_vertex = contacts_at_vertices(model, slots, before, start, state, increment.time, compliance_);
   step.responses = evaluate_responses(model, slots, state, increment.time);
   if (forces_.is_called_for()) {

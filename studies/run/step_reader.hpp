@@ -21,6 +21,7 @@ struct StepReading {
   std::vector<char> undetermined, at_vertex;
   /// Per response, whether it hangs on forces that are undetermined; empty where there are none.
   std::vector<char> open_responses;
+  bool at_master_kink = false;  ///< integration_margin() counts as zero: no side of a derivative is known
 };
 
 class StepReader {

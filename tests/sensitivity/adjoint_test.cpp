@@ -39,7 +39,7 @@ Both both(const Scene& scene, const Method& method, LinearAlgebra::Engine engine
   const auto trajectory = solve(model, slots, method, options, workspace);
   Both out;
   out.forward = differentiate(model, slots, method, trajectory, workspace);
-  out.direct = objective_gradients(model, slots, trajectory, out.forward);
+  out.direct = objective_gradients(model, slots, trajectory, out.forward.of_responses);
   out.condition = std::visit([](auto& e) { return e.condition_estimate(); }, *workspace.engine);  // of the scheme's
   out.backward = adjoint(model, slots, method, trajectory, workspace);
   out.adjoint = out.backward.of_objectives;

@@ -57,7 +57,7 @@ TEST(Objectives, AddUpTheStepsThatWereAskedFor) {
 
 TEST(Objectives, GradientsGoByTheChainRuleAndCountTheTarget) {
   Made made;
-  const auto of = objective_gradients(made.model, made.slots, made.trajectory, made.gradients);
+  const auto of = objective_gradients(made.model, made.slots, made.trajectory, made.gradients.of_responses);
   ASSERT_EQ(of.rows(), 4);
   EXPECT_EQ(of(0, 0), 60);
   EXPECT_EQ(of(0, 1), 120);
@@ -73,7 +73,7 @@ TEST(Objectives, GradientsGoByTheChainRuleAndCountTheTarget) {
 TEST(Objectives, OfARunThatEndedEarlyHaveNoGradient) {
   Made made;
   made.gradients.of_responses.pop_back();
-  EXPECT_EQ(objective_gradients(made.model, made.slots, made.trajectory, made.gradients).size(), 0);
+  EXPECT_EQ(objective_gradients(made.model, made.slots, made.trajectory, made.gradients.of_responses).size(), 0);
 }
 
 }  // namespace

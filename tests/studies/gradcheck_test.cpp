@@ -45,13 +45,26 @@ TEST(Gradcheck, OfAStepWithATieChecksTheOthersAndBothSides) {
   }
 }
 
-TEST(Gradcheck, SaysHowManyStepsWereNotChecked) {
-  // the adjoint has no one-sided derivatives, so the step with the tie is left, and the objective with it
+json unloaded_adjoint() {
   auto document = cases::load(folder / "gradcheck-unloaded.json");
   document["objectives"] = {{"J", {{"of", "press"}, {"sum", true}}}};
   document["sensitivity"] = {{"mode", "adjoint"}};
-  const auto check = check_of(document, gradcheck_methods.back());
+  return document;
+}
+
+TEST(Gradcheck, OfAnAdjointChecksBothSidesOfAnObjective) {
+  const auto check = check_of(unloaded_adjoint(), gradcheck_methods.back());
   ASSERT_EQ(check.entries.size(), 1u);
+  EXPECT_EQ(check.entries.front().verdict, Verdict::agrees) << check_table(check);
+  EXPECT_EQ(check.entries.front().unchecked, 0);
+}
+
+TEST(Gradcheck, SaysHowManyStepsWereNotChecked) {
+  // an adjoint of more parameters has no one-sided derivatives, so the step with the tie is left, and its objective
+  auto document = unloaded_adjoint();
+  const json first = document["parameters"].begin().value();
+  for (int k = 0; k < most_sided_parameters; ++k) document["parameters"]["z" + std::to_string(k)] = first;
+  const auto check = check_of(document, gradcheck_methods.back());
   EXPECT_EQ(check.entries.front().verdict, Verdict::not_checked);
   EXPECT_EQ(check.entries.front().unchecked, 1);
   EXPECT_FALSE(check.passed());

@@ -253,6 +253,29 @@ class Figures(InFolder):
         self.assertEqual(axes.get_title(), f"no solution ({result.status}), last iterate, t = 1")
         self.assertEqual({line.get_linestyle() for line in axes.get_lines() if line.get_label() != "slip"}, {"--"})
 
+    def test_derivatives_have_a_gap_and_both_sides_where_there_are_two(self):
+        scene = json.loads(json.dumps(self.DRAGGED))
+        result = stickslip.run(scene)
+        self.assertEqual(list(result.differentiable), [True, True, False, True])
+        np.testing.assert_allclose(result.one_sided("u", "U"), [[0, 0], [0, 0], [0, 0.75], [1, 1]], atol=1e-12)
+        axes = plots.derivative(result, "u", "U")
+        curve, below, above = axes.get_lines()
+        np.testing.assert_array_equal(np.isnan(curve.get_ydata()), [False, False, True, False])
+        np.testing.assert_allclose([below.get_xdata()[0], below.get_ydata()[0]], [0.75, 0], atol=1e-12)
+        np.testing.assert_allclose([above.get_xdata()[0], above.get_ydata()[0]], [0.75, 0.75], atol=1e-12)
+        for name in (("none", "U"), ("u", "none")):
+            with self.assertRaises(KeyError):
+                plots.derivative(result, *name)
+
+    DRAGGED = {"bodies": {"block": {"mesh": {"point": {"at": [0, 0]}},
+                                    "material": {"grounded_spring": {"stiffness": [[100, 0], [0, 100]]}}}},
+               "obstacles": {"floor": {"plane": {"point": [0, 0], "normal": [0, 1]}}},
+               "contacts": {"sole": {"slave": "block.node", "master": "floor", "friction": 0.3}},
+               "supports": [{"on": "block.anchor", "move": {"x": [[0, 0], [1, 0.04]], "y": 0}}],
+               "loads": [{"on": "block.node", "force": [0, -10]}], "time": {"end": 1, "steps": 4},
+               "responses": {"u": {"displacement": {"on": "block.node", "component": "x"}}},
+               "parameters": {"U": "/supports/0/move/x/1/1"}, "method": {"monolithic_al": {}}}
+
     PUSHED = {"bodies": {"block": {"mesh": {"box": {"min": [0, 0], "max": [4, 2], "cells": [6, 3]}},
                                    "material": {"linear_elastic": {"E": 1000, "nu": 0.3}}}},
               "obstacles": {"floor": {"plane": {"point": [0, 0], "normal": [0, 1]}}},

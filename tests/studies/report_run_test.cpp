@@ -38,6 +38,11 @@ class ReportOfARun : public recorded::StudyOnDisk {
     }
     return written();
   }
+  /// A file of its figures.
+  std::string text_of(const std::string& name) const {
+    std::ifstream in(directory_ / "figures" / name);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
   std::string written() {
     write_run_report(directory_);
     std::ifstream in(directory_ / "report.html");
@@ -79,6 +84,49 @@ TEST_F(ReportOfARun, OfAFrictionlessSceneThatEndsOpenSpeaksOfNoSlipAndDrawsNoTra
   const std::string html = page_of("indentation");
   EXPECT_THAT(html, AllOf(HasSubstr("id=\"derivative-histories\""), Not(HasSubstr("begins to slip")),
                           Not(HasSubstr("tangential")), Not(HasSubstr("id=\"tractions\""))));
+}
+
+/// The block of the slider, dragged to the edge of its cone at the third step of five, and on.
+json dragged_block() {
+  json document = cases::load(scene_files / "slider.json");
+  document["supports"][0]["move"]["x"] = {{0, 0}, {1, 0.05}};
+  document["time"] = {{"end", 1}, {"steps", 5}};
+  document["parameters"] = {{"U", "/supports/0/move/x/1/1"}, {"mu", "/contacts/sole/friction"}};
+  return document;
+}
+
+TEST_F(ReportOfARun, HasMarginsAsATableAndAsAMap) {
+  const json document = dragged_block();
+  const std::string html = page_of(cases::run(document, document["method"], scene_files / "slider.json"));
+  EXPECT_THAT(html, AllOf(HasSubstr(">Where derivatives hold</h2>"), HasSubstr("id=\"nearest-change\""),
+                          HasSubstr("<caption>Margins of every step"), HasSubstr(">two sides<"),
+                          HasSubstr(">at a change<"), HasSubstr("by mu</th>")));
+  const std::string csv = text_of("nearest-change.csv");
+  EXPECT_THAT(csv, HasSubstr("parameter,above,below,differentiable,time,value"));
+  EXPECT_THAT(csv, HasSubstr("U,0,0,false,0.6"));
+}
+
+/// At t = 0.6 the derivative by U is 0 from below and 0.6 from above: both are points, and no curve passes.
+TEST_F(ReportOfARun, DrawsNoDerivativeWithTwoSidesAsAPointOfACurve) {
+  const json document = dragged_block();
+  const std::string html = page_of(cases::run(document, document["method"], scene_files / "slider.json"));
+  EXPECT_THAT(html, HasSubstr("Where it has two sides the curve ends"));
+  std::istringstream rows(text_of("derivative-histories.csv"));
+  std::vector<std::string> at_the_edge;
+  for (std::string row; std::getline(rows, row);)
+    if (row.find("d u / d U") != std::string::npos && row.find("0.6") != std::string::npos) at_the_edge.push_back(row);
+  ASSERT_EQ(at_the_edge.size(), 2u);
+  EXPECT_THAT(at_the_edge[0], HasSubstr("from below"));
+  EXPECT_THAT(at_the_edge[1], HasSubstr("from above"));
+}
+
+TEST_F(ReportOfARun, OfAnAdjointHasTheMarginsAndNoMap) {
+  json document = dragged_block();
+  document["sensitivity"] = {{"mode", "adjoint"}};
+  document["objectives"]["J"] = {{"of", "u"}, {"at", 1}};
+  const std::string html = page_of(cases::run(document, document["method"], scene_files / "slider.json"));
+  EXPECT_THAT(html, AllOf(HasSubstr("<caption>Margins of every step"), HasSubstr(">two sides<"),
+                          Not(HasSubstr("id=\"nearest-change\""))));
 }
 
 /// The two charts of the histories stand side by side below the picture; one alone stands beside it.

@@ -22,7 +22,7 @@ inline double difference_of_modes(const Scene& scene, const Method& method) {
   Workspace<double> workspace;
   const auto trajectory = solve(model, slots, method, {}, workspace);
   const auto forward = differentiate(model, slots, method, trajectory, workspace);
-  const Matrix<double> direct = objective_gradients(model, slots, trajectory, forward);
+  const Matrix<double> direct = objective_gradients(model, slots, trajectory, forward.of_responses);
   const Matrix<double> backward = adjoint(model, slots, method, trajectory, workspace).of_objectives;
   if (direct.size() == 0 || backward.rows() != direct.rows()) return std::numeric_limits<double>::quiet_NaN();
   double worst = 0;

@@ -113,6 +113,31 @@ class Result:
         """Names of the contacts, as `contact` takes them."""
         return list(self._contacts)
 
+    @property
+    def differentiable(self) -> np.ndarray:
+        """Per step, (steps,): whether each of its derivatives has one value. False of a step without a solution."""
+        return np.array([step.get("differentiable", False) for step in self.document["steps"]], dtype=bool)
+
+    def one_sided(self, response: str, parameter: str) -> np.ndarray:
+        """A derivative from below and from above at each step, (steps, 2).
+
+        Where it has one value both are that; NaN where a side has none, or is not known. KeyError where there is no such
+        response or parameter.
+        """
+        _arguments.text(response, "response", "the name of a response")
+        _arguments.text(parameter, "parameter", "the name of a parameter")
+        if response not in self.sensitivities:
+            raise _no_name("response", response, self.sensitivities)
+        if parameter not in self.sensitivities[response]:
+            raise _no_name("parameter", parameter, self.sensitivities[response])
+        sides = np.repeat(self.sensitivities[response][parameter][:, np.newaxis], 2, axis=1)
+        for number, step in enumerate(self.document["steps"]):
+            if step.get("differentiable", True):
+                continue
+            given = step["one_sided"].get(response, {}).get(parameter, (None, None))
+            sides[number] = [np.nan if side is None else side for side in given]
+        return sides
+
     def displacement(self, step: int = -1, iterate: bool = False) -> np.ndarray:
         """Displacement of the nodes at the end of a step, (nodes, dimension).
 

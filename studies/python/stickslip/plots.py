@@ -1,4 +1,4 @@
-"""Tractions of a contact and work-precision diagrams, drawn by matplotlib.
+"""Tractions of a contact, derivatives over time and work-precision diagrams, drawn by matplotlib.
 
 Each function draws into `ax`, or into axes of its own where that is None, and returns the axes.
 """
@@ -54,6 +54,28 @@ def tractions(result: Result, contact: Optional[str] = None, step: int = -1, ax:
     what = f"no solution ({result.status}), last iterate" if failed else contact
     ax.set(title=f"{what}, t = {result.times[step]:g}", xlabel="xyz"[axis], ylabel="force per area")
     ax.legend()
+    return ax
+
+
+def derivative(result: Result, response: str, parameter: str, ax: Any = None) -> Any:
+    """A derivative over time. Where it has two sides it is no point of the curve: the curve has a gap, with a triangle for
+    each side that has a derivative.
+
+    KeyError where there is no such response or parameter.
+    """
+    if not isinstance(result, Result):
+        raise _arguments.wrong_type("result", result, "what run() gives, a stickslip.Result")
+    below, above = result.one_sided(response, parameter).T
+    unseen = 1e-6 * np.nanmax(np.abs([below, above]), initial=0)  # of the height of the curve
+    one = np.abs(above - below) <= unseen
+    curve = np.where(one, result.sensitivities[response][parameter], np.nan)
+    ax = plt.subplots()[1] if ax is None else _axes(ax)
+    (line,) = ax.plot(result.times, curve, ".-")
+    if not one.all():
+        for side, marker, label in ((below, "<", "from below"), (above, ">", "from above")):
+            ax.plot(result.times[~one], side[~one], marker, color=line.get_color(), fillstyle="none", label=label)
+        ax.legend()
+    ax.set(xlabel="time", ylabel=f"d {response} / d {parameter}")
     return ax
 
 

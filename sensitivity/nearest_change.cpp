@@ -1,0 +1,202 @@
+#include "sensitivity/nearest_change.hpp"
+
+#include <limits>
+
+#include "core/model/flow_points.hpp"
+#include "sensitivity/one_sided.hpp"
+#include "sensitivity/vertex_ties.hpp"
+
+namespace stickslip {
+namespace {
+
+using ByDirection = Direction::Gradient;
+
+/// Reads the margins of one increment.
+class ChangeReader {
+ public:
+  ChangeReader(const Model& model, const Slots<double>& slots, const DifferentiatedIncrement& of,
+               NearestChange& nearest)
+      : model_(model),
+        slots_(slots),
+        of_(of),
+        nearest_(nearest),
+        per_size_(ByDirection::Zero()),
+        motion_(ByDirection::Zero()) {
+    for (std::size_t d = 0; d < of.block.parameters.size(); ++d)
+      if (const double value = model.scene.parameters[of.block.parameters[d]].value; value != 0)
+        per_size_[static_cast<Eigen::Index>(d)] = 1 / std::abs(value);
+    for (const auto& u : of.at.displacement) motion_ = motion_.max(u.d.abs());
+  }
+
+  void read_contact() {
+    negligible_ = share * traction_rates(model_, slots_, of_.at).max(of_.largest * per_size_);
+    for (int p = 0; p < static_cast<int>(model_.points.size()); ++p) read_point(p);
+  }
+
+  void read_flow() {
+    const BodyMotion<Direction> motion{of_.at.displacement, of_.memory, of_.time, &of_.state.flow};
+    for_each_flow_point<Direction>(model_, of_.block.slots, motion, nullptr,
+                                   [&](const FlowPoint<Direction>& point) { read_flow_point(point); });
+  }
+
+  /// At small strain: the weight of a master node is zero where the slave node leaves its facet.
+  void read_facets() {
+    const ByDirection motion = motion_of_mesh();
+    for (int p = 0; p < static_cast<int>(model_.points.size()); ++p) {
+      const auto& point = model_.points[p];
+      const auto& weights = of_.block.slots.geometry[p].weights;
+      const bool has_nodes = point.master == ContactPoint::Master::facet && point.of_polyline.empty();
+      if (!has_nodes || of_.state.contact.state[p] == ContactState::open || point.mesh_size == 0) continue;
+      for (Eigen::Index k = point.slave_nodes; k < weights.size(); ++k) {
+        const Direction share_of_node = weights[k].v < 0 ? -weights[k] : weights[k];
+        lower(share_of_node, share_of_node.v <= weak_margin, share * (rigid * motion / point.mesh_size).max(per_size_));
+      }
+    }
+  }
+
+  void read_vertices() {
+    const ByDirection motion = motion_of_mesh();
+    for_each_vertex_way(model_, of_.block.slots, of_.at.displacement, of_.state, of_.time,
+                        [&](const Direction& way, double length) {
+                          lower(way, std::abs(way.v) <= weak_margin, share * (rigid * motion / length).max(per_size_));
+                        });
+  }
+
+ private:
+  static constexpr double share = 1e-10, rigid = 1e-3;  // as for the verdicts at ties (sensitivity/branches.cpp)
+
+  /// Lowers the distances by those to the zero of a margin. `tie`: it counts as zero; `negligible`: derivatives up to
+  /// this count as zero.
+  void lower(const Direction& margin, bool tie, const ByDirection& negligible) {
+    for (std::size_t d = 0; d < of_.block.parameters.size(); ++d) {
+      const auto k = static_cast<Eigen::Index>(d);
+      const int j = of_.block.parameters[d];
+      const double rate = margin.d[k];
+      if (!(std::abs(rate) > negligible[k]) || !std::isfinite(margin.v)) continue;
+      if (tie) {
+        nearest_.row(j).setZero();
+        continue;
+      }
+      lower_way(j, -margin.v / rate);
+    }
+  }
+
+  void lower_way(int parameter, double way) {
+    double& side = nearest_(parameter, way < 0 ? 0 : 1);
+    side = std::min(side, std::abs(way));
+  }
+
+  /// Largest derivative of a displacement or of a node's place.
+  ByDirection motion_of_mesh() const {
+    ByDirection motion = motion_;
+    for (Eigen::Index k = 0; k < of_.block.slots.points.size(); ++k)
+      motion = motion.max(of_.block.slots.points.data()[k].d.abs());
+    return motion;
+  }
+
+  void read_point(int p) {
+    const auto& point = model_.points[p];
+    const auto& contact = of_.at.contact;
+    const ContactState state = of_.state.contact.state[p];
+    const double elastic = slots_.stiffness[p] / slots_.geometry[p].area;
+    const double none = weak_margin * of_.largest;
+    if (state == ContactState::open)
+      return lower(contact.gap[p], elastic * contact.gap[p].v <= none, negligible_ / elastic);
+    const Direction pressure = -contact.traction[point.multiplier];
+    lower(pressure, pressure.v <= none, negligible_);
+    if (point.tangents == 0) return;
+    const auto& law = of_.block.slots.friction[point.contact];
+    const double size = law.bound(pressure.v);
+    if (!(size > 0)) return;
+    if (state == ContactState::stick) {
+      const Vector<Direction> traction = contact.traction.segment(point.multiplier + 1, point.tangents);
+      return read_stick(law.bound(pressure, law.piece(pressure.v)), traction);
+    }
+    const Direction slip = slip_of(p, law.bound(pressure, state));
+    lower(slip, elastic * slip.v <= weak_margin * size, negligible_ / elastic);
+    if (!law.corner()) return;
+    const Direction apart = law.bound(pressure, ContactState::slip) - law.bound(pressure, ContactState::limited);
+    lower(apart, std::abs(apart.v) <= weak_margin * size, negligible_);
+  }
+
+  /// A traction that moves along a line leaves its cone at both ends: |t + Dt w| = bound + Dbound w.
+  void read_stick(const Direction& bound, const Vector<Direction>& traction) {
+    const double least = weak_margin * bound.v;
+    const Direction now = norm(traction);
+    if (bound.v - now.v <= least) return lower(bound - now, true, negligible_);
+    for (std::size_t d = 0; d < of_.block.parameters.size(); ++d) {
+      const auto k = static_cast<Eigen::Index>(d);
+      double squared = 0, along = 0;  // Dt . Dt and t . Dt
+      for (const auto& t : traction) {
+        squared += t.d[k] * t.d[k];
+        along += t.v * t.d[k];
+      }
+      if (std::max(std::sqrt(squared), std::abs(bound.d[k])) <= negligible_[k]) continue;
+      const double a = squared - bound.d[k] * bound.d[k], h = along - bound.v * bound.d[k];
+      const double c = now.v * now.v - bound.v * bound.v, root = h * h - a * c;
+      constexpr double rounding = 1e-12;  // of h^2: without a traction the two ends are one, where the bound is zero
+      if (!(root >= -rounding * h * h)) continue;
+      const double q = -(h + std::copysign(std::sqrt(std::max(root, 0.0)), h));
+      for (const double way : {q / a, c / q})
+        if (std::isfinite(way) && bound.v + bound.d[k] * way >= -least) lower_way(of_.block.parameters[d], way);
+    }
+  }
+
+  static ByDirection size_of_rates(const Vector<Direction>& of) {
+    ByDirection squares = ByDirection::Zero();
+    for (const auto& component : of) squares += component.d.square();
+    return squares.sqrt();
+  }
+
+  /// Slip of the increment of a point that slips, length; of a spring what it does not hold of it.
+  Direction slip_of(int p, const Direction& bound) const {
+    const auto& point = model_.points[p];
+    const Vector<Direction> slip = of_.at.contact.slip.segment(tangential_offset(model_, p), point.tangents);
+    if (!of_.springs) return norm(values(slip)) > 0 ? norm(slip) : Direction(0.0, size_of_rates(slip));
+    const Direction& rho = (*of_.springs)[p].tangential;
+    Vector<Direction> trial = of_.at.multiplier.segment(point.multiplier + 1, point.tangents);
+    for (int a = 0; a < point.tangents; ++a) trial[a] += rho * slip[a];
+    return (norm(trial) - bound) / rho;
+  }
+
+  void read_flow_point(const FlowPoint<Direction>& point) {
+    const auto& [stress, before, after, modulus] = point.trial;
+    const Direction bound = point.hardening.bound(before);
+    const Direction excess = (stress - bound) / bound.v;
+    const ByDirection size = stress.d.abs()
+                                 .max(bound.d.abs())
+                                 .max(modulus.v * before.d.abs().max(after.d.abs()))
+                                 .max(rigid * modulus.v / point.size * motion_);
+    const ByDirection negligible = share * (size / bound.v).max(per_size_);
+    lower(excess, std::abs(excess.v) <= weak_margin, negligible);
+    if (!(after.v > before.v)) return;
+    for (const auto& row : point.hardening.rows)
+      lower((after - row.strain) * (modulus.v / bound.v), std::abs(after.v / row.strain.v - 1) <= weak_margin,
+            negligible);
+  }
+
+  const Model& model_;
+  const Slots<double>& slots_;
+  const DifferentiatedIncrement& of_;
+  NearestChange& nearest_;
+  ByDirection per_size_;    ///< 1 over the size of each parameter; 0 where it is not known
+  ByDirection motion_;      ///< largest derivative of a displacement
+  ByDirection negligible_;  ///< of tractions
+};
+
+}  // namespace
+
+NearestChange no_change(const Model& model) {
+  return NearestChange::Constant(static_cast<Eigen::Index>(model.scene.parameters.size()), 2,
+                                 std::numeric_limits<double>::infinity());
+}
+
+void lower_nearest_change(const Model& model, const Slots<double>& slots, const DifferentiatedIncrement& increment,
+                          NearestChange& nearest) {
+  ChangeReader reader(model, slots, increment, nearest);
+  reader.read_contact();
+  if (model.effects.plasticity) reader.read_flow();
+  model.slides_along_curves() ? reader.read_vertices() : reader.read_facets();
+}
+
+}  // namespace stickslip
