@@ -77,6 +77,7 @@ json head_of(const CellInput& cell) {
           {"label", cell.label},
           {"method", to_json(cell.method)},
           {"default", is_default(cell.method)},
+          {"automatic", std::visit([](const auto& m) { return m.automatic_multiple; }, cell.method)},
           {"knobs", cell.knobs},
           {"vary", cell.vary},
           {"refine", cell.refine},

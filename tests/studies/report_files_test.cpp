@@ -77,6 +77,51 @@ TEST_F(ReportCharts, WindowsAreOneForEachSettingAndScene) {
   EXPECT_FALSE(report::robustness_windows(study(), {"scale"}));
 }
 
+/// The automatic choice stands at the value that it stands for. A soft penalty that takes fewer iterations errs more,
+/// and is not what it is held against: 40 iterations at 1e3 and 1e5 stand beside 10 at 10, and beside 20 at 1e7.
+TEST_F(ReportCharts, WindowsMarkTheAutomaticChoiceAndWhatItCosts) {
+  std::vector<json> cells;
+  for (const auto& [stiffness, error, iterations] :
+       {std::tuple{10.0, 1e-1, 10}, {1e3, 1e-3, 40}, {1e5, 1e-5, 40}, {1e7, 1e-7, 20}, {1e9, 1e-9, 25}})
+    cells.push_back(cell("penalty", {{"stiffness", stiffness}}, error, iterations));
+  auto automatic = cell("penalty", {{"stiffness", "auto"}}, 1e-3, 30);
+  automatic["method"] = {{"penalty", {{"stiffness", "auto"}}}};
+  cells.push_back(automatic);
+  record(description(), cells);
+  const auto plate = report::robustness_windows(study(), {"stiffness"});
+  ASSERT_TRUE(plate);
+  EXPECT_EQ(plate->folded, "");
+  EXPECT_EQ(plate->table.header.back(), "automatic choice");
+  EXPECT_THAT(plate->table.rows[0],
+              ElementsAre("Penalty", "6", "10 to 1e9", "", "1000, inside: 30 iterations, 1.50 of the least"));
+  std::map<double, double> times;
+  for (const auto& row : plate->rows) {
+    if (row["automatic"])
+      EXPECT_EQ(row["iterations_over_least"], 1.5);
+    else
+      times[row["option_value"]] = row["iterations_over_least"];
+  }
+  EXPECT_EQ(times, (std::map<double, double>{{10, 1}, {1e3, 2}, {1e5, 2}, {1e7, 1}, {1e9, 1.25}}));
+  const std::string svg = plate->drawing.svg_file();
+  EXPECT_THAT(svg, HasSubstr(">1.5<"));
+  EXPECT_THAT(svg, HasSubstr(">automatic<"));
+  EXPECT_THAT(svg, HasSubstr("1000 (automatic): converged, 30 iterations, 1.50 of the least"));
+}
+
+/// At the end of a window, beside a run that failed, the automatic choice is not inside.
+TEST_F(ReportCharts, WindowsSayWhereTheAutomaticChoiceIsAtTheirEnd) {
+  std::vector<json> cells;
+  for (const double scale : {1.0, 100.0}) cells.push_back(cell("uzawa_al", {{"scale", scale}}, 1e-9, 10));
+  cells.back()["status"] = "cap";
+  auto automatic = cell("uzawa_al", {{"scale", "auto"}}, 1e-9, 10);
+  automatic["method"] = {{"uzawa_al", {{"scale", "auto"}}}};
+  cells.push_back(automatic);
+  record(description(), cells);
+  const auto plate = report::robustness_windows(study(), {"scale"});
+  ASSERT_TRUE(plate);
+  EXPECT_EQ(plate->table.rows[0].back(), "10, not inside: 10 iterations, 1.00 of the least");
+}
+
 /// Narrow enough for a phone at its own size; wider where a name asks for it.
 TEST_F(ReportCharts, WindowsAreReadableOnAPhone) {
   const auto width = [&] {
@@ -286,7 +331,8 @@ TEST_F(ReportCharts, EveryFigureIsAFileInFourFormats) {
     EXPECT_THAT(file(stem + ".pgf"), testing::EndsWith("\\end{pgfpicture}%\n\\endgroup%\n")) << stem;
   }
   EXPECT_THAT(file("windows-stiffness.csv"),
-              testing::StartsWith("series,status,error,option_value\r\nPenalty,converged,0.001,1000\r\n"));
+              testing::StartsWith("series,status,automatic,error,iterations,iterations_over_least,option_value\r\n"
+                                  "Penalty,converged,false,0.001,"));
 }
 
 /// The places in the table at the end of a PDF are those of its objects: else a reader has to repair it.
