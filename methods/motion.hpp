@@ -81,7 +81,7 @@ template <class T>
 struct Solutions {
   std::vector<State<T>> states;
   std::optional<std::size_t> resting;  ///< the one that is taken (methods/solutions.hpp)
-  double motion = 0;                   ///< largest displacement of a contact node without any traction
+  double reach = 0;                    ///< length beside which differences of solutions may be rounding
   bool complete = true;                ///< but for rounding, there are no others
   bool feasible = true;                ///< some motion violates no constraint
 };
@@ -109,7 +109,7 @@ std::optional<Solutions<T>> try_all_branches(const M& method, Run<T, E>& run, co
   }
   solutions.complete = !has_repeated_constraints(problem);
   solutions.resting = resting_solution(problem, *all);
-  solutions.motion = largest_nodal_norm(u, run.model.dimension);
+  solutions.reach = std::max(largest_nodal_norm(u, run.model.dimension), reach_of(problem));
   if (all->empty()) {
     constexpr double nearly = 1e-6;  // what misses its branches by less is not taken for nothing
     solutions.complete = solutions.complete && all_solutions(problem, 0, {}, nearly)->empty();
@@ -136,10 +136,10 @@ std::optional<Increment<T>> take_resting_solution(const M& method, Run<T, E>& ru
                                                   const Solutions<T>& solutions) {
   if (!solutions.resting) return std::nullopt;
   const State<T>& target = solutions.states[*solutions.resting];
-  if (direct.usable() && same_solution(run.model, direct.state, target, solutions.motion)) return direct;
+  if (direct.usable() && same_solution(run.model, direct.state, target, solutions.reach)) return direct;
   const RunScales after = std::exchange(run.account.scales, before);
   auto found = solve_increment(method, run, previous, factor, time, Start<T>{target, {}});
-  if (!found.usable() || !same_solution(run.model, found.state, target, solutions.motion)) {
+  if (!found.usable() || !same_solution(run.model, found.state, target, solutions.reach)) {
     run.account.scales = after;
     return std::nullopt;
   }

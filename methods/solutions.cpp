@@ -183,6 +183,11 @@ Uniqueness uniqueness_of(const ContactProblem& problem) {
   return vanishes && !has_repeated_constraints(problem) ? Uniqueness::critical : Uniqueness::unique;
 }
 
+double reach_of(const ContactProblem& problem) {
+  const auto r = relation(problem, 0, {});
+  return r ? r->moved.lpNorm<Eigen::Infinity>() : 0;
+}
+
 std::optional<std::vector<BranchSolution>> all_solutions(const ContactProblem& problem, double alpha,
                                                          const Vector<double>& from, double rounding) {
   constexpr double same = 1e-9, singular = 1e-13;

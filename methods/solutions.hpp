@@ -70,6 +70,10 @@ enum class Uniqueness {
 };
 Uniqueness uniqueness_of(const ContactProblem& problem);
 
+/// Largest increment of a contact dof if springs of the local stiffness took the place of the contacts, length: beside
+/// it a difference of two solutions may be rounding. 0 if bodies can move although all points stick.
+double reach_of(const ContactProblem& problem);
+
 /// All solutions. Two whose tractions differ by less than 1e-9 of the largest count as one. None if bodies can move
 /// although all points stick.
 ///

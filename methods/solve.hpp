@@ -25,7 +25,7 @@ void count_solutions(const M& method, Run<T, E>& run, const State<T>& previous, 
   increment.counted = all.has_value();
   if (!all) return;
   for (auto& state : all->states) {
-    if (same_solution(run.model, state, increment.state, all->motion)) continue;
+    if (same_solution(run.model, state, increment.state, all->reach)) continue;
     state.history.work = increment.state.history.work;
     increment.others.push_back(std::move(state));
   }

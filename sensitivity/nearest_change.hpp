@@ -26,11 +26,11 @@ namespace stickslip {
 struct DifferentiatedIncrement {
   const State<double>& state;
   double time;
-  double largest;                                     ///< traction_scale() of the run so far
-  const ParameterBlock& block;                        ///< parameters and slots
-  const State<Direction>& at;                         ///< the state with derivatives
-  const Vector<Direction>& memory;                    ///< History::bodies at the start of the increment
-  const RegularisationField<Direction>* springs = 0;  ///< rho of a penalty; nullptr: the slip is none of a spring
+  double largest;                                           ///< traction_scale() of the run so far
+  const ParameterBlock& block;                              ///< parameters and slots
+  const State<Direction>& at;                               ///< the state with derivatives
+  const Vector<Direction>& memory;                          ///< History::bodies at the start of the increment
+  const RegularisationField<Direction>* springs = nullptr;  ///< rho of a penalty; nullptr: the slip is none of a spring
 };
 
 /// Distances per parameter of the scene: below and above its value, in its units.

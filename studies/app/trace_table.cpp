@@ -11,7 +11,7 @@ namespace stickslip {
 namespace {
 
 /// A residual of the table on the terminal; a dash where it is no number, as of an iterate that overflowed.
-std::string shown(double value) { return std::isfinite(value) ? fmt::format("{:.2e}", value) : "-"; }
+std::string residual_in_words(double value) { return std::isfinite(value) ? fmt::format("{:.2e}", value) : "-"; }
 
 /// A number of the file; empty where it is none.
 std::string cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
@@ -23,10 +23,11 @@ std::string trace_table(const Trace& trace) {
                                  "time", "solve", "iter.", "residual", "equilibrium", "normal", "tangential", "open",
                                  "stick", "slip", "changed", "step");
   for (const auto& i : trace.iterates)
-    text += fmt::format("{:>10.6g} {:>6} {:>5} {:>10} {:>11} {:>10} {:>10} {:>6} {:>6} {:>6} {:>8} {:>6.3g}\n", i.time,
-                        i.solve, i.number, shown(i.record.residual), shown(i.record.equilibrium),
-                        shown(i.record.normal), shown(i.record.tangential), i.record.open, i.record.stick,
-                        i.record.slip, i.record.changed, i.record.step_length);
+    text +=
+        fmt::format("{:>10.6g} {:>6} {:>5} {:>10} {:>11} {:>10} {:>10} {:>6} {:>6} {:>6} {:>8} {:>6.3g}\n", i.time,
+                    i.solve, i.number, residual_in_words(i.record.residual), residual_in_words(i.record.equilibrium),
+                    residual_in_words(i.record.normal), residual_in_words(i.record.tangential), i.record.open,
+                    i.record.stick, i.record.slip, i.record.changed, i.record.step_length);
   return text;
 }
 
