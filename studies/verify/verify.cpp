@@ -42,6 +42,8 @@ constexpr double least_strain = 1e-9;  ///< plastic strains that count
 constexpr double rounding = 1e-6;  ///< of a stiffness times a motion: the least force that counts, for those of a rigid
                                    ///< motion are 1e-16 of it, 1e-10 of this scale
 
+constexpr double rounding_of_motion = 1e-15;  ///< of the largest: springs of a penalty make a traction of it
+
 /// Notes a violation, of which the worst is kept.
 void note(Step& step, const Law& law, double value, const std::string& where, double allowed = -1) {
   auto found = std::find_if(step.findings.begin(), step.findings.end(), [&](auto& f) { return f.law == law.name; });
@@ -188,7 +190,8 @@ class Judge {
       return;
     }
     if (!placed.contact->itself || p != 0) note(step, overlap, -gap * over(L_), where);
-    note(step, tension, -p * over(T_), where);
+    const double spring = placed.compliance[0] > 0 ? rounding_of_motion * L_ / placed.compliance[0] : 0;
+    note(step, tension, (-p - spring) * over(T_), where);
     if (p > overlap.allowed * T_) note(step, complementarity, gap * over(L_), where);
     const Vec3 e(-touch.normal[1], touch.normal[0], 0);
     placed.slid = past.slid + touch.slip.dot(e);
