@@ -132,9 +132,6 @@ class Fuzzer:
     def bounded(self, node):
         """Counts that would only take long, as 5000 steps, made small; those beyond memory stay."""
         for container, key in self.places(node):
-            if key == "refine":  # a level more is four times as much
-                container[key] = json.loads(re.sub(r"\b([3-9]|1[0-2])\b", "2", json.dumps(container[key])))
-        for container, key in self.places(node):
             n = container[key]
             if isinstance(n, (int, float)) and not isinstance(n, bool) and 12 < abs(n) < 1e6 and key != "E":
                 inside = json.dumps(container)
@@ -142,6 +139,9 @@ class Fuzzer:
                 counts = ("cells", "steps", "repeat", "refine", "max_iterations", "max_augmentations")
                 if key in counts or numbers or "legs" in inside:
                     container[key] = 5
+        for container, key in self.places(node):
+            if key == "refine":  # a level more is four times as much
+                container[key] = json.loads(re.sub(r"\b([3-9]|1[0-2])\b", "2", json.dumps(container[key])))
         return node
 
     def bytes_changed(self, text):
