@@ -179,6 +179,30 @@ void drop_stiff(const std::vector<char>& stiff, int dimension, Rows& rows) {
   std::erase_if(rows, [](const auto& row) { return row.weights.empty(); });
 }
 
+/// Rows of several points, one below the other.
+struct JoinedRows {
+  Rows rows;
+  std::vector<int> point;  ///< of each row
+  std::vector<char> bare;  ///< per row: as vanishing_combinations() takes it
+};
+
+/// The forces that combinations of rows leave open. `pressed`: largest pressure.
+UndeterminedForces forces_of(const Model& model, const Slots<double>& slots, const ContactField<double>& field,
+                             const JoinedRows& joined, double pressed) {
+  const Matrix<double> combinations = vanishing_combinations(joined.rows, joined.bare);
+  if (combinations.size() == 0) return {};
+  UndeterminedForces found{std::vector<char>(model.scene.contacts.size(), 0),
+                           Matrix<double>::Zero(model.multiplier_count, combinations.cols())};
+  for (std::size_t k = 0; k < joined.rows.size(); ++k) {
+    const auto factors = combinations.row(static_cast<Eigen::Index>(k));
+    if (factors.isZero(0)) continue;
+    found.contacts[model.points[joined.point[k]].contact] = 1;
+    found.changes.row(joined.rows[k].multiplier) = factors / geometry_in(field, slots, joined.point[k]).area;
+  }
+  for (auto change : found.changes.colwise()) change *= pressed / change.cwiseAbs().maxCoeff();
+  return found;
+}
+
 }  // namespace
 
 bool constraints_repeat(const Model& model, const Slots<double>& slots, const ContactField<double>& field,
@@ -275,27 +299,14 @@ UndeterminedForces ForceSearch::undetermined(const State<double>& state, const s
     drop_stiff(stiff_, model_.dimension, rows[p]);
     closed.push_back(p);
   }
-  Rows joined;
-  std::vector<int> point_of;
-  std::vector<char> bare;
+  JoinedRows joined;
   for (int p : without_lone_points(std::move(closed), rows, nodes, model_)) {
-    joined.insert(joined.end(), rows[p].begin(), rows[p].end());
-    point_of.resize(joined.size(), p);
-    bare.resize(joined.size(), !presses(p));
+    joined.rows.insert(joined.rows.end(), rows[p].begin(), rows[p].end());
+    joined.point.resize(joined.rows.size(), p);
+    joined.bare.resize(joined.rows.size(), !presses(p));
   }
-  if (joined.size() > most) return {};
-  const Matrix<double> combinations = vanishing_combinations(joined, bare);
-  if (combinations.size() == 0) return {};
-  UndeterminedForces found{std::vector<char>(model_.scene.contacts.size(), 0),
-                           Matrix<double>::Zero(model_.multiplier_count, combinations.cols())};
-  for (std::size_t k = 0; k < joined.size(); ++k) {
-    const auto factors = combinations.row(static_cast<Eigen::Index>(k));
-    if (factors.isZero(0)) continue;
-    found.contacts[points[point_of[k]].contact] = 1;
-    found.changes.row(joined[k].multiplier) = factors / geometry_in(field, slots_, point_of[k]).area;
-  }
-  for (auto change : found.changes.colwise()) change *= pressed / change.cwiseAbs().maxCoeff();
-  return found;
+  if (joined.rows.size() > most) return {};
+  return forces_of(model_, slots_, field, joined, pressed);
 }
 
 }  // namespace stickslip

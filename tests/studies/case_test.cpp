@@ -9,6 +9,7 @@
 #include "methods/engine_choice.hpp"
 #include "sensitivity/gradcheck.hpp"
 #include "tests/studies/cases.hpp"
+#include "tests/studies/tied_nodes.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/solved.hpp"
 
@@ -24,20 +25,7 @@ nlohmann::json last_step(const Method& method) {
 }
 
 TEST(Case, GivesBothSidesOfALargestValueThatTwoNodesShare) {
-  // a block pressed on a round obstacle between its two middle nodes: moved to either side one of them leads
-  json scene = {{"bodies",
-                 {{"b",
-                   {{"mesh", {{"box", {{"min", {-1, 0}}, {"max", {1, 1}}, {"cells", {7, 4}}}}}},
-                    {"material", {{"linear_elastic", {{"E", 1000}, {"nu", 0.3}}}}}}}}},
-                {"obstacles", {{"f", {{"circle", {{"center", {0.0, -5}}, {"radius", 5}}}}}}},
-                {"contacts", {{"c", {{"slave", "b.bottom"}, {"master", "f"}}}}},
-                {"supports", {{{"on", "b.top"}, {"move", {{"x", 0}, {"y", -0.02}}}}}},
-                {"time", {{"end", 1}, {"steps", 1}}},
-                {"responses",
-                 {{"most", {{"contact_pressure", {{"contact", "c"}, {"take", "max"}}}}},
-                  {"least", {{"gap", {{"contact", "c"}, {"take", "min"}}}}},
-                  {"farthest", {{"gap", {{"contact", "c"}, {"take", "max"}}}}}}},
-                {"parameters", {{"shift", "/obstacles/f/circle/center/0"}}}};
+  json scene = cases::tied_nodes();
   const json method = {{"monolithic_al", json::object()}};
   const auto at = [&](double shift) {
     json moved = scene;

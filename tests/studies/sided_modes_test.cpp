@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/studies/cases.hpp"
+#include "tests/studies/tied_nodes.hpp"
 
 namespace stickslip::sided_modes {
 namespace {
@@ -110,19 +111,7 @@ TEST(SidedModes, TellTheSameOfStepsThatRememberOneSide) {
 }
 
 TEST(SidedModes, TellTheSameOfALargestValueThatTwoNodesShare) {
-  const json scene = {{"bodies",
-                       {{"b",
-                         {{"mesh", {{"box", {{"min", {-1, 0}}, {"max", {1, 1}}, {"cells", {7, 4}}}}}},
-                          {"material", {{"linear_elastic", {{"E", 1000}, {"nu", 0.3}}}}}}}}},
-                      {"obstacles", {{"f", {{"circle", {{"center", {0.0, -5}}, {"radius", 5}}}}}}},
-                      {"contacts", {{"c", {{"slave", "b.bottom"}, {"master", "f"}}}}},
-                      {"supports", {{{"on", "b.top"}, {"move", {{"x", 0}, {"y", -0.02}}}}}},
-                      {"time", {{"end", 1}, {"steps", 1}}},
-                      {"responses",
-                       {{"most", {{"contact_pressure", {{"contact", "c"}, {"take", "max"}}}}},
-                        {"least", {{"gap", {{"contact", "c"}, {"take", "min"}}}}},
-                        {"farthest", {{"gap", {{"contact", "c"}, {"take", "max"}}}}}}},
-                      {"parameters", {{"shift", "/obstacles/f/circle/center/0"}}}};
+  const json scene = cases::tied_nodes();
   const auto direct = outcome(scene, methods[0], modes[0]);
   EXPECT_EQ(direct.steps.back()["differentiable"], false);
   for (std::size_t mode : {1u, 2u}) expect_alike(outcome(scene, methods[0], modes[mode]).steps, direct.steps);
