@@ -63,7 +63,9 @@ TEST(AFloatingBody, IsPressedByEveryMethodOnceItIsTouched) {
       if (model.points[p].obstacle >= 0)
         force -= last.contact.traction[model.points[p].multiplier] * result.problem->slots.geometry[p].area;
     on_floor.push_back(force);
-    EXPECT_LE(result.trajectory.counters.newton, 20 * 50) << method;  // 3 to 14 a step; some hundred where it is met
+    // penalty 87, monolithic 93; Uzawa 550, of which some hundred in the step in which the tube is met
+    const int most = method == std::string("uzawa_al") ? 30 : 10;
+    EXPECT_LE(result.trajectory.counters.newton, 20 * most) << method;
   }
   EXPECT_GT(on_floor[2], 0);
   EXPECT_NEAR(on_floor[1], on_floor[2], 1e-8 * on_floor[2]);  // Uzawa stops at 1e-10 of the tractions
