@@ -27,18 +27,26 @@ struct Answer {
   double value = 0, error = 0, scale = 0;
 };
 
-double number_of(const json& row, const char* group, const std::string& name) {
+double number_of(const json& row, const std::string& group, const std::string& name) {
   const auto found = row.find(group);
   if (found == row.end() || !found->is_object()) return 0;
   const auto value = found->find(name);
   return value != found->end() && value->is_number() ? value->get<double>() : 0;
 }
 
-/// The largest method-blind error; nothing if the row has none.
+/// What the method was asked to reach: 1e-4 of {"uzawa_al": {"tolerance": 1e-4}}; 0 without one.
+double tolerance_of(const json& row) {
+  const auto method = row.find("method");
+  if (method == row.end() || !method->is_object() || method->empty()) return 0;
+  return number_of(*method, method->begin().key(), "tolerance");
+}
+
+/// The largest method-blind error, or the tolerance of the method, as errors of many steps may add up; nothing if the
+/// row has no errors.
 std::optional<double> error_of(const json& row) {
   const auto errors = row.find("errors");
   if (errors == row.end() || !errors->is_object() || !errors->contains("kkt")) return std::nullopt;
-  double largest = 0;
+  double largest = tolerance_of(row);
   for (const auto& [name, error] : errors->at("kkt").items())
     if (error.is_number()) largest = std::max(largest, error.get<double>());
   return largest;

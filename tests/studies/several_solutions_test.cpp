@@ -284,6 +284,13 @@ TEST(Disagreements, AreExplainedByTheErrorOfAPenalty) {
   EXPECT_THAT(disagree({row("penalty", 0.031, 1e-2, 0.1), row("uzawa_al", 0.03, 1e-11, 0.1)}), IsEmpty());
 }
 
+TEST(Disagreements, AreExplainedByTheToleranceOfAMethod) {
+  json loose = row("uzawa_al", 0.03001, 1e-6, 0.1);
+  EXPECT_THAT(disagree({loose, row("monolithic_al", 0.03, 1e-12, 0.1)}), SizeIs(1));
+  loose["method"] = {{"uzawa_al", {{"tolerance", 1e-4}}}};
+  EXPECT_THAT(disagree({loose, row("monolithic_al", 0.03, 1e-12, 0.1)}), IsEmpty());
+}
+
 TEST(Disagreements, AreNoneOfWhatIsRoundingBesideItsKind) {
   EXPECT_THAT(disagree({row("uzawa_al", 1e-17, 1e-12, 1), row("monolithic_al", -4e-17, 1e-12, 1)}), IsEmpty());
 }
