@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "studies/app/certificate.hpp"
 #include "studies/app/exit_codes.hpp"
 #include "studies/app/recorded.hpp"
 #include "studies/app/say.hpp"
@@ -23,6 +22,7 @@
 #include "studies/io/progress.hpp"
 #include "studies/io/result_rows.hpp"
 #include "studies/report/report.hpp"
+#include "studies/run/certificate.hpp"
 #include "studies/run/explain.hpp"
 #include "studies/run/export_system.hpp"
 #include "studies/run/fields.hpp"

@@ -38,6 +38,16 @@ const char* const study = R"json({
         "examples": [{"u": 0.07, "u/mu": -0.1}]}},
     "oneOf": [{"required": ["method"]}, {"required": ["analytic", "map"]}, {"required": ["values"]},
               {"required": ["overkill"]}]}},
+  "solutions": {"description": "solutions of other programs, each one more curve under the same certificate",
+    "title": "list of objects", "type": "array", "examples": [[{"name": "GetFEM", "file": "getfem.json"}]], "items": {
+    "type": "object", "required": ["name", "file"], "additionalProperties": false, "properties": {
+      "name": {"description": "of the curve", "type": "string", "minLength": 1, "examples": ["GetFEM"]},
+      "file": {"description": "beside the study; docs/verify.md has its keys", "type": "string",
+        "examples": ["getfem.json"]},
+      "vary": {"description": "which values of the study's `vary` it is of; needed where there are several",
+        "title": "{pointer: value, ...}", "type": "object", "examples": [{"/contacts/touch/friction": 0.1}]},
+      "refine": {"description": "which mesh level it is of; needed where there are several",
+        "title": "whole number >= 0", "type": "integer", "minimum": 0, "maximum": 10, "examples": [1]}}}},
   "errors": {"description": "which are recorded: kkt, response:NAME, sensitivity:NAME/PARAMETER, field:NAME; * for all",
     "title": "list of patterns", "type": "array", "default": ["response:*", "sensitivity:*", "kkt"],
     "examples": [["response:*", "kkt"]],

@@ -5,13 +5,13 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "studies/app/certificate.hpp"
 #include "studies/app/commands.hpp"
 #include "studies/app/exit_codes.hpp"
 #include "studies/app/recorded.hpp"
 #include "studies/app/say.hpp"
 #include "studies/io/json_document.hpp"
 #include "studies/io/printing.hpp"
+#include "studies/run/certificate.hpp"
 
 namespace stickslip {
 namespace {

@@ -14,7 +14,7 @@ import subprocess
 import sys
 import tempfile
 
-E, NU, PRESSED, STIFFNESS = 1000.0, 0.3, 0.01, 1e9
+E, NU, PRESSED, STEPS, STIFFNESS = 1000.0, 0.3, 0.01, 4, 1e9
 ACROSS, UP = 8, 4  # elements
 
 nodes = {}  # (column, row, layer) in halves of elements: number
@@ -76,8 +76,8 @@ sole, ground
 floor, 1, 3
 all, 3, 3
 *STEP
-*STATIC
-1, 1
+*STATIC, DIRECT
+{1 / STEPS}, 1
 *BOUNDARY
 top, 1, 1
 top, 2, 2, {-PRESSED}
@@ -89,10 +89,15 @@ with tempfile.TemporaryDirectory() as folder:
     (pathlib.Path(folder) / "punch.inp").write_text(text)
     subprocess.run(["ccx", "punch"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
     lines = [line.split() for line in (pathlib.Path(folder) / "punch.dat").read_text().splitlines()]
-moved = {int(line[0]): line[1:3] for line in lines if len(line) == 4 and line[0].isdigit()}
+increments = []
+for line in lines:
+    if "time" in line:  # heads the displacements of an increment
+        increments.append({"time": float(line[-1]), "displacement": []})
+    elif len(line) == 4 and line[0].isdigit():  # in the order of `front`
+        increments[-1]["displacement"] += [float(u) for u in line[1:3]]
 
 places = {number: place for place, number in nodes.items()}
 with open(sys.argv[1], "w") as file:
     json.dump({"schema": "stickslip_solution", "version": 1, "accuracy": 1e-5,
                "nodes": [at(places[number])[:2] for number in front],
-               "increments": [{"time": 1, "displacement": [float(u) for number in front for u in moved[number]]}]}, file)
+               "increments": increments}, file)

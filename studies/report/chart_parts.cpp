@@ -21,6 +21,13 @@ namespace {
 
 constexpr double equally_good = 1e-12;  ///< errors of a response below this are rounding, and order no runs
 
+/// Whose curves there are: methods, then other programs.
+std::vector<std::string> owners_of(const Study& study) {
+  std::vector<std::string> owners = study.families;
+  for (const auto& peer : study.peers) owners.push_back(peer.family);
+  return owners;
+}
+
 /// Okabe and Ito's palette, which stays apart for all common forms of colour vision; without its yellow, which is lost
 /// on white.
 std::string color_of(const Study& study, const std::string& family) {
@@ -29,7 +36,7 @@ std::string color_of(const Study& study, const std::string& family) {
   static const std::vector<std::string> spare = {"#CC79A7", "#E69F00", "#56B4E9"};
   if (const auto found = fixed.find(family); found != fixed.end()) return found->second;
   std::size_t other = 0;
-  for (const auto& name : study.families) {
+  for (const auto& name : owners_of(study)) {
     if (name == family) break;
     other += fixed.count(name) == 0;
   }
@@ -75,8 +82,9 @@ void SeriesList::add(const std::string& name, const std::string& family) {
                                                   "triangle-down", "triangle-right", "cross",       "triangle-left"};
   static const std::vector<std::vector<int>> dashes = {{1, 0}, {7, 3}, {2, 2}, {9, 3, 2, 3}, {4, 2}, {12, 4}};
   static const std::vector<int> sizes = {130, 70, 40, 90};
-  const auto at = std::find(study_.families.begin(), study_.families.end(), family) - study_.families.begin();
-  const auto method = static_cast<std::size_t>(at), own = std::min(study_.families.size(), shapes.size() - 1);
+  const auto owners = owners_of(study_);
+  const auto at = std::find(owners.begin(), owners.end(), family) - owners.begin();
+  const auto method = static_cast<std::size_t>(at), own = std::min(owners.size(), shapes.size() - 1);
   const std::size_t count = count_[family]++;
   const std::size_t shape = count == 0 ? method % shapes.size() : own + further_++ % (shapes.size() - own);
   list.push_back({name, shade(color_of(study_, family), count), shapes[shape],

@@ -76,6 +76,7 @@ Cell read_cell(json&& row) {
     cell.label = cell.family;
     for (const auto& knob : cell.knobs) cell.label += " " + knob.name + "=" + knob.text;
   }
+  if (record.contains("peer")) cell.family = cell.label;
   if (cell.family.empty()) cell.family = cell.label.substr(0, cell.label.find(' '));
   cell.status = text_at(record, "status");
   cell.converged = cell.status == "converged" || cell.status == "converged_at_roundoff";
@@ -192,18 +193,25 @@ Study read_study(const std::filesystem::path& directory) {
   StoredRows stored =
       read_rows(directory, [first = true](json& row) mutable { drop_bulk(row, std::exchange(first, false)); });
   study.faults = stored.faults();
-  for (const auto& id : stored.order) study.cells.push_back(read_cell(std::move(stored.rows.at(id))));
+  for (const auto& id : stored.order) {
+    Cell cell = read_cell(std::move(stored.rows.at(id)));
+    (cell.record.contains("peer") ? study.peers : study.cells).push_back(std::move(cell));
+  }
   for (const json& id : array_at(study.description, "cells"))
     study.unrecorded += id.is_string() && stored.rows.count(id) == 0;
 
   name_scenes(study.cells);
+  name_scenes(study.peers);
   std::set<int> levels;
   for (const auto& cell : study.cells) levels.insert(cell.refine);
   study.refined = levels.size() > 1;
   study.ratio = measured_ratio(study.cells);
+  for (auto* cells : {&study.cells, &study.peers})
+    for (auto& cell : *cells) {
+      cell.variant = cell.scene;
+      if (study.refined) cell.variant += fmt::format("{}mesh level {}", cell.scene.empty() ? "" : ", ", cell.refine);
+    }
   for (auto& cell : study.cells) {
-    cell.variant = cell.scene;
-    if (study.refined) cell.variant += fmt::format("{}mesh level {}", cell.scene.empty() ? "" : ", ", cell.refine);
     const auto ratio = study.ratio.find(cell.refine);
     measure_work(cell, ratio == study.ratio.end() ? 0 : ratio->second);
   }

@@ -40,14 +40,15 @@ struct Cell {
 };
 
 struct Study {
-  nlohmann::json description;           ///< study.json; null where missing
-  nlohmann::json picture;               ///< picture.json; null where missing
-  nlohmann::json certificate;           ///< certificate.json; null where missing
-  std::vector<Cell> cells;              ///< in recorded order; of an id recorded twice, the last
-  std::vector<std::string> families;    ///< in order of appearance
-  std::vector<std::string> variants;    ///< in order of appearance
-  std::string main_variant;             ///< the one shown first: most cells converged, of equals the last
-  std::vector<std::string> shared;      ///< "METHOD OPTION=VALUE" that tells no two runs of the method apart
+  nlohmann::json description;         ///< study.json; null where missing
+  nlohmann::json picture;             ///< picture.json; null where missing
+  nlohmann::json certificate;         ///< certificate.json; null where missing
+  std::vector<Cell> cells;            ///< in recorded order; of an id recorded twice, the last
+  std::vector<Cell> peers;            ///< solutions of other programs, in recorded order; none of what follows has them
+  std::vector<std::string> families;  ///< in order of appearance
+  std::vector<std::string> variants;  ///< in order of appearance
+  std::string main_variant;           ///< the one shown first: most cells converged, of equals the last
+  std::vector<std::string> shared;    ///< "METHOD OPTION=VALUE" that tells no two runs of the method apart
   std::vector<std::string> understood;  ///< "METHOD OPTION=VALUE" of runs whose label does not name the option
   std::map<int, double> ratio;          ///< cost of one back-solve over one factorisation, by refinement; measured
   bool refined = false;                 ///< more than one mesh level

@@ -8,6 +8,7 @@
 #include "studies/io/input_fault.hpp"
 #include "studies/io/output_folder.hpp"
 #include "studies/report/about.hpp"
+#include "studies/report/certificates.hpp"
 #include "studies/report/chart_parts.hpp"
 #include "studies/report/charts.hpp"
 #include "studies/report/embedded.hpp"
@@ -147,6 +148,7 @@ std::vector<Section> sections_of(const Study& all, const Study& study, Figures& 
   return {
       {"findings", "What came out", findings(all, study)},
       {"solution", "The solution", of_solution(study, figures)},
+      {"certificates", "Certificates", certificates_of_study(study)},
       {"responses", "Accuracy against cost: responses", of_errors(all, study, Of::responses, figures)},
       {"sensitivities", "Accuracy against cost: sensitivities", of_errors(all, study, Of::sensitivities, figures)},
       {"budget", "Where the error comes from", figures.show(error_budget(study)) + budget_in_words(study)},

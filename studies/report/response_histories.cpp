@@ -178,7 +178,7 @@ std::optional<Figure> response_histories(const Study& study) {
   Figure figure;
   SeriesList series(study);
   figure.id = "response-histories";
-  const auto shown = telling_cells(study, Furthest::added);
+  auto shown = telling_cells(study, Furthest::added);
   add_first(series, study, shown);
   auto pairs = pairs_of(object_at(study.picture, "responses"));
   std::vector<History> told;  // of the runs that are shown at first
@@ -197,6 +197,14 @@ std::optional<Figure> response_histories(const Study& study) {
       add_run(figure, cell, history, pairs, 2 * series.place(in_words(cell)));
     }
   if (told.empty()) return std::nullopt;
+  for (const auto& peer : study.peers) {
+    const History history = history_of(peer, Of::responses);
+    if (peer.variant != study.main_variant || history.times.empty()) continue;
+    told.push_back(history);
+    shown.push_back(peer.label);
+    series.add(in_words(peer), peer.family);
+    add_run(figure, peer, history, pairs, 2 * series.place(in_words(peer)));
+  }
   figure.series = series.list;
   add_given(figure, study, Of::responses, end);
   const auto tips = [](const char* x, const char* title) {

@@ -9,6 +9,7 @@
 #include "studies/io/amounts.hpp"
 #include "studies/io/wording.hpp"
 #include "studies/report/about.hpp"
+#include "studies/report/certificates.hpp"
 #include "studies/report/differentiability.hpp"
 #include "studies/report/headline.hpp"
 #include "studies/report/html.hpp"
@@ -182,39 +183,6 @@ std::string ledger_table(const Cell& cell) {
   return table.rows.empty() ? "" : to_html(table, "What each effect of the scene added");
 }
 
-/// What code that shares nothing with the solver found of each law, where it is nearest to its bound; empty where it
-/// was not asked.
-std::string certificate(const Study& run) {
-  if (!run.certificate.is_object()) return "";
-  struct Worst {
-    const json* law = nullptr;
-    double ratio = -1, time = 0;
-  };
-  std::map<std::string, Worst> worst;
-  for (const auto& step : array_at(run.certificate, "steps"))
-    for (const auto& [name, law] : object_at(step, "laws").items()) {
-      const double value = number_at(law, "value"), allowed = number_at(law, "allowed");
-      const double ratio = !std::isfinite(value) ? INFINITY : allowed > 0 ? value / allowed : value > 0 ? INFINITY : 0;
-      if (ratio > worst[name].ratio) worst[name] = {&law, ratio, number_at(step, "time")};
-    }
-  Table table;
-  table.header = {"law", "", "error", "allowed", "why so much is allowed", "at t", "where"};
-  for (const auto& [name, found] : worst) {
-    const bool holds = at(*found.law, "holds") == true;
-    table.rows.push_back({name, holds ? "holds" : "does not hold", number(number_at(*found.law, "value"), 2),
-                          number(number_at(*found.law, "allowed"), 2), text_at(*found.law, "why"),
-                          number(found.time, 6), text_at(*found.law, "where")});
-    table.row_classes.emplace_back(holds ? "" : "failed");
-  }
-  std::string out = fmt::format(
-      "<p>{} Each law is checked from the files alone, by code that shares nothing with the solver (<code>stickslip "
-      "verify</code>); of each the step is shown in which it is nearest to its bound.</p>\n",
-      at(run.certificate, "holds") == true ? "Every law holds at every step." : "Not every law holds.");
-  for (const auto& remark : array_at(run.certificate, "remarks"))
-    out += "<p class=\"note\">" + escape(plain(remark)) + "</p>\n";
-  return out + to_html(table, "Certificate");
-}
-
 }  // namespace
 
 std::string first_of_run(const Study& run, Figures& figures) {
@@ -253,7 +221,7 @@ std::vector<Section> sections_of_run(const Study& run, Figures& figures) {
           {"solver", "The solver at work",
            figures.show(std::move(convergence)) + steps_table(run) + ledger_table(run.cells.front())},
           {"differentiability", "Where derivatives hold", figures.show(map_of_changes(run)) + table_of_margins(run)},
-          {"certificate", "Certificate", certificate(run)},
+          {"certificate", "Certificate", certificate_of_run(run)},
           {"provenance", "Provenance", provenance(run)}};
 }
 

@@ -76,6 +76,7 @@ Study sample_of(const Study& study) {
   Study sample;
   sample.description = study.description;
   sample.picture = study.picture;
+  sample.peers = study.peers;
   sample.families = study.families;
   sample.main_variant = study.main_variant;
   sample.shared = study.shared;
@@ -110,7 +111,8 @@ void attach_curves(Study& study, const std::filesystem::path& directory) {
 }
 
 void drop_bulk(json& row, bool first) {
-  for (const char* part : curves_of_a_row) row.erase(part);
+  if (!row.contains("peer"))
+    for (const char* part : curves_of_a_row) row.erase(part);
   if (const auto errors = row.find("errors"); errors != row.end() && errors->is_object()) errors->erase("by_reference");
   if (const auto provenance = row.find("provenance"); provenance != row.end() && provenance->is_object() && !first)
     for (const char* part : {"libraries", "date", "version", "build_type", "cores", "load_average", "checksum"})

@@ -133,7 +133,11 @@ json rows_of_runs(const Study& study, const Cell& reference, const std::vector<s
   const json& curves_of = object_at(at(study.description, "analytic"), "curves");
   const bool shown_alone = has_too_many_points(study);
   json rows = json::array();
-  for (const auto& cell : study.cells) {
+  std::vector<const Cell*> cells;
+  for (const auto* all : {&study.cells, &study.peers})
+    for (const auto& cell : *all) cells.push_back(&cell);
+  for (const Cell* one : cells) {
+    const Cell& cell = *one;
     if (cell.variant != study.main_variant) continue;
     if (shown_alone && std::find(shown.begin(), shown.end(), cell.label) == shown.end()) continue;
     const std::string name = in_words(cell);
@@ -223,8 +227,9 @@ std::optional<Figure> tractions(const Study& study) {
   SeriesList series(study);
   figure.id = "tractions";
   figure.title = "Tractions along the interface, last step";
-  const auto shown = telling_cells(study, Furthest::added);
+  auto shown = telling_cells(study, Furthest::added);
   add_first(series, study, shown);
+  for (const auto& peer : study.peers) shown.push_back(peer.label);
   figure.rows = rows_of_runs(study, *reference, shown, series);
   if (figure.rows.empty()) return std::nullopt;
   const bool far_left_out = keep_near_the_contact(figure.rows);

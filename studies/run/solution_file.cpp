@@ -157,6 +157,12 @@ void write_increment(SolutionWriter& out, const CaseResult& result, const Increm
 
 }  // namespace
 
+nlohmann::json solution_frame(const Problem& problem, const nlohmann::json& scene) {
+  SolutionWriter mesh;
+  write_solution_mesh(mesh, problem);
+  return {{"scene", scene}, {"mesh", nlohmann::json::parse(mesh.text())}};
+}
+
 SolutionFile solution_file(const CaseResult& result, const nlohmann::json& scene, std::size_t largest) {
   SolutionWriter out;
   out.raw(R"({"schema":"stickslip_solution","version":1,)").raw("\n\"scene\":").raw(scene.dump());

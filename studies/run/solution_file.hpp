@@ -23,4 +23,7 @@ struct SolutionFile {
 SolutionFile solution_file(const CaseResult& result, const nlohmann::json& scene,
                            std::size_t largest = largest_solution);
 
+/// {"scene", "mesh"} of solution.json, without a solution.
+nlohmann::json solution_frame(const Problem& problem, const nlohmann::json& scene);
+
 }  // namespace stickslip

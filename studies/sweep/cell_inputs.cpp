@@ -90,6 +90,40 @@ void check_option_values(const MethodSweep& method, Diagnostics& diagnostics) {
     }
 }
 
+/// Whether the solution of another program is one of the variant of a cell: what it leaves open, the study does not
+/// vary.
+bool is_of_variant(const PeerSolution& peer, const CellInput& cell, const Study& study) {
+  for (const Knob& knob : study.vary) {
+    const auto given = peer.vary.find(knob.pointer);
+    if (given == peer.vary.end() ? knob.values.size() > 1 : given->second != cell.vary.at(knob.pointer)) return false;
+  }
+  return peer.refine ? *peer.refine == cell.refine : study.refine.size() == 1;
+}
+
+/// Puts the solutions of other programs behind the cells of their variants.
+void add_solutions(const Study& study, const std::string& program_version, std::vector<CellInput>& cells,
+                   Diagnostics& diagnostics) {
+  for (const auto& peer : study.solutions) {
+    const auto known = [&](const auto& varied) {
+      return std::ranges::count(study.vary, varied.first, &Knob::pointer) > 0;
+    };
+    const auto last = std::find_if(cells.rbegin(), cells.rend(),
+                                   [&](const CellInput& cell) { return is_of_variant(*peer, cell, study); });
+    if (last == cells.rend() || !std::ranges::all_of(peer->vary, known)) {
+      diagnostics.error({peer->place, peer->place.pointer,
+                         R"(is of no one variant; "vary" and "refine" must say of which, in values of the study's)"});
+      continue;
+    }
+    CellInput cell = *last;
+    cell.peer = peer;
+    cell.label = peer->name;
+    cell.knobs = json::object();
+    cell.canonical += "\n" + peer->name + "\n" + peer->solution.dump();
+    cell.id = cell_id(cell.canonical, program_version);
+    cells.insert(last.base(), std::move(cell));
+  }
+}
+
 /// Whether a fault follows from the method that a scene is read with, which is not the one of any cell.
 bool is_of_method(const Diagnostic& fault, const JsonDocument& scene) {
   const auto names_method = [](const std::string& pointer) { return pointer.starts_with("/method"); };
@@ -200,6 +234,7 @@ std::vector<CellInput> expand(const Study& study, const std::string& program_ver
         });
     });
   }
+  if (!diagnostics.has_errors()) add_solutions(study, program_version, cells, diagnostics);
   // a reference with faulty options would be found only when it is run
   if (!cells.empty())
     for (const Reference& reference : study.references)

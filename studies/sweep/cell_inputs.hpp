@@ -20,6 +20,8 @@ struct CellInput {
   nlohmann::json knobs;                        ///< swept options: {"stiffness": 100, "newton.tolerance": 1e-08}
   std::map<std::string, nlohmann::json> vary;  ///< by pointer
   int refine = 0;
+  /// Then nothing is run, and the method is that of another cell; null: a run.
+  std::shared_ptr<const PeerSolution> peer;
   std::string canonical;  ///< canonical_text() of the input; nothing of references, errors or timing
   std::string id;         ///< cell_id() of it
 };

@@ -19,9 +19,11 @@
 #include "studies/io/result_rows.hpp"
 #include "studies/report/disagreement.hpp"
 #include "studies/report/report.hpp"
+#include "studies/run/certificate.hpp"
 #include "studies/run/explain.hpp"
 #include "studies/run/fields.hpp"
 #include "studies/run/simulation.hpp"
+#include "studies/run/solution_file.hpp"
 #include "studies/sweep/attempt.hpp"
 #include "studies/sweep/shard.hpp"
 #include "studies/sweep/study_cell.hpp"
@@ -66,6 +68,19 @@ void check_models(const Study& study, const std::vector<CellInput>& cells, MeshF
   }
 }
 
+/// Finds solutions of other programs that do not fit their variants, before anything is written.
+void check_solutions(const Study& study, const std::vector<CellInput>& cells, MeshFiles& meshes,
+                     Diagnostics& diagnostics) {
+  for (const auto& cell : cells)
+    if (cell.peer) try {
+        const Input input = input_of(cell, meshes);
+        certificate_of_peer(solution_frame(*problem_of(input), input.document), cell.peer->solution);
+      } catch (const InputFault& fault) {
+        const std::string pointer = cell.peer->place.pointer + "/file";
+        diagnostics.error({study.document.place(pointer), pointer, fault.what()});
+      }
+}
+
 std::optional<Plan> make_plan(const StudyArguments& arguments, MeshFiles& meshes, Diagnostics& diagnostics) {
   Plan plan;
   if (const auto shard = parse_shard(arguments.shard))
@@ -85,6 +100,7 @@ std::optional<Plan> make_plan(const StudyArguments& arguments, MeshFiles& meshes
     if (plan.shard.holds(i)) plan.cells.push_back(std::move(all[i]));
   }
   if (!diagnostics.has_errors()) check_models(plan.study, plan.cells, meshes, diagnostics);
+  if (!diagnostics.has_errors()) check_solutions(plan.study, plan.cells, meshes, diagnostics);
   if (diagnostics.has_errors()) return std::nullopt;
   plan.directory = directory_of(arguments);
   return plan;
@@ -129,7 +145,7 @@ std::ptrdiff_t rows_of_other_shards(const Plan& plan, const RowsById& rows) {
 void match_budgets(const Plan& plan, RowsById& rows) {
   for (const auto& cell : plan.cells) {
     const auto row = rows.find(cell.id);
-    if (row == rows.end()) continue;
+    if (row == rows.end() || cell.peer) continue;
     if (plan.study.budget_copies == 0)
       row->second.erase("error_budget");
     else if (row->second.value("/error_budget/copies"_json_pointer, 0) != plan.study.budget_copies)
@@ -241,7 +257,8 @@ void time_cells(const Plan& plan, const OutputFolder& folder, const Listener& li
   std::vector<std::size_t> cells;
   std::vector<std::string> keys;
   for (std::size_t i = 0; i < plan.cells.size(); ++i)
-    if (const auto row = rows.find(plan.cells[i].id); row != rows.end() && converged(row->second)) {
+    if (const auto row = rows.find(plan.cells[i].id);
+        row != rows.end() && converged(row->second) && !plan.cells[i].peer) {
       cells.push_back(i);
       keys.push_back(variant_key(plan.cells[i]));
     }

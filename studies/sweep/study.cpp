@@ -102,7 +102,7 @@ Errors enforcement_errors(const CaseResult& result, const CaseResult& reference)
     }
   }
   const auto &computed = result.gradients.of_objectives, &exact = reference.gradients.of_objectives;
-  for (std::size_t i = 0; i < scene.objectives.size(); ++i) {
+  for (Eigen::Index i = 0; i < result.objectives.size(); ++i) {
     const auto& name = scene.objectives[i].name;
     const double value = reference.objectives[i], size = std::abs(value);
     errors["response:" + name] = relative(std::abs(result.objectives[i] - value), size);
@@ -146,7 +146,7 @@ Errors discretisation_errors(const CaseResult& result, const ReferenceValues& re
   };
   for (std::size_t i = 0; i < scene.responses.size(); ++i)
     compare(scene.responses[i].name, last.responses[i], row_of(last.sensitivities, i));
-  for (std::size_t i = 0; i < scene.objectives.size(); ++i)
+  for (Eigen::Index i = 0; i < result.objectives.size(); ++i)
     compare(scene.objectives[i].name, result.objectives[i], row_of(result.gradients.of_objectives, i));
   for (const auto& [contact, curve] : reference.curves.items()) {
     errors["field:normal_traction"] = curve_difference(result, contact, curve, true);

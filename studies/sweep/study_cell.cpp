@@ -8,11 +8,14 @@
 #include "studies/input/method_options.hpp"
 #include "studies/io/printing.hpp"
 #include "studies/io/provenance.hpp"
+#include "studies/run/certificate.hpp"
 #include "studies/run/film.hpp"
 #include "studies/run/ledger.hpp"
 #include "studies/run/simulation.hpp"
+#include "studies/run/solution_file.hpp"
 #include "studies/run/warnings.hpp"
 #include "studies/sweep/attempt.hpp"
+#include "studies/sweep/measured_peer.hpp"
 #include "studies/sweep/study.hpp"
 #include "studies/version.hpp"
 
@@ -73,6 +76,14 @@ json brief(const json& steps) {
 
 /// What a row says of its cell, however it went.
 json head_of(const CellInput& cell) {
+  if (cell.peer)
+    return {{"id", cell.id},
+            {"label", cell.label},
+            {"peer", {{"name", cell.peer->name}, {"file", cell.peer->file}}},
+            {"knobs", cell.knobs},
+            {"vary", cell.vary},
+            {"refine", cell.refine},
+            {"scene_hash", fingerprint(cell.canonical)}};
   return {{"id", cell.id},
           {"label", cell.label},
           {"method", to_json(cell.method)},
@@ -82,6 +93,14 @@ json head_of(const CellInput& cell) {
           {"vary", cell.vary},
           {"refine", cell.refine},
           {"scene_hash", fingerprint(cell.canonical)}};
+}
+
+/// What verify says of a run's own solution, from what its files would hold.
+json certificate_of_run(const CaseResult& result, const json& scene, const json& steps) {
+  const SolutionFile file = solution_file(result, scene);
+  if (file.text.empty()) return {{"left_out", file.left_out}};
+  const json own = json::parse(file.text), answers = {{"status", name_of(result.status())}, {"steps", steps}};
+  return worst_of_certificate_json(verify::certify(own.at("scene"), own.at("mesh"), own, answers));
 }
 
 }  // namespace
@@ -221,8 +240,20 @@ json CellRunner::failed_row(std::size_t index, const std::string& status, const 
   return row;
 }
 
+json CellRunner::peer_row(const CellInput& cell) {
+  const Input input = input_of(cell, meshes_);
+  const MeasuredPeer peer = measured(*cell.peer, input.document, variant_.problem, input.method);
+  json row = head_of(cell);
+  row.update(row_of(peer));
+  row["errors"] = errors(peer.result);
+  if (asked_for("kkt", study_.errors)) row["errors"]["kkt"] = errors_of(peer.certificate);
+  row["provenance"] = provenance(1);
+  return row;
+}
+
 json CellRunner::measured_row(const CellInput& cell) {
   enter(cell);
+  if (cell.peer) return peer_row(cell);
   const auto result = run(cell);
   json row = head_of(cell);
   row["regularisation"] = regularisation_json(result);
@@ -240,6 +271,8 @@ json CellRunner::measured_row(const CellInput& cell) {
   }
   if (const json objectives = objectives_json(result); !objectives.empty()) row["objectives"] = objectives;
   row["steps"] = brief(steps);
+  if (!study_.solutions.empty())
+    row["certificate"] = certificate_of_run(result, input_of(cell, meshes_).document, steps);
   row["film"] = film_json(result);
   row["interface"] = interface_json(result);
   row["size"] = size_json(result);

@@ -63,6 +63,7 @@ class CellRunner {
   void enter(const CellInput& cell);
   void run_references(const CellInput& cell);
   nlohmann::json measured_row(const CellInput& cell);
+  nlohmann::json peer_row(const CellInput& cell);
   CaseResult run(const CellInput& cell);
   nlohmann::json errors(const CaseResult& result) const;
   ReferenceValues reference_of(const CaseResult& result) const;

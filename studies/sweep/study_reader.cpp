@@ -102,13 +102,14 @@ std::optional<Study> read_study(const std::string& file, Diagnostics& diagnostic
   }
   if (!root.is_object({{"scene"},
                        {"$schema", "title", "methods", "vary", "refine", "reference", "errors", "accuracy", "timing",
-                        "error_budget"}}))
+                        "error_budget", "solutions"}}))
     return std::nullopt;
   if (const auto schema = root.find("$schema")) schema->text();
   if (const auto title = root.find("title")) study.title = title->text().value_or("");
   auto scene = scene_beside(file, root, diagnostics);
   if (scene) study.scene = *std::move(scene);
   read_lists(root, scene ? std::optional<JsonNode>(std::in_place, study.scene, diagnostics) : std::nullopt, study);
+  if (const auto solutions = root.find("solutions")) study.solutions = read_solutions(*solutions, file);
   if (const auto accuracy = root.find("accuracy")) check_accuracies(*accuracy);
   if (const auto timing = root.find("timing")) study.repeat = read_rounds(*timing);
   if (const auto budget = root.find("error_budget")) study.budget_copies = read_budget(*budget);

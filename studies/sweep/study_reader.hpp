@@ -2,6 +2,8 @@
 /// described in docs/study.md.
 #pragma once
 
+#include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -37,6 +39,16 @@ struct Reference {
   int refine = 0;        ///< overkill: levels finer than the cell
 };
 
+/// What another program found for the scene, or for one of its variants (docs/verify.md).
+struct PeerSolution {
+  std::string name;
+  std::string file;  ///< as given
+  nlohmann::json solution;
+  std::map<std::string, nlohmann::json> vary;  ///< of its variant, by pointer
+  std::optional<int> refine;                   ///< of its variant
+  Place place;
+};
+
 struct Study {
   std::string title;
   JsonDocument scene;                ///< as the file gives it
@@ -45,6 +57,7 @@ struct Study {
   std::vector<Knob> vary;
   std::vector<PlacedValue> refine;  ///< levels, at least one
   std::vector<Reference> references;
+  std::vector<std::shared_ptr<const PeerSolution>> solutions;
   std::vector<std::string> errors;  ///< patterns: "response:*", "sensitivity:NAME/PARAMETER", "kkt"
   int repeat = 0;                   ///< rounds of the timing pass; 0: there is none
   int budget_copies = 0;            ///< perturbed copies of each run of the error budget; 0: there is none

@@ -23,6 +23,8 @@ std::vector<MethodSweep> read_methods(const JsonNode& study, const std::optional
 std::vector<Knob> read_vary(const JsonNode&, const nlohmann::json& scene);
 std::vector<PlacedValue> read_levels(const JsonNode&);
 std::vector<Reference> read_references(const JsonNode&, const nlohmann::json& scene);
+/// Solutions of other programs, whose files are looked for beside the study's `file`.
+std::vector<std::shared_ptr<const PeerSolution>> read_solutions(const JsonNode&, const std::string& file);
 /// Patterns of the errors that are asked for.
 std::vector<std::string> read_errors(const JsonNode&, const nlohmann::json& scene);
 

@@ -201,7 +201,8 @@ struct Placed {
   Touch touch;
   Vec3 traction = Vec3::Zero();
   Vec2 compliance = Vec2::Zero();  ///< of the springs of a penalty, normal and tangential; zero: multipliers
-  double slid = 0;                 ///< slip since the start along e = (-n_y, n_x)
+  double slid = 0;                 ///< slip since the start along e
+  Vec3 e() const { return {-touch.normal[1], touch.normal[0], 0}; }
   double pressure() const { return traction.dot(touch.normal); }
   Vec3 friction() const { return traction - pressure() * touch.normal; }
 };

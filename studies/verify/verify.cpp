@@ -115,6 +115,7 @@ class Judge {
     Field contact = Field::Zero(3, u_.cols());
     for (auto& placed : state.placed) {
       check_place(placed, step);
+      step.tractions[placed.contact->name][placed.touch.node] = {placed.pressure(), placed.friction().dot(placed.e())};
       for (const auto& [node, weight] : placed.touch.weights)
         contact.col(node) += weight * placed.touch.area * placed.traction;
     }
@@ -124,7 +125,7 @@ class Judge {
     check_balance(loads + state.held, contact, step);
     check_energy(loads + state.held, contact, u_ - before, step);
     state.heat = heat_;
-    if (given.is_object()) check_responses(state, given, step);
+    check_responses(state, given, step);
     check_flow(part(increment, "plastic_strain"), step);
     return step;
   }
@@ -193,7 +194,7 @@ class Judge {
     const double spring = placed.compliance[0] > 0 ? rounding_of_motion * L_ / placed.compliance[0] : 0;
     note(step, tension, (-p - spring) * over(T_), where);
     if (p > overlap.allowed * T_) note(step, complementarity, gap * over(L_), where);
-    const Vec3 e(-touch.normal[1], touch.normal[0], 0);
+    const Vec3 e = placed.e();
     placed.slid = past.slid + touch.slip.dot(e);
     Vec3 last = past.friction();  // its component along the tangent is carried on
     if (scene_.finite && scene_.dimension == 2) last = std::copysign(last.norm(), last.dot(e)) * e;
@@ -276,19 +277,24 @@ class Judge {
          std::min(1.0, slack_ * over(scale) + energy.allowed));
   }
 
+  /// Measures the responses, and compares them with those that are `given`.
   void check_responses(const State& state, const Json& given, Step& step) {
-    for (const auto& [name, value] : given.items()) {
-      const Json& what = scene_.json.at("responses").at(name);
+    for (const auto& [name, what] : part(scene_.json, "responses").items()) {
       const std::string kind = what.begin().key();
-      const double again = measure(state, what).value_or(NAN), known = value.is_number() ? value.get<double>() : NAN;
-      if (std::isnan(again)) unmeasured.insert(name);
+      const double again = measure(state, what).value_or(NAN);
+      if (std::isnan(again)) {
+        unmeasured.insert(name);
+        continue;
+      }
+      step.responses[name] = again;
       std::map<std::string, double> natural{
           {"reaction", F_}, {"contact_force", F_},          {"displacement", L_},
           {"gap", L_},      {"contact_pressure", T_},       {"plastic_strain", least_strain},
           {"slip", L_},     {"dissipation", 1e-3 * F_ * L_}};  // (updates leave 1e-10 of F L)
       double& scale = largest_[kind];
       scale = std::max({scale, std::abs(again), natural.emplace(kind, size_ * rounding).first->second});
-      if (std::isnan(again)) continue;
+      if (!given.contains(name)) continue;
+      const double known = given[name].is_number() ? given[name].get<double>() : NAN;
       note(step, responses, std::abs(known - again) * over(scale),
            fmt::format("\"{}\" is {:.9g}, not {:.9g}", name, again, known));
     }
@@ -323,7 +329,8 @@ class Judge {
   double work_ = 0, spent_ = 0, slack_ = 0, size_ = 0;  ///< energies: done, dissipated, not known, of all parts
 };
 
-/// Times at which a scene asks for a state; along a path by arc length none is known.
+}  // namespace
+
 std::vector<double> asked_times(const Json& scene) {
   const Json& time = scene.at("time");
   std::vector<double> times;
@@ -337,8 +344,6 @@ std::vector<double> asked_times(const Json& scene) {
     add(time.at("end"), time.at("steps"));
   return times;
 }
-
-}  // namespace
 
 const Finding& Step::worst() const {
   return *std::ranges::max_element(findings, {}, [](const Finding& f) {

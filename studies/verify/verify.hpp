@@ -17,6 +17,9 @@ struct Finding {
 struct Step {
   double time = 0;
   std::vector<Finding> findings;
+  std::map<std::string, double> responses = {};  ///< of the scene, measured of the solution; without what is not
+  /// By contact and slave node: the pressure, and friction along the normal turned by a quarter.
+  std::map<std::string, std::map<int, Vec2>> tractions = {};
   const Finding& worst() const;  ///< of the law that is broken most, over what is allowed
   bool holds() const { return worst().holds(); }
 };
@@ -26,6 +29,9 @@ struct Certificate {
   std::vector<std::string> remarks;  ///< what could not be checked, and why
   bool holds() const;
 };
+
+/// Times at which a scene asks for a state; none of a path by arc length.
+std::vector<double> asked_times(const Json& scene);
 
 /// Checks a solution (docs/verify.md has its keys) of a scene on a mesh. `result`: result.json, whose responses are
 /// measured again; null: of another program. Throws BadFile, or what nlohmann/json throws of keys that are missing.

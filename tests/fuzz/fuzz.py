@@ -380,7 +380,7 @@ class Fuzzer:
         for path, data in inputs.items():
             if not path.is_file() or path.read_bytes() != data:
                 return f"{path.name} was changed", code
-        return self.false_answer(arguments, code, result) or self.bad_output(code, result), code
+        return self.false_answer(arguments, code, result) or self.bad_output(code, result, set(inputs.values())), code
 
     def false_answer(self, arguments, code, result):
         """Where the exit code of a run is not that of its status."""
@@ -395,7 +395,8 @@ class Fuzzer:
         converged = status in ("converged", "converged_at_roundoff")
         return f"status {status} with exit code {code}" if converged != (code == 0) else ""
 
-    def bad_output(self, code, result):
+    def bad_output(self, code, result, given):
+        """`given`: contents of the inputs, of which merge copies some as they are."""
         for name, text in (("standard output", result.stdout), ("standard error", result.stderr)):
             if found := CONTROL.search(text):
                 return f"a control character in {name}: {text[max(0, found.start() - 60):found.end() + 20]!r}"
@@ -403,7 +404,7 @@ class Fuzzer:
             if path.name == ".lock" or path.name.endswith(".part"):
                 return f"{path.name} is left"
             data = path.read_bytes()
-            if path.suffix in TEXT_FILES and (found := CONTROL.search(data)):
+            if data not in given and path.suffix in TEXT_FILES and (found := CONTROL.search(data)):
                 return f"a control character in {path.name}: {data[max(0, found.start() - 60):found.end() + 20]!r}"
             if code == 0 and path.suffix in (".json", ".jsonl", ".csv", ".svg") and (found := NO_NUMBER.search(data)):
                 return f"no number in {path.name}: {data[max(0, found.start() - 60):found.end() + 20]!r}"

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <set>
 
 #include "studies/report/charts.hpp"
 #include "studies/report/plot.hpp"
@@ -255,6 +256,43 @@ TEST_F(ReportHistories, OfDerivativesNeedTwoStepsWithDerivatives) {
   for (auto& step : steps) step.erase("sensitivities");  // adjoint mode, and rows of older programs
   record_steps(steps);
   EXPECT_FALSE(report::derivative_histories(study(), ""));
+}
+
+/// A solution of another program has a curve among those of the methods, and a line among the certificates; it is no
+/// setting that could be the cheapest.
+TEST_F(ReportHistories, ShowSolutionsOfOtherProgramsBesideTheMethods) {
+  auto cells = three_methods();
+  for (auto& c : cells) {
+    c["steps"] = to_and_fro(8);
+    c["certificate"] = {{"holds", true},   {"law", "cone"}, {"value", 1e-9},
+                        {"allowed", 1e-6}, {"time", 1},     {"where", "x"}};
+  }
+  json peer = {{"id", "p"},
+               {"label", "GetFEM"},
+               {"peer", {{"name", "GetFEM"}, {"file", "g.json"}}},
+               {"knobs", json::object()},
+               {"vary", json::object()},
+               {"refine", 0},
+               {"status", "inaccurate"},
+               {"errors", {{"enforcement", {{"response:u", 0.25}}}}},
+               {"steps", to_and_fro(8)}};
+  peer["certificate"] = {{"holds", false},  {"law", "supports"}, {"value", 1},
+                         {"allowed", 1e-8}, {"time", 3},         {"where", "y"}};
+  cells.push_back(peer);
+  record(description(), cells, picture_with_kinds());
+  const auto found = study();
+  EXPECT_EQ(found.cells.size(), cells.size() - 1);
+  const auto figure = report::response_histories(found);
+  ASSERT_TRUE(figure);
+  std::set<std::string> colors;
+  for (const auto& series : figure->series) colors.insert(series.color);
+  EXPECT_EQ(colors.size(), figure->series.size());
+  EXPECT_EQ(figure->series.back().name, "GetFEM [inaccurate]");
+  const std::string whole = page();
+  EXPECT_THAT(whole, HasSubstr("id=\"certificates\""));
+  EXPECT_THAT(whole, HasSubstr("does not hold"));
+  record(description(), three_methods(), picture_with_kinds());
+  EXPECT_THAT(page(), Not(HasSubstr("id=\"certificates\"")));
 }
 
 TEST_F(ReportHistories, ComeFirstUnderTheSolution) {

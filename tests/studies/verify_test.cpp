@@ -7,8 +7,8 @@
 #include <fstream>
 #include <functional>
 
-#include "studies/app/certificate.hpp"
 #include "studies/io/input_fault.hpp"
+#include "studies/run/certificate.hpp"
 #include "studies/run/simulation.hpp"
 #include "studies/run/solution_file.hpp"
 #include "tests/studies/cases.hpp"

@@ -1,10 +1,11 @@
-#include "studies/app/certificate.hpp"
+#include "studies/run/certificate.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -24,14 +25,6 @@ json parsed_file(const fs::path& file) {
   } catch (const json::exception& fault) {
     throw InputFault(file.string() + ": " + fault.what());
   }
-}
-
-json read_solution(const fs::path& file) {
-  json solution = parsed_file(file);
-  if (!solution.is_object() || solution.value("schema", "") != "stickslip_solution" ||
-      solution.value("version", 0) != 1)
-    throw InputFault(file.string() + R"(: must have "schema": "stickslip_solution" and "version": 1)");
-  return solution;
 }
 
 /// Coordinates of nodes, [[x, y], ...] or with z.
@@ -98,37 +91,69 @@ void renumber(const json& mesh, json& solution) {
   }
 }
 
-/// The solution to be checked; its scene and mesh are those of the run.
-verify::Certificate checked(const fs::path& directory, const std::string& solution) {
-  const json result = parsed_file(directory / "result.json");
-  const json left_out = result.value("solution", json::object()).value("left_out", json());
-  if (left_out.is_string())
-    throw InputFault((directory / "solution.json").string() + ": was left out: " + left_out.get<std::string>());
-  const json own = read_solution(directory / "solution.json");
-  if (solution.empty()) return verify::certify(own.at("scene"), own.at("mesh"), own, result);
-  json other = read_solution(solution);
-  renumber(own.at("mesh"), other);
-  auto certificate = verify::certify(own.at("scene"), own.at("mesh"), other, json::object());
-  const double accuracy = other.value("accuracy", 0.0);
-  for (auto& step : certificate.steps)
-    for (auto& finding : step.findings)
-      if (finding.allowed > 0 && finding.allowed < accuracy) {
-        finding.allowed = accuracy;
-        finding.why = "the accuracy that the solution claims";
-      }
-  return certificate;
+/// What `certify` gives; what is thrown of files that do not fit becomes an InputFault.
+template <class Certify>
+verify::Certificate of_files(const std::string& name, Certify&& certify) {
+  const std::string before = name.empty() ? "" : name + ": ";
+  try {
+    return certify();
+  } catch (const verify::BadFile& fault) {
+    throw InputFault(before + fault.what());
+  } catch (const json::exception& fault) {
+    throw InputFault(before + "is not as docs/verify.md says: " + fault.what());
+  }
 }
 
 }  // namespace
 
+json read_solution(const fs::path& file) {
+  json solution = parsed_file(file);
+  if (!solution.is_object() || solution.value("schema", "") != "stickslip_solution" ||
+      solution.value("version", 0) != 1)
+    throw InputFault(file.string() + R"(: must have "schema": "stickslip_solution" and "version": 1)");
+  return solution;
+}
+
+verify::Certificate certificate_of_peer(const json& own, json solution) {
+  return of_files("", [&] {
+    renumber(own.at("mesh"), solution);
+    auto certificate = verify::certify(own.at("scene"), own.at("mesh"), solution, json::object());
+    const double accuracy = solution.value("accuracy", 0.0);
+    for (auto& step : certificate.steps)
+      for (auto& finding : step.findings)
+        if (finding.allowed > 0 && finding.allowed < accuracy) {
+          finding.allowed = accuracy;
+          finding.why = "the accuracy that the solution claims";
+        }
+    return certificate;
+  });
+}
+
 verify::Certificate certificate_of(const fs::path& directory, const std::string& solution) {
-  try {
-    return checked(directory, solution);
-  } catch (const verify::BadFile& fault) {
-    throw InputFault(directory.string() + ": " + fault.what());
-  } catch (const json::exception& fault) {
-    throw InputFault(directory.string() + ": is not as docs/verify.md says: " + fault.what());
-  }
+  return of_files(directory.string(), [&] {
+    const json result = parsed_file(directory / "result.json");
+    const json left_out = result.value("solution", json::object()).value("left_out", json());
+    if (left_out.is_string())
+      throw InputFault((directory / "solution.json").string() + ": was left out: " + left_out.get<std::string>());
+    const json own = read_solution(directory / "solution.json");
+    return solution.empty() ? verify::certify(own.at("scene"), own.at("mesh"), own, result)
+                            : certificate_of_peer(own, read_solution(solution));
+  });
+}
+
+json worst_of_certificate_json(const verify::Certificate& certificate) {
+  const auto over = [](const verify::Step& step) {
+    const auto& worst = step.worst();
+    return worst.holds() ? worst.value / std::max(worst.allowed, std::numeric_limits<double>::min()) : INFINITY;
+  };
+  const auto& step = *std::ranges::max_element(certificate.steps, {}, over);
+  const auto& worst = step.worst();
+  return {{"holds", certificate.holds()},
+          {"law", worst.law},
+          {"time", step.time},
+          {"value", std::isfinite(worst.value) ? json(worst.value) : json(nullptr)},
+          {"allowed", worst.allowed},
+          {"where", worst.where}};
 }
 
 json certificate_json(const verify::Certificate& certificate) {

@@ -13,7 +13,17 @@ namespace stickslip {
 /// left out, or is not as it should be.
 verify::Certificate certificate_of(const std::filesystem::path& directory, const std::string& solution = "");
 
+/// A file of a solution (docs/verify.md), of this program or another. Throws InputFault where it is none.
+nlohmann::json read_solution(const std::filesystem::path& file);
+
+/// The certificate of another program's solution; `own`: {"scene", "mesh"} of solution.json. Throws InputFault where
+/// the solution does not fit these; the message begins with what does not.
+verify::Certificate certificate_of_peer(const nlohmann::json& own, nlohmann::json solution);
+
 /// {"holds", "remarks", "steps": [{"time", "holds", "laws": {law: {"value", "allowed", "where", "why", "holds"}}}]}.
 nlohmann::json certificate_json(const verify::Certificate& certificate);
+
+/// {"holds", "law", "time", "value", "allowed", "where"}: the law that is nearest to its bound, or broken most.
+nlohmann::json worst_of_certificate_json(const verify::Certificate& certificate);
 
 }  // namespace stickslip
