@@ -65,13 +65,20 @@ struct Scheme {
   Required<double> error;               ///< relative, that it is allowed; 0: rounding alone
 };
 
+/// What "auto" stands for, in multiples of the local nodal stiffness, if contact keeps the geometry of the start, and
+/// if it has that of the present.
+struct AutomaticMultiple {
+  double initial, current;
+  constexpr double of(bool current_geometry) const { return current_geometry ? current : initial; }
+};
+
 struct Penalty {
   static constexpr std::string_view name = "penalty";
   static constexpr std::string_view title = "Penalty";
   static constexpr std::string_view idea =
       "puts stiff springs between the bodies. One solve, but they sink in a little; stiffer springs err less and make "
       "the equations harder to solve accurately.";
-  static constexpr double automatic_multiple = 1e3;
+  static constexpr AutomaticMultiple automatic_multiple{1e3, 1e3};
   static constexpr std::string_view regularisation_name = "stiffness";
   static constexpr bool has_unknown_multipliers = false;
   static constexpr bool prevents_penetration = false;
@@ -101,7 +108,7 @@ struct UzawaAL {
   static constexpr std::string_view idea =
       "(augmented Lagrangian) solves with soft springs, adds the force that was missing, and repeats until nothing is "
       "missing: exact in the limit, at the price of repetition.";
-  static constexpr double automatic_multiple = 10;
+  static constexpr AutomaticMultiple automatic_multiple{100, 10};
   static constexpr std::string_view regularisation_name = "scale";
   static constexpr bool has_unknown_multipliers = false;
   static constexpr bool prevents_penetration = true;
@@ -162,7 +169,7 @@ struct MonolithicAL {
   static constexpr std::string_view title = "Monolithic AL";
   static constexpr std::string_view idea =
       "makes the contact forces unknowns of the same equations: exact at once, with a larger and less friendly system.";
-  static constexpr double automatic_multiple = 1;
+  static constexpr AutomaticMultiple automatic_multiple{1, 1};
   static constexpr std::string_view regularisation_name = "scale";
   static constexpr bool has_unknown_multipliers = true;
   static constexpr bool prevents_penetration = true;
@@ -195,7 +202,7 @@ concept WholeMethod = std::copyable<M> && requires(const M& method, M& changed) 
   { M::name } -> std::convertible_to<std::string_view>;
   { M::title } -> std::convertible_to<std::string_view>;
   { M::idea } -> std::convertible_to<std::string_view>;
-  { M::automatic_multiple } -> std::convertible_to<double>;
+  { M::automatic_multiple } -> std::convertible_to<AutomaticMultiple>;
   { M::regularisation_name } -> std::convertible_to<std::string_view>;
   { M::has_unknown_multipliers } -> std::convertible_to<bool>;
   { M::prevents_penetration } -> std::convertible_to<bool>;

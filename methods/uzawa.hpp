@@ -109,7 +109,7 @@ struct AugmentationStatus {
 ///
 /// Estimates of rounding in its body:
 ///
-///   gap       rounding of a gap, from that of the displacements
+///   gap       rounding of a gap, from that of the displacements, and from that of a traction, which is rho times a gap
 ///   traction  rounding of an update: rho gap, and rounding of the tractions, both times 1 + mu. In slip the bound
 ///   turns
 ///             the rounding of the pressure into one of the tangential traction
@@ -119,10 +119,11 @@ template <class T>
 AugmentationStatus augmentation_status(const UzawaAL& method, const Slots<T>& slots, const RegularisationField<T>& rho,
                                        double largest_displacement, double noise, const RunScales& scales,
                                        const AugmentationProgress<T>& progress) {
-  const double gap = 10 * unit_roundoff * largest_displacement, violation = method.tolerance * scales.length;
   double stiffest = 0, friction = 0;
   for (const auto& r : rho) stiffest = std::max(stiffest, value(r.normal));
   for (const auto& law : slots.friction) friction = std::max(friction, value(law.slope_at_apex()));
+  const double carried = stiffest > 0 ? scales.traction / stiffest : 0;
+  const double gap = 10 * unit_roundoff * (largest_displacement + carried), violation = method.tolerance * scales.length;
   const double traction = (1 + friction) * (stiffest * gap + 10 * unit_roundoff * scales.traction);
   const bool small = progress.error_left() <= method.tolerance * scales.traction;
   const bool drowned = noise > 0 && progress.is_stalled() && progress.is_within(10 * noise);
@@ -218,7 +219,7 @@ class AugmentationLoop {
                                   first ? &start_.state.displacement : nullptr,
                                   nullptr,
                                   start_.arc,
-                                  first && start_.rests};
+                                  start_.rests};
     auto equilibrium =
         find_equilibrium(run_.engine, task, unknowns_, inner_options(method_, progress_.contraction()), run_.account);
     account_for(increment_, equilibrium, ++increment_.augmentations);

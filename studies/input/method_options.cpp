@@ -53,7 +53,7 @@ void visit_options(UzawaAL& method, Visitor&& visit) {
   using Acceleration = UzawaAL::Acceleration;
   using Cone = UzawaAL::Cone;
   using Sensitivity = UzawaAL::Sensitivity;
-  visit(Option{"scale", "rho in multiples of the local nodal stiffness (auto: 10), or absolute", rho_examples},
+  visit(Option{"scale", "rho in multiples of the local nodal stiffness (auto: 100, or 10 at finite strain), or absolute", rho_examples},
         method.scale);
   visit(Option{"tolerance", "relative error left in the multiplier, and violation, at which the updates stop"},
         method.tolerance, below_one);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <set>
@@ -72,6 +73,8 @@ void add_guides(json& rows) {
     double product = least->first * least->second;
     for (auto p = points.begin() + (least - points.begin()) / 2; p != least; ++p)
       product = std::min(product, p->first * p->second);
+    // (of the least doubles it has no end that is a number)
+    if (!std::isnormal(product / points.front().first / 3) || !std::isnormal(product / least->first / 3)) continue;
     for (const auto& end : {points.front(), *least}) {
       json r = {{"panel", std::get<0>(key)}, {"quantity", std::get<1>(key)}, {"scene", std::get<2>(key)}};
       r["family"] = "penalty";

@@ -25,11 +25,11 @@ namespace {
 using nlohmann::json;
 
 /// Whether a method runs as it does without any option; "auto" and the number it stands for are the same.
-bool is_default(Method method) {
+bool is_default(Method method, bool current_geometry) {
   std::visit(
-      [](auto& m) {
+      [&](auto& m) {
         auto& rho = m.regularisation();
-        if (rho.kind == Regularisation::Kind::relative && rho.value.value == m.automatic_multiple)
+        if (rho.kind == Regularisation::Kind::relative && rho.value.value == m.automatic_multiple.of(current_geometry))
           rho.kind = Regularisation::Kind::automatic;
       },
       method);
@@ -75,7 +75,7 @@ json brief(const json& steps) {
 }
 
 /// What a row says of its cell, however it went.
-json head_of(const CellInput& cell) {
+json head_of(const CellInput& cell, bool current_geometry = false) {
   if (cell.peer)
     return {{"id", cell.id},
             {"label", cell.label},
@@ -87,8 +87,8 @@ json head_of(const CellInput& cell) {
   return {{"id", cell.id},
           {"label", cell.label},
           {"method", to_json(cell.method)},
-          {"default", is_default(cell.method)},
-          {"automatic", std::visit([](const auto& m) { return m.automatic_multiple; }, cell.method)},
+          {"default", is_default(cell.method, current_geometry)},
+          {"automatic", std::visit([&](const auto& m) { return m.automatic_multiple.of(current_geometry); }, cell.method)},
           {"knobs", cell.knobs},
           {"vary", cell.vary},
           {"refine", cell.refine},
@@ -221,6 +221,12 @@ ReferenceValues CellRunner::reference_of(const CaseResult& result) const {
   return all;
 }
 
+/// By the strain, where there is no model that could tell.
+bool CellRunner::has_current_geometry(const CellInput& cell) const {
+  return variant_.problem && variant_.key == variant_key(cell) ? variant_.problem->model.effects.current_geometry
+                                                               : cell.document.root().value("strain", "") == "finite";
+}
+
 json CellRunner::row(std::size_t index) {
   json row;
   const auto breakdown = attempt([&] { row = measured_row(cells_[index]); });
@@ -230,7 +236,7 @@ json CellRunner::row(std::size_t index) {
 }
 
 json CellRunner::failed_row(std::size_t index, const std::string& status, const std::string& message) const {
-  json row = head_of(cells_[index]);
+  json row = head_of(cells_[index], has_current_geometry(cells_[index]));
   row["status"] = status;
   row["message"] = message;
   row["errors"] = {{"enforcement", json::object()}, {"discretization", json::object()}};
@@ -255,7 +261,7 @@ json CellRunner::measured_row(const CellInput& cell) {
   enter(cell);
   if (cell.peer) return peer_row(cell);
   const auto result = run(cell);
-  json row = head_of(cell);
+  json row = head_of(cell, has_current_geometry(cell));
   row["regularisation"] = regularisation_json(result);
   row["status"] = name_of(result.status());
   row["message"] = result.message().empty() ? variant_.fault : result.message();

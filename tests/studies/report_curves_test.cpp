@@ -199,6 +199,18 @@ TEST_F(ReportCurves, DrawsAGuideOfSlopeMinusOneBesideThePenalty) {
   EXPECT_NEAR(guide[0].first * guide[0].second / (guide[1].first * guide[1].second), 1, 1e-14);
 }
 
+TEST_F(ReportCurves, DrawsNoGuideWhoseEndIsNoNumber) {
+  std::vector<json> cells = three_methods();
+  cells.push_back(cell("penalty", {{"stiffness", 5e-324}}, 1, 3));
+  record(description(), cells);
+  const auto figure = report::error_against_knob(study(), {"stiffness"});
+  ASSERT_TRUE(figure);
+  for (const auto& row : figure->rows) {
+    EXPECT_TRUE(std::isfinite(row["error"].get<double>())) << row;
+    EXPECT_FALSE(row.value("guide", false)) << row;
+  }
+}
+
 TEST_F(ReportCurves, KeepsTheGuideBelowACurveThatDoesNotFollowIt) {
   std::vector<json> cells;
   for (const auto& [stiffness, error] : {std::pair{1, 1.18}, std::pair{10, 0.838}, std::pair{100, 0.0242}})

@@ -115,6 +115,7 @@ TEST_F(ReportCharts, WindowsSayWhereTheAutomaticChoiceIsAtTheirEnd) {
   cells.back()["status"] = "cap";
   auto automatic = cell("uzawa_al", {{"scale", "auto"}}, 1e-9, 10);
   automatic["method"] = {{"uzawa_al", {{"scale", "auto"}}}};
+  automatic["automatic"] = 10;
   cells.push_back(automatic);
   record(description(), cells);
   const auto plate = report::robustness_windows(study(), {"scale"});
