@@ -35,15 +35,15 @@ struct BadFile : std::runtime_error {
 Vec3 vec3(const Json& json);                                 ///< of two or three numbers
 const Json& part(const Json& json, const std::string& key);  ///< an empty object where the key is missing
 
-/// A value in time: a number, or a table that is linear between its rows, and may be repeated.
+/// A value in time: a number, or a table that is linear between its rows, and may be repeated; 0 at rest.
 double value_at(const Json& value, double time);
 
 /// A rigid motion x = c + R (X - c) + move of a support or an obstacle, by the axes and the angle that it prescribes.
 struct Motion {
   Json move, rotate;
-  explicit Motion(const Json& json) : move(part(json, "move")), rotate(part(json, "rotate")) {}
+  Vec3 center = Vec3::Zero();
+  explicit Motion(const Json& json);
   bool prescribes(int axis) const { return !rotate.empty() || move.contains(std::string(1, "xyz"[axis])); }
-  Vec3 center() const { return rotate.empty() ? Vec3(0, 0, 0) : vec3(rotate.at("center")); }
   Vec3 angle(double time) const;  ///< radians about an axis
   Mat3 turn(double time) const;
   /// Displacement of what is at X at the start; where strains are small, linear in the angle.
