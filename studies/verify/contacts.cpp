@@ -22,9 +22,8 @@ Contact::Contact(const Scene& scene, const std::string& called, const Json& side
   std::erase_if(areas_, [&](const auto& of) {  // (no area is left on the axis)
     return segment ? of.second == 0 : body_.quadratic() && scene.axisymmetric && scene.points(0, of.first) == 0;
   });
-  std::vector<Seeker> seekers;
-  for (const auto& [node, area] : areas_) seekers.push_back(seeker(node, scene.points));
-  if (itself) master_.set_walls(seekers);
+  for (const auto& [node, area] : areas_)
+    if (itself) master_.set_wall(seeker(node, scene.points));
   advance(Field::Zero(3, scene.points.cols()), at_rest);  // slip is measured from the start
 }
 
@@ -40,12 +39,7 @@ void Contact::cut(const std::array<int, 2>& facet, const Field& x, const Places&
   const auto [first, second] = facet;
   const Line slave{x.col(first).head<2>(), x.col(second).head<2>()};
   const Vec2 nu = right_of(slave.tau).normalized();
-  const auto add = [&](double from, double to, int patch) {
-    for (const int node : facet)
-      if (side_.has(node))
-        all.push_back({first, second, node, patch, from, to, !side_.has(node == first ? second : first)});
-  };
-  if (master_.patches.empty()) return add(0, 1, -1);
+  if (master_.patches.empty()) return all.push_back({facet, -1, 0, 1});
   std::map<int, std::array<double, 2>> shadows;  // on the facet, of the patches that it may face
   std::set<double> breaks{0, 1};
   for (int p = 0; p < std::ssize(master_.patches); ++p) {
@@ -55,7 +49,7 @@ void Contact::cut(const std::array<int, 2>& facet, const Field& x, const Places&
       const double xi = slave.xi(y), end = std::clamp(std::round(xi), 0.0, 1.0);
       return is_free && scene_.finite && std::abs(xi - end) <= 1e-6 ? end : xi;
     };
-    const double low = cast(line.to, patch.next < 0), high = cast(line.from, patch.previous < 0);
+    const double low = cast(line.to, patch.beside[1] < 0), high = cast(line.from, patch.beside[0] < 0);
     const bool is_opposite = nu.dot(right_of(line.tau)) < -at_end * line.tau.norm();
     if (!is_opposite || std::min({high, 1 - low, high - low}) <= at_end) continue;
     shadows[p] = {low, high};
@@ -64,38 +58,42 @@ void Contact::cut(const std::array<int, 2>& facet, const Field& x, const Places&
   }
   for (auto to = std::next(breaks.begin()); to != breaks.end(); ++to) {
     const double from = *std::prev(to), middle = (from + *to) / 2;
+    const Vec2 y = slave.at(middle);
     std::pair<double, int> nearest{infinity, -1};
     for (const auto& [p, shadow] : shadows) {
-      if (shadow[0] > middle || shadow[1] < middle) continue;
       const Line line = master_.patches[p].line(at);
-      const Vec2 off = slave.from + middle * slave.tau - line.from;
-      nearest = std::min(nearest, {(cross(off, nu) / cross(line.tau, nu) * line.tau - off).norm(), p});
+      if (shadow[0] > middle || shadow[1] < middle) continue;
+      nearest = std::min(nearest, {(line.at(line.xi(y, nu)) - y).norm(), p});
     }
-    if (nearest.second >= 0 && *to - from > at_end) add(from, *to, nearest.second);
+    if (nearest.second >= 0 && *to - from > at_end) all.push_back({facet, nearest.second, from, *to});
   }
 }
 
-/// Adds int psi ... dA of a piece, by three Gauss points.
-void Contact::integrate(const Piece& piece, const Field& x, const Places& at, Touch& touch, double& share) const {
-  const auto& [first, second, carrier, p, from, to, sole] = piece;
+/// Adds int psi ... dA of a piece, by three Gauss points; psi is 1 where the facet's other node carries none. The
+/// length int psi dS.
+double Contact::integrate(const Piece& piece, int node, const Field& x, const Places& at, Touch& touch) const {
+  const auto& [facet, p, from, to] = piece;
+  const auto [first, second] = facet;
+  const bool end = node == second, sole = !side_.has(end ? first : second);
+  double share = 0;
   const Vec3 A = scene_.points.col(first), T = scene_.points.col(second) - A, tau = x.col(second) - x.col(first);
   const Vec2 nu = right_of(tau.head<2>()).normalized();
   for (const auto& point : edge_points(3, false)) {
-    const double s = from + (to - from) * point.s, psi = sole ? 1 : carrier == first ? 1 - s : s;
+    const double s = from + (to - from) * point.s, psi = sole ? 1 : end ? s : 1 - s;
     const double length = psi * (to - from) * point.weight * T.norm(),
                  dA = length * scene_.depth(body_, A[0] + s * T[0]);
     const Vec3 x_s = x.col(first) + s * tau;
     Foot foot;
     if (p < 0) {
-      foot = master_.foot({carrier, x_s, nu}, at);
+      foot = master_.foot({node, x_s, nu}, at);
     } else {
       const Patch& patch = master_.patches[p];
       const Line line = patch.line(at);
-      const double eta = cross(x_s.head<2>() - line.from, nu) / cross(line.tau, nu);
+      const double eta = line.xi(x_s.head<2>(), nu);
       foot = master_.foot({p, eta}, at);
       if (!master_.rigid()) foot.normal -= in_space(nu);
       touch.tangent += dA / patch.length * in_space(line.tau);
-      touch.along += dA * (patch.arc + eta * patch.length + (carrier == first ? s : s - 1) * T.norm());
+      touch.along += dA * (patch.arc + eta * patch.length + (end ? s - 1 : s) * T.norm());
     }
     share += length;
     touch.area += dA;
@@ -103,8 +101,9 @@ void Contact::integrate(const Piece& piece, const Field& x, const Places& at, To
     touch.normal += dA * foot.normal;
     touch.y += dA * foot.y;
     foot.weights.insert(foot.weights.end(), {{first, 1 - s}, {second, s}});
-    for (const auto& [node, weight] : foot.weights) touch.weights.emplace_back(node, dA * weight);
+    for (const auto& [n, weight] : foot.weights) touch.weights.emplace_back(n, dA * weight);
   }
+  return share;
 }
 
 Touch Contact::on_pieces(int node, const std::vector<Piece>& pieces, const Field& x, const Places& at) const {
@@ -116,7 +115,7 @@ Touch Contact::on_pieces(int node, const std::vector<Piece>& pieces, const Field
       whole += (scene_.points.col(second) - scene_.points.col(first)).norm() *
                (side_.has(first) && side_.has(second) ? 0.5 : 1);
   for (const auto& piece : pieces)
-    if (piece.carrier == node) integrate(piece, x, at, touch, share);
+    if (std::ranges::count(piece.facet, node) > 0) share += integrate(piece, node, x, at, touch);
   const bool along_curve = scene_.finite && !master_.patches.empty();
   if (share <= (along_curve ? 0.01 : 1e-12) * whole) {
     touch = {master_.foot(seeker(node, x), at), node};
@@ -163,24 +162,21 @@ void Contact::move(Touch& touch, const Touch& last, const Field& u, const Places
   touch.opening = touch.faces && last.faces ? touch.gap - last.gap : 0;
 }
 
-std::vector<Touch> Contact::advance(const Field& u, double time) {
+void Contact::advance(const Field& u, double time) {
   Field x = scene_.places(u);  // in the frame of the master
-  for (Eigen::Index n = 0; n < x.cols() && scene_.finite && master_.rigid(); ++n)
-    x.col(n) = master_.motion.back(x.col(n), time);
+  for (Eigen::Index n = 0; n < x.cols() && scene_.finite; ++n) x.col(n) = master_.motion.back(x.col(n), time);
   const auto at = master_.vertices(x);
   std::vector<Piece> pieces;
   for (const auto& facet : facets_)
     if (segment) cut(facet, x, at, pieces);
-  std::vector<Touch> touches;
+  last = std::exchange(touches, {});
   for (const auto& [node, area] : areas_) {
-    Touch touch = segment ? on_pieces(node, pieces, x, at) : Touch{master_.foot(seeker(node, x), at), node, area};
+    Touch& touch = touches[node];
+    touch = segment ? on_pieces(node, pieces, x, at) : Touch{master_.foot(seeker(node, x), at), node, area};
     if (!segment) touch.weights.emplace_back(node, 1);
-    const Touch last = last_.contains(node) ? last_[node] : touch;
-    move(touch, last, u, at, time);
-    touches.push_back(last_[node] = touch);
+    move(touch, last[node], u, at, time);
   }
   last_time_ = time;
-  return touches;
 }
 
 }  // namespace stickslip::verify

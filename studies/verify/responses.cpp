@@ -2,6 +2,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "studies/verify/state.hpp"
 
@@ -53,21 +54,25 @@ std::optional<Vec3> displacement_at(const State& state, const Json& how) {
   return std::nullopt;
 }
 
+/// Places of the contacts that a response is measured on.
+using Touches = std::vector<std::pair<const Contact&, const Touch&>>;
+
 /// a = 2 sqrt(sum f x^2 / sum f) of nodal forces f, about a point or their centre; of revolution sqrt(5/2 ...). None
 /// where a plane of symmetry may be what it is measured from: where supports hold nodes of the contact.
-std::optional<double> half_width(const State& state, const std::vector<const Placed*>& placed, const Json& how) {
+std::optional<double> half_width(const State& state, const Touches& touches, const Json& how) {
   const bool rings = state.scene.axisymmetric, has_center = how.contains("about");
-  Field x(3, placed.size()), normals = x;
-  Eigen::VectorXd f(placed.size());
-  for (std::size_t k = 0; k < placed.size(); ++k) {
-    x.col(k) = state.place(placed[k]->touch.node);
-    normals.col(k) = placed[k]->touch.normal;
-    f[k] = placed[k]->touch.area * placed[k]->pressure();
+  Field x(3, touches.size()), normals = x;
+  Eigen::VectorXd f(touches.size());
+  for (std::size_t k = 0; k < touches.size(); ++k) {
+    const Touch& touch = touches[k].second;
+    x.col(k) = state.place(touch.node);
+    normals.col(k) = touch.normal;
+    f[k] = touch.area * touch.pressure();
   }
   if ((f.array() > 0).count() < (rings ? 1 : 2)) return 0;
   for (const auto& support : part(state.scene.json, "supports"))
-    for (const auto* one : placed)
-      if (!rings && !has_center && state.scene.side(support.at("on")).has(one->touch.node)) return std::nullopt;
+    for (const auto& [contact, touch] : touches)
+      if (!rings && !has_center && state.scene.side(support.at("on")).has(touch.node)) return std::nullopt;
   const Vec3 normal = (normals * f).normalized(), along = rings ? Vec3(1, 0, 0) : Vec3(-normal[1], normal[0], 0),
              middle = rings        ? Vec3(0, 0, 0)
                       : has_center ? vec3(how["about"])
@@ -76,17 +81,17 @@ std::optional<double> half_width(const State& state, const std::vector<const Pla
 }
 
 /// What a place of contact adds to a response; none: it does not count.
-std::optional<double> at_place(const State& state, const Placed& placed, const std::string& kind, const Json& how) {
-  const Touch& touch = placed.touch;
+std::optional<double> at_place(const State& state, const Contact& contact, const Touch& touch, const std::string& kind,
+                               const Json& how) {
   if (kind == "gap") return touch.gap;
-  if (kind == "contact_pressure") return placed.pressure();
-  const bool slides = placed.contact->given.contains("friction") && !state.scene.on_axis(touch.node);
-  if (kind == "slip") return slides ? std::optional(placed.slid) : std::nullopt;
+  if (kind == "contact_pressure") return touch.pressure();
+  const bool slides = contact.given.contains("friction") && !state.scene.on_axis(touch.node);
+  if (kind == "slip") return slides ? std::optional(touch.slid) : std::nullopt;
   if (kind != "contact_force") return std::nullopt;
   Vec3 x = Vec3::Zero();  // the force is shared by the slave's nodes
   for (const auto& [node, weight] : touch.weights)
-    if (placed.contact->segment ? weight > 0 : node == touch.node) x += weight * state.place(node);
-  return touch.area * (how.at("component") == "normal" ? placed.pressure() : part_of(how, placed.traction, x));
+    if (contact.segment ? weight > 0 : node == touch.node) x += weight * state.place(node);
+  return touch.area * (how.at("component") == "normal" ? touch.pressure() : part_of(how, touch.traction, x));
 }
 
 }  // namespace
@@ -104,15 +109,17 @@ std::optional<double> measure(const State& state, const Json& response) {
   if (how.contains("contact")) {
     const std::string name = how["contact"];
     if (kind == "dissipation") return state.heat.contains(name) ? state.heat.at(name) : 0;
-    std::vector<const Placed*> placed;
-    for (const auto& one : state.placed)
-      if (one.contact->name == name || one.contact->group == name) placed.push_back(&one);
-    if (kind == "contact_half_width") return half_width(state, placed, how);
-    for (const auto* one : placed)
-      if (const auto value = at_place(state, *one, kind, how)) samples.push_back({*value, force ? 1 : one->touch.area});
+    Touches touches;
+    for (const auto& contact : state.contacts)
+      for (const auto& [node, touch] : contact.touches)
+        if (contact.name == name || contact.group == name) touches.emplace_back(contact, touch);
+    if (kind == "contact_half_width") return half_width(state, touches, how);
+    for (const auto& [contact, touch] : touches)
+      if (const auto value = at_place(state, contact, touch, kind, how))
+        samples.push_back({*value, force ? 1 : touch.area});
   } else if (kind == "plastic_strain") {
     for (std::size_t b = 0; b < state.scene.bodies.size(); ++b)
-      for (const auto& particle : state.bodies.particles[b])
+      for (const auto& particle : state.bodies.particles[b] | std::views::join)
         if (state.scene.bodies[b].name == how.at("on")) samples.push_back({particle.equivalent, particle.volume});
   } else {
     for (const int node : state.scene.side(how.at("on")).nodes)

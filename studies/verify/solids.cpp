@@ -147,22 +147,13 @@ std::vector<Vec3> rule(const Body& body, bool of_revolution) {
   return points;
 }
 
-/// A Gauss point of an element, with gradients by coordinates of the start, and N / R of revolution.
+/// A Gauss point of an element, with gradients by coordinates of the start, and N / R of revolution. A bar has one, in
+/// its middle, without gradients.
 struct Point {
-  Eigen::VectorXd value;
-  Eigen::MatrixX3d gradient;
-  Eigen::VectorXd hoop;
   double volume;
+  Eigen::VectorXd value, hoop = {};
+  Eigen::MatrixX3d gradient = {};
 
-  Point(const Scene& scene, const Body& body, const Nodes& element, const Shape& at, double weight) : value(at.value) {
-    const Places X = scene.points(Eigen::seqN(0, 2), element);
-    const Eigen::Matrix2d jacobian = X * at.gradient;
-    const double radius = X.row(0).dot(value);
-    gradient.setZero(value.size(), 3);
-    gradient.leftCols<2>() = at.gradient * jacobian.inverse();
-    hoop = (scene.axisymmetric ? 1 / radius : 0) * value;
-    volume = jacobian.determinant() * weight * scene.depth(body, radius);
-  }
   Mat3 displacement_gradient(const Field& u) const {
     return u * gradient + u.row(0).dot(hoop) * Vec3::UnitZ() * Vec3::UnitZ().transpose();
   }
@@ -171,13 +162,26 @@ struct Point {
   }
 };
 
+Point point_of(const Scene& scene, const Body& body, const Nodes& element, const Shape& at, double weight = 0) {
+  const Places X = scene.points(Eigen::seqN(0, 2), element);
+  const Eigen::Matrix2d jacobian = X * at.gradient;
+  const double radius = X.row(0).dot(at.value);
+  Point point{jacobian.determinant() * weight * scene.depth(body, radius), at.value};
+  point.hoop = (scene.axisymmetric ? 1 / radius : 0) * at.value;
+  point.gradient.setZero(at.value.size(), 3);
+  point.gradient.leftCols<2>() = at.gradient * jacobian.inverse();
+  return point;
+}
+
 std::vector<Point> points_of(const Scene& scene, const Body& body, const Nodes& element) {
+  if (body.element == "bar")
+    return {{body.area * (scene.points.col(element[1]) - scene.points.col(element[0])).norm(), Vec2(0.5, 0.5)}};
   static std::map<std::pair<std::string, bool>, std::vector<std::pair<Shape, double>>> known;
   auto& shapes = known[{body.element, scene.axisymmetric}];
   if (shapes.empty())
     for (const auto& at : rule(body, scene.axisymmetric)) shapes.emplace_back(shape(body, at.head<2>()), at[2]);
   std::vector<Point> points;
-  for (const auto& [at, weight] : shapes) points.emplace_back(scene, body, element, at, weight);
+  for (const auto& [at, weight] : shapes) points.push_back(point_of(scene, body, element, at, weight));
   return points;
 }
 
@@ -185,7 +189,7 @@ std::vector<Point> points_of(const Scene& scene, const Body& body, const Nodes& 
 
 /// Forces of an element of a solid body.
 Field solid_forces(const Scene& scene, const Body& body, const std::vector<Point>& points, const Field& u,
-                   Particle* particles, Bodies& bodies) {
+                   std::vector<Particle>& particles, Bodies& bodies) {
   const Material material(body.material);
   const bool finite = scene.finite, mean = body.element == "Q4_mean_dilatation";
   const Mat3 I = Mat3::Identity();
@@ -205,7 +209,7 @@ Field solid_forces(const Scene& scene, const Body& body, const std::vector<Point
     if (mean) h += (finite ? std::expm1((std::log1p(theta) - std::log1p(change(H))) / 3) : (theta - change(H)) / 3) * F;
     const auto answer = scene.plane_stress ? respond_in_plane_stress(material, h, finite, particles[q])
                                            : respond(material, h, finite, particles[q]);
-    const double volume = particles[q].volume = points[q].volume;
+    const double volume = points[q].volume;
     bodies.inverted |= answer.inverted;
     bodies.energy += answer.energy * volume;
     bodies.plastic_work += answer.plastic_work * volume;
@@ -229,7 +233,6 @@ Field bar_forces(const Scene& scene, const Body& body, const Nodes& bar, const F
   const double growth = material.growth(q, material.E, particle.equivalent), flow = std::copysign(growth, trial);
   particle.strain(0, 0) += flow;
   particle.equivalent += growth;
-  particle.volume = body.area * length;
   bodies.plastic_work += (q - material.E * growth) * growth * particle.volume;
   bodies.energy += material.E * (trial - flow) * (trial - flow) / 2 * particle.volume;
   const Vec3 now = axis + (scene.finite ? 1.0 : 0.0) * d;
@@ -238,45 +241,33 @@ Field bar_forces(const Scene& scene, const Body& body, const Nodes& bar, const F
 
 // --- loads -----------------------------------------------------------------------------------------------------------
 
-/// int N f dA of the nodes of a side, of edges at `places`; f: of an edge, a Gauss point of it and dx / ds.
+/// Integrates over a side, of edges at `places`: adds up, at each of its nodes, N times depth ds and a vector dx / ds;
+/// of an edge, at a Gauss point of it.
 template <class F>
-Field over_side(const Scene& scene, const Body& body, const Side& side, const Field& places, F&& f) {
-  Field sums = Field::Zero(3, places.cols());
+void over_side(const Scene& scene, const Body& body, const Side& side, const Field& places, F&& add) {
   for (const auto& edge : side.edges)
     for (const auto& point : edge_points(edge.size(), scene.axisymmetric)) {
       const Field at = places(Eigen::all, edge);
-      const double depth = scene.depth(body, at.row(0).dot(point.value));
-      const Vec3 value = f(edge, point, Vec3(at * point.slope));
+      const Vec3 tau = at * point.slope;
+      const double width = point.weight * scene.depth(body, at.row(0).dot(point.value));
       for (std::size_t a = 0; a < edge.size(); ++a)
-        if (side.has(edge[a])) sums.col(edge[a]) += point.weight * depth * point.value[a] * value;
+        if (side.has(edge[a])) add(edge[a], width * point.value[a], tau, edge, point);
     }
-  return sums;
 }
 
 /// Present stretch of the thickness at a place of an edge, of rubber in plane stress: F_33 of the element behind.
 double thickness_stretch(const Scene& scene, const Body& body, const Nodes& edge, double s, const Field& u) {
-  const Places natural = natural_nodes(body);
-  for (const auto& element : body.elements)
-    for (std::size_t c = 0; c < body.corners(); ++c) {
-      const std::size_t d = (c + 1) % body.corners();
-      if (element[c] != edge[0] || element[d] != edge[1]) continue;
-      const Point point(scene, body, element, shape(body, (1 - s) * natural.col(c) + s * natural.col(d)), 0);
-      Mat3 H = point.displacement_gradient(u(Eigen::all, element));
-      Particle none;
-      respond_in_plane_stress(Material(body.material), H, true, none);
-      return 1 + H(2, 2);
-    }
-  return 1;
-}
-
-void add_body_force(const Scene& scene, const Body& body, const Vec3& f, Field& forces) {
-  for (const auto& element : body.elements)
-    if (body.element == "bar")
-      for (const int node : element)
-        forces.col(node) += body.area * (scene.points.col(element[1]) - scene.points.col(element[0])).norm() / 2 * f;
-    else
-      for (const auto& point : points_of(scene, body, element))
-        forces(Eigen::all, element) += point.volume * f * point.value.transpose();
+  const Nodes& element = *std::ranges::find_if(body.elements, [&](const Nodes& nodes) {
+    return std::ranges::count(nodes, edge[0]) + std::ranges::count(nodes, edge[1]) == 2;
+  });
+  const auto corner = [&](int node) -> Vec2 {
+    return natural_nodes(body).col(std::ranges::find(element, node) - element.begin());
+  };
+  const Shape at = shape(body, (1 - s) * corner(edge[0]) + s * corner(edge[1]));
+  Mat3 H = point_of(scene, body, element, at).displacement_gradient(u(Eigen::all, element));
+  Particle none;
+  respond_in_plane_stress(Material(body.material), H, true, none);
+  return 1 + H(2, 2);
 }
 
 /// The factor of a load: its history, which along a path by arc length goes on straight, in proportion to the time.
@@ -319,12 +310,9 @@ std::vector<EdgePoint> edge_points(std::size_t nodes, bool of_revolution) {
 }
 
 std::map<int, double> areas_of(const Scene& scene, const Body& body, const Side& side) {
-  const auto length = [](const Nodes&, const EdgePoint&, const Vec3& tau) { return Vec3(tau.norm(), 0, 0); };
-  const Field sums = over_side(scene, body, side, scene.points, length);
   std::map<int, double> areas;
-  for (const auto& edge : side.edges)
-    for (const int node : edge)
-      if (side.has(node)) areas[node] = sums(0, node);
+  over_side(scene, body, side, scene.points,
+            [&](int node, double width, const Vec3& tau, auto&...) { areas[node] += width * tau.norm(); });
   for (const int node : side.nodes)
     if (side.edges.empty()) areas[node] = 1;
   return areas;
@@ -351,14 +339,16 @@ Bodies deform(const Scene& scene, const Field& u, const Bodies& before) {
     }
     const double depth = body.solid() ? scene.depth(body, scene.points.row(0).maxCoeff()) : body.area;
     bodies.stiffness = std::max(bodies.stiffness, Material(body.material).E * depth);
+    bodies.particles[b].resize(body.elements.size());
     for (std::size_t e = 0; e < body.elements.size(); ++e) {
-      const Field moved = u(Eigen::all, body.elements[e]);
-      const auto points = body.solid() ? points_of(scene, body, body.elements[e]) : std::vector<Point>{};
-      const std::size_t each = body.solid() ? points.size() : 1;
-      bodies.particles[b].resize(body.elements.size() * each);
-      Particle* own = &bodies.particles[b][e * each];
-      add(body.elements[e], body.solid() ? solid_forces(scene, body, points, moved, own, bodies)
-                                         : bar_forces(scene, body, body.elements[e], moved, *own, bodies));
+      const Nodes& element = body.elements[e];
+      const Field moved = u(Eigen::all, element);
+      const auto points = points_of(scene, body, element);
+      auto& own = bodies.particles[b][e];
+      own.resize(points.size());
+      for (std::size_t q = 0; q < points.size(); ++q) own[q].volume = points[q].volume;
+      add(element, body.solid() ? solid_forces(scene, body, points, moved, own, bodies)
+                                : bar_forces(scene, body, element, moved, own[0], bodies));
     }
   }
   return bodies;
@@ -373,13 +363,17 @@ Field load_forces(const Scene& scene, const Field& u, double time) {
     const Body& body = scene.body(load.at("on"));
     const Side side = scene.side(load["on"]);
     if (load.contains("body_force")) {
-      add_body_force(scene, body, factor * vec3(load["body_force"]), forces);
+      for (const auto& element : body.elements)
+        for (const auto& point : points_of(scene, body, element))
+          forces(Eigen::all, element) += point.volume * factor * vec3(load["body_force"]) * point.value.transpose();
     } else if (load.contains("pressure")) {  // int p N n da, n into the body: at finite strain of the present edges
       const double p = factor * load["pressure"].get<double>();
-      forces += over_side(scene, body, side, scene.places(u), [&](const auto& edge, const auto& at, const Vec3& tau) {
-        const bool thins = scene.finite && scene.plane_stress;
-        return Vec3(p * (thins ? thickness_stretch(scene, body, edge, at.s, u) : 1) * Vec3(-tau[1], tau[0], 0));
-      });
+      const bool thins = scene.finite && scene.plane_stress;
+      over_side(scene, body, side, scene.places(u),
+                [&](int node, double width, const Vec3& tau, const Nodes& edge, const EdgePoint& at) {
+                  const double stretch = thins ? thickness_stretch(scene, body, edge, at.s, u) : 1;
+                  forces.col(node) += p * stretch * width * Vec3(-tau[1], tau[0], 0);
+                });
     } else {  // a traction by the areas of the nodes, or a force in all that they share by these
       const auto areas = areas_of(scene, body, side);
       double all = 0;
