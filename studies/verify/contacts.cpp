@@ -18,7 +18,7 @@ Contact::Contact(const Scene& scene, const std::string& called, const Json& side
       facets_(facets_of(side_)),
       areas_(areas_of(scene, body_, side_)) {
   for (auto& [node, area] : areas_)
-    if (side_.edges.empty() && body_.element == "bar") area = body_.area;
+    if (side_.edges.empty() && body_.element == "bar") area = body_.area();
   std::erase_if(areas_, [&](const auto& of) {  // (no area is left on the axis)
     return segment ? of.second == 0 : body_.quadratic() && scene.axisymmetric && scene.points(0, of.first) == 0;
   });
@@ -35,7 +35,7 @@ Seeker Contact::seeker(int node, const Field& x) const {
 }
 
 /// Cuts a slave facet where master facets end, seen along its normal; each part faces the nearest of them.
-void Contact::cut(const std::array<int, 2>& facet, const Field& x, const Places& at, std::vector<Piece>& all) const {
+void Contact::cut(const std::array<int, 2>& facet, const Field& x, std::vector<Piece>& all) const {
   const auto [first, second] = facet;
   const Line slave{x.col(first).head<2>(), x.col(second).head<2>()};
   const Vec2 nu = right_of(slave.tau).normalized();
@@ -44,7 +44,7 @@ void Contact::cut(const std::array<int, 2>& facet, const Field& x, const Places&
   std::set<double> breaks{0, 1};
   for (int p = 0; p < std::ssize(master_.patches); ++p) {
     const Patch& patch = master_.patches[p];
-    const Line line = patch.line(at);
+    const Line line = master_.line_of(patch);
     const auto cast = [&](const Vec2& y, bool is_free) {  // sides that end together, do so to 1e-6 of a facet
       const double xi = slave.xi(y), end = std::clamp(std::round(xi), 0.0, 1.0);
       return is_free && scene_.finite && std::abs(xi - end) <= 1e-6 ? end : xi;
@@ -61,7 +61,7 @@ void Contact::cut(const std::array<int, 2>& facet, const Field& x, const Places&
     const Vec2 y = slave.at(middle);
     std::pair<double, int> nearest{infinity, -1};
     for (const auto& [p, shadow] : shadows) {
-      const Line line = master_.patches[p].line(at);
+      const Line line = master_.line_of(master_.patches[p]);
       if (shadow[0] > middle || shadow[1] < middle) continue;
       nearest = std::min(nearest, {(line.at(line.xi(y, nu)) - y).norm(), p});
     }
@@ -71,7 +71,7 @@ void Contact::cut(const std::array<int, 2>& facet, const Field& x, const Places&
 
 /// Adds int psi ... dA of a piece, by three Gauss points; psi is 1 where the facet's other node carries none. The
 /// length int psi dS.
-double Contact::integrate(const Piece& piece, int node, const Field& x, const Places& at, Touch& touch) const {
+double Contact::integrate(const Piece& piece, int node, const Field& x, Touch& touch) const {
   const auto& [facet, p, from, to] = piece;
   const auto [first, second] = facet;
   const bool end = node == second, sole = !side_.has(end ? first : second);
@@ -85,12 +85,12 @@ double Contact::integrate(const Piece& piece, int node, const Field& x, const Pl
     const Vec3 x_s = x.col(first) + s * tau;
     Foot foot;
     if (p < 0) {
-      foot = master_.foot({node, x_s, nu}, at);
+      foot = master_.foot({node, x_s, nu});
     } else {
       const Patch& patch = master_.patches[p];
-      const Line line = patch.line(at);
+      const Line line = master_.line_of(patch);
       const double eta = line.xi(x_s.head<2>(), nu);
-      foot = master_.foot({p, eta}, at);
+      foot = master_.foot({p, eta});
       if (!master_.rigid()) foot.normal -= in_space(nu);
       touch.tangent += dA / patch.length * in_space(line.tau);
       touch.along += dA * (patch.arc + eta * patch.length + (end ? s - 1 : s) * T.norm());
@@ -106,7 +106,7 @@ double Contact::integrate(const Piece& piece, int node, const Field& x, const Pl
   return share;
 }
 
-Touch Contact::on_pieces(int node, const std::vector<Piece>& pieces, const Field& x, const Places& at) const {
+Touch Contact::on_pieces(int node, const std::vector<Piece>& pieces, const Field& x) const {
   Touch touch;
   touch.normal.setZero();
   double share = 0, whole = 0;  // lengths
@@ -115,10 +115,10 @@ Touch Contact::on_pieces(int node, const std::vector<Piece>& pieces, const Field
       whole += (scene_.points.col(second) - scene_.points.col(first)).norm() *
                (side_.has(first) && side_.has(second) ? 0.5 : 1);
   for (const auto& piece : pieces)
-    if (std::ranges::count(piece.facet, node) > 0) share += integrate(piece, node, x, at, touch);
+    if (std::ranges::count(piece.facet, node) > 0) share += integrate(piece, node, x, touch);
   const bool along_curve = scene_.finite && !master_.patches.empty();
   if (share <= (along_curve ? 0.01 : 1e-12) * whole) {
-    touch = {master_.foot(seeker(node, x), at), node};
+    touch = {master_.foot(seeker(node, x)), node};
     touch.gap = (x.col(node) - touch.y).norm();
     touch.faces = false;
     return touch;
@@ -136,14 +136,14 @@ Touch Contact::on_pieces(int node, const std::vector<Piece>& pieces, const Field
 
 /// What a place did since the last increment. Its gap and normal are those in the frame of the master, at small strain
 /// those of the start.
-void Contact::move(Touch& touch, const Touch& last, const Field& u, const Places& at, double time) const {
+void Contact::move(Touch& touch, const Touch& last, const Field& u, double time) const {
   const Motion& motion = master_.motion;
   const bool on_curve = touch.place.patch >= 0 && last.place.patch >= 0;
-  touch.carried =
-      motion.displacement(touch.y, time, scene_.finite) - motion.displacement(touch.y, last_time_, scene_.finite);
+  const Vec3 moved = motion.displacement(touch.y, time, scene_.finite);
+  touch.carried = moved - motion.displacement(touch.y, last_time_, scene_.finite);
   touch.slip_known = touch.faces && (last.faces || on_curve || !scene_.finite);
   if (!scene_.finite) {
-    touch.relative = -motion.displacement(touch.y, time, false);
+    touch.relative = -moved;
     for (const auto& [node, weight] : touch.weights) touch.relative += weight * u.col(node);
     touch.gap += touch.normal.dot(touch.relative);
     touch.slip = touch.relative - last.relative;
@@ -151,12 +151,11 @@ void Contact::move(Touch& touch, const Touch& last, const Field& u, const Places
     const double way = touch.along - last.along;
     touch.slip = (master_.loop > 0 ? std::remainder(way, master_.loop) : way) * touch.tangent;
   } else {
-    touch.slip = touch.y - (on_curve ? in_space(master_.position(at, last.place)) : last.y);
+    touch.slip = touch.y - (on_curve ? in_space(master_.position(last.place)) : last.y);
   }
-  if (scene_.finite) {
-    touch.normal = motion.turn(time) * touch.normal;
-    touch.slip = motion.turn(time) * touch.slip;
-  }
+  const Mat3 turn = scene_.finite ? motion.turn(time) : Mat3(Mat3::Identity());
+  touch.normal = turn * touch.normal;
+  touch.slip = turn * touch.slip;
   touch.slip -= touch.normal.dot(touch.slip) * touch.normal;
   if (touch.faces) touch.gap += given.value("offset", 0.0);
   touch.opening = touch.faces && last.faces ? touch.gap - last.gap : 0;
@@ -165,16 +164,16 @@ void Contact::move(Touch& touch, const Touch& last, const Field& u, const Places
 void Contact::advance(const Field& u, double time) {
   Field x = scene_.places(u);  // in the frame of the master
   for (Eigen::Index n = 0; n < x.cols() && scene_.finite; ++n) x.col(n) = master_.motion.back(x.col(n), time);
-  const auto at = master_.vertices(x);
+  master_.place_vertices(x);
   std::vector<Piece> pieces;
   for (const auto& facet : facets_)
-    if (segment) cut(facet, x, at, pieces);
+    if (segment) cut(facet, x, pieces);
   last = std::exchange(touches, {});
   for (const auto& [node, area] : areas_) {
     Touch& touch = touches[node];
-    touch = segment ? on_pieces(node, pieces, x, at) : Touch{master_.foot(seeker(node, x), at), node, area};
+    touch = segment ? on_pieces(node, pieces, x) : Touch{master_.foot(seeker(node, x)), node, area};
     if (!segment) touch.weights.emplace_back(node, 1);
-    move(touch, last[node], u, at, time);
+    move(touch, last[node], u, time);
   }
   last_time_ = time;
 }

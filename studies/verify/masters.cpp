@@ -25,26 +25,26 @@ Master::Master(const Scene& scene, const Json& contact, const std::string& slave
     const Json& points = obstacle["polyline"].at("points");
     const bool closed = points.front() == points.back();
     const int count = static_cast<int>(points.size()) - closed;
-    polyline_.resize(2, count);
-    for (int v = 0; v < count; ++v) polyline_.col(v) = vec3(points[v]).head<2>();
+    at_.resize(2, count);
+    for (int v = 0; v < count; ++v) at_.col(v) = vec3(points[v]).head<2>();
     for (int v = 0; v + 1 < count + closed; ++v) facets.push_back({(v + 1) % count, v});
   }
   for (const auto& [from, to] : facets) patches.push_back({{from, from, to, to}});
+  place_vertices(scene.points);
   link(surface.is_object() ? surface.value("corner", 30.0) : 30.0);
 }
 
 /// Neighbours of the patches, corners, and lengths along the master at the start.
 void Master::link(double corner) {
-  const auto at = vertices(scene_.points);
   std::map<int, int> starts;
   for (int p = 0; p < std::ssize(patches); ++p) starts[patches[p].vertex[1]] = p;
   for (int p = 0; p < std::ssize(patches); ++p) {
     Patch& patch = patches[p];
-    patch.length = patch.line(at).tau.norm();
+    patch.length = line_of(patch).tau.norm();
     if (!starts.contains(patch.vertex[2])) continue;
     Patch& other = patches[patch.beside[1] = starts[patch.vertex[2]]];
     other.beside[0] = p;
-    const double cosine = patch.line(at).tau.normalized().dot(other.line(at).tau.normalized());
+    const double cosine = line_of(patch).tau.normalized().dot(line_of(other).tau.normalized());
     if (smooth_ == 0 || cosine < std::cos(corner * std::numbers::pi / 180)) continue;
     patch.vertex[3] = other.vertex[2];
     other.vertex[0] = patch.vertex[1];
@@ -70,38 +70,39 @@ void Master::link(double corner) {
     }
 }
 
-Places Master::vertices(const Field& x) const { return rigid() ? polyline_ : Places(x.topRows<2>()); }
+void Master::place_vertices(const Field& x) {
+  if (!rigid()) at_ = x.topRows<2>();
+}
 
 Eigen::Vector4d Patch::functions(double s, int derivative) const {
   const Eigen::Vector4d powers[3] = {{1, s, s * s, s * s * s}, {0, 1, 2 * s, 3 * s * s}, {0, 0, 2, 6 * s}};
   return shape.transpose() * powers[derivative];
 }
 
-Vec2 Master::position(const Places& at, const Place& place, int derivative) const {
+Vec2 Master::position(const Place& place, int derivative) const {
   const Patch& patch = patches[place.patch];
-  return at(Eigen::all, patch.vertex) * patch.functions(place.xi, derivative);
+  return at_(Eigen::all, patch.vertex) * patch.functions(place.xi, derivative);
 }
 
 void Master::set_wall(const Seeker& seeker) {
-  const auto at = vertices(scene_.points);
   const Vec2 x = seeker.x.head<2>(), inward = -seeker.outward.normalized();
   double thickness = infinity;
   for (const auto& patch : patches) {
-    const Line line = patch.line(at);
+    const Line line = line_of(patch);
     const double xi = line.xi(x, inward), depth = (line.at(xi) - x).dot(inward);
     const bool is_own = patch.vertex[1] == seeker.node || patch.vertex[2] == seeker.node;
     if (!is_own && xi >= 0 && xi <= 1 && depth > 0) thickness = std::min(thickness, depth);
   }
   for (const auto& patch : patches) {
-    const Line line = patch.line(at);
+    const Line line = line_of(patch);
     const bool is_behind = cross(x - line.from, line.tau) < -at_end * line.tau.squaredNorm();
     const double distance = std::min(line.distance(x), line.distance(x + thickness * inward));
     walls_[seeker.node].push_back(thickness < infinity && is_behind && distance < 2 * thickness + patch.length);
   }
 }
 
-bool Master::may_face(const Seeker& seeker, int p, const Places& at) const {
-  const Line line = patches[p].line(at);
+bool Master::may_face(const Seeker& seeker, int p) const {
+  const Line line = line_of(patches[p]);
   const Vec2 x = seeker.x.head<2>(), across = right_of(line.tau);
   const double against = seeker.outward.dot(across), xi = line.xi(x);
   if (!itself_) return frozen_ || !(against > 0);
@@ -112,22 +113,22 @@ bool Master::may_face(const Seeker& seeker, int p, const Places& at) const {
 
 /// The closest place of all patches, 0 <= xi <= 1; where two end in it, that on whose side of their bisector the point
 /// is.
-Place Master::closest(const Seeker& seeker, const Places& at) const {
+Place Master::closest(const Seeker& seeker) const {
   Place best;
   double least = infinity, least_past = 0;  // distance; how far the point is past the end of the patch
   const Vec2 x = seeker.x.head<2>();
   for (int p = 0; p < std::ssize(patches); ++p) {
-    const Line line = patches[p].line(at);
-    if (line.distance(x) > least + 2 * line.tau.norm() || !may_face(seeker, p, at)) continue;
+    const Line line = line_of(patches[p]);
+    if (line.distance(x) > least + 2 * line.tau.norm() || !may_face(seeker, p)) continue;
     Place place{p, std::clamp(line.xi(x), 0.0, 1.0)};
     for (int k = 0; k < 50 && smooth_ > 0; ++k) {  // Newton's method for (x - y) . y' = 0
-      const Vec2 off = x - position(at, place), slope = position(at, place, 1);
-      const double step = off.dot(slope) / std::abs(slope.squaredNorm() - off.dot(position(at, place, 2)));
+      const Vec2 off = x - position(place), slope = position(place, 1);
+      const double step = off.dot(slope) / std::abs(slope.squaredNorm() - off.dot(position(place, 2)));
       const double last = std::exchange(place.xi, std::clamp(place.xi + std::clamp(step, -0.5, 0.5), 0.0, 1.0));
       if (std::abs(place.xi - last) < 1e-15) break;
     }
-    const Vec2 off = x - position(at, place);
-    const double past = std::abs(off.dot(position(at, place, 1).normalized())), band = at_end * line.tau.norm();
+    const Vec2 off = x - position(place);
+    const double past = std::abs(off.dot(position(place, 1).normalized())), band = at_end * line.tau.norm();
     if (off.norm() >= least - band && !(off.norm() <= least + band && past < least_past)) continue;
     best = place;
     least = off.norm();
@@ -138,24 +139,22 @@ Place Master::closest(const Seeker& seeker, const Places& at) const {
 
 /// What a point faces: at a corner also past the end of a patch, and a little past a free end; inside of a master by
 /// one face only where it is outside by none that is nearer.
-Place Master::find(const Seeker& seeker, const Places& at) const {
+Place Master::find(const Seeker& seeker) const {
   const Vec2 x = seeker.x.head<2>();
   const auto facing = [&](const Seeker& point) {
-    Place place = closest(point, at);
+    Place place = closest(point);
     const bool end = place.xi == 1;
     if (place.patch < 0 || (place.xi > 0 && !end) || patches[place.patch].goes_on(end)) return place;
     for (int k = 0; k < 20; ++k) {
-      const Vec2 off = x - position(at, place), slope = position(at, place, 1);
-      place.xi += off.dot(slope) / (slope.squaredNorm() - off.dot(position(at, place, 2)));
+      const Vec2 off = x - position(place), slope = position(place, 1);
+      place.xi += off.dot(slope) / (slope.squaredNorm() - off.dot(position(place, 2)));
     }
     const int other = patches[place.patch].beside[end];
-    const bool is_free = other < 0 || !may_face(point, other, at);
+    const bool is_free = other < 0 || !may_face(point, other);
     const double past = end ? place.xi - 1 : -place.xi, still_faced = frozen_ ? 1e-6 : 0.01;  // of a facet
     return is_free && past > still_faced ? Place{} : place;
   };
-  const auto inside = [&](const Place& place) {
-    return (x - position(at, place)).dot(right_of(position(at, place, 1))) < 0;
-  };
+  const auto inside = [&](const Place& place) { return (x - position(place)).dot(right_of(position(place, 1))) < 0; };
   const Place place = facing(seeker);
   if (place.patch < 0 || itself_ || frozen_ || !inside(place) || seeker.outward.isZero()) return place;
   const Place any = facing({seeker.node, seeker.x});
@@ -163,12 +162,12 @@ Place Master::find(const Seeker& seeker, const Places& at) const {
 }
 
 /// Small strain, at a vertex of facets: the bisector of the two, and half of the slide along each of them.
-void Master::share_vertex(const Seeker& seeker, const Places& at, Foot& foot) const {
+void Master::share_vertex(const Seeker& seeker, Foot& foot) const {
   const bool end = foot.place.xi > 1 - at_end;
   const int here = foot.place.patch, other = patches[here].beside[end];
   if (other < 0 || (!end && foot.place.xi > at_end)) return;
   const Patch &first = patches[end ? here : other], &second = patches[end ? other : here];
-  const Line before = first.line(at), after = second.line(at);
+  const Line before = line_of(first), after = line_of(second);
   foot.y = in_space(after.from);
   foot.normal = in_space(right_of(before.tau.normalized() + after.tau.normalized()).normalized());
   if (rigid()) return;
@@ -178,15 +177,15 @@ void Master::share_vertex(const Seeker& seeker, const Places& at, Foot& foot) co
   foot.weights = {{second.vertex[1], on - back - 1}, {first.vertex[1], back}, {second.vertex[2], -on}};
 }
 
-Foot Master::foot(const Place& place, const Places& at) const {
+Foot Master::foot(const Place& place) const {
   const Patch& patch = patches[place.patch];
   const Eigen::Vector4d N = patch.functions(place.xi);
-  Foot foot{true, in_space(position(at, place)), in_space(right_of(position(at, place, 1)).normalized()), 0, place};
+  Foot foot{true, in_space(position(place)), in_space(right_of(position(place, 1)).normalized()), 0, place};
   for (int i = 0; i < 4 && !rigid(); ++i) foot.weights.emplace_back(patch.vertex[i], -N[i]);
   return foot;
 }
 
-Foot Master::foot(const Seeker& seeker, const Places& at) const {
+Foot Master::foot(const Seeker& seeker) const {
   const auto& [node, x, outward] = seeker;
   if (patches.empty()) {
     Foot foot{true};
@@ -203,13 +202,13 @@ Foot Master::foot(const Seeker& seeker, const Places& at) const {
     foot.y = x - foot.gap * foot.normal;
     return foot;
   }
-  const Place faced = find(seeker, at);
-  const Place place = faced.patch >= 0 ? faced : closest({node, x, itself_ ? outward : Vec2(0, 0)}, at);
+  const Place faced = find(seeker);
+  const Place place = faced.patch >= 0 ? faced : closest({node, x, itself_ ? outward : Vec2(0, 0)});
   if (place.patch < 0) return {};
-  Foot foot = this->foot(place, at);
+  Foot foot = this->foot(place);
   if (faced.patch < 0) return {false, foot.y, foot.normal, (x - foot.y).norm(), place};
   if (frozen_ && !rigid()) foot.faces = !(outward.dot(foot.normal.head<2>()) > 0);  // else it looks away
-  if (frozen_) share_vertex(seeker, at, foot);
+  if (frozen_) share_vertex(seeker, foot);
   if (!scene_.finite && !rigid() && !outward.isZero())  // between two solids: the bisector of their normals
     foot.normal = (foot.normal - in_space(outward).normalized()).normalized();
   foot.gap = foot.normal.dot(x - foot.y);

@@ -54,24 +54,20 @@ std::optional<Vec3> displacement_at(const State& state, const Json& how) {
   return std::nullopt;
 }
 
-/// Places of the contacts that a response is measured on.
-using Touches = std::vector<std::pair<const Contact&, const Touch&>>;
-
 /// a = 2 sqrt(sum f x^2 / sum f) of nodal forces f, about a point or their centre; of revolution sqrt(5/2 ...). None
 /// where a plane of symmetry may be what it is measured from: where supports hold nodes of the contact.
-std::optional<double> half_width(const State& state, const Touches& touches, const Json& how) {
+std::optional<double> half_width(const State& state, const std::vector<Touch>& touches, const Json& how) {
   const bool rings = state.scene.axisymmetric, has_center = how.contains("about");
   Field x(3, touches.size()), normals = x;
   Eigen::VectorXd f(touches.size());
   for (std::size_t k = 0; k < touches.size(); ++k) {
-    const Touch& touch = touches[k].second;
-    x.col(k) = state.place(touch.node);
-    normals.col(k) = touch.normal;
-    f[k] = touch.area * touch.pressure();
+    x.col(k) = state.place(touches[k].node);
+    normals.col(k) = touches[k].normal;
+    f[k] = touches[k].area * touches[k].pressure();
   }
   if ((f.array() > 0).count() < (rings ? 1 : 2)) return 0;
   for (const auto& support : part(state.scene.json, "supports"))
-    for (const auto& [contact, touch] : touches)
+    for (const auto& touch : touches)
       if (!rings && !has_center && state.scene.side(support.at("on")).has(touch.node)) return std::nullopt;
   const Vec3 normal = (normals * f).normalized(), along = rings ? Vec3(1, 0, 0) : Vec3(-normal[1], normal[0], 0),
              middle = rings        ? Vec3(0, 0, 0)
@@ -99,7 +95,7 @@ std::optional<double> at_place(const State& state, const Contact& contact, const
 std::optional<double> measure(const State& state, const Json& response) {
   const std::string kind = response.begin().key();
   const Json& how = response.begin().value();
-  const bool force = kind == "contact_force" || kind == "reaction";
+  const bool force = kind == "contact_force" || kind == "reaction", sum = force || kind == "dissipation";
   Samples samples;
   if (kind == "strain_energy") return state.bodies.energy;
   if (how.contains("at")) {
@@ -108,15 +104,17 @@ std::optional<double> measure(const State& state, const Json& response) {
   }
   if (how.contains("contact")) {
     const std::string name = how["contact"];
-    if (kind == "dissipation") return state.heat.contains(name) ? state.heat.at(name) : 0;
-    Touches touches;
-    for (const auto& contact : state.contacts)
-      for (const auto& [node, touch] : contact.touches)
-        if (contact.name == name || contact.group == name) touches.emplace_back(contact, touch);
+    std::vector<Touch> touches;
+    for (const auto& contact : state.contacts) {
+      if (contact.name != name && contact.group != name) continue;
+      if (kind == "dissipation") samples.push_back({contact.heat, 1});
+      for (const auto& [node, touch] : contact.touches) {
+        touches.push_back(touch);
+        if (const auto value = at_place(state, contact, touch, kind, how))
+          samples.push_back({*value, force ? 1 : touch.area});
+      }
+    }
     if (kind == "contact_half_width") return half_width(state, touches, how);
-    for (const auto& [contact, touch] : touches)
-      if (const auto value = at_place(state, contact, touch, kind, how))
-        samples.push_back({*value, force ? 1 : touch.area});
   } else if (kind == "plastic_strain") {
     for (std::size_t b = 0; b < state.scene.bodies.size(); ++b)
       for (const auto& particle : state.bodies.particles[b] | std::views::join)
@@ -125,7 +123,7 @@ std::optional<double> measure(const State& state, const Json& response) {
     for (const int node : state.scene.side(how.at("on")).nodes)
       samples.push_back({part_of(how, (force ? state.held : state.u).col(node), state.place(node)), 1});
   }
-  return taken(samples, force ? "sum" : how.value("take", "mean"));
+  return taken(samples, sum ? "sum" : how.value("take", "mean"));
 }
 
 }  // namespace stickslip::verify

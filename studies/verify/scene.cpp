@@ -114,7 +114,7 @@ Vec3 Motion::back(const Vec3& x, double time) const {
 }
 
 Mat3 Body::stiffness() const {
-  const Json& rows = material.begin().value().at("stiffness");
+  const Json& rows = given.at("material").begin().value().at("stiffness");
   Mat3 K = Mat3::Zero();
   for (std::size_t i = 0; i < rows.size(); ++i) K.row(i) = vec3(rows[i]);
   return K;
@@ -139,13 +139,7 @@ Scene::Scene(const Json& scene, const Json& mesh) : json(scene) {
   for (Eigen::Index n = 0; n < points.cols(); ++n) points.col(n) = vec3(mesh["nodes"][n]);
   for (const auto& [name, given] : scene.at("bodies").items()) {
     const Json& made = mesh.at("bodies").at(name);
-    Body body{name,
-              made.at("element"),
-              given.value("thickness", 1.0),
-              given.value("area", 1.0),
-              given.at("material"),
-              made.at("elements"),
-              made.at("sides")};
+    Body body{name, made.at("element"), given, made.at("elements"), made.at("sides")};
     check(body, points.cols());
     if (body.element != "point") body.edges = body.solid() ? boundary_of(body) : body.elements;
     auto all = body.edges | std::views::join;
@@ -179,7 +173,7 @@ Side Scene::side(const std::string& expression) const {
 }
 
 double Scene::depth(const Body& body, double x) const {
-  return axisymmetric ? 2 * std::numbers::pi * x : body.element == "bar" ? 1 : body.thickness;
+  return axisymmetric ? 2 * std::numbers::pi * x : body.element == "bar" ? 1 : body.given.value("thickness", 1.0);
 }
 
 bool Scene::on_axis(int node) const {

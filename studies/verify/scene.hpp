@@ -53,15 +53,15 @@ struct Motion {
 
 struct Body {
   std::string name, element;
-  double thickness = 1, area = 1;  ///< of a body in a plane; of bars
-  Json material;                   ///< {name: numbers}
+  Json given;  ///< its entry in the scene
   std::vector<Nodes> elements;
   std::map<std::string, Nodes> sides;
   std::vector<Nodes> edges = {};  ///< of the boundary, the solid on the left: two ends, and a middle
   bool quadratic() const { return element == "Q8" || element == "T6"; }
   bool solid() const { return element != "bar" && element != "point"; }
   std::size_t corners() const { return element[0] == 'T' ? 3 : 4; }
-  Mat3 stiffness() const;  ///< of a spring
+  double area() const { return given.value("area", 1.0); }  ///< of bars
+  Mat3 stiffness() const;                                   ///< of a spring
 };
 
 /// Nodes of a side, and the edges of the boundary that belong to it.

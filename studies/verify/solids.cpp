@@ -23,14 +23,15 @@ struct Material {
   bool log_volume = false, plastic = false;
   std::vector<std::array<double, 2>> rows;  ///< (equivalent plastic strain, bound), from 0 to infinity
 
-  explicit Material(const Json& json) {
-    const Json& given = json.begin().value();
+  explicit Material(const Body& body) {
+    const auto law = body.given.at("material").begin();
+    const Json& given = law.value();
     const double nu = given.at("nu");
     E = given.at("E");
     lame = E * nu / ((1 + nu) * (1 - 2 * nu));
     G = E / (2 * (1 + nu));
     log_volume = given.value("volumetric", "quadratic") == "log";
-    plastic = json.begin().key() == "j2_plastic";
+    plastic = law.key() == "j2_plastic";
     if (!plastic) return;
     const Json& hardening = given.at("hardening");
     if (hardening.is_array()) rows = hardening.get<std::vector<std::array<double, 2>>>();
@@ -120,6 +121,16 @@ Answer respond_in_plane_stress(const Material& material, Mat3& H, bool finite, P
   return respond(material, H, finite, particle);
 }
 
+/// A bar along an axis: S = E (e - e_p), e of Green at finite strain.
+Answer respond_along(const Material& material, const Vec3& axis, const Mat3& H, bool finite, Particle& particle) {
+  const Vec3 stretch = H * axis, now = axis + (finite ? 1.0 : 0.0) * stretch;
+  const double trial = stretch.dot(axis + now) / 2 - particle.strain(0, 0), q = material.E * std::abs(trial);
+  const double d = material.growth(q, material.E, particle.equivalent), e = trial - std::copysign(d, trial);
+  particle.strain(0, 0) += trial - e;
+  particle.equivalent += d;
+  return {material.E * e * now * axis.transpose(), material.E * e * e / 2, (q - material.E * d) * d};
+}
+
 // --- elements --------------------------------------------------------------------------------------------------------
 
 /// The polynomials r^a s^b of T3, T6, Q4 and Q8 at a place, and their derivatives by r and s.
@@ -147,8 +158,7 @@ std::vector<Vec3> rule(const Body& body, bool of_revolution) {
   return points;
 }
 
-/// A Gauss point of an element, with gradients by coordinates of the start, and N / R of revolution. A bar has one, in
-/// its middle, without gradients.
+/// A Gauss point of an element, with gradients by coordinates of the start, and N / R of revolution.
 struct Point {
   double volume;
   Eigen::VectorXd value, hoop = {};
@@ -174,8 +184,11 @@ Point point_of(const Scene& scene, const Body& body, const Nodes& element, const
 }
 
 std::vector<Point> points_of(const Scene& scene, const Body& body, const Nodes& element) {
-  if (body.element == "bar")
-    return {{body.area * (scene.points.col(element[1]) - scene.points.col(element[0])).norm(), Vec2(0.5, 0.5)}};
+  if (body.element == "bar") {
+    const Vec2 difference(-1, 1);
+    const Vec3 T = scene.points(Eigen::all, element) * difference;
+    return {{body.area() * T.norm(), Vec2(0.5, 0.5), Vec2(0, 0), difference * T.transpose() / T.squaredNorm()}};
+  }
   static std::map<std::pair<std::string, bool>, std::vector<std::pair<Shape, double>>> known;
   auto& shapes = known[{body.element, scene.axisymmetric}];
   if (shapes.empty())
@@ -187,10 +200,10 @@ std::vector<Point> points_of(const Scene& scene, const Body& body, const Nodes& 
 
 // --- bodies ----------------------------------------------------------------------------------------------------------
 
-/// Forces of an element of a solid body.
-Field solid_forces(const Scene& scene, const Body& body, const std::vector<Point>& points, const Field& u,
-                   std::vector<Particle>& particles, Bodies& bodies) {
-  const Material material(body.material);
+/// Forces of an element on its nodes.
+Field element_forces(const Scene& scene, const Body& body, const std::vector<Point>& points, const Field& u,
+                     std::vector<Particle>& particles, Bodies& bodies) {
+  const Material material(body);
   const bool finite = scene.finite, mean = body.element == "Q4_mean_dilatation";
   const Mat3 I = Mat3::Identity();
   const auto change = [&](const Mat3& H) { return finite ? volume_change(H) : H.trace(); };
@@ -204,39 +217,26 @@ Field solid_forces(const Scene& scene, const Body& body, const std::vector<Point
   double pressure = 0;                                       // int tr tau / 3 dV
   for (std::size_t q = 0; q < points.size(); ++q) {
     const Mat3 H = points[q].displacement_gradient(u), F = finite ? Mat3(I + H) : I;
-    const double ratio = finite ? (1 + change(H)) / (1 + theta) : 1;
     Mat3 h = H;
     if (mean) h += (finite ? std::expm1((std::log1p(theta) - std::log1p(change(H))) / 3) : (theta - change(H)) / 3) * F;
-    const auto answer = scene.plane_stress ? respond_in_plane_stress(material, h, finite, particles[q])
-                                           : respond(material, h, finite, particles[q]);
-    const double volume = points[q].volume;
+    const Vec3 axis = points[q].gradient.row(1).normalized();  // of a bar
+    const auto answer = body.element == "bar" ? respond_along(material, axis, H, finite, particles[q])
+                        : scene.plane_stress  ? respond_in_plane_stress(material, h, finite, particles[q])
+                                              : respond(material, h, finite, particles[q]);
+    const double volume = particles[q].volume = points[q].volume;
     bodies.inverted |= answer.inverted;
     bodies.energy += answer.energy * volume;
     bodies.plastic_work += answer.plastic_work * volume;
-    const Mat3 tau = finite ? Mat3(answer.stress * (I + h).transpose()) : answer.stress;
-    const Mat3 back = F.inverse().transpose(), round = mean ? Mat3(tau.trace() / 3 * I) : Mat3::Zero();
-    forces += points[q].forces(mean ? Mat3((tau - round) * back) : answer.stress);
-    pressure += round(0, 0) * volume;
-    varied += points[q].forces(ratio / whole * back);
+    Mat3 stress = answer.stress;
+    if (mean) {
+      const Mat3 tau = finite ? Mat3(stress * (I + h).transpose()) : stress, back = F.inverse().transpose();
+      stress = (tau - tau.trace() / 3 * I) * back;
+      pressure += tau.trace() / 3 * volume;
+      varied += points[q].forces((finite ? (1 + change(H)) / (1 + theta) : 1) / whole * back);
+    }
+    forces += points[q].forces(stress);
   }
   return forces + pressure * varied;
-}
-
-/// Forces of a bar on its ends.
-Field bar_forces(const Scene& scene, const Body& body, const Nodes& bar, const Field& u, Particle& particle,
-                 Bodies& bodies) {
-  const Material material(body.material);
-  const Vec2 difference(-1, 1);
-  const Vec3 axis = scene.points(Eigen::all, bar) * difference, d = u * difference;
-  const double length = axis.norm(), stretch = axis.dot(d) + (scene.finite ? d.squaredNorm() / 2 : 0);
-  const double trial = stretch / axis.squaredNorm() - particle.strain(0, 0), q = material.E * std::abs(trial);
-  const double growth = material.growth(q, material.E, particle.equivalent), flow = std::copysign(growth, trial);
-  particle.strain(0, 0) += flow;
-  particle.equivalent += growth;
-  bodies.plastic_work += (q - material.E * growth) * growth * particle.volume;
-  bodies.energy += material.E * (trial - flow) * (trial - flow) / 2 * particle.volume;
-  const Vec3 now = axis + (scene.finite ? 1.0 : 0.0) * d;
-  return material.E * body.area * (trial - flow) / length * now * difference.transpose();
 }
 
 // --- loads -----------------------------------------------------------------------------------------------------------
@@ -266,7 +266,7 @@ double thickness_stretch(const Scene& scene, const Body& body, const Nodes& edge
   const Shape at = shape(body, (1 - s) * corner(edge[0]) + s * corner(edge[1]));
   Mat3 H = point_of(scene, body, element, at).displacement_gradient(u(Eigen::all, element));
   Particle none;
-  respond_in_plane_stress(Material(body.material), H, true, none);
+  respond_in_plane_stress(Material(body), H, true, none);
   return 1 + H(2, 2);
 }
 
@@ -337,18 +337,14 @@ Bodies deform(const Scene& scene, const Field& u, const Bodies& before) {
       add(ends, force * Eigen::RowVector2d(-1, 1));
       continue;
     }
-    const double depth = body.solid() ? scene.depth(body, scene.points.row(0).maxCoeff()) : body.area;
-    bodies.stiffness = std::max(bodies.stiffness, Material(body.material).E * depth);
+    const double depth = body.solid() ? scene.depth(body, scene.points.row(0).maxCoeff()) : body.area();
+    bodies.stiffness = std::max(bodies.stiffness, Material(body).E * depth);
     bodies.particles[b].resize(body.elements.size());
     for (std::size_t e = 0; e < body.elements.size(); ++e) {
       const Nodes& element = body.elements[e];
-      const Field moved = u(Eigen::all, element);
       const auto points = points_of(scene, body, element);
-      auto& own = bodies.particles[b][e];
-      own.resize(points.size());
-      for (std::size_t q = 0; q < points.size(); ++q) own[q].volume = points[q].volume;
-      add(element, body.solid() ? solid_forces(scene, body, points, moved, own, bodies)
-                                : bar_forces(scene, body, element, moved, own[0], bodies));
+      bodies.particles[b][e].resize(points.size());
+      add(element, element_forces(scene, body, points, u(Eigen::all, element), bodies.particles[b][e], bodies));
     }
   }
   return bodies;

@@ -92,7 +92,6 @@ struct Patch {
   std::array<int, 2> beside = {-1, -1};             ///< the patches before and behind it; -1: a free end
   Eigen::Matrix4d shape = Eigen::Matrix4d::Zero();  ///< N_i = column i times (1, xi, xi^2, xi^3)
   double length = 0, arc = -1;                      ///< of the start; along the master to its beginning
-  Line line(const Places& at) const { return {at.col(vertex[1]), at.col(vertex[2])}; }
   /// Whether it goes on smoothly, into the patch before or behind it.
   bool goes_on(bool end) const { return end ? vertex[3] != vertex[2] : vertex[0] != vertex[1]; }
   Eigen::Vector4d functions(double xi, int derivative = 0) const;  ///< N_i
@@ -123,10 +122,11 @@ class Master {
   /// `slave`: side expression; the same as `master` where a side touches itself.
   Master(const Scene& scene, const Json& contact, const std::string& slave, const std::string& master);
   bool rigid() const { return !obstacle.empty(); }
-  Places vertices(const Field& x) const;  ///< where they are, of nodes at x
-  Vec2 position(const Places& at, const Place& place, int derivative = 0) const;
-  Foot foot(const Seeker& seeker, const Places& at) const;
-  Foot foot(const Place& place, const Places& at) const;  ///< there
+  void place_vertices(const Field& x);  ///< where they are from now on, of nodes at x
+  Line line_of(const Patch& patch) const { return {at_.col(patch.vertex[1]), at_.col(patch.vertex[2])}; }
+  Vec2 position(const Place& place, int derivative = 0) const;
+  Foot foot(const Seeker& seeker) const;
+  Foot foot(const Place& place) const;  ///< there
   /// What a point of a side that touches itself does not face: its own wall. `seeker`: the point at the start.
   void set_wall(const Seeker& seeker);
 
@@ -137,13 +137,13 @@ class Master {
 
  private:
   void link(double corner);
-  bool may_face(const Seeker& seeker, int patch, const Places& at) const;
-  Place closest(const Seeker& seeker, const Places& at) const;
-  Place find(const Seeker& seeker, const Places& at) const;
-  void share_vertex(const Seeker& seeker, const Places& at, Foot& foot) const;
+  bool may_face(const Seeker& seeker, int patch) const;
+  Place closest(const Seeker& seeker) const;
+  Place find(const Seeker& seeker) const;
+  void share_vertex(const Seeker& seeker, Foot& foot) const;
 
   const Scene& scene_;
-  Places polyline_;                         ///< points of an obstacle
+  Places at_;                               ///< where nodes are, or the points of an obstacle's polyline
   int smooth_ = 0;                          ///< 0: facets, 1: Catmull-Rom, 2: B-spline
   bool itself_ = false, frozen_ = false;    ///< frozen: facets of the start, at small strain
   std::map<int, std::vector<char>> walls_;  ///< of each node, the patches of its own wall
@@ -180,6 +180,7 @@ class Contact {
   Json given;                          ///< its entry in the scene
   bool itself, segment;                ///< it is a side that touches itself; it is integrated over segments
   std::map<int, Touch> touches, last;  ///< the places by slave node, now and in the last increment
+  double heat = 0;                     ///< of plastic slip since the start; NaN: not known
 
  private:
   /// Part of a slave facet that faces one patch of the master (-1: an obstacle without patches).
@@ -189,10 +190,10 @@ class Contact {
     double from, to;
   };
   Seeker seeker(int node, const Field& x) const;
-  void cut(const std::array<int, 2>& facet, const Field& x, const Places& at, std::vector<Piece>& all) const;
-  double integrate(const Piece& piece, int node, const Field& x, const Places& at, Touch& touch) const;
-  Touch on_pieces(int node, const std::vector<Piece>& pieces, const Field& x, const Places& at) const;
-  void move(Touch& touch, const Touch& last, const Field& u, const Places& at, double time) const;
+  void cut(const std::array<int, 2>& facet, const Field& x, std::vector<Piece>& all) const;
+  double integrate(const Piece& piece, int node, const Field& x, Touch& touch) const;
+  Touch on_pieces(int node, const std::vector<Piece>& pieces, const Field& x) const;
+  void move(Touch& touch, const Touch& last, const Field& u, double time) const;
 
   const Scene& scene_;
   const Body& body_;
@@ -211,8 +212,7 @@ struct State {
   const Field& u;
   const Bodies& bodies;
   const std::vector<Contact>& contacts;
-  const Field& held;                          ///< forces of the supports
-  const std::map<std::string, double>& heat;  ///< of plastic slip since the start, of contacts, groups; NaN: not known
+  const Field& held;  ///< forces of the supports
   Vec3 place(int node) const { return scene.points.col(node) + (scene.finite ? 1.0 : 0.0) * u.col(node); }
 };
 

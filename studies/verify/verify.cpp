@@ -142,7 +142,7 @@ class Judge {
     check_nodes(held, inner - pushed - supported, step);
     check_balance(loads + supported, pushed, step);
     check_energy(loads + supported, pushed, u_ - before, step);
-    check_responses({scene_, u_, bodies_, contacts_, supported, heat_}, given, step);
+    check_responses({scene_, u_, bodies_, contacts_, supported}, given, step);
     check_flow(part(increment, "plastic_strain"), step);
     return step;
   }
@@ -182,7 +182,7 @@ class Judge {
   }
 
   /// Signorini's conditions of a place; then its friction, and its work.
-  void check_place(const Contact& contact, Touch& touch, Step& step) {
+  void check_place(Contact& contact, Touch& touch, Step& step) {
     const std::string where = contact.name + ", " + at(touch.node);
     const double p = touch.pressure(), gap = touch.gap + touch.compliance[0] * std::max(p, 0.0);
     if (!touch.faces) return note(step, place, touch.traction.norm() * over(T_), where + ", which faces nothing");
@@ -200,23 +200,21 @@ class Judge {
     add_work(touch, touch.area * touch.friction(), past.area * rubbed, touch.area * p, past.area * past.pressure());
   }
 
-  void check_friction(const Contact& contact, const Touch& touch, const Vec3& last, const std::string& where,
-                      Step& step) {
+  void check_friction(Contact& contact, const Touch& touch, const Vec3& last, const std::string& where, Step& step) {
     const Vec3 s = touch.friction(), slid = touch.slip + touch.compliance[1] * (s - last);  // less what springs yield
     const double most = bound(contact.given, std::max(touch.pressure(), 0.0));
     const bool has_friction = contact.given.contains("friction");
     note(step, cone, (s.norm() - most) * over(T_), where, has_friction ? cone.allowed : tension.allowed);
     if (!has_friction || s.isZero()) return;
-    const std::set<std::string> names{contact.name, contact.group};
     if (!touch.slip_known) {
-      for (const auto& name : names) heat_[name] = NAN;
+      contact.heat = NAN;
       return;
     }
     note(step, dissipation, s.dot(slid) * over(T_ * L_), where);
     if (s.norm() < most * (1 - share) - cone.allowed * T_) return note(step, stick, slid.norm() * over(L_), where);
     if (slid.norm() > stick.allowed * L_ && s.norm() > cone.allowed * T_)
       note(step, direction, 1 + s.dot(slid) / (s.norm() * slid.norm()), where);
-    for (const auto& name : names) heat_[name] -= touch.area * s.dot(slid);
+    contact.heat -= touch.area * s.dot(slid);
   }
 
   /// Work of a place in the increment, by the mean of the forces at its ends: of friction, and of pressure.
@@ -316,7 +314,7 @@ class Judge {
   std::vector<Contact> contacts_;
   Bodies bodies_;
   Field u_, outer_, contact_;                           ///< displacements, forces from outside and of contact
-  std::map<std::string, double> heat_, largest_;        ///< of contacts; of kinds of responses
+  std::map<std::string, double> largest_;               ///< of kinds of responses
   double F_ = 0, L_ = 0, T_ = 0;                        ///< largest force, motion, traction
   double work_ = 0, spent_ = 0, slack_ = 0, size_ = 0;  ///< energies: done, dissipated, not known, of all parts
 };
