@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <cmath>
-
 #include "studies/verify/state.hpp"
 
 namespace stickslip::verify {

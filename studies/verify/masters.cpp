@@ -1,7 +1,3 @@
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 #include "studies/verify/state.hpp"
 
 namespace stickslip::verify {

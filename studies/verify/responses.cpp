@@ -1,8 +1,5 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <algorithm>
-#include <cmath>
-#include <ranges>
 
 #include "studies/verify/state.hpp"
 
@@ -69,10 +66,8 @@ std::optional<double> half_width(const State& state, const std::vector<Touch>& t
   for (const auto& support : part(state.scene.json, "supports"))
     for (const auto& touch : touches)
       if (!rings && !has_center && state.scene.side(support.at("on")).has(touch.node)) return std::nullopt;
-  const Vec3 normal = (normals * f).normalized(), along = rings ? Vec3(1, 0, 0) : Vec3(-normal[1], normal[0], 0),
-             middle = rings        ? Vec3(0, 0, 0)
-                      : has_center ? vec3(how["about"])
-                                   : Vec3(x * f / f.sum());
+  const Vec3 normal = (normals * f).normalized(), center = has_center ? vec3(how["about"]) : Vec3(x * f / f.sum());
+  const Vec3 along = rings ? Vec3(1, 0, 0) : Vec3(-normal[1], normal[0], 0), middle = rings ? Vec3(0, 0, 0) : center;
   return std::sqrt((rings ? 2.5 : 4) * f.dot(((x.colwise() - middle).transpose() * along).cwiseAbs2()) / f.sum());
 }
 

@@ -1,10 +1,6 @@
 #include "studies/verify/scene.hpp"
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <ranges>
 #include <sstream>
 
 namespace stickslip::verify {

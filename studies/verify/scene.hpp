@@ -3,11 +3,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
+#include <ranges>
 #include <set>
 #include <stdexcept>
 #include <string>

@@ -1,7 +1,5 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <algorithm>
-#include <cmath>
 
 #include "studies/verify/state.hpp"
 
@@ -109,13 +107,9 @@ Answer respond_in_plane_stress(const Material& material, Mat3& H, bool finite, P
     const auto answer = respond(material, H, finite, tried);
     return answer.inverted ? -infinity : answer.stress(2, 2);
   };
-  const double guess = -material.lame / (material.lame + 2 * material.G) * (H(0, 0) + H(1, 1));
-  double span = std::max({H.topLeftCorner<2, 2>().norm(), particle.equivalent, 1e-12}) / 2;
-  double low = guess - span, high = guess + span;
-  while (across(low) > 0 && span < 1e9) low -= span *= 2;
-  while (across(high) < 0 && span < 1e9) high += span *= 2;
-  for (int k = 0; k < 100; ++k) {
-    const double middle = low + (high - low) / 2;
+  double low = -1e6, high = 1e6;
+  for (int k = 0; k < 150; ++k) {  // to 1e-39
+    const double middle = (low + high) / 2;
     (across(middle) < 0 ? low : high) = middle;
   }
   return respond(material, H, finite, particle);

@@ -2,8 +2,6 @@
 /// again (docs/scene.md, Responses). The sources have the laws of materials.
 #pragma once
 
-#include <algorithm>
-
 #include "studies/verify/scene.hpp"
 
 namespace stickslip::verify {

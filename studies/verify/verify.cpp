@@ -4,9 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>
-#include <algorithm>
-#include <cmath>
-#include <ranges>
 
 #include "studies/verify/state.hpp"
 
@@ -165,13 +162,10 @@ class Judge {
       const Field tractions = vectors(part(of, "traction"), scene_.dimension, nodes.size(), "traction"),
                   compliances = vectors(part(of, "compliance"), 2, of.contains("compliance") * nodes.size(), "spring");
       for (std::size_t k = 0; k < nodes.size(); ++k) {
-        const auto found = contact.touches.find(nodes[k]);
-        if (found == contact.touches.end()) {
-          note(step, place, tractions.col(k).norm(), contact.name + ", " + at(nodes[k]));
-          continue;
-        }
-        found->second.traction = tractions.col(k);
-        if (compliances.cols() > 0) found->second.compliance = compliances.col(k).head<2>();
+        Touch& touch = contact.touches[nodes[k]];  // (it faces nothing where the contact has no such node)
+        touch.node = nodes[k];
+        touch.traction = tractions.col(k);
+        if (compliances.cols() > 0) touch.compliance = compliances.col(k).head<2>();
       }
       for (auto& [node, touch] : contact.touches) {
         if (of.empty() && touch.faces) touch.traction = free.col(node) / touch.area;
@@ -197,7 +191,7 @@ class Judge {
     Vec3 rubbed = past.friction();  // its component along the tangent is carried on
     if (scene_.finite && scene_.dimension == 2) rubbed = std::copysign(rubbed.norm(), rubbed.dot(e)) * e;
     check_friction(contact, touch, rubbed, where, step);
-    add_work(touch, touch.area * touch.friction(), past.area * rubbed, touch.area * p, past.area * past.pressure());
+    add_work(touch, touch.area * touch.traction, past.area * (rubbed + past.pressure() * touch.normal));
   }
 
   void check_friction(Contact& contact, const Touch& touch, const Vec3& last, const std::string& where, Step& step) {
@@ -218,14 +212,14 @@ class Judge {
   }
 
   /// Work of a place in the increment, by the mean of the forces at its ends: of friction, and of pressure.
-  void add_work(const Touch& touch, const Vec3& rubbing, const Vec3& rubbed, double pressing, double pressed) {
-    const Vec3 friction = (rubbing + rubbed) / 2;
-    const double pressure = (pressing + pressed) / 2, opened = pressure * touch.opening,
-                 carried = (friction + pressure * touch.normal).dot(touch.carried), slid = friction.dot(touch.slip);
+  void add_work(const Touch& touch, const Vec3& now, const Vec3& before) {
+    const Vec3 mean = (now + before) / 2, change = now - before, pressed = change.dot(touch.normal) * touch.normal;
+    const double opened = mean.dot(touch.normal) * touch.opening, carried = mean.dot(touch.carried),
+                 slid = mean.dot(touch.slip);
     work_ += carried + opened;
     spent_ -= slid;
     size_ += std::abs(carried) + std::abs(opened) + std::abs(slid);
-    slack_ += (std::abs(pressing - pressed) + (rubbing - rubbed).norm()) / 2 *
+    slack_ += (pressed.norm() + (change - pressed).norm()) / 2 *
               (touch.carried.norm() + std::abs(touch.opening) + touch.slip.norm());
   }
 
@@ -323,15 +317,17 @@ class Judge {
 
 std::vector<double> asked_times(const Json& scene) {
   const Json& time = scene.at("time");
-  std::vector<double> times;
-  const auto add = [&](double end, double count) {
-    const double start = times.empty() ? 0 : times.back();
-    for (int k = 1; k <= count; ++k) times.push_back(start + (end - start) * k / count);
-  };
+  std::vector<std::array<double, 2>> legs;  // ends, and numbers of steps
   if (time.contains("legs"))
-    for (const auto& leg : time["legs"]) add(leg[0], leg[1]);
+    legs = time["legs"];
   else if (!time.contains("control"))
-    add(time.at("end"), time.at("steps"));
+    legs = {{time.at("end"), time.at("steps")}};
+  std::vector<double> times;
+  double start = 0;
+  for (const auto& [end, count] : legs) {
+    for (int k = 1; k <= count; ++k) times.push_back(start + (end - start) * k / count);
+    start = end;
+  }
   return times;
 }
 
