@@ -45,15 +45,6 @@ void Master::link(double corner) {
     patch.vertex[3] = other.vertex[2];
     other.vertex[0] = patch.vertex[1];
   }
-  for (auto& patch : patches) {  // a vertex that is missing is 2 y_1 - y_2
-    patch.shape = shapes[smooth_];
-    for (const auto& [end, near, far] : {std::array{0, 1, 2}, {3, 2, 1}}) {
-      if (patch.goes_on(end == 3)) continue;
-      patch.shape.col(near) += 2 * patch.shape.col(end);
-      patch.shape.col(far) -= patch.shape.col(end);
-      patch.shape.col(end).setZero();
-    }
-  }
   for (const bool loops : {false, true})  // from where a chain begins, then from the first patch of a loop
     for (int first = 0; first < std::ssize(patches); ++first) {
       double length = 0;
@@ -70,14 +61,21 @@ void Master::place_vertices(const Field& x) {
   if (!rigid()) at_ = x.topRows<2>();
 }
 
-Eigen::Vector4d Patch::functions(double s, int derivative) const {
+Eigen::Vector4d Master::functions(const Place& place, int derivative) const {
+  const double s = place.xi;
   const Eigen::Vector4d powers[3] = {{1, s, s * s, s * s * s}, {0, 1, 2 * s, 3 * s * s}, {0, 0, 2, 6 * s}};
-  return shape.transpose() * powers[derivative];
+  Eigen::Vector4d N = shapes[smooth_].transpose() * powers[derivative];
+  for (const auto& [end, near, far] : {std::array{0, 1, 2}, {3, 2, 1}}) {  // a vertex that is missing is 2 y_1 - y_2
+    if (patches[place.patch].goes_on(end == 3)) continue;
+    N[near] += 2 * N[end];
+    N[far] -= N[end];
+    N[end] = 0;
+  }
+  return N;
 }
 
 Vec2 Master::position(const Place& place, int derivative) const {
-  const Patch& patch = patches[place.patch];
-  return at_(Eigen::all, patch.vertex) * patch.functions(place.xi, derivative);
+  return at_(Eigen::all, patches[place.patch].vertex) * functions(place, derivative);
 }
 
 void Master::set_wall(const Seeker& seeker) {
@@ -174,10 +172,9 @@ void Master::share_vertex(const Seeker& seeker, Foot& foot) const {
 }
 
 Foot Master::foot(const Place& place) const {
-  const Patch& patch = patches[place.patch];
-  const Eigen::Vector4d N = patch.functions(place.xi);
+  const Eigen::Vector4d N = functions(place);
   Foot foot{true, in_space(position(place)), in_space(right_of(position(place, 1)).normalized()), 0, place};
-  for (int i = 0; i < 4 && !rigid(); ++i) foot.weights.emplace_back(patch.vertex[i], -N[i]);
+  for (int i = 0; i < 4 && !rigid(); ++i) foot.weights.emplace_back(patches[place.patch].vertex[i], -N[i]);
   return foot;
 }
 

@@ -33,7 +33,7 @@ void check(const Body& body, Eigen::Index nodes) {
   for (const auto& element : body.elements)
     if (!sizes.contains(body.element) || element.size() != sizes.at(body.element))
       throw BadFile(body.name + " has an element that is no " + body.element);
-  if (body.element == "point" && (!body.sides.contains("node") || !body.sides.contains("anchor")))
+  if (body.spring() && (!body.sides.contains("node") || !body.sides.contains("anchor")))
     throw BadFile(body.name + " has no node or no anchor");
 }
 
@@ -137,7 +137,7 @@ Scene::Scene(const Json& scene, const Json& mesh) : json(scene) {
     const Json& made = mesh.at("bodies").at(name);
     Body body{name, made.at("element"), given, made.at("elements"), made.at("sides")};
     check(body, points.cols());
-    if (body.element != "point") body.edges = body.solid() ? boundary_of(body) : body.elements;
+    if (!body.spring()) body.edges = body.solid() ? boundary_of(body) : body.elements;
     auto all = body.edges | std::views::join;
     if (body.solid()) body.sides.try_emplace("boundary", all.begin(), all.end());
     bodies.push_back(std::move(body));

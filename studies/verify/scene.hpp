@@ -62,7 +62,8 @@ struct Body {
   std::map<std::string, Nodes> sides;
   std::vector<Nodes> edges = {};  ///< of the boundary, the solid on the left: two ends, and a middle
   bool quadratic() const { return element == "Q8" || element == "T6"; }
-  bool solid() const { return element != "bar" && element != "point"; }
+  bool spring() const { return element == "point"; }
+  bool solid() const { return element != "bar" && !spring(); }
   std::size_t corners() const { return element[0] == 'T' ? 3 : 4; }
   double area() const { return given.value("area", 1.0); }  ///< of bars
   Mat3 stiffness() const;                                   ///< of a spring

@@ -178,10 +178,11 @@ Point point_of(const Scene& scene, const Body& body, const Nodes& element, const
 }
 
 std::vector<Point> points_of(const Scene& scene, const Body& body, const Nodes& element) {
-  if (body.element == "bar") {
+  if (!body.solid()) {  // along a bar; of a spring the first column of H is u - u_anchor
     const Vec2 difference(-1, 1);
-    const Vec3 T = scene.points(Eigen::all, element) * difference;
-    return {{body.area() * T.norm(), Vec2(0.5, 0.5), Vec2(0, 0), difference * T.transpose() / T.squaredNorm()}};
+    const Vec3 T = body.spring() ? Vec3(1, 0, 0) : Vec3(scene.points(Eigen::all, element) * difference);
+    const double volume = body.spring() ? 1 : body.area() * T.norm();
+    return {{volume, Vec2(0.5, 0.5), Vec2(0, 0), difference * T.transpose() / T.squaredNorm()}};
   }
   static std::map<std::pair<std::string, bool>, std::vector<std::pair<Shape, double>>> known;
   auto& shapes = known[{body.element, scene.axisymmetric}];
@@ -194,10 +195,19 @@ std::vector<Point> points_of(const Scene& scene, const Body& body, const Nodes& 
 
 // --- bodies ----------------------------------------------------------------------------------------------------------
 
+/// What a point of a body answers to H, of which plane stress decides a part.
+Answer answer_of(const Scene& scene, const Body& body, const Point& point, Mat3& H, Particle& particle) {
+  if (body.spring()) return {body.stiffness() * H, (body.stiffness() * H).cwiseProduct(H).sum() / 2};
+  const Material material(body);
+  const Vec3 axis = point.gradient.row(1).normalized();
+  if (!body.solid()) return respond_along(material, axis, H, scene.finite, particle);
+  return scene.plane_stress ? respond_in_plane_stress(material, H, scene.finite, particle)
+                            : respond(material, H, scene.finite, particle);
+}
+
 /// Forces of an element on its nodes.
 Field element_forces(const Scene& scene, const Body& body, const std::vector<Point>& points, const Field& u,
                      std::vector<Particle>& particles, Bodies& bodies) {
-  const Material material(body);
   const bool finite = scene.finite, mean = body.element == "Q4_mean_dilatation";
   const Mat3 I = Mat3::Identity();
   const auto change = [&](const Mat3& H) { return finite ? volume_change(H) : H.trace(); };
@@ -213,10 +223,7 @@ Field element_forces(const Scene& scene, const Body& body, const std::vector<Poi
     const Mat3 H = points[q].displacement_gradient(u), F = finite ? Mat3(I + H) : I;
     Mat3 h = H;
     if (mean) h += (finite ? std::expm1((std::log1p(theta) - std::log1p(change(H))) / 3) : (theta - change(H)) / 3) * F;
-    const Vec3 axis = points[q].gradient.row(1).normalized();  // of a bar
-    const auto answer = body.element == "bar" ? respond_along(material, axis, H, finite, particles[q])
-                        : scene.plane_stress  ? respond_in_plane_stress(material, h, finite, particles[q])
-                                              : respond(material, h, finite, particles[q]);
+    const auto answer = answer_of(scene, body, points[q], h, particles[q]);
     const double volume = particles[q].volume = points[q].volume;
     bodies.inverted |= answer.inverted;
     bodies.energy += answer.energy * volume;
@@ -258,9 +265,10 @@ double thickness_stretch(const Scene& scene, const Body& body, const Nodes& edge
     return natural_nodes(body).col(std::ranges::find(element, node) - element.begin());
   };
   const Shape at = shape(body, (1 - s) * corner(edge[0]) + s * corner(edge[1]));
-  Mat3 H = point_of(scene, body, element, at).displacement_gradient(u(Eigen::all, element));
+  const Point point = point_of(scene, body, element, at);
+  Mat3 H = point.displacement_gradient(u(Eigen::all, element));
   Particle none;
-  respond_in_plane_stress(Material(body), H, true, none);
+  answer_of(scene, body, point, H, none);
   return 1 + H(2, 2);
 }
 
@@ -317,28 +325,19 @@ Bodies deform(const Scene& scene, const Field& u, const Bodies& before) {
   bodies.forces = Field::Zero(3, u.cols());
   bodies.particles = before.particles;
   bodies.particles.resize(scene.bodies.size());
-  const auto add = [&](const Nodes& nodes, const Field& forces) {
-    bodies.forces(Eigen::all, nodes) += forces;
-    bodies.largest = std::max(bodies.largest, forces.colwise().norm().maxCoeff());
-  };
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
-    if (body.element == "point") {
-      const Nodes ends{body.sides.at("anchor").at(0), body.sides.at("node").at(0)};
-      const Vec3 d = u(Eigen::all, ends) * Vec2(-1, 1), force = body.stiffness() * d;
-      bodies.stiffness = std::max(bodies.stiffness, body.stiffness().maxCoeff());
-      bodies.energy += d.dot(force) / 2;
-      add(ends, force * Eigen::RowVector2d(-1, 1));
-      continue;
-    }
     const double depth = body.solid() ? scene.depth(body, scene.points.row(0).maxCoeff()) : body.area();
-    bodies.stiffness = std::max(bodies.stiffness, Material(body).E * depth);
+    const double stiffness = body.spring() ? body.stiffness().maxCoeff() : Material(body).E * depth;
+    bodies.stiffness = std::max(bodies.stiffness, stiffness);
     bodies.particles[b].resize(body.elements.size());
     for (std::size_t e = 0; e < body.elements.size(); ++e) {
       const Nodes& element = body.elements[e];
       const auto points = points_of(scene, body, element);
       bodies.particles[b][e].resize(points.size());
-      add(element, element_forces(scene, body, points, u(Eigen::all, element), bodies.particles[b][e], bodies));
+      const auto forces = element_forces(scene, body, points, u(Eigen::all, element), bodies.particles[b][e], bodies);
+      bodies.forces(Eigen::all, element) += forces;
+      bodies.largest = std::max(bodies.largest, forces.colwise().norm().maxCoeff());
     }
   }
   return bodies;

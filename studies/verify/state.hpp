@@ -86,13 +86,11 @@ struct Line {
 
 /// From vertex 1 to vertex 2; 0 and 3 are their neighbours, where the master is smooth there.
 struct Patch {
-  std::array<int, 4> vertex;                        ///< nodes, or points of an obstacle's polyline
-  std::array<int, 2> beside = {-1, -1};             ///< the patches before and behind it; -1: a free end
-  Eigen::Matrix4d shape = Eigen::Matrix4d::Zero();  ///< N_i = column i times (1, xi, xi^2, xi^3)
-  double length = 0, arc = -1;                      ///< of the start; along the master to its beginning
+  std::array<int, 4> vertex;             ///< nodes, or points of an obstacle's polyline
+  std::array<int, 2> beside = {-1, -1};  ///< the patches before and behind it; -1: a free end
+  double length = 0, arc = -1;           ///< of the start; along the master to its beginning
   /// Whether it goes on smoothly, into the patch before or behind it.
   bool goes_on(bool end) const { return end ? vertex[3] != vertex[2] : vertex[0] != vertex[1]; }
-  Eigen::Vector4d functions(double xi, int derivative = 0) const;  ///< N_i
 };
 
 struct Place {
@@ -135,6 +133,7 @@ class Master {
 
  private:
   void link(double corner);
+  Eigen::Vector4d functions(const Place& place, int derivative = 0) const;  ///< N_i
   bool may_face(const Seeker& seeker, int patch) const;
   Place closest(const Seeker& seeker) const;
   Place find(const Seeker& seeker) const;

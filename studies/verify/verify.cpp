@@ -78,7 +78,7 @@ std::map<int, Held> supports_at(const Scene& scene, double time) {
     }
   }
   for (const auto& body : scene.bodies)
-    for (int i = 0; body.element == "point" && i < scene.dimension; ++i) {
+    for (int i = 0; body.spring() && i < scene.dimension; ++i) {
       Held& anchor = held[body.sides.at("anchor")[0]];
       if (std::ranges::count(anchor, Vec3(Vec3::Unit(i)), &Held::value_type::first) == 0)
         anchor.emplace_back(Vec3::Unit(i), 0);
@@ -241,7 +241,7 @@ class Judge {
     const double all = F_ + forces_of.colwise().norm().sum(), many = std::sqrt(static_cast<double>(u_.cols()));
     const std::string what = "of loads, supports and contacts";
     note(step, forces, sum.norm() * over(all), what, many * forces.allowed);
-    const bool springs = std::ranges::count(scene_.bodies, "point", &Body::element) > 0;
+    const bool springs = std::ranges::any_of(scene_.bodies, &Body::spring);
     if (scene_.axisymmetric || (scene_.finite && springs)) return;  // (a spring at its anchor has a moment of its own)
     note(step, moments, moment.norm() * over(all * arms.colwise().norm().maxCoeff()), what, many * moments.allowed);
   }
