@@ -32,11 +32,11 @@ Seeker Contact::seeker(int node, const Field& x) const {
 }
 
 /// Cuts a slave facet where master facets end, seen along its normal; each part faces the nearest of them.
-void Contact::cut(const std::array<int, 2>& facet, const Field& x, std::vector<Piece>& all) const {
+std::vector<Contact::Piece> Contact::cut(const std::array<int, 2>& facet, const Field& x) const {
   const auto [first, second] = facet;
   const Line slave{x.col(first).head<2>(), x.col(second).head<2>()};
   const Vec2 nu = right_of(slave.tau).normalized();
-  if (master_.patches.empty()) return all.push_back({facet, -1, 0, 1});
+  if (master_.patches.empty()) return {{facet, -1, 0, 1}};
   std::map<int, std::array<double, 2>> shadows;  // on the facet, of the patches that it may face
   std::set<double> breaks{0, 1};
   for (int p = 0; p < std::ssize(master_.patches); ++p) {
@@ -53,6 +53,7 @@ void Contact::cut(const std::array<int, 2>& facet, const Field& x, std::vector<P
     for (const double xi : {low, high})
       if (xi > at_end && xi < 1 - at_end) breaks.insert(xi);
   }
+  std::vector<Piece> pieces;
   for (auto to = std::next(breaks.begin()); to != breaks.end(); ++to) {
     const double from = *std::prev(to), middle = (from + *to) / 2;
     const Vec2 y = slave.at(middle);
@@ -62,8 +63,9 @@ void Contact::cut(const std::array<int, 2>& facet, const Field& x, std::vector<P
       if (shadow[0] > middle || shadow[1] < middle) continue;
       nearest = std::min(nearest, {(line.at(line.xi(y, nu)) - y).norm(), p});
     }
-    if (nearest.second >= 0 && *to - from > at_end) all.push_back({facet, nearest.second, from, *to});
+    if (nearest.second >= 0 && *to - from > at_end) pieces.push_back({facet, nearest.second, from, *to});
   }
+  return pieces;
 }
 
 /// Adds int psi ... dA of a piece, by three Gauss points; psi is 1 where the facet's other node carries none. The
@@ -103,22 +105,20 @@ double Contact::integrate(const Piece& piece, int node, const Field& x, Touch& t
   return share;
 }
 
-Touch Contact::on_pieces(int node, const std::vector<Piece>& pieces, const Field& x) const {
+Touch Contact::on_pieces(int node, const Field& x) const {
   Touch touch;
   touch.normal.setZero();
   double share = 0, whole = 0;  // lengths
-  for (const auto& [first, second] : facets_)
-    if (first == node || second == node)
-      whole += (scene_.points.col(second) - scene_.points.col(first)).norm() *
-               (side_.has(first) && side_.has(second) ? 0.5 : 1);
-  for (const auto& piece : pieces)
-    if (std::ranges::count(piece.facet, node) > 0) share += integrate(piece, node, x, touch);
+  for (const auto& facet : facets_) {
+    if (std::ranges::count(facet, node) == 0) continue;
+    const double length = (scene_.points.col(facet[1]) - scene_.points.col(facet[0])).norm();
+    whole += side_.has(facet[0]) && side_.has(facet[1]) ? length / 2 : length;
+    for (const auto& piece : cut(facet, x)) share += integrate(piece, node, x, touch);
+  }
   const bool along_curve = scene_.finite && !master_.patches.empty();
   if (share <= (along_curve ? 0.01 : 1e-12) * whole) {
-    touch = {master_.foot(seeker(node, x)), node};
-    touch.gap = (x.col(node) - touch.y).norm();
-    touch.faces = false;
-    return touch;
+    const Foot near = master_.foot(seeker(node, x));
+    return {{false, near.y, near.normal, (x.col(node) - near.y).norm(), near.place}, node};
   }
   touch.faces = true;
   touch.node = node;
@@ -162,13 +162,10 @@ void Contact::advance(const Field& u, double time) {
   Field x = scene_.places(u);  // in the frame of the master
   for (Eigen::Index n = 0; n < x.cols() && scene_.finite; ++n) x.col(n) = master_.motion.back(x.col(n), time);
   master_.place_vertices(x);
-  std::vector<Piece> pieces;
-  for (const auto& facet : facets_)
-    if (segment) cut(facet, x, pieces);
   last = std::exchange(touches, {});
   for (const auto& [node, area] : areas_) {
     Touch& touch = touches[node];
-    touch = segment ? on_pieces(node, pieces, x) : Touch{master_.foot(seeker(node, x)), node, area};
+    touch = segment ? on_pieces(node, x) : Touch{master_.foot(seeker(node, x)), node, area};
     if (!segment) touch.weights.emplace_back(node, 1);
     move(touch, last[node], u, time);
   }

@@ -30,10 +30,9 @@ double part_of(const Json& how, const Vec3& v, const Vec3& at = Vec3::Zero()) {
 /// Displacement at a place of the start, in the element that holds it.
 std::optional<Vec3> displacement_at(const State& state, const Json& how) {
   const Vec3 X = vec3(how.at("at"));
-  const std::string only = how.contains("on") ? state.scene.body(how["on"]).name : "";
   for (const auto& body : state.scene.bodies)
     for (const auto& element : body.elements) {
-      if (!only.empty() && only != body.name) continue;
+      if (how.contains("on") && &state.scene.body(how["on"]) != &body) continue;
       const Field nodes = state.scene.points(Eigen::all, element);
       const auto off = (nodes.colwise() - X).colwise().norm();
       Eigen::Index nearest = 0;

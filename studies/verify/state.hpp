@@ -187,9 +187,9 @@ class Contact {
     double from, to;
   };
   Seeker seeker(int node, const Field& x) const;
-  void cut(const std::array<int, 2>& facet, const Field& x, std::vector<Piece>& all) const;
+  std::vector<Piece> cut(const std::array<int, 2>& facet, const Field& x) const;
   double integrate(const Piece& piece, int node, const Field& x, Touch& touch) const;
-  Touch on_pieces(int node, const std::vector<Piece>& pieces, const Field& x) const;
+  Touch on_pieces(int node, const Field& x) const;
   void move(Touch& touch, const Touch& last, const Field& u, double time) const;
 
   const Scene& scene_;

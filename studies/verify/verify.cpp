@@ -317,15 +317,12 @@ class Judge {
 
 std::vector<double> asked_times(const Json& scene) {
   const Json& time = scene.at("time");
-  std::vector<std::array<double, 2>> legs;  // ends, and numbers of steps
-  if (time.contains("legs"))
-    legs = time["legs"];
-  else if (!time.contains("control"))
-    legs = {{time.at("end"), time.at("steps")}};
+  std::vector<std::array<double, 2>> legs = time.value("legs", std::vector<std::array<double, 2>>{});
+  if (legs.empty() && !time.contains("control")) legs = {{time.at("end"), time.at("steps")}};
   std::vector<double> times;
   double start = 0;
-  for (const auto& [end, count] : legs) {
-    for (int k = 1; k <= count; ++k) times.push_back(start + (end - start) * k / count);
+  for (const auto& [end, steps] : legs) {
+    for (int k = 1; k <= steps; ++k) times.push_back(start + (end - start) * k / steps);
     start = end;
   }
   return times;
