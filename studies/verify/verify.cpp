@@ -169,8 +169,7 @@ class Judge {
       }
       for (auto& [node, touch] : contact.touches) {
         if (of.empty() && touch.faces) touch.traction = free.col(node) / touch.area;
-        const double least = touch.area > 0 ? rounding * bodies_.stiffness * L_ / touch.area : 0;
-        T_ = std::max({T_, touch.traction.norm(), least});
+        if (touch.area > 0) T_ = std::max({T_, touch.traction.norm(), rounding * bodies_.stiffness * L_ / touch.area});
       }
     }
   }
