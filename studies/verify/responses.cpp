@@ -1,7 +1,5 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <algorithm>
-#include <cmath>
 
 #include "studies/verify/state.hpp"
 
@@ -32,10 +30,9 @@ double part_of(const Json& how, const Vec3& v, const Vec3& at = Vec3::Zero()) {
 /// Displacement at a place of the start, in the element that holds it.
 std::optional<Vec3> displacement_at(const State& state, const Json& how) {
   const Vec3 X = vec3(how.at("at"));
-  const std::string only = how.contains("on") ? state.scene.body(how["on"]).name : "";
   for (const auto& body : state.scene.bodies)
     for (const auto& element : body.elements) {
-      if (!only.empty() && only != body.name) continue;
+      if (how.contains("on") && &state.scene.body(how["on"]) != &body) continue;
       const Field nodes = state.scene.points(Eigen::all, element);
       const auto off = (nodes.colwise() - X).colwise().norm();
       Eigen::Index nearest = 0;
@@ -55,38 +52,36 @@ std::optional<Vec3> displacement_at(const State& state, const Json& how) {
 
 /// a = 2 sqrt(sum f x^2 / sum f) of nodal forces f, about a point or their centre; of revolution sqrt(5/2 ...). None
 /// where a plane of symmetry may be what it is measured from: where supports hold nodes of the contact.
-std::optional<double> half_width(const State& state, const std::vector<const Placed*>& placed, const Json& how) {
+std::optional<double> half_width(const State& state, const std::vector<Touch>& touches, const Json& how) {
   const bool rings = state.scene.axisymmetric, has_center = how.contains("about");
-  Field x(3, placed.size()), normals = x;
-  Eigen::VectorXd f(placed.size());
-  for (std::size_t k = 0; k < placed.size(); ++k) {
-    x.col(k) = state.place(placed[k]->touch.node);
-    normals.col(k) = placed[k]->touch.normal;
-    f[k] = placed[k]->touch.area * placed[k]->pressure();
+  Field x(3, touches.size()), normals = x;
+  Eigen::VectorXd f(touches.size());
+  for (std::size_t k = 0; k < touches.size(); ++k) {
+    x.col(k) = state.place(touches[k].node);
+    normals.col(k) = touches[k].normal;
+    f[k] = touches[k].area * touches[k].pressure();
   }
   if ((f.array() > 0).count() < (rings ? 1 : 2)) return 0;
   for (const auto& support : part(state.scene.json, "supports"))
-    for (const auto* one : placed)
-      if (!rings && !has_center && state.scene.side(support.at("on")).has(one->touch.node)) return std::nullopt;
-  const Vec3 normal = (normals * f).normalized(), along = rings ? Vec3(1, 0, 0) : Vec3(-normal[1], normal[0], 0),
-             middle = rings        ? Vec3(0, 0, 0)
-                      : has_center ? vec3(how["about"])
-                                   : Vec3(x * f / f.sum());
+    for (const auto& touch : touches)
+      if (!rings && !has_center && state.scene.side(support.at("on")).has(touch.node)) return std::nullopt;
+  const Vec3 normal = (normals * f).normalized(), center = has_center ? vec3(how["about"]) : Vec3(x * f / f.sum());
+  const Vec3 along = rings ? Vec3(1, 0, 0) : Vec3(-normal[1], normal[0], 0), middle = rings ? Vec3(0, 0, 0) : center;
   return std::sqrt((rings ? 2.5 : 4) * f.dot(((x.colwise() - middle).transpose() * along).cwiseAbs2()) / f.sum());
 }
 
 /// What a place of contact adds to a response; none: it does not count.
-std::optional<double> at_place(const State& state, const Placed& placed, const std::string& kind, const Json& how) {
-  const Touch& touch = placed.touch;
+std::optional<double> at_place(const State& state, const Contact& contact, const Touch& touch, const std::string& kind,
+                               const Json& how) {
   if (kind == "gap") return touch.gap;
-  if (kind == "contact_pressure") return placed.pressure();
-  const bool slides = placed.contact->given.contains("friction") && !state.scene.on_axis(touch.node);
-  if (kind == "slip") return slides ? std::optional(placed.slid) : std::nullopt;
+  if (kind == "contact_pressure") return touch.pressure();
+  const bool slides = contact.given.contains("friction") && !state.scene.on_axis(touch.node);
+  if (kind == "slip") return slides ? std::optional(touch.slid) : std::nullopt;
   if (kind != "contact_force") return std::nullopt;
   Vec3 x = Vec3::Zero();  // the force is shared by the slave's nodes
   for (const auto& [node, weight] : touch.weights)
-    if (placed.contact->segment ? weight > 0 : node == touch.node) x += weight * state.place(node);
-  return touch.area * (how.at("component") == "normal" ? placed.pressure() : part_of(how, placed.traction, x));
+    if (contact.segment ? weight > 0 : node == touch.node) x += weight * state.place(node);
+  return touch.area * (how.at("component") == "normal" ? touch.pressure() : part_of(how, touch.traction, x));
 }
 
 }  // namespace
@@ -94,7 +89,7 @@ std::optional<double> at_place(const State& state, const Placed& placed, const s
 std::optional<double> measure(const State& state, const Json& response) {
   const std::string kind = response.begin().key();
   const Json& how = response.begin().value();
-  const bool force = kind == "contact_force" || kind == "reaction";
+  const bool force = kind == "contact_force" || kind == "reaction", sum = force || kind == "dissipation";
   Samples samples;
   if (kind == "strain_energy") return state.bodies.energy;
   if (how.contains("at")) {
@@ -103,22 +98,26 @@ std::optional<double> measure(const State& state, const Json& response) {
   }
   if (how.contains("contact")) {
     const std::string name = how["contact"];
-    if (kind == "dissipation") return state.heat.contains(name) ? state.heat.at(name) : 0;
-    std::vector<const Placed*> placed;
-    for (const auto& one : state.placed)
-      if (one.contact->name == name || one.contact->group == name) placed.push_back(&one);
-    if (kind == "contact_half_width") return half_width(state, placed, how);
-    for (const auto* one : placed)
-      if (const auto value = at_place(state, *one, kind, how)) samples.push_back({*value, force ? 1 : one->touch.area});
+    std::vector<Touch> touches;
+    for (const auto& contact : state.contacts) {
+      if (contact.name != name && contact.group != name) continue;
+      if (kind == "dissipation") samples.push_back({contact.heat, 1});
+      for (const auto& [node, touch] : contact.touches) {
+        touches.push_back(touch);
+        if (const auto value = at_place(state, contact, touch, kind, how))
+          samples.push_back({*value, force ? 1 : touch.area});
+      }
+    }
+    if (kind == "contact_half_width") return half_width(state, touches, how);
   } else if (kind == "plastic_strain") {
     for (std::size_t b = 0; b < state.scene.bodies.size(); ++b)
-      for (const auto& particle : state.bodies.particles[b])
+      for (const auto& particle : state.bodies.particles[b] | std::views::join)
         if (state.scene.bodies[b].name == how.at("on")) samples.push_back({particle.equivalent, particle.volume});
   } else {
     for (const int node : state.scene.side(how.at("on")).nodes)
       samples.push_back({part_of(how, (force ? state.held : state.u).col(node), state.place(node)), 1});
   }
-  return taken(samples, force ? "sum" : how.value("take", "mean"));
+  return taken(samples, sum ? "sum" : how.value("take", "mean"));
 }
 
 }  // namespace stickslip::verify

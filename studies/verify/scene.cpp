@@ -1,9 +1,6 @@
 #include "studies/verify/scene.hpp"
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <sstream>
 
 namespace stickslip::verify {
@@ -11,19 +8,18 @@ namespace {
 
 /// Edges of one element alone are of the boundary.
 std::vector<Nodes> boundary_of(const Body& body) {
-  std::map<std::pair<int, int>, Nodes> once;
+  std::map<std::pair<int, int>, std::vector<Nodes>> edges;
   const std::size_t corners = body.corners();
   for (const auto& element : body.elements)
     for (std::size_t e = 0; e < corners; ++e) {
       Nodes edge{element.at(e), element.at((e + 1) % corners)};
       if (body.quadratic()) edge.push_back(element.at(corners + e));
-      const auto [found, is_new] = once.emplace(std::minmax(edge[0], edge[1]), edge);
-      if (!is_new) found->second.clear();
+      edges[std::minmax(edge[0], edge[1])].push_back(edge);
     }
-  std::vector<Nodes> edges;
-  for (const auto& [ends, edge] : once)
-    if (!edge.empty()) edges.push_back(edge);
-  return edges;
+  std::vector<Nodes> boundary;
+  for (const auto& [ends, shared] : edges)
+    if (shared.size() == 1) boundary.push_back(shared[0]);
+  return boundary;
 }
 
 /// Throws where elements are of no known kind or have other nodes than it, or where nodes are not there.
@@ -32,13 +28,12 @@ void check(const Body& body, Eigen::Index nodes) {
       {"point", 2}, {"bar", 2}, {"T3", 3}, {"T6", 6}, {"Q4", 4}, {"Q4_mean_dilatation", 4}, {"Q8", 8}};
   auto lists = body.elements;
   for (const auto& [name, side] : body.sides) lists.push_back(side);
-  for (const auto& list : lists)
-    for (const int node : list)
-      if (node < 0 || node >= nodes) throw BadFile(body.name + " has a node that is not there");
+  for (const int node : lists | std::views::join)
+    if (node < 0 || node >= nodes) throw BadFile(body.name + " has a node that is not there");
   for (const auto& element : body.elements)
     if (!sizes.contains(body.element) || element.size() != sizes.at(body.element))
       throw BadFile(body.name + " has an element that is no " + body.element);
-  if (body.element == "point" && (!body.sides.contains("node") || !body.sides.contains("anchor")))
+  if (body.spring() && (!body.sides.contains("node") || !body.sides.contains("anchor")))
     throw BadFile(body.name + " has no node or no anchor");
 }
 
@@ -73,6 +68,7 @@ const Json& part(const Json& json, const std::string& key) {
 }
 
 double value_at(const Json& value, double time) {
+  if (time == at_rest) return 0;
   if (value.is_number()) return value;
   const auto rows = (value.is_object() ? value.at("table") : value).get<std::vector<std::array<double, 2>>>();
   const double repeats = value.is_object() ? value.value("repeat", 1) : 1;
@@ -87,8 +83,12 @@ double value_at(const Json& value, double time) {
   return rows.back()[1];
 }
 
+Motion::Motion(const Json& json) : move(part(json, "move")), rotate(part(json, "rotate")) {
+  if (!rotate.empty()) center = vec3(rotate.at("center"));
+}
+
 Vec3 Motion::angle(double time) const {
-  if (rotate.empty() || time == at_rest) return {0, 0, 0};
+  if (rotate.empty()) return {0, 0, 0};
   const Vec3 axis = rotate.contains("axis") ? vec3(rotate["axis"]).normalized() : Vec3(0, 0, 1);
   return value_at(rotate.at("angle"), time) * std::numbers::pi / 180 * axis;
 }
@@ -100,20 +100,17 @@ Mat3 Motion::turn(double time) const {
 
 Vec3 Motion::displacement(const Vec3& X, double time, bool finite) const {
   Vec3 u = Vec3::Zero();
-  for (const auto& [axis, value] : move.items())
-    if (time != at_rest) u[axis[0] - 'x'] = value_at(value, time);
-  if (rotate.empty()) return u;
-  const Vec3 arm = X - center();
+  for (const auto& [axis, value] : move.items()) u[axis[0] - 'x'] = value_at(value, time);
+  const Vec3 arm = X - center;
   return u + (finite ? Vec3(turn(time) * arm - arm) : angle(time).cross(arm));
 }
 
 Vec3 Motion::back(const Vec3& x, double time) const {
-  const Vec3 shifted = x - displacement(center(), time, true);
-  return rotate.empty() ? shifted : Vec3(center() + turn(time).transpose() * (shifted - center()));
+  return center + turn(time).transpose() * (x - displacement(center, time, true) - center);
 }
 
 Mat3 Body::stiffness() const {
-  const Json& rows = material.begin().value().at("stiffness");
+  const Json& rows = given.at("material").begin().value().at("stiffness");
   Mat3 K = Mat3::Zero();
   for (std::size_t i = 0; i < rows.size(); ++i) K.row(i) = vec3(rows[i]);
   return K;
@@ -138,17 +135,10 @@ Scene::Scene(const Json& scene, const Json& mesh) : json(scene) {
   for (Eigen::Index n = 0; n < points.cols(); ++n) points.col(n) = vec3(mesh["nodes"][n]);
   for (const auto& [name, given] : scene.at("bodies").items()) {
     const Json& made = mesh.at("bodies").at(name);
-    Body body{name,
-              made.at("element"),
-              given.value("thickness", 1.0),
-              given.value("area", 1.0),
-              given.at("material"),
-              made.at("elements"),
-              made.at("sides")};
+    Body body{name, made.at("element"), given, made.at("elements"), made.at("sides")};
     check(body, points.cols());
-    if (body.element != "point") body.edges = body.solid() ? boundary_of(body) : body.elements;
-    std::set<int> all;
-    for (const auto& edge : body.edges) all.insert(edge.begin(), edge.end());
+    if (!body.spring()) body.edges = body.solid() ? boundary_of(body) : body.elements;
+    auto all = body.edges | std::views::join;
     if (body.solid()) body.sides.try_emplace("boundary", all.begin(), all.end());
     bodies.push_back(std::move(body));
   }
@@ -179,7 +169,7 @@ Side Scene::side(const std::string& expression) const {
 }
 
 double Scene::depth(const Body& body, double x) const {
-  return axisymmetric ? 2 * std::numbers::pi * x : body.element == "bar" ? 1 : body.thickness;
+  return axisymmetric ? 2 * std::numbers::pi * x : body.element == "bar" ? 1 : body.given.value("thickness", 1.0);
 }
 
 bool Scene::on_axis(int node) const {

@@ -3,11 +3,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
+#include <ranges>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -35,15 +39,15 @@ struct BadFile : std::runtime_error {
 Vec3 vec3(const Json& json);                                 ///< of two or three numbers
 const Json& part(const Json& json, const std::string& key);  ///< an empty object where the key is missing
 
-/// A value in time: a number, or a table that is linear between its rows, and may be repeated.
+/// A value in time: a number, or a table that is linear between its rows, and may be repeated; 0 at rest.
 double value_at(const Json& value, double time);
 
 /// A rigid motion x = c + R (X - c) + move of a support or an obstacle, by the axes and the angle that it prescribes.
 struct Motion {
   Json move, rotate;
-  explicit Motion(const Json& json) : move(part(json, "move")), rotate(part(json, "rotate")) {}
+  Vec3 center = Vec3::Zero();
+  explicit Motion(const Json& json);
   bool prescribes(int axis) const { return !rotate.empty() || move.contains(std::string(1, "xyz"[axis])); }
-  Vec3 center() const { return rotate.empty() ? Vec3(0, 0, 0) : vec3(rotate.at("center")); }
   Vec3 angle(double time) const;  ///< radians about an axis
   Mat3 turn(double time) const;
   /// Displacement of what is at X at the start; where strains are small, linear in the angle.
@@ -53,15 +57,16 @@ struct Motion {
 
 struct Body {
   std::string name, element;
-  double thickness = 1, area = 1;  ///< of a body in a plane; of bars
-  Json material;                   ///< {name: numbers}
+  Json given;  ///< its entry in the scene
   std::vector<Nodes> elements;
   std::map<std::string, Nodes> sides;
   std::vector<Nodes> edges = {};  ///< of the boundary, the solid on the left: two ends, and a middle
   bool quadratic() const { return element == "Q8" || element == "T6"; }
-  bool solid() const { return element != "bar" && element != "point"; }
+  bool spring() const { return element == "point"; }
+  bool solid() const { return element != "bar" && !spring(); }
   std::size_t corners() const { return element[0] == 'T' ? 3 : 4; }
-  Mat3 stiffness() const;  ///< of a spring
+  double area() const { return given.value("area", 1.0); }  ///< of bars
+  Mat3 stiffness() const;                                   ///< of a spring
 };
 
 /// Nodes of a side, and the edges of the boundary that belong to it.

@@ -1,7 +1,5 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <algorithm>
-#include <cmath>
 
 #include "studies/verify/state.hpp"
 
@@ -23,14 +21,15 @@ struct Material {
   bool log_volume = false, plastic = false;
   std::vector<std::array<double, 2>> rows;  ///< (equivalent plastic strain, bound), from 0 to infinity
 
-  explicit Material(const Json& json) {
-    const Json& given = json.begin().value();
+  explicit Material(const Body& body) {
+    const auto law = body.given.at("material").begin();
+    const Json& given = law.value();
     const double nu = given.at("nu");
     E = given.at("E");
     lame = E * nu / ((1 + nu) * (1 - 2 * nu));
     G = E / (2 * (1 + nu));
     log_volume = given.value("volumetric", "quadratic") == "log";
-    plastic = json.begin().key() == "j2_plastic";
+    plastic = law.key() == "j2_plastic";
     if (!plastic) return;
     const Json& hardening = given.at("hardening");
     if (hardening.is_array()) rows = hardening.get<std::vector<std::array<double, 2>>>();
@@ -108,16 +107,22 @@ Answer respond_in_plane_stress(const Material& material, Mat3& H, bool finite, P
     const auto answer = respond(material, H, finite, tried);
     return answer.inverted ? -infinity : answer.stress(2, 2);
   };
-  const double guess = -material.lame / (material.lame + 2 * material.G) * (H(0, 0) + H(1, 1));
-  double span = std::max({H.topLeftCorner<2, 2>().norm(), particle.equivalent, 1e-12}) / 2;
-  double low = guess - span, high = guess + span;
-  while (across(low) > 0 && span < 1e9) low -= span *= 2;
-  while (across(high) < 0 && span < 1e9) high += span *= 2;
-  for (int k = 0; k < 100; ++k) {
-    const double middle = low + (high - low) / 2;
+  double low = -1e6, high = 1e6;
+  for (int k = 0; k < 150; ++k) {  // to 1e-39
+    const double middle = (low + high) / 2;
     (across(middle) < 0 ? low : high) = middle;
   }
   return respond(material, H, finite, particle);
+}
+
+/// A bar along an axis: S = E (e - e_p), e of Green at finite strain.
+Answer respond_along(const Material& material, const Vec3& axis, const Mat3& H, bool finite, Particle& particle) {
+  const Vec3 stretch = H * axis, now = axis + (finite ? 1.0 : 0.0) * stretch;
+  const double trial = stretch.dot(axis + now) / 2 - particle.strain(0, 0), q = material.E * std::abs(trial);
+  const double d = material.growth(q, material.E, particle.equivalent), e = trial - std::copysign(d, trial);
+  particle.strain(0, 0) += trial - e;
+  particle.equivalent += d;
+  return {material.E * e * now * axis.transpose(), material.E * e * e / 2, (q - material.E * d) * d};
 }
 
 // --- elements --------------------------------------------------------------------------------------------------------
@@ -149,20 +154,10 @@ std::vector<Vec3> rule(const Body& body, bool of_revolution) {
 
 /// A Gauss point of an element, with gradients by coordinates of the start, and N / R of revolution.
 struct Point {
-  Eigen::VectorXd value;
-  Eigen::MatrixX3d gradient;
-  Eigen::VectorXd hoop;
   double volume;
+  Eigen::VectorXd value, hoop = {};
+  Eigen::MatrixX3d gradient = {};
 
-  Point(const Scene& scene, const Body& body, const Nodes& element, const Shape& at, double weight) : value(at.value) {
-    const Places X = scene.points(Eigen::seqN(0, 2), element);
-    const Eigen::Matrix2d jacobian = X * at.gradient;
-    const double radius = X.row(0).dot(value);
-    gradient.setZero(value.size(), 3);
-    gradient.leftCols<2>() = at.gradient * jacobian.inverse();
-    hoop = (scene.axisymmetric ? 1 / radius : 0) * value;
-    volume = jacobian.determinant() * weight * scene.depth(body, radius);
-  }
   Mat3 displacement_gradient(const Field& u) const {
     return u * gradient + u.row(0).dot(hoop) * Vec3::UnitZ() * Vec3::UnitZ().transpose();
   }
@@ -171,22 +166,48 @@ struct Point {
   }
 };
 
+Point point_of(const Scene& scene, const Body& body, const Nodes& element, const Shape& at, double weight = 0) {
+  const Places X = scene.points(Eigen::seqN(0, 2), element);
+  const Eigen::Matrix2d jacobian = X * at.gradient;
+  const double radius = X.row(0).dot(at.value);
+  Point point{jacobian.determinant() * weight * scene.depth(body, radius), at.value};
+  point.hoop = (scene.axisymmetric ? 1 / radius : 0) * at.value;
+  point.gradient.setZero(at.value.size(), 3);
+  point.gradient.leftCols<2>() = at.gradient * jacobian.inverse();
+  return point;
+}
+
 std::vector<Point> points_of(const Scene& scene, const Body& body, const Nodes& element) {
+  if (!body.solid()) {  // along a bar; of a spring the first column of H is u - u_anchor
+    const Vec2 difference(-1, 1);
+    const Vec3 T = body.spring() ? Vec3(1, 0, 0) : Vec3(scene.points(Eigen::all, element) * difference);
+    const double volume = body.spring() ? 1 : body.area() * T.norm();
+    return {{volume, Vec2(0.5, 0.5), Vec2(0, 0), difference * T.transpose() / T.squaredNorm()}};
+  }
   static std::map<std::pair<std::string, bool>, std::vector<std::pair<Shape, double>>> known;
   auto& shapes = known[{body.element, scene.axisymmetric}];
   if (shapes.empty())
     for (const auto& at : rule(body, scene.axisymmetric)) shapes.emplace_back(shape(body, at.head<2>()), at[2]);
   std::vector<Point> points;
-  for (const auto& [at, weight] : shapes) points.emplace_back(scene, body, element, at, weight);
+  for (const auto& [at, weight] : shapes) points.push_back(point_of(scene, body, element, at, weight));
   return points;
 }
 
 // --- bodies ----------------------------------------------------------------------------------------------------------
 
-/// Forces of an element of a solid body.
-Field solid_forces(const Scene& scene, const Body& body, const std::vector<Point>& points, const Field& u,
-                   Particle* particles, Bodies& bodies) {
-  const Material material(body.material);
+/// What a point of a body answers to H, of which plane stress decides a part.
+Answer answer_of(const Scene& scene, const Body& body, const Point& point, Mat3& H, Particle& particle) {
+  if (body.spring()) return {body.stiffness() * H, (body.stiffness() * H).cwiseProduct(H).sum() / 2};
+  const Material material(body);
+  const Vec3 axis = point.gradient.row(1).normalized();
+  if (!body.solid()) return respond_along(material, axis, H, scene.finite, particle);
+  return scene.plane_stress ? respond_in_plane_stress(material, H, scene.finite, particle)
+                            : respond(material, H, scene.finite, particle);
+}
+
+/// Forces of an element on its nodes.
+Field element_forces(const Scene& scene, const Body& body, const std::vector<Point>& points, const Field& u,
+                     std::vector<Particle>& particles, Bodies& bodies) {
   const bool finite = scene.finite, mean = body.element == "Q4_mean_dilatation";
   const Mat3 I = Mat3::Identity();
   const auto change = [&](const Mat3& H) { return finite ? volume_change(H) : H.trace(); };
@@ -200,83 +221,55 @@ Field solid_forces(const Scene& scene, const Body& body, const std::vector<Point
   double pressure = 0;                                       // int tr tau / 3 dV
   for (std::size_t q = 0; q < points.size(); ++q) {
     const Mat3 H = points[q].displacement_gradient(u), F = finite ? Mat3(I + H) : I;
-    const double ratio = finite ? (1 + change(H)) / (1 + theta) : 1;
     Mat3 h = H;
     if (mean) h += (finite ? std::expm1((std::log1p(theta) - std::log1p(change(H))) / 3) : (theta - change(H)) / 3) * F;
-    const auto answer = scene.plane_stress ? respond_in_plane_stress(material, h, finite, particles[q])
-                                           : respond(material, h, finite, particles[q]);
+    const auto answer = answer_of(scene, body, points[q], h, particles[q]);
     const double volume = particles[q].volume = points[q].volume;
     bodies.inverted |= answer.inverted;
     bodies.energy += answer.energy * volume;
     bodies.plastic_work += answer.plastic_work * volume;
-    const Mat3 tau = finite ? Mat3(answer.stress * (I + h).transpose()) : answer.stress;
-    const Mat3 back = F.inverse().transpose(), round = mean ? Mat3(tau.trace() / 3 * I) : Mat3::Zero();
-    forces += points[q].forces(mean ? Mat3((tau - round) * back) : answer.stress);
-    pressure += round(0, 0) * volume;
-    varied += points[q].forces(ratio / whole * back);
+    Mat3 stress = answer.stress;
+    if (mean) {
+      const Mat3 tau = finite ? Mat3(stress * (I + h).transpose()) : stress, back = F.inverse().transpose();
+      stress = (tau - tau.trace() / 3 * I) * back;
+      pressure += tau.trace() / 3 * volume;
+      varied += points[q].forces((finite ? (1 + change(H)) / (1 + theta) : 1) / whole * back);
+    }
+    forces += points[q].forces(stress);
   }
   return forces + pressure * varied;
 }
 
-/// Forces of a bar on its ends.
-Field bar_forces(const Scene& scene, const Body& body, const Nodes& bar, const Field& u, Particle& particle,
-                 Bodies& bodies) {
-  const Material material(body.material);
-  const Vec2 difference(-1, 1);
-  const Vec3 axis = scene.points(Eigen::all, bar) * difference, d = u * difference;
-  const double length = axis.norm(), stretch = axis.dot(d) + (scene.finite ? d.squaredNorm() / 2 : 0);
-  const double trial = stretch / axis.squaredNorm() - particle.strain(0, 0), q = material.E * std::abs(trial);
-  const double growth = material.growth(q, material.E, particle.equivalent), flow = std::copysign(growth, trial);
-  particle.strain(0, 0) += flow;
-  particle.equivalent += growth;
-  particle.volume = body.area * length;
-  bodies.plastic_work += (q - material.E * growth) * growth * particle.volume;
-  bodies.energy += material.E * (trial - flow) * (trial - flow) / 2 * particle.volume;
-  const Vec3 now = axis + (scene.finite ? 1.0 : 0.0) * d;
-  return material.E * body.area * (trial - flow) / length * now * difference.transpose();
-}
-
 // --- loads -----------------------------------------------------------------------------------------------------------
 
-/// int N f dA of the nodes of a side, of edges at `places`; f: of an edge, a Gauss point of it and dx / ds.
+/// Integrates over a side, of edges at `places`: adds up, at each of its nodes, N times depth ds and a vector dx / ds;
+/// of an edge, at a Gauss point of it.
 template <class F>
-Field over_side(const Scene& scene, const Body& body, const Side& side, const Field& places, F&& f) {
-  Field sums = Field::Zero(3, places.cols());
+void over_side(const Scene& scene, const Body& body, const Side& side, const Field& places, F&& add) {
   for (const auto& edge : side.edges)
     for (const auto& point : edge_points(edge.size(), scene.axisymmetric)) {
       const Field at = places(Eigen::all, edge);
-      const double depth = scene.depth(body, at.row(0).dot(point.value));
-      const Vec3 value = f(edge, point, Vec3(at * point.slope));
+      const Vec3 tau = at * point.slope;
+      const double width = point.weight * scene.depth(body, at.row(0).dot(point.value));
       for (std::size_t a = 0; a < edge.size(); ++a)
-        if (side.has(edge[a])) sums.col(edge[a]) += point.weight * depth * point.value[a] * value;
+        if (side.has(edge[a])) add(edge[a], width * point.value[a], tau, edge, point);
     }
-  return sums;
 }
 
 /// Present stretch of the thickness at a place of an edge, of rubber in plane stress: F_33 of the element behind.
 double thickness_stretch(const Scene& scene, const Body& body, const Nodes& edge, double s, const Field& u) {
-  const Places natural = natural_nodes(body);
-  for (const auto& element : body.elements)
-    for (std::size_t c = 0; c < body.corners(); ++c) {
-      const std::size_t d = (c + 1) % body.corners();
-      if (element[c] != edge[0] || element[d] != edge[1]) continue;
-      const Point point(scene, body, element, shape(body, (1 - s) * natural.col(c) + s * natural.col(d)), 0);
-      Mat3 H = point.displacement_gradient(u(Eigen::all, element));
-      Particle none;
-      respond_in_plane_stress(Material(body.material), H, true, none);
-      return 1 + H(2, 2);
-    }
-  return 1;
-}
-
-void add_body_force(const Scene& scene, const Body& body, const Vec3& f, Field& forces) {
-  for (const auto& element : body.elements)
-    if (body.element == "bar")
-      for (const int node : element)
-        forces.col(node) += body.area * (scene.points.col(element[1]) - scene.points.col(element[0])).norm() / 2 * f;
-    else
-      for (const auto& point : points_of(scene, body, element))
-        forces(Eigen::all, element) += point.volume * f * point.value.transpose();
+  const Nodes& element = *std::ranges::find_if(body.elements, [&](const Nodes& nodes) {
+    return std::ranges::count(nodes, edge[0]) + std::ranges::count(nodes, edge[1]) == 2;
+  });
+  const auto corner = [&](int node) -> Vec2 {
+    return natural_nodes(body).col(std::ranges::find(element, node) - element.begin());
+  };
+  const Shape at = shape(body, (1 - s) * corner(edge[0]) + s * corner(edge[1]));
+  const Point point = point_of(scene, body, element, at);
+  Mat3 H = point.displacement_gradient(u(Eigen::all, element));
+  Particle none;
+  answer_of(scene, body, point, H, none);
+  return 1 + H(2, 2);
 }
 
 /// The factor of a load: its history, which along a path by arc length goes on straight, in proportion to the time.
@@ -319,12 +312,9 @@ std::vector<EdgePoint> edge_points(std::size_t nodes, bool of_revolution) {
 }
 
 std::map<int, double> areas_of(const Scene& scene, const Body& body, const Side& side) {
-  const auto length = [](const Nodes&, const EdgePoint&, const Vec3& tau) { return Vec3(tau.norm(), 0, 0); };
-  const Field sums = over_side(scene, body, side, scene.points, length);
   std::map<int, double> areas;
-  for (const auto& edge : side.edges)
-    for (const int node : edge)
-      if (side.has(node)) areas[node] = sums(0, node);
+  over_side(scene, body, side, scene.points,
+            [&](int node, double width, const Vec3& tau, auto&...) { areas[node] += width * tau.norm(); });
   for (const int node : side.nodes)
     if (side.edges.empty()) areas[node] = 1;
   return areas;
@@ -335,30 +325,19 @@ Bodies deform(const Scene& scene, const Field& u, const Bodies& before) {
   bodies.forces = Field::Zero(3, u.cols());
   bodies.particles = before.particles;
   bodies.particles.resize(scene.bodies.size());
-  const auto add = [&](const Nodes& nodes, const Field& forces) {
-    bodies.forces(Eigen::all, nodes) += forces;
-    bodies.largest = std::max(bodies.largest, forces.colwise().norm().maxCoeff());
-  };
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
-    if (body.element == "point") {
-      const Nodes ends{body.sides.at("anchor").at(0), body.sides.at("node").at(0)};
-      const Vec3 d = u(Eigen::all, ends) * Vec2(-1, 1), force = body.stiffness() * d;
-      bodies.stiffness = std::max(bodies.stiffness, body.stiffness().maxCoeff());
-      bodies.energy += d.dot(force) / 2;
-      add(ends, force * Eigen::RowVector2d(-1, 1));
-      continue;
-    }
-    const double depth = body.solid() ? scene.depth(body, scene.points.row(0).maxCoeff()) : body.area;
-    bodies.stiffness = std::max(bodies.stiffness, Material(body.material).E * depth);
+    const double depth = body.solid() ? scene.depth(body, scene.points.row(0).maxCoeff()) : body.area();
+    const double stiffness = body.spring() ? body.stiffness().maxCoeff() : Material(body).E * depth;
+    bodies.stiffness = std::max(bodies.stiffness, stiffness);
+    bodies.particles[b].resize(body.elements.size());
     for (std::size_t e = 0; e < body.elements.size(); ++e) {
-      const Field moved = u(Eigen::all, body.elements[e]);
-      const auto points = body.solid() ? points_of(scene, body, body.elements[e]) : std::vector<Point>{};
-      const std::size_t each = body.solid() ? points.size() : 1;
-      bodies.particles[b].resize(body.elements.size() * each);
-      Particle* own = &bodies.particles[b][e * each];
-      add(body.elements[e], body.solid() ? solid_forces(scene, body, points, moved, own, bodies)
-                                         : bar_forces(scene, body, body.elements[e], moved, *own, bodies));
+      const Nodes& element = body.elements[e];
+      const auto points = points_of(scene, body, element);
+      bodies.particles[b][e].resize(points.size());
+      const auto forces = element_forces(scene, body, points, u(Eigen::all, element), bodies.particles[b][e], bodies);
+      bodies.forces(Eigen::all, element) += forces;
+      bodies.largest = std::max(bodies.largest, forces.colwise().norm().maxCoeff());
     }
   }
   return bodies;
@@ -373,13 +352,17 @@ Field load_forces(const Scene& scene, const Field& u, double time) {
     const Body& body = scene.body(load.at("on"));
     const Side side = scene.side(load["on"]);
     if (load.contains("body_force")) {
-      add_body_force(scene, body, factor * vec3(load["body_force"]), forces);
+      for (const auto& element : body.elements)
+        for (const auto& point : points_of(scene, body, element))
+          forces(Eigen::all, element) += point.volume * factor * vec3(load["body_force"]) * point.value.transpose();
     } else if (load.contains("pressure")) {  // int p N n da, n into the body: at finite strain of the present edges
       const double p = factor * load["pressure"].get<double>();
-      forces += over_side(scene, body, side, scene.places(u), [&](const auto& edge, const auto& at, const Vec3& tau) {
-        const bool thins = scene.finite && scene.plane_stress;
-        return Vec3(p * (thins ? thickness_stretch(scene, body, edge, at.s, u) : 1) * Vec3(-tau[1], tau[0], 0));
-      });
+      const bool thins = scene.finite && scene.plane_stress;
+      over_side(scene, body, side, scene.places(u),
+                [&](int node, double width, const Vec3& tau, const Nodes& edge, const EdgePoint& at) {
+                  const double stretch = thins ? thickness_stretch(scene, body, edge, at.s, u) : 1;
+                  forces.col(node) += p * stretch * width * Vec3(-tau[1], tau[0], 0);
+                });
     } else {  // a traction by the areas of the nodes, or a force in all that they share by these
       const auto areas = areas_of(scene, body, side);
       double all = 0;

@@ -2,8 +2,6 @@
 /// again (docs/scene.md, Responses). The sources have the laws of materials.
 #pragma once
 
-#include <algorithm>
-
 #include "studies/verify/scene.hpp"
 
 namespace stickslip::verify {
@@ -43,12 +41,12 @@ struct Particle {
 
 /// What bodies do at a motion.
 struct Bodies {
-  Field forces;                                  ///< f_int of each node
-  double largest = 0;                            ///< force of an element on a node, of all
-  double energy = 0, plastic_work = 0;           ///< stored; of this increment
-  double stiffness = 0;                          ///< force per length: largest modulus times a depth
-  bool inverted = false;                         ///< whether an element is
-  std::vector<std::vector<Particle>> particles;  ///< of each body, element by element
+  Field forces;                                               ///< f_int of each node
+  double largest = 0;                                         ///< force of an element on a node, of all
+  double energy = 0, plastic_work = 0;                        ///< stored; of this increment
+  double stiffness = 0;                                       ///< force per length: largest modulus times a depth
+  bool inverted = false;                                      ///< whether an element is
+  std::vector<std::vector<std::vector<Particle>>> particles;  ///< of each body, element and point
 };
 
 /// The bodies at displacements u, from what they were at the end of the last increment; `{}` at the start.
@@ -79,19 +77,20 @@ inline double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * 
 
 struct Line {
   Vec2 from, to, tau = to - from;
+  Vec2 at(double xi) const { return from + xi * tau; }
   double xi(const Vec2& x) const { return (x - from).dot(tau) / tau.squaredNorm(); }
-  double distance(const Vec2& x) const { return (x - from - std::clamp(xi(x), 0.0, 1.0) * tau).norm(); }
+  /// Where it is met from x, along a direction.
+  double xi(const Vec2& x, const Vec2& along) const { return cross(x - from, along) / cross(tau, along); }
+  double distance(const Vec2& x) const { return (x - at(std::clamp(xi(x), 0.0, 1.0))).norm(); }
 };
 
 /// From vertex 1 to vertex 2; 0 and 3 are their neighbours, where the master is smooth there.
 struct Patch {
-  std::array<int, 4> vertex;  ///< nodes, or points of an obstacle's polyline
-
-  int previous = -1, next = -1;                     ///< patches; -1: a free end
-  std::array<bool, 2> goes_on = {false, false};     ///< smoothly, into the previous and the next patch
-  Eigen::Matrix4d shape = Eigen::Matrix4d::Zero();  ///< N_i = column i times (1, xi, xi^2, xi^3)
-  double length = 0, arc = -1;                      ///< of the start; along the master to its beginning
-  Line line(const Places& at) const { return {at.col(vertex[1]), at.col(vertex[2])}; }
+  std::array<int, 4> vertex;             ///< nodes, or points of an obstacle's polyline
+  std::array<int, 2> beside = {-1, -1};  ///< the patches before and behind it; -1: a free end
+  double length = 0, arc = -1;           ///< of the start; along the master to its beginning
+  /// Whether it goes on smoothly, into the patch before or behind it.
+  bool goes_on(bool end) const { return end ? vertex[3] != vertex[2] : vertex[0] != vertex[1]; }
 };
 
 struct Place {
@@ -118,34 +117,37 @@ class Master {
  public:
   /// `slave`: side expression; the same as `master` where a side touches itself.
   Master(const Scene& scene, const Json& contact, const std::string& slave, const std::string& master);
-  bool rigid() const { return !obstacle_.empty(); }
-  Places vertices(const Field& x) const;  ///< where they are, of nodes at x
-  Vec2 position(const Places& at, const Place& place, int derivative = 0) const;
-  Foot foot(const Seeker& seeker, const Places& at) const;
-  Foot foot(const Place& place, const Places& at) const;  ///< there
-  /// What a side that touches itself does not face: its own wall. `seekers`: its points at the start.
-  void set_walls(const std::vector<Seeker>& seekers);
+  bool rigid() const { return !obstacle.empty(); }
+  void place_vertices(const Field& x);  ///< where they are from now on, of nodes at x
+  Line line_of(const Patch& patch) const { return {at_.col(patch.vertex[1]), at_.col(patch.vertex[2])}; }
+  Vec2 position(const Place& place, int derivative = 0) const;
+  Foot foot(const Seeker& seeker) const;
+  Foot foot(const Place& place) const;  ///< there
+  /// What a point of a side that touches itself does not face: its own wall. `seeker`: the point at the start.
+  void set_wall(const Seeker& seeker);
 
   std::vector<Patch> patches;
   double loop = 0;  ///< length of a closed master; 0: it is open
+  Json obstacle;    ///< empty: the master deforms
   Motion motion;    ///< of an obstacle
 
  private:
   void link(double corner);
-  bool may_face(const Seeker& seeker, int patch, const Places& at) const;
-  Place closest(const Seeker& seeker, const Places& at) const;
-  Place find(const Seeker& seeker, const Places& at) const;
-  void share_vertex(const Seeker& seeker, const Places& at, Foot& foot) const;
+  Eigen::Vector4d functions(const Place& place, int derivative = 0) const;  ///< N_i
+  bool may_face(const Seeker& seeker, int patch) const;
+  Place closest(const Seeker& seeker) const;
+  Place find(const Seeker& seeker) const;
+  void share_vertex(const Seeker& seeker, Foot& foot) const;
 
   const Scene& scene_;
-  Json obstacle_;                           ///< empty: the master deforms
-  Places polyline_;                         ///< points of an obstacle
+  Places at_;                               ///< where nodes are, or the points of an obstacle's polyline
   int smooth_ = 0;                          ///< 0: facets, 1: Catmull-Rom, 2: B-spline
   bool itself_ = false, frozen_ = false;    ///< frozen: facets of the start, at small strain
   std::map<int, std::vector<char>> walls_;  ///< of each node, the patches of its own wall
 };
 
-/// A place of contact: a slave node, or the multiplier of one. Its weights are 1 of the slave, -N_i of the master.
+/// A place of contact: a slave node, or the multiplier of one. Its weights are 1 of the slave, -N_i of the master. The
+/// traction and the springs are of whoever solved it.
 struct Touch : Foot {
   int node = -1;
   double area = 0;                                       ///< of the start, on which its traction acts
@@ -155,6 +157,12 @@ struct Touch : Foot {
   Vec3 carried = Vec3::Zero();                           ///< motion of an obstacle's surface there in this increment
   Vec3 relative = Vec3::Zero(), tangent = Vec3::Zero();  ///< w of small strain; m of segments
   double along = 0;                                      ///< Z of segments
+  Vec3 traction = Vec3::Zero();                          ///< on the slave, force per area of the start
+  Vec2 compliance = Vec2::Zero();  ///< of the springs of a penalty, normal and tangential; zero: multipliers
+  double slid = 0;                 ///< slip since the start along e
+  Vec3 e() const { return {-normal[1], normal[0], 0}; }
+  double pressure() const { return traction.dot(normal); }
+  Vec3 friction() const { return traction - pressure() * normal; }
 };
 
 /// A contact of a slave side and a master.
@@ -162,59 +170,46 @@ class Contact {
  public:
   /// `sides`: {"of": entry of the scene, "slave", "master"}.
   Contact(const Scene& scene, const std::string& called, const Json& sides);
-  /// All places at displacements. Call it in order of time.
-  std::vector<Touch> advance(const Field& u, double time);
+  /// Moves all places to displacements. Call it in order of time.
+  void advance(const Field& u, double time);
 
   std::string name, group;
-  Json given;            ///< its entry in the scene
-  bool itself, segment;  ///< it is a side that touches itself; it is integrated over segments
+  Json given;                          ///< its entry in the scene
+  bool itself, segment;                ///< it is a side that touches itself; it is integrated over segments
+  std::map<int, Touch> touches, last;  ///< the places by slave node, now and in the last increment
+  double heat = 0;                     ///< of plastic slip since the start; NaN: not known
 
  private:
-  /// Part of a slave facet that faces one patch of the master (-1: an obstacle without patches), and the node whose
-  /// multiplier acts there; `sole`: the other node carries none.
+  /// Part of a slave facet that faces one patch of the master (-1: an obstacle without patches).
   struct Piece {
-    int first, second, carrier, patch;
+    std::array<int, 2> facet;
+    int patch;
     double from, to;
-    bool sole;
   };
   Seeker seeker(int node, const Field& x) const;
-  void cut(const std::array<int, 2>& facet, const Field& x, const Places& at, std::vector<Piece>& all) const;
-  void integrate(const Piece& piece, const Field& x, const Places& at, Touch& touch, double& share) const;
-  Touch on_pieces(int node, const std::vector<Piece>& pieces, const Field& x, const Places& at) const;
-  void move(Touch& touch, const Touch& last, const Field& u, const Places& at, double time) const;
+  std::vector<Piece> cut(const std::array<int, 2>& facet, const Field& x) const;
+  double integrate(const Piece& piece, int node, const Field& x, Touch& touch) const;
+  Touch on_pieces(int node, const Field& x) const;
+  void move(Touch& touch, const Touch& last, const Field& u, double time) const;
 
   const Scene& scene_;
   const Body& body_;
   Side side_;
   Master master_;
-  std::vector<std::array<int, 2>> facets_;
+  Facets facets_;
   std::map<int, double> areas_;
-  std::map<int, Touch> last_;
   double last_time_ = at_rest;
 };
 
 // --- responses -------------------------------------------------------------------------------------------------------
-
-/// A place of contact with its traction on the slave, force per area of the start.
-struct Placed {
-  const Contact* contact = nullptr;
-  Touch touch;
-  Vec3 traction = Vec3::Zero();
-  Vec2 compliance = Vec2::Zero();  ///< of the springs of a penalty, normal and tangential; zero: multipliers
-  double slid = 0;                 ///< slip since the start along e
-  Vec3 e() const { return {-touch.normal[1], touch.normal[0], 0}; }
-  double pressure() const { return traction.dot(touch.normal); }
-  Vec3 friction() const { return traction - pressure() * touch.normal; }
-};
 
 /// What responses are measured on.
 struct State {
   const Scene& scene;
   const Field& u;
   const Bodies& bodies;
-  std::vector<Placed> placed = {};
-  Field held = {};                          ///< forces of the supports
-  std::map<std::string, double> heat = {};  ///< of plastic slip since the start, of contacts and groups; NaN: not known
+  const std::vector<Contact>& contacts;
+  const Field& held;  ///< forces of the supports
   Vec3 place(int node) const { return scene.points.col(node) + (scene.finite ? 1.0 : 0.0) * u.col(node); }
 };
 

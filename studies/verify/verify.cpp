@@ -4,8 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>
-#include <algorithm>
-#include <cmath>
 
 #include "studies/verify/state.hpp"
 
@@ -56,11 +54,15 @@ void note(Step& step, const Law& law, double value, const std::string& where, do
 /// Directions in which supports hold a node, each with the motion that it prescribes.
 using Held = std::vector<std::pair<Vec3, double>>;
 
-/// The part of a force that supports take.
-Vec3 taken(const Held& held, const Vec3& force) {
-  Field N(3, held.size());
-  for (std::size_t k = 0; k < held.size(); ++k) N.col(k) = held[k].first;
-  return N * N.completeOrthogonalDecomposition().solve(force);
+/// The part of nodal forces that supports take.
+Field taken(const std::map<int, Held>& held, const Field& forces) {
+  Field all = Field::Zero(3, forces.cols());
+  for (const auto& [node, holds] : held) {
+    Field N(3, holds.size());
+    for (std::size_t k = 0; k < holds.size(); ++k) N.col(k) = holds[k].first;
+    all.col(node) = N * N.completeOrthogonalDecomposition().solve(forces.col(node));
+  }
+  return all;
 }
 
 std::map<int, Held> supports_at(const Scene& scene, double time) {
@@ -76,7 +78,7 @@ std::map<int, Held> supports_at(const Scene& scene, double time) {
     }
   }
   for (const auto& body : scene.bodies)
-    for (int i = 0; body.element == "point" && i < scene.dimension; ++i) {
+    for (int i = 0; body.spring() && i < scene.dimension; ++i) {
       Held& anchor = held[body.sides.at("anchor")[0]];
       if (std::ranges::count(anchor, Vec3(Vec3::Unit(i)), &Held::value_type::first) == 0)
         anchor.emplace_back(Vec3::Unit(i), 0);
@@ -84,6 +86,16 @@ std::map<int, Held> supports_at(const Scene& scene, double time) {
   for (int n = 0; n < scene.points.cols(); ++n)
     if (scene.on_axis(n)) held[n].emplace_back(Vec3::UnitX(), 0);
   return held;
+}
+
+/// Numbers that are told one after the other, as vectors of `size` of them; NaN where one is no number.
+Field vectors(const Json& told, Eigen::Index size, std::size_t count, const std::string& what) {
+  if (told.size() != size * count)
+    throw BadFile(fmt::format("a {} has {} numbers; the mesh has {}", what, told.size(), size * count));
+  Field all = Field::Zero(3, count);
+  for (std::size_t k = 0; k < told.size(); ++k)
+    all(k % size, k / size) = told[k].is_number() ? told[k].get<double>() : NAN;
+  return all;
 }
 
 /// Bound of friction at a pressure.
@@ -105,27 +117,29 @@ class Judge {
   /// `given`: the responses of the increment as whoever solved it measured them; null: none.
   Step read(const Json& increment, const Json& given) {
     Step step{increment.at("time"), {}};
-    const Field before = std::exchange(u_, displacements(increment.at("displacement")));
+    const Json& given_u = increment.at("displacement");
+    const Field before = std::exchange(u_, vectors(given_u, scene_.dimension, u_.cols(), "displacement"));
     bodies_ = deform(scene_, u_, bodies_);
     note(step, elements, bodies_.inverted, "of a body");
     const Field loads = load_forces(scene_, u_, step.time);
     L_ = std::max({L_, u_.cwiseAbs().maxCoeff(), loads.colwise().norm().maxCoeff() * over(bodies_.stiffness)});
     const auto held = supports_at(scene_, step.time);
-    State state{scene_, u_, bodies_, places(part(increment, "contacts"), bodies_.forces - loads, held, step)};
-    Field contact = Field::Zero(3, u_.cols());
-    for (auto& placed : state.placed) {
-      check_place(placed, step);
-      step.tractions[placed.contact->name][placed.touch.node] = {placed.pressure(), placed.friction().dot(placed.e())};
-      for (const auto& [node, weight] : placed.touch.weights)
-        contact.col(node) += weight * placed.touch.area * placed.traction;
-    }
-    F_ = std::max({F_, bodies_.largest, loads.colwise().norm().maxCoeff(), contact.colwise().norm().maxCoeff(),
+    const Field inner = bodies_.forces - loads;
+    advance(part(increment, "contacts"), inner - taken(held, inner), step);
+    Field pushed = Field::Zero(3, u_.cols());
+    for (auto& contact : contacts_)
+      for (auto& [node, touch] : contact.touches) {
+        check_place(contact, touch, step);
+        step.tractions[contact.name][node] = {touch.pressure(), touch.friction().dot(touch.e())};
+        for (const auto& [n, weight] : touch.weights) pushed.col(n) += weight * touch.area * touch.traction;
+      }
+    F_ = std::max({F_, bodies_.largest, loads.colwise().norm().maxCoeff(), pushed.colwise().norm().maxCoeff(),
                    rounding * bodies_.stiffness * L_});
-    check_nodes(held, bodies_.forces - loads - contact, state, step);
-    check_balance(loads + state.held, contact, step);
-    check_energy(loads + state.held, contact, u_ - before, step);
-    state.heat = heat_;
-    check_responses(state, given, step);
+    const Field supported = taken(held, inner - pushed);
+    check_nodes(held, inner - pushed - supported, step);
+    check_balance(loads + supported, pushed, step);
+    check_energy(loads + supported, pushed, u_ - before, step);
+    check_responses({scene_, u_, bodies_, contacts_, supported}, given, step);
     check_flow(part(increment, "plastic_strain"), step);
     return step;
   }
@@ -139,112 +153,82 @@ class Judge {
   }
   static double over(double scale) { return scale > 0 ? 1 / scale : 1; }
 
-  Field displacements(const Json& given) const {
-    const Eigen::Index D = scene_.dimension, numbers = u_.cols() * D;
-    if (static_cast<Eigen::Index>(given.size()) != numbers)
-      throw BadFile(fmt::format("a displacement has {} numbers; the mesh has {}", given.size(), numbers));
-    Field u = Field::Zero(3, u_.cols());
-    for (Eigen::Index k = 0; k < numbers; ++k) u(k % D, k / D) = given[k].is_number() ? given[k].get<double>() : NAN;
-    return u;
-  }
-
-  /// All places with the tractions that are given, or with those that balance `residual`, f_int - loads.
-  std::vector<Placed> places(const Json& given, const Field& residual, const std::map<int, Held>& held, Step& step) {
-    std::vector<Placed> all;
+  /// Moves the contacts, with the tractions that are given, or with those that balance the forces `free` of nodes.
+  void advance(const Json& given, const Field& free, Step& step) {
     for (auto& contact : contacts_) {
+      contact.advance(u_, step.time);
       const Json& of = part(given, contact.name);
-      std::map<int, Placed> index;
-      for (std::size_t k = 0; !of.empty() && k < of.at("nodes").size(); ++k) {
-        Placed& placed = index[of["nodes"][k]];
-        for (int i = 0; i < scene_.dimension; ++i) placed.traction[i] = of.at("traction").at(k * scene_.dimension + i);
-        for (int i = 0; i < 2 && of.contains("compliance"); ++i) placed.compliance[i] = of["compliance"].at(2 * k + i);
+      const Nodes nodes = of.empty() ? Nodes{} : of.at("nodes").get<Nodes>();
+      const Field tractions = vectors(part(of, "traction"), scene_.dimension, nodes.size(), "traction"),
+                  compliances = vectors(part(of, "compliance"), 2, of.contains("compliance") * nodes.size(), "spring");
+      for (std::size_t k = 0; k < nodes.size(); ++k) {
+        Touch& touch = contact.touches[nodes[k]];  // (it faces nothing where the contact has no such node)
+        touch.node = nodes[k];
+        touch.traction = tractions.col(k);
+        if (compliances.cols() > 0) touch.compliance = compliances.col(k).head<2>();
       }
-      for (const auto& touch : contact.advance(u_, step.time)) {
-        Placed& placed = index[touch.node];
-        placed.contact = &contact;
-        placed.touch = touch;
-        if (of.empty() && touch.faces) {
-          const Vec3 force = residual.col(touch.node);
-          const Vec3 free = held.contains(touch.node) ? Vec3(force - taken(held.at(touch.node), force)) : force;
-          placed.traction = free / touch.area;
-        }
-        const double least = touch.area > 0 ? rounding * bodies_.stiffness * L_ / touch.area : 0;
-        T_ = std::max({T_, placed.traction.norm(), least});
-        all.push_back(placed);
-        index.erase(touch.node);
+      for (auto& [node, touch] : contact.touches) {
+        if (of.empty() && touch.faces) touch.traction = free.col(node) / touch.area;
+        if (touch.area > 0) T_ = std::max({T_, touch.traction.norm(), rounding * bodies_.stiffness * L_ / touch.area});
       }
-      for (const auto& [node, placed] : index)
-        note(step, place, placed.traction.norm(), contact.name + ", " + at(node));
     }
-    return all;
   }
 
   /// Signorini's conditions of a place; then its friction, and its work.
-  void check_place(Placed& placed, Step& step) {
-    const Touch& touch = placed.touch;
-    const std::string where = placed.contact->name + ", " + at(touch.node);
-    const double p = placed.pressure(), gap = touch.gap + placed.compliance[0] * std::max(p, 0.0);
-    Placed& past = past_[{placed.contact->name, touch.node}];
-    if (!touch.faces) {
-      note(step, place, placed.traction.norm() * over(T_), where + ", which faces nothing");
-      past = {};
-      return;
-    }
-    if (!placed.contact->itself || p != 0) note(step, overlap, -gap * over(L_), where);
-    const double spring = placed.compliance[0] > 0 ? rounding_of_motion * L_ / placed.compliance[0] : 0;
+  void check_place(Contact& contact, Touch& touch, Step& step) {
+    const std::string where = contact.name + ", " + at(touch.node);
+    const double p = touch.pressure(), gap = touch.gap + touch.compliance[0] * std::max(p, 0.0);
+    if (!touch.faces) return note(step, place, touch.traction.norm() * over(T_), where + ", which faces nothing");
+    if (!contact.itself || p != 0) note(step, overlap, -gap * over(L_), where);
+    const double spring = touch.compliance[0] > 0 ? rounding_of_motion * L_ / touch.compliance[0] : 0;
     note(step, tension, (-p - spring) * over(T_), where);
     if (p > overlap.allowed * T_) note(step, complementarity, gap * over(L_), where);
-    const Vec3 e = placed.e();
-    placed.slid = past.slid + touch.slip.dot(e);
-    Vec3 last = past.friction();  // its component along the tangent is carried on
-    if (scene_.finite && scene_.dimension == 2) last = std::copysign(last.norm(), last.dot(e)) * e;
-    check_friction(placed, last, where, step);
-    add_work(touch, touch.area * placed.friction(), past.touch.area * last, touch.area * p,
-             past.touch.area * past.pressure());
-    past = placed;
+    const Touch& last = contact.last.at(touch.node);
+    const Touch past = last.faces ? last : Touch{};
+    const Vec3 e = touch.e();
+    touch.slid = past.slid + touch.slip.dot(e);
+    Vec3 rubbed = past.friction();  // its component along the tangent is carried on
+    if (scene_.finite && scene_.dimension == 2) rubbed = std::copysign(rubbed.norm(), rubbed.dot(e)) * e;
+    check_friction(contact, touch, rubbed, where, step);
+    add_work(touch, touch.area * touch.traction, past.area * (rubbed + past.pressure() * touch.normal));
   }
 
-  void check_friction(const Placed& placed, const Vec3& last, const std::string& where, Step& step) {
-    const Touch& touch = placed.touch;
-    const Vec3 s = placed.friction(), slid = touch.slip + placed.compliance[1] * (s - last);  // less what springs yield
-    const double most = bound(placed.contact->given, std::max(placed.pressure(), 0.0));
-    const bool has_friction = placed.contact->given.contains("friction");
+  void check_friction(Contact& contact, const Touch& touch, const Vec3& last, const std::string& where, Step& step) {
+    const Vec3 s = touch.friction(), slid = touch.slip + touch.compliance[1] * (s - last);  // less what springs yield
+    const double most = bound(contact.given, std::max(touch.pressure(), 0.0));
+    const bool has_friction = contact.given.contains("friction");
     note(step, cone, (s.norm() - most) * over(T_), where, has_friction ? cone.allowed : tension.allowed);
     if (!has_friction || s.isZero()) return;
-    const std::set<std::string> names{placed.contact->name, placed.contact->group};
     if (!touch.slip_known) {
-      for (const auto& name : names) heat_[name] = NAN;
+      contact.heat = NAN;
       return;
     }
     note(step, dissipation, s.dot(slid) * over(T_ * L_), where);
     if (s.norm() < most * (1 - share) - cone.allowed * T_) return note(step, stick, slid.norm() * over(L_), where);
     if (slid.norm() > stick.allowed * L_ && s.norm() > cone.allowed * T_)
       note(step, direction, 1 + s.dot(slid) / (s.norm() * slid.norm()), where);
-    for (const auto& name : names) heat_[name] -= touch.area * s.dot(slid);
+    contact.heat -= touch.area * s.dot(slid);
   }
 
   /// Work of a place in the increment, by the mean of the forces at its ends: of friction, and of pressure.
-  void add_work(const Touch& touch, const Vec3& rubbing, const Vec3& rubbed, double pressing, double pressed) {
-    const Vec3 friction = (rubbing + rubbed) / 2;
-    const double pressure = (pressing + pressed) / 2, opened = pressure * touch.opening,
-                 carried = (friction + pressure * touch.normal).dot(touch.carried), slid = friction.dot(touch.slip);
+  void add_work(const Touch& touch, const Vec3& now, const Vec3& before) {
+    const Vec3 mean = (now + before) / 2, change = now - before, pressed = change.dot(touch.normal) * touch.normal;
+    const double opened = mean.dot(touch.normal) * touch.opening, carried = mean.dot(touch.carried),
+                 slid = mean.dot(touch.slip);
     work_ += carried + opened;
     spent_ -= slid;
     size_ += std::abs(carried) + std::abs(opened) + std::abs(slid);
-    slack_ += (std::abs(pressing - pressed) + (rubbing - rubbed).norm()) / 2 *
+    slack_ += (pressed.norm() + (change - pressed).norm()) / 2 *
               (touch.carried.norm() + std::abs(touch.opening) + touch.slip.norm());
   }
 
-  /// Supports and equilibrium; `residual`: f_int - loads - contact, of which supports take their part.
-  void check_nodes(const std::map<int, Held>& held, const Field& residual, State& state, Step& step) {
-    state.held = Field::Zero(3, u_.cols());
-    for (const auto& [node, holds] : held) {
-      state.held.col(node) = taken(holds, residual.col(node));
+  /// Supports and equilibrium; `residual`: f_int - loads - contact, less what supports take.
+  void check_nodes(const std::map<int, Held>& held, const Field& residual, Step& step) {
+    for (const auto& [node, holds] : held)
       for (const auto& [direction, value] : holds)
         note(step, supports, std::abs(direction.dot(u_.col(node)) - value) * over(L_), at(node));
-    }
     Eigen::Index worst = 0;
-    const double off = (residual - state.held).colwise().norm().maxCoeff(&worst);
+    const double off = residual.colwise().norm().maxCoeff(&worst);
     note(step, equilibrium, residual.allFinite() ? off * over(F_) : infinity, at(static_cast<int>(worst)));
   }
 
@@ -256,7 +240,7 @@ class Judge {
     const double all = F_ + forces_of.colwise().norm().sum(), many = std::sqrt(static_cast<double>(u_.cols()));
     const std::string what = "of loads, supports and contacts";
     note(step, forces, sum.norm() * over(all), what, many * forces.allowed);
-    const bool springs = std::ranges::count(scene_.bodies, "point", &Body::element) > 0;
+    const bool springs = std::ranges::any_of(scene_.bodies, &Body::spring);
     if (scene_.axisymmetric || (scene_.finite && springs)) return;  // (a spring at its anchor has a moment of its own)
     note(step, moments, moment.norm() * over(all * arms.colwise().norm().maxCoeff()), what, many * moments.allowed);
   }
@@ -304,14 +288,14 @@ class Judge {
   void check_flow(const Json& given, Step& step) {
     for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
       const Json& means = part(given, scene_.bodies[b].name);
-      auto particle = bodies_.particles[b].begin();
+      auto& particles = bodies_.particles[b];
       double largest = least_strain;
-      for (const auto& one : bodies_.particles[b]) largest = std::max(largest, one.equivalent);
+      for (const auto& particle : particles | std::views::join) largest = std::max(largest, particle.equivalent);
       for (std::size_t e = 0; e < means.size(); ++e) {
         double sum = 0, volume = 0;
-        for (std::size_t q = 0; q < bodies_.particles[b].size() / means.size(); ++q, ++particle) {
-          sum += particle->equivalent * particle->volume;
-          volume += particle->volume;
+        for (const auto& particle : particles.at(e)) {
+          sum += particle.equivalent * particle.volume;
+          volume += particle.volume;
         }
         note(step, flow, std::abs(means[e].get<double>() - sum / volume) / largest,
              fmt::format("{}, element {}", scene_.bodies[b].name, e));
@@ -323,8 +307,7 @@ class Judge {
   std::vector<Contact> contacts_;
   Bodies bodies_;
   Field u_, outer_, contact_;                           ///< displacements, forces from outside and of contact
-  std::map<std::pair<std::string, int>, Placed> past_;  ///< of the last increment
-  std::map<std::string, double> heat_, largest_;        ///< of contacts; of kinds of responses
+  std::map<std::string, double> largest_;               ///< of kinds of responses
   double F_ = 0, L_ = 0, T_ = 0;                        ///< largest force, motion, traction
   double work_ = 0, spent_ = 0, slack_ = 0, size_ = 0;  ///< energies: done, dissipated, not known, of all parts
 };
@@ -333,15 +316,14 @@ class Judge {
 
 std::vector<double> asked_times(const Json& scene) {
   const Json& time = scene.at("time");
+  std::vector<std::array<double, 2>> legs = time.value("legs", std::vector<std::array<double, 2>>{});
+  if (legs.empty() && !time.contains("control")) legs = {{time.at("end"), time.at("steps")}};
   std::vector<double> times;
-  const auto add = [&](double end, double count) {
-    const double start = times.empty() ? 0 : times.back();
-    for (int k = 1; k <= count; ++k) times.push_back(start + (end - start) * k / count);
-  };
-  if (time.contains("legs"))
-    for (const auto& leg : time["legs"]) add(leg[0], leg[1]);
-  else if (!time.contains("control"))
-    add(time.at("end"), time.at("steps"));
+  double start = 0;
+  for (const auto& [end, steps] : legs) {
+    for (int k = 1; k <= steps; ++k) times.push_back(start + (end - start) * k / steps);
+    start = end;
+  }
   return times;
 }
 
