@@ -123,7 +123,8 @@ AugmentationStatus augmentation_status(const UzawaAL& method, const Slots<T>& sl
   for (const auto& r : rho) stiffest = std::max(stiffest, value(r.normal));
   for (const auto& law : slots.friction) friction = std::max(friction, value(law.slope_at_apex()));
   const double carried = stiffest > 0 ? scales.traction / stiffest : 0;
-  const double gap = 10 * unit_roundoff * (largest_displacement + carried), violation = method.tolerance * scales.length;
+  const double gap = 10 * unit_roundoff * (largest_displacement + carried),
+               violation = method.tolerance * scales.length;
   const double traction = (1 + friction) * (stiffest * gap + 10 * unit_roundoff * scales.traction);
   const bool small = progress.error_left() <= method.tolerance * scales.traction;
   const bool drowned = noise > 0 && progress.is_stalled() && progress.is_within(10 * noise);
@@ -219,7 +220,7 @@ class AugmentationLoop {
                                   first ? &start_.state.displacement : nullptr,
                                   nullptr,
                                   start_.arc,
-                                  start_.rests};
+                                  first && start_.rests};
     auto equilibrium =
         find_equilibrium(run_.engine, task, unknowns_, inner_options(method_, progress_.contraction()), run_.account);
     account_for(increment_, equilibrium, ++increment_.augmentations);
@@ -244,6 +245,9 @@ class AugmentationLoop {
     increment_.contraction = progress_.contraction();
     status_ = augmentation_status(method_, run_.slots, input.rho, largest_displacement, noise, run_.account.scales,
                                   progress_);
+    // A state that rests is solved by an updated multiplier if the violation is; of one state no contraction is known.
+    const bool rests = start_.rests && increment_.augmentations == 1 && equilibrium.iterations == 0;
+    status_.done |= rests && progress_.violation() <= status_.negligible;
     times_within_ = status_.within_tolerance && !equilibrium.inexact ? times_within_ + 1 : 0;
     inexact_ &= !status_.within_tolerance;
     status_.done |= times_within_ >= patience_at_ties;  // only states at a tie still change

@@ -54,8 +54,8 @@ struct Slots {
   std::vector<Matrix<T>> frames;           ///< per framed node: D x D, frame vectors as columns
   std::vector<Vector<T>> spins;            ///< per contact point: displacement of its obstacle per degree of rotation,
                                            ///< length; empty: no obstacle rotates
-  std::vector<Vector<T>> arcs;  ///< per curve that is integrated: initial arc length along it to the beginning
-                                ///< of each facet, and of all; empty for another; no entry: none is
+  std::vector<Vector<T>> arcs;    ///< per curve that is integrated: initial arc length along it to the beginning
+                                  ///< of each facet, and of all; empty for another; no entry: none is
   bool current_geometry = false;  ///< of the model's effects
 };
 

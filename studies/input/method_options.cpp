@@ -53,8 +53,10 @@ void visit_options(UzawaAL& method, Visitor&& visit) {
   using Acceleration = UzawaAL::Acceleration;
   using Cone = UzawaAL::Cone;
   using Sensitivity = UzawaAL::Sensitivity;
-  visit(Option{"scale", "rho in multiples of the local nodal stiffness (auto: 100, or 10 at finite strain), or absolute", rho_examples},
-        method.scale);
+  visit(
+      Option{"scale", "rho in multiples of the local nodal stiffness (auto: 100, or 10 at finite strain), or absolute",
+             rho_examples},
+      method.scale);
   visit(Option{"tolerance", "relative error left in the multiplier, and violation, at which the updates stop"},
         method.tolerance, below_one);
   visit(Option{"max_augmentations", "of an increment; beyond: status cap, with the last iterate as the result"},

@@ -81,8 +81,8 @@ void multiply_stiffness(Method& method, Scene& scene, double factor) {
     if (rho.value.slot >= 0) scene.numbers[static_cast<std::size_t>(rho.value.slot)] *= factor;
   };
   const bool current_geometry = scene.finite_strain && make_model(scene).effects.current_geometry;
-  std::visit(
-      [&](auto& chosen) { multiply(chosen.regularisation(), chosen.automatic_multiple.of(current_geometry)); }, method);
+  std::visit([&](auto& chosen) { multiply(chosen.regularisation(), chosen.automatic_multiple.of(current_geometry)); },
+             method);
 }
 
 void refine_steps(JsonDocument& scene, int halvings, const Place& origin) {

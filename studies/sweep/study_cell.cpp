@@ -84,15 +84,16 @@ json head_of(const CellInput& cell, bool current_geometry = false) {
             {"vary", cell.vary},
             {"refine", cell.refine},
             {"scene_hash", fingerprint(cell.canonical)}};
-  return {{"id", cell.id},
-          {"label", cell.label},
-          {"method", to_json(cell.method)},
-          {"default", is_default(cell.method, current_geometry)},
-          {"automatic", std::visit([&](const auto& m) { return m.automatic_multiple.of(current_geometry); }, cell.method)},
-          {"knobs", cell.knobs},
-          {"vary", cell.vary},
-          {"refine", cell.refine},
-          {"scene_hash", fingerprint(cell.canonical)}};
+  return {
+      {"id", cell.id},
+      {"label", cell.label},
+      {"method", to_json(cell.method)},
+      {"default", is_default(cell.method, current_geometry)},
+      {"automatic", std::visit([&](const auto& m) { return m.automatic_multiple.of(current_geometry); }, cell.method)},
+      {"knobs", cell.knobs},
+      {"vary", cell.vary},
+      {"refine", cell.refine},
+      {"scene_hash", fingerprint(cell.canonical)}};
 }
 
 /// What verify says of a run's own solution, from what its files would hold.

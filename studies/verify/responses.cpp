@@ -10,15 +10,12 @@ namespace {
 using Samples = std::vector<std::array<double, 2>>;
 
 std::optional<double> taken(const Samples& samples, const std::string& take) {
-  double sum = 0, total = 0;
-  for (const auto& [sample, weight] : samples) {
-    sum += weight * sample;
-    total += weight;
-  }
-  if (take == "sum") return sum;
+  Vec2 sum(0, 0);
+  for (const auto& [sample, weight] : samples) sum += weight * Vec2(sample, 1);
+  if (take == "sum") return sum[0];
   if (samples.empty()) return std::nullopt;
   const auto [least, largest] = std::minmax_element(samples.begin(), samples.end());
-  return take == "mean" ? sum / total : (take == "max" ? *largest : *least)[0];
+  return take == "mean" ? sum[0] / sum[1] : (take == "max" ? *largest : *least)[0];
 }
 
 /// A vector along an axis; a force at a place also about a point.

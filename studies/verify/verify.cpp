@@ -35,6 +35,7 @@ constexpr Law elements{"elements", 0, "an element may not be turned inside out"}
     responses{"responses", 1e-7, "of the largest of their kind: the same formula of the same numbers"},
     steps{"steps", 0, "every state that the scene asks for, and that the result tells of, is there"};
 
+constexpr double told = 1e-4;          ///< of forces times arms: a moment between two sides that is remarked on
 constexpr double share = 1e-6;         ///< of a bound within which a traction is on it
 constexpr double least_strain = 1e-9;  ///< plastic strains that count
 constexpr double rounding = 1e-6;  ///< of a stiffness times a motion: the least force that counts, for those of a rigid
@@ -127,12 +128,16 @@ class Judge {
     const Field inner = bodies_.forces - loads;
     advance(part(increment, "contacts"), inner - taken(held, inner), step);
     Field pushed = Field::Zero(3, u_.cols());
-    for (auto& contact : contacts_)
+    for (auto& contact : contacts_) {
+      Field forces = Field::Zero(3, u_.cols());
       for (auto& [node, touch] : contact.touches) {
         check_place(contact, touch, step);
         step.tractions[contact.name][node] = {touch.pressure(), touch.friction().dot(touch.e())};
-        for (const auto& [n, weight] : touch.weights) pushed.col(n) += weight * touch.area * touch.traction;
+        for (const auto& [n, weight] : touch.weights) forces.col(n) += weight * touch.area * touch.traction;
       }
+      measure_moment(contact, forces);
+      pushed += forces;
+    }
     F_ = std::max({F_, bodies_.largest, loads.colwise().norm().maxCoeff(), pushed.colwise().norm().maxCoeff(),
                    rounding * bodies_.stiffness * L_});
     const Field supported = taken(held, inner - pushed);
@@ -144,7 +149,8 @@ class Judge {
     return step;
   }
 
-  std::set<std::string> unmeasured;  ///< names of responses that were not measured again
+  std::map<std::string, double> moments_left;  ///< by contact of two bodies: the largest of its forces on both
+  std::set<std::string> unmeasured;            ///< names of responses that were not measured again
 
  private:
   std::string at(int node) const {
@@ -210,6 +216,20 @@ class Judge {
     contact.heat -= touch.area * s.dot(slid);
   }
 
+  Field arms() const { return scene_.places(u_).colwise() - scene_.points.rowwise().mean(); }
+  double moment(const Field& of) const {
+    const Mat3 m = arms() * of.transpose();
+    return (m - m.transpose()).norm() / std::sqrt(2.0);
+  }
+
+  /// Forces on two bodies act where each side is, so that they balance, and their moments only as far as sides meet.
+  void measure_moment(const Contact& contact, const Field& forces) {
+    const double all = forces.colwise().norm().sum(), left = moment(forces);
+    const bool is_of_two = !scene_.axisymmetric && forces.rowwise().sum().norm() <= equilibrium.allowed * all;
+    if (!is_of_two || left <= told * all * arms().colwise().norm().maxCoeff()) return;
+    moments_left[contact.name] = std::max(moments_left[contact.name], left);
+  }
+
   /// Work of a place in the increment, by the mean of the forces at its ends: of friction, and of pressure.
   void add_work(const Touch& touch, const Vec3& now, const Vec3& before) {
     const Vec3 mean = (now + before) / 2, change = now - before, pressed = change.dot(touch.normal) * touch.normal;
@@ -233,16 +253,16 @@ class Judge {
   }
 
   void check_balance(const Field& outer, const Field& contact, Step& step) {
-    const Field forces_of = outer + contact, arms = scene_.places(u_).colwise() - scene_.points.rowwise().mean();
-    Vec3 sum = forces_of.rowwise().sum(), moment = Vec3::Zero();
-    for (Eigen::Index n = 0; n < u_.cols(); ++n) moment += arms.col(n).cross(forces_of.col(n));
+    const Field forces_of = outer + contact;
+    Vec3 sum = forces_of.rowwise().sum();
     if (scene_.axisymmetric) sum[0] = 0;
     const double all = F_ + forces_of.colwise().norm().sum(), many = std::sqrt(static_cast<double>(u_.cols()));
     const std::string what = "of loads, supports and contacts";
     note(step, forces, sum.norm() * over(all), what, many * forces.allowed);
     const bool springs = std::ranges::any_of(scene_.bodies, &Body::spring);
     if (scene_.axisymmetric || (scene_.finite && springs)) return;  // (a spring at its anchor has a moment of its own)
-    note(step, moments, moment.norm() * over(all * arms.colwise().norm().maxCoeff()), what, many * moments.allowed);
+    note(step, moments, moment(forces_of) * over(all * arms().colwise().norm().maxCoeff()), what,
+         many * moments.allowed);
   }
 
   /// work = stored + dissipated, from the start.
@@ -266,18 +286,15 @@ class Judge {
     for (const auto& [name, what] : part(scene_.json, "responses").items()) {
       const std::string kind = what.begin().key();
       const double again = measure(state, what).value_or(NAN);
-      if (std::isnan(again)) {
-        unmeasured.insert(name);
-        continue;
-      }
-      step.responses[name] = again;
+      if (std::isnan(again)) unmeasured.insert(name);
+      if (!std::isnan(again)) step.responses[name] = again;
       std::map<std::string, double> natural{
           {"reaction", F_}, {"contact_force", F_},          {"displacement", L_},
           {"gap", L_},      {"contact_pressure", T_},       {"plastic_strain", least_strain},
           {"slip", L_},     {"dissipation", 1e-3 * F_ * L_}};  // (updates leave 1e-10 of F L)
       double& scale = largest_[kind];
       scale = std::max({scale, std::abs(again), natural.emplace(kind, size_ * rounding).first->second});
-      if (!given.contains(name)) continue;
+      if (std::isnan(again) || !given.contains(name)) continue;
       const double known = given[name].is_number() ? given[name].get<double>() : NAN;
       note(step, responses, std::abs(known - again) * over(scale),
            fmt::format("\"{}\" is {:.9g}, not {:.9g}", name, again, known));
@@ -292,12 +309,9 @@ class Judge {
       double largest = least_strain;
       for (const auto& particle : particles | std::views::join) largest = std::max(largest, particle.equivalent);
       for (std::size_t e = 0; e < means.size(); ++e) {
-        double sum = 0, volume = 0;
-        for (const auto& particle : particles.at(e)) {
-          sum += particle.equivalent * particle.volume;
-          volume += particle.volume;
-        }
-        note(step, flow, std::abs(means[e].get<double>() - sum / volume) / largest,
+        Vec2 sum(0, 0);
+        for (const auto& particle : particles.at(e)) sum += particle.volume * Vec2(particle.equivalent, 1);
+        note(step, flow, std::abs(means[e].get<double>() - sum[0] / sum[1]) / largest,
              fmt::format("{}, element {}", scene_.bodies[b].name, e));
       }
     }
@@ -361,6 +375,9 @@ Certificate certify(const Json& scene, const Json& mesh, const Json& solution, c
   }
   if (const std::string status = result.value("status", "converged"); !status.starts_with("converged"))
     note(last, steps, 1, "the run ended as " + status);
+  for (const auto& [name, moment] : judge.moments_left)
+    certificate.remarks.push_back(
+        fmt::format("moments of the forces of {} on its two sides differ by up to {:.3g}", name, moment));
   if (!judge.unmeasured.empty())
     certificate.remarks.push_back(
         fmt::format("responses that are not measured again: {}", fmt::join(judge.unmeasured, ", ")));

@@ -180,6 +180,15 @@ TEST(Verify, HoldsForEachSurfaceAndDiscretization) {
   }
 }
 
+/// Forces of segments act where each side is; between curved sides these are two places.
+TEST(Verify, TellsTheMomentThatAContactLeaves) {
+  const fs::path hard = fs::path(STICKSLIP_SOURCE_DIR) / "studies" / "hard";
+  const auto judged = certificate(solve(cases::load(hard / "moment-of-segments.json")));
+  EXPECT_TRUE(judged.holds());
+  EXPECT_THAT(judged.remarks, testing::ElementsAre(testing::HasSubstr("moments of the forces of t on its two sides "
+                                                                      "differ by up to 0.073")));
+}
+
 TEST(Verify, FindsForcesWhereAProgramGivesNone) {
   Solved solved = solve(cases::load(folder / "greco_plate.json"), "monolithic_al");
   for (auto& increment : solved.solution["increments"]) increment.erase("contacts");

@@ -3,7 +3,7 @@
 # check_includes.sh --self-test: fails where a wrong include would go unseen.
 #
 #   core <- methods <- sensitivity <- studies; within core: algebra, mesh <- solids, contact <- model;
-#   within studies: io <- input <- run <- report <- sweep <- app, and what python needs of them.
+#   within studies: io <- input <- run (and verify) <- report <- sweep <- app, and what python needs of them.
 #   studies/verify, which checks what all others find, shares nothing with them.
 #   core/model/scene.hpp, the plain description of a scene, is open to mesh and contact.
 #   Below studies/ there is no JSON and no printing; solver libraries are seen by core/algebra alone.
@@ -21,9 +21,9 @@ allowed() {
     sensitivity) echo '(core|methods|sensitivity)/' ;;
     studies/io) echo '(core|methods|sensitivity|studies/(io|version\.hpp))' ;;
     studies/input) echo '(core|methods|sensitivity|studies/(io|input))/' ;;
-    studies/run) echo '(core|methods|sensitivity|studies/(io|input|run|version\.hpp))' ;;
+    studies/run) echo '(core|methods|sensitivity|studies/(io|input|verify|run|version\.hpp))' ;;
     studies/report) echo 'studies/(io|input|report)/|core/contact/friction_law\.hpp' ;;
-    studies/sweep) echo '(core|methods|sensitivity|studies/(io|input|run|report|sweep|version\.hpp))' ;;
+    studies/sweep) echo '(core|methods|sensitivity|studies/(io|input|verify|run|report|sweep|version\.hpp))' ;;
     studies/verify) echo 'studies/verify/' ;;
     studies/app) echo '(core|methods|sensitivity|studies/(io|input|run|report|sweep|verify|app))/' ;;
     studies/python) echo '(core|methods|sensitivity|studies)/' ;;
