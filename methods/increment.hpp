@@ -35,6 +35,7 @@ struct Start {
   Anchor<T> anchor;          ///< of the motion; empty: the unmodified equations
   bool inexact_step = true;  ///< whether a step of the motion is solved to the root of the tolerance alone
   const Arc* arc = nullptr;  ///< of a step along a path, whose time is a guess then
+  bool at_rest = false;      ///< whether the overdamped motion ended in the state
   bool rests = false;        ///< whether the state may be the solution, as far as rounding tells
   bool is_step() const { return anchor.stiffness.size() > 0; }
   /// States that points resume which start on their cone: those of the last increment, where it starts there.

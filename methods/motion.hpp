@@ -149,12 +149,11 @@ std::optional<Increment<T>> take_resting_solution(const M& method, Run<T, E>& ru
 
 /// Follows the overdamped motion from `previous` until the method solves the unmodified equations. `several`: there may
 /// be more solutions. Then the solution must have the branches of the step before. Neither the solution, nor any step
-/// but the first, may then be farther away than all the way so far: it could as well belong to another solution.
-/// `free`: some motion meets no resistance, so that the rest is solved if only rounding is left of its residual. The
+/// but the first, may then be farther away than all the way so far: it could as well belong to another solution. The
 /// history holds all iterations. Where no attempt succeeds the status is that of the last.
 template <class M, class T, class E>
 Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& previous, const std::vector<double>& factor,
-                           double time, bool several, bool free, const WorkBound& bound) {
+                           double time, bool several, const WorkBound& bound) {
   const Vector<double> D = damping(run.model, run.slots, run.floating);
   const RunScales scales = run.account.scales;
   std::vector<IterationRecord> history;
@@ -164,7 +163,8 @@ Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& prev
   const auto attempt = [&](const State<T>& from, double alpha) {
     run.account.scales = scales;  // iterates on the way do not count
     Start<T> start{from, {}, inexact_step};
-    start.rests = alpha == 0 && free;
+    start.at_rest = alpha == 0;
+    start.rests = alpha == 0 && !run.floating.empty();
     if (alpha > 0) start.anchor = {alpha * D, to_compact(run.model, from.displacement)};
     auto found = solve_increment(method, run, previous, factor, time, start);
     history.insert(history.end(), found.history.begin(), found.history.end());
@@ -219,7 +219,7 @@ Increment<T> find_increment(const M& method, Run<T, E>& run, const State<T>& pre
   const RunScales before = run.account.scales;
   const bool may_rest = !run.floating.empty() && !run.model.points.empty() && is_globalised(method);
   if (may_rest && unbalanced_body(run.model, run.slots, time) == balanced) {  // a singular tangent sends it anywhere
-    auto rest = detail::follow_motion(method, run, previous, factor, time, false, true, bound);
+    auto rest = detail::follow_motion(method, run, previous, factor, time, false, bound);
     if (rest.usable()) return rest;
     run.account.scales = before;
   }
@@ -246,8 +246,7 @@ Increment<T> find_increment(const M& method, Run<T, E>& run, const State<T>& pre
     if (auto taken = take_among_all()) return std::move(*taken);
   }
   const RunScales after = std::exchange(run.account.scales, before);
-  const bool is_free = !run.floating.empty() || direct.status == Status::singular;
-  auto rest = detail::follow_motion(method, run, previous, factor, time, several, is_free, bound);
+  auto rest = detail::follow_motion(method, run, previous, factor, time, several, bound);
   // a multiplier that grows for ever makes any violation small against it
   constexpr double runaway = 1e4;
   const bool grown = direct.status == Status::infeasible &&

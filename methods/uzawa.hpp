@@ -245,8 +245,9 @@ class AugmentationLoop {
     increment_.contraction = progress_.contraction();
     status_ = augmentation_status(method_, run_.slots, input.rho, largest_displacement, noise, run_.account.scales,
                                   progress_);
-    // A state that rests is solved by an updated multiplier if the violation is; of one state no contraction is known.
-    const bool rests = start_.rests && increment_.augmentations == 1 && equilibrium.iterations == 0;
+    // A state that needs no inner solve is solved if its violation is: of one state no contraction is known, and where
+    // a body is free the next inner solve is singular.
+    const bool rests = start_.at_rest && increment_.augmentations == 1 && equilibrium.iterations == 0;
     status_.done |= rests && progress_.violation() <= status_.negligible;
     times_within_ = status_.within_tolerance && !equilibrium.inexact ? times_within_ + 1 : 0;
     inexact_ &= !status_.within_tolerance;

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "studies/run/warnings.hpp"
 #include "tests/studies/cases.hpp"
 
@@ -70,6 +72,24 @@ TEST(AFloatingBody, IsPressedByEveryMethodOnceItIsTouched) {
   EXPECT_GT(on_floor[2], 0);
   EXPECT_NEAR(on_floor[1], on_floor[2], 1e-8 * on_floor[2]);  // Uzawa stops at 1e-10 of the tractions
   EXPECT_NEAR(on_floor[0], on_floor[2], 1e-4 * on_floor[2]);  // springs yield by 1e-3 of little
+}
+
+/// A block that a load presses on a smooth floor: free to slide along it, and with nothing that would make it. With the
+/// geometry of the start and with that of the present, at any scale: its inner solves are singular. (At 1e4 it takes
+/// 113 to 193 iterations.)
+TEST(ABodyFreeToSlide, RestsWhereItIsPressedAtEveryScaleOfUzawa) {
+  json scene = cases::load(std::filesystem::path(STICKSLIP_SOURCE_DIR) / "studies" / "hard" /
+                           "free-to-slide-pressed-down-small.json");
+  for (const char* strain : {"small", "finite"})
+    for (const double scale : {1.0, 10.0, 30.0, 100.0, 300.0, 1e3}) {
+      scene["strain"] = strain;
+      if (scene["strain"] == "finite")
+        scene["bodies"]["block"]["material"] = {{"neo_hookean", {{"E", 1000}, {"nu", 0}}}};
+      const auto result = cases::run(scene, {{"uzawa_al", {{"scale", scale}}}}, "block.json");
+      ASSERT_TRUE(is_converged(result.status())) << strain << scale << result.message();
+      EXPECT_NEAR(result.steps.back().responses[0], 20, 1e-8 * 20) << strain << scale;  // balance; Uzawa's tolerance
+      EXPECT_LE(result.trajectory.counters.newton, 60) << strain << scale;
+    }
 }
 
 /// What cannot be held is given up after a few hundred iterations, and its motion is named.
