@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "core/model/loading.hpp"
@@ -59,6 +60,16 @@ std::string law_in_words(const FrictionLaw<Number>& friction) {
   std::string words;
   friction.for_each_number([&](const auto& number, const Number& x) { words += number.words + exact_number(x.value); });
   return words;
+}
+
+/// Whether no support holds a node of a body: then it has its place by contact alone, or none.
+bool is_unheld(const Model& model, std::size_t b) {
+  const auto& body = model.bodies[b];
+  if (!is_continuum(body.mesh.shape)) return false;
+  return std::ranges::none_of(model.constraints, [&](const Constraint& held) {
+    const int node = held.dof / model.dimension - body.first_node;
+    return held.support >= 0 && node >= 0 && node < body.mesh.node_count;
+  });
 }
 
 /// With their heading. What kind of contact it is stands in the heading, or, where segments are among them, in each
@@ -140,9 +151,10 @@ std::string explain(const Input& input, const Problem& problem) {
                                           : "small strain: linear strains, contact geometry of the start");
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const auto& mesh = model.bodies[b].mesh;
-    text += fmt::format("  {}: {}, {}{}\n", scene.bodies[b].name, counted(mesh.node_count, "node"),
+    text += fmt::format("  {}: {}, {}{}{}\n", scene.bodies[b].name, counted(mesh.node_count, "node"),
                         counted(mesh.element_count(), shape_name(mesh.shape)),
-                        has_mean_dilatation(model.bodies[b].kinematics) ? " with mean dilatation" : "");
+                        has_mean_dilatation(model.bodies[b].kinematics) ? " with mean dilatation" : "",
+                        is_unheld(model, b) ? "; held by contact alone" : "");
   }
   text += contact_lines(problem);
   text += fmt::format("driving: {}, {}, {} to t = {}\n", count(scene.supports, "support"), count(scene.loads, "load"),

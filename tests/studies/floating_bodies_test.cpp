@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "studies/run/explain.hpp"
 #include "studies/run/warnings.hpp"
 #include "tests/studies/cases.hpp"
 
@@ -50,6 +51,15 @@ TEST(AFloatingBody, StaysWhereItIsUntilItIsTouched) {
     }
     EXPECT_THAT(warnings_of(result), testing::Contains(testing::Field(&Warning::code, WarningCode::floating_body)));
   }
+}
+
+TEST(AFloatingBody, IsToldBeforeTheRunAsHeldByContactAlone) {
+  json scene = tube_under_a_block(20);
+  scene["method"] = {{"monolithic_al", json::object()}};
+  const Input input = cases::read(scene, "tube.json");
+  const std::string text = explain(input, Problem(input.scene));
+  EXPECT_THAT(text, testing::HasSubstr("tube: 64 nodes, 32 Q4 quadrilaterals; held by contact alone\n"));
+  EXPECT_THAT(text, testing::HasSubstr("block: 15 nodes, 8 Q4 quadrilaterals\n"));
 }
 
 /// Two points that stick hold it from then on, one above the other, and all methods press it alike.
