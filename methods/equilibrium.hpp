@@ -1,6 +1,7 @@
 /// Task and result of one equilibrium.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "core/model/engine.hpp"
@@ -84,6 +85,9 @@ struct EquilibriumTask {
   const Arc* arc = nullptr;
   /// Whether the start values may be the solution, as far as rounding tells. Else they are improved until that stops.
   bool rests = false;
+  /// Whether a tangent is made of start values that count as solved, of bodies whose tangent changes: its determinant
+  /// tells whether they are stable.
+  bool tells_stability = false;
   /// Whether lambda is an unknown of the engine's systems.
   bool solves_for_multipliers() const { return multipliers == Multipliers::unknown; }
   /// Whether the rows A (t - lambda) are part of the residual.
@@ -114,7 +118,8 @@ struct Equilibrium {
   /// Some tangent had a determinant of the other sign (Engine::reversed), so there may be other solutions: of bodies of
   /// constant tangent.
   bool reversed = false;
-  bool unstable = false;  ///< the last one had: of bodies whose tangent changes
+  /// The last one had: of bodies whose tangent changes; none: no tangent was made, and none was asked for.
+  std::optional<bool> unstable;
   std::vector<IterationRecord> history;
 };
 

@@ -36,7 +36,6 @@ struct Start {
   bool inexact_step = true;  ///< whether a step of the motion is solved to the root of the tolerance alone
   const Arc* arc = nullptr;  ///< of a step along a path, whose time is a guess then
   bool at_rest = false;      ///< whether the overdamped motion ended in the state
-  bool rests = false;        ///< whether the state may be the solution, as far as rounding tells
   bool is_step() const { return anchor.stiffness.size() > 0; }
   /// States that points resume which start on their cone: those of the last increment, where it starts there.
   std::span<const ContactState> resumed(const State<T>& previous) const {
@@ -45,6 +44,13 @@ struct Start {
   }
   double tolerance(double asked) const { return is_step() && inexact_step ? std::sqrt(asked) : asked; }
 };
+
+/// Whether the start values count as solved if only rounding is left of their residuals: nothing but rounding moves a
+/// body that floats.
+template <class T, class E>
+bool rests(const Run<T, E>& run, const Start<T>& start) {
+  return start.at_rest && !run.floating.empty();
+}
 
 /// An equilibrium as the state that the next increment starts from. `at`: its multiplier is the lambda it was found
 /// with.
@@ -68,7 +74,7 @@ void account_for(Increment<T>& increment, const Equilibrium<T>& equilibrium, int
   increment.message = equilibrium.message;
   increment.newton += equilibrium.iterations;
   increment.reversed |= equilibrium.reversed;
-  if (equilibrium.iterations > 0) increment.unstable = equilibrium.unstable;
+  if (equilibrium.unstable) increment.unstable = *equilibrium.unstable;
   for (auto entry : equilibrium.history) {
     entry.augmentation = augmentation;
     increment.history.push_back(entry);

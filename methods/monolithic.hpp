@@ -30,9 +30,16 @@ Increment<T> solve_increment(const MonolithicAL& method, Run<T, E>& run, const S
   const ContactInput<T> input{run.model, run.slots, rho, previous.history, cone_radius(method), time};
   NewtonOptions options = method.newton;
   options.tolerance = start.tolerance(options.tolerance);
-  const EquilibriumTask<T> task{input,      Multipliers::unknown,      start.anchor, start.resumed(previous),
-                                0,          &start.state.displacement, nullptr,      start.arc,
-                                start.rests};
+  const EquilibriumTask<T> task{input,
+                                Multipliers::unknown,
+                                start.anchor,
+                                start.resumed(previous),
+                                0,
+                                &start.state.displacement,
+                                nullptr,
+                                start.arc,
+                                rests(run, start),
+                                start.at_rest && run.floating.empty()};
   auto u = run.engine.begin(time, start.state.displacement, previous.history.bodies);
   auto equilibrium =
       find_equilibrium<T>(run.engine, task, {std::move(u), start.state.contact.traction, time}, options, run.account);

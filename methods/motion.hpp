@@ -164,7 +164,6 @@ Increment<T> follow_motion(const M& method, Run<T, E>& run, const State<T>& prev
     run.account.scales = scales;  // iterates on the way do not count
     Start<T> start{from, {}, inexact_step};
     start.at_rest = alpha == 0;
-    start.rests = alpha == 0 && !run.floating.empty();
     if (alpha > 0) start.anchor = {alpha * D, to_compact(run.model, from.displacement)};
     auto found = solve_increment(method, run, previous, factor, time, start);
     history.insert(history.end(), found.history.begin(), found.history.end());

@@ -114,6 +114,12 @@ Equilibrium<T> newton(E& engine, const EquilibriumTask<T>& task, Unknowns<T> unk
     result.field = std::move(at.field);
     return std::move(result);
   };
+  const auto tell_stability = [&] {
+    if (input.model.effects.linear_bulk)
+      result.reversed |= engine.reversed();
+    else
+      result.unstable = engine.reversed();
+  };
   for (int iteration = 0;; ++iteration) {
     result.history.push_back(detail::record(at, used, evaluate.accept(at), step_length));
     if (account.trace)
@@ -123,6 +129,13 @@ Equilibrium<T> newton(E& engine, const EquilibriumTask<T>& task, Unknowns<T> unk
     if (end && !detail::goes_on(evaluate, stop, *end, unknowns, at, kept)) {
       if (end->status == Status::converged && !end->inexact && tangent.redundant())
         end->message = detail::redundant_message;
+      const bool untold = task.tells_stability && !input.model.effects.linear_bulk && !result.unstable;
+      if (is_converged(end->status) && untold) {
+        tangent.move_to(unknowns, at.field, true);
+        auto branches =
+            detail::step_branches(input, engine.compact(unknowns.u), at.field, unknowns.multiplier, directed);
+        if (tangent.factorise(unknowns, branches)) tell_stability();
+      }
       return finish(std::move(*end));
     }
     const auto evaluated = at.field.state;
@@ -132,9 +145,7 @@ Equilibrium<T> newton(E& engine, const EquilibriumTask<T>& task, Unknowns<T> unk
     used = at.field.state;
     tangent.move_to(unknowns, at.field, iteration == 0 && predictions == 0);
     if (!tangent.factorise(unknowns, branches)) return finish({Status::singular, engine.message()});
-    const bool linear = input.model.effects.linear_bulk, reversed = engine.reversed();
-    result.reversed |= linear && reversed;
-    result.unstable = !linear && reversed;
+    tell_stability();
     directed = at.field;
     directed.state = branches;
     if (branches != evaluated) evaluate.take_rows_in(branches, unknowns, at);

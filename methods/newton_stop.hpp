@@ -40,7 +40,8 @@ class NewtonStop {
     const int iteration = static_cast<int>(history.size()) - 1;
     if (auto end = solved(residuals, history)) {
       if (extra_-- == 0) return end;
-    } else if (iteration > 0 && residuals.within(forcing_ * history[0].residual)) {
+    } else if (iteration > 0 && !residuals.within(options_.tolerance) &&
+               residuals.within(forcing_ * history[0].residual)) {  // (within it, one more iteration is exact)
       return NewtonEnd{Status::converged, "", true};
     } else if (repeats_) {
       return NewtonEnd{Status::cycle, "the active set repeats; try a smaller stiffness or scale, or more steps"};

@@ -139,6 +139,8 @@ class Sequence {
   Unknowns<T>& unknowns() { return unknowns_; }
   std::vector<IterationRecord>& history() { return history_; }
   int iterations() const { return iterations_; }
+  /// Whether the last tangent had a determinant of the other sign; of tractions with a compliance of their own.
+  bool reversed() const { return reversed_; }
 
  private:
   /// Solves the contact problem of the bodies linearised about a displacement, starting from `branches_`, if there are
@@ -193,6 +195,7 @@ class Sequence {
         branches = wanted;  // (the points that changed may be all that held a body)
         if (!tangent_.factorise(unknowns_, branches)) return false;
       }
+      reversed_ = engine_.reversed();
       if (branches != at.field.state) evaluate_.take_rows_in(branches, unknowns_, at);
       const auto step = tangent_.step(at.rows_u, at.rows_l);
       if (!step.u.allFinite() || !step.l.allFinite()) return false;
@@ -251,6 +254,7 @@ class Sequence {
   Vector<T> prescribed_;                ///< displacement with the prescribed values
   std::vector<ContactState> branches_;  ///< of the last linear problem; empty before the first
   std::vector<IterationRecord> history_;
+  bool reversed_ = false;
   int iterations_ = 0, unsettled_ = 0;  ///< number in all; number of linear problems whose branches repeated
 };
 
@@ -294,7 +298,8 @@ Equilibrium<T> solve_in_sequence(E& engine, const EquilibriumTask<T>& task, cons
   Equilibrium<T> equilibrium;
   equilibrium.status = Status::cycle;
   if (sequence.find()) {
-    const EquilibriumTask<T> last{input, task.multipliers, task.anchor, {}, task.forcing};
+    EquilibriumTask<T> last{input, task.multipliers, task.anchor, {}, task.forcing};
+    last.tells_stability = sequence.reversed();
     Unknowns<T> at = std::move(sequence.unknowns());
     if (!task.solves_for_multipliers()) at.multiplier = start.multiplier;
     equilibrium = newton(engine, last, std::move(at), options, account);

@@ -111,8 +111,7 @@ struct AugmentationStatus {
 ///
 ///   gap       rounding of a gap, from that of the displacements, and from that of a traction, which is rho times a gap
 ///   traction  rounding of an update: rho gap, and rounding of the tractions, both times 1 + mu. In slip the bound
-///   turns
-///             the rounding of the pressure into one of the tangential traction
+///             turns the rounding of the pressure into one of the tangential traction
 ///   drowned   updates no longer fall, and 10 `noise` explains every update and violation. Example: a stiff body on a
 ///             soft one, whose rounding appears in tractions, and through the soft body in gaps
 template <class T>
@@ -220,7 +219,8 @@ class AugmentationLoop {
                                   first ? &start_.state.displacement : nullptr,
                                   nullptr,
                                   start_.arc,
-                                  first && start_.rests};
+                                  first && rests(run_, start_),
+                                  first && start_.at_rest && run_.floating.empty()};
     auto equilibrium =
         find_equilibrium(run_.engine, task, unknowns_, inner_options(method_, progress_.contraction()), run_.account);
     account_for(increment_, equilibrium, ++increment_.augmentations);
@@ -247,8 +247,8 @@ class AugmentationLoop {
                                   progress_);
     // A state that needs no inner solve is solved if its violation is: of one state no contraction is known, and where
     // a body is free the next inner solve is singular.
-    const bool rests = start_.at_rest && increment_.augmentations == 1 && equilibrium.iterations == 0;
-    status_.done |= rests && progress_.violation() <= status_.negligible;
+    const bool unmoved = start_.at_rest && increment_.augmentations == 1 && equilibrium.iterations == 0;
+    status_.done |= unmoved && progress_.violation() <= status_.negligible;
     times_within_ = status_.within_tolerance && !equilibrium.inexact ? times_within_ + 1 : 0;
     inexact_ &= !status_.within_tolerance;
     status_.done |= times_within_ >= patience_at_ties;  // only states at a tie still change

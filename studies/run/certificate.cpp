@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -142,11 +141,8 @@ verify::Certificate certificate_of(const fs::path& directory, const std::string&
 }
 
 json worst_of_certificate_json(const verify::Certificate& certificate) {
-  const auto over = [](const verify::Step& step) {
-    const auto& worst = step.worst();
-    return worst.holds() ? worst.value / std::max(worst.allowed, std::numeric_limits<double>::min()) : INFINITY;
-  };
-  const auto& step = *std::ranges::max_element(certificate.steps, {}, over);
+  const auto share = [](const verify::Step& step) { return step.worst().share(); };
+  const auto& step = *std::ranges::max_element(certificate.steps, {}, share);
   const auto& worst = step.worst();
   return {{"holds", certificate.holds()},
           {"law", worst.law},

@@ -140,16 +140,18 @@ std::ptrdiff_t rows_of_other_shards(const Plan& plan, const RowsById& rows) {
          std::count_if(plan.cells.begin(), plan.cells.end(), [&](const auto& cell) { return rows.count(cell.id) > 0; });
 }
 
-/// Makes the rows those of this study where it differs in its error budget alone, which the id of a cell does not know:
-/// what was asked for and is not there is to be measured, and what is not asked for is not shown.
-void match_budgets(const Plan& plan, RowsById& rows) {
+/// Makes the rows those of this study where it differs in its error budget or its certificates alone, which the id of a
+/// cell does not know: what is asked for and is not there is to be measured, and what is not asked for is not shown.
+void match_extras(const Plan& plan, RowsById& rows) {
+  const bool certifies = !plan.study.solutions.empty();
   for (const auto& cell : plan.cells) {
     const auto row = rows.find(cell.id);
     if (row == rows.end() || cell.peer) continue;
-    if (plan.study.budget_copies == 0)
-      row->second.erase("error_budget");
-    else if (row->second.value("/error_budget/copies"_json_pointer, 0) != plan.study.budget_copies)
-      rows.erase(row);
+    const int copies = row->second.value("/error_budget/copies"_json_pointer, 0);
+    const bool uncertified = certifies && converged(row->second) && !row->second.contains("certificate");
+    if (plan.study.budget_copies == 0) row->second.erase("error_budget");
+    if (!certifies) row->second.erase("certificate");
+    if (uncertified || (plan.study.budget_copies > 0 && copies != plan.study.budget_copies)) rows.erase(row);
   }
 }
 
@@ -351,7 +353,7 @@ StudyOutcome carry_out(const Plan& plan, const StudyArguments& arguments, const 
   std::vector<std::string> notes;
   const InterruptNote note_of_interrupt(described["command"]);
   RowsById rows = resume_rows(plan.directory, plan.ids, notes);
-  match_budgets(plan, rows);
+  match_extras(plan, rows);
   if (const auto others = rows_of_other_shards(plan, rows); others > 0)
     notes.push_back(
         fmt::format("{} row(s) of this study that are not of shard {} stay as they are", others, plan.shard.text()));

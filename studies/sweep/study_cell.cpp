@@ -75,25 +75,17 @@ json brief(const json& steps) {
 }
 
 /// What a row says of its cell, however it went.
-json head_of(const CellInput& cell, bool current_geometry = false) {
-  if (cell.peer)
-    return {{"id", cell.id},
-            {"label", cell.label},
-            {"peer", {{"name", cell.peer->name}, {"file", cell.peer->file}}},
-            {"knobs", cell.knobs},
-            {"vary", cell.vary},
-            {"refine", cell.refine},
-            {"scene_hash", fingerprint(cell.canonical)}};
-  return {
-      {"id", cell.id},
-      {"label", cell.label},
-      {"method", to_json(cell.method)},
-      {"default", is_default(cell.method, current_geometry)},
-      {"automatic", std::visit([&](const auto& m) { return m.automatic_multiple.of(current_geometry); }, cell.method)},
-      {"knobs", cell.knobs},
-      {"vary", cell.vary},
-      {"refine", cell.refine},
-      {"scene_hash", fingerprint(cell.canonical)}};
+json head_of(const CellInput& cell, bool current_geometry) {
+  json head = {{"id", cell.id},     {"label", cell.label},   {"knobs", cell.knobs},
+               {"vary", cell.vary}, {"refine", cell.refine}, {"scene_hash", fingerprint(cell.canonical)}};
+  if (cell.peer) {
+    head["peer"] = {{"name", cell.peer->name}, {"file", cell.peer->file}};
+    return head;
+  }
+  head["method"] = to_json(cell.method);
+  head["default"] = is_default(cell.method, current_geometry);
+  head["automatic"] = std::visit([&](const auto& m) { return m.automatic_multiple.of(current_geometry); }, cell.method);
+  return head;
 }
 
 /// What verify says of a run's own solution, from what its files would hold.
@@ -250,7 +242,7 @@ json CellRunner::failed_row(std::size_t index, const std::string& status, const 
 json CellRunner::peer_row(const CellInput& cell) {
   const Input input = input_of(cell, meshes_);
   const MeasuredPeer peer = measured(*cell.peer, input.document, variant_.problem, input.method);
-  json row = head_of(cell);
+  json row = head_of(cell, has_current_geometry(cell));
   row.update(row_of(peer));
   row["errors"] = errors(peer.result);
   if (asked_for("kkt", study_.errors)) row["errors"]["kkt"] = errors_of(peer.certificate);

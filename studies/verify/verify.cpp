@@ -226,7 +226,7 @@ class Judge {
   void measure_moment(const Contact& contact, const Field& forces) {
     const double all = forces.colwise().norm().sum(), left = moment(forces);
     const bool is_of_two = !scene_.axisymmetric && forces.rowwise().sum().norm() <= equilibrium.allowed * all;
-    if (!is_of_two || left <= told * all * arms().colwise().norm().maxCoeff()) return;
+    if (!is_of_two || !(left > told * all * arms().colwise().norm().maxCoeff())) return;
     moments_left[contact.name] = std::max(moments_left[contact.name], left);
   }
 
@@ -341,11 +341,7 @@ std::vector<double> asked_times(const Json& scene) {
   return times;
 }
 
-const Finding& Step::worst() const {
-  return *std::ranges::max_element(findings, {}, [](const Finding& f) {
-    return f.allowed > 0 ? f.value / f.allowed : f.value > 0 ? infinity : 0;
-  });
-}
+const Finding& Step::worst() const { return *std::ranges::max_element(findings, {}, &Finding::share); }
 
 bool Certificate::holds() const { return !steps.empty() && std::ranges::all_of(steps, &Step::holds); }
 
@@ -366,7 +362,7 @@ Certificate certify(const Json& scene, const Json& mesh, const Json& solution, c
     there.insert(time);
     certificate.steps.push_back(judge.read(increment, measured[time]));
   }
-  if (certificate.steps.empty()) certificate.steps.push_back({0, {}});
+  if (certificate.steps.empty()) note(certificate.steps.emplace_back(), steps, 1, "none at all");
   Step& last = certificate.steps.back();
   for (const double time : asked) {
     const auto near = there.lower_bound(time - 1e-9 * std::abs(time));

@@ -12,6 +12,7 @@ struct Finding {
   double value = 0, allowed = 0;
   std::string why;  ///< why so much is allowed
   bool holds() const { return value <= allowed; }
+  double share() const { return allowed > 0 ? value / allowed : value > 0 ? infinity : 0; }  ///< of what is allowed
 };
 
 struct Step {

@@ -65,6 +65,23 @@ std::vector<json> three_methods() {
   return cells;
 }
 
+std::vector<json> with_failure() {
+  auto cells = three_methods();
+  cells[0]["default"] = true;
+  cells[2]["status"] = "not_finite";
+  return cells;
+}
+
+std::vector<json> in_two_scenes(std::vector<json> cells) {
+  auto all = cells;
+  for (auto& c : cells) {
+    c["id"] = c["id"].get<std::string>() + "-again";
+    c["vary"] = {{"/contacts/sole/friction", 0.3}};
+    all.push_back(c);
+  }
+  return all;
+}
+
 json description() {
   return {{"title", "a study"},
           {"command", "stickslip study a.json -o out"},

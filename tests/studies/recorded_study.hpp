@@ -20,6 +20,12 @@ json cell(const std::string& family, const json& knobs, double error, int factor
 /// Penalty at four stiffnesses with error 1/stiffness, Uzawa, and a monolithic run that is its own reference.
 std::vector<json> three_methods();
 
+/// These; penalty at 1e3 as the default, and failed at 1e7.
+std::vector<json> with_failure();
+
+/// The same runs again in a second scene.
+std::vector<json> in_two_scenes(std::vector<json> cells);
+
 json description();
 
 /// A plane mesh of two squares with one contact point of each state.

@@ -334,6 +334,30 @@ def budgeted(work):
         sys.exit("a budget that is no longer asked for stays")
 
 
+def certified(work):
+    """Solutions of other programs, which a study takes up later, and drops: the runs get certificates, and lose them."""
+    plain, with_peer, directory = work / "uncertified.study.json", work / "certified.study.json", work / "certified"
+    content = {"scene": "scene.json", "methods": [{"penalty": {"stiffness": [10, 1e3]}}, {"monolithic_al": {}}]}
+    plain.write_text(json.dumps(content))
+    run("run", work / "scene.json", "-m", "monolithic_al", "-o", work / "peer")
+    with_peer.write_text(json.dumps({**content, "solutions": [{"name": "Peer", "file": "peer/solution.json"}]}))
+
+    def lines():
+        return [json.loads(line) for line in (directory / "results.jsonl").read_text().splitlines()]
+
+    run("study", plain, "-o", directory)
+    without = rows(directory)
+    run("study", with_peer, "-o", directory, "--resume")
+    if not all(row.get("certificate", {}).get("holds") for row in lines()) or len(lines()) != len(without) + 1:
+        sys.exit("runs that a study with solutions took up have no certificate")
+    if run("study", with_peer, "-o", directory, "--resume").stdout.find(" 0 run now") < 0:
+        sys.exit("certificates are made again")
+    run("study", plain, "-o", directory, "--resume")
+    if rows(directory) != without:
+        sys.exit("certificates that are no longer asked for stay")
+    print("certified: with a solution of another program, and without again", flush=True)
+
+
 def main():
     print(f"seed {SEED}")
     with tempfile.TemporaryDirectory() as folder:
@@ -353,6 +377,7 @@ def main():
         compared(whole, work)
         timed(study, whole, work)
         budgeted(work)
+        certified(work)
 
 
 if __name__ == "__main__":

@@ -189,6 +189,18 @@ TEST(Verify, TellsTheMomentThatAContactLeaves) {
                                                                       "differ by up to 0.073")));
 }
 
+/// Of a path by arc length no times are asked for; a solution without a state is none all the same.
+TEST(Verify, DoesNotHoldOfASolutionWithoutAState) {
+  for (const char* name : {"snap", "stop"}) {
+    const Solved solved = solve(cases::load(folder / (std::string(name) + ".json")));
+    json empty = solved.solution;
+    empty["increments"] = json::array();
+    const auto judged = verify::certify(empty.at("scene"), empty.at("mesh"), empty, json::object());
+    EXPECT_FALSE(judged.holds()) << name;
+    EXPECT_EQ(judged.steps.back().worst().law, "steps") << name;
+  }
+}
+
 TEST(Verify, FindsForcesWhereAProgramGivesNone) {
   Solved solved = solve(cases::load(folder / "greco_plate.json"), "monolithic_al");
   for (auto& increment : solved.solution["increments"]) increment.erase("contacts");

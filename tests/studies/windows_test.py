@@ -84,7 +84,7 @@ class AutomaticChoice(unittest.TestCase):
     def test_lies_inside_and_is_cheap_for_a_block(self):
         lines, code = self.measure("--only", "block", "--strain", "small")
         self.assertEqual(len(lines), 12)
-        self.assertEqual({line["automatic"] for line in lines}, {"1000.0", "10.0", "1.0"})
+        self.assertEqual({line["automatic"] for line in lines}, {"1000.0", "100.0", "1.0"})
         self.hold(lines, code)
 
     @unittest.skipUnless(ALL, "--all")
