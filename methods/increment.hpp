@@ -98,6 +98,18 @@ std::string name_of_point(const Model& model, const Slots<T>& slots, int p) {
   return "the contact point of " + model.scene.contacts[point.contact].name + " at (" + place + ")";
 }
 
+/// Whether a point with friction bears a tangential traction however small its pressure, and none once it is open.
+template <class T>
+bool has_abrupt_friction(const Model& model, const Slots<T>& slots) {
+  return std::any_of(model.points.begin(), model.points.end(), [&](const auto& point) {
+    return point.tangents > 0 && !slots.friction[point.contact].has_apex();
+  });
+}
+
+inline constexpr auto abrupt_friction_message =
+    "friction that does not grow with the pressure ends at once where a point opens, and then there may be no "
+    "equilibrium; try one that grows with it";
+
 /// Whether supports prescribe all displacements of a node.
 inline bool is_prescribed(const Model& model, int node) {
   const auto first = model.free_index.begin() + node * model.dimension;

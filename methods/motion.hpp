@@ -120,10 +120,11 @@ std::optional<Solutions<T>> try_all_branches(const M& method, Run<T, E>& run, co
 
 /// An increment that `direct` did not solve and that has no solution, with the reason.
 template <class T>
-Increment<T> without_solution(Increment<T> direct, bool feasible) {
+Increment<T> without_solution(const Model& model, const Slots<T>& slots, Increment<T> direct, bool feasible) {
   direct.status = feasible ? Status::no_equilibrium : Status::infeasible;
   direct.message = feasible ? "no combination of open, stick and slip of the contact points balances the loads"
                             : "the contacts contradict one another: whatever the bodies do, some point penetrates";
+  if (feasible && has_abrupt_friction(model, slots)) direct.message += std::string("; ") + abrupt_friction_message;
   return direct;
 }
 
@@ -241,7 +242,8 @@ Increment<T> find_increment(const M& method, Run<T, E>& run, const State<T>& pre
     return detail::take_resting_solution(method, run, previous, factor, time, direct, before, *all);
   };
   if (all && all->complete) {
-    if (all->states.empty() && !solved) return detail::without_solution(std::move(direct), all->feasible);
+    if (all->states.empty() && !solved)
+      return detail::without_solution(run.model, run.slots, std::move(direct), all->feasible);
     if (auto taken = take_among_all()) return std::move(*taken);
   }
   const RunScales after = std::exchange(run.account.scales, before);

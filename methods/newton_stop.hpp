@@ -76,10 +76,12 @@ class NewtonStop {
     entry->second = std::min(entry->second, residuals.largest());
   }
 
-  /// (Sets that repeat although nothing is left of the residuals are those of a tie.)
+  /// (Sets that repeat although nothing is left of the residuals are those of a tie. Of residuals that are zero nothing
+  /// is left, whatever changed.)
   std::optional<NewtonEnd> solved(const detail::Residuals& residuals,
                                   const std::vector<IterationRecord>& history) const {
-    if ((unchanged_ || repeats_) && residuals.within(options_.tolerance)) return NewtonEnd{};
+    const bool settled = unchanged_ || repeats_ || residuals.largest() == 0;
+    if (settled && residuals.within(options_.tolerance)) return NewtonEnd{};
     if (!residuals.within_rounding(options_.tolerance)) return std::nullopt;
     if (rests_ && history.size() == 1) return NewtonEnd{Status::converged_at_roundoff, "nothing but rounding moves it"};
     const auto fell = [&] { return 2 * residuals.largest() <= history[history.size() - 2].residual; };

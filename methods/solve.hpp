@@ -131,6 +131,7 @@ void give_up(const M& method, const Run<T, E>& run, double target, const FreeBod
   const bool is_named = failed.status == Status::no_equilibrium || failed.status == Status::infeasible;
   if (!free.words.empty() && !is_named) add("where the step begins, " + free.words);
   if (bound.is_spent() && !is_named) add(bound.in_words());
+  if (!is_named && has_abrupt_friction(run.model, run.slots)) add(abrupt_friction_message);
   failed.time = target;
   failed.requested = true;
   increments.push_back(std::move(failed));

@@ -9,6 +9,7 @@
 #include "sensitivity/adjoint.hpp"
 #include "sensitivity/branches.hpp"
 #include "sensitivity/one_sided.hpp"
+#include "sensitivity/open_responses.hpp"
 #include "sensitivity/quotients.hpp"
 #include "sensitivity/vertex_margin.hpp"
 
@@ -79,8 +80,9 @@ struct Differences {
 }  // namespace
 
 bool GradientCheck::passed() const {
-  return !entries.empty() &&
-         std::all_of(entries.begin(), entries.end(), [](const Entry& e) { return e.verdict == Verdict::agrees; });
+  const auto agrees = [](const Entry& e) { return e.verdict == Verdict::agrees; };
+  const auto may_pass = [&](const Entry& e) { return agrees(e) || e.verdict == Verdict::undetermined; };
+  return std::any_of(entries.begin(), entries.end(), agrees) && std::all_of(entries.begin(), entries.end(), may_pass);
 }
 
 Method as_claimed(const Method& method) {
@@ -106,6 +108,8 @@ struct Computed {
   std::vector<Matrix<double>> derivatives;
   std::vector<Matrix<double>> below, above;  ///< the same from each side, where ties or kinks make a difference
   bool sides_known = true;                   ///< false: there are ties, and too many parameters for their sides
+  std::vector<std::vector<char>> open;       ///< per increment and row, whether it is undetermined; empty: none is
+  bool is_open(Eigen::Index i, Eigen::Index n) const { return !open[n].empty() && open[n][i]; }
   /// Whether the two sides of an entry differ by more than `allowed`, or a side has no derivative.
   bool has_sides(Eigen::Index i, Eigen::Index n, int j, double allowed) const {
     return !below.empty() && !(std::abs(above[n](i, j) - below[n](i, j)) <= allowed);
@@ -133,6 +137,27 @@ std::optional<OneSided> sides_of(const Model& model, const Slots<double>& slots,
   return sides;
 }
 
+/// Per increment, which rows of Path::values equilibrium does not determine.
+std::vector<std::vector<char>> open_rows(const Model& model, const Slots<double>& slots, const Method& method,
+                                         const Trajectory<double>& trajectory, Workspace<double>& workspace) {
+  std::vector<std::vector<char>> open(trajectory.increments.size());
+  const OpenResponses search(model, slots, method);
+  if (!search.is_called_for()) return open;
+  std::vector<std::pair<double, std::vector<char>>> steps;
+  WholeStates states(model, slots, method, trajectory, workspace);
+  for (std::size_t n = 0; n < open.size(); ++n) {
+    const auto& increment = states.increment(n);
+    if (!increment.requested) continue;
+    const double time = trajectory.increments[n].time;
+    open[n] = search.of(increment.state, time, evaluate_responses(model, slots, increment.state, time)).responses;
+    steps.emplace_back(time, open[n]);
+  }
+  const auto objectives = open_objectives(model, slots, steps);
+  open.back().resize(model.scene.responses.size(), 0);
+  open.back().insert(open.back().end(), objectives.begin(), objectives.end());
+  return open;
+}
+
 Computed compute(const Model& model, const Slots<double>& slots, const Method& method,
                  const Trajectory<double>& trajectory, Workspace<double>& workspace, GradientCheck& check) {
   const auto& scene = model.scene;
@@ -153,7 +178,8 @@ Computed compute(const Model& model, const Slots<double>& slots, const Method& m
     if (objectives > 0) all.back().bottomRows(objectives) = of_objectives;
     return all;
   };
-  Computed computed{rows(gradients.of_responses, gradients.of_objectives), {}, {}};
+  Computed computed{.derivatives = rows(gradients.of_responses, gradients.of_objectives)};
+  computed.open = open_rows(model, slots, method, trajectory, workspace);
   const auto sides = sides_of(model, slots, method, trajectory, workspace, gradients);
   if (!sides) return computed;
   computed.sides_known = !sides->backward.empty();
@@ -246,6 +272,10 @@ void compare(const Differences& differences, const Computed& computed, int j, co
   const double noises[] = {noise(differences.below, i), noise(differences.central, i), noise(differences.above, i)};
   for (Eigen::Index n = 0; n < static_cast<Eigen::Index>(times.size()); ++n) {
     if (std::isnan(times[n])) continue;
+    if (computed.is_open(i, n)) {
+      ++entry.undetermined;
+      continue;
+    }
     const auto check = [&](double derivative, const Quotients& quotients, int side) {
       return comparisons.compare(derivative, quotients, noises[side + 1], side, n, times[n]);
     };
@@ -268,7 +298,9 @@ void compare(const Differences& differences, const Computed& computed, int j, co
     if (!checked && entry.unchecked++ == 0) entry.unchecked_at = times[n];
   }
   using Verdict = GradientCheck::Verdict;
-  if (!(comparisons.excess <= 1))
+  if (entry.steps == 0 && entry.undetermined > 0)
+    entry.verdict = Verdict::undetermined;
+  else if (!(comparisons.excess <= 1))
     entry.verdict = Verdict::differs;
   else if (entry.steps > 0 && entry.unchecked == 0)
     entry.verdict = Verdict::agrees;

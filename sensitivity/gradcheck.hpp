@@ -5,7 +5,8 @@
 /// is no derivative. Where the two sides of a derivative differ (a tie, a kink of the geometry), each is compared with
 /// one-sided differences, of runs with the states of that side; elsewhere the derivative with central differences. The
 /// error estimate of a difference is made of its extrapolation and of the noise of the responses
-/// (sensitivity/quotients.hpp).
+/// (sensitivity/quotients.hpp). Steps in which equilibrium does not determine a response are left out
+/// (sensitivity/open_responses.hpp).
 #pragma once
 
 #include <functional>
@@ -17,7 +18,7 @@
 namespace stickslip {
 
 struct GradientCheck {
-  enum class Verdict { agrees, differs, not_checked };
+  enum class Verdict { agrees, differs, not_checked, undetermined };
   struct Entry {
     std::string response, parameter;  ///< `response`: of a response or an objective
     double time = 0;                  ///< step with the largest error
@@ -31,6 +32,7 @@ struct GradientCheck {
     double step = 0;               ///< relative step of the chosen difference
     int steps = 0, unchecked = 0;  ///< how many; those of which no difference tells three digits
     double unchecked_at = 0;       ///< the first of these
+    int undetermined = 0;          ///< steps in which it hangs on forces that equilibrium leaves open: no derivative
     Verdict verdict = Verdict::not_checked;
   };
   std::vector<Entry> entries;
@@ -38,7 +40,7 @@ struct GradientCheck {
   std::string message;
   int runs = 0;         ///< difference runs
   int rejected = 0;     ///< of these, runs that pass through other states somewhere, or fail
-  bool passed() const;  ///< at least one entry was checked, and none differs or is unchecked
+  bool passed() const;  ///< at least one entry agrees, and the others do or are undetermined
 };
 
 /// The method whose derivative a scheme claims to be, solved to rounding (status converged_at_roundoff). Why to

@@ -186,9 +186,12 @@ std::set<TableColumn> value_columns(const json& record) {
   return columns;
 }
 
+/// (A result has no derivative of what is not determined.)
 std::string value_of(const Cell& cell, const TableColumn& column) {
   const json* v = &cell.record;
   for (const auto& key : column.place) v = &at(*v, key);
+  const bool derivative = column.place.front() == "sensitivities" || column.place.size() == 4;
+  if (derivative && v->is_null() && cell.converged) return "not determined";
   return v->is_number() ? number(v->get<double>(), 10) : plain(*v);
 }
 

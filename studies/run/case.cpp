@@ -54,15 +54,13 @@ void refuse_open_responses(StepResult& step) {
 void refuse_open_objectives(CaseResult& result) {
   const Model& model = result.problem->model;
   if (result.gradients.of_objectives.size() == 0) return;
-  Vector<double> sums = Vector<double>::Zero(model.scene.objectives.size());
-  for (const auto& step : result.steps) {
-    Vector<double> responses = Vector<double>::Zero(model.scene.responses.size());
-    for (std::size_t i = 0; i < step.open_responses.size(); ++i)
-      if (step.open_responses[i]) responses[i] = std::numeric_limits<double>::quiet_NaN();
-    add_contributions(model, result.problem->slots.numbers, step.increment->time, responses, sums);
-  }
-  for (Eigen::Index j = 0; j < sums.size(); ++j)
-    if (std::isnan(sums[j])) result.gradients.of_objectives.row(j).setConstant(sums[j]);
+  std::vector<std::pair<double, std::vector<char>>> steps;
+  for (const auto& step : result.steps) steps.emplace_back(step.increment->time, step.open_responses);
+  const auto open = open_objectives(model, result.problem->slots, steps);
+  for (std::size_t j = 0; j < open.size(); ++j)
+    if (open[j])
+      result.gradients.of_objectives.row(static_cast<Eigen::Index>(j))
+          .setConstant(std::numeric_limits<double>::quiet_NaN());
 }
 
 /// The least of the distances of increments.
@@ -88,8 +86,8 @@ std::vector<StepResult> gather_steps(const CaseResult& result, const StepReader&
     step.margins = read.margins;
     step.responses = read.responses;
     step.bodies = read.bodies;
-    step.undetermined = read.undetermined;
-    step.open_responses = read.open_responses;
+    step.undetermined = read.open.contacts;
+    step.open_responses = read.open.responses;
     step.at_vertex = read.at_vertex;
     step.contacts = read.contacts;
     if (n < result.gradients.of_responses.size()) step.sensitivities = result.gradients.of_responses[n];

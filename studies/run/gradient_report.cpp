@@ -30,19 +30,21 @@ const char* side_of(const GradientCheck::Entry& entry) {
 
 /// Verdict in words: of which side, or how many steps were not checked.
 std::string verdict_of(const GradientCheck::Entry& entry) {
-  static const char* const verdicts[] = {"agrees", "DIFFERS", "not checked"};
+  static const char* const verdicts[] = {"agrees", "DIFFERS", "not checked", "not determined by equilibrium"};
   std::string text = verdicts[static_cast<int>(entry.verdict)];
   if (entry.side != 0) text += fmt::format(" from {}", side_of(entry));
   if (entry.verdict == GradientCheck::Verdict::not_checked && entry.unchecked < entry.steps)
     text =
         fmt::format("not checked: {} of {} steps, from t = {:g} on", entry.unchecked, entry.steps, entry.unchecked_at);
+  if (entry.undetermined > 0 && entry.steps > 0)
+    text += fmt::format(", in {} steps not determined by equilibrium", entry.undetermined);
   return text;
 }
 
 }  // namespace
 
 json check_json(const GradientCheck& check) {
-  static const char* const verdicts[] = {"agrees", "differs", "not checked"};
+  static const char* const verdicts[] = {"agrees", "differs", "not checked", "undetermined"};
   json entries = json::array();
   for (const auto& e : check.entries)
     entries.push_back({{"response", e.response},
@@ -59,6 +61,7 @@ json check_json(const GradientCheck& check) {
                        {"steps", e.steps},
                        {"unchecked", e.unchecked},
                        {"unchecked_at", e.unchecked > 0 ? json(e.unchecked_at) : json(nullptr)},
+                       {"undetermined", e.undetermined},
                        {"verdict", verdicts[static_cast<int>(e.verdict)]}});
   return {{"status", name_of(check.status)}, {"message", check.message},
           {"passed", check.passed()},        {"runs", check.runs},

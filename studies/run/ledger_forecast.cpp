@@ -256,9 +256,9 @@ Factors condensed_factors(const Model& model, const Size& n) {
 }
 
 /// Bodies whose tangents change, condensed one by one: their own pattern, and a dense system that is smaller, or
-/// larger, by the dofs that points touch on the way.
+/// larger, by the dofs that points touch on the way: measured up to 4.02 times (the pinched tube, closed).
 Factors condensed_tangent_factors(const CondensedTangent<double>& tangent, bool unsymmetric) {
-  constexpr double of_touched = 4;
+  constexpr double of_touched = 5;
   Factors out;
   const double rows = tangent.dense_rows(), kept = tangent.rows().kept;
   const FactorSize size = tangent.factor_size();

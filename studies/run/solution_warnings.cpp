@@ -65,10 +65,10 @@ void add_unstable_steps(const CaseResult& result, std::vector<Warning>& warnings
   if (first == steps.end()) return;
   const auto count = std::count_if(first, steps.end(), is_unstable);
   warnings.push_back({WarningCode::unstable, "", static_cast<double>(count),
-                      "hold what may tip or buckle, or prescribe a motion in place of a force",
-                      fmt::format("in {} of {} steps, first at t = {:.6g}, the equilibrium is unstable: the bodies "
-                                  "resist some motion by less than nothing, and there is another solution to which "
-                                  "the least disturbance leads",
+                      "hold what may tip, buckle or slide aside, or prescribe a motion in place of a force",
+                      fmt::format("in {} of {} steps, first at t = {:.6g}, the equilibrium is unstable: as the "
+                                  "step goes on, the bodies resist some motion by less than nothing, and the least "
+                                  "disturbance leads to another solution",
                                   count, steps.size(), first->increment->time)});
 }
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "sensitivity/force_search.hpp"
+#include "sensitivity/open_responses.hpp"
 #include "studies/run/accuracy.hpp"
 #include "studies/run/case.hpp"
 
@@ -16,11 +16,8 @@ struct StepReading {
   Vector<double> responses;
   std::vector<BodyMeasures> bodies;       ///< empty unless the state may be thinned
   std::vector<ContactMeasures> contacts;  ///< likewise
-  /// Per contact, empty where there is none: whether its forces are undetermined (ForceSearch), and whether a point is
-  /// or was on a vertex (contacts_at_vertices()).
-  std::vector<char> undetermined, at_vertex;
-  /// Per response, whether it hangs on forces that are undetermined; empty where there are none.
-  std::vector<char> open_responses;
+  OpenResponses::Found open;
+  std::vector<char> at_vertex;  ///< per contact, whether a point is or was on a vertex (contacts_at_vertices())
   bool at_master_kink = false;  ///< integration_margin() counts as zero: no side of a derivative is known
 };
 
@@ -41,8 +38,7 @@ class StepReader {
 
   const Problem& problem_;
   AccuracyReader accuracy_;
-  ForceSearch forces_;
-  std::vector<double> compliance_;  ///< as undetermined() takes it
+  OpenResponses open_;
   std::vector<std::optional<StepReading>> steps_;
 };
 

@@ -179,5 +179,26 @@ TEST(LoadThatNoContactBalances, IsNamedAtFiniteStrainToo) {
     }
 }
 
+/// A point on springs whose axes lean: pushed aside by 1 against a bound of .5, it is lifted where nothing rubs, and
+/// pressed on where the bound does.
+TEST(FrictionThatEndsAtOnce, IsNamedWhereThereIsNoEquilibrium) {
+  const json scene = json::parse(R"({
+    "bodies": {"m": {"mesh": {"point": {"at": [0, 0]}},
+                     "material": {"grounded_spring": {"stiffness": [[1, 0.9], [0.9, 1]]}}}},
+    "obstacles": {"g": {"plane": {"point": [0, 0], "normal": [0, 1]}}},
+    "contacts": {"c": {"slave": "m.node", "master": "g", "friction": {"tresca": 0.5}}},
+    "loads": [{"on": "m.node", "force": [1, 0], "history": [[0, 0], [1, 0], [2, 1]]},
+              {"on": "m.node", "force": [0, -1], "history": [[0, 0], [1, 1], [2, -0.7]]}],
+    "time": {"end": 2, "steps": 40}})");
+  for (const auto& method : methods) {
+    const auto result = run(scene, method);
+    EXPECT_EQ(result.status(), Status::no_equilibrium) << method;
+    EXPECT_THAT(result.message(), HasSubstr("ends at once where a point opens")) << method;
+    json rising = scene;
+    rising["contacts"]["c"]["friction"] = 0.5;
+    EXPECT_EQ(run(rising, method).status(), Status::converged) << method;
+  }
+}
+
 }  // namespace
 }  // namespace stickslip::failing_runs

@@ -18,7 +18,7 @@ GradientCheck check_of(const std::vector<Verdict>& verdicts) {
   check.runs = 24;
   check.rejected = 3;
   for (const auto verdict : verdicts)
-    check.entries.push_back({"press", "mu", 0.5, 0, -2.0, -2.25, 0.125, 1e-9, 1e-8, 2.0, 1e-4, 6, 0, 0, verdict});
+    check.entries.push_back({"press", "mu", 0.5, 0, -2.0, -2.25, 0.125, 1e-9, 1e-8, 2.0, 1e-4, 6, 0, 0, 0, verdict});
   return check;
 }
 
@@ -32,7 +32,7 @@ TEST(GradientReport, HoldsEveryNumberOfAnEntryAndItsVerdict) {
       nlohmann::json::parse(R"({"response": "press", "parameter": "mu", "time": 0.5, "side": "both", "computed": -2.0,
                                       "difference": -2.25, "error": 0.125, "estimate": 1e-9, "allowed": 1e-8,
                                       "scale": 2.0, "step": 1e-4, "steps": 6, "unchecked": 0,
-                                      "unchecked_at": null, "verdict": "differs"})"));
+                                      "unchecked_at": null, "undetermined": 0, "verdict": "differs"})"));
   EXPECT_EQ(document["entries"][0]["verdict"], "agrees");
   EXPECT_EQ(document["entries"][2]["verdict"], "not checked");
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "studies/report/disagreement.hpp"
+#include "studies/run/gradient_report.hpp"
 #include "studies/run/warnings.hpp"
 #include "tests/studies/cases.hpp"
 
@@ -58,8 +59,8 @@ TEST(SeveralSolutions, AreToldOfANodeThatFrictionHoldsInTwoContacts) {
 
 /// A block stands on the same floor by two contacts. Their sum has a derivative, and what the block does; the force of
 /// each has none. So it is with an objective of it.
-TEST(SeveralSolutions, HaveDerivativesOfWhatIsDeterminedAlone) {
-  json scene = json::parse(R"({
+json block_in_two_contacts() {
+  return json::parse(R"({
     "bodies": {"b": {"mesh": {"box": {"min": [0, 0], "max": [2, 1], "cells": [4, 2]}},
                      "material": {"linear_elastic": {"E": 1000, "nu": 0.3}}}},
     "obstacles": {"f": {"plane": {"point": [0, 0], "normal": [0, 1]}}},
@@ -73,6 +74,10 @@ TEST(SeveralSolutions, HaveDerivativesOfWhatIsDeterminedAlone) {
                   "pa": {"contact_pressure": {"contact": "a"}},
                   "side": {"displacement": {"at": [2, 0.5], "component": "x"}}},
     "objectives": {"twice": {"of": "all", "sum": true}, "one": {"of": "na", "sum": true}}})");
+}
+
+TEST(SeveralSolutions, HaveDerivativesOfWhatIsDeterminedAlone) {
+  json scene = block_in_two_contacts();
   const auto is_known = [](const json& derivative) { return derivative.is_number(); };
   for (const json& method : {penalty, uzawa, monolithic})
     for (const char* mode : {"direct", "adjoint"}) {
@@ -87,6 +92,23 @@ TEST(SeveralSolutions, HaveDerivativesOfWhatIsDeterminedAlone) {
         EXPECT_EQ(is_known(step["sensitivities"][name]["E"]), std::string(name) == "all" || std::string(name) == "side")
             << method << name;
     }
+}
+
+/// A comparison with differences leaves such responses out, and says so.
+TEST(SeveralSolutions, AreNoDerivativesThatDifferencesCouldCheck) {
+  json scene = block_in_two_contacts();
+  scene["method"] = monolithic;
+  for (const char* mode : {"direct", "adjoint"}) {
+    scene["sensitivity"] = {{"mode", mode}};
+    const Input input = cases::read(scene, "scene.json");
+    const auto check = check_gradients({input, std::make_shared<const Problem>(input.scene)}, "scene.json");
+    EXPECT_TRUE(check.passed()) << mode;
+    using Verdict = GradientCheck::Verdict;
+    for (const auto& entry : check.entries) {
+      const bool is_open = entry.response == "na" || entry.response == "pa" || entry.response == "one";
+      EXPECT_EQ(entry.verdict, is_open ? Verdict::undetermined : Verdict::agrees) << mode << entry.response;
+    }
+  }
 }
 
 /// A point between two walls without any room: only the difference of their forces is determined.
