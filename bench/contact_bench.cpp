@@ -6,7 +6,7 @@
 
 #include "core/contact/contact_point.hpp"
 #include "core/model/point_tangent.hpp"
-#include "methods/regularisation.hpp"
+#include "methods/newton/regularisation.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace stickslip {

@@ -1,4 +1,4 @@
-/// The price of a run by each engine as it is predicted (core/model/engine_price.hpp), held against what came: seconds
+/// The price of a run by each engine as it is predicted (core/engine/engine_price.hpp), held against what came: seconds
 /// of both on the GRECO plate, with and without friction and derivatives. `predicted` and `measured` are sparse over
 /// condensed; `lost` is what the chosen engine took beyond the faster one, as a share. The argument is the cells along
 /// a side.
@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "methods/engine_choice.hpp"
+#include "methods/stepping/engine_choice.hpp"
 #include "sensitivity/differentiate.hpp"
 #include "tests/support/scenes.hpp"
 

@@ -15,7 +15,7 @@
 #include <ctime>
 
 #include "core/algebra/memory.hpp"
-#include "core/model/body_matrix.hpp"
+#include "core/engine/body_matrix.hpp"
 #include "sensitivity/adjoint.hpp"
 #include "sensitivity/differentiate.hpp"
 #include "tests/support/scenes.hpp"

@@ -1,6 +1,6 @@
 #include "methods/method.hpp"
 
-#include "methods/solve_again.hpp"
+#include "methods/stepping/solve_again.hpp"
 
 namespace stickslip {
 

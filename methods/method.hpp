@@ -1,7 +1,7 @@
 /// Solution of a model by any method of the closed set, in double: the one place that dispatches on the method.
 #pragma once
 
-#include "methods/checkpoints.hpp"
+#include "methods/stepping/checkpoints.hpp"
 
 namespace stickslip {
 

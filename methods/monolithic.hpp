@@ -10,8 +10,8 @@
 /// only history is the slip placement; the last lambda is a start value. Options: methods/options.hpp. [AC91], [PC99]
 #pragma once
 
-#include "methods/increment.hpp"
-#include "methods/sequential.hpp"
+#include "methods/rescue/sequential.hpp"
+#include "methods/stepping/increment.hpp"
 
 namespace stickslip {
 
@@ -19,7 +19,7 @@ inline ConeRadius cone_radius(const MonolithicAL& method) {
   return method.cone == MonolithicAL::Cone::augmented ? ConeRadius::augmented : ConeRadius::multiplier;
 }
 
-/// Whether methods/motion.hpp continues where an increment fails.
+/// Whether methods/rescue/motion.hpp continues where an increment fails.
 constexpr bool is_globalised(const MonolithicAL&) { return true; }
 
 template <class T, class E>

@@ -28,7 +28,8 @@ namespace stickslip {
 
 /// Newton's method, the same for all.
 struct NewtonOptions {
-  double tolerance = 1e-12;  ///< relative, each residual to its own scale (methods/residuals.hpp); 0 < tolerance < 1
+  double tolerance =
+      1e-12;  ///< relative, each residual to its own scale (methods/newton/residuals.hpp); 0 < tolerance < 1
   int max_iterations = 100;  ///< per solve; >= 1. A front of slip may pass one node an iteration
   bool line_search = true;   ///< backtracking where a full step stays in its active set and the residual does not fall
   void tighten(double to) { tolerance = std::min(tolerance, to); }
@@ -120,7 +121,7 @@ struct UzawaAL {
   double tolerance = 1e-10;     ///< error left in the multiplier (relative), and violation; 0 < tolerance < 1
   int max_augmentations = 200;  ///< inner solves per increment; >= 1
   bool adapt = true;            ///< multiply rho by 4 where an augmentation did not shrink the violation by 4
-  Acceleration acceleration = Acceleration::none;  ///< of the updates of lambda (methods/acceleration.hpp)
+  Acceleration acceleration = Acceleration::none;  ///< of the updates of lambda (methods/augmentation/acceleration.hpp)
   Cone cone = Cone::augmented;  ///< radius -mu z_N (augmented), or -mu lambda_N of the last augmentation (frozen)
   Sensitivity sensitivity = Sensitivity::iterated;
   std::optional<double> oversize;  ///< kappa_s of the oversized and the preconditioned scheme, > 1; none: automatic

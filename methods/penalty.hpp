@@ -9,8 +9,8 @@
 /// Not differentiable where a point changes state. Options: methods/options.hpp. [SL92], [W06]
 #pragma once
 
-#include "methods/increment.hpp"
-#include "methods/sequential.hpp"
+#include "methods/rescue/sequential.hpp"
+#include "methods/stepping/increment.hpp"
 
 namespace stickslip {
 
@@ -115,7 +115,7 @@ std::string unyielding_point(Run<T, E>& run, const ContactInput<T>& found, const
 
 }  // namespace detail
 
-/// Whether methods/motion.hpp continues where an increment fails.
+/// Whether methods/rescue/motion.hpp continues where an increment fails.
 constexpr bool is_globalised(const Penalty&) { return true; }
 
 template <class T, class E>

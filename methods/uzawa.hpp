@@ -6,8 +6,9 @@
 ///
 ///   rho           scale, force per length cubed. With `adapt`, rho of a point grows fourfold if an augmentation leaves
 ///                 more than 1/4 of its violation
-///   acceleration  lambda <- an extrapolation of the last t, put back onto the cone (methods/acceleration.hpp)
-///   cone          augmented: radius -mu z_N; the tangent of slip is unsymmetric
+///   acceleration  lambda <- an extrapolation of the last t, put back onto the cone
+///   (methods/augmentation/acceleration.hpp) cone          augmented: radius -mu z_N; the tangent of slip is
+///   unsymmetric
 ///                 frozen: radius -mu lambda_N of the last augmentation; the tangent is symmetric. The radius is then a
 ///                 fixed point iteration of its own. An augmentation multiplies its error by -mu/s, s the slope of the
 ///                 load path (tangential over normal stiffness of the unloading). For mu > s it ends in a two-cycle
@@ -23,16 +24,16 @@
 /// lambda <- t is update_derivatives() of sensitivity/uzawa.hpp. [SL92]
 #pragma once
 
-#include "methods/augmentation_progress.hpp"
-#include "methods/sequential.hpp"
+#include "methods/augmentation/augmentation_progress.hpp"
+#include "methods/rescue/sequential.hpp"
 
 namespace stickslip {
 
 inline ConeRadius cone_radius(const UzawaAL& method) {
   return method.cone == UzawaAL::Cone::augmented ? ConeRadius::augmented : ConeRadius::multiplier;
 }
-/// Whether methods/motion.hpp continues where an increment fails. Not with a frozen cone: its failures are a subject of
-/// study.
+/// Whether methods/rescue/motion.hpp continues where an increment fails. Not with a frozen cone: its failures are a
+/// subject of study.
 inline bool is_globalised(const UzawaAL& method) { return method.cone == UzawaAL::Cone::augmented; }
 
 namespace detail {

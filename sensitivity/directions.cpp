@@ -1,7 +1,7 @@
 /// Slots and bodies in the scalar of direct differentiation, and the elements that parameters touch.
 #include <numeric>
 
-#include "core/model/body_matrix.hpp"
+#include "core/engine/body_matrix.hpp"
 #include "sensitivity/differentiation.hpp"
 
 namespace stickslip {

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "core/model/response.hpp"
-#include "methods/regularisation.hpp"
+#include "methods/newton/regularisation.hpp"
 
 namespace stickslip {
 namespace {

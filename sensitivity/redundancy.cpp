@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "core/model/shared_forces.hpp"
+#include "core/engine/shared_forces.hpp"
 #include "sensitivity/force_search.hpp"
 
 namespace stickslip {

@@ -1,8 +1,8 @@
 /// Factorised tangent of a converged increment, from which direct and adjoint differentiation start.
 #pragma once
 
-#include "core/model/engine.hpp"
-#include "core/model/shared_forces.hpp"
+#include "core/engine/engine.hpp"
+#include "core/engine/shared_forces.hpp"
 #include "sensitivity/rays.hpp"
 #include "sensitivity/redundancy.hpp"
 

@@ -1,5 +1,5 @@
 /// Whole increments of a run, one after another: as they are, or solved again if they are thin
-/// (methods/checkpoints.hpp).
+/// (methods/stepping/checkpoints.hpp).
 #pragma once
 
 #include "methods/method.hpp"

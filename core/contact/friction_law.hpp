@@ -15,7 +15,8 @@
 ///   slope_at_apex()             slope of the piece `slip` where the pressure begins; 0 without such a piece
 ///   slope_at_infinity()         slope that the bound keeps however large the pressure
 ///   is_piecewise_linear         whether `slip` is a multiple of p. Solutions by trial of all branches
-///                               (methods/solutions) are for such laws alone, and only these may have both pieces.
+///                               (methods/rescue/solutions) are for such laws alone, and only these may have both
+///                               pieces.
 ///
 /// What it lacks does not compile. Reader, schema and words are made from numbers() (studies/input/friction_laws.hpp).
 #pragma once

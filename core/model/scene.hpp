@@ -268,8 +268,8 @@ struct Parameter {
   double value = 0;     ///< of the first slot
 };
 
-/// The time of a step is found, not given: steps go along the path of equilibria (methods/path.hpp), on which the time
-/// of the load that it drives may fall. All else is held.
+/// The time of a step is found, not given: steps go along the path of equilibria (methods/stepping/path.hpp), on which
+/// the time of the load that it drives may fall. All else is held.
 struct ArcLength {
   int load = 0;       ///< index in Scene::loads; its history goes on
   double length = 0;  ///< that the bodies move by in a step where the load stands still; 0: path_length() says

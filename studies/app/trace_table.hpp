@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "methods/trace.hpp"
+#include "methods/newton/trace.hpp"
 #include "studies/report/cone_picture.hpp"
 #include "studies/run/case.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "methods/increment.hpp"
+#include "methods/stepping/increment.hpp"
 
 namespace stickslip {
 namespace {

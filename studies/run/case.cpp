@@ -5,7 +5,7 @@
 
 #include "core/model/objective.hpp"
 #include "core/model/pairing.hpp"
-#include "methods/engine_choice.hpp"
+#include "methods/stepping/engine_choice.hpp"
 #include "sensitivity/vertex_margin.hpp"
 #include "studies/io/json_document.hpp"
 #include "studies/run/contact_warnings.hpp"

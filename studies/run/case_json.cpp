@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/model/response.hpp"
-#include "methods/engine_choice.hpp"
-#include "methods/regularisation.hpp"
+#include "methods/newton/regularisation.hpp"
+#include "methods/stepping/engine_choice.hpp"
 #include "sensitivity/vertex_margin.hpp"
 #include "studies/input/method_options.hpp"
 #include "studies/io/json_document.hpp"

@@ -9,7 +9,7 @@
 #include "core/model/contact_assembly.hpp"
 #include "core/model/pairing.hpp"
 #include "core/model/response.hpp"
-#include "methods/residuals.hpp"
+#include "methods/newton/residuals.hpp"
 #include "studies/io/wording.hpp"
 #include "studies/run/warnings.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "core/model/loading.hpp"
 #include "core/model/pairing.hpp"
-#include "methods/engine_choice.hpp"
+#include "methods/stepping/engine_choice.hpp"
 #include "studies/input/method_options.hpp"
 #include "studies/input/size_estimate.hpp"
 #include "studies/io/numerals.hpp"

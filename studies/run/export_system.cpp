@@ -5,7 +5,7 @@
 #include <Eigen/SparseCore>
 #include <iterator>
 
-#include "core/model/body_matrix.hpp"
+#include "core/engine/body_matrix.hpp"
 #include "core/model/loading.hpp"
 #include "studies/io/output_folder.hpp"
 #include "studies/io/printing.hpp"

@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "core/model/response.hpp"
-#include "methods/residuals.hpp"
+#include "methods/newton/residuals.hpp"
 
 namespace stickslip {
 namespace {
@@ -19,7 +19,7 @@ constexpr double rounding = 1e-13;
 
 /// Forces, tractions and relative displacements below this share of what the displacements would make of them by the
 /// stiffness alone have lost more than half of their digits to cancellation, and a free body with such forces counts as
-/// adrift (methods/residuals.hpp): where nothing presses, they are no scale.
+/// adrift (methods/newton/residuals.hpp): where nothing presses, they are no scale.
 constexpr double telling = 1e-9;
 
 /// Tangential parts of a point: traction, slip of the increment.

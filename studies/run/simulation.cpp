@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "methods/engine_choice.hpp"
+#include "methods/stepping/engine_choice.hpp"
 #include "studies/input/size_estimate.hpp"
 #include "studies/io/atomic_file.hpp"
 #include "studies/io/input_fault.hpp"

@@ -7,8 +7,8 @@
 #include <variant>
 
 #include "core/solids/kinematics.hpp"
-#include "methods/checkpoints.hpp"
-#include "methods/regularisation.hpp"
+#include "methods/newton/regularisation.hpp"
+#include "methods/stepping/checkpoints.hpp"
 #include "studies/run/fields.hpp"
 
 namespace stickslip {

@@ -7,8 +7,8 @@
 #include <span>
 
 #include "core/solids/shapes.hpp"
-#include "methods/diagnosis.hpp"
-#include "methods/residuals.hpp"
+#include "methods/newton/residuals.hpp"
+#include "methods/stepping/diagnosis.hpp"
 #include "sensitivity/force_search.hpp"
 #include "studies/run/warnings.hpp"
 

@@ -1,4 +1,4 @@
-/// Reads the states of a run while they are whole, before the run may thin them (methods/checkpoints.hpp).
+/// Reads the states of a run while they are whole, before the run may thin them (methods/stepping/checkpoints.hpp).
 #pragma once
 
 #include <optional>

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "methods/diagnosis.hpp"
-#include "methods/residuals.hpp"
+#include "methods/newton/residuals.hpp"
+#include "methods/stepping/diagnosis.hpp"
 #include "studies/run/contact_warnings.hpp"
 #include "studies/run/locking_warnings.hpp"
 #include "studies/run/solution_warnings.hpp"

@@ -1,5 +1,5 @@
 /// The contraction that the secants of an iteration show.
-#include "methods/acceleration.hpp"
+#include "methods/augmentation/acceleration.hpp"
 
 #include <gtest/gtest.h>
 

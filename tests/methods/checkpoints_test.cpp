@@ -1,5 +1,5 @@
 /// Runs that let states go: which stay, and that the others come back with the bits they had.
-#include "methods/checkpoints.hpp"
+#include "methods/stepping/checkpoints.hpp"
 
 #include <gtest/gtest.h>
 

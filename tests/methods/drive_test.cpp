@@ -1,9 +1,9 @@
-/// What drives bodies (methods/drive.hpp), and how fast they must be for a jump to be looked for.
-#include "methods/drive.hpp"
+/// What drives bodies (methods/stepping/drive.hpp), and how fast they must be for a jump to be looked for.
+#include "methods/stepping/drive.hpp"
 
 #include <gtest/gtest.h>
 
-#include "methods/solve.hpp"
+#include "methods/stepping/solve.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/sliding_scenes.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "methods/solve.hpp"
+#include "methods/stepping/solve.hpp"
 #include "sensitivity/monolithic.hpp"
 #include "sensitivity/penalty.hpp"
 #include "sensitivity/uzawa.hpp"

@@ -2,7 +2,7 @@
 /// a spring, all solutions of random problems found apart from the solver, and balance of a block.
 #include <gtest/gtest.h>
 
-#include "methods/statics.hpp"
+#include "methods/rescue/statics.hpp"
 #include "tests/support/blocks.hpp"
 #include "tests/support/every_branch.hpp"
 #include "tests/support/random_contacts.hpp"

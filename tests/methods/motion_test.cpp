@@ -1,9 +1,10 @@
-/// What plain Newton does not solve (methods/motion.hpp): points that friction couples strongly, bodies that friction
-/// alone holds, several solutions; each against all solutions or the equations themselves, found apart from the solver.
+/// What plain Newton does not solve (methods/rescue/motion.hpp): points that friction couples strongly, bodies that
+/// friction alone holds, several solutions; each against all solutions or the equations themselves, found apart from
+/// the solver.
 #include <gtest/gtest.h>
 
-#include "methods/regularisation.hpp"
-#include "methods/solutions.hpp"
+#include "methods/newton/regularisation.hpp"
+#include "methods/rescue/solutions.hpp"
 #include "tests/support/blocks.hpp"
 #include "tests/support/every_branch.hpp"
 #include "tests/support/random_contacts.hpp"

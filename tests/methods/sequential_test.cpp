@@ -1,6 +1,6 @@
-/// Contact and bodies in turns (methods/sequential.hpp): its rule for branches, and what it costs. What it finds stands
-/// in the tests of scenes with finite strain and metal, studies/shipped_scenes_test.cpp among them.
-#include "methods/sequential.hpp"
+/// Contact and bodies in turns (methods/rescue/sequential.hpp): its rule for branches, and what it costs. What it finds
+/// stands in the tests of scenes with finite strain and metal, studies/shipped_scenes_test.cpp among them.
+#include "methods/rescue/sequential.hpp"
 
 #include <gtest/gtest.h>
 

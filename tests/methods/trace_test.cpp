@@ -1,4 +1,4 @@
-#include "methods/trace.hpp"
+#include "methods/newton/trace.hpp"
 
 #include <gtest/gtest.h>
 

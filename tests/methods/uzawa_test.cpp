@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "methods/acceleration.hpp"
+#include "methods/augmentation/acceleration.hpp"
 #include "tests/support/solved.hpp"
 
 namespace stickslip {

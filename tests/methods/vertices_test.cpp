@@ -1,8 +1,8 @@
 /// Points that go to and fro between two facets, and are kept on one (Evaluator::keep_patches).
 #include <gtest/gtest.h>
 
-#include "core/model/sparse_engine.hpp"
-#include "methods/residuals.hpp"
+#include "core/engine/sparse_engine.hpp"
+#include "methods/newton/residuals.hpp"
 #include "tests/support/sliding_scenes.hpp"
 
 namespace stickslip {

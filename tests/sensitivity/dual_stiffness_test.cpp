@@ -1,7 +1,7 @@
 /// The stiffness that is kept with its derivatives, against the forces of the elements themselves.
 #include <gtest/gtest.h>
 
-#include "core/model/body_matrix.hpp"
+#include "core/engine/body_matrix.hpp"
 #include "sensitivity/differentiation.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/scenes.hpp"

@@ -2,7 +2,7 @@
 /// step of the whole program. (Direct ones are those of the engine in full: tests/methods/engine_agreement_test.cpp.)
 #include <gtest/gtest.h>
 
-#include "methods/engine_choice.hpp"
+#include "methods/stepping/engine_choice.hpp"
 #include "tests/support/finite_strain.hpp"
 #include "tests/support/scenes.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "methods/engine_choice.hpp"
+#include "methods/stepping/engine_choice.hpp"
 #include "sensitivity/gradcheck.hpp"
 #include "tests/studies/cases.hpp"
 #include "tests/studies/tied_nodes.hpp"

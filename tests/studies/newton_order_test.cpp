@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "core/model/sparse_engine.hpp"
+#include "core/engine/sparse_engine.hpp"
 #include "methods/method.hpp"
 #include "tests/studies/cases.hpp"
 #include "tests/support/tangents.hpp"
@@ -51,7 +51,7 @@ struct Solved {
   }
 };
 
-/// What a hundred roundings of their own terms may leave of the residuals (methods/residuals.hpp), by increment.
+/// What a hundred roundings of their own terms may leave of the residuals (methods/newton/residuals.hpp), by increment.
 std::vector<double> roundings(const Solved& s) {
   const auto& [model, slots, unused] = *s.problem;
   const auto multipliers = std::holds_alternative<MonolithicAL>(s.method) ? Multipliers::unknown : Multipliers::given;

@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "methods/regularisation.hpp"
+#include "methods/newton/regularisation.hpp"
 #include "tests/studies/cases.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/perturbed.hpp"

@@ -4,7 +4,7 @@
 
 #include <complex>
 
-#include "methods/carried.hpp"
+#include "methods/newton/carried.hpp"
 #include "tests/support/largest.hpp"
 
 namespace stickslip {

@@ -2,7 +2,7 @@
 # check_includes.sh SOURCE_DIR: fails and names each #include that points the wrong way.
 # check_includes.sh --self-test: fails where a wrong include would go unseen.
 #
-#   core <- methods <- sensitivity <- studies; within core: algebra, mesh <- solids, contact <- model;
+#   core <- methods <- sensitivity <- studies; within core: algebra, mesh <- solids, contact <- model <- engine;
 #   within studies: io <- input <- run (and verify) <- report <- sweep <- app, and what python needs of them.
 #   studies/verify, which checks what all others find, shares nothing with them.
 #   core/model/scene.hpp, the plain description of a scene, is open to mesh and contact.
@@ -16,7 +16,8 @@ allowed() {
     core/mesh) echo 'core/(algebra|mesh)/|core/model/scene\.hpp' ;;
     core/solids) echo 'core/(algebra|mesh|solids)/' ;;
     core/contact) echo 'core/(algebra|mesh|solids|contact)/|core/model/scene\.hpp' ;;
-    core/model) echo 'core/' ;;
+    core/model) echo 'core/(algebra|mesh|solids|contact|model)/' ;;
+    core/engine) echo 'core/' ;;
     methods) echo '(core|methods)/' ;;
     sensitivity) echo '(core|methods|sensitivity)/' ;;
     studies/io) echo '(core|methods|sensitivity|studies/(io|version\.hpp))' ;;
@@ -29,7 +30,7 @@ allowed() {
     studies/python) echo '(core|methods|sensitivity|studies)/' ;;
   esac
 }
-folders="core/algebra core/mesh core/solids core/contact core/model methods sensitivity
+folders="core/algebra core/mesh core/solids core/contact core/model core/engine methods sensitivity
   studies/io studies/input studies/run studies/report studies/sweep studies/verify studies/app studies/python"
 solver_headers='<(cholmod|umfpack|dmumps_c|SuiteSparse_config)[^>]*>'
 printing='<(nlohmann|fmt|CLI)/|<(iostream|print)>|\b(printf|fprintf|puts) *\(|\b(cout|cerr)\b'
@@ -61,7 +62,7 @@ self_test() {
   local line folder
   tree=$(mktemp -d)
   trap 'rm -rf "$tree"' EXIT
-  mkdir -p "$tree"/core/{algebra,mesh,solids,contact,model} "$tree"/{methods,sensitivity} \
+  mkdir -p "$tree"/core/{algebra,mesh,solids,contact,model,engine} "$tree"/{methods,sensitivity} \
     "$tree"/studies/{io,input,run,report,sweep,verify,app}
   echo '#include "core/algebra/scalar.hpp"' >"$tree/studies/io/good.cpp"
   echo '#include "studies/report/report.hpp"' >"$tree/studies/sweep/good.cpp"
@@ -80,6 +81,7 @@ core/mesh #include "core/model/model.hpp"
 core/solids #include "core/contact/friction_cone.hpp"
 core/contact #  include "core/model/state.hpp"
 core/model #include "methods/options.hpp"
+core/model #include "core/engine/engine.hpp"
 core/model #include <nlohmann/json.hpp>
 methods #include "sensitivity/direct.hpp"
 methods #include <umfpack.h>

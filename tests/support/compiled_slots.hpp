@@ -4,7 +4,7 @@
 
 #include <complex>
 
-#include "core/model/body_matrix.hpp"
+#include "core/engine/body_matrix.hpp"
 
 namespace stickslip {
 

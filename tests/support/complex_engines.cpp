@@ -1,7 +1,7 @@
 /// The engines in the oracle's scalar.
-#include "core/model/condensation_impl.hpp"
-#include "core/model/condensed_engine_impl.hpp"
-#include "core/model/sparse_engine_impl.hpp"
+#include "core/engine/condensation_impl.hpp"
+#include "core/engine/condensed_engine_impl.hpp"
+#include "core/engine/sparse_engine_impl.hpp"
 #include "tests/support/compiled_slots.hpp"
 
 namespace stickslip {

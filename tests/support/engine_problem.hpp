@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/model/engine.hpp"
+#include "core/engine/engine.hpp"
 #include "core/model/loading.hpp"
 #include "core/model/moved_point.hpp"
 #include "tests/support/derivatives.hpp"

@@ -3,7 +3,7 @@
 #include <complex>
 
 #include "core/model/response.hpp"
-#include "methods/solve.hpp"
+#include "methods/stepping/solve.hpp"
 #include "tests/support/carried_complex.hpp"
 #include "tests/support/compiled_slots.hpp"
 

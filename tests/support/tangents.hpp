@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/model/loading.hpp"
-#include "methods/newton.hpp"
-#include "methods/regularisation.hpp"
+#include "methods/newton/newton.hpp"
+#include "methods/newton/regularisation.hpp"
 #include "tests/support/compiled_slots.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/largest.hpp"

@@ -1,11 +1,11 @@
 /// Condensation against dense algebra on the assembled stiffness.
-#include "core/model/condensation.hpp"
+#include "core/engine/condensation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 
-#include "core/model/body_matrix.hpp"
+#include "core/engine/body_matrix.hpp"
 #include "tests/support/engine_problem.hpp"
 
 namespace stickslip {

@@ -1,7 +1,7 @@
 /// A body condensed beside one that flows: the sparse engine with it against the same with the bodies in full.
 #include <gtest/gtest.h>
 
-#include "core/model/engine_price.hpp"
+#include "core/engine/engine_price.hpp"
 #include "tests/support/engine_problem.hpp"
 
 namespace stickslip {

@@ -1,0 +1,7 @@
+#include "core/engine/condensation_impl.hpp"
+
+namespace stickslip {
+
+template class Condensation<double>;
+
+}  // namespace stickslip

@@ -1,0 +1,7 @@
+#include "core/engine/condensed_part_impl.hpp"
+
+namespace stickslip {
+
+template class CondensedPart<double>;
+
+}  // namespace stickslip

@@ -1,7 +1,0 @@
-#include "core/model/condensation_impl.hpp"
-
-namespace stickslip {
-
-template class Condensation<double>;
-
-}  // namespace stickslip

@@ -1,0 +1,346 @@
+/// Residuals of one equilibrium. Each is relative to a scale: the largest value among the run's equilibria so far and
+/// the present iterate.
+///
+///   equilibrium   largest nodal |R_u|, over the largest nodal force of any kind
+///   normal        closed: |t_N - lambda_N|/rho = |g_N|, over the largest of A|t|/k and of the relative displacement
+///   tangential    stick: |dg_T|, over the same; open and slip: |t - lambda|, over the largest traction
+#pragma once
+
+#include "methods/newton/equilibrium.hpp"
+
+namespace stickslip {
+
+namespace detail {
+
+inline constexpr double rounding_factor = 100;  // several hundred terms are summed in a row; each rounds once
+
+/// x / scale; 0 for x = 0. NaN if the scale is not finite, so that no residual passes as small.
+inline double ratio(double x, double scale) {
+  return x == 0 ? 0 : std::isfinite(scale) ? x / scale : std::numeric_limits<double>::quiet_NaN();
+}
+
+struct Residuals {
+  double equilibrium = 0, normal = 0, tangential = 0;
+  double floor_equilibrium = 0, floor_length = 0, floor_traction = 0;  ///< residuals that rounding alone may leave
+  double largest() const { return larger(larger(equilibrium, normal), tangential); }
+  bool finite() const { return std::isfinite(equilibrium) && std::isfinite(normal) && std::isfinite(tangential); }
+  bool within(double tolerance) const { return finite() && largest() <= tolerance; }
+  bool within_rounding(double tolerance) const {
+    return finite() && equilibrium <= std::max(tolerance, floor_equilibrium) &&
+           normal <= std::max(tolerance, floor_length) &&
+           tangential <= std::max({tolerance, floor_length, floor_traction});
+  }
+};
+
+/// Whether a point has come to face another patch of its curve. Never for segment-integrated points, which have no kink
+/// between patches.
+inline bool has_crossed(const Facing& before, const Facing& after) {
+  return before.pieces.empty() && after.pieces.empty() && before.patch != after.patch;
+}
+
+/// Number of closed points that face another patch than in `last`.
+template <class T>
+int count_crossings(const ContactField<T>& field, const std::vector<Facing>& last) {
+  int crossed = 0;
+  for (std::size_t p = 0; p < last.size(); ++p)
+    crossed += field.state[p] != ContactState::open && has_crossed(last[p], field.facing[p]);
+  return crossed;
+}
+
+/// Field, rows and residuals of one Newton iterate.
+template <class T>
+struct Evaluation {
+  ContactField<T> field;
+  Vector<T> rows_u, rows_l;
+  Residuals residuals;
+  RunScales scales;  ///< largest values of the run and of this iterate
+};
+
+/// Extreme values over the contact points, for estimates of rounding.
+struct PointSizes {
+  double area_times_rho = 0;                                 ///< largest A rho
+  double distance = 0;                                       ///< largest initial gap of a closed point, length
+  double elastic = 0;                                        ///< largest k / A
+  double rho = 0;                                            ///< largest rho
+  double softest = std::numeric_limits<double>::infinity();  ///< least k
+};
+
+/// Raises the scales of length and traction to those of a field, and returns the extreme values of its points.
+template <class T>
+PointSizes measure_points(const ContactInput<T>& input, const ContactField<T>& field, RunScales& scales) {
+  PointSizes sizes;
+  for (std::size_t p = 0; p < input.model.points.size(); ++p) {
+    const auto& point = input.model.points[p];
+    const double area = value(input.slots.geometry[p].area), stiffness = value(input.slots.stiffness[p]);
+    const int offset = tangential_offset(input.model, static_cast<int>(p)) - 1;
+    const double moved = root_of_squares(point.components(), [&](int c) {
+      return c == 0 ? value(field.gap[p]) - value(input.slots.geometry[p].gap) : value(field.placement[offset + c]);
+    });
+    const double traction =
+        root_of_squares(point.components(), [&](int c) { return value(field.traction[point.multiplier + c]); });
+    scales.traction = std::max(scales.traction, traction);
+    scales.length = std::max({scales.length, moved, area * traction / stiffness});
+    sizes.area_times_rho = std::max(sizes.area_times_rho, area * value(input.rho[p].normal));
+    if (field.state[p] != ContactState::open)
+      sizes.distance = std::max(sizes.distance, std::abs(value(input.slots.geometry[p].gap)));
+    sizes.elastic = std::max(sizes.elastic, stiffness / area);
+    sizes.softest = std::min(sizes.softest, stiffness);
+    sizes.rho = std::max(sizes.rho, value(input.rho[p].normal));
+  }
+  return sizes;
+}
+
+/// Largest nodal displacement, length, that supports prescribe at a time.
+template <class T>
+double prescribed_motion(const Model& model, const Slots<T>& slots, double time) {
+  Vector<T> displacement = Vector<T>::Constant(model.dof_count(), T(0));
+  prescribe(model, slots, time, displacement);
+  return largest_nodal_norm(displacement, model.dimension);
+}
+
+/// Largest values of an iterate, lengths.
+struct Magnitudes {
+  double displacement = 0;  ///< of a contact node
+  double relative = 0;      ///< whose rounding appears in a gap: displacement; with present geometry also relative
+                            ///< displacement, which an obstacle makes too
+  double prescribed = 0;    ///< displacement that supports prescribe
+};
+
+/// Sets the residuals that rounding alone may leave. `rounding`: of the bodies' nodal forces, force.
+inline void set_floors(const PointSizes& sizes, const RunScales& scales, double rounding, const Magnitudes& magnitudes,
+                       Residuals& residuals) {
+  // A rounding of 1e-5 of the forces means displacements 1e9 times those that the forces cause in the stiffest body.
+  // Such a body drifts off on a nearly singular tangent, and has no equilibrium that rounding hides. Exceptions:
+  // supports prescribe a tenth of that motion, or a softer body yields that far under 1e3 times its force.
+  constexpr double adrift = 1e-5, carried = 10, yielded = 1e3;
+  const double bulk_floor = rounding_factor * ratio(rounding, scales.force);
+  if (bulk_floor <= adrift || magnitudes.displacement <= carried * magnitudes.prescribed ||
+      sizes.softest * magnitudes.displacement <= yielded * scales.force)
+    residuals.floor_equilibrium =
+        bulk_floor +
+        rounding_factor *
+            ratio(unit_roundoff * sizes.area_times_rho * std::max(magnitudes.relative, sizes.distance), scales.force);
+  residuals.floor_length = rounding_factor * ratio(unit_roundoff * magnitudes.relative, scales.length);
+  // In slip the bound turns the rounding of the pressure lambda_N + rho g_N into one of the tangential traction.
+  residuals.floor_traction = rounding_factor * ratio(unit_roundoff * sizes.rho * magnitudes.relative, scales.traction);
+}
+
+/// Sets the normal and tangential residuals from t - lambda. `largest_displacement`: of a contact node, length.
+template <class T>
+void measure_multipliers(const ContactInput<T>& input, const Vector<T>& multiplier, const PointSizes& sizes,
+                         double largest_displacement, Evaluation<T>& at) {
+  const Model& model = input.model;
+  // Where a body slides without pressure, its tractions are the rounding of its displacements.
+  const bool presses = at.scales.traction > rounding_factor * unit_roundoff * sizes.elastic * largest_displacement;
+  for (std::size_t p = 0; p < model.points.size(); ++p)
+    for (int c = 0; c < model.points[p].components(); ++c) {
+      const int k = model.points[p].multiplier + c;
+      const double defect = std::abs(value(at.field.traction[k]) - value(multiplier[k]));
+      const ContactState state = at.field.state[p];
+      const bool is_length = c == 0 ? state != ContactState::open : state == ContactState::stick;
+      const double rho = value(c == 0 ? input.rho[p].normal : input.rho[p].tangential);
+      const double traction_scale = at.scales.traction > 0 ? at.scales.traction : defect;  // all open, lambda not yet 0
+      const double relative = is_length ? ratio(defect / rho, at.scales.length)
+                              : presses ? ratio(defect, traction_scale)
+                                        : 0;
+      double& worst = c == 0 ? at.residuals.normal : at.residuals.tangential;
+      worst = larger(worst, relative);
+    }
+}
+
+}  // namespace detail
+
+/// Evaluates the iterates of one equilibrium.
+template <class T, class E>
+class Evaluator {
+ public:
+  Evaluator(E& engine, const EquilibriumTask<T>& task, Account& account)
+      : engine_(engine),
+        task_(task),
+        account_(account),
+        prescribed_(detail::prescribed_motion(task.contact.model, task.contact.slots, task.contact.time)) {
+    if (!task.contact.model.effects.current_geometry) return;
+    for (const auto& point : task.contact.model.points) longest_step_ = std::max(longest_step_, point.mesh_size);
+  }
+
+  /// Field, rows and residuals at an iterate. Each point takes the branch of its trial traction.
+  detail::Evaluation<T> operator()(const Unknowns<T>& unknowns);
+  /// Largest share <= 1 of a step (engine dofs) that moves no contact node farther than the largest facet; 1 with
+  /// initial geometry.
+  double good_share(const Matrix<T>& step) const {
+    if (longest_step_ == 0) return 1;
+    const double largest = largest_nodal_norm(engine_.compact(Vector<T>(step.col(0))), task_.contact.model.dimension);
+    return largest > longest_step_ ? longest_step_ / largest : 1;
+  }
+  /// Accepts an evaluation as the next iterate. Returns the number of closed points that face another patch than
+  /// before.
+  int accept(const detail::Evaluation<T>& at);
+  /// Keeps points that alternate between two patches at a corner on their present patch, until the equilibrium is
+  /// found. Why: at a corner the two normals push a point to either side for ever. False if no point alternates.
+  bool keep_patches();
+  /// Whether a closed point was kept on a patch that it does not face.
+  bool keeps_wrong(const Unknowns<T>& unknowns, const ContactField<T>& field) const;
+  /// Whether a closed point that was kept is more than a facet beyond the end of its patch: far from a vertex, its
+  /// forces are those of a surface that is not there. (Of nodes that are held for want of a vertex' own branch, 0.6
+  /// were met.)
+  bool keeps_far(const ContactField<T>& field) const {
+    constexpr double far = 1;
+    for (std::size_t p = 0; p < kept_.size(); ++p)
+      if (kept_[p] != Patch::none && field.state[p] != ContactState::open &&
+          std::max(-field.facing[p].xi, field.facing[p].xi - 1) > far)
+        return true;
+    return false;
+  }
+  /// Ends the effect of keep_patches().
+  void release();
+  /// Replaces the rows of an evaluation by those in given branches.
+  void take_rows_in(const std::vector<ContactState>& branches, const Unknowns<T>& unknowns, detail::Evaluation<T>& at);
+
+ private:
+  detail::Magnitudes magnitudes_at(const Vector<T>& compact, const RunScales& scales) const {
+    const Model& model = task_.contact.model;
+    const double moved = largest_nodal_norm(compact, model.dimension);
+    return {moved, model.effects.current_geometry ? std::max(moved, scales.length) : moved, prescribed_};
+  }
+  ContactField<T> field_at(const ContactInput<T>& input, const Vector<T>& compact, const Vector<T>& multiplier,
+                           const std::vector<ContactState>* branches) const {
+    if (task_.compliance) return evaluate_contact<T>(input, compact, task_.compliance->seen(multiplier), branches);
+    return evaluate_contact<T>(input, compact, multiplier, branches);
+  }
+  Vector<T> contact_field_forces(const Vector<T>& compact, const ContactField<T>& field) const;
+  void count() { account_.counters.contact_evaluations += static_cast<long>(task_.contact.model.points.size()); }
+
+  E& engine_;
+  const EquilibriumTask<T>& task_;
+  Account& account_;
+  double prescribed_;                      ///< largest displacement that supports prescribe
+  double longest_step_ = 0;                ///< largest step of a contact node: the largest facet; 0: unlimited
+  std::vector<Facing> last_;               ///< of the last iterate; empty: no point slides along a curve
+  std::vector<std::vector<int>> visited_;  ///< per point: the patches that it has faced
+  std::vector<char> returned_;             ///< per point: whether it came back to one of them
+  std::vector<int> kept_;                  ///< per point: the patch that it is kept on, or none; empty: no point
+};
+
+/// Forces of contact and of the anchor, if any, on the contact nodes, compact.
+template <class T, class E>
+Vector<T> Evaluator<T, E>::contact_field_forces(const Vector<T>& compact, const ContactField<T>& field) const {
+  const Model& model = task_.contact.model;
+  Vector<T> forces = contact_forces(model, task_.contact.slots, field);
+  if (task_.anchor.stiffness.size() > 0) forces += task_.anchor.force(compact, model.dimension);
+  return forces;
+}
+
+template <class T, class E>
+int Evaluator<T, E>::accept(const detail::Evaluation<T>& at) {
+  const auto& facing = at.field.facing;
+  int crossed = 0;
+  for (std::size_t p = 0; p < facing.size() && !last_.empty(); ++p) {
+    if (at.field.state[p] == ContactState::open || !detail::has_crossed(last_[p], facing[p])) continue;
+    ++crossed;
+    auto& visited = visited_[p];
+    const bool again = std::find(visited.begin(), visited.end(), facing[p].patch) != visited.end();
+    if (again) returned_[p] = 1;
+    visited.push_back(facing[p].patch);
+  }
+  if (last_.empty()) {
+    for (const Facing& f : facing) visited_.push_back({f.patch});
+    returned_.assign(facing.size(), 0);
+  }
+  last_ = facing;
+  return crossed;
+}
+
+template <class T, class E>
+bool Evaluator<T, E>::keep_patches() {
+  bool any = false;
+  for (std::size_t p = 0; p < last_.size(); ++p) {
+    if (!returned_[p] || last_[p].patch == Patch::none || (!kept_.empty() && kept_[p] != Patch::none)) continue;
+    const auto& point = task_.contact.model.points[p];
+    const Patch& patch = task_.contact.model.curves[point.curve].patches[last_[p].patch];
+    if (patch.goes_on_before() && patch.goes_on_after()) continue;
+    kept_.resize(last_.size(), Patch::none);
+    kept_[p] = last_[p].patch;
+    any = true;
+  }
+  return any;
+}
+
+template <class T, class E>
+bool Evaluator<T, E>::keeps_wrong(const Unknowns<T>& unknowns, const ContactField<T>& field) const {
+  if (kept_.empty()) return false;
+  const auto free = detail::facings(task_.contact, engine_.compact(unknowns.u));
+  for (std::size_t p = 0; p < kept_.size(); ++p)
+    if (kept_[p] != Patch::none && field.state[p] != ContactState::open && free[p].patch != kept_[p]) return true;
+  return false;
+}
+
+template <class T, class E>
+void Evaluator<T, E>::release() {
+  kept_.clear();
+  last_.clear();
+  visited_.clear();
+}
+
+template <class T, class E>
+detail::Evaluation<T> Evaluator<T, E>::operator()(const Unknowns<T>& unknowns) {
+  ContactInput<T> input = task_.contact;
+  const Model& model = input.model;
+  detail::Evaluation<T> at;
+  at.scales = account_.scales;
+  if (task_.arc) engine_.move_loads(unknowns.time);
+  const Vector<T> compact = engine_.compact(unknowns.u);
+  std::vector<Facing> facing;
+  if (model.slides_along_curves()) {
+    const Stopwatch time(account_.seconds.contact_search);
+    facing = detail::facings(input, compact, kept_);
+    input.facing = &facing;
+  }
+  Vector<T> forces;
+  {
+    const Stopwatch time(account_.seconds.contact);
+    at.field = field_at(input, compact, unknowns.multiplier, nullptr);
+    forces = contact_field_forces(compact, at.field);
+  }
+  count();
+  ForceScale force{at.scales.force, 0};
+  {
+    const Stopwatch time(account_.seconds.bodies);
+    at.rows_u = engine_.residual(unknowns.u, forces, force);
+  }
+  at.scales.force = force.force;
+  const auto sizes = detail::measure_points(input, at.field, at.scales);
+  const detail::Magnitudes magnitudes = magnitudes_at(compact, at.scales);
+  for (Eigen::Index row = 0; row < at.rows_u.size(); ++row)
+    if (!engine_.is_free(row)) at.rows_u[row] = T(0);
+  at.residuals.equilibrium = detail::ratio(largest_nodal_norm(at.rows_u, model.dimension), at.scales.force);
+  detail::set_floors(sizes, at.scales, force.rounding, magnitudes, at.residuals);
+  if (!task_.has_multiplier_rows()) return at;
+  at.rows_l = multiplier_residual(model, input.slots, at.field.traction, unknowns.multiplier);
+  detail::measure_multipliers(input, unknowns.multiplier, sizes, magnitudes.displacement, at);
+  return at;
+}
+
+template <class T, class E>
+void Evaluator<T, E>::take_rows_in(const std::vector<ContactState>& branches, const Unknowns<T>& unknowns,
+                                   detail::Evaluation<T>& at) {
+  ContactInput<T> input = task_.contact;
+  input.facing = &at.field.facing;
+  const Vector<T> compact = engine_.compact(unknowns.u);
+  ContactField<T> field;
+  Vector<T> forces;
+  {
+    const Stopwatch time(account_.seconds.contact);
+    field = field_at(input, compact, unknowns.multiplier, &branches);
+    forces = contact_field_forces(compact, field);
+  }
+  count();
+  ForceScale unused;
+  {
+    const Stopwatch time(account_.seconds.bodies);
+    at.rows_u = engine_.residual(unknowns.u, forces, unused);
+  }
+  if (task_.has_multiplier_rows())
+    at.rows_l = multiplier_residual(input.model, input.slots, field.traction, unknowns.multiplier);
+}
+
+}  // namespace stickslip

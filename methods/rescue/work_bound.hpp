@@ -1,0 +1,56 @@
+/// Bound on the work of a step, after which a solution is no longer sought.
+///
+/// Why: a step is cut down to a thousandth, and each part may take the sequence (methods/rescue/sequential.hpp) and
+/// then hundreds of steps of the motion (methods/rescue/motion.hpp). All of these together would take days. The work is
+/// counted in iterations of Newton's method, which are the same on every machine. It is checked between equilibria, so
+/// one more may follow. If bodies and geometry are linear, an iteration is cheap and there is no bound.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "core/model/model.hpp"
+#include "core/model/result.hpp"
+
+namespace stickslip {
+
+/// Counts iterations in vain of the attempts at a step: all iterations of an attempt that fails, and, of one that
+/// succeeds, those beyond max_iterations per equilibrium. So parts of a step that converge as they should cost nothing.
+class WorkBound {
+ public:
+  /// `counters`: of the run; must outlive it.
+  WorkBound(const Model& model, const Counters& counters, int max_iterations)
+      : counters_(counters), each_(max_iterations) {
+    const bool linear = model.effects.linear_bulk && !model.effects.current_geometry;
+    most_ = linear ? std::numeric_limits<long>::max() : equilibria_in_vain * std::max(each_, least_each);
+  }
+
+  /// Lessens the bound for a step at whose start a body is free and nothing presses on it: what holds it must be met
+  /// at once.
+  void lessen() { most_ = std::min(most_, few_in_vain * std::max(each_, least_each)); }
+  void begin() { before_ = counters_.newton; }
+  /// Ends an attempt. `equilibria`: number of its equilibria; 0: it failed.
+  void end(int equilibria) {
+    vain_ += std::max(0L, counters_.newton - before_ - equilibria * each_);
+    begin();
+  }
+  /// Whether the present attempt and those before it have used up the bound.
+  bool is_spent() const { return vain_ + counters_.newton - before_ >= most_; }
+  std::string in_words() const {
+    return "given up after " + std::to_string(vain_) +
+           " iterations in vain, of parts of the step too: no equilibrium may lead on from the last, as where nodes of "
+           "a slave are further apart than those of its master; try the other side as the slave, a smooth master, or "
+           "segments";
+  }
+
+ private:
+  /// Bound in units of max_iterations. Steps that succeeded took up to 20; 50 take minutes at 8000 displacements.
+  static constexpr long equilibria_in_vain = 50;
+  static constexpr long few_in_vain = 4;
+  static constexpr long least_each = 100;  // for a small max_iterations, which is chosen to have steps cut
+  const Counters& counters_;
+  long each_, most_ = 0, vain_ = 0, before_ = 0;
+};
+
+}  // namespace stickslip

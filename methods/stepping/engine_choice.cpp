@@ -1,0 +1,27 @@
+#include "methods/stepping/engine_choice.hpp"
+
+#include "methods/all_methods.hpp"
+
+namespace stickslip {
+
+bool has_unknown_multipliers(const Method& method) {
+  return std::visit([](const auto& m) { return m.has_unknown_multipliers; }, method);
+}
+
+ConeRadius cone_radius_of(const Method& method) {
+  return std::visit([](const auto& m) { return cone_radius(m); }, method);
+}
+
+EnginePrice predict_price(const Model& model, const Method& method, const FactorSize& factor) {
+  const bool unknown = has_unknown_multipliers(method);
+  return predict_price(model, unknown, detail::symmetry_of(model, unknown, cone_radius_of(method)), factor);
+}
+
+bool condenses(const Model& model, const Method& method, LinearAlgebra::Engine engine,
+               const std::optional<FactorSize>& factor) {
+  if (!can_condense(model)) return false;
+  if (engine != LinearAlgebra::Engine::automatic) return engine == LinearAlgebra::Engine::condensed;
+  return prefers_condensed(model, predict_price(model, method, factor ? *factor : bodies_factor(model)));
+}
+
+}  // namespace stickslip
