@@ -2,7 +2,7 @@
 /// per element); forces that carry derivatives; and the assembly of the sparse engine, its pattern included.
 #include <benchmark/benchmark.h>
 
-#include "core/engine/engine.hpp"
+#include "core/engine/sparse_engine.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace stickslip {

@@ -60,7 +60,7 @@ void increment(benchmark::State& state, const Method& method, Kind engine, Backe
     const auto trajectory = solve(plate.model, plate.slots, method, options, workspace);
     if (!is_converged(trajectory.status)) state.SkipWithError(trajectory.message.c_str());
     iterations.add(trajectory);
-    nonzeros = std::visit([](const auto& e) { return e.nonzeros(); }, *workspace.engine);
+    nonzeros = workspace.engine->nonzeros();
   }
   state.counters["dofs"] = static_cast<double>(plate.model.free_dofs.size());
   state.counters["multipliers"] = plate.model.multiplier_count;

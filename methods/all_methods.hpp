@@ -1,4 +1,5 @@
-/// The files of the methods in this folder: one a method of the closed set (methods/options.hpp).
+/// The files of the methods in this folder: one a method of the closed set (methods/options.hpp). They are compiled in
+/// double; who wants another scalar includes them.
 #pragma once
 
 #include "methods/monolithic.hpp"

@@ -23,11 +23,7 @@ void solve(const Model& model, const Slots<double>& slots, const Method& method,
 Stretch<double> solve_again(const Model& model, const Slots<double>& slots, const Method& method,
                             const Trajectory<double>& trajectory, std::size_t n, Workspace<double>& workspace,
                             Counters& counters) {
-  return std::visit(
-      [&](const auto& m, auto& engine) {
-        return detail::solve_again(m, model, slots, engine, *workspace.checkpoints, trajectory, n, counters);
-      },
-      method, *workspace.engine);
+  return detail::solve_again(method, model, slots, *workspace.engine, *workspace.checkpoints, trajectory, n, counters);
 }
 
 }  // namespace stickslip

@@ -6,14 +6,17 @@
 ///                             multiple of the local stiffness that "auto" stands for
 ///   tangential_share()        tangential over normal rho
 ///   has_unknown_multipliers   whether multipliers are unknowns of the systems solved
+///   cone_radius()             which pressure the radius of its friction cones follows
+///   is_globalised()           whether methods/rescue continues where an increment fails
 ///   prevents_penetration      whether a solution penetrates nothing. Else it is judged as contact with a layer of
 ///                             compliance 1/rho (studies/run/accuracy.hpp)
 ///   contact_tolerance()       error that its options leave in gaps, slips and tractions, relative
 ///   tighten(to, most)         has its iterations end no earlier than at the tolerance `to`, and at no fewer than
-///   `most`
-///                             augmentations
+///                             `most` augmentations
 ///   conflict()                its options that do not go together
 ///   scheme()                  what its derivatives are
+///   solve_increment()         the method: in the file of its name in this folder
+///   differentiate_increment() and pull_back_increment(): its scheme, in the file of its name in sensitivity/
 #pragma once
 
 #include <algorithm>
@@ -21,10 +24,23 @@
 #include <optional>
 #include <string_view>
 #include <variant>
+#include <vector>
 
+#include "core/contact/cone_radius.hpp"
 #include "core/model/scene.hpp"
 
 namespace stickslip {
+
+template <class T>
+struct Run;
+template <class T>
+struct Start;
+template <class T>
+struct State;
+template <class T>
+struct Increment;
+struct Differentiation;
+struct AdjointProblem;
 
 /// Newton's method, the same for all.
 struct NewtonOptions {
@@ -90,6 +106,8 @@ struct Penalty {
   const Regularisation& regularisation() const { return stiffness; }
   Regularisation& regularisation() { return stiffness; }
   Number tangential_share() const { return tangential_ratio; }
+  ConeRadius cone_radius() const { return ConeRadius::augmented; }
+  bool is_globalised() const { return true; }
   double contact_tolerance() const { return newton.tolerance; }
   void tighten(double to, int /*most*/) { newton.tighten(to); }
   OptionConflict conflict() const { return {}; }
@@ -101,6 +119,11 @@ struct Penalty {
             .oversize = 1,
             .error = 0};
   }
+
+  template <class T>
+  Increment<T> solve_increment(Run<T>&, const State<T>&, const std::vector<double>&, double, const Start<T>&) const;
+  bool differentiate_increment(Differentiation&, const State<double>&, const Increment<double>&) const;
+  bool pull_back_increment(AdjointProblem&, const State<double>&, const Increment<double>&) const;
 };
 
 struct UzawaAL {
@@ -130,6 +153,8 @@ struct UzawaAL {
   const Regularisation& regularisation() const { return scale; }
   Regularisation& regularisation() { return scale; }
   Number tangential_share() const { return 1.0; }
+  ConeRadius cone_radius() const { return cone == Cone::augmented ? ConeRadius::augmented : ConeRadius::multiplier; }
+  bool is_globalised() const { return cone == Cone::augmented; }  // (failures of a frozen cone are a subject of study)
   double contact_tolerance() const { return tolerance; }
   void tighten(double to, int most) {
     newton.tighten(to);
@@ -149,6 +174,11 @@ struct UzawaAL {
             .oversize = factor,
             .error = oversized ? 10 / factor : 0};
   }
+
+  template <class T>
+  Increment<T> solve_increment(Run<T>&, const State<T>&, const std::vector<double>&, double, const Start<T>&) const;
+  bool differentiate_increment(Differentiation&, const State<double>&, const Increment<double>&) const;
+  bool pull_back_increment(AdjointProblem&, const State<double>&, const Increment<double>&) const;
 };
 
 inline OptionConflict UzawaAL::conflict() const {
@@ -182,6 +212,8 @@ struct MonolithicAL {
   const Regularisation& regularisation() const { return scale; }
   Regularisation& regularisation() { return scale; }
   Number tangential_share() const { return 1.0; }
+  ConeRadius cone_radius() const { return cone == Cone::augmented ? ConeRadius::augmented : ConeRadius::multiplier; }
+  bool is_globalised() const { return true; }
   double contact_tolerance() const { return newton.tolerance; }
   void tighten(double to, int /*most*/) { newton.tighten(to); }
   OptionConflict conflict() const { return {}; }
@@ -193,6 +225,11 @@ struct MonolithicAL {
             .oversize = 1,
             .error = 0};
   }
+
+  template <class T>
+  Increment<T> solve_increment(Run<T>&, const State<T>&, const std::vector<double>&, double, const Start<T>&) const;
+  bool differentiate_increment(Differentiation&, const State<double>&, const Increment<double>&) const;
+  bool pull_back_increment(AdjointProblem&, const State<double>&, const Increment<double>&) const;
 };
 
 /// The closed set: what is missing in a visit over it does not compile.
@@ -210,6 +247,8 @@ concept WholeMethod = std::copyable<M> && requires(const M& method, M& changed) 
   { method.regularisation() } -> std::same_as<const Regularisation&>;
   { changed.regularisation() } -> std::same_as<Regularisation&>;
   { method.tangential_share() } -> std::same_as<Number>;
+  { method.cone_radius() } -> std::same_as<ConeRadius>;
+  { method.is_globalised() } -> std::same_as<bool>;
   { method.contact_tolerance() } -> std::same_as<double>;
   { changed.tighten(1e-12, 1) } -> std::same_as<void>;
   { method.conflict() } -> std::same_as<OptionConflict>;
@@ -232,6 +271,21 @@ inline std::string_view name_of(const Method& method) {
 }
 inline Scheme scheme_of(const Method& method) {
   return std::visit([](const auto& m) { return m.scheme(); }, method);
+}
+inline ConeRadius cone_radius_of(const Method& method) {
+  return std::visit([](const auto& m) { return m.cone_radius(); }, method);
+}
+inline const NewtonOptions& newton_of(const Method& method) {
+  return std::visit([](const auto& m) -> const NewtonOptions& { return m.newton; }, method);
+}
+inline bool has_unknown_multipliers(const Method& method) {
+  return std::visit([](const auto& m) { return m.has_unknown_multipliers; }, method);
+}
+inline bool prevents_penetration(const Method& method) {
+  return std::visit([](const auto& m) { return m.prevents_penetration; }, method);
+}
+inline bool is_globalised(const Method& method) {
+  return std::visit([](const auto& m) { return m.is_globalised(); }, method);
 }
 
 /// Which linear algebra carries the run; both give the same solution (scene key "linear_solver", results name what was

@@ -6,9 +6,8 @@
 ///
 ///   rho           scale, force per length cubed. With `adapt`, rho of a point grows fourfold if an augmentation leaves
 ///                 more than 1/4 of its violation
-///   acceleration  lambda <- an extrapolation of the last t, put back onto the cone
-///   (methods/augmentation/acceleration.hpp) cone          augmented: radius -mu z_N; the tangent of slip is
-///   unsymmetric
+///   acceleration  lambda <- an extrapolation of the last t, put back onto the cone (augmentation/acceleration.hpp)
+///   cone          augmented: radius -mu z_N; the tangent of slip is unsymmetric
 ///                 frozen: radius -mu lambda_N of the last augmentation; the tangent is symmetric. The radius is then a
 ///                 fixed point iteration of its own. An augmentation multiplies its error by -mu/s, s the slope of the
 ///                 load path (tangential over normal stiffness of the unloading). For mu > s it ends in a two-cycle
@@ -21,159 +20,20 @@
 /// undo each other (status cycle), or when a gap does not change with its multiplier (infeasible). An inner solve
 /// before the last ends at a hundredth of its first residual; the last one is exact. The truncated scheme
 /// differentiates every inner solve, so there all are exact. Options: methods/options.hpp. The derivative of the update
-/// lambda <- t is update_derivatives() of sensitivity/uzawa.hpp. [SL92]
+/// lambda <- t is update_derivatives() of sensitivity/uzawa.cpp. [SL92]
 #pragma once
 
-#include "methods/augmentation/augmentation_progress.hpp"
-#include "methods/rescue/sequential.hpp"
+#include "methods/augmentation/augmentation_status.hpp"
 
 namespace stickslip {
 
-inline ConeRadius cone_radius(const UzawaAL& method) {
-  return method.cone == UzawaAL::Cone::augmented ? ConeRadius::augmented : ConeRadius::multiplier;
-}
-/// Whether methods/rescue/motion.hpp continues where an increment fails. Not with a frozen cone: its failures are a
-/// subject of study.
-inline bool is_globalised(const UzawaAL& method) { return method.cone == UzawaAL::Cone::augmented; }
-
 namespace detail {
 
-/// Raises rho_factor of each point whose violation did not fall to a quarter, fourfold, up to 1e3 nodal stiffnesses.
-/// `before`, `now`: violations per point, length; a violation up to `negligible` counts as zero. True if a factor rose.
-template <class T>
-bool adapt(const Slots<T>& slots, const RegularisationField<T>& initial, const std::vector<double>& before,
-           const std::vector<double>& now, double negligible, std::vector<double>& factor) {
-  bool raised = false;
-  for (std::size_t p = 0; p < before.size(); ++p) {
-    if (now[p] <= negligible || now[p] <= 0.25 * before[p]) continue;
-    const double cap = 1e3 * value(slots.stiffness[p]) / value(slots.geometry[p].area) / value(initial[p].normal);
-    const double wanted = std::min(4 * factor[p], cap);
-    raised |= wanted > factor[p];
-    factor[p] = std::max(factor[p], wanted);
-  }
-  return raised;
-}
-
-/// The multiplier in the friction cones. Compression is kept and tension set to zero; the tangential part is shortened
-/// to the bound.
-template <class T>
-Vector<T> projected_multiplier(const Model& model, const Slots<T>& slots, Vector<T> multiplier) {
-  for (const auto& point : model.points) {
-    T& normal = multiplier[point.multiplier];
-    if (value(normal) > 0) normal = T(0);
-    if (point.tangents == 0) continue;
-    auto tangential = multiplier.segment(point.multiplier + 1, point.tangents);
-    const auto& law = slots.friction[point.contact];
-    const double bound = law.bound(-value(normal)), magnitude = norm(values(tangential));
-    if (magnitude > bound) tangential *= law.bound(T(-normal), law.piece(-value(normal))) / norm(tangential);
-  }
-  return multiplier;
-}
-
-/// Share of its first residual at which an inner solve may end while more augmentations follow. Why: an exact solve
-/// would change, by rounding, the states of points that hardly slip. A share of 0.01 does not slow the augmentations
-/// down, and changes the measured contraction by about 0.01 of itself.
-inline constexpr double forcing = 0.01;
-
-/// Newton's options of an inner solve. Its tolerance is the least of its own option and 0.01 (1 - q) times the outer
-/// tolerance, but not below 1e-15; q: contraction. Why: the last updates are 1 - q times the error that the outer
-/// tolerance allows, and a larger inner residual would stall them.
-inline NewtonOptions inner_options(const UzawaAL& method, double contraction) {
-  constexpr double least = 1e-15;
-  NewtonOptions inner = method.newton;
-  const double complement = contraction < 1 ? 1 - contraction : 1;
-  inner.tolerance =
-      std::max(std::min(inner.tolerance, 0.01 * method.tolerance * complement), std::min(inner.tolerance, least));
-  return inner;
-}
-
-/// Number of successive augmentations within the tolerance after which changing states no longer prolong the loop. Why:
-/// a point at a tie may alternate between two states for ever.
-inline constexpr int patience_at_ties = 4;
-
-inline constexpr const char* frozen_advice =
-    ", as a frozen cone does where the friction coefficient exceeds the slope of the load path; use the augmented cone";
-
-/// Whether the augmentations have ended, and how.
-struct AugmentationStatus {
-  Status status = Status::converged;  ///< valid if `done`
-  bool done = false;
-  bool within_tolerance = false;  ///< update and violation are within the tolerance; the states may still change
-  std::string message;
-  double negligible = 0;  ///< violation that counts as zero, length: the larger of tolerance and rounding
-};
-
-/// Status after an augmentation.
-///
-///   largest_displacement  of a contact node, length
-///   noise                 nodal force that rounding left of the inner solve; 0: the solve ended by its tolerance
-///
-/// Estimates of rounding in its body:
-///
-///   gap       rounding of a gap, from that of the displacements, and from that of a traction, which is rho times a gap
-///   traction  rounding of an update: rho gap, and rounding of the tractions, both times 1 + mu. In slip the bound
-///             turns the rounding of the pressure into one of the tangential traction
-///   drowned   updates no longer fall, and 10 `noise` explains every update and violation. Example: a stiff body on a
-///             soft one, whose rounding appears in tractions, and through the soft body in gaps
-template <class T>
-AugmentationStatus augmentation_status(const UzawaAL& method, const Slots<T>& slots, const RegularisationField<T>& rho,
-                                       double largest_displacement, double noise, const RunScales& scales,
-                                       const AugmentationProgress<T>& progress) {
-  double stiffest = 0, friction = 0;
-  for (const auto& r : rho) stiffest = std::max(stiffest, value(r.normal));
-  for (const auto& law : slots.friction) friction = std::max(friction, value(law.slope_at_apex()));
-  const double carried = stiffest > 0 ? scales.traction / stiffest : 0;
-  const double gap = 10 * unit_roundoff * (largest_displacement + carried),
-               violation = method.tolerance * scales.length;
-  const double traction = (1 + friction) * (stiffest * gap + 10 * unit_roundoff * scales.traction);
-  const bool small = progress.error_left() <= method.tolerance * scales.traction;
-  const bool drowned = noise > 0 && progress.is_stalled() && progress.is_within(10 * noise);
-  // Rounding ends the augmentations in one of four cases:
-  //   drowned
-  //   updates no longer fall, and violation and update are rounding
-  //   no update has fallen for 50 augmentations, and the violation is within 1e3 roundings of a gap (a stiff body on a
-  //   soft one)
-  //   no update has fallen for 50 augmentations of a map that contracts fast, and the violation is within its tolerance
-  const bool at_roundoff = drowned ||
-                           (progress.is_stalled() && progress.violation() <= gap && progress.update() <= traction) ||
-                           (progress.is_exhausted() && progress.violation() <= 1e3 * gap) ||
-                           (progress.is_exhausted() && progress.contracts_fast() && progress.violation() <= violation);
-  AugmentationStatus result;
-  result.negligible = std::max(violation, gap);
-  result.within_tolerance = small && progress.violation() <= result.negligible;
-  auto end = [&](Status status, std::string message = "") {
-    result.status = status;
-    result.done = true;
-    result.message = std::move(message);
-    return result;
-  };
-  if ((progress.has_same_states() || progress.update() == 0) &&
-      ((small && progress.violation() <= violation) || at_roundoff))
-    return end(small ? Status::converged : Status::converged_at_roundoff);
-  if (progress.violation() <= gap) return result;
-  if (const std::string point = progress.infeasible_point(violation); !point.empty())
-    return end(Status::infeasible, point);
-  if (!progress.is_two_cycle()) return result;
-  const std::string cycle = "the augmentations go to and fro between two multipliers";
-  return end(Status::cycle, cycle + (is_globalised(method) ? "; try more steps" : frozen_advice));
-}
-
-/// Sets status and message of the increment, if the augmentations are done or their number is at its limit. The outer
-/// tolerance decides, not the stricter one of the inner solves.
-template <class T>
-void conclude(const AugmentationStatus& outer, bool at_limit, Increment<T>& increment) {
-  if (!outer.done && !at_limit) return;
-  increment.status = outer.done ? outer.status : Status::cap;
-  increment.cut_off = !outer.done;
-  increment.message =
-      outer.done ? outer.message : "max_augmentations reached; try a larger scale, adapt, or an acceleration";
-}
-
 /// The augmentations of one increment.
-template <class T, class E>
+template <class T>
 class AugmentationLoop {
  public:
-  AugmentationLoop(const UzawaAL& method, Run<T, E>& run, const State<T>& previous, std::vector<double> rho_factor,
+  AugmentationLoop(const UzawaAL& method, Run<T>& run, const State<T>& previous, std::vector<double> rho_factor,
                    double time, const Start<T>& start)
       : method_(method),
         run_(run),
@@ -196,7 +56,7 @@ class AugmentationLoop {
   Increment<T> solve() {
     while (true) {
       const auto rho = adapted(initial_, increment_.rho_factor);
-      const ContactInput<T> input{run_.model, run_.slots, rho, previous_.history, cone_radius(method_), time_};
+      const ContactInput<T> input{run_.model, run_.slots, rho, previous_.history, method_.cone_radius(), time_};
       auto equilibrium = balance(input);
       if (!is_converged(equilibrium.status) || ends_with(input, equilibrium)) {
         increment_.state = settle(run_, input, std::move(equilibrium.unknowns), std::move(equilibrium.field));
@@ -212,21 +72,20 @@ class AugmentationLoop {
     inexact_ &= increment_.augmentations + 1 < limit_;
     const bool first = increment_.augmentations == 0;
     run_.account.scales = before_;
-    const EquilibriumTask<T> task{input,
-                                  Multipliers::given,
-                                  start_.anchor,
-                                  resumed_,
-                                  inexact_ ? forcing : 0,
-                                  first ? &start_.state.displacement : nullptr,
-                                  nullptr,
-                                  start_.arc,
-                                  first && rests(run_, start_),
-                                  first && start_.at_rest && run_.floating.empty()};
+    const EquilibriumTask<T> task{.contact = input,
+                                  .multipliers = Multipliers::given,
+                                  .anchor = start_.anchor,
+                                  .resumed = resumed_,
+                                  .forcing = inexact_ ? forcing : 0,
+                                  .last_displacement = first ? &start_.state.displacement : nullptr,
+                                  .arc = start_.arc,
+                                  .rests = first && rests(run_, start_),
+                                  .tells_stability = first && tells_stability(run_, start_)};
     auto equilibrium =
         find_equilibrium(run_.engine, task, unknowns_, inner_options(method_, progress_.contraction()), run_.account);
     account_for(increment_, equilibrium, ++increment_.augmentations);
     ++run_.account.counters.augmentations;
-    if (equilibrium.status == Status::cycle && !is_globalised(method_)) increment_.message += frozen_advice;
+    if (equilibrium.status == Status::cycle && !method_.is_globalised()) increment_.message += frozen_advice;
     return equilibrium;
   }
 
@@ -260,7 +119,7 @@ class AugmentationLoop {
   }
 
   /// The Uzawa update: lambda <- t, or an extrapolation of it. First rho is adapted. The derivative D lambda <- D t is
-  /// update_derivatives() of sensitivity/uzawa.hpp.
+  /// update_derivatives() of sensitivity/uzawa.cpp.
   void update(const Equilibrium<T>& equilibrium) {
     inexact_ &= !status_.done;
     const bool raised = method_.adapt && progress_.has_same_states() && !status_.done &&
@@ -282,7 +141,7 @@ class AugmentationLoop {
   }
 
   const UzawaAL& method_;
-  Run<T, E>& run_;
+  Run<T>& run_;
   const State<T>& previous_;
   const Start<T>& start_;
   double time_;
@@ -303,13 +162,13 @@ class AugmentationLoop {
 
 }  // namespace detail
 
-template <class T, class E>
-Increment<T> solve_increment(const UzawaAL& options, Run<T, E>& run, const State<T>& previous,
-                             const std::vector<double>& previous_factor, double time, const Start<T>& start) {
-  UzawaAL method = options;
-  method.tolerance = start.tolerance(options.tolerance);
+template <class T>
+Increment<T> UzawaAL::solve_increment(Run<T>& run, const State<T>& previous, const std::vector<double>& previous_factor,
+                                      double time, const Start<T>& start) const {
+  UzawaAL method = *this;
+  method.tolerance = start.tolerance(tolerance);
   auto factor = previous_factor.empty() ? std::vector<double>(run.model.points.size(), 1.0) : previous_factor;
-  return detail::AugmentationLoop<T, E>(method, run, previous, std::move(factor), time, start).solve();
+  return detail::AugmentationLoop<T>(method, run, previous, std::move(factor), time, start).solve();
 }
 
 }  // namespace stickslip

@@ -2,9 +2,9 @@
 
 #include "core/model/objective.hpp"
 #include "core/model/storage.hpp"
-#include "sensitivity/all_methods.hpp"
 #include "sensitivity/one_sided.hpp"
-#include "sensitivity/pull_back_bodies.hpp"
+#include "sensitivity/pull_back_inside.hpp"
+#include "sensitivity/schemes.hpp"
 
 namespace stickslip {
 namespace {
@@ -113,8 +113,7 @@ std::vector<int> dofs_read(const Model& model, bool energies) {
 }
 
 /// Moves the derivatives by the history that the run began with to the slots that it is a function of.
-template <class E>
-void pull_back_initial_history(AdjointProblem<E>& problem) {
+void pull_back_initial_history(AdjointProblem& problem) {
   if (!problem.model.effects.current_geometry) return;
   problem.tape.rewind(problem.slots_end);
   const auto initial = initial_history<Reverse>(problem.model, problem.recorded);
@@ -131,8 +130,7 @@ void pull_back_initial_history(AdjointProblem<E>& problem) {
 }
 
 /// `taken`: the branches at ties; empty where there are none.
-template <class E, class M>
-bool run(const M& method, AdjointProblem<E>& problem, WholeStates& states, const std::vector<TakenBranches>& taken) {
+bool run(AdjointProblem& problem, WholeStates& states, const std::vector<TakenBranches>& taken) {
   const Model& model = problem.model;
   for (auto& objective : problem.objectives)
     objective.history = no_derivative(states.before(0).history, model.multiplier_count);
@@ -141,7 +139,7 @@ bool run(const M& method, AdjointProblem<E>& problem, WholeStates& states, const
     const auto& previous = states.before(n);
     std::optional<Increment<double>> with_branches;
     if (!taken.empty()) taken[n].give(with_branches.emplace(increment));
-    if (!pull_back_increment(method, problem, previous, with_branches ? *with_branches : increment)) return false;
+    if (!pull_back_increment(problem, previous, with_branches ? *with_branches : increment)) return false;
     const std::size_t together = model.effects.plasticity ? 1 : columns_together;  // history needs what is inside
     if (problem.objectives.front().waiting.size() >= together) pull_back_inside(problem);
   }
@@ -220,27 +218,20 @@ Gradients adjoint(const Model& model, const Slots<double>& slots, const Method& 
   std::vector<BackwardSweep> objectives(scene.objectives.size());
   const bool energies = reads_energies(scene);
   for (auto& objective : objectives) objective.adjoint.resize(tape.size(), 0);
-  bool done = false;
-  long waiting = 0;
-  auto backward = [&](const auto& m, auto& engine) {
-    using E = std::decay_t<decltype(engine)>;
-    AdjointProblem<E> problem{model, slots, engine, tape, recording.slots, tape.size(), objectives};
-    problem.at_supports = elements_at_supports(model);
-    problem.energies = energies;
-    problem.read_forces = dofs_read(model, energies);
-    done = run(m, problem, states, taken);
-    tape.rewind(problem.slots_end);
-    waiting = problem.waiting_bytes;
-    gradients.counters += problem.counters;
-    gradients.message = problem.message;
-    if (!done) gradients.status = problem.status;
-  };
-  std::visit(backward, method, *workspace.engine);
+  AdjointProblem problem{method, model, slots, *workspace.engine, tape, recording.slots, tape.size(), objectives};
+  problem.at_supports = elements_at_supports(model);
+  problem.energies = energies;
+  problem.read_forces = dofs_read(model, energies);
+  const bool done = run(problem, states, taken);
+  tape.rewind(problem.slots_end);
+  gradients.counters += problem.counters;
+  gradients.message = problem.message;
+  if (!done) gradients.status = problem.status;
   gradients.counters += states.take_counters();
   gradients.repeated = states.repeated();
   if (!done) return gradients;
   for (auto& objective : objectives) objective.adjoint.resize(tape.size());
-  gradients.storage = storage_of(recording, objectives, waiting);
+  gradients.storage = storage_of(recording, objectives, problem.waiting_bytes);
   gradients.storage.states = states.bytes();
   if (workspace.checkpoints) gradients.storage.adjoints += workspace.checkpoints->bytes();
   gradients.of_objectives = Matrix<double>::Zero(objectives.size(), scene.parameters.size());

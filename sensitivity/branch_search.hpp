@@ -9,43 +9,31 @@
 #include <limits>
 #include <set>
 
-#include "sensitivity/all_methods.hpp"
 #include "sensitivity/branches.hpp"
 #include "sensitivity/flow_ties.hpp"
+#include "sensitivity/schemes.hpp"
 #include "sensitivity/vertex_ties.hpp"
 
 namespace stickslip {
-namespace detail {
-
-/// rho of the equilibrium that a scheme differentiates.
-template <class M>
-RegularisationField<double> own_rho(const M& method, const Slots<double>& slots, const std::vector<double>& factor) {
-  return adapted(initial_regularisation(slots, method), factor);
-}
-
-}  // namespace detail
-
 /// Search for the branches of one equilibrium. The derivative is that of the first direction of the first block.
-template <class M, class E>
 class BranchSearch {
  public:
   /// `increment`: to be differentiated; `at`: its equilibrium, whose branches the search changes.
-  BranchSearch(const M& method, Differentiation<E>& problem, const State<double>& previous,
-               const Increment<double>& increment, State<double>& at, const std::vector<double>& factor,
-               const SideDirection& along)
-      : method_(method),
-        problem_(problem),
+  BranchSearch(Differentiation& problem, const State<double>& previous, const Increment<double>& increment,
+               State<double>& at, const std::vector<double>& factor, const SideDirection& along)
+      : problem_(problem),
         previous_(previous),
         increment_(increment),
         at_(at),
-        own_(detail::own_rho(method, problem.slots, factor)),
-        weak_(weak_points(problem.model, problem.slots, at, own_, cone_radius(method), along.largest_so_far)),
+        own_(adapted(initial_regularisation(problem.slots, problem.method), factor)),
+        weak_(
+            weak_points(problem.model, problem.slots, at, own_, cone_radius_of(problem.method), along.largest_so_far)),
         flows_(flow_ties(problem.model, problem.slots, at.displacement, previous.history.bodies)),
         vertices_(vertex_ties(problem.model, problem.slots, at, increment.time, along.largest_so_far)),
         direction_(along) {
     std::vector<double> stiffened = factor;
-    for (double& f : stiffened) f *= method.scheme().oversize;
-    rho_ = regularisation_blocks(method, problem, stiffened)[0];
+    for (double& f : stiffened) f *= scheme_of(problem.method).oversize;
+    rho_ = regularisation_blocks(problem, stiffened)[0];
   }
 
   /// Runs the search. True if a derivative confirms all of its branches; it is then in the block, its branches in `at`.
@@ -89,7 +77,7 @@ class BranchSearch {
       load_flow_ = at_.flow;
     }
     problem_.prepared = load_[0];
-    const bool done = differentiate_alone(method_, problem_, previous_, increment_);
+    const bool done = differentiate_alone(problem_, previous_, increment_);
     problem_.prepared.reset();  // (unused if the tangent is singular)
     return done;
   }
@@ -103,7 +91,7 @@ class BranchSearch {
     Consistency consistency;
     for (const auto& w : weak_) {
       auto verdict = branch_verdict(problem_.model, problem_.slots, problem_.blocks[0], rho_, own_,
-                                    cone_radius(method_), w, at_, direction_);
+                                    cone_radius_of(problem_.method), w, at_, direction_);
       consistency.possible &= verdict.possible;
       consistency.severity = std::max(consistency.severity, verdict.severity);
       if (!verdict.contradicts) continue;
@@ -219,8 +207,7 @@ class BranchSearch {
     return follow_branches();
   }
 
-  const M& method_;
-  Differentiation<E>& problem_;
+  Differentiation& problem_;
   const State<double>& previous_;
   const Increment<double>& increment_;
   State<double>& at_;
@@ -239,17 +226,16 @@ class BranchSearch {
 
 /// Differentiates one increment on one side of a parameter, with the branches that the derivative confirms. If no
 /// choice is confirmed: false; with `held` the derivative of the branches that hold most.
-template <class M, class E>
-bool differentiate_side(const M& method, Differentiation<E>& problem, const State<double>& previous,
-                        Increment<double>& increment, const SideDirection& along, bool held = false) {
+inline bool differentiate_side(Differentiation& problem, const State<double>& previous, Increment<double>& increment,
+                               const SideDirection& along, bool held = false) {
   const auto search = [&](const Increment<double>& of, State<double>& at, const std::vector<double>& factor) {
-    BranchSearch branches(method, problem, previous, of, at, factor, along);
+    BranchSearch branches(problem, previous, of, at, factor, along);
     if (branches.run()) return true;
     if (!held) return false;
     branches.hold();
-    return differentiate_alone(method, problem, previous, of);
+    return differentiate_alone(problem, previous, of);
   };
-  if (!method.scheme().of_each_augmentation) return search(increment, increment.state, increment.rho_factor);
+  if (!scheme_of(problem.method).of_each_augmentation) return search(increment, increment.state, increment.rho_factor);
   // Each augmentation starts from the derivative of the one before.
   auto& block = problem.blocks[0];
   const State<Direction> start = block.previous;

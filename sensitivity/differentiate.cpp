@@ -32,16 +32,6 @@ std::optional<std::vector<int>> dofs_read_inside(const Model& model) {
   return dofs;
 }
 
-/// Whether a factorisation of the engine costs as much as many solves.
-template <class T>
-constexpr bool has_costly_factors(const CondensedEngine<T>&) {
-  return false;
-}
-template <class T>
-constexpr bool has_costly_factors(const SparseEngine<T>&) {
-  return true;
-}
-
 /// Bytes of the pseudo-loads and solutions of increments.
 long solve_bytes(const std::vector<Unexpanded>& increments) {
   long bytes = 0;
@@ -91,24 +81,15 @@ struct Derivatives::Progress {
   void advance(const Trajectory<double>& trajectory, std::size_t end, bool follows) {
     if (blocks.empty()) begin();
     const std::size_t together = model.effects.plasticity ? 1 : std::max(1, columns_together / parameters());
-    std::visit(
-        [&](const auto& m) {
-          std::visit(
-              [&](auto& engine) {
-                while (done < end && !failed) take(m, engine, trajectory, std::min(end, done + together), follows);
-              },
-              *workspace.engine);
-        },
-        method);
+    while (done < end && !failed) take(trajectory, std::min(end, done + together), follows);
   }
 
-  template <class M, class E>
-  void take(const M& m, E& engine, const Trajectory<double>& trajectory, std::size_t end, bool follows) {
-    Differentiation<E> problem{model, slots, engine, blocks, parameters(), {}};
+  void take(const Trajectory<double>& trajectory, std::size_t end, bool follows) {
+    Differentiation problem{method, model, slots, *workspace.engine, blocks, parameters(), {}};
     problem.follows = follows;
     const auto& increments = trajectory.increments;
     std::vector<PseudoLoad> loads;
-    if (!m.scheme().of_each_augmentation) {  // (truncated Uzawa has a pseudo-load per augmentation)
+    if (!scheme_of(method).of_each_augmentation) {  // (truncated Uzawa has a pseudo-load per augmentation)
       for (std::size_t n = done; n < end; ++n)
         loads.push_back(pseudo_load(problem, increments[n].state, increments[n].time));
       reduce(problem, loads);
@@ -118,7 +99,7 @@ struct Derivatives::Progress {
     for (std::size_t n = done; n < end && !failed; ++n) {
       if (!loads.empty()) problem.prepared = std::move(loads[n - done]);
       const State<double>& previous = n == 0 ? trajectory.initial : increments[n - 1].state;
-      failed = !differentiate_increment(m, problem, previous, increments[n]);
+      failed = !differentiate_increment(problem, previous, increments[n]);
       if (failed) {
         gradients.status = problem.status;
         gradients.message = problem.message;
@@ -141,7 +122,7 @@ struct Derivatives::Progress {
     for (std::size_t k = 0; k < displacements.size(); ++k) {
       for (std::size_t b = 0; b < blocks.size(); ++b) reached[k][b].displacement = std::move(displacements[k][b]);
       evaluate(reached[k], increments[done].time);
-      add_nearest_change(m, increments[done++], reached[k]);
+      add_nearest_change(increments[done++], reached[k]);
     }
     storage.states = std::max(storage.states, state_bytes(reached));
     if (is_last)
@@ -150,8 +131,7 @@ struct Derivatives::Progress {
   }
 
   /// Expands the displacements of increments that a response reads, and of the last increment of the run.
-  template <class E>
-  std::vector<std::vector<Vector<Direction>>> displacements_of(Differentiation<E>& problem,
+  std::vector<std::vector<Vector<Direction>>> displacements_of(Differentiation& problem,
                                                                std::vector<Unexpanded> increments, bool is_last) {
     std::vector<std::vector<Vector<Direction>>> displacements;
     if (read_inside) {
@@ -186,18 +166,16 @@ struct Derivatives::Progress {
   }
 
   /// pre: if bodies remember, the increment is the last that the blocks have gone through.
-  template <class M>
-  void add_nearest_change(const M& m, const Increment<double>& increment, const std::vector<State<Direction>>& at) {
+  void add_nearest_change(const Increment<double>& increment, const std::vector<State<Direction>>& at) {
     largest = std::max(largest, traction_scale(model, slots, increment.state));
     NearestChange nearest = no_change(model);
     for (std::size_t b = 0; b < blocks.size(); ++b) {
-      RegularisationField<Direction> springs;
-      if constexpr (!M::prevents_penetration) springs = initial_regularisation(blocks[b].slots, m);
+      std::optional<RegularisationField<Direction>> springs;
+      if (!prevents_penetration(method)) springs = initial_regularisation(blocks[b].slots, method);
       const auto& before = blocks[b].current.history.bodies;  // (the blocks have gone on)
-      lower_nearest_change(model, slots,
-                           {increment.state, increment.time, largest, blocks[b], at[b], before,
-                            M::prevents_penetration ? nullptr : &springs},
-                           nearest);
+      lower_nearest_change(
+          model, slots,
+          {increment.state, increment.time, largest, blocks[b], at[b], before, springs ? &*springs : nullptr}, nearest);
     }
     gradients.nearest_change.push_back(std::move(nearest));
   }
@@ -212,9 +190,7 @@ void Derivatives::follow(const Trajectory<double>& trajectory) {
   if (!progress_ || progress_->postponed) return;  // without parameters there is nothing to differentiate
   Progress& now = *progress_;
   const Stopwatch time(now.gradients.seconds);
-  const bool worthwhile =
-      scheme_of(now.method).keeps_tangents &&
-      std::visit([](const auto& engine) { return has_costly_factors(engine); }, *now.workspace.engine);
+  const bool worthwhile = scheme_of(now.method).keeps_tangents && now.workspace.engine->has_costly_factors();
   const auto& increments = trajectory.increments;
   for (std::size_t n = now.done; n < increments.size() && increments[n].usable(); ++n) {
     now.largest = std::max(now.largest, traction_scale(now.model, now.slots, increments[n].state));

@@ -11,12 +11,7 @@
 namespace stickslip {
 
 /// Numbers of the scene with up to `directions` parameters seeded, one direction each.
-inline Numbers<Direction> seeded(const Scene& scene, const std::vector<int>& parameters) {
-  auto numbers = scene.as<Direction>();
-  for (std::size_t d = 0; d < parameters.size(); ++d)
-    for (const auto& [slot, weight] : scene.parameters[parameters[d]].slots) numbers.at_slot[slot].d[d] += weight;
-  return numbers;
-}
+Numbers<Direction> seeded(const Scene& scene, const std::vector<int>& parameters);
 
 /// Elements, per body, whose forces depend on a parameter by material, thickness, shape or prescribed motion. The
 /// pseudo-load comes from these alone. All elements are returned if nodes have frames, whose derivatives turn the
@@ -29,9 +24,7 @@ std::vector<std::vector<int>> parameter_groups(const Model& model);
 
 /// Whether the stiffness of linear bodies is kept with its derivatives. Not for runs of up to two steps, which would
 /// save nothing; nor with more parameters than fit into one solve, whose memory it would double.
-inline bool keeps_stiffness(const Model& model) {
-  return model.times.size() > 2 && static_cast<int>(model.scene.parameters.size()) <= columns_together;
-}
+bool keeps_stiffness(const Model& model);
 
 /// Bytes of the stiffness that parameter_blocks() keeps.
 long kept_stiffness_bytes(const Model& model);
@@ -57,14 +50,7 @@ struct ParameterBlock {
 };
 
 /// Blocks of all parameters of the scene, at the initial state.
-inline std::vector<ParameterBlock> parameter_blocks(const Model& model) {
-  std::vector<ParameterBlock> blocks;
-  for (const auto& group : parameter_groups(model)) {
-    blocks.emplace_back(model, group, make_slots<Direction>(model, seeded(model.scene, group)));
-    if (keeps_stiffness(model)) blocks.back().keep_stiffness(model);
-  }
-  return blocks;
-}
+std::vector<ParameterBlock> parameter_blocks(const Model& model);
 
 /// Pseudo-load of the bodies in an increment: derivative of their balance by parameters and prescribed motion at fixed
 /// free displacements. It depends on the derivative of the bodies' memory, and on no other earlier derivative.
@@ -81,11 +67,11 @@ struct Unexpanded {
 };
 
 /// What a scheme reads and writes to differentiate one increment.
-template <class E>
 struct Differentiation {
+  const Method& method;
   const Model& model;
   const Slots<double>& slots;
-  E& engine;
+  Engine<double>& engine;
   std::vector<ParameterBlock>& blocks;
   int parameters = 0;
   Counters counters;
@@ -98,9 +84,7 @@ struct Differentiation {
 };
 
 /// A vector as dual numbers without derivative.
-inline Vector<Direction> lift(const Vector<double>& v) {
-  return v.unaryExpr([](double x) { return Direction(x); });
-}
+Vector<Direction> lift(const Vector<double>& v);
 
 /// Derivatives as columns, one per parameter, from the blocks. `pick(block, index)`: the dual vector of a block.
 template <class Pick>
@@ -115,82 +99,22 @@ Matrix<double> gather(std::vector<ParameterBlock>& blocks, int parameters, Pick&
   return out;
 }
 /// Adds columns of derivatives, one per parameter, to a dual vector of a block.
-inline void add_derivatives(Vector<Direction>& v, const Eigen::Ref<const Matrix<double>>& columns,
-                            const ParameterBlock& block) {
-  for (std::size_t d = 0; d < block.parameters.size(); ++d)
-    for (Eigen::Index i = 0; i < v.size(); ++i) v[i].d[d] += columns(i, block.parameters[d]);
-}
+void add_derivatives(Vector<Direction>& v, const Eigen::Ref<const Matrix<double>>& columns,
+                     const ParameterBlock& block);
 
 /// The pseudo-load of the bodies at a state, before its reduction.
-template <class E>
-PseudoLoad pseudo_load(const Differentiation<E>& problem, const State<double>& at, double time) {
-  const Model& model = problem.model;
-  const Vector<double>& displacement = at.displacement;
-  PseudoLoad load;
-  std::vector<Vector<Direction>> rows;
-  for (auto& block : problem.blocks) {
-    Vector<Direction> u = lift(displacement);
-    prescribe(model, block.slots, time, u);
-    for (Eigen::Index i = 0; i < u.size(); ++i) u[i].v = displacement[i];
-    const Vector<Direction> memory = bulk_flow(model, block.slots, u, block.previous.history.bodies, at.flow);
-    Vector<Direction> balance = bulk_forces(model, block.slots, u, memory, &block.touched);
-    if (block.stiffness) block.stiffness->add_forces(u, balance);
-    balance = less_external_forces(model, block.slots, time, u, std::move(balance));
-    rows.push_back(into_frames(model, block.slots.frames, Layout::all, std::move(balance)));
-    load.displacement.push_back(std::move(u));
-  }
-  load.rows = gather(
-      problem.blocks, problem.parameters, [&](auto&, int b) -> auto& { return rows[b]; });
-  return load;
-}
+PseudoLoad pseudo_load(const Differentiation& problem, const State<double>& at, double time);
 
 /// Reduces several pseudo-loads by one solve.
-template <class E>
-void reduce(Differentiation<E>& problem, std::vector<PseudoLoad>& loads) {
-  const int parameters = problem.parameters, count = static_cast<int>(loads.size());
-  Matrix<double> rows(problem.model.dof_count(), count * parameters);
-  for (int n = 0; n < count; ++n) rows.middleCols(n * parameters, parameters) = loads[n].rows;
-  const Reduction<double> reduced = problem.engine.reduce(rows);
-  for (int n = 0; n < count; ++n) {
-    loads[n].rows.resize(0, 0);
-    loads[n].reduced = reduced.columns(n * parameters, parameters);
-  }
-}
+void reduce(Differentiation& problem, std::vector<PseudoLoad>& loads);
 
 /// Displacements of all dofs with their derivatives, per block. Inside condensed bodies derivatives are left out, which
 /// saves a solve.
-template <class E>
-std::vector<Vector<Direction>> without_inside(const Differentiation<E>& problem, Unexpanded increment) {
-  const Matrix<double> all = problem.engine.spread(increment.increment);
-  auto displacements = std::move(increment.load.displacement);
-  for (std::size_t b = 0; b < displacements.size(); ++b) add_derivatives(displacements[b], all, problem.blocks[b]);
-  return displacements;
-}
+std::vector<Vector<Direction>> without_inside(const Differentiation& problem, Unexpanded increment);
 
 /// Displacements of all dofs with their derivatives, per increment and block, by one solve. `wanted`: dofs that are
 /// read; nullptr: all (Condensation::expand).
-template <class E>
-std::vector<std::vector<Vector<Direction>>> expand(Differentiation<E>& problem, std::vector<Unexpanded> increments,
-                                                   const std::vector<int>* wanted = nullptr) {
-  const int parameters = problem.parameters, count = static_cast<int>(increments.size());
-  if (count == 0) return {};
-  const auto join = [&](double sign, auto&& part) {
-    Matrix<double> all(part(increments[0]).rows(), count * parameters);
-    for (int n = 0; n < count; ++n) all.middleCols(n * parameters, parameters) = sign * part(increments[n]);
-    return all;
-  };
-  const Matrix<double> all = problem.engine.expand(join(
-                                                       1, [](auto& of) -> auto& { return of.increment; }),
-                                                   join(
-                                                       -1, [](auto& of) -> auto& { return of.load.reduced.others; }),
-                                                   wanted);
-  std::vector<std::vector<Vector<Direction>>> displacements;
-  for (int n = 0; n < count; ++n) {
-    displacements.push_back(std::move(increments[n].load.displacement));
-    for (std::size_t b = 0; b < displacements[n].size(); ++b)
-      add_derivatives(displacements[n][b], all.middleCols(n * parameters, parameters), problem.blocks[b]);
-  }
-  return displacements;
-}
+std::vector<std::vector<Vector<Direction>>> expand(Differentiation& problem, std::vector<Unexpanded> increments,
+                                                   const std::vector<int>* wanted = nullptr);
 
 }  // namespace stickslip

@@ -48,21 +48,6 @@ std::vector<double> traction_scales(const Model& model, const Slots<double>& slo
   return scales;
 }
 
-/// Whether one of the equilibria that the scheme differentiates in an increment has ties.
-template <class M>
-bool has_ties_of(const M& method, const Model& model, const Slots<double>& slots, const State<double>& previous,
-                 const Increment<double>& increment, double largest) {
-  const auto weak = [&](const State<double>& at, const std::vector<double>& factor) {
-    const auto rho = detail::own_rho(method, slots, factor);
-    return !weak_points(model, slots, at, rho, cone_radius(method), largest).empty() ||
-           !flow_ties(model, slots, at.displacement, previous.history.bodies).empty() ||
-           !vertex_ties(model, slots, at, increment.time, largest).empty();
-  };
-  if (!method.scheme().of_each_augmentation) return weak(increment.state, increment.rho_factor);
-  return std::any_of(increment.augmented.begin(), increment.augmented.end(),
-                     [&](const auto& sweep) { return weak(sweep.state, sweep.rho_factor); });
-}
-
 /// Whether values of a response tie in an increment, so that direct differentiation would have both sides of it.
 bool has_tied_responses(const Model& model, const Slots<double>& slots, WholeStates& states) {
   const auto& asked = model.scene.responses;
@@ -104,20 +89,19 @@ bool widens_at_once(const Model& model, const Slots<double>& slots, const State<
 }
 
 /// Derivative on one side of a parameter, carried from increment to increment.
-template <class M, class E>
 struct SideRun {
-  const M& method;
+  const Method& method;
   const Model& model;
   const Slots<double>& slots;
-  E& engine;
+  Engine<double>& engine;
   WholeStates& states;
   double parameter;            ///< SideDirection::parameter
   std::vector<double> scales;  ///< SideDirection::largest_so_far
   std::vector<ParameterBlock> blocks;
   Counters counters;
 
-  SideRun(const M& m, const Model& of, const Slots<double>& s, E& e, const Trajectory<double>& t, WholeStates& whole,
-          Slots<Direction> seeded_slots, double size)
+  SideRun(const Method& m, const Model& of, const Slots<double>& s, Engine<double>& e, const Trajectory<double>& t,
+          WholeStates& whole, Slots<Direction> seeded_slots, double size)
       : method(m), model(of), slots(s), engine(e), states(whole), parameter(size), scales(traction_scales(of, s, t)) {
     blocks.emplace_back(model, std::vector<int>{0}, std::move(seeded_slots));
   }
@@ -127,10 +111,10 @@ struct SideRun {
   /// differentiate_side().
   template <class F>
   bool advance(std::size_t n, double side, F&& on_increment, bool held = false) {
-    Differentiation<E> problem{model, slots, engine, blocks, 1, {}};
+    Differentiation problem{method, model, slots, engine, blocks, 1, {}};
     Increment<double> increment = states.increment(n);
     const State<double>& previous = states.before(n);
-    const bool found = differentiate_side(method, problem, previous, increment, {side, parameter, scales[n]}, held);
+    const bool found = differentiate_side(problem, previous, increment, {side, parameter, scales[n]}, held);
     counters += problem.counters;
     if (!found) return false;
     on_increment(increment);
@@ -168,8 +152,7 @@ void record_side(const Model& model, const Slots<double>& slots, const Parameter
 
 /// Both sides of the derivatives by one parameter, in column `parameter`. `first`: index of the first increment with
 /// ties.
-template <class M, class E>
-void run_sides(const M& method, E& engine, const Model& model, const Slots<double>& slots,
+void run_sides(const Method& method, Engine<double>& engine, const Model& model, const Slots<double>& slots,
                const Trajectory<double>& trajectory, WholeStates& states, std::size_t first, int parameter,
                const Pairings& pairings, OneSided& sides) {
   const bool geometric = pairings[0].kink || pairings[1].kink;
@@ -177,7 +160,7 @@ void run_sides(const M& method, E& engine, const Model& model, const Slots<doubl
   SideRun start(method, model, slots, engine, trajectory, states,
                 make_slots<Direction>(model, seeded(model.scene, {parameter})),
                 std::abs(model.scene.parameters[parameter].value));
-  const auto record = [&](const SideRun<M, E>& run, double side, std::size_t n) {
+  const auto record = [&](const SideRun& run, double side, std::size_t n) {
     record_side(model, slots, run.blocks[0], trajectory.increments[n], side, parameter,
                 (side < 0 ? sides.backward : sides.forward)[n]);
   };
@@ -191,7 +174,7 @@ void run_sides(const M& method, E& engine, const Model& model, const Slots<doubl
   const auto engaged = geometric ? engaged_points(model, slots, trajectory) : std::vector<char>();
   struct Sided {
     double side;
-    SideRun<M, E> run;
+    SideRun run;
     bool found = true;  ///< whether it has derivatives so far
   };
   std::vector<Sided> runs;
@@ -240,7 +223,15 @@ Margins margins(const Model& model, const Slots<double>& slots, const State<doub
 
 bool has_ties(const Model& model, const Slots<double>& slots, const Method& method, const State<double>& previous,
               const Increment<double>& increment, double largest) {
-  return std::visit([&](const auto& m) { return has_ties_of(m, model, slots, previous, increment, largest); }, method);
+  const auto weak = [&](const State<double>& at, const std::vector<double>& factor) {
+    const auto rho = adapted(initial_regularisation(slots, method), factor);
+    return !weak_points(model, slots, at, rho, cone_radius_of(method), largest).empty() ||
+           !flow_ties(model, slots, at.displacement, previous.history.bodies).empty() ||
+           !vertex_ties(model, slots, at, increment.time, largest).empty();
+  };
+  if (!scheme_of(method).of_each_augmentation) return weak(increment.state, increment.rho_factor);
+  return std::any_of(increment.augmented.begin(), increment.augmented.end(),
+                     [&](const auto& sweep) { return weak(sweep.state, sweep.rho_factor); });
 }
 
 std::optional<OneSided> one_sided_derivatives(const Model& model, const Slots<double>& slots, const Method& method,
@@ -265,11 +256,8 @@ std::optional<OneSided> one_sided_derivatives(const Model& model, const Slots<do
       Matrix<double>::Constant(model.scene.responses.size(), parameters, std::numeric_limits<double>::quiet_NaN());
   sides.backward.assign(states.count(), unknown);
   sides.forward = sides.backward;
-  auto both = [&](const auto& m, auto& engine) {
-    for (int j = 0; j < parameters; ++j)
-      run_sides(m, engine, model, slots, trajectory, states, first, j, pairings[j], sides);
-  };
-  std::visit([&](const auto& m) { std::visit([&](auto& engine) { both(m, engine); }, *workspace.engine); }, method);
+  for (int j = 0; j < parameters; ++j)
+    run_sides(method, *workspace.engine, model, slots, trajectory, states, first, j, pairings[j], sides);
   sides.counters += states.take_counters();
   sides.repeated = states.repeated();
   return sides;
@@ -298,24 +286,22 @@ std::optional<std::vector<TakenBranches>> consistent_at_ties(const Model& model,
     taken.push_back({increment.state.contact, {}, history.foot, history.patch, {}});
     for (const auto& sweep : increment.augmented) taken.back().sweeps.push_back({sweep.state.contact, {}});
   }
-  auto search = [&](const auto& m, auto& engine) {
-    SideRun run(m, model, slots, engine, trajectory, states, make_slots<Direction>(model, all_growing(model.scene)), 1);
-    const auto take = [&](std::size_t n, Increment<double>& increment) {
-      taken[n].contact = std::move(increment.state.contact);
-      taken[n].flow = std::move(increment.state.flow);
-      taken[n].foot = std::move(increment.state.history.foot);
-      taken[n].patch = std::move(increment.state.history.patch);
-      for (std::size_t k = 0; k < increment.augmented.size(); ++k)
-        taken[n].sweeps[k] = {std::move(increment.augmented[k].state.contact),
-                              std::move(increment.augmented[k].state.flow)};
-    };
-    bool found = true;
-    for (std::size_t n = 0; n < states.count() && found; ++n)
-      found = run.advance(
-          n, 1, [&](Increment<double>& increment) { take(n, increment); }, true);
-    counters += run.counters;
+  SideRun run(method, model, slots, *workspace.engine, trajectory, states,
+              make_slots<Direction>(model, all_growing(model.scene)), 1);
+  const auto take = [&](std::size_t n, Increment<double>& increment) {
+    taken[n].contact = std::move(increment.state.contact);
+    taken[n].flow = std::move(increment.state.flow);
+    taken[n].foot = std::move(increment.state.history.foot);
+    taken[n].patch = std::move(increment.state.history.patch);
+    for (std::size_t k = 0; k < increment.augmented.size(); ++k)
+      taken[n].sweeps[k] = {std::move(increment.augmented[k].state.contact),
+                            std::move(increment.augmented[k].state.flow)};
   };
-  std::visit([&](const auto& m) { std::visit([&](auto& engine) { search(m, engine); }, *workspace.engine); }, method);
+  bool found = true;
+  for (std::size_t n = 0; n < states.count() && found; ++n)
+    found = run.advance(
+        n, 1, [&](Increment<double>& increment) { take(n, increment); }, true);
+  counters += run.counters;
   return taken;
 }
 

@@ -23,11 +23,10 @@ namespace stickslip {
 
 /// Distance of the nearest point from a change of state, dimensionless; infinity if there is no point.
 ///
-///   open    between open and closed: pressure, or k g / A of an open point, over the largest of pressure and k / A
-///           times motion
-///   slip    between stick and slip, or between pieces of the bound, over the bound: distance to the cone, or k |dg_T|
-///   / A of a
-///           slipping point
+///   open    between open and closed: pressure, or k g / A of an open point, over the largest of pressure and
+///           k / A times motion
+///   slip    between stick and slip, or between pieces of the bound, over the bound: distance to the cone, or
+///           k |dg_T| / A of a slipping point
 ///   yield   between elastic and plastic, of a material point (yield_margin)
 ///   vertex  between two facets of a master (vertex_margin)
 struct Margins {

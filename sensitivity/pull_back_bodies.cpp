@@ -1,6 +1,5 @@
-#include "sensitivity/pull_back_bodies.hpp"
-
 #include "core/solids/element_work.hpp"
+#include "sensitivity/pull_back.hpp"
 
 namespace stickslip {
 namespace {

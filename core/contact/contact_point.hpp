@@ -13,13 +13,11 @@
 /// The methods differ only in who supplies lambda. Source: theory of [AC91], [PC99], [SL92].
 #pragma once
 
+#include "core/contact/cone_radius.hpp"
 #include "core/contact/friction_cone.hpp"
 #include "core/contact/point_geometry.hpp"
 
 namespace stickslip {
-
-/// Where the radius of the friction cone comes from: the projected normal traction or the multiplier itself.
-enum class ConeRadius { augmented, multiplier };
 
 /// What a contact point leaves behind at the end of an increment: its local unknowns, and the history of the next.
 template <class T, int Tangents>

@@ -9,8 +9,7 @@
 ///   facets        N_i of the two ends
 ///   Catmull-Rom   cubic through both ends, slope (y_next - y_previous)/2 at each: the normal is continuous
 ///   B-spline      uniform cubic, the vertices are its control points: the curvature is continuous; the curve misses
-///   the
-///                 vertices by O(h^2)
+///                 the vertices by O(h^2)
 ///
 /// At a free end, and at a corner that is kept, a smooth patch extends its facet straight: y_0 = 2 y_1 - y_2.
 /// Source of the smoothings: core/README.md.

@@ -10,7 +10,8 @@
 /// so that it is concave, with a corner where the two meet. Of a law the file says
 ///
 ///   numbers()                   its numbers, each with its range and words; the key of the first names the law in
-///   files idle                        words for the first of them, which has no influence where no point slips
+///                               files
+///   idle                        words for the first of them, which has no influence where no point slips
 ///   has(piece), bound(p, piece) in the scalar of the numbers; derivatives are those of its dual numbers
 ///   slope_at_apex()             slope of the piece `slip` where the pressure begins; 0 without such a piece
 ///   slope_at_infinity()         slope that the bound keeps however large the pressure

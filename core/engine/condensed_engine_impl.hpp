@@ -70,8 +70,8 @@ Matrix<T> CondensedEngine<T>::spread(const Matrix<T>& u) const {
 
 template <class T>
 Vector<T> CondensedEngine<T>::tangent_times(const BodyMotion<T>&, const Vector<T>& motion) const {
-  return spread(condensation_->schur() *
-                into_frames(model_, slots_.frames, Layout::compact, to_compact(model_, motion)));
+  return spread(Vector<T>(condensation_->schur() *
+                          into_frames(model_, slots_.frames, Layout::compact, to_compact(model_, motion))));
 }
 
 template <class T>

@@ -1,7 +1,7 @@
 /// Multipliers that equilibrium does not determine: constraints that supports decide, and such as repeat one another.
 #pragma once
 
-#include "core/model/point_tangent.hpp"
+#include "core/engine/engine.hpp"
 
 namespace stickslip {
 
@@ -72,8 +72,8 @@ void yield_rows(const Model& model, const std::vector<char>* which, double share
 ///     least norm; it is far above the limit of singularity, and costs one iteration more.
 ///
 /// `redundant`: whether that compliance was needed; it is kept then. `hold`: as of the engine's factorise().
-template <class T, class E>
-bool factorise_sharing(E& engine, const Model& model, const std::vector<char>& decided,
+template <class T>
+bool factorise_sharing(Engine<T>& engine, const Model& model, const std::vector<char>& decided,
                        std::vector<PointTangent<T>> tangents, bool& redundant, Counters& counters,
                        const Vector<double>& hold = {}) {
   if (!decided.empty()) yield_rows(model, &decided, 1, tangents);

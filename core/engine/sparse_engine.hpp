@@ -5,6 +5,7 @@
 
 #include "core/engine/condensed_part.hpp"
 #include "core/engine/condensed_tangent.hpp"
+#include "core/engine/engine.hpp"
 
 namespace stickslip {
 
@@ -23,7 +24,7 @@ RowLists tangent_rows(const Model& model, bool unknown_multipliers, const MixedR
 /// Where tangents change, each may be condensed (core/engine/condensed_tangent.hpp), in each increment until one is not
 /// positive definite inside. The vectors are the same then, and the pattern is that of the bodies alone.
 template <class T>
-class SparseEngine {
+class SparseEngine : public Engine<T> {
  public:
   /// `unknown_multipliers`: the monolithic method's layout, [free dofs; multipliers]. `cone`: of all its systems.
   /// `condensation`: of the bodies of constant stiffness among others (has_mixed_bodies); null: none is condensed.
@@ -32,80 +33,53 @@ class SparseEngine {
                std::shared_ptr<Condensation<T>> condensation = nullptr,
                std::shared_ptr<CondensedTangent<T>> tangent = nullptr);
 
-  /// All dofs, prescribed values at `time` set. `before`: what bodies remember of the last increment.
-  Vector<T> begin(double time, const Vector<T>& displacement, const Vector<T>& before);
-  /// Takes the loads of another time; of what is prescribed that of begin() stays.
-  void move_loads(double time);
-  /// What the loads change by in a unit of time, engine rows. pre: they are linear in it.
-  Vector<T> load_rate(const Vector<T>& u) const;
-  /// The increment over all dofs, in the axes, that belongs to one of the engine and of the loads' time.
-  Vector<T> increment(const Vector<T>& u, double /*time*/) const { return all(u); }
-  Vector<T> compact(const Vector<T>& u) const {
+  /// All dofs.
+  Vector<T> begin(double time, const Vector<T>& displacement, const Vector<T>& before) override;
+  void move_loads(double time) override;
+  Vector<T> load_rate(const Vector<T>& u) override;
+
+  Vector<T> increment(const Vector<T>& u, double /*time*/) override { return all(u); }
+  Vector<T> compact(const Vector<T>& u) const override {
     return out_of_frames(model_, slots_.frames, Layout::compact, to_compact(model_, u));
   }
-  Vector<T> all(const Vector<T>& u) const;
-  /// Engine displacements or increments over all dofs, in the axes, without those inside condensed bodies.
-  Matrix<T> spread(const Matrix<T>& u) const { return out_of_frames(model_, slots_.frames, Layout::all, u); }
-  Vector<T> spread(const Vector<T>& u) const { return out_of_frames(model_, slots_.frames, Layout::all, u); }
-  /// f_int - f_ext + contact.
-  Vector<T> residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const;
-  bool is_free(Eigen::Index row) const { return row_of_dof()[row] >= 0; }
-  /// Takes the bodies' tangent at a motion, for all that follows. pre: it depends on that.
-  void linearise(const BodyMotion<T>& at);
-  /// Takes the bodies for linear, in residuals too, until release_bodies(): as linearise(at), with the forces at that
-  /// motion. `u`: engine displacement that has the prescribed values. (Where their tangent is constant they are so.)
-  void hold_bodies(const BodyMotion<T>& at, const Vector<T>& u, HeldTangent tangent = HeldTangent::at_motion);
-  /// Whether the last tangent that was condensed is nearly that at a motion: nodes have moved by a ten-thousandth of
-  /// the smallest facet since. Never for bodies with a memory, nor under loads that follow them.
-  bool has_tangent_near(const BodyMotion<T>& at) const;
-  void release_bodies() { held_bodies_.reset(); }
-  /// Whether points that change while bodies are held cost no sparse factor.
-  bool condenses_tangents() const { return condenses_; }
-  /// The tangent of what is inside and on the bodies at a motion times another, all dofs in the axes, as
-  /// model/loading.hpp has it; of condensed bodies, that of their contact dofs.
-  Vector<T> tangent_times(const BodyMotion<T>& at, const Vector<T>& motion) const;
-  /// `hold`: stiffness against motion of each contact node, the same in all directions, force per length; empty: none.
-  bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
-  /// In place of factorise(), where few points changed since (model/tangent_update.hpp). Until the next factorise() all
-  /// solves are with these tangents. False, and nothing changed, where an update does not pay or cannot be made.
-  bool update(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
-  /// Whether the determinant of the tangent has another sign than where all points stick. A problem with such a tangent
-  /// has several solutions, or none, under some load.
-  bool reversed() const;
-  BlockVector<T> solve(const BlockVector<T>& rows, Solving how = Solving::refined);
-  /// Solves by the factor that one refined right-hand side takes.
-  int solves() const { return update_.empty() ? 1 : 2; }
-  /// The bodies' stiffness times engine increments (engine rows), or its transpose.
-  Matrix<T> apply_stiffness(const Matrix<T>& u, bool transposed = false) const;
-  /// Rows over all dofs, in the frames -> engine rows, `kept`.
-  Reduction<T> reduce(const Matrix<T>& rows) {
+  Vector<T> all(const Vector<T>& u) override;
+  Matrix<T> spread(const Matrix<T>& u) const override { return out_of_frames(model_, slots_.frames, Layout::all, u); }
+  Vector<T> spread(const Vector<T>& u) const override { return out_of_frames(model_, slots_.frames, Layout::all, u); }
+  bool is_free(Eigen::Index row) const override { return row_of_dof()[row] >= 0; }
+  Matrix<T> scatter(const Matrix<T>& compact) const override;
+  Reduction<T> reduce(const Matrix<T>& rows) override {
     return part_ ? part_->reduce(rows) : Reduction<T>{rows, Matrix<T>(0, rows.cols())};
   }
-  /// The increment over all dofs, in the axes, that belongs to an engine increment and to the rows that were reduced,
-  /// of whose reduction `others` is. `wanted`: dofs that are read, ascending, where not all are.
-  Matrix<T> expand(const Matrix<T>& u, Matrix<T> others, const std::vector<int>* wanted = nullptr);
-  Matrix<T> scatter(const Matrix<T>& compact) const;  ///< compact rows -> engine rows
-  double condition_estimate() { return condenses_ ? tangent_->condition_estimate() : solver_.condition_estimate(); }
-  std::string name() const;
-  const std::string& message() const { return condenses_ ? tangent_->message() : solver_.message(); }
-  int unknowns() const { return size_; }
-  long nonzeros() const { return pattern_->nonzeros(); }
-  EngineHoldings holdings() const;
+  Matrix<T> expand(const Matrix<T>& u, Matrix<T> others, const std::vector<int>* wanted = nullptr) override;
 
-  /// What solves hang on beside what they are given: the pattern's places, the tangents of a factor that may be used
-  /// again or updated, and the displacement of a condensed tangent that may be used again.
-  struct Carried {
-    std::vector<std::vector<int>> places;
-    FactorRecipe<T> factor;
-    Vector<T> condensed_at;    ///< all dofs; empty: no such tangent
-    std::vector<int> touched;  ///< contact dofs of its dense system
-    long bytes() const {
-      return factor.bytes() + static_cast<long>(condensed_at.size() * sizeof(T) + touched.size() * sizeof(int));
-    }
-  };
-  Carried carried() const;
-  /// Goes back to it, by a factorisation where it had a factor: later solves have the same bits as they had then.
-  void carry(const Carried& carried, Counters& counters);
+  Vector<T> residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const override;
+  void linearise(const BodyMotion<T>& at) override;
+  void hold_bodies(const BodyMotion<T>& at, const Vector<T>& u, HeldTangent tangent = HeldTangent::at_motion) override;
+  void release_bodies() override { held_bodies_.reset(); }
+  bool has_tangent_near(const BodyMotion<T>& at) const override;
+  Vector<T> tangent_times(const BodyMotion<T>& at, const Vector<T>& motion) const override;
+  Matrix<T> apply_stiffness(const Matrix<T>& u, bool transposed = false) const override;
+
+  bool condenses_tangents() const override { return condenses_; }
+  bool has_costly_factors() const override { return true; }
+  bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters,
+                 const Vector<double>& hold = {}) override;
+  bool update(const std::vector<PointTangent<T>>& tangents, Counters& counters,
+              const Vector<double>& hold = {}) override;
+  bool reversed() const override;
+  BlockVector<T> solve(const BlockVector<T>& rows, Solving how = Solving::refined) override;
+  int solves() const override { return update_.empty() ? 1 : 2; }
+  double condition_estimate() override {
+    return condenses_ ? tangent_->condition_estimate() : solver_.condition_estimate();
+  }
+
+  std::string name() const override;
+  const std::string& message() const override { return condenses_ ? tangent_->message() : solver_.message(); }
+  int unknowns() const override { return size_; }
+  long nonzeros() const override { return pattern_->nonzeros(); }
+  EngineHoldings holdings() const override;
+  EngineMemory<T> memory() const override;
+  void restore(const EngineMemory<T>& memory, Counters& counters) override;
 
  private:
   FactorRecipe<T> recipe() const { return {valid_, factorised_, held_, update_}; }

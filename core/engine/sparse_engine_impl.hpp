@@ -157,7 +157,7 @@ Vector<T> SparseEngine<T>::tangent_times(const BodyMotion<T>& at, const Vector<T
 }
 
 template <class T>
-Vector<T> SparseEngine<T>::all(const Vector<T>& u) const {
+Vector<T> SparseEngine<T>::all(const Vector<T>& u) {
   if (!part_) return out_of_frames(model_, slots_.frames, Layout::all, u);
   Matrix<T> expanded = u;
   part_->expand_all(expanded);
@@ -222,7 +222,7 @@ void SparseEngine<T>::move_loads(double time) {
 }
 
 template <class T>
-Vector<T> SparseEngine<T>::load_rate(const Vector<T>& u) const {
+Vector<T> SparseEngine<T>::load_rate(const Vector<T>& u) {
   const double end = model_.times.back();
   const Vector<T> moved = all(u);
   const Vector<T> change =
@@ -315,28 +315,28 @@ bool SparseEngine<T>::update(const std::vector<PointTangent<T>>& tangents, Count
 }
 
 template <class T>
-typename SparseEngine<T>::Carried SparseEngine<T>::carried() const {
-  Carried carried{places_, model_.effects.linear_bulk ? recipe() : FactorRecipe<T>{}, {}};
+EngineMemory<T> SparseEngine<T>::memory() const {
+  EngineMemory<T> memory{places_, model_.effects.linear_bulk ? recipe() : FactorRecipe<T>{}, {}};
   if (keeps_tangent()) {
-    carried.condensed_at = linearised_->displacement;
-    carried.touched = tangent_->touched();
+    memory.condensed_at = linearised_->displacement;
+    memory.touched = tangent_->touched();
   }
-  return carried;
+  return memory;
 }
 
 template <class T>
-void SparseEngine<T>::carry(const Carried& carried, Counters& counters) {
-  const bool condensed = carried.condensed_at.size() > 0;
+void SparseEngine<T>::restore(const EngineMemory<T>& memory, Counters& counters) {
+  const bool condensed = memory.condensed_at.size() > 0;
   const bool switches = condensed && !std::exchange(condenses_, true);
-  if (switches || carried.places != places_) lay_out(carried.places);
+  if (switches || memory.places != places_) lay_out(memory.places);
   valid_ = condensed_ = false;
   if (condensed) {
-    linearise({carried.condensed_at, Vector<T>()});
+    linearise({memory.condensed_at, Vector<T>()});
     condense(counters);
-    tangent_->touch(carried.touched);
+    tangent_->touch(memory.touched);
   }
-  if (carried.factor.valid) factorise(carried.factor.tangents, counters, carried.factor.hold);
-  update_ = carried.factor.update;
+  if (memory.factor.valid) factorise(memory.factor.tangents, counters, memory.factor.hold);
+  update_ = memory.factor.update;
 }
 
 template <class T>

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "core/engine/engine.hpp"
+#include "core/model/contact_assembly.hpp"
 #include "methods/newton/trace.hpp"
 #include "methods/options.hpp"
 
@@ -123,5 +124,18 @@ struct Equilibrium {
   std::optional<bool> unstable;
   std::vector<IterationRecord> history;
 };
+
+/// Solves one equilibrium from start values, in up to three attempts: Newton's method; if bodies or geometry are
+/// nonlinear and it does not converge in 15 iterations, the sequence; if that fails, Newton's method with all its
+/// iterations. After an equilibrium by the sequence, the run begins the next ones with it, until it fails. Where
+/// tangents are condensed, points change their branches at the price of a dense factor. Then an increment whose
+/// multipliers are unknown begins with the sequence too, and what follows in an increment, as after an augmentation,
+/// with Newton's method.
+template <class T>
+Equilibrium<T> find_equilibrium(Engine<T>& engine, const EquilibriumTask<T>& task, Unknowns<T> start,
+                                const NewtonOptions& options, Account& account);
+
+extern template Equilibrium<double> find_equilibrium(Engine<double>&, const EquilibriumTask<double>&, Unknowns<double>,
+                                                     const NewtonOptions&, Account&);
 
 }  // namespace stickslip

@@ -10,8 +10,8 @@ namespace stickslip {
 /// down to 1/64. A trial that is not finite is always halved; where all are, the full step is taken as it is. Points
 /// that slide over other surfaces go no further than a facet at once, beyond which the tangent knows nothing. `used`:
 /// states of the last tangent.
-template <class T, class E>
-double search_line(Evaluator<T, E>& evaluate, const NewtonStep<T>& step, const std::vector<ContactState>& used,
+template <class T>
+double search_line(Evaluator<T>& evaluate, const NewtonStep<T>& step, const std::vector<ContactState>& used,
                    const NewtonOptions& options, Unknowns<T>& unknowns, detail::Evaluation<T>& at) {
   const double whole = evaluate.good_share(step.u), shortest_step = whole / 64;
   const double before = at.residuals.largest();

@@ -12,8 +12,7 @@
 ///   methods/newton/line_search.hpp       how far a step is gone along
 ///   methods/newton/predictor.hpp         where it begins, of bodies that are not linear
 ///
-/// What solves the problems in which it cycles is methods/rescue/sequential.hpp, where bodies or geometry are not
-/// linear, and methods/rescue/motion.hpp. [AC91], [HSW08]; theory: core/README.md.
+/// What is tried where it cycles: methods/rescue/rescue.hpp. [AC91], [HSW08]; theory: core/README.md.
 #pragma once
 
 #include <optional>
@@ -56,106 +55,145 @@ inline constexpr const char* kept_message =
 inline constexpr const char* far_message =
     "points go to and fro between facets; try a smooth surface, segments, or more steps";
 
-/// A solution of points on patches that they do not face, and how it ends.
+/// The iterations of one equilibrium.
 template <class T>
-using KeptSolution = std::tuple<NewtonEnd, Unknowns<T>, Evaluation<T>>;
+class NewtonIterations {
+ public:
+  NewtonIterations(Engine<T>& engine, const EquilibriumTask<T>& task, Unknowns<T> unknowns,
+                   const NewtonOptions& options, Account& account)
+      : engine_(engine),
+        task_(task),
+        options_(options),
+        account_(account),
+        evaluate_(engine, task, account),
+        tangent_(engine, task, account),
+        stop_(options, task.forcing, Carried<T>::newton_iterations, task.rests),
+        unknowns_(std::move(unknowns)),
+        predictions_(predict(engine, task, evaluate_, tangent_, account, unknowns_) ? 1 : 0),
+        at_(evaluate_(unknowns_)) {}
 
-/// Whether points that slide along curves give another way on from an end. States may cycle because points go to and
-/// fro at a vertex: then the points are kept on their patches. From the solution of that there may be a way to a
-/// solution in which all points face what they are on. Where there is none, the end is that of the kept points, and
-/// says so; unless one of them is far from its vertex, for that is no solution.
-template <class T, class E>
-bool goes_on(Evaluator<T, E>& evaluate, NewtonStop& stop, NewtonEnd& end, Unknowns<T>& unknowns, Evaluation<T>& at,
-             std::optional<KeptSolution<T>>& kept) {
-  const bool wrong = evaluate.keeps_wrong(unknowns, at.field);
-  const bool first = is_converged(end.status) && !kept && wrong;
-  if (first) {
-    kept = {end, unknowns, at};
-    if (evaluate.keeps_far(at.field)) std::get<NewtonEnd>(*kept) = {Status::cycle, far_message};
-    evaluate.release();
+  Equilibrium<T> solve() {
+    for (int iteration = 0;; ++iteration) {
+      record(iteration);
+      auto end = stop_.judge(at_.residuals, at_.field, history());
+      if (end && !goes_on(*end)) return result_of(std::move(*end));
+      if (auto failure = step(iteration)) return result_of(std::move(*failure));
+    }
   }
-  if (first || (end.status == Status::cycle && evaluate.keep_patches())) {
-    stop.forget();
-    at = evaluate(unknowns);
-    return true;
+
+ private:
+  using KeptSolution = std::tuple<NewtonEnd, Unknowns<T>, Evaluation<T>>;
+
+  std::vector<IterationRecord>& history() { return result_.history; }
+
+  void record(int iteration) {
+    history().push_back(detail::record(at_, used_, evaluate_.accept(at_), step_length_));
+    if (account_.trace)
+      account_.trace->take(task_.contact, Vector<T>(engine_.spread(unknowns_.u)), unknowns_.multiplier, at_.field,
+                           history().back(), iteration);
   }
-  if (kept && (!is_converged(end.status) || wrong)) {
-    std::tie(end, unknowns, at) = std::move(*kept);
-    if (is_converged(end.status)) end.message = kept_message;
+
+  /// Factorises the tangent of the branches that the points are in, and goes a step with it. Returns why there is none.
+  std::optional<NewtonEnd> step(int iteration) {
+    const auto evaluated = at_.field.state;
+    if (iteration == 0 && !task_.resumed.empty())
+      resume_on_cone(task_.contact, unknowns_.multiplier, task_.resumed, at_.field);
+    auto branches = branches_here();
+    used_ = at_.field.state;
+    tangent_.move_to(unknowns_, at_.field, iteration == 0 && predictions_ == 0);
+    if (!tangent_.factorise(unknowns_, branches)) return NewtonEnd{Status::singular, engine_.message()};
+    tell_stability();
+    directed_ = at_.field;
+    directed_.state = branches;
+    if (branches != evaluated) evaluate_.take_rows_in(branches, unknowns_, at_);
+    const auto step = task_.arc ? tangent_.step_along(*task_.arc, unknowns_, at_.rows_u, at_.rows_l)
+                                : tangent_.step(at_.rows_u, at_.rows_l);
+    if (!step.u.allFinite() || !step.l.allFinite() || !std::isfinite(step.time))
+      return NewtonEnd{Status::singular, "the tangent is singular: its solution is not finite"};
+    ++account_.counters.newton;
+    step_length_ = search_line(evaluate_, step, used_, options_, unknowns_, at_);
+    return std::nullopt;
   }
-  return false;
-}
+
+  std::vector<ContactState> branches_here() const {
+    return step_branches(task_.contact, engine_.compact(unknowns_.u), at_.field, unknowns_.multiplier, directed_);
+  }
+
+  /// Takes the sign of the last tangent's determinant.
+  void tell_stability() {
+    if (is_linear())
+      result_.reversed |= engine_.reversed();
+    else
+      result_.unstable = engine_.reversed();
+  }
+  bool is_linear() const { return task_.contact.model.effects.linear_bulk; }
+
+  /// Whether points that slide along curves give another way on from an end. States may cycle because points go to and
+  /// fro at a vertex: then the points are kept on their patches. From the solution of that there may be a way to a
+  /// solution in which all points face what they are on. Where there is none, the end is that of the kept points, and
+  /// says so; unless one of them is far from its vertex, for that is no solution.
+  bool goes_on(NewtonEnd& end) {
+    const bool wrong = evaluate_.keeps_wrong(unknowns_, at_.field);
+    const bool first = is_converged(end.status) && !kept_ && wrong;
+    if (first) {
+      kept_ = {end, unknowns_, at_};
+      if (evaluate_.keeps_far(at_.field)) std::get<NewtonEnd>(*kept_) = {Status::cycle, far_message};
+      evaluate_.release();
+    }
+    if (first || (end.status == Status::cycle && evaluate_.keep_patches())) {
+      stop_.forget();
+      at_ = evaluate_(unknowns_);
+      return true;
+    }
+    if (kept_ && (!is_converged(end.status) || wrong)) {
+      std::tie(end, unknowns_, at_) = std::move(*kept_);
+      if (is_converged(end.status)) end.message = kept_message;
+    }
+    return false;
+  }
+
+  Equilibrium<T> result_of(NewtonEnd end) {
+    if (end.status == Status::converged && !end.inexact && tangent_.redundant()) end.message = redundant_message;
+    if (is_converged(end.status) && task_.tells_stability && !is_linear() && !result_.unstable) {
+      tangent_.move_to(unknowns_, at_.field, true);
+      auto branches = branches_here();
+      if (tangent_.factorise(unknowns_, branches)) tell_stability();
+    }
+    result_.status = end.status;
+    result_.message = std::move(end.message);
+    result_.inexact = end.inexact;
+    result_.iterations = static_cast<int>(history().size()) - 1 + predictions_;
+    if (is_converged(end.status)) account_.scales = at_.scales;
+    if (task_.arc) engine_.move_loads(unknowns_.time);  // (a trial may have been of another)
+    result_.unknowns = std::move(unknowns_);
+    result_.field = std::move(at_.field);
+    return std::move(result_);
+  }
+
+  Engine<T>& engine_;
+  const EquilibriumTask<T>& task_;
+  const NewtonOptions& options_;
+  Account& account_;
+  Evaluator<T> evaluate_;
+  NewtonTangent<T> tangent_;
+  NewtonStop stop_;
+  Unknowns<T> unknowns_;
+  int predictions_;                   ///< iterations that the predictor took: 0 or 1
+  Evaluation<T> at_;                  ///< of the unknowns
+  std::vector<ContactState> used_;    ///< states of the last tangent
+  ContactField<T> directed_;          ///< field and branches of the last step
+  std::optional<KeptSolution> kept_;  ///< of points on patches that they do not face, and how it ends
+  double step_length_ = 1;
+  Equilibrium<T> result_;
+};
 
 }  // namespace detail
 
 /// Solves one equilibrium from the start values `unknowns`.
-template <class T, class E>
-Equilibrium<T> newton(E& engine, const EquilibriumTask<T>& task, Unknowns<T> unknowns, const NewtonOptions& options,
-                      Account& account) {
-  const ContactInput<T>& input = task.contact;
-  Evaluator<T, E> evaluate(engine, task, account);
-  NewtonTangent<T, E> tangent(engine, task, account);
-  NewtonStop stop(options, task.forcing, Carried<T>::newton_iterations, task.rests);
-  Equilibrium<T> result;
-  std::vector<ContactState> used;  // states of the last tangent
-  ContactField<T> directed;        // field and branches of the last step
-  std::optional<detail::KeptSolution<T>> kept;
-  double step_length = 1;
-  const int predictions = predict(engine, task, evaluate, tangent, account, unknowns) ? 1 : 0;
-  auto at = evaluate(unknowns);
-  const auto finish = [&](NewtonEnd end) {
-    result.status = end.status;
-    result.message = std::move(end.message);
-    result.inexact = end.inexact;
-    result.iterations = static_cast<int>(result.history.size()) - 1 + predictions;
-    if (is_converged(end.status)) account.scales = at.scales;
-    if (task.arc) engine.move_loads(unknowns.time);  // (a trial may have been of another)
-    result.unknowns = std::move(unknowns);
-    result.field = std::move(at.field);
-    return std::move(result);
-  };
-  const auto tell_stability = [&] {
-    if (input.model.effects.linear_bulk)
-      result.reversed |= engine.reversed();
-    else
-      result.unstable = engine.reversed();
-  };
-  for (int iteration = 0;; ++iteration) {
-    result.history.push_back(detail::record(at, used, evaluate.accept(at), step_length));
-    if (account.trace)
-      account.trace->take(input, Vector<T>(engine.spread(unknowns.u)), unknowns.multiplier, at.field,
-                          result.history.back(), iteration);
-    auto end = stop.judge(at.residuals, at.field, result.history);
-    if (end && !detail::goes_on(evaluate, stop, *end, unknowns, at, kept)) {
-      if (end->status == Status::converged && !end->inexact && tangent.redundant())
-        end->message = detail::redundant_message;
-      const bool untold = task.tells_stability && !input.model.effects.linear_bulk && !result.unstable;
-      if (is_converged(end->status) && untold) {
-        tangent.move_to(unknowns, at.field, true);
-        auto branches =
-            detail::step_branches(input, engine.compact(unknowns.u), at.field, unknowns.multiplier, directed);
-        if (tangent.factorise(unknowns, branches)) tell_stability();
-      }
-      return finish(std::move(*end));
-    }
-    const auto evaluated = at.field.state;
-    if (iteration == 0 && !task.resumed.empty())
-      detail::resume_on_cone(input, unknowns.multiplier, task.resumed, at.field);
-    auto branches = detail::step_branches(input, engine.compact(unknowns.u), at.field, unknowns.multiplier, directed);
-    used = at.field.state;
-    tangent.move_to(unknowns, at.field, iteration == 0 && predictions == 0);
-    if (!tangent.factorise(unknowns, branches)) return finish({Status::singular, engine.message()});
-    tell_stability();
-    directed = at.field;
-    directed.state = branches;
-    if (branches != evaluated) evaluate.take_rows_in(branches, unknowns, at);
-    const auto step =
-        task.arc ? tangent.step_along(*task.arc, unknowns, at.rows_u, at.rows_l) : tangent.step(at.rows_u, at.rows_l);
-    if (!step.u.allFinite() || !step.l.allFinite() || !std::isfinite(step.time))
-      return finish({Status::singular, "the tangent is singular: its solution is not finite"});
-    ++account.counters.newton;
-    step_length = search_line(evaluate, step, used, options, unknowns, at);
-  }
+template <class T>
+Equilibrium<T> newton(Engine<T>& engine, const EquilibriumTask<T>& task, Unknowns<T> unknowns,
+                      const NewtonOptions& options, Account& account) {
+  return detail::NewtonIterations<T>(engine, task, std::move(unknowns), options, account).solve();
 }
 
 }  // namespace stickslip

@@ -121,10 +121,10 @@ class OwnTractions {
 
 }  // namespace detail
 
-template <class T, class E>
+template <class T>
 class NewtonTangent {
  public:
-  NewtonTangent(E& engine, const EquilibriumTask<T>& task, Account& account)
+  NewtonTangent(Engine<T>& engine, const EquilibriumTask<T>& task, Account& account)
       : engine_(engine), task_(task), account_(account) {
     if (task.solves_for_multipliers()) decided_ = decided_elsewhere(task.contact.model, task.contact.slots);
   }
@@ -170,7 +170,7 @@ class NewtonTangent {
  private:
   std::vector<PointTangent<T>> point_tangents(const std::vector<ContactState>& branches, const Unknowns<T>& unknowns);
 
-  E& engine_;
+  Engine<T>& engine_;
   const EquilibriumTask<T>& task_;
   Account& account_;
   std::vector<char> decided_;
@@ -181,8 +181,8 @@ class NewtonTangent {
   int presumptions_ = 3;  ///< how often open points may still be presumed closed
 };
 
-template <class T, class E>
-bool NewtonTangent<T, E>::factorise(const Unknowns<T>& unknowns, std::vector<ContactState>& branches) {
+template <class T>
+bool NewtonTangent<T>::factorise(const Unknowns<T>& unknowns, std::vector<ContactState>& branches) {
   if (factorise_in(branches, unknowns)) return true;
   const auto closed = detail::presume_contact(task_.contact, branches);
   if (closed == branches || presumptions_-- == 0) return false;
@@ -190,9 +190,9 @@ bool NewtonTangent<T, E>::factorise(const Unknowns<T>& unknowns, std::vector<Con
   return factorise_in(branches, unknowns);
 }
 
-template <class T, class E>
-std::vector<PointTangent<T>> NewtonTangent<T, E>::point_tangents(const std::vector<ContactState>& branches,
-                                                                 const Unknowns<T>& unknowns) {
+template <class T>
+std::vector<PointTangent<T>> NewtonTangent<T>::point_tangents(const std::vector<ContactState>& branches,
+                                                              const Unknowns<T>& unknowns) {
   const Stopwatch time(account_.seconds.contact);
   const auto& input = task_.contact;
   std::vector<PointTangent<T>> tangents;
@@ -205,8 +205,8 @@ std::vector<PointTangent<T>> NewtonTangent<T, E>::point_tangents(const std::vect
   return tangents;
 }
 
-template <class T, class E>
-NewtonStep<T> NewtonTangent<T, E>::step(const Vector<T>& rows_u, const Vector<T>& rows_l) {
+template <class T>
+NewtonStep<T> NewtonTangent<T>::step(const Vector<T>& rows_u, const Vector<T>& rows_l) {
   const Stopwatch time(account_.seconds.backsolve);
   NewtonStep<T> step;
   if (task_.compliance) {
@@ -226,9 +226,9 @@ NewtonStep<T> NewtonTangent<T, E>::step(const Vector<T>& rows_u, const Vector<T>
 /// A step along a path is x + y dt, with K x = -R and K y = df_ext/dt; dt takes it to the arc. Of the two places where
 /// that line meets the arc, the one in the direction of the iterate is taken; at the very beginning of a path, the one
 /// in the direction of the load. Where the line misses the arc, its nearest place is taken.
-template <class T, class E>
-NewtonStep<T> NewtonTangent<T, E>::step_along(const Arc& arc, const Unknowns<T>& unknowns, const Vector<T>& rows_u,
-                                              const Vector<T>& rows_l) {
+template <class T>
+NewtonStep<T> NewtonTangent<T>::step_along(const Arc& arc, const Unknowns<T>& unknowns, const Vector<T>& rows_u,
+                                           const Vector<T>& rows_l) {
   NewtonStep<T> step = this->step(rows_u, rows_l);
   const auto along = this->step(-engine_.load_rate(unknowns.u), Vector<T>::Constant(rows_l.size(), T(0)));
   const Vector<double> moved = values(engine_.all(unknowns.u)) - arc.start,
@@ -245,8 +245,8 @@ NewtonStep<T> NewtonTangent<T, E>::step_along(const Arc& arc, const Unknowns<T>&
   return step;
 }
 
-template <class T, class E>
-bool NewtonTangent<T, E>::factorise_in(const std::vector<ContactState>& branches, const Unknowns<T>& unknowns) {
+template <class T>
+bool NewtonTangent<T>::factorise_in(const std::vector<ContactState>& branches, const Unknowns<T>& unknowns) {
   auto tangents = point_tangents(branches, unknowns);
   if (task_.last_displacement && !task_.contact.model.effects.linear_bulk) tangents_ = tangents;
   if (!decided_.empty()) detail::yield_decided(task_.contact, decided_, tangents);

@@ -44,8 +44,8 @@ void follow_obstacles(const ContactInput<T>& input, std::span<const ContactState
 }  // namespace detail
 
 /// Takes the first step of a path, along the load: where it begins the residual vanishes.
-template <class T, class E>
-bool begin_path(E& engine, const EquilibriumTask<T>& task, Evaluator<T, E>& evaluate, NewtonTangent<T, E>& tangent,
+template <class T>
+bool begin_path(Engine<T>& engine, const EquilibriumTask<T>& task, Evaluator<T>& evaluate, NewtonTangent<T>& tangent,
                 Account& account, Unknowns<T>& unknowns) {
   auto at = evaluate(unknowns);
   auto branches = detail::step_branches(task.contact, engine.compact(unknowns.u), at.field, unknowns.multiplier, {});
@@ -63,8 +63,8 @@ bool begin_path(E& engine, const EquilibriumTask<T>& task, Evaluator<T, E>& eval
 
 /// Moves the unknowns of an equilibrium there; false, and nothing is changed, where nothing moves or the place is out
 /// of bounds.
-template <class T, class E>
-bool predict(E& engine, const EquilibriumTask<T>& task, Evaluator<T, E>& evaluate, NewtonTangent<T, E>& tangent,
+template <class T>
+bool predict(Engine<T>& engine, const EquilibriumTask<T>& task, Evaluator<T>& evaluate, NewtonTangent<T>& tangent,
              Account& account, Unknowns<T>& unknowns) {
   const Model& model = task.contact.model;
   const auto& slots = task.contact.slots;

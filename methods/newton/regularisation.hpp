@@ -42,6 +42,11 @@ RegularisationField<T> initial_regularisation(const Slots<T>& slots, const M& me
                         slots.numbers(method.tangential_share()));
 }
 
+template <class T>
+RegularisationField<T> initial_regularisation(const Slots<T>& slots, const Method& method) {
+  return std::visit([&](const auto& m) { return initial_regularisation(slots, m); }, method);
+}
+
 /// rho without derivatives: of a solution that does not depend on it.
 template <class T>
 RegularisationField<T> constant(const RegularisationField<double>& rho) {

@@ -151,10 +151,10 @@ void measure_multipliers(const ContactInput<T>& input, const Vector<T>& multipli
 }  // namespace detail
 
 /// Evaluates the iterates of one equilibrium.
-template <class T, class E>
+template <class T>
 class Evaluator {
  public:
-  Evaluator(E& engine, const EquilibriumTask<T>& task, Account& account)
+  Evaluator(Engine<T>& engine, const EquilibriumTask<T>& task, Account& account)
       : engine_(engine),
         task_(task),
         account_(account),
@@ -210,7 +210,7 @@ class Evaluator {
   Vector<T> contact_field_forces(const Vector<T>& compact, const ContactField<T>& field) const;
   void count() { account_.counters.contact_evaluations += static_cast<long>(task_.contact.model.points.size()); }
 
-  E& engine_;
+  Engine<T>& engine_;
   const EquilibriumTask<T>& task_;
   Account& account_;
   double prescribed_;                      ///< largest displacement that supports prescribe
@@ -222,16 +222,16 @@ class Evaluator {
 };
 
 /// Forces of contact and of the anchor, if any, on the contact nodes, compact.
-template <class T, class E>
-Vector<T> Evaluator<T, E>::contact_field_forces(const Vector<T>& compact, const ContactField<T>& field) const {
+template <class T>
+Vector<T> Evaluator<T>::contact_field_forces(const Vector<T>& compact, const ContactField<T>& field) const {
   const Model& model = task_.contact.model;
   Vector<T> forces = contact_forces(model, task_.contact.slots, field);
   if (task_.anchor.stiffness.size() > 0) forces += task_.anchor.force(compact, model.dimension);
   return forces;
 }
 
-template <class T, class E>
-int Evaluator<T, E>::accept(const detail::Evaluation<T>& at) {
+template <class T>
+int Evaluator<T>::accept(const detail::Evaluation<T>& at) {
   const auto& facing = at.field.facing;
   int crossed = 0;
   for (std::size_t p = 0; p < facing.size() && !last_.empty(); ++p) {
@@ -250,8 +250,8 @@ int Evaluator<T, E>::accept(const detail::Evaluation<T>& at) {
   return crossed;
 }
 
-template <class T, class E>
-bool Evaluator<T, E>::keep_patches() {
+template <class T>
+bool Evaluator<T>::keep_patches() {
   bool any = false;
   for (std::size_t p = 0; p < last_.size(); ++p) {
     if (!returned_[p] || last_[p].patch == Patch::none || (!kept_.empty() && kept_[p] != Patch::none)) continue;
@@ -265,8 +265,8 @@ bool Evaluator<T, E>::keep_patches() {
   return any;
 }
 
-template <class T, class E>
-bool Evaluator<T, E>::keeps_wrong(const Unknowns<T>& unknowns, const ContactField<T>& field) const {
+template <class T>
+bool Evaluator<T>::keeps_wrong(const Unknowns<T>& unknowns, const ContactField<T>& field) const {
   if (kept_.empty()) return false;
   const auto free = detail::facings(task_.contact, engine_.compact(unknowns.u));
   for (std::size_t p = 0; p < kept_.size(); ++p)
@@ -274,15 +274,15 @@ bool Evaluator<T, E>::keeps_wrong(const Unknowns<T>& unknowns, const ContactFiel
   return false;
 }
 
-template <class T, class E>
-void Evaluator<T, E>::release() {
+template <class T>
+void Evaluator<T>::release() {
   kept_.clear();
   last_.clear();
   visited_.clear();
 }
 
-template <class T, class E>
-detail::Evaluation<T> Evaluator<T, E>::operator()(const Unknowns<T>& unknowns) {
+template <class T>
+detail::Evaluation<T> Evaluator<T>::operator()(const Unknowns<T>& unknowns) {
   ContactInput<T> input = task_.contact;
   const Model& model = input.model;
   detail::Evaluation<T> at;
@@ -320,9 +320,9 @@ detail::Evaluation<T> Evaluator<T, E>::operator()(const Unknowns<T>& unknowns) {
   return at;
 }
 
-template <class T, class E>
-void Evaluator<T, E>::take_rows_in(const std::vector<ContactState>& branches, const Unknowns<T>& unknowns,
-                                   detail::Evaluation<T>& at) {
+template <class T>
+void Evaluator<T>::take_rows_in(const std::vector<ContactState>& branches, const Unknowns<T>& unknowns,
+                                detail::Evaluation<T>& at) {
   ContactInput<T> input = task_.contact;
   input.facing = &at.field.facing;
   const Vector<T> compact = engine_.compact(unknowns.u);

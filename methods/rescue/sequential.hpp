@@ -76,10 +76,11 @@ class Pivoting {
 };
 
 /// The steps of one equilibrium.
-template <class T, class E>
+template <class T>
 class Sequence {
  public:
-  Sequence(E& engine, const EquilibriumTask<T>& task, Unknowns<T> start, const NewtonOptions& options, Account& account)
+  Sequence(Engine<T>& engine, const EquilibriumTask<T>& task, Unknowns<T> start, const NewtonOptions& options,
+           Account& account)
       : engine_(engine),
         task_(task),
         options_(options),
@@ -244,12 +245,12 @@ class Sequence {
     return distances;
   }
 
-  E& engine_;
+  Engine<T>& engine_;
   const EquilibriumTask<T>& task_;
   const NewtonOptions& options_;
   Account& account_;
-  Evaluator<T, E> evaluate_;
-  NewtonTangent<T, E> tangent_;
+  Evaluator<T> evaluate_;
+  NewtonTangent<T> tangent_;
   Unknowns<T> unknowns_;
   Vector<T> prescribed_;                ///< displacement with the prescribed values
   std::vector<ContactState> branches_;  ///< of the last linear problem; empty before the first
@@ -284,22 +285,29 @@ Compliance<T> compliance_of(const ContactInput<T>& input, const Vector<T>& given
 }
 
 /// The equilibrium by the sequence of linear problems and then Newton's method. Status cycle if the sequence fails.
-template <class T, class E>
-Equilibrium<T> solve_in_sequence(E& engine, const EquilibriumTask<T>& task, const Unknowns<T>& start,
+template <class T>
+Equilibrium<T> solve_in_sequence(Engine<T>& engine, const EquilibriumTask<T>& task, const Unknowns<T>& start,
                                  const NewtonOptions& options, Account& account) {
   const auto& input = task.contact;
   const bool compliant = !task.solves_for_multipliers() && input.model.effects.current_geometry;
   const auto rho = compliant || task.solves_for_multipliers() ? softened(input) : input.rho;
   const auto compliance = compliant ? compliance_of(input, start.multiplier, rho) : Compliance<T>{};
   const ContactInput<T> seen{input.model, input.slots, rho, input.previous, input.cone, input.time};
-  const EquilibriumTask<T> turns{
-      seen, task.multipliers, task.anchor, task.resumed, 0, task.last_displacement, compliant ? &compliance : nullptr};
-  Sequence<T, E> sequence(engine, turns, start, options, account);
+  const EquilibriumTask<T> turns{.contact = seen,
+                                 .multipliers = task.multipliers,
+                                 .anchor = task.anchor,
+                                 .resumed = task.resumed,
+                                 .last_displacement = task.last_displacement,
+                                 .compliance = compliant ? &compliance : nullptr};
+  Sequence<T> sequence(engine, turns, start, options, account);
   Equilibrium<T> equilibrium;
   equilibrium.status = Status::cycle;
   if (sequence.find()) {
-    EquilibriumTask<T> last{input, task.multipliers, task.anchor, {}, task.forcing};
-    last.tells_stability = sequence.reversed();
+    const EquilibriumTask<T> last{.contact = input,
+                                  .multipliers = task.multipliers,
+                                  .anchor = task.anchor,
+                                  .forcing = task.forcing,
+                                  .tells_stability = sequence.reversed()};
     Unknowns<T> at = std::move(sequence.unknowns());
     if (!task.solves_for_multipliers()) at.multiplier = start.multiplier;
     equilibrium = newton(engine, last, std::move(at), options, account);
@@ -311,14 +319,9 @@ Equilibrium<T> solve_in_sequence(E& engine, const EquilibriumTask<T>& task, cons
 
 }  // namespace detail
 
-/// Solves one equilibrium from start values, in up to three attempts: Newton's method; if bodies or geometry are
-/// nonlinear and it does not converge in 15 iterations, the sequence; if that fails, Newton's method with all its
-/// iterations. After an equilibrium by the sequence, the run begins the next ones with it, until it fails. Where
-/// tangents are condensed, points change their branches at the price of a dense factor. Then an increment whose
-/// multipliers are unknown begins with the sequence too, and what follows in an increment, as after an augmentation,
-/// with Newton's method.
-template <class T, class E>
-Equilibrium<T> find_equilibrium(E& engine, const EquilibriumTask<T>& task, Unknowns<T> start,
+// (declared, and described, in methods/newton/equilibrium.hpp)
+template <class T>
+Equilibrium<T> find_equilibrium(Engine<T>& engine, const EquilibriumTask<T>& task, Unknowns<T> start,
                                 const NewtonOptions& options, Account& account) {
   constexpr int soon = 15;
   const auto& effects = task.contact.model.effects;

@@ -28,8 +28,9 @@
 
 #include <optional>
 
-#include "core/engine/engine.hpp"
+#include "core/engine/condensed_engine.hpp"
 #include "core/model/loading.hpp"
+#include "methods/stepping/increment.hpp"
 
 namespace stickslip {
 
@@ -62,12 +63,6 @@ struct BranchSolution {
 bool can_try_all_branches(const Model& model);
 
 /// What the determinants of all combinations say of the number of solutions.
-enum class Uniqueness {
-  unique,    ///< none is negative; or this is not known, as bodies can move although all points stick
-  critical,  ///< none is negative, and some vanish, though no constraints repeat one another: under some loads
-             ///< solutions are a continuum
-  several    ///< some are negative: under some loads there are several
-};
 Uniqueness uniqueness_of(const ContactProblem& problem);
 
 /// Largest increment of a contact dof if springs of the local stiffness took the place of the contacts, length: beside

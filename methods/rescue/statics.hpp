@@ -183,4 +183,16 @@ int contradicted_point(const Model& model, const Slots<T>& slots, const Vector<T
   return -1;
 }
 
+/// Whether a point with friction bears a tangential traction however small its pressure, and none once it is open.
+template <class T>
+bool has_abrupt_friction(const Model& model, const Slots<T>& slots) {
+  return std::any_of(model.points.begin(), model.points.end(), [&](const auto& point) {
+    return point.tangents > 0 && !slots.friction[point.contact].has_apex();
+  });
+}
+
+inline constexpr auto abrupt_friction_message =
+    "friction that does not grow with the pressure ends at once where a point opens, and then there may be no "
+    "equilibrium; try one that grows with it";
+
 }  // namespace stickslip

@@ -14,7 +14,6 @@
 
 #include <memory>
 #include <optional>
-#include <variant>
 #include <vector>
 
 #include "methods/stepping/increment.hpp"
@@ -56,12 +55,11 @@ inline bool is_whole(const State<double>& state) { return state.displacement.siz
 template <class T>
 class Checkpoints {
  public:
-  using Carried = std::variant<typename SparseEngine<T>::Carried, typename CondensedEngine<T>::Carried>;
   /// Beginning of a stretch: the step before it, and the account and the engine of the run after that step.
   struct Start {
     std::size_t step = 0;
     Account account;
-    Carried engine;
+    EngineMemory<T> engine;
   };
 
   /// `times`: ends of the steps; `may_cut`: whether a step that fails is cut.
@@ -69,14 +67,13 @@ class Checkpoints {
       : plan_(plan), may_cut_(may_cut), times_(std::move(times)) {}
 
   /// Records the run after each step, and once before the first. Thins the states of the previous step.
-  template <class E>
-  void pass(const Run<T, E>& run, Trajectory<T>& trajectory) {
-    several_ = run.several;
+  void pass(const Run<T>& run, Trajectory<T>& trajectory) {
+    uniqueness_ = run.uniqueness;
     condensation_ = run.condensation;
     ends_.push_back(trajectory.increments.size());
     const std::size_t step = ends_.size() - 1;
     if (step % plan_.stride == 0 && step < plan_.thinned) {
-      starts_.push_back({step, run.account, run.engine.carried()});
+      starts_.push_back({step, run.account, run.engine.memory()});
       starts_.back().account.trace = nullptr;
       starts_.back().account.counters = {};
     }
@@ -87,7 +84,7 @@ class Checkpoints {
   const CheckpointPlan& plan() const { return plan_; }
   const std::vector<double>& times() const { return times_; }
   bool may_cut() const { return may_cut_; }
-  bool several() const { return several_; }
+  Uniqueness uniqueness() const { return uniqueness_; }
   const std::shared_ptr<Condensation<T>>& condensation() const { return condensation_; }
   /// Number of increments up to the end of a step.
   std::size_t end(std::size_t step) const { return ends_[step]; }
@@ -105,7 +102,7 @@ class Checkpoints {
   /// Bytes of the factors that stretches begin with.
   long bytes() const {
     long sum = 0;
-    for (const auto& start : starts_) sum += std::visit([](const auto& c) { return c.bytes(); }, start.engine);
+    for (const auto& start : starts_) sum += start.engine.bytes();
     return sum;
   }
 
@@ -117,7 +114,8 @@ class Checkpoints {
   }
 
   CheckpointPlan plan_;
-  bool may_cut_, several_ = false;
+  bool may_cut_;
+  Uniqueness uniqueness_ = Uniqueness::unique;
   std::vector<double> times_;
   std::vector<std::size_t> ends_;
   std::vector<Start> starts_;

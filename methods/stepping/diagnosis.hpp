@@ -11,6 +11,7 @@
 #include "core/model/state.hpp"
 #include "methods/rescue/statics.hpp"
 #include "methods/stepping/increment.hpp"
+#include "methods/stepping/prescribed.hpp"
 
 namespace stickslip {
 

@@ -1,16 +1,6 @@
 #include "methods/stepping/engine_choice.hpp"
 
-#include "methods/all_methods.hpp"
-
 namespace stickslip {
-
-bool has_unknown_multipliers(const Method& method) {
-  return std::visit([](const auto& m) { return m.has_unknown_multipliers; }, method);
-}
-
-ConeRadius cone_radius_of(const Method& method) {
-  return std::visit([](const auto& m) { return cone_radius(m); }, method);
-}
 
 EnginePrice predict_price(const Model& model, const Method& method, const FactorSize& factor) {
   const bool unknown = has_unknown_multipliers(method);

@@ -1,15 +1,12 @@
 /// Which engine solves a run, by predicted prices, and the engine itself.
 #pragma once
 
+#include "core/engine/condensed_engine.hpp"
 #include "core/engine/engine_price.hpp"
+#include "core/engine/sparse_engine.hpp"
 #include "methods/stepping/run.hpp"
 
 namespace stickslip {
-
-/// Whether multipliers are unknowns of a method's systems. The radius of its cone has another name than the methods'
-/// cone_radius(): with the same name, a method without one would convert to Method and call itself.
-bool has_unknown_multipliers(const Method& method);
-ConeRadius cone_radius_of(const Method& method);
 
 /// Predicted price of a run by each engine. `factor`: of the bodies (bodies_factor).
 EnginePrice predict_price(const Model& model, const Method& method, const FactorSize& factor);
@@ -51,8 +48,7 @@ void make_engine(const Model& model, const Slots<T>& slots, const Method& method
       if (!std::exchange(workspace.condensation, bodies)) bodies->factorise(slots);
       if (bodies->valid() && !model.effects.linear_bulk) condensed = bodies;
       if (bodies->valid() && model.effects.linear_bulk) {
-        workspace.engine.emplace(std::in_place_type<CondensedEngine<T>>, model, slots, unknown_multipliers, cone,
-                                 bodies);
+        workspace.engine = std::make_shared<CondensedEngine<T>>(model, slots, unknown_multipliers, cone, bodies);
         return;
       }
     }
@@ -60,8 +56,8 @@ void make_engine(const Model& model, const Slots<T>& slots, const Method& method
   std::shared_ptr<CondensedTangent<T>> tangent;
   if constexpr (std::is_same_v<T, double>)
     if (!condensed) tangent = make_condensed_tangent(model, slots, method, engine, options.backend);
-  workspace.engine.emplace(std::in_place_type<SparseEngine<T>>, model, slots, unknown_multipliers, cone,
-                           options.backend, std::move(condensed), std::move(tangent));
+  workspace.engine = std::make_shared<SparseEngine<T>>(model, slots, unknown_multipliers, cone, options.backend,
+                                                       std::move(condensed), std::move(tangent));
 }
 
 }  // namespace stickslip

@@ -16,17 +16,16 @@
 /// at its own load, as at prescribed times. [R79], [C81]
 #pragma once
 
-#include "methods/rescue/motion.hpp"
+#include "methods/rescue/rescue.hpp"
 #include "methods/stepping/diagnosis.hpp"
 
 namespace stickslip {
 
-template <class T, class E, class M>
+template <class T>
 class Path {
  public:
-  Path(const M& method, Run<T, E>& run, Trajectory<T>& trajectory)
-      : method_(method),
-        run_(run),
+  Path(Run<T>& run, Trajectory<T>& trajectory)
+      : run_(run),
         trajectory_(trajectory),
         end_(run.model.times.back()),
         length_(path_length(run.model, run.slots)),
@@ -46,14 +45,14 @@ class Path {
   /// or tractions are not zero at t = 0, an increment at t = 0 comes first.
   bool advance() {
     if (trajectory_.increments.empty()) {
-      WorkBound bound(run_.model, run_.account.counters, method_.newton.max_iterations);
+      WorkBound bound(run_.model, run_.account.counters, newton_of(run_.method).max_iterations);
       bound.begin();
-      auto held = find_increment(method_, run_, trajectory_.initial, {}, 0.0, bound);
+      auto held = find_increment(run_, trajectory_.initial, {}, 0.0, bound);
       held.time = 0;
       if (!held.usable() || held.state.displacement != trajectory_.initial.displacement ||
           held.state.contact.traction != trajectory_.initial.contact.traction) {
         const bool usable = held.usable();
-        if (!usable) diagnose(run_.model, run_.slots, 0, method_.prevents_penetration, held);
+        if (!usable) diagnose(run_.model, run_.slots, 0, prevents_penetration(run_.method), held);
         take(std::move(held));
         if (!usable) return false;
       }
@@ -88,7 +87,7 @@ class Path {
   bool repeat(double time, const std::vector<Vector<double>>& guide) {
     State<T> start = last();
     if (!guide.empty()) start.displacement = guide[trajectory_.increments.size()].template cast<T>();
-    auto increment = solve_increment(method_, run_, last(), factor(), time, Start<T>{start, {}});
+    auto increment = solve_increment(run_, last(), factor(), time, Start<T>{start, {}});
     increment.time = time;
     const bool usable = increment.usable();
     take(std::move(increment));
@@ -132,12 +131,12 @@ class Path {
     }
     const Vector<double> left = values(previous.displacement);
     const Arc arc{left, now, share_ * length_, share_ * span_, nodes_, before == nullptr};
-    auto increment = solve_increment(method_, run_, previous, factor(), guess, Start<T>{start, {}, true, &arc});
+    auto increment = solve_increment(run_, previous, factor(), guess, Start<T>{start, {}, true, &arc});
     if (!increment.usable() || increment.time < end_ * (1 - nearly) || now >= end_) return increment;
     const double part = (end_ - now) / (increment.time - now);
     start = increment.state;
     start.displacement = previous.displacement + T(part) * (increment.state.displacement - previous.displacement);
-    auto landed = solve_increment(method_, run_, previous, factor(), end_, Start<T>{start, {}});
+    auto landed = solve_increment(run_, previous, factor(), end_, Start<T>{start, {}});
     landed.time = end_;
     landed.newton += increment.newton;
     landed.augmentations += increment.augmentations;
@@ -158,8 +157,7 @@ class Path {
     return motion > 0 || motion / (nodes_ * length_ * length_) + load / (span_ * span_) > 0;
   }
 
-  const M& method_;
-  Run<T, E>& run_;
+  Run<T>& run_;
   Trajectory<T>& trajectory_;
   double end_, length_, span_, nodes_ = 0;
   double share_ = 1, last_share_ = 1;  ///< share of the arc: of the next step, of the last

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/engine/condensation.hpp"
 #include "core/engine/engine.hpp"
 #include "core/model/state.hpp"
 #include "methods/newton/trace.hpp"
@@ -47,7 +48,7 @@ class Checkpoints;
 template <class T>
 struct Workspace {
   std::shared_ptr<Condensation<T>> condensation;
-  std::optional<Engine<T>> engine;
+  std::shared_ptr<Engine<T>> engine;
   std::shared_ptr<Checkpoints<T>> checkpoints = nullptr;  ///< set if states were thinned
 };
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "methods/rescue/motion.hpp"
+#include "methods/rescue/rescue.hpp"
 #include "methods/stepping/checkpoints.hpp"
 #include "methods/stepping/diagnosis.hpp"
 #include "methods/stepping/drive.hpp"
@@ -18,10 +18,10 @@ namespace stickslip {
 namespace detail {
 
 /// Looks for all solutions of a solved increment, if there may be several and points are few.
-template <class T, class E, class M>
-void count_solutions(const M& method, Run<T, E>& run, const State<T>& previous, double time, Increment<T>& increment) {
-  if (!run.several && !run.critical && !increment.reversed) return;
-  auto all = try_all_branches(method, run, previous, increment.rho_factor, time);
+template <class T>
+void count_solutions(Run<T>& run, const State<T>& previous, double time, Increment<T>& increment) {
+  if (run.uniqueness == Uniqueness::unique && !increment.reversed) return;
+  auto all = try_all_branches(run, previous, increment.rho_factor, time);
   increment.counted = all.has_value();
   if (!all) return;
   for (auto& state : all->states) {
@@ -35,9 +35,9 @@ void count_solutions(const M& method, Run<T, E>& run, const State<T>& previous, 
 /// the thousandth of the increment that contains at least a quarter of its motion; never the first thousandth of a run.
 /// None if there is no jump. The search is made in two cases: solutions were counted, and either end has several or a
 /// tangent on the way had a determinant of the other sign; or nonlinear bodies move suddenly.
-template <class T, class E, class M>
-std::optional<double> find_jump(const M& method, Run<T, E>& run, const State<T>& previous,
-                                const std::vector<double>& factor, double start, double end, const State<T>& reached) {
+template <class T>
+std::optional<double> find_jump(Run<T>& run, const State<T>& previous, const std::vector<double>& factor, double start,
+                                double end, const State<T>& reached) {
   constexpr int halvings = 10;
   constexpr double much = 0.25, nothing = 1e-9;
   const auto moved = [&](const State<T>& from, const State<T>& to) {
@@ -47,15 +47,15 @@ std::optional<double> find_jump(const M& method, Run<T, E>& run, const State<T>&
   Trace* const trace = std::exchange(run.account.trace, nullptr);
   State<T> before = previous, after = reached;
   bool solved = true;
-  WorkBound bound(run.model, run.account.counters, method.newton.max_iterations);
+  WorkBound bound(run.model, run.account.counters, newton_of(run.method).max_iterations);
   bound.begin();
   for (int level = 0; level < halvings && solved; ++level) {
     const double middle = (start + end) / 2;
-    auto half = find_increment(method, run, before, factor, middle, bound);
+    auto half = find_increment(run, before, factor, middle, bound);
     solved = half.usable();
     if (!solved) break;
     const bool near = moved(before, half.state) < much * moved(before, after);
-    auto rest = find_increment(method, run, half.state, factor, end, bound);
+    auto rest = find_increment(run, half.state, factor, end, bound);
     solved = rest.usable() || near;  // (what still stands near the start jumps later, found or not)
     if (!solved) break;
     const bool first = rest.usable() && moved(before, half.state) >= moved(half.state, rest.state);
@@ -95,26 +95,26 @@ bool is_sudden(const Model& model, const Slots<T>& slots, const std::vector<Incr
 
 /// Counts the solutions of an increment that was solved from `start` to its end, and looks for a jump to it where there
 /// may be one.
-template <class T, class E, class M>
-void look_beside(const M& method, Run<T, E>& run, const Trajectory<T>& trajectory, const std::vector<double>& factor,
-                 double start, Increment<T>& increment) {
+template <class T>
+void look_beside(Run<T>& run, const Trajectory<T>& trajectory, const std::vector<double>& factor, double start,
+                 Increment<T>& increment) {
   const auto& before = trajectory.increments;
   const State<T>& previous = before.empty() ? trajectory.initial : before.back().state;
-  count_solutions(method, run, previous, increment.time, increment);
+  count_solutions(run, previous, increment.time, increment);
   const bool folded =
       increment.reversed || !increment.others.empty() || (!before.empty() && !before.back().others.empty());
   increment.pace =
       pace_of(run.model, previous, increment.state, increment.time - (before.empty() ? 0 : before.back().time));
   const bool sudden = is_sudden(run.model, run.slots, before, increment.time, increment.pace);
   if ((increment.counted && folded) || sudden)
-    increment.jump = find_jump(method, run, previous, factor, start, increment.time, increment.state);
+    increment.jump = find_jump(run, previous, factor, start, increment.time, increment.state);
 }
 
 /// Whether an increment failed because supports drive what touches into one another, which no smaller step mends.
-template <class T, class E, class M>
-bool drives_together(const M& method, const Run<T, E>& run, double start, double end, const Increment<T>& failed) {
+template <class T>
+bool drives_together(const Run<T>& run, double start, double end, const Increment<T>& failed) {
   const auto& [model, slots] = std::tie(run.model, run.slots);
-  if (!method.prevents_penetration) {
+  if (!prevents_penetration(run.method)) {
     if (failed.status == Status::infeasible) return true;
   } else if (!prescribed_penetration(model, slots, failed.state).empty()) {
     return true;
@@ -123,10 +123,10 @@ bool drives_together(const M& method, const Run<T, E>& run, double start, double
 }
 
 /// Ends a step to the time `target` that found no solution: the increment that failed first is then the last.
-template <class T, class E, class M>
-void give_up(const M& method, const Run<T, E>& run, double target, const FreeBodies& free, const WorkBound& bound,
-             Increment<T> failed, std::vector<Increment<T>>& increments) {
-  diagnose(run.model, run.slots, target, method.prevents_penetration, failed);
+template <class T>
+void give_up(const Run<T>& run, double target, const FreeBodies& free, const WorkBound& bound, Increment<T> failed,
+             std::vector<Increment<T>>& increments) {
+  diagnose(run.model, run.slots, target, prevents_penetration(run.method), failed);
   const auto add = [&](const std::string& words) { failed.message += (failed.message.empty() ? "" : "; ") + words; };
   const bool is_named = failed.status == Status::no_equilibrium || failed.status == Status::infeasible;
   if (!free.words.empty() && !is_named) add("where the step begins, " + free.words);
@@ -138,8 +138,8 @@ void give_up(const M& method, const Run<T, E>& run, double target, const FreeBod
 }
 
 /// Advances the trajectory to the time `target`. False if it gave up; the failed increment is then the last.
-template <class T, class E, class M>
-bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double target, bool may_cut) {
+template <class T>
+bool advance(Run<T>& run, Trajectory<T>& trajectory, double target, bool may_cut) {
   constexpr double smallest = 1.0 / 1024, regrowth = 1.5;
   constexpr double patient = 0.2;  // share of the step at which nonlinear bodies turn to the motion
   const std::size_t start_count = trajectory.increments.size();
@@ -147,7 +147,7 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
   double reached = start, step = target - start;
   int easy = 0, cutbacks = 0;
   std::optional<Increment<T>> failed;
-  WorkBound bound(run.model, run.account.counters, method.newton.max_iterations);
+  WorkBound bound(run.model, run.account.counters, newton_of(run.method).max_iterations);
   const bool linear = run.model.effects.linear_bulk;
   FreeBodies free;
   if (!linear)
@@ -164,7 +164,7 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
     const bool may_move = linear || !may_cut || !free.words.empty() || step < patient * (target - start);
     bound.begin();
     run.start = reached;
-    auto increment = find_increment(method, run, previous, factor, next, bound, may_move);
+    auto increment = find_increment(run, previous, factor, next, bound, may_move);
     bound.end(increment.usable() ? std::max(1, increment.augmentations) : 0);
     increment.time = next;
     increment.requested = last;
@@ -175,7 +175,7 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
       increment.message = "the displacements are not finite";
     }
     if (increment.usable()) {
-      look_beside(method, run, trajectory, factor, reached, increment);
+      look_beside(run, trajectory, factor, reached, increment);
       trajectory.increments.push_back(std::move(increment));
       if (last) return true;
       reached = next;
@@ -184,7 +184,7 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
     }
     const bool impossible = increment.status == Status::no_equilibrium
                                 ? unbalanced_body(run.model, run.slots, next) != balanced
-                                : drives_together(method, run, reached, next, increment);
+                                : drives_together(run, reached, next, increment);
     if (!failed) failed = std::move(increment);
     easy = 0;
     step = (next - reached) / 2;
@@ -195,15 +195,15 @@ bool advance(const M& method, Run<T, E>& run, Trajectory<T>& trajectory, double 
   }
   failed->cutbacks = cutbacks;
   trajectory.increments.resize(start_count);
-  give_up(method, run, target, free, bound, std::move(*failed), trajectory.increments);
+  give_up(run, target, free, bound, std::move(*failed), trajectory.increments);
   return false;
 }
 
 /// Whether increments may have several solutions, as far as can be known before the first. Three criteria: friction may
 /// hold a body between surfaces; with few points, the determinants of all combinations of branches; with many, mu of a
 /// point exceeds k_t / |k_nt| of its stiffness with all others held, so that it could jump on its own.
-template <class T, class E>
-Uniqueness uniqueness_of(Run<T, E>& run) {
+template <class T>
+Uniqueness uniqueness_of(Run<T>& run) {
   const Model& model = run.model;
   if (!model.effects.friction || !model.effects.linear_bulk) return Uniqueness::unique;
   if (is_wedged(model, run.slots)) return Uniqueness::several;
@@ -226,14 +226,16 @@ Uniqueness uniqueness_of(Run<T, E>& run) {
   return Uniqueness::unique;
 }
 
-template <class T, class E, class M>
-void march(const M& method, const Model& model, const Slots<T>& slots, E& engine, const RunOptions& options,
-           Workspace<T>& workspace, Trajectory<T>& trajectory) {
-  Run<T, E> run{
-      .model = model, .slots = slots, .engine = engine, .account = {}, .condensation = workspace.condensation};
-  const Uniqueness uniqueness = uniqueness_of(run);
-  run.several = uniqueness == Uniqueness::several;
-  run.critical = uniqueness == Uniqueness::critical;
+template <class T>
+void march(const Method& method, const Model& model, const Slots<T>& slots, Engine<T>& engine,
+           const RunOptions& options, Workspace<T>& workspace, Trajectory<T>& trajectory) {
+  Run<T> run{.method = method,
+             .model = model,
+             .slots = slots,
+             .engine = engine,
+             .account = {},
+             .condensation = workspace.condensation};
+  run.uniqueness = uniqueness_of(run);
   run.account.trace = options.trace;
   trajectory.initial = initial_state<T>(model, slots);
   const bool repeats = !options.replay.empty();
@@ -242,11 +244,11 @@ void march(const M& method, const Model& model, const Slots<T>& slots, E& engine
   if (const auto plan = plan_checkpoints(model, options))
     workspace.checkpoints = std::make_shared<Checkpoints<T>>(*plan, times, !repeats);
   if (workspace.checkpoints) workspace.checkpoints->pass(run, trajectory);
-  std::optional<Path<T, E, M>> path;
-  if (model.scene.arc_length) path.emplace(method, run, trajectory);
+  std::optional<Path<T>> path;
+  if (model.scene.arc_length) path.emplace(run, trajectory);
   const auto ended = [&](std::size_t n) { return path && !repeats ? path->ended() : n == times.size(); };
   const auto step = [&](std::size_t n) {
-    if (!path) return advance(method, run, trajectory, times[n], !repeats);
+    if (!path) return advance(run, trajectory, times[n], !repeats);
     return repeats ? path->repeat(times[n], options.guide) : path->advance();
   };
   bool reached = true;
@@ -300,12 +302,7 @@ void solve_in(const Model& model, const Slots<T>& slots, const Method& method, c
     make_engine<T>(model, slots, method, options, workspace);
   }
   if (workspace.condensation && !reused) trajectory.counters += workspace.condensation->counters;
-  std::visit(
-      [&](const auto& m) {
-        std::visit([&](auto& engine) { detail::march(m, model, slots, engine, options, workspace, trajectory); },
-                   *workspace.engine);
-      },
-      method);
+  detail::march(method, model, slots, *workspace.engine, options, workspace, trajectory);
 }
 template <class T>
 Trajectory<T> solve_in(const Model& model, const Slots<T>& slots, const Method& method, const RunOptions& options,

@@ -18,19 +18,20 @@ bool same_contact(const State<T>& a, const State<T>& b) {
 
 /// The stretch that contains the thin increment n, as the run left it. The engine is restored afterwards. Throws
 /// std::logic_error if the stretch differs from that of the run.
-template <class T, class E, class M>
-Stretch<T> solve_again(const M& method, const Model& model, const Slots<T>& slots, E& engine,
+template <class T>
+Stretch<T> solve_again(const Method& method, const Model& model, const Slots<T>& slots, Engine<T>& engine,
                        const Checkpoints<T>& checkpoints, const Trajectory<T>& trajectory, std::size_t n,
                        Counters& counters) {
   const auto& start = checkpoints.start_of(n);
-  const auto own = engine.carried();
-  engine.carry(std::get<typename E::Carried>(start.engine), counters);
-  Run<T, E> run{.model = model,
-                .slots = slots,
-                .engine = engine,
-                .account = start.account,
-                .several = checkpoints.several(),
-                .condensation = checkpoints.condensation()};
+  const auto own = engine.memory();
+  engine.restore(start.engine, counters);
+  Run<T> run{.method = method,
+             .model = model,
+             .slots = slots,
+             .engine = engine,
+             .account = start.account,
+             .uniqueness = checkpoints.uniqueness(),
+             .condensation = checkpoints.condensation()};
   Stretch<T> stretch{checkpoints.end(start.step), {}};
   Trajectory<T> part;
   part.initial = trajectory.initial;
@@ -38,9 +39,9 @@ Stretch<T> solve_again(const M& method, const Model& model, const Slots<T>& slot
   if (before > 0) part.increments.push_back(trajectory.increments[stretch.first - 1]);
   const std::size_t last = checkpoints.last_step(start);
   for (std::size_t step = start.step + 1; step <= last; ++step)
-    advance(method, run, part, checkpoints.times()[step - 1], checkpoints.may_cut());
+    advance(run, part, checkpoints.times()[step - 1], checkpoints.may_cut());
   counters += run.account.counters;
-  engine.carry(own, counters);
+  engine.restore(own, counters);
   part.increments.erase(part.increments.begin(), part.increments.begin() + static_cast<std::ptrdiff_t>(before));
   stretch.increments = std::move(part.increments);
   bool same = stretch.first + stretch.increments.size() == checkpoints.end(last);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "methods/stepping/increment.hpp"
+#include "methods/stepping/prescribed.hpp"
 
 namespace stickslip {
 namespace {

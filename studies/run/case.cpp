@@ -252,10 +252,6 @@ void check_responses(const Model& model, const Slots<double>& slots) {
   }
 }
 
-EngineHoldings holdings(const Workspace<double>& workspace) {
-  return std::visit([](const auto& engine) { return engine.holdings(); }, *workspace.engine);
-}
-
 }  // namespace
 
 bool are_apart(double below, double above, double value, const Parameter& by, const Method& method) {
@@ -314,8 +310,8 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
   };
   solve(problem->model, problem->slots, method, followed, workspace, result.trajectory);
   condensation = workspace.condensation;
-  std::visit([&](auto& engine) { result.nonzeros = engine.nonzeros(); }, *workspace.engine);
-  result.engine = holdings(workspace);
+  result.nonzeros = workspace.engine->nonzeros();
+  result.engine = workspace.engine->holdings();
   if (condensation && !shared) result.condensing = condensation->counters;
   if (result.engine.body_solves > 0)
     result.body_solves =
@@ -325,10 +321,9 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
   name_turned_surfaces(*problem, result.trajectory);
   if (has_tangent(result.trajectory)) {
     if (result.trajectory.counters.newton > 0)  // otherwise nothing was factorised
-      result.condition_estimate =
-          std::visit([](auto& engine) { return engine.condition_estimate(); }, *workspace.engine);
+      result.condition_estimate = workspace.engine->condition_estimate();
     differentiate_case(workspace, derivatives, result);
-    result.sensitivity_body_solves = holdings(workspace).body_solves - result.engine.body_solves;
+    result.sensitivity_body_solves = workspace.engine->holdings().body_solves - result.engine.body_solves;
   }
   result.steps = gather_steps(result, reader);
   result.scales = reader.accuracy().scales;

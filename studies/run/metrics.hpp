@@ -1,16 +1,16 @@
 /// Errors of a solution against the contact conditions. The same measure serves every method: it is computed from
 /// states alone.
 ///
-/// l: largest relative displacement or A|t|/k of the run so far; p: largest traction; f: largest nodal force
-/// (KktScales)
+/// l: largest relative displacement or A|t|/k of the run so far; p: largest traction; f: largest nodal force (KktScales)
+///
 ///   equilibrium      largest nodal imbalance at free nodes / f
 ///   gap              largest penetration / l
 ///   complementarity  largest |min(g_N k / A, -t_N)| / p
 ///   cone             largest (|t_T| + mu t_N)^+ / p
 ///   stick            largest slip, summed over increments, of a point that stayed inside its cone, / l. A
-///   regularisation
-///                    allows such creep
+///                    regularisation allows such creep
 ///   slip_direction   largest 1 - cos(slip, t_T) among slipping points on the cone
+///
 /// All are dimensionless, and 0 for an exact solution of the discrete problem.
 #pragma once
 

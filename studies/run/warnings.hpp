@@ -12,6 +12,7 @@ namespace stickslip {
 
 /// The warnings of a run, each with its body or contact and the measured value, largest over the steps
 /// (docs/results.md):
+///
 ///   large_strain, large_rotation   above 5 % or 5 degrees in an element
 ///   large_sliding  slip of a closed point along a master that is deformable or curved, above half a slave element
 ///   idle_friction  none of the points of a contact with friction has slipped in any step
@@ -24,6 +25,7 @@ namespace stickslip {
 ///   shared_place   a response at a point that belongs to several bodies, and names none of them
 ///   (of solutions that are not unique or not exact: studies/run/solution_warnings.hpp)
 ///   path_goes_on   a path by arc length used up its steps before the full load
+///
 /// Empty if there is none, or if nothing converged.
 std::vector<Warning> warnings_of(const CaseResult& result);
 

@@ -5,9 +5,7 @@
 #include <algorithm>
 
 #include "methods/stepping/solve.hpp"
-#include "sensitivity/monolithic.hpp"
-#include "sensitivity/penalty.hpp"
-#include "sensitivity/uzawa.hpp"
+#include "sensitivity/schemes.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/solved.hpp"
@@ -22,9 +20,8 @@ struct Snapshot {
   Matrix<double> d_displacement, d_traction;
 };
 
-template <class M>
 std::vector<Snapshot> run_through(LinearAlgebra::Engine kind, const Model& model, const Slots<double>& slots,
-                                  const M& method) {
+                                  const Method& method) {
   RunOptions options;
   options.linear_algebra.engine = kind;
   Workspace<double> workspace;
@@ -36,24 +33,20 @@ std::vector<Snapshot> run_through(LinearAlgebra::Engine kind, const Model& model
   const int parameters = static_cast<int>(model.scene.parameters.size());
   auto blocks = parameter_blocks(model);
   std::vector<Snapshot> snapshots;
-  std::visit(
-      [&](auto& engine) {
-        Differentiation<std::decay_t<decltype(engine)>> problem{model, slots, engine, blocks, parameters, {}};
-        const State<double>* previous = &trajectory.initial;
-        for (const auto& increment : trajectory.increments) {
-          ASSERT_TRUE(differentiate_alone(method, problem, *previous, increment)) << problem.message;
-          const auto& state = increment.state;
-          snapshots.push_back(
-              {state.contact.state, state.displacement, state.contact.traction,
-               gather(
-                   blocks, parameters, [](ParameterBlock & b, int) -> auto& { return b.current.displacement; }),
-               gather(
-                   blocks, parameters, [](ParameterBlock & b, int) -> auto& { return b.current.contact.traction; })});
-          for (auto& block : blocks) std::swap(block.previous, block.current);
-          previous = &state;
-        }
-      },
-      *workspace.engine);
+  Differentiation problem{method, model, slots, *workspace.engine, blocks, parameters, {}};
+  const State<double>* previous = &trajectory.initial;
+  for (const auto& increment : trajectory.increments) {
+    ASSERT_TRUE(differentiate_alone(problem, *previous, increment)) << problem.message;
+    const auto& state = increment.state;
+    snapshots.push_back(
+        {state.contact.state, state.displacement, state.contact.traction,
+         gather(
+             blocks, parameters, [](ParameterBlock & b, int) -> auto& { return b.current.displacement; }),
+         gather(
+             blocks, parameters, [](ParameterBlock & b, int) -> auto& { return b.current.contact.traction; })});
+    for (auto& block : blocks) std::swap(block.previous, block.current);
+    previous = &state;
+  }
   return snapshots;
 }
 

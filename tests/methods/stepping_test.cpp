@@ -11,7 +11,7 @@ namespace {
 
 using scenes::run;
 
-/// A frozen cone is not followed by a motion where it fails (methods/rescue/motion.hpp): its increments are cut.
+/// A frozen cone is not followed by a motion where it fails (methods/rescue/rescue.hpp): its increments are cut.
 UzawaAL limited(int max_iterations) {
   UzawaAL method;
   method.cone = UzawaAL::Cone::frozen;

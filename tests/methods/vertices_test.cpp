@@ -20,7 +20,7 @@ TEST(KeptPatches, MayBeLeftByAFacetAndNoFarther) {
   const Anchor<double> none;
   const EquilibriumTask<double> task{input, Multipliers::unknown, none};
   Account account;
-  Evaluator<double, SparseEngine<double>> evaluate(engine, task, account);
+  Evaluator<double> evaluate(engine, task, account);
   auto at = evaluate({engine.begin(0.1, start.displacement, {}), start.multiplier});
   auto& point = at.field.facing[2];
   at.field.state[2] = ContactState::stick;

@@ -40,7 +40,7 @@ Both both(const Scene& scene, const Method& method, LinearAlgebra::Engine engine
   Both out;
   out.forward = differentiate(model, slots, method, trajectory, workspace);
   out.direct = objective_gradients(model, slots, trajectory, out.forward.of_responses);
-  out.condition = std::visit([](auto& e) { return e.condition_estimate(); }, *workspace.engine);  // of the scheme's
+  out.condition = workspace.engine->condition_estimate();  // of the scheme's
   out.backward = adjoint(model, slots, method, trajectory, workspace);
   out.adjoint = out.backward.of_objectives;
   // what an objective adds up: its size over that of the parameter, or its largest derivative

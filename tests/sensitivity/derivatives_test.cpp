@@ -125,23 +125,19 @@ TEST(Derivatives, OfSeveralIncrementsAtOnceAreThoseOfOneAtATime) {
     auto blocks = parameter_blocks(model);
     const int parameters = static_cast<int>(scene.parameters.size());
     std::vector<Matrix<double>> alone;
-    std::visit(
-        [&](const auto& m, auto& engine) {
-          Differentiation<std::decay_t<decltype(engine)>> problem{model, slots, engine, blocks, parameters, {}};
-          const State<double>* previous = &trajectory.initial;
-          for (const auto& increment : trajectory.increments) {
-            ASSERT_TRUE(differentiate_alone(m, problem, *previous, increment)) << problem.message;
-            std::vector<Vector<Direction>> responses;
-            for (auto& block : blocks) {
-              responses.push_back(evaluate_responses(model, block.slots, block.current, increment.time));
-              std::swap(block.previous, block.current);
-            }
-            alone.push_back(gather(
-                blocks, parameters, [&](auto&, int b) -> auto& { return responses[b]; }));
-            previous = &increment.state;
-          }
-        },
-        method, *workspace.engine);
+    Differentiation problem{method, model, slots, *workspace.engine, blocks, parameters, {}};
+    const State<double>* previous = &trajectory.initial;
+    for (const auto& increment : trajectory.increments) {
+      ASSERT_TRUE(differentiate_alone(problem, *previous, increment)) << problem.message;
+      std::vector<Vector<Direction>> responses;
+      for (auto& block : blocks) {
+        responses.push_back(evaluate_responses(model, block.slots, block.current, increment.time));
+        std::swap(block.previous, block.current);
+      }
+      alone.push_back(gather(
+          blocks, parameters, [&](auto&, int b) -> auto& { return responses[b]; }));
+      previous = &increment.state;
+    }
     expect_same(together.of_responses, alone, std::string(name_of(method)));
   }
 }

@@ -2,8 +2,8 @@
 /// refined, or the tangent is factorised anew. Held by engines that hand on a factor of another tangent.
 #include <gtest/gtest.h>
 
-#include "sensitivity/monolithic.hpp"
-#include "sensitivity/penalty.hpp"
+#include "core/engine/sparse_engine.hpp"
+#include "sensitivity/schemes.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/solved.hpp"
 
@@ -16,7 +16,7 @@ using namespace scenes;
 class CarelessEngine : public SparseEngine<double> {
  public:
   using SparseEngine::SparseEngine;
-  bool update(const std::vector<PointTangent<double>>&, Counters&) { return true; }
+  bool update(const std::vector<PointTangent<double>>&, Counters&, const Vector<double>& = {}) override { return true; }
 };
 
 struct Outcome {
@@ -33,7 +33,7 @@ Outcome differentiate_last(const Scene& scene, const M& method, std::optional<do
   const State<double>& previous =
       increments.size() > 1 ? increments[increments.size() - 2].state : run.trajectory.initial;
   constexpr bool unknown = std::is_same_v<M, MonolithicAL>;
-  CarelessEngine engine(run.model, run.slots, unknown, cone_radius(method), Backend::automatic);
+  CarelessEngine engine(run.model, run.slots, unknown, method.cone_radius(), Backend::automatic);
   auto blocks = parameter_blocks(run.model);
   for (auto& block : blocks) {
     block.previous.multiplier = lift(previous.multiplier);
@@ -41,12 +41,13 @@ Outcome differentiate_last(const Scene& scene, const M& method, std::optional<do
                   block.previous.history, previous.history);
     block.previous.contact.traction = lift(previous.contact.traction);
   }
-  Differentiation<CarelessEngine> problem{
-      run.model, run.slots, engine, blocks, static_cast<int>(run.model.scene.parameters.size()), {}};
+  const Method own = method;
+  Differentiation problem{
+      own, run.model, run.slots, engine, blocks, static_cast<int>(run.model.scene.parameters.size()), {}};
   if (factor) {
     const auto rho = initial_regularisation(run.slots, method);
-    const ContactInput<double> input{run.model,        run.slots,           rho,
-                                     previous.history, cone_radius(method), increments.back().time};
+    const ContactInput<double> input{
+        run.model, run.slots, rho, previous.history, method.cone_radius(), increments.back().time};
     auto tangents = converged_tangents(input, increments.back().state);
     for (auto& tangent : tangents)
       for (auto* part : {&tangent.force_w, &tangent.force_l}) *part *= *factor;
@@ -54,7 +55,7 @@ Outcome differentiate_last(const Scene& scene, const M& method, std::optional<do
     EXPECT_TRUE(engine.factorise(tangents, spent));
     problem.follows = true;
   }
-  EXPECT_TRUE(differentiate_alone(method, problem, previous, increments.back())) << problem.message;
+  EXPECT_TRUE(differentiate_alone(problem, previous, increments.back())) << problem.message;
   const auto derivatives = gather(
       blocks, problem.parameters, [&](auto&, int b) -> auto& { return blocks[b].current.displacement; });
   return {derivatives, problem.counters};

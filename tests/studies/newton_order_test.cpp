@@ -68,7 +68,7 @@ std::vector<double> roundings(const Solved& s) {
     const EquilibriumTask<double> task{input, multipliers, none};
     const Vector<double> in_frames = engine.begin(increment.time, u, before->history.bodies);
     if (!model.effects.linear_bulk) engine.linearise({u, before->history.bodies, increment.time});
-    Evaluator<double, SparseEngine<double>> evaluate(engine, task, account);
+    Evaluator<double> evaluate(engine, task, account);
     const auto found = evaluate({in_frames, increment.state.multiplier});
     account.scales = found.scales;
     const auto& floors = found.residuals;

@@ -4,7 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/engine/engine.hpp"
+#include "core/engine/condensed_engine.hpp"
+#include "core/engine/sparse_engine.hpp"
 #include "core/model/loading.hpp"
 #include "core/model/moved_point.hpp"
 #include "tests/support/derivatives.hpp"

@@ -23,7 +23,7 @@ inline Both both(const Scene& scene, const Method& method) {
   Workspace<double> workspace;
   s.trajectory = solve(s.model, s.slots, method, {}, workspace);
   EXPECT_TRUE(is_converged(s.trajectory.status)) << s.trajectory.message;
-  s.condition = std::visit([](auto& engine) { return engine.condition_estimate(); }, *workspace.engine);
+  s.condition = workspace.engine->condition_estimate();
   s.gradients = differentiate(s.model, s.slots, method, s.trajectory, workspace);
   out.sides = one_sided_derivatives(s.model, s.slots, method, s.trajectory, workspace);
   return out;

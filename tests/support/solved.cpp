@@ -30,7 +30,7 @@ Solved run(const Scene& scene, const Method& method, const RunOptions& options) 
   out.slots = make_slots<double>(out.model, scene.as<double>());
   Workspace<double> workspace;
   out.trajectory = solve(out.model, out.slots, method, options, workspace);
-  out.condition = std::visit([](auto& engine) { return engine.condition_estimate(); }, *workspace.engine);
+  out.condition = workspace.engine->condition_estimate();
   out.gradients = differentiate(out.model, out.slots, method, out.trajectory, workspace);
   return out;
 }

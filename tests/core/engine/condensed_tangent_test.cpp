@@ -135,9 +135,9 @@ TEST(CondensedTangent, IsCarriedToTheLastBit) {
   Counters unused, counters;
   pair.factorise(here, unused, unused);
   const auto first = solve_with_last();
-  const auto carried = engine.carried();
+  const auto memory = engine.memory();
   pair.factorise(there, unused, unused);
-  engine.carry(carried, counters);
+  engine.restore(memory, counters);
   EXPECT_EQ(counters.factorizations, 1);
   const auto again = solve_with_last();
   EXPECT_TRUE(again.u == first.u && again.l == first.l);

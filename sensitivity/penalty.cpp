@@ -2,22 +2,20 @@
 /// stored traction is history, and its derivative is carried from increment to increment. Exact for the penalised
 /// problem. Adjoint: one transposed solve; the derivative by lambda_T is added to that by the stored traction. [MTV94],
 /// [SLK10 sec. 3]
-#pragma once
 
-#include "methods/penalty.hpp"
 #include "sensitivity/direct.hpp"
 #include "sensitivity/pull_back.hpp"
+#include "sensitivity/schemes.hpp"
 
 namespace stickslip {
 
-template <class E>
-bool differentiate_increment(const Penalty& method, Differentiation<E>& problem, const State<double>& previous,
-                             const Increment<double>& increment) {
-  const auto rho = initial_regularisation(problem.slots, method);
+bool Penalty::differentiate_increment(Differentiation& problem, const State<double>& previous,
+                                      const Increment<double>& increment) const {
+  const auto rho = initial_regularisation(problem.slots, *this);
   std::vector<Vector<Direction>> lambda;
   for (auto& block : problem.blocks) lambda.push_back(stored_traction(problem.model, block.previous));
-  LinearisedEquilibrium<E> linearised(problem, increment.state, rho, regularisation_blocks(method, problem),
-                                      ConeRadius::augmented, increment.time, false, previous.history);
+  LinearisedEquilibrium linearised(problem, increment.state, rho, regularisation_blocks(problem), ConeRadius::augmented,
+                                   increment.time, false, previous.history);
   if (!linearised.valid()) return false;
   std::vector<ContactField<Direction>> fields;
   if (!linearised.solve(lambda, fields)) return false;
@@ -25,12 +23,11 @@ bool differentiate_increment(const Penalty& method, Differentiation<E>& problem,
   return true;
 }
 
-template <class E>
-bool pull_back_increment(const Penalty& method, AdjointProblem<E>& problem, const State<double>& previous,
-                         const Increment<double>& increment) {
+bool Penalty::pull_back_increment(AdjointProblem& problem, const State<double>& previous,
+                                  const Increment<double>& increment) const {
   problem.tape.rewind(problem.slots_end);
-  RecordedEquilibrium<E> recorded(problem, previous, increment.state, initial_regularisation(problem.recorded, method),
-                                  ConeRadius::augmented, increment.time, false, increment.requested);
+  RecordedEquilibrium recorded(problem, previous, increment.state, initial_regularisation(problem.recorded, *this),
+                               ConeRadius::augmented, increment.time, false, increment.requested);
   if (!recorded.valid()) return false;
   for (int j = 0; j < static_cast<int>(problem.objectives.size()); ++j) {
     recorded.seed_outcome(j);

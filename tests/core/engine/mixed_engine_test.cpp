@@ -29,10 +29,10 @@ struct Pair {
     return derivatives::arbitrary(2 * static_cast<int>(problem.model.contact_nodes.size()), 4);
   }
   /// Engine displacement of the engine in full where that of the other is `u`.
-  Vector<double> in_full(const Vector<double>& u) const {
+  Vector<double> in_full(const Vector<double>& u) {
     return into_frames(problem.model, problem.slots.frames, Layout::all, mixed.all(u));
   }
-  void expect_same_rows(const Vector<double>& u) const {
+  void expect_same_rows(const Vector<double>& u) {
     ForceScale scale, scale_of_mixed;
     const Vector<double> rows = full.residual(in_full(u), contact(), scale);
     const Vector<double> reduced = mixed.residual(u, contact(), scale_of_mixed);
@@ -48,7 +48,7 @@ std::vector<Scene> mixed_scenes() { return {scenes::punched_metal(5), scenes::pu
 
 TEST(MixedEngine, HasTheResidualOfTheBodiesInFull) {
   for (const auto& scene : mixed_scenes()) {
-    const Pair pair(scene);
+    Pair pair(scene);
     ASSERT_TRUE(pair.condensation->valid());
     pair.expect_same_rows(pair.of_mixed);
   }
@@ -108,7 +108,7 @@ TEST(MixedEngine, SolvesAsTheEngineInFullDoes) {
 }
 
 TEST(MixedEngine, LeavesOutWhatIsInside) {
-  const Pair pair(scenes::punched_metal(5), true);
+  Pair pair(scenes::punched_metal(5), true);
   const auto& model = pair.problem.model;
   int inside = 0;
   for (int dof : model.free_dofs) inside += !pair.mixed.is_free(dof);
@@ -121,7 +121,7 @@ TEST(MixedEngine, LeavesOutWhatIsInside) {
 }
 
 TEST(MixedEngine, ExpandsWhatIsWantedAsItExpandsAll) {
-  const Pair pair(scenes::punched_metal(9));
+  Pair pair(scenes::punched_metal(9));
   const auto& interior = pair.condensation->interior();
   const Matrix<double> r = pair.problem.rows(3);
   const auto reduced = pair.condensation->reduce(r);

@@ -33,8 +33,7 @@ void for_each_engine(const EngineProblem& problem, Check&& check) {
 }
 
 /// Two right-hand sides of an engine's rows.
-template <class E>
-BlockVector<double> right_hand_sides(E& engine, const EngineProblem& problem) {
+BlockVector<double> right_hand_sides(Engine<double>& engine, const EngineProblem& problem) {
   return {engine.reduce(problem.rows(2)).kept,
           derivatives::arbitrary(problem.model.multiplier_count, 7) * Matrix<double>::Ones(1, 2)};
 }

@@ -1,18 +1,13 @@
-/// What an adjoint leaves to be done inside the bodies, for many increments together: a inside, out of its values at
-/// the contact in one solve; what it weighs of the loads there and of the motion that is prescribed; and the bodies'
-/// share of the gradient, sum of a . df(u)/dslots, f the bodies' forces, in one visit of each element.
-#pragma once
+#include "sensitivity/pull_back_inside.hpp"
 
 #include "core/model/storage.hpp"
-#include "sensitivity/pull_back.hpp"
 
 namespace stickslip {
 
-namespace detail {
+namespace {
 
 /// a of the waiting equilibria over all dofs in the axes, zero where motion is prescribed.
-template <class E>
-Matrix<double> weights_inside(AdjointProblem<E>& problem, const std::vector<InteriorShare>& waiting) {
+Matrix<double> weights_inside(AdjointProblem& problem, const std::vector<InteriorShare>& waiting) {
   const Model& model = problem.model;
   const auto count = static_cast<Eigen::Index>(waiting.size());
   const auto join = [&](Matrix<double> InteriorShare::*part) {
@@ -32,7 +27,7 @@ Matrix<double> weights_inside(AdjointProblem<E>& problem, const std::vector<Inte
 
 /// Weights of the rows that are solved inside the bodies, in the frames of the nodes: zero where motion is prescribed,
 /// and at the contact, whose rows have been moved already.
-inline Vector<double> inside_alone(const Model& model, Vector<double> weights) {
+Vector<double> inside_alone(const Model& model, Vector<double> weights) {
   const int D = model.dimension;
   for (int node : model.contact_nodes) weights.segment(node * D, D).setZero();
   for (Eigen::Index dof = 0; dof < weights.size(); ++dof)
@@ -41,8 +36,8 @@ inline Vector<double> inside_alone(const Model& model, Vector<double> weights) {
 }
 
 /// Moves weights of the rows less the loads, in the axes, to the forces of the loads and their factors.
-inline void pull_back_dead_forces(const Model& model, const Slots<Reverse>& slots, double time,
-                                  const Vector<double>& weights, std::vector<double>& by, Tape& tape) {
+void pull_back_dead_forces(const Model& model, const Slots<Reverse>& slots, double time, const Vector<double>& weights,
+                           std::vector<double>& by, Tape& tape) {
   for (std::size_t l = 0; l < slots.loads.size(); ++l) {
     const auto& history = model.scene.loads[l].history;
     const Reverse factor = history ? evaluate(*history, time, slots.numbers) : Reverse(1);
@@ -59,7 +54,7 @@ inline void pull_back_dead_forces(const Model& model, const Slots<Reverse>& slot
 }
 
 /// Whether the motion that supports prescribe is on the tape.
-inline bool moves_on_tape(const Model& model, const Slots<Reverse>& slots, double time) {
+bool moves_on_tape(const Model& model, const Slots<Reverse>& slots, double time) {
   return !model.framed.empty() ||
          std::any_of(model.constraints.begin(), model.constraints.end(), [&](const Constraint& constraint) {
            const auto place = slots.points.col(constraint.dof / model.dimension);
@@ -70,8 +65,7 @@ inline bool moves_on_tape(const Model& model, const Slots<Reverse>& slots, doubl
 /// Moves weights `a` (all dofs, in the axes) inside the bodies to loads, frames and prescribed motion. What no
 /// parameter touches is not put in reverse scalars: of a vector over all dofs these alone would cost as much as the
 /// elements.
-template <class E>
-void pull_back_loads(AdjointProblem<E>& problem, const InteriorShare& of, const Vector<double>& a,
+void pull_back_loads(AdjointProblem& problem, const InteriorShare& of, const Vector<double>& a,
                      std::vector<double>& by) {
   const Model& model = problem.model;
   const auto& slots = problem.recorded;
@@ -110,11 +104,9 @@ void pull_back_loads(AdjointProblem<E>& problem, const InteriorShare& of, const 
   tape.pull_back(by, problem.slots_end);
 }
 
-}  // namespace detail
+}  // namespace
 
-/// Does what waits inside the bodies. What these remember adds to the derivatives by history.
-template <class E>
-void pull_back_inside(AdjointProblem<E>& problem) {
+void pull_back_inside(AdjointProblem& problem) {
   long waiting = 0;
   for (const auto& objective : problem.objectives)
     for (const auto& of : objective.waiting)
@@ -124,12 +116,12 @@ void pull_back_inside(AdjointProblem<E>& problem) {
   for (auto& objective : problem.objectives) {
     auto& waiting = objective.waiting;
     if (waiting.empty()) continue;
-    WorkPairs pairs{detail::weights_inside(problem, waiting), {}, {}, {}, {}};
+    WorkPairs pairs{weights_inside(problem, waiting), {}, {}, {}, {}};
     pairs.motions.resize(pairs.weights.rows(), pairs.weights.cols());
     pairs.last_memory.resize(problem.model.memory_count, pairs.weights.cols());
     for (std::size_t n = 0; n < waiting.size(); ++n) {
       const auto k = static_cast<Eigen::Index>(n);
-      detail::pull_back_loads(problem, waiting[n], pairs.weights.col(k), objective.adjoint);
+      pull_back_loads(problem, waiting[n], pairs.weights.col(k), objective.adjoint);
       pairs.weights.col(k) += waiting[n].weights;
       pairs.motions.col(k) = waiting[n].motion;
       pairs.last_memory.col(k) = waiting[n].last_memory;

@@ -23,22 +23,21 @@
 /// is carried to lambda and back,  l <- l D t/D lambda.  The iterated and preconditioned schemes repeat this until the
 /// rest vanishes, as a fixed point iteration with Anderson's acceleration; the truncated scheme does it once per
 /// augmentation, the oversized one once. [SLK10 sec. 1], [CD20]
-#pragma once
 
-#include "methods/uzawa.hpp"
+#include "methods/augmentation/acceleration.hpp"
 #include "sensitivity/direct.hpp"
 #include "sensitivity/progress.hpp"
 #include "sensitivity/pull_back.hpp"
+#include "sensitivity/schemes.hpp"
 
 namespace stickslip {
 
-namespace detail {
+namespace {
 
-inline constexpr std::string_view other_scheme = ", or the preconditioned scheme";
+constexpr std::string_view other_scheme = ", or the preconditioned scheme";
 
 /// Per block: the value of `multiplier` with D lambda of the last increment as its derivative.
-template <class E>
-std::vector<Vector<Direction>> carried_multiplier(Differentiation<E>& problem, const Vector<double>& multiplier) {
+std::vector<Vector<Direction>> carried_multiplier(Differentiation& problem, const Vector<double>& multiplier) {
   std::vector<Vector<Direction>> lambda;
   for (auto& block : problem.blocks) {
     lambda.push_back(lift(multiplier));
@@ -48,27 +47,25 @@ std::vector<Vector<Direction>> carried_multiplier(Differentiation<E>& problem, c
 }
 
 /// Derivative of the Uzawa update lambda <- t: sets D lambda to D t of `fields`, per block. Values stay.
-inline void update_derivatives(std::vector<Vector<Direction>>& lambda,
-                               const std::vector<ContactField<Direction>>& fields) {
+void update_derivatives(std::vector<Vector<Direction>>& lambda, const std::vector<ContactField<Direction>>& fields) {
   for (std::size_t b = 0; b < lambda.size(); ++b)
     for (Eigen::Index k = 0; k < lambda[b].size(); ++k) lambda[b][k].d = fields[b].traction[k].d;
 }
 
-template <class E>
-LinearisedEquilibrium<E> linearise(const UzawaAL& method, Differentiation<E>& problem, const State<double>& previous,
-                                   const State<double>& at, std::vector<double> factor, double oversize, double time,
-                                   RegularisationField<double>& rho) {
+LinearisedEquilibrium linearise(const UzawaAL& method, Differentiation& problem, const State<double>& previous,
+                                const State<double>& at, std::vector<double> factor, double oversize, double time,
+                                RegularisationField<double>& rho) {
   for (double& f : factor) f *= oversize;
   rho = adapted(initial_regularisation(problem.slots, method), factor);
-  auto blocks = method.scheme().reads_regularisation ? regularisation_blocks(method, problem, factor)
+  auto blocks = method.scheme().reads_regularisation ? regularisation_blocks(problem, factor)
                                                      : std::vector(problem.blocks.size(), constant<Direction>(rho));
-  return LinearisedEquilibrium<E>(problem, at, rho, std::move(blocks), cone_radius(method), time, false,
-                                  previous.history);
+  return LinearisedEquilibrium(problem, at, rho, std::move(blocks), method.cone_radius(), time, false,
+                               previous.history);
 }
 
 /// kappa_s of the preconditioned scheme. `contraction`: of the updates; 0: not measured.
-inline double chosen_oversize(const UzawaAL& method, const Slots<double>& slots, const RegularisationField<double>& rho,
-                              double contraction) {
+double chosen_oversize(const UzawaAL& method, const Slots<double>& slots, const RegularisationField<double>& rho,
+                       double contraction) {
   constexpr double target = 5e-4, least = 300, most = 1e5;  // target: a contraction; least, most: nodal stiffnesses
   if (method.oversize) return *method.oversize;
   double smallest = std::numeric_limits<double>::infinity(), largest = 0;
@@ -85,7 +82,7 @@ inline double chosen_oversize(const UzawaAL& method, const Slots<double>& slots,
 /// The state `at` with the multiplier whose trial at kappa_s rho is the traction t that was found: lambda = t - kappa_s
 /// rho g. In slip that trial is on the edge of the cone. Why: with lambda of the loop, kappa_s rho would magnify the
 /// violation that the augmentations left.
-inline State<double> restated(const Model& model, State<double> at, const RegularisationField<double>& rho) {
+State<double> restated(const Model& model, State<double> at, const RegularisationField<double>& rho) {
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     if (at.contact.state[p] == ContactState::open) continue;
     const int k = model.points[p].multiplier, offset = tangential_offset(model, p);
@@ -108,15 +105,13 @@ inline State<double> restated(const Model& model, State<double> at, const Regula
 ///                    multipliers drift by the rounding between them. It is no slow mode: at such a q a slow mode would
 ///                    begin with larger changes
 ///   rests            for ten passes no change has fallen to half of the least, and D lambda has come no farther in all
-///   of
-///                    them than four such changes. A slow mode would go on in its direction. What is left is the
+///                    of them than four such changes. A slow mode would go on in its direction. What is left is the
 ///                    rounding of the back-solves, which the factor's condition number magnifies; up to 1e-9 of D
 ///                    lambda
 ///
 /// The rounding of Dg is that of its terms, and that of the forces that balance in it. Example: tractions do not depend
 /// on a thickness, so its Dg is this rounding alone.
-template <class E>
-bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, const RegularisationField<double>& rho,
+bool iterate(Differentiation& problem, LinearisedEquilibrium& linearised, const RegularisationField<double>& rho,
              std::vector<Vector<Direction>>& lambda, std::vector<ContactField<Direction>>& fields, double tolerance) {
   double stiffest = 0, rho_over_k = 0;  // largest rho; largest rho over k: traction per force that rounds in a node
   for (std::size_t p = 0; p < rho.size(); ++p) {
@@ -130,8 +125,8 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
   Matrix<double> at_least;                        // D lambda after it
   auto columns = [&](auto&& pick) { return gather(problem.blocks, problem.parameters, pick); };
   auto& record = problem.record.emplace();
-  Progress progress;
-  for (int pass = 1; pass <= Progress::limit; ++pass) {
+  detail::Progress progress;
+  for (int pass = 1; pass <= detail::Progress::limit; ++pass) {
     const Matrix<double> before = columns([&](auto&, int b) -> auto& { return lambda[b]; });
     if (!linearised.solve(lambda, fields)) return false;
     const Matrix<double> after = columns([&](auto&, int b) -> auto& { return fields[b].traction; });
@@ -174,8 +169,7 @@ bool iterate(Differentiation<E>& problem, LinearisedEquilibrium<E>& linearised, 
 }
 
 /// The truncated scheme: one pass per augmentation that was performed.
-template <class E>
-bool differentiate_augmentations(const UzawaAL& method, Differentiation<E>& problem, const State<double>& previous,
+bool differentiate_augmentations(const UzawaAL& method, Differentiation& problem, const State<double>& previous,
                                  const Increment<double>& increment) {
   RegularisationField<double> rho;
   auto lambda = carried_multiplier(problem, previous.contact.traction);
@@ -195,16 +189,15 @@ bool differentiate_augmentations(const UzawaAL& method, Differentiation<E>& prob
 }
 
 /// The preconditioned scheme: the fixed point of D lambda <- D t with the factor at kappa_s rho.
-template <class E>
-bool differentiate_preconditioned(const UzawaAL& method, Differentiation<E>& problem, const State<double>& previous,
+bool differentiate_preconditioned(const UzawaAL& method, Differentiation& problem, const State<double>& previous,
                                   const Increment<double>& increment) {
   const auto own = adapted(initial_regularisation(problem.slots, method), increment.rho_factor);
   const double oversize = chosen_oversize(method, problem.slots, own, increment.contraction);
   const auto rho = adapted(own, std::vector<double>(own.size(), oversize));
   const std::vector blocks(problem.blocks.size(), constant<Direction>(rho));
   const State<double> at = restated(problem.model, increment.state, rho);
-  LinearisedEquilibrium<E> linearised(problem, at, rho, blocks, cone_radius(method), increment.time, false,
-                                      previous.history);
+  LinearisedEquilibrium linearised(problem, at, rho, blocks, method.cone_radius(), increment.time, false,
+                                   previous.history);
   if (!linearised.valid()) return false;
   auto lambda = carried_multiplier(problem, at.multiplier);
   std::vector<ContactField<Direction>> fields;
@@ -215,40 +208,37 @@ bool differentiate_preconditioned(const UzawaAL& method, Differentiation<E>& pro
   return true;
 }
 
-}  // namespace detail
+}  // namespace
 
-template <class E>
-bool differentiate_increment(const UzawaAL& method, Differentiation<E>& problem, const State<double>& previous,
-                             const Increment<double>& increment) {
+bool UzawaAL::differentiate_increment(Differentiation& problem, const State<double>& previous,
+                                      const Increment<double>& increment) const {
   using Sensitivity = UzawaAL::Sensitivity;
-  if (method.sensitivity == Sensitivity::truncated)
-    return detail::differentiate_augmentations(method, problem, previous, increment);
-  if (method.sensitivity == Sensitivity::preconditioned)
-    return detail::differentiate_preconditioned(method, problem, previous, increment);
-  const bool oversized = method.sensitivity == Sensitivity::oversized;
-  const double oversize = method.scheme().oversize;
+  if (sensitivity == Sensitivity::truncated) return differentiate_augmentations(*this, problem, previous, increment);
+  if (sensitivity == Sensitivity::preconditioned)
+    return differentiate_preconditioned(*this, problem, previous, increment);
+  const bool oversized = sensitivity == Sensitivity::oversized;
+  const double oversize = scheme().oversize;
   RegularisationField<double> rho;
-  auto linearised = detail::linearise(method, problem, previous, increment.state, increment.rho_factor, oversize,
-                                      increment.time, rho);
+  auto linearised =
+      linearise(*this, problem, previous, increment.state, increment.rho_factor, oversize, increment.time, rho);
   if (!linearised.valid()) return false;
-  auto lambda = detail::carried_multiplier(problem, increment.state.multiplier);
+  auto lambda = carried_multiplier(problem, increment.state.multiplier);
   std::vector<ContactField<Direction>> fields;
   if (oversized) {
     if (!linearised.solve(lambda, fields)) return false;
     problem.record = {1, oversize, 0};
-  } else if (!detail::iterate(problem, linearised, rho, lambda, fields, 1e-13)) {
-    if (problem.status == Status::cap) problem.message += detail::other_scheme;
+  } else if (!iterate(problem, linearised, rho, lambda, fields, 1e-13)) {
+    if (problem.status == Status::cap) problem.message += other_scheme;
     return false;
   }
   linearised.store_state(fields, lambda);
   return true;
 }
 
-namespace detail {
+namespace {
 
 /// rho of the loop times `oversize`. The tape is rewound to the slots. If the scheme depends on rho, rho is recorded.
-template <class E>
-RegularisationField<Reverse> recorded_regularisation(const UzawaAL& method, AdjointProblem<E>& problem,
+RegularisationField<Reverse> recorded_regularisation(const UzawaAL& method, AdjointProblem& problem,
                                                      std::vector<double> factor, double oversize) {
   for (double& f : factor) f *= oversize;
   problem.tape.rewind(problem.slots_end);
@@ -263,14 +253,11 @@ RegularisationField<Reverse> recorded_regularisation(const UzawaAL& method, Adjo
 /// those of the last pass alone remain. False if the passes reach their limit.
 ///
 ///   left         c + A^T x - x: the derivative by the lambda that the increment began with. It converges to zero,
-///   except
-///                for the multiplier of a constraint that supports decide, which keeps its value of the last increment
+///                except for the multiplier of a constraint that supports decide, which keeps its value of the last increment
 ///   plain        x is the last image, not an extrapolation. Then `left` is the next term of the series, and its
-///   changes
-///                tell whether the series has converged or stalled
+///                changes tell whether the series has converged or stalled
 ///   contraction  of A; 0: not measured. Anderson's extrapolation hides it from the changes
-template <class E>
-bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, int objective, double contraction,
+bool iterate_back(AdjointProblem& problem, RecordedEquilibrium& recorded, int objective, double contraction,
                   Vector<double>& left) {
   constexpr double tolerance = 1e-14;
   constexpr double noise = 1e4 * unit_roundoff;  // changes below it that do not fall any more are rounding
@@ -284,8 +271,8 @@ bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, 
   Accelerator<double> accelerator(UzawaAL::Acceleration::anderson);
   Vector<double> x = asked;
   bool plain = true;
-  Progress progress;
-  for (int pass = 1; pass <= Progress::limit; ++pass) {
+  detail::Progress progress;
+  for (int pass = 1; pass <= detail::Progress::limit; ++pass) {
     recorded.seed_traction(objective, x);
     recorded.balance(objective);
     const Vector<double> image = asked + recorded.take_multiplier(objective);
@@ -311,8 +298,7 @@ bool iterate_back(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, 
 }
 
 /// Adjoint of the truncated scheme: goes back through all augmentations that were performed, the last one first.
-template <class E>
-bool pull_back_augmentations(const UzawaAL& method, AdjointProblem<E>& problem, const State<double>& previous,
+bool pull_back_augmentations(const UzawaAL& method, AdjointProblem& problem, const State<double>& previous,
                              const Increment<double>& increment) {
   const int objectives = static_cast<int>(problem.objectives.size());
   std::vector<HistoryDerivative> gathered(objectives);
@@ -320,9 +306,9 @@ bool pull_back_augmentations(const UzawaAL& method, AdjointProblem<E>& problem, 
   for (std::size_t k = increment.augmented.size(); k-- > 0;) {
     const auto& augmented = increment.augmented[k];
     const bool last = k + 1 == increment.augmented.size();
-    RecordedEquilibrium<E> recorded(problem, previous, augmented.state,
-                                    recorded_regularisation(method, problem, augmented.rho_factor, 1),
-                                    cone_radius(method), increment.time, false, last && increment.requested);
+    RecordedEquilibrium recorded(problem, previous, augmented.state,
+                                 recorded_regularisation(method, problem, augmented.rho_factor, 1),
+                                 method.cone_radius(), increment.time, false, last && increment.requested);
     if (!recorded.valid()) return false;
     for (int j = 0; j < objectives; ++j) {
       if (last)
@@ -348,9 +334,7 @@ bool pull_back_augmentations(const UzawaAL& method, AdjointProblem<E>& problem, 
 }
 
 /// Adjoint of the iterated scheme, or one pass (`once`), on an equilibrium recorded with the scheme's rho.
-template <class E>
-bool pull_back_fixed_point(AdjointProblem<E>& problem, RecordedEquilibrium<E>& recorded, bool once,
-                           double contraction) {
+bool pull_back_fixed_point(AdjointProblem& problem, RecordedEquilibrium& recorded, bool once, double contraction) {
   if (!recorded.valid()) return false;
   for (int j = 0; j < static_cast<int>(problem.objectives.size()); ++j) {
     recorded.seed_outcome(j);
@@ -368,36 +352,32 @@ bool pull_back_fixed_point(AdjointProblem<E>& problem, RecordedEquilibrium<E>& r
 }
 
 /// Adjoint of the preconditioned scheme. rho is a constant, since the fixed point does not depend on it.
-template <class E>
-bool pull_back_preconditioned(const UzawaAL& method, AdjointProblem<E>& problem, const State<double>& previous,
+bool pull_back_preconditioned(const UzawaAL& method, AdjointProblem& problem, const State<double>& previous,
                               const Increment<double>& increment) {
   const auto own = adapted(initial_regularisation(problem.slots, method), increment.rho_factor);
   const double oversize = chosen_oversize(method, problem.slots, own, increment.contraction);
   const auto rho = adapted(own, std::vector<double>(own.size(), oversize));
   const State<double> at = restated(problem.model, increment.state, rho);
   problem.tape.rewind(problem.slots_end);
-  RecordedEquilibrium<E> recorded(problem, previous, at, constant<Reverse>(rho), cone_radius(method), increment.time,
-                                  false, increment.requested);
+  RecordedEquilibrium recorded(problem, previous, at, constant<Reverse>(rho), method.cone_radius(), increment.time,
+                               false, increment.requested);
   return pull_back_fixed_point(problem, recorded, false, 0);
 }
 
-}  // namespace detail
+}  // namespace
 
-template <class E>
-bool pull_back_increment(const UzawaAL& method, AdjointProblem<E>& problem, const State<double>& previous,
-                         const Increment<double>& increment) {
+bool UzawaAL::pull_back_increment(AdjointProblem& problem, const State<double>& previous,
+                                  const Increment<double>& increment) const {
   using Sensitivity = UzawaAL::Sensitivity;
-  if (method.sensitivity == Sensitivity::truncated)
-    return detail::pull_back_augmentations(method, problem, previous, increment);
-  if (method.sensitivity == Sensitivity::preconditioned)
-    return detail::pull_back_preconditioned(method, problem, previous, increment);
-  const bool oversized = method.sensitivity == Sensitivity::oversized;
-  const double oversize = method.scheme().oversize;
-  RecordedEquilibrium<E> recorded(problem, previous, increment.state,
-                                  detail::recorded_regularisation(method, problem, increment.rho_factor, oversize),
-                                  cone_radius(method), increment.time, false, increment.requested);
-  const bool converged = detail::pull_back_fixed_point(problem, recorded, oversized, increment.contraction);
-  if (!converged && problem.status == Status::cap) problem.message += detail::other_scheme;
+  if (sensitivity == Sensitivity::truncated) return pull_back_augmentations(*this, problem, previous, increment);
+  if (sensitivity == Sensitivity::preconditioned) return pull_back_preconditioned(*this, problem, previous, increment);
+  const bool oversized = sensitivity == Sensitivity::oversized;
+  const double oversize = scheme().oversize;
+  RecordedEquilibrium recorded(problem, previous, increment.state,
+                               recorded_regularisation(*this, problem, increment.rho_factor, oversize), cone_radius(),
+                               increment.time, false, increment.requested);
+  const bool converged = pull_back_fixed_point(problem, recorded, oversized, increment.contraction);
+  if (!converged && problem.status == Status::cap) problem.message += other_scheme;
   return converged;
 }
 

@@ -1,0 +1,8 @@
+#include "methods/rescue/sequential.hpp"
+
+namespace stickslip {
+
+template Equilibrium<double> find_equilibrium(Engine<double>&, const EquilibriumTask<double>&, Unknowns<double>,
+                                              const NewtonOptions&, Account&);
+
+}  // namespace stickslip

@@ -1,0 +1,8 @@
+#include "methods/uzawa.hpp"
+
+namespace stickslip {
+
+template Increment<double> UzawaAL::solve_increment(Run<double>&, const State<double>&, const std::vector<double>&,
+                                                    double, const Start<double>&) const;
+
+}  // namespace stickslip
