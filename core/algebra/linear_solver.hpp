@@ -17,6 +17,7 @@ struct Pattern {
   std::vector<int> column_start;  ///< size + 1 offsets into row
   std::vector<int> row;           ///< row index of each stored entry
   int nonzeros() const { return static_cast<int>(row.size()); }
+  long bytes() const { return static_cast<long>((row.size() + column_start.size()) * sizeof(int)); }
 };
 
 /// What is known of the matrix; it selects the backend and halves the work where symmetry allows.

@@ -16,6 +16,7 @@
 
 #include "core/engine/body_matrix.hpp"
 #include "core/engine/contact_system.hpp"
+#include "core/engine/tangent_system.hpp"
 #include "core/engine/untouched_rows.hpp"
 
 namespace stickslip {
@@ -36,13 +37,16 @@ struct CondensedRows {
 bool can_condense_tangents(const Model& model);
 
 template <class T>
-class CondensedTangent {
+class CondensedTangent : public TangentSystem<T> {
  public:
   /// Orders and analyses the bodies' matrix. `symmetry`: of the whole tangent.
   CondensedTangent(const Model& model, const Slots<T>& slots, bool unknown_multipliers, Symmetry symmetry,
                    Backend backend);
 
   const CondensedRows& rows() const { return rows_; }
+  const std::vector<int>& row_of_dof() const override { return rows_.row_of_dof; }
+  const std::vector<int>& dofs() const override { return rows_.dofs; }
+  const Pattern& pattern() const override { return *rows_.pattern; }
   /// Size of the bodies' factor, and rows of the dense system at the start where no point is open.
   FactorSize factor_size() const { return solver_.factor_size(); }
   int dense_rows() const { return dense_rows_; }
@@ -54,15 +58,13 @@ class CondensedTangent {
   void touch(const std::vector<int>& rows);
   /// Makes the dense factor. pre: condense() returned true. `hold`: ContactSystem::factorise.
   bool factorise(const std::vector<PointTangent<T>>& tangents, const Vector<double>& hold);
-  /// `rows`: u over all dofs, in the frames of the nodes.
-  BlockVector<T> solve(const BlockVector<T>& rows, Solving how);
-  /// ContactSystem::reversed: K_ii is positive definite.
-  bool reversed() const { return system_.reversed(); }
+  BlockVector<T> solve(const BlockVector<T>& rows, Solving how) override;
+  bool reversed() const override { return system_.reversed(); }  // (K_ii is positive definite)
   /// The larger one of the bodies' and the dense system's.
-  double condition_estimate();
-  const std::string& message() const { return system_.message(); }
-  std::string name() const;
-  void add_holdings(EngineHoldings& held) const;
+  double condition_estimate() override;
+  const std::string& message() const override { return system_.message(); }
+  std::string name() const override;
+  void add_holdings(EngineHoldings& held) const override;
 
  private:
   /// Per contact dof: whether a point of these tangents touches it, or what holds the nodes.

@@ -114,7 +114,8 @@ std::string CondensedTangent<T>::name() const {
 template <class T>
 void CondensedTangent<T>::add_holdings(EngineHoldings& held) const {
   held.condensed = static_cast<long>(schur_.size() * sizeof(T)) + untouched_.bytes();
-  held.matrix += static_cast<long>(system_.entries() * sizeof(T));
+  held.matrix = static_cast<long>(system_.entries() * sizeof(T)) + rows_.pattern->bytes();
+  held.matrix_entries = static_cast<long>(rows_.pattern->nonzeros());
   held.factor = solver_.factor_bytes() + system_.factor_bytes();
   held.factor_entries = solver_.factor_nonzeros();
 }

@@ -31,6 +31,9 @@ struct EngineMemory {
 template <class T>
 class Engine {
  public:
+  Engine() = default;
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
   virtual ~Engine() = default;
 
   // ---- an increment: its loads, and what they move

@@ -6,6 +6,7 @@
 #include "core/engine/condensed_part.hpp"
 #include "core/engine/condensed_tangent.hpp"
 #include "core/engine/engine.hpp"
+#include "core/engine/sparse_system.hpp"
 
 namespace stickslip {
 
@@ -14,15 +15,12 @@ namespace stickslip {
 /// the blocks of its condensed bodies come before the points.
 RowLists tangent_rows(const Model& model, bool unknown_multipliers, const MixedRows* mixed = nullptr);
 
-/// The bodies in full: one sparse matrix over the free dofs and the multipliers, its pattern fixed for every contact
-/// state, the bodies' part assembled once where it is constant. Where points slide along curves the pattern holds the
-/// patches next to those that they face too, and is made anew when a point gets further.
+/// The bodies in full: their matrix, assembled once where it is constant, and one system that takes it with the contact
+/// points. That is the sparse one (core/engine/sparse_system.hpp); or, where tangents change and each may be condensed
+/// (core/engine/condensed_tangent.hpp), the condensed one, in each increment until one is not positive definite inside.
 ///
 /// Where some bodies are of constant stiffness and others are not, the former may be condensed: a dense block each on
 /// their contact dofs. Entries of dofs inside them mean nothing in its vectors.
-///
-/// Where tangents change, each may be condensed (core/engine/condensed_tangent.hpp), in each increment until one is not
-/// positive definite inside. The vectors are the same then, and the pattern is that of the bodies alone.
 template <class T>
 class SparseEngine : public Engine<T> {
  public:
@@ -45,7 +43,7 @@ class SparseEngine : public Engine<T> {
   Vector<T> all(const Vector<T>& u) override;
   Matrix<T> spread(const Matrix<T>& u) const override { return out_of_frames(model_, slots_.frames, Layout::all, u); }
   Vector<T> spread(const Vector<T>& u) const override { return out_of_frames(model_, slots_.frames, Layout::all, u); }
-  bool is_free(Eigen::Index row) const override { return row_of_dof()[row] >= 0; }
+  bool is_free(Eigen::Index row) const override { return system().row_of_dof()[row] >= 0; }
   Matrix<T> scatter(const Matrix<T>& compact) const override;
   Reduction<T> reduce(const Matrix<T>& rows) override {
     return part_ ? part_->reduce(rows) : Reduction<T>{rows, Matrix<T>(0, rows.cols())};
@@ -66,65 +64,53 @@ class SparseEngine : public Engine<T> {
                  const Vector<double>& hold = {}) override;
   bool update(const std::vector<PointTangent<T>>& tangents, Counters& counters,
               const Vector<double>& hold = {}) override;
-  bool reversed() const override;
-  BlockVector<T> solve(const BlockVector<T>& rows, Solving how = Solving::refined) override;
-  int solves() const override { return update_.empty() ? 1 : 2; }
-  double condition_estimate() override {
-    return condenses_ ? tangent_->condition_estimate() : solver_.condition_estimate();
+  bool reversed() const override { return system().reversed(); }
+  BlockVector<T> solve(const BlockVector<T>& rows, Solving how = Solving::refined) override {
+    return system().solve(rows, how);
   }
+  int solves() const override { return sparse_.solves(); }
+  double condition_estimate() override { return system().condition_estimate(); }
 
   std::string name() const override;
-  const std::string& message() const override { return condenses_ ? tangent_->message() : solver_.message(); }
-  int unknowns() const override { return size_; }
-  long nonzeros() const override { return pattern_->nonzeros(); }
+  const std::string& message() const override { return system().message(); }
+  int unknowns() const override { return sparse_.size(); }
+  long nonzeros() const override { return system().pattern().nonzeros(); }
   EngineHoldings holdings() const override;
   EngineMemory<T> memory() const override;
   void restore(const EngineMemory<T>& memory, Counters& counters) override;
 
  private:
-  FactorRecipe<T> recipe() const { return {valid_, factorised_, held_, update_}; }
-
-  const Model& model_;
-  const Slots<T>& slots_;
-  bool unknown_multipliers_;
-  std::optional<CondensedPart<T>> part_;
-  std::shared_ptr<CondensedTangent<T>> tangent_;
-  bool condenses_ = false;  ///< tangents
-  bool condensed_ = false;  ///< the last one
-  Symmetry symmetry_;
-  int size_;
-  double time_ = 0;
-  Vector<T> external_;  ///< in the frames, of what does not depend on displacements
-  Vector<T> before_;    ///< what bodies remember of the last increment
-  std::shared_ptr<Pattern> pattern_;
-  /// Makes the pattern of the bodies and of points with these places (Model::contact_nodes), and what hangs on it.
-  void lay_out(const std::vector<std::vector<int>>& places);
-  /// Those of the points where nothing has slid.
-  std::vector<std::vector<int>> places_at_start() const;
-  /// Places of a point whose tangent it is, with those of the patches around.
-  std::vector<int> places_around(std::size_t p, const PointTangent<T>& tangent) const;
-  /// Lays the pattern out anew where a tangent has places that it has not.
-  void make_room(const std::vector<PointTangent<T>>& tangents);
-  /// Row of each dof, -1: none, and the dofs of the rows.
-  const std::vector<int>& row_of_dof() const {
-    if (condenses_) return tangent_->rows().row_of_dof;
-    return part_ ? part_->rows().row_of_dof : model_.free_index;
+  /// The system that solves now.
+  TangentSystem<T>& system() { return condenses_ ? static_cast<TangentSystem<T>&>(*tangent_) : sparse_; }
+  const TangentSystem<T>& system() const {
+    return condenses_ ? static_cast<const TangentSystem<T>&>(*tangent_) : sparse_;
   }
-  const std::vector<int>& dofs() const {
-    if (condenses_) return tangent_->rows().dofs;
-    return part_ ? part_->rows().dofs : model_.free_dofs;
-  }
+  BodyKind own() const { return part_ ? BodyKind::changing : BodyKind::all; }  ///< bodies that are there in full
+  /// Lays the matrix of the bodies out for the system, of points with these places, and assembles it.
+  void lay_out(const typename SparseSystem<T>::Places& places);
+  void assemble(const RowLists& lists, const BodyMotion<T>* at);
   /// Condenses the last tangent; where it cannot be condensed, none until the next begin().
   void condense(Counters& counters);
   /// Whether the last tangent is condensed, and hangs on the displacement alone.
   bool keeps_tangent() const {
     return condensed_ && linearised_ && model_.memory_count == 0 && model_.followers.empty();
   }
-  /// Rows of a point's entries.
-  std::vector<int> rows_of(std::size_t p, const std::vector<int>& places) const;
+  Vector<T> body_rows(const Vector<T>& moved) const;
 
-  std::optional<RowLists> lists_;         ///< of the tangent; none where the bodies' is constant
-  std::vector<std::vector<int>> places_;  ///< per point: those that the pattern has, sorted; none slides: empty
+  const Model& model_;
+  const Slots<T>& slots_;
+  std::optional<CondensedPart<T>> part_;
+  std::shared_ptr<CondensedTangent<T>> tangent_;
+  Symmetry symmetry_;
+  SparseSystem<T> sparse_;
+  bool condenses_ = false;  ///< tangents
+  bool condensed_ = false;  ///< the last one
+  double time_ = 0;
+  Vector<T> external_;             ///< in the frames, of what does not depend on displacements
+  Vector<T> before_;               ///< what bodies remember of the last increment
+  std::optional<RowLists> lists_;  ///< of the tangent; none where the bodies' is constant
+  std::vector<T> bulk_;            ///< matrix of the bodies, on the system's pattern
+  double stiffness_ = 0;           ///< largest diagonal entry, for the rounding of a residual
   /// Motion that the bodies' tangent is taken at, kept where the pattern may change.
   struct Linearised {
     Vector<T> displacement, last_memory;
@@ -138,16 +124,6 @@ class SparseEngine : public Engine<T> {
     Vector<T> u, rows;
   };
   std::optional<HeldBodies> held_bodies_;
-  Vector<T> body_rows(const Vector<T>& moved) const;
-  void assemble(const RowLists& lists, const BodyMotion<T>* at);
-  std::vector<std::vector<int>> point_map_;  ///< per point: entry of each (row, column) pair of its rows, -1 if fixed
-  std::vector<T> bulk_, values_;
-  double stiffness_ = 0;  ///< largest diagonal entry, for the rounding of a residual
-  LinearSolver<T> solver_;
-  std::vector<PointTangent<T>> factorised_;
-  TangentUpdate update_;
-  Vector<double> held_;
-  bool analysed_ = false, valid_ = false;
 };
 
 extern template class SparseEngine<double>;

@@ -9,6 +9,7 @@ namespace stickslip {
 template class Condensation<std::complex<double>>;
 template class ContactSystem<std::complex<double>>;
 template class CondensedTangent<std::complex<double>>;
+template class SparseSystem<std::complex<double>>;
 template class CondensedEngine<std::complex<double>>;
 template class SparseEngine<std::complex<double>>;
 
