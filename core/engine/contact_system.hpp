@@ -35,7 +35,7 @@ class ContactSystem {
   bool is_factor_of(const std::vector<PointTangent<T>>& tangents, const Vector<double>& hold) const {
     return valid_ && detail::same_values(hold, held_) && detail::same_tangents(tangents, factorised_);
   }
-  /// In place of factorise(), where few points changed since and S is the same (model/tangent_update.hpp). False, and
+  /// In place of factorise(), where few points changed since and S is the same (engine/tangent_update.hpp). False, and
   /// nothing changed, where an update does not pay or cannot be made.
   bool update(const std::vector<PointTangent<T>>& tangents, const Vector<double>& hold, Counters& counters);
   void drop_update() { update_.clear(); }

@@ -1,4 +1,4 @@
-/// What both engines of model/engine.hpp are made of: their vectors, and a contact point's share of a tangent.
+/// What both engines of engine/engine.hpp are made of: their vectors, and a contact point's share of a tangent.
 #pragma once
 
 #include <vector>
