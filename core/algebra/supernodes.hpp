@@ -4,8 +4,8 @@
 ///   A = [ L_oo       ] [ ... ]^T     reduce:  L_oo y_o = b_o,   r_k = b_k - L_ko y_o
 ///       [ L_ko  L_kk ]               expand:  L_oo^T x_o = y_o - L_ko^T x_k
 ///
-/// Up to 16 right-hand sides go through L together, the entries of each row side by side in memory. Where supernodes
-/// have a few columns, as in the plane, that takes a third of the time of the BLAS, which is called for each supernode.
+/// Up to 16 right-hand sides go through L together, the entries of each row side by side in memory. For 8 to 32 of them
+/// CHOLMOD's own phases take 1.1 to 2.3 times as long, for a single one 0.8 (docs/decisions.md).
 #pragma once
 
 #include <vector>

@@ -5,8 +5,8 @@
 
 #include <string>
 
+#include "core/mesh/descriptions.hpp"
 #include "core/mesh/mesh.hpp"
-#include "core/model/scene.hpp"
 
 namespace stickslip {
 

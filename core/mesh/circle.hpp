@@ -1,8 +1,8 @@
 /// Nodes of quadratic elements on a circle.
 #pragma once
 
+#include "core/mesh/descriptions.hpp"
 #include "core/mesh/mesh.hpp"
-#include "core/model/scene.hpp"
 
 namespace stickslip {
 

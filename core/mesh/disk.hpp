@@ -9,8 +9,8 @@
 #include <string>
 
 #include "core/mesh/circle.hpp"
+#include "core/mesh/descriptions.hpp"
 #include "core/mesh/structured.hpp"
-#include "core/model/scene.hpp"
 
 namespace stickslip {
 

@@ -9,13 +9,13 @@
 
 #include "core/mesh/box.hpp"
 #include "core/mesh/chain.hpp"
+#include "core/mesh/descriptions.hpp"
 #include "core/mesh/disk.hpp"
 #include "core/mesh/half_disk.hpp"
 #include "core/mesh/mesh.hpp"
 #include "core/mesh/middles.hpp"
 #include "core/mesh/quad.hpp"
 #include "core/mesh/ring.hpp"
-#include "core/model/scene.hpp"
 
 namespace stickslip {
 

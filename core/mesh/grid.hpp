@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/mesh/descriptions.hpp"
 #include "core/mesh/structured.hpp"
-#include "core/model/scene.hpp"
 
 namespace stickslip {
 

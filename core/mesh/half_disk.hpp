@@ -20,8 +20,8 @@
 #include <vector>
 
 #include "core/mesh/circle.hpp"
+#include "core/mesh/descriptions.hpp"
 #include "core/mesh/structured.hpp"
-#include "core/model/scene.hpp"
 
 namespace stickslip {
 

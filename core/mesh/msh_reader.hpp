@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/model/scene.hpp"
+#include "core/mesh/descriptions.hpp"
 
 namespace stickslip {
 

@@ -4,8 +4,8 @@
 
 #include <string>
 
+#include "core/mesh/descriptions.hpp"
 #include "core/mesh/grid.hpp"
-#include "core/model/scene.hpp"
 
 namespace stickslip {
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "core/mesh/circle.hpp"
+#include "core/mesh/descriptions.hpp"
 #include "core/mesh/grid.hpp"
-#include "core/model/scene.hpp"
 
 namespace stickslip {
 

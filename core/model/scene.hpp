@@ -7,8 +7,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -16,129 +14,15 @@
 #include <variant>
 #include <vector>
 
-#include "core/algebra/number.hpp"
 #include "core/algebra/scalar.hpp"
 #include "core/contact/curve.hpp"
 #include "core/contact/friction_law.hpp"
 #include "core/contact/rigid_surfaces.hpp"
-#include "core/mesh/mesh.hpp"
+#include "core/mesh/descriptions.hpp"
+#include "core/model/table.hpp"
 #include "core/solids/materials.hpp"
 
 namespace stickslip {
-
-/// Value in time: linear between points, held before the first and after the last. A plain number is one point at
-/// t = 0, in force from the first step on (times are not parameters, values are).
-struct Table {
-  std::vector<std::pair<double, Number>> points;
-  int repeat = 1;        ///< how often the points are run through, one time right after the other
-  bool goes_on = false;  ///< straight on before its first and behind its last point: of two points
-  double start() const { return points.front().first; }
-  double period() const { return points.back().first - points.front().first; }
-  /// When point i is reached for the n-th time, n = 0, 1, ...
-  double time(int n, std::size_t i) const { return points[i].first + n * period(); }
-};
-
-/// Calls f(t) with the time of each point of each repeat.
-template <class F>
-void for_each_breakpoint(const Table& table, F&& f) {
-  for (int n = 0; n < table.repeat; ++n)
-    for (std::size_t i = 0; i < table.points.size(); ++i) f(table.time(n, i));
-}
-
-/// `t` less the periods of a repeated table that went by: the time that its points know. A breakpoint of any repeat is
-/// met to the last bit, so that no rounding adds up over the repeats.
-inline double time_in_period(const Table& table, double t) {
-  if (table.repeat == 1 || t <= table.start()) return t;
-  const double period = table.period(), rounding = 4e-16 * std::abs(t);
-  const int passed = static_cast<int>(std::min((t - table.start() - rounding) / period, table.repeat - 1.0));
-  for (std::size_t i = 0; i < table.points.size(); ++i)
-    if (std::abs(t - table.time(passed, i)) <= rounding) return table.points[i].first;
-  return t - passed * period;
-}
-
-/// The table at time `at`. pre: at least one point; two and equal ends where it is repeated.
-template <class T>
-T evaluate(const Table& table, double at, const Numbers<T>& numbers) {
-  const auto& p = table.points;
-  if (table.goes_on) {
-    const double s = (at - p.front().first) / (p.back().first - p.front().first);
-    return numbers(p.front().second) * T(1 - s) + numbers(p.back().second) * T(s);
-  }
-  const double t = time_in_period(table, at);
-  if (t <= p.front().first) return numbers(p.front().second);
-  for (std::size_t i = 1; i < p.size(); ++i)
-    if (t <= p[i].first) {
-      const double s = (t - p[i - 1].first) / (p[i].first - p[i - 1].first);
-      return numbers(p[i - 1].second) * T(1 - s) + numbers(p[i].second) * T(s);
-    }
-  return numbers(p.back().second);
-}
-
-// --- meshes ------------------------------------------------------------------------------------------------------
-
-/// Axis-parallel block; sides left right bottom top. `grade` > 1 makes cells grow away from the side named in
-/// `grade_towards` by that total ratio (largest cell / smallest cell).
-struct BoxMesh {
-  std::array<Number, 2> min, max;
-  std::array<int, 2> cells{1, 1};
-  std::string grade_towards;  ///< empty: uniform
-  Number grade = 1.0;
-};
-/// Half disk below or above its diameter: the arc points in `facing` direction ("down" or "up"). Graded towards the
-/// pole of the arc. Sides: arc, flat.
-struct HalfDiskMesh {
-  std::array<Number, 2> center;
-  Number radius;
-  std::array<int, 2> cells{8, 8};  ///< [along a quarter of the arc, from arc to centre]
-  Number grade = 1.0;              ///< largest / smallest cell along the arc, smallest at the pole
-  std::string facing = "down";
-};
-/// Quadrilateral by its corners, counter-clockwise; sides and grading as a box, bottom from corner 0 to corner 1.
-struct QuadMesh {
-  std::array<std::array<Number, 2>, 4> corners;
-  std::array<int, 2> cells{1, 1};
-  std::string grade_towards;
-  Number grade = 1.0;
-};
-/// Ring between two circles, angles in degrees from +x, counter-clockwise; closed where they span 360. Sides inner,
-/// outer, and start, end of an open one. `grade`: as in a box, towards inner or outer.
-struct RingMesh {
-  std::array<Number, 2> center;
-  Number inner, outer, from_angle = 0.0, to_angle = 360.0;
-  std::array<int, 2> cells{1, 8};  ///< [along the radius, around]
-  std::string grade_towards;
-  Number grade = 1.0;
-};
-/// Disk with a square core. Side: arc.
-struct DiskMesh {
-  std::array<Number, 2> center;
-  Number radius;
-  std::array<int, 2> cells{4, 2};  ///< [along a quarter of the arc, rings around the core]
-  Number grade = 1.0;              ///< innermost / outermost ring
-};
-/// One node and the anchor of its spring, at the same place. Sides NAME.node, NAME.anchor (grounded_spring).
-struct PointMesh {
-  std::vector<Number> at;  ///< 2 or 3 coordinates
-};
-/// Chain of bars. Sides start, end, nodes (all), interior (all but the two ends).
-struct LineMesh {
-  std::vector<Number> from, to;
-  int cells = 1;
-};
-/// Chain of bars along a circular arc, angles in degrees from +x, counter-clockwise. Sides as LineMesh.
-struct ArcMesh {
-  std::array<Number, 2> center;
-  Number radius, from_angle, to_angle;
-  int cells = 1;
-};
-/// Body of an imported mesh: topology and coordinates as read.
-struct ImportedMesh {
-  std::string file, body;
-  Mesh mesh;
-  Points<double> points;
-};
-using MeshDescription =
-    std::variant<BoxMesh, QuadMesh, HalfDiskMesh, DiskMesh, RingMesh, PointMesh, LineMesh, ArcMesh, ImportedMesh>;
 
 // --- bodies ------------------------------------------------------------------------------------------------------
 
