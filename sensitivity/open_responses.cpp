@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/model/objective.hpp"
 #include "core/model/response.hpp"
 #include "methods/newton/regularisation.hpp"
 

@@ -6,6 +6,7 @@
 ///   tangential    stick: |dg_T|, over the same; open and slip: |t - lambda|, over the largest traction
 #pragma once
 
+#include "core/model/loading.hpp"
 #include "methods/newton/equilibrium.hpp"
 
 namespace stickslip {
