@@ -1,4 +1,5 @@
-/// Solution of a model by any method of the closed set, in double: the one place that dispatches on the method.
+/// Solution of a model by any method of the closed set, in double. The method is asked for in each increment
+/// (methods/stepping/increment.hpp).
 #pragma once
 
 #include "methods/stepping/checkpoints.hpp"

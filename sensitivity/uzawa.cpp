@@ -253,7 +253,8 @@ RegularisationField<Reverse> recorded_regularisation(const UzawaAL& method, Adjo
 /// those of the last pass alone remain. False if the passes reach their limit.
 ///
 ///   left         c + A^T x - x: the derivative by the lambda that the increment began with. It converges to zero,
-///                except for the multiplier of a constraint that supports decide, which keeps its value of the last increment
+///                except for the multiplier of a constraint that supports decide, which keeps its value of the last
+///                increment
 ///   plain        x is the last image, not an extrapolation. Then `left` is the next term of the series, and its
 ///                changes tell whether the series has converged or stalled
 ///   contraction  of A; 0: not measured. Anderson's extrapolation hides it from the changes

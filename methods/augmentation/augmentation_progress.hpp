@@ -5,8 +5,8 @@
 ///   error left    q / (1 - q) times the last update: the sum of the geometric series of the updates to come
 ///   two-cycle     three successive updates undo each other to 1e-6
 ///   infeasible    the gap of a constraint does not change with its multiplier, three times in a row. The last change
-///                 of the multiplier, over the local stiffness k, exceeds 1e-8 of the displacements, and the gap changes
-///                 by less than 1e-6 of it. Against a body of stiffness k the gap would change by about the whole, for
+///                 of the multiplier, over the local stiffness k, exceeds 1e-8 of the displacements, and the gap
+///                 changes by less than 1e-6 of it. Against a body of stiffness k the gap would change by about the whole, for
 ///                 any rho. A multiplier that leaves the cone of its state does not count, since it ends in another
 ///                 state
 #pragma once

@@ -1,4 +1,5 @@
-/// All solutions of an increment with few contact points, as states of the run (methods/rescue/solutions.hpp finds them).
+/// All solutions of an increment with few contact points, as states of the run; methods/rescue/solutions.hpp finds
+/// them.
 #pragma once
 
 #include "methods/rescue/solutions.hpp"

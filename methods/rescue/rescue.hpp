@@ -2,8 +2,8 @@
 ///
 ///   1  rest      bodies that float are moved to rest (methods/rescue/motion.hpp): a singular tangent would send them
 ///                anywhere
-///   2  method    the method itself, from the last state. Its equilibria are sought by Newton's method, by the sequence of
-///                linear problems, and by Newton's method again (methods/rescue/sequential.hpp). A solution ends the
+///   2  method    the method itself, from the last state. Its equilibria are sought by Newton's method, by the sequence
+///                of linear problems, and by Newton's method again (methods/rescue/sequential.hpp). A solution ends the
 ///                search, unless there may be several; so does what supports drive into one another: infeasible
 ///   3  statics   loads that no contact can balance (methods/rescue/statics.hpp): no_equilibrium
 ///   4  branches  of few points all combinations (methods/rescue/all_branches.hpp). If there is no solution:
@@ -12,12 +12,12 @@
 ///   5  motion    the overdamped motion from the last state to rest
 ///   6  branches  those of 4 where repeated constraints hide some, if nothing else was found
 ///
-/// A step that this leaves without a solution is cut (methods/stepping/solve.hpp). All that one step spends in vain, parts
-/// of it included, is bounded (methods/rescue/work_bound.hpp); once that is spent, 4 to 6 are left out.
+/// A step that this leaves without a solution is cut (methods/stepping/solve.hpp). All that one step spends in vain,
+/// parts of it included, is bounded (methods/rescue/work_bound.hpp); once that is spent, 4 to 6 are left out.
 ///
-/// There may be several solutions where the determinant of a tangent on the way has another sign, where friction may hold
-/// a body between surfaces, and where mu reaches a critical value. Then the solution is taken in whose branches the motion
-/// comes to rest. Path, D and alpha say which; rho and the method do not.
+/// There may be several solutions where the determinant of a tangent on the way has another sign, where friction may
+/// hold a body between surfaces, and where mu reaches a critical value. Then the solution is taken in whose branches
+/// the motion comes to rest. The path of the motion, its damping and its pace say which; rho and the method do not.
 #pragma once
 
 #include "methods/rescue/all_branches.hpp"
@@ -120,7 +120,7 @@ class IncrementSearch {
     return taken;
   }
 
-  /// The rest that the motion comes to; else what the method found. `all`: solutions that may be taken as a last resort.
+  /// The rest that the motion comes to; else what the method found. `all`: solutions to fall back on.
   Increment<T> by_motion(const std::optional<Solutions<T>>& all) {
     const RunScales after = std::exchange(run_.account.scales, before_);
     auto rest = follow_motion(run_, previous_, factor_, time_, several(), bound_);

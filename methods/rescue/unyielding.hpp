@@ -1,4 +1,5 @@
-/// Overlaps that a penalty's solution has because supports or other contacts prescribe them: no stiffness removes those.
+/// Overlaps that a penalty's solution has because supports or other contacts prescribe them: no stiffness removes
+/// those.
 #pragma once
 
 #include "methods/stepping/increment.hpp"

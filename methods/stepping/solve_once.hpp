@@ -1,5 +1,5 @@
-/// An increment that is one equilibrium, found by Newton's method from where the increment starts: of methods without an
-/// outer loop.
+/// An increment that is one equilibrium, found by Newton's method from where the increment starts: of methods without
+/// an outer loop.
 #pragma once
 
 #include "methods/stepping/increment.hpp"

@@ -1,7 +1,8 @@
 /// Errors of a solution against the contact conditions. The same measure serves every method: it is computed from
 /// states alone.
 ///
-/// l: largest relative displacement or A|t|/k of the run so far; p: largest traction; f: largest nodal force (KktScales)
+/// l: largest relative displacement or A|t|/k of the run so far; p: largest traction; f: largest nodal force
+/// (KktScales).
 ///
 ///   equilibrium      largest nodal imbalance at free nodes / f
 ///   gap              largest penetration / l
