@@ -12,7 +12,6 @@
 #include "core/contact/contact_point.hpp"
 #include "core/contact/facet_search.hpp"
 #include "core/contact/rigid_surfaces.hpp"
-#include "core/contact/search.hpp"
 #include "core/contact/surfaces.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/largest.hpp"

@@ -1,11 +1,11 @@
 /// The closest point of a faceted curve: facets, vertices, free ends, and that no numbering decides.
-#include "core/contact/search.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numeric>
 #include <set>
+
+#include "core/contact/facet_search.hpp"
 
 namespace stickslip {
 namespace {
