@@ -45,7 +45,7 @@ class ChangeReader {
     for (int p = 0; p < static_cast<int>(model_.points.size()); ++p) {
       const auto& point = model_.points[p];
       const auto& weights = of_.block.slots.geometry[p].weights;
-      const bool has_nodes = point.master == ContactPoint::Master::facet && point.of_polyline.empty();
+      const bool has_nodes = point.master == ContactPoint::Master::facet && point.obstacle < 0;
       if (!has_nodes || of_.state.contact.state[p] == ContactState::open || point.mesh_size == 0) continue;
       for (Eigen::Index k = point.slave_nodes; k < weights.size(); ++k) {
         const Direction share_of_node = weights[k].v < 0 ? -weights[k] : weights[k];

@@ -18,7 +18,7 @@ bool may_leave(const ContactPoint& point) {
 }
 
 bool same_part(const ContactPoint& a, const ContactPoint& b) {
-  return a.master == b.master && a.nodes == b.nodes && a.of_polyline == b.of_polyline && a.segments == b.segments;
+  return a.master == b.master && a.nodes == b.nodes && a.corners == b.corners && a.segments == b.segments;
 }
 
 /// The point with the same slave node; nullptr if there is none.
@@ -47,10 +47,12 @@ std::vector<ContactPoint> paired_beside(const Model& model, const Points<Directi
 
 /// Vertices of the polyline that a point faces; those of its first facet are the first two.
 std::vector<int> vertices_faced(const Model& model, const ContactPoint& point) {
-  std::vector<int> vertices = point.of_polyline;
-  for (const auto& segment : point.segments)
-    for (int node : segment.master)
-      if (node >= model.node_count) vertices.push_back(node - model.node_count);
+  std::vector<int> vertices;
+  const auto add = [&](int node) {
+    if (node >= model.node_count) vertices.push_back(node - model.node_count);
+  };
+  std::for_each(point.corners.begin(), point.corners.end(), add);
+  for (const auto& segment : point.segments) std::for_each(segment.master.begin(), segment.master.end(), add);
   return vertices;
 }
 
@@ -60,9 +62,10 @@ double speed(const Model& model, const Points<Direction>& points, const Numbers<
   for (const auto& point : model.points) {
     if (!may_leave(point)) continue;
     size = point.mesh_size > 0 ? std::min(size, point.mesh_size) : size;
-    for (const auto* nodes : {&point.nodes, &point.neighbours})
+    for (const auto* nodes : {&point.nodes, &point.corners})
       for (int node : *nodes)
-        for (Eigen::Index i = 0; i < points.rows(); ++i) fastest = std::max(fastest, std::abs(points(i, node).d[0]));
+        for (Eigen::Index i = 0; node < model.node_count && i < points.rows(); ++i)
+          fastest = std::max(fastest, std::abs(points(i, node).d[0]));
     const auto vertices = vertices_faced(model, point);
     if (vertices.empty()) continue;
     const auto& polyline = std::get<Polyline>(model.scene.obstacles[point.obstacle].shape);
@@ -105,7 +108,7 @@ bool meets(const PointGeometry<Direction>& a, const PointGeometry<Direction>& b,
 }  // namespace
 
 SidedPairing sided_pairing(const Model& model, int parameter, double side) {
-  constexpr double step = 1e-7, beyond_end = 2e-6;  // widths: a vertex 1e-9 (core/contact/search.hpp), a free end 1e-6
+  constexpr double step = 1e-7, beyond_end = 2e-6;  // widths: a vertex 1e-9 (core/contact/curve.hpp), a free end 1e-6
   SidedPairing out;
   if (std::none_of(model.points.begin(), model.points.end(), may_leave)) return out;
   const auto numbers = seeded(model.scene, {parameter});
@@ -148,7 +151,7 @@ bool take_side(const Model& model, const SidedPairing& pairing, const std::vecto
     }
     slots.geometry[p] = *geometry;
     sided.points[p].master = other->master;
-    sided.points[p].of_polyline = other->of_polyline;
+    sided.points[p].corners = other->corners;
   }
   for (const auto& other : pairing.points)  // points that face the master on this side alone
     if (!counterpart(model.points, other))

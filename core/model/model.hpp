@@ -57,18 +57,19 @@ struct ContactPoint {
   /// mortar segments.
   enum class Master { obstacle, facet, vertex, segments, curve };
   Master master = Master::obstacle;
-  int contact = 0;               ///< index in Scene::contacts
-  int obstacle = -1;             ///< index in Scene::obstacles; -1: deformable master
-  int curve = -1;                ///< index in Model::curves; -1: its master is no curve
-  Facing facing = {};            ///< what it faces of the curve at the start
-  OwnVertex own = {};            ///< set if the slave side is its own master
-  int foot = -1;                 ///< offset of its foot in History::foot; -1: it has none
-  std::vector<int> nodes;        ///< slave nodes, then master nodes. facet: its two; vertex: itself, then the far ends
-                                 ///< of the facets whose end the projection is; curve: of the initial patch
-  int slave_nodes = 1;           ///< number of slave nodes in `nodes`; more than 1 if segment-integrated
-  std::vector<int> places;       ///< index of `nodes` in Model::contact_nodes
-  std::vector<int> neighbours;   ///< vertex: the vertices before and after it, whose facets share the normal
-  std::vector<int> of_polyline;  ///< points of the polyline: the facet's two, or the vertex between its neighbours
+  int contact = 0;          ///< index in Scene::contacts
+  int obstacle = -1;        ///< index in Scene::obstacles; -1: deformable master
+  int curve = -1;           ///< index in Model::curves; -1: its master is no curve
+  Facing facing = {};       ///< what it faces of the curve at the start
+  OwnVertex own = {};       ///< set if the slave side is its own master
+  int foot = -1;            ///< offset of its foot in History::foot; -1: it has none
+  std::vector<int> nodes;   ///< slave nodes, then master nodes. facet: its two; vertex: itself, then the far ends
+                            ///< of the facets whose end the projection is; curve: of the initial patch
+  int slave_nodes = 1;      ///< number of slave nodes in `nodes`; more than 1 if segment-integrated
+  std::vector<int> places;  ///< index of `nodes` in Model::contact_nodes
+  /// facet: its two ends; vertex: itself between its neighbours, whose facets share the normal. Vertices of a polyline
+  /// count as nodes behind those of the model (core/contact/segment.hpp).
+  std::vector<int> corners;
   std::vector<std::pair<int, int>> area_facets;  ///< facets of the slave side at the node
   std::vector<std::pair<int, int>>
       facet_places;  ///< the same as indices in Model::contact_nodes; for solid bodies along a curve

@@ -7,6 +7,7 @@
 #include "core/contact/curve_search.hpp"
 #include "core/contact/facet_search.hpp"
 #include "core/model/contact_assembly.hpp"
+#include "core/model/master_curve.hpp"
 #include "core/model/pairing.hpp"
 #include "core/model/response.hpp"
 #include "methods/newton/residuals.hpp"
@@ -73,9 +74,7 @@ SideCurve curve_of_polyline(const Problem& problem, const Obstacle& obstacle, co
     const PlanePlace x(problem.slots.numbers(polyline.points[v][0]), problem.slots.numbers(polyline.points[v][1]));
     curve.places.col(v) = x + obstacle_displacement(problem, obstacle, x, time);
   }
-  std::vector<std::vector<int>> facets;  // the solid is on the right of a polyline, and on the left of a facet
-  for (int v = 0; v + 1 < count + polyline.closed; ++v) facets.push_back({(v + 1) % count, v});
-  curve.patches = make_patches(facets, contact.smoothing, contact.corner, curve.places);
+  curve.patches = make_patches(facets_of(polyline), contact.smoothing, contact.corner, curve.places);
   return curve;
 }
 
@@ -246,10 +245,9 @@ std::vector<std::array<int, 2>> faced_facets(const Model& model, const ContactFi
     const auto& vertices = curve.patches[patch].vertices;
     return {{curve.nodes[vertices[1]], curve.nodes[vertices[2]]}};
   }
-  if (point.master == ContactPoint::Master::facet) return {{point.nodes[1], point.nodes[2]}};
-  if (point.master == ContactPoint::Master::vertex)
-    return {{point.neighbours[0], point.nodes[1]}, {point.nodes[1], point.neighbours[1]}};
-  return {};
+  std::vector<std::array<int, 2>> facets;
+  for (std::size_t k = 1; k < point.corners.size(); ++k) facets.push_back({point.corners[k - 1], point.corners[k]});
+  return facets;
 }
 
 /// A contact where it is pressed hardest: how wide its pressed points are apart, and the facets that they are on.
