@@ -82,7 +82,7 @@ FAULTS = [
     ("segments with the master's normal alone", "core/contact/segments.hpp",
      "foot.normal[i] - <<<(rigid ? T(0) : nu[i])>>>)", "T(0)"),
     ("no tie length", "core/model/pairing.cpp", "point.tie_length = <<<8>>> * unit_roundoff", "0"),
-    ("facing nodes that look the same way", "core/model/pairing.cpp", "-tau[0])) < <<<0>>>;", "1e300"),
+    ("facing nodes that look the same way", "core/model/pairing.cpp", "points).dot(normal(f)) < <<<0>>>;", "1e300"),
     # bodies, loads, supports
     ("plane stress as plane strain", "core/solids/linear_elastic.hpp",
      "space == Space::plane_stress) lame = <<<lame_of_plane_stress(lame, shear)>>>;", "T(lame)"),
@@ -165,7 +165,7 @@ FAULTS = [
     ("of several solutions the farthest", "methods/rescue/solutions.cpp",
      "const double distance = <<<((*moved)[k].increment - v).norm()>>>; distance < length",
      "-((*moved)[k].increment - v).norm()"),
-    ("gaps of exactly zero within a band", "core/model/slots.hpp",
+    ("gaps of exactly zero within a band", "core/model/slot_values.hpp",
      "return value(geometry.gap) == 0 ? <<<terms * unit_roundoff * largest_displacement>>> : point.tie_length;", "1e3 * point.tie_length"),
     ("critical friction of half", "methods/rescue/solutions.cpp", "return <<<slots.friction[point.contact].slope_at_apex()>>> * std::abs",
      "0.5 * slots.friction[point.contact].slope_at_apex()"),

@@ -306,8 +306,10 @@ PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point,
     geometry.gap += offset_of(point, model, slots);
     geometry.area = whole_area(point, slots);
   } else {
-    geometry = with_dimension(model.dimension, [&]<int D>() {
-      return place_point<D>(positions_of_start(model, slots), point, point.facing).geometry;
+    with_dimension(model.dimension, [&]<int D>() {
+      auto at = place_point<D>(positions_of_start(model, slots), point, point.facing);
+      geometry = std::move(at.geometry);
+      if (!at.faces_master) geometry.gap += offset_of(point, model, slots);
     });
   }
   if (point.master == Master::segments && point.curve >= 0) geometry.area = whole_area(point, slots);
