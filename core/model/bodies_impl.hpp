@@ -250,17 +250,13 @@ std::vector<ThicknessStretch<T>> edge_stretches(const Model& model, const Slots<
         const double s = point.value[1] + point.value[2] / 2;  // share of the way along the edge
         const Vec<double, 2> at = (1 - s) * from + s * to;
         const Gradient<T, Shape, kinematics> gradient(Shape::at(at[0], at[1], 0), X);
-        const Mat<T, 2> H = gradient.of(local);
-        Mat<Probe, 2> seeded;
-        for (int p = 0; p < 2; ++p)
-          for (int q = 0; q < 2; ++q) seeded(p, q) = Probe::seed(H(p, q), detail::component(p, q));
-        const Probe stretch = law.stretch_across(seeded);
+        const auto H = detail::seeded<Probe>(gradient.of(local));
+        const Probe stretch = law.stretch_across(H);
         Vector<T> by_motion = Vector<T>::Constant(2 * Shape::nodes, T(0));
         for (int a = 0; a < Shape::nodes; ++a)
           for (int i = 0; i < 2; ++i)
-            gradient.for_each(i, a, [&](int p, int q, const T& x) {
-              by_motion[2 * a + i] += stretch.d[detail::component(p, q)] * x;
-            });
+            gradient.for_each(i, a,
+                              [&](int p, int q, const T& x) { by_motion[2 * a + i] += stretch.d[H.place(p, q)] * x; });
         stretches.push_back({stretch.v, by_motion});
       }
     }

@@ -46,8 +46,7 @@ void for_each_flow_point(const Model& model, const Slots<T>& slots, const BodyMo
               law.is_finite, X, T(1), detail::gather_displacements<T, Shape>(at.displacement, nodes.data()),
               [&](const auto& H, const T&) {
                 const int branch = before.branch();
-                const auto trial =
-                    law.template trial<T, stress_dimension(kinematics)>(H, before.template take<L::memory>(), branch);
+                const auto trial = law.trial(H, before.template take<L::memory>(), branch);
                 f(FlowPoint<T>{b, e, std::exchange(memory, memory + L::memory), trial, law.hardening,
                                detail::extent(X)});
               });
