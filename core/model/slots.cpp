@@ -1,4 +1,4 @@
-#include "core/model/flow_points.hpp"
+#include "core/model/element_kernels_impl.hpp"
 
 namespace stickslip {
 

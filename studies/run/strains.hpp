@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 
+#include "core/solids/mean_dilatation.hpp"
 #include "studies/run/case.hpp"
 
 namespace stickslip {
