@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "core/mesh/generators.hpp"
+#include "core/model/element_nodes.hpp"
 #include "core/model/history.hpp"
 #include "core/model/slot_values.hpp"
-#include "core/solids/elements.hpp"
 
 namespace stickslip {
 
@@ -78,11 +78,14 @@ template <class T>
 std::vector<ThicknessStretch<T>> edge_stretches(const Model& model, const Slots<T>& slots, int b,
                                                 const ElementEdge& edge, const Vector<T>& u);
 
-/// Calls f(a, volume) at each point of body b with its equivalent plastic strain and volume (of a bar, length times
+template <class T>
+using PlasticStrainSink = std::function<void(const T& a, const T& volume)>;
+
+/// Calls sink(a, volume) at each point of body b with its equivalent plastic strain and volume (of a bar, length times
 /// cross-section); nothing where it does not flow. `memory`: what bodies remember.
 template <class T>
 void for_each_plastic_strain(const Model& model, const Slots<T>& slots, int b, const Vector<T>& memory,
-                             const std::type_identity_t<std::function<void(const T& a, const T& volume)>>& f);
+                             const std::type_identity_t<PlasticStrainSink<T>>& sink);
 
 /// Elements that displacements invert, body by body; none where the bodies' strains are small.
 ElementLists inverted_elements(const Model& model, const Slots<double>& slots, const Vector<double>& u);
@@ -115,7 +118,7 @@ namespace stickslip {
                                       const FlowBranches&);                                                    \
   EXTERN template T bulk_energy(const Model&, const Slots<T>&, const Vector<T>&, const Vector<T>&);            \
   EXTERN template void for_each_plastic_strain(const Model&, const Slots<T>&, int, const Vector<T>&,           \
-                                               const std::function<void(const T&, const T&)>&);                \
+                                               const PlasticStrainSink<T>&);                                   \
   EXTERN template void for_each_element_tangent(const Model&, const Slots<T>&, int, const std::vector<int>*,   \
                                                 const ElementSink<T>&, const BodyMotion<T>*);                  \
   EXTERN template std::vector<ThicknessStretch<T>> edge_stretches(const Model&, const Slots<T>&, int,          \
