@@ -108,18 +108,23 @@ std::vector<Number> read_place(const JsonNode& node, SceneReading& reading) {
   return place;
 }
 
+Response::Component component_of(const std::string& word) {
+  constexpr std::array words{"", "x", "y", "z", "normal", "moment"};  // in the order of Component
+  return static_cast<Response::Component>(std::find(words.begin(), words.end(), word) - words.begin());
+}
+
 void read_component(const JsonNode& node, const JsonNode& component, const Kind& kind, Response& response,
                     SceneReading& reading) {
   auto allowed = reading.axes();
   if (kind.component == Kind::Component::axis_or_normal) allowed.insert(allowed.begin(), "normal");
   const bool moment = has_moment(kind, reading);
   if (moment) allowed.emplace_back("moment");
-  response.component = component.choice(allowed).value_or(allowed.front());
+  response.component = component_of(component.choice(allowed).value_or(allowed.front()));
   const auto about = moment ? node.find("about") : std::nullopt;
   if (about) response.about = read_place(*about, reading);
-  if (about && response.component != "moment") about->error_at_key(R"("about" belongs to the component "moment")");
-  if (!about && response.component == "moment")
-    node.error(R"(the key "about" is missing: the point [x, y] that the moment is about)");
+  const bool is_moment = response.component == Response::Component::moment;
+  if (about && !is_moment) about->error_at_key(R"("about" belongs to the component "moment")");
+  if (!about && is_moment) node.error(R"(the key "about" is missing: the point [x, y] that the moment is about)");
 }
 
 void read_response(const std::string& name, const JsonNode& outer, SceneReading& reading) {
