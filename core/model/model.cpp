@@ -335,9 +335,8 @@ bool Model::is_on_axis(const Points<double>& points, int node) const {
 }
 
 std::string space_fault(Space space, const Body& body) {
-  const bool lumped = std::holds_alternative<PointMesh>(body.mesh) || std::holds_alternative<LineMesh>(body.mesh) ||
-                      std::holds_alternative<ArcMesh>(body.mesh);
-  if (space == Space::axisymmetric && lumped) return "an axisymmetric space has no points and no bars";
+  if (space == Space::axisymmetric && filling_of(body.mesh) != Filling::continuum)
+    return "an axisymmetric space has no points and no bars";
   if (space == Space::plane_stress && has_mean_dilatation(body.element))
     return "Q4_mean_dilatation is for plane_strain and axisymmetric: in plane stress the thickness gives way";
   return "";

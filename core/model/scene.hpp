@@ -18,7 +18,7 @@
 #include "core/contact/curve.hpp"
 #include "core/contact/friction_law.hpp"
 #include "core/contact/rigid_surfaces.hpp"
-#include "core/mesh/descriptions.hpp"
+#include "core/mesh/generators.hpp"
 #include "core/model/table.hpp"
 #include "core/solids/materials.hpp"
 

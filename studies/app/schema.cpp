@@ -5,6 +5,7 @@
 #include "studies/app/schema_texts.hpp"
 #include "studies/input/friction_laws.hpp"
 #include "studies/input/materials.hpp"
+#include "studies/input/mesh_kinds.hpp"
 #include "studies/input/method_options.hpp"
 #include "studies/input/obstacle_kinds.hpp"
 #include "studies/sweep/closed_forms.hpp"
@@ -91,7 +92,7 @@ Schema document(const char* title, const char* properties, const Schema& require
 Schema scene_schema() {
   Schema definitions = Schema::parse(schema_texts::common);
   definitions.update(Schema::parse(schema_texts::motion));
-  definitions["mesh"] = Schema::parse(schema_texts::mesh);
+  definitions["mesh"] = mesh_schema();
   definitions["material"] = one_of(material_kinds());
   definitions["response"] = response_schema();
   definitions["method"] = method_schema(OptionLists::refused);

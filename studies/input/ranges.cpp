@@ -12,6 +12,8 @@ struct RangeWords {
 
 RangeWords words_of(Range range) {
   switch (range) {
+    case Range::any:
+      return {any_number, R"({"type": "number"})"};
     case Range::positive:
       return {positive, R"({"$ref": "#/$defs/positive"})"};
     case Range::not_negative:
