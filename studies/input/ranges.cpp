@@ -21,6 +21,10 @@ RangeWords words_of(Range range) {
     case Range::poisson_ratio:
       return {poisson_ratio, R"({"title": "number > -1 and < 0.5", "type": "number",
         "exclusiveMinimum": -1, "exclusiveMaximum": 0.5})"};
+    case Range::below_one:
+      return {below_one, R"({"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1})"};
+    case Range::above_one:
+      return {above_one, R"({"type": "number", "exclusiveMinimum": 1})"};
   }
   throw std::logic_error("no range");
 }
