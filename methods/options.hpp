@@ -30,7 +30,6 @@
 
 #include "core/algebra/described.hpp"
 #include "core/contact/cone_radius.hpp"
-#include "core/model/scene.hpp"
 
 namespace stickslip {
 
