@@ -1,5 +1,6 @@
 /// What files may hold, in JSON Schema: for every key its type, its meaning with unit, its default and an example. This
-/// is where they are described, but for meshes, materials and obstacles, which say their keys themselves (core):
+/// is where they are described, but for what says its keys itself: meshes, materials, obstacles and
+/// laws of friction (core), options of methods (methods/options.hpp) and kinds of responses (studies/input):
 /// editors read it by `stickslip schema`, and the tables of docs/ are printed from it (tools/key_tables.py).
 ///
 /// "title" is the name of a type in the tables; "default" is what holds where the key is left out.
@@ -13,7 +14,6 @@ extern const char* const motion;
 
 // Properties by key.
 extern const char* const scene;
-extern const char* const response;  ///< of all kinds of responses
 extern const char* const study;
 
 }  // namespace stickslip::schema_texts

@@ -194,8 +194,12 @@ void for_each_key(F&& f) {
 /// None where it is no object with these keys. Faults of its values are reported.
 template <Described S>
 std::optional<S> read_described(const JsonNode& node, SceneReading& reading) {
+  std::size_t required = 0;
+  detail::for_each_key<S>(
+      [&]<class O, class M, class How>(const Key<O, M, How>&) { required += detail::must_be_there<How>; });
   Keys keys;
-  keys.required.reserve(std::tuple_size_v<decltype(S::keys())>);
+  keys.required.reserve(required);
+  keys.optional.reserve(std::tuple_size_v<decltype(S::keys())> - required);
   detail::for_each_key<S>([&]<class O, class M, class How>(const Key<O, M, How>& key) {
     (detail::must_be_there<How> ? keys.required : keys.optional).push_back(key.key);
   });

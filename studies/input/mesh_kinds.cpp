@@ -1,9 +1,11 @@
 #include "studies/input/mesh_kinds.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <sstream>
 #include <type_traits>
+#include <utility>
 
 #include "studies/input/described.hpp"
 #include "studies/io/atomic_file.hpp"
@@ -42,24 +44,16 @@ std::optional<MeshDescription> read_generator(const JsonNode& node, SceneReading
   return *std::move(mesh);
 }
 
-template <class M>
-void add_generator(std::vector<MeshKind>& kinds) {
-  if constexpr (!std::is_same_v<M, ImportedMesh>)
-    kinds.push_back({M::key, M::filling, schema_of_object<M>, read_generator<M>});
+template <std::size_t... i>
+constexpr std::array<MeshKind, sizeof...(i)> mesh_kinds_of(std::index_sequence<i...>) {
+  const auto kind = []<class M>(std::type_identity<M>) {
+    return MeshKind{M::key, M::filling, schema_of_object<M>, read_generator<M>};
+  };
+  return {kind(std::type_identity<std::variant_alternative_t<i, MeshDescription>>())...};
 }
 
-template <class... M>
-std::vector<MeshKind> mesh_kinds_of(std::type_identity<std::variant<M...>>) {
-  std::vector<MeshKind> kinds;
-  (add_generator<M>(kinds), ...);
-  return kinds;
-}
-
-/// All, in the order of MeshDescription.
-const std::vector<MeshKind>& mesh_kinds() {
-  static const auto kinds = mesh_kinds_of(std::type_identity<MeshDescription>());
-  return kinds;
-}
+/// All, in the order of MeshDescription, the last of which is the mesh of a file.
+constexpr auto mesh_kinds = mesh_kinds_of(std::make_index_sequence<std::variant_size_v<MeshDescription> - 1>());
 
 /// The mesh file's content, read at most once; none where it cannot be read.
 const MeshFile* mesh_file(const JsonNode& node, const std::string& name, SceneReading& reading) {
@@ -97,30 +91,32 @@ std::optional<MeshDescription> read_gmsh(const JsonNode& mesh, const JsonNode& n
 }  // namespace
 
 std::optional<MeshDescription> read_mesh(const JsonNode& node, SceneReading& reading) {
-  std::vector<std::string> keys, in_space;
-  for (const auto& kind : mesh_kinds()) {
-    keys.emplace_back(kind.key);
-    if (kind.filling != Filling::continuum) in_space.emplace_back(kind.key);
-  }
+  std::vector<std::string> keys;
+  keys.reserve(mesh_kinds.size() + 1);
+  for (const auto& kind : mesh_kinds) keys.emplace_back(kind.key);
   keys.emplace_back("gmsh");
   const auto named = node.kind(keys, {"sphere"}, {"body"});
   if (!named) return std::nullopt;
   const auto& [name, mesh] = *named;
   if (name != "gmsh")
     if (const auto body = node.find("body")) body->error_at_key("belongs to gmsh, not to " + name);
-  if (reading.dimension() == 3 && std::find(in_space.begin(), in_space.end(), name) == in_space.end()) {
+  const auto generator = std::find_if(mesh_kinds.begin(), mesh_kinds.end(),
+                                      [&name = name](const MeshKind& kind) { return name == kind.key; });
+  const bool from_file = generator == mesh_kinds.end();
+  if (reading.dimension() == 3 && (from_file || generator->filling == Filling::continuum)) {
+    std::vector<std::string> allowed;
+    for (const auto& kind : mesh_kinds)
+      if (kind.filling != Filling::continuum) allowed.emplace_back(kind.key);
     mesh.error_at_key(in_quotes(name) +
-                      " in the space solid is not available in this version; allowed: " + listed(in_space));
+                      " in the space solid is not available in this version; allowed: " + listed(allowed));
     return std::nullopt;
   }
-  for (const auto& kind : mesh_kinds())
-    if (name == kind.key) return kind.read(mesh, reading);
-  return read_gmsh(node, mesh, reading);
+  return from_file ? read_gmsh(node, mesh, reading) : generator->read(mesh, reading);
 }
 
 Schema mesh_schema() {
   Schema properties = Schema::object(), one = Schema::array();
-  for (const auto& kind : mesh_kinds()) {
+  for (const auto& kind : mesh_kinds) {
     properties[kind.key] = kind.schema();
     one.push_back({{"required", {kind.key}}});
   }
