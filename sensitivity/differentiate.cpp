@@ -14,13 +14,10 @@ namespace {
 std::optional<std::vector<int>> dofs_read_inside(const Model& model) {
   std::vector<char> read(model.node_count, false);
   for (std::size_t i = 0; i < model.scene.responses.size(); ++i) {
-    const Response& response = model.scene.responses[i];
-    if (response.kind == Response::Kind::strain_energy) return std::nullopt;
-    if (response.kind != Response::Kind::displacement) continue;
-    const auto& place = model.response_places[i].nodes;
-    for (const auto& [node, weight] : place) read[node] = true;
-    if (place.empty())
-      for (int node : model.side(response.on).nodes) read[node] = true;
+    const auto kind = model.scene.responses[i].kind;
+    if (kind == Response::Kind::strain_energy) return std::nullopt;
+    if (kind != Response::Kind::displacement) continue;
+    for (int node : model.response_places[i].nodes) read[node] = true;
   }
   for (std::size_t b = 0; b < model.at_reactions.size(); ++b)
     for (int e : model.at_reactions[b])

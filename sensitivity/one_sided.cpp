@@ -72,14 +72,13 @@ std::size_t first_tie(const Model& model, const Slots<double>& slots, const Meth
   return n;
 }
 
-/// Whether a width has an infinite derivative: at most one point is closed, and another is about to close.
-bool widens_at_once(const Model& model, const Slots<double>& slots, const State<double>& state, const Response& asked) {
-  if (asked.kind != Response::Kind::contact_half_width) return false;
+/// Whether a response is a width with an infinite derivative: at most one point is closed, and another is about to close.
+bool widens_at_once(const Model& model, const Slots<double>& slots, const State<double>& state, std::size_t response) {
+  if (model.scene.responses[response].kind != Response::Kind::contact_half_width) return false;
   const double largest = traction_scale(model, slots, state);
   const bool rings = model.scene.space == Space::axisymmetric;
   int wide = 0, weak = 0;  // closed points; points about to close
-  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
-    if (!model.is_of_contact(model.points[p].contact, asked.on)) continue;
+  for (int p : model.response_places[response].points) {
     const bool is_weak = margins_of(model, slots, state, p, largest).open <= weak_margin;
     const bool closed = state.contact.state[p] != ContactState::open;
     weak += is_weak;
@@ -147,7 +146,7 @@ void record_side(const Model& model, const Slots<double>& slots, const Parameter
   for (Eigen::Index i = 0; i < column.rows(); ++i) column(i, 0) = values[i].d[0];
   take_side_of_ties(model, block, block.current, side < 0 ? Ties::falling : Ties::growing, column);
   for (std::size_t i = 0; i < responses.size(); ++i)
-    if (!widens_at_once(model, slots, at.state, responses[i])) out(i, parameter) = column(i, 0);
+    if (!widens_at_once(model, slots, at.state, i)) out(i, parameter) = column(i, 0);
 }
 
 /// Both sides of the derivatives by one parameter, in column `parameter`. `first`: index of the first increment with

@@ -37,6 +37,7 @@ std::vector<ContactPoint> paired_beside(const Model& model, const Points<Directi
   beside.dimension = model.dimension;
   beside.node_count = model.node_count;
   beside.bodies = model.bodies;
+  beside.contact_sides = model.contact_sides;
   for (std::size_t i = 0; i < beside.scene.numbers.size(); ++i)
     beside.scene.numbers[i] += step * numbers.at_slot[i].d[0];
   Points<double> moved(points.rows(), points.cols());

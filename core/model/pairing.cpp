@@ -86,12 +86,6 @@ bool find_master(const Points<double>& points, const Model& model, const Facets&
   return true;
 }
 
-int obstacle_index(const Scene& scene, const std::string& name) {
-  for (std::size_t o = 0; o < scene.obstacles.size(); ++o)
-    if (scene.obstacles[o].name == name) return static_cast<int>(o);
-  return -1;
-}
-
 /// Mean length of the facets at a slave node; 0 without facets.
 double local_size(const Points<double>& points, const std::vector<std::pair<int, int>>& facets) {
   double size = 0;
@@ -260,10 +254,10 @@ void pair_segments(Model& model, const Points<double>& points, const Pairing& pa
 void pair_contact(Model& model, const Points<double>& points, int index) {
   const Contact& contact = model.scene.contacts[index];
   const std::string where = "/contacts/" + contact.name;
-  Pairing pairing{
-      index, obstacle_index(model.scene, contact.master), surface_of(model, points, model.side(contact.slave)), {}};
+  const ContactSides& sides = model.contact_sides[index];
+  Pairing pairing{index, sides.obstacle, surface_of(model, points, sides.slave), {}};
   if (pairing.obstacle < 0) {
-    pairing.master = model.side(contact.master);  // of a side that touches itself the axis tells how thick it is
+    pairing.master = sides.master;  // of a side that touches itself the axis tells how thick it is
     if (!contact.is_of_itself()) pairing.master = surface_of(model, points, pairing.master);
     if (model.dimension == 3) throw ModelError("a deformable master needs a 2D space", where);
     if (pairing.master.facets.empty()) throw ModelError("the master side has no facets", where);
@@ -311,7 +305,7 @@ SideSet surface_of(const Model& model, const Points<double>& points, SideSet sid
 std::vector<int> nodes_without_area(const Model& model, const Points<double>& points, int contact) {
   std::vector<int> nodes;
   if (model.scene.space != Space::axisymmetric) return nodes;
-  const SideSet side = surface_of(model, points, model.side(model.scene.contacts[contact].slave));
+  const SideSet side = surface_of(model, points, model.contact_sides[contact].slave);
   for (int node : side.nodes)
     if (has_no_area(model, points, side, node)) nodes.push_back(node);
   std::sort(nodes.begin(), nodes.end());

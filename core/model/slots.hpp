@@ -34,9 +34,9 @@ template <class T>
 Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& memory,
                       const ElementLists* only = nullptr);
 
-/// Nodal forces of a load at history = 1, all dofs; zero for a pressure that follows its side.
+/// Nodal forces of Scene::loads[load] at history = 1, all dofs; zero for a pressure that follows its side.
 template <class T>
-Vector<T> load_vector(const Model& model, const Load& load, const Slots<T>& slots);
+Vector<T> load_vector(const Model& model, int load, const Slots<T>& slots);
 
 /// Receives the nodes of an element and its tangent, node-major. It is a function and no template parameter, so that
 /// elements of all shapes and laws are compiled once per scalar, and not once per caller.
@@ -123,7 +123,7 @@ namespace stickslip {
                                                 const ElementSink<T>&, const BodyMotion<T>*);                  \
   EXTERN template std::vector<ThicknessStretch<T>> edge_stretches(const Model&, const Slots<T>&, int,          \
                                                                   const ElementEdge&, const Vector<T>&);       \
-  EXTERN template Vector<T> load_vector(const Model&, const Load&, const Slots<T>&);                           \
+  EXTERN template Vector<T> load_vector(const Model&, int, const Slots<T>&);                                   \
   EXTERN template Points<T> initial_points(const Model&, const Numbers<T>&);                                   \
   EXTERN template Slots<T> make_slots(const Model&, const Numbers<T>&, Points<T>, const std::vector<double>*); \
   EXTERN template Slots<T> make_slots(const Model&, const Numbers<T>&)

@@ -208,7 +208,8 @@ Slots<T> make_slots(const Model& model, const Numbers<T>& numbers, Points<T> poi
     slots.stiffness.assign(stiffness->begin(), stiffness->end());
   else
     slots.stiffness = contact_stiffness(model, slots);
-  for (const auto& load : model.scene.loads) slots.loads.emplace_back(load_vector(model, load, slots));
+  for (int l = 0; l < static_cast<int>(model.scene.loads.size()); ++l)
+    slots.loads.emplace_back(load_vector(model, l, slots));
   const auto& obstacles = model.scene.obstacles;
   const bool turns =
       std::any_of(obstacles.begin(), obstacles.end(), [](const auto& o) { return o.rotate.has_value(); });

@@ -1,5 +1,6 @@
 #include "tests/support/scenes.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace stickslip::scenes {
@@ -18,7 +19,8 @@ Response response(const std::string& name, Response::Kind kind, const std::strin
   r.name = name;
   r.kind = kind;
   r.on = on;
-  r.component = component;
+  const std::vector<std::string> words{"", "x", "y", "z", "normal", "moment"};
+  r.component = static_cast<Response::Component>(std::find(words.begin(), words.end(), component) - words.begin());
   r.take = take;
   return r;
 }
