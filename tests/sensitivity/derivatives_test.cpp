@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/model/response.hpp"
-#include "sensitivity/branch_search.hpp"
+#include "sensitivity/schemes.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/solved.hpp"
 
