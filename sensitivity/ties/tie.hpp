@@ -26,28 +26,25 @@ class Tie : public KindOfTie {
 
   /// All choices. Empty: it cannot change.
   std::vector<Choice> choices(const Model& model) const {
-    return visit([&](const auto& tie) { return tie.choices(model); });
+    return std::visit([&](const auto& tie) { return tie.choices(model); }, kind());
   }
   /// The choice of a state.
   Choice now(const Model& model, const State<double>& at) const {
-    return visit([&](const auto& tie) { return tie.now(model, at); });
+    return std::visit([&](const auto& tie) { return tie.now(model, at); }, kind());
   }
   void set(const Model& model, const Choice& choice, State<double>& at) const {
-    visit([&](const auto& tie) { tie.set(model, choice, at); });
+    std::visit([&](const auto& tie) { tie.set(model, choice, at); }, kind());
   }
   Verdict verdict(const SidedDerivative& derivative) const {
-    return visit([&](const auto& tie) { return tie.verdict(derivative); });
+    return std::visit([&](const auto& tie) { return tie.verdict(derivative); }, kind());
   }
   /// Whether its choices hold a body more or less, the first one most.
   bool holds() const {
-    return visit([](const auto& tie) { return tie.holds; });
+    return std::visit([](const auto& tie) { return tie.holds; }, kind());
   }
 
  private:
-  template <class F>
-  auto visit(F&& f) const {
-    return std::visit(f, static_cast<const KindOfTie&>(*this));
-  }
+  const KindOfTie& kind() const { return *this; }
 };
 
 std::vector<Tie> ties_of(const SolvedState& of);
