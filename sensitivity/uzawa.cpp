@@ -1,43 +1,28 @@
-/// Uzawa: derivatives of the fixed point of the update  lambda <- t(u(lambda),
-/// lambda).
+/// Uzawa: derivatives of the fixed point of the update  lambda <- t(u(lambda), lambda).
 ///
-///   iterated        (two-phase) lambda has converged; then  D lambda <- D
-///   t(Du(D lambda), D lambda)  is repeated until
-///                   D lambda converges. One factorisation, and a back-solve
-///                   per parameter and pass. After m passes the error is q^m, q
-///                   the contraction of the updates. rho is a constant: Dg = 0
-///                   at the fixed point
-///   truncated       (piggyback) one pass per augmentation that was performed,
-///   with its own tangent. It is the exact
-///                   derivative of a loop that was cut off, or that stopped at
-///                   a coarse tolerance
-///   oversized       one pass with kappa_s rho in place of rho, states frozen.
-///   Error O(1/kappa_s), no iteration [SZ00] preconditioned  the iterated
-///   scheme with kappa_s rho in place of rho. Both have the same fixed point:
-///   there Dg = 0
-///                   and D t_T = D(bound m), which do not contain rho. A pass
-///                   multiplies the error by 1 / (1 + kappa_s rho s_min), so
-///                   four to six passes reach rounding for any q
+///   iterated        (two-phase) lambda has converged; then  D lambda <- D t(Du(D lambda), D lambda)  is repeated until
+///                   D lambda converges. One factorisation, and a back-solve per parameter and pass. After m passes the
+///                   error is q^m, q the contraction of the updates. rho is a constant: Dg = 0 at the fixed point
+///   truncated       (piggyback) one pass per augmentation that was performed, with its own tangent. It is the exact
+///                   derivative of a loop that was cut off, or that stopped at a coarse tolerance
+///   oversized       one pass with kappa_s rho in place of rho, states frozen. Error O(1/kappa_s), no iteration [SZ00]
+///   preconditioned  the iterated scheme with kappa_s rho in place of rho. Both have the same fixed point: there Dg = 0
+///                   and D t_T = D(bound m), which do not contain rho. A pass multiplies the error by
+///                   1 / (1 + kappa_s rho s_min), so four to six passes reach rounding for any q
 ///
-/// The step D lambda <- D t is update_derivatives(): the derivative of
-/// AugmentationLoop::update (methods/uzawa.hpp). Its transpose is
-/// iterate_back().
+/// The step D lambda <- D t is update_derivatives(): the derivative of AugmentationLoop::update (methods/uzawa.hpp).
+/// Its transpose is iterate_back().
 ///
-/// kappa_s is the option `oversize`. Its automatic value is 1e3 for the
-/// oversized scheme. For the preconditioned scheme it is q / ((1 - q) 5e-4),
-/// which turns a measured contraction q into 5e-4; but kappa_s rho is at least
-/// 300 nodal stiffnesses, for directions that the updates did not excite, and
-/// at most 1e5. Why these numbers: the rounding of D lambda grows as kappa_s
-/// rho, and the number of passes falls with it. They give four to six passes
-/// and errors below 1e-10 up to q = 0.995. With 1e-4, 1e3 and 1e6 in their
-/// place there is one pass less, and an error of 4e-10.
+/// kappa_s is the option `oversize`. Its automatic value is 1e3 for the oversized scheme. For the preconditioned scheme
+/// it is q / ((1 - q) 5e-4), which turns a measured contraction q into 5e-4; but kappa_s rho is at least 300 nodal
+/// stiffnesses, for directions that the updates did not excite, and at most 1e5. Why these numbers: the rounding of
+/// D lambda grows as kappa_s rho, and the number of passes falls with it. They give four to six passes and errors below
+/// 1e-10 up to q = 0.995. With 1e-4, 1e3 and 1e6 in their place there is one pass less, and an error of 4e-10.
 ///
-/// All schemes start from D lambda of the last increment. The adjoint
-/// transposes the same maps: the derivative l by t is carried to lambda and
-/// back,  l <- l D t/D lambda.  The iterated and preconditioned schemes repeat
-/// this until the rest vanishes, as a fixed point iteration with Anderson's
-/// acceleration; the truncated scheme does it once per augmentation, the
-/// oversized one once. [SLK10 sec. 1], [CD20]
+/// All schemes start from D lambda of the last increment. The adjoint transposes the same maps: the derivative l by t
+/// is carried to lambda and back,  l <- l D t/D lambda.  The iterated and preconditioned schemes repeat this until the
+/// rest vanishes, as a fixed point iteration with Anderson's acceleration; the truncated scheme does it once per
+/// augmentation, the oversized one once. [SLK10 sec. 1], [CD20]
 
 #include "methods/augmentation/acceleration.hpp"
 #include "sensitivity/direct.hpp"
@@ -51,30 +36,26 @@ namespace {
 
 constexpr std::string_view other_scheme = ", or the preconditioned scheme";
 
-/// Per block: the value of `multiplier` with D lambda of the last increment as
-/// its derivative.
-std::vector<Vector<Direction>> carried_multiplier(Differentiation &problem, const Vector<double> &multiplier) {
+/// Per block: the value of `multiplier` with D lambda of the last increment as its derivative.
+std::vector<Vector<Direction>> carried_multiplier(Differentiation& problem, const Vector<double>& multiplier) {
   std::vector<Vector<Direction>> lambda;
-  for (auto &block : problem.blocks) {
+  for (auto& block : problem.blocks) {
     lambda.push_back(lift(multiplier));
     for (Eigen::Index k = 0; k < multiplier.size(); ++k) lambda.back()[k].d = block.previous.contact.traction[k].d;
   }
   return lambda;
 }
 
-/// Derivative of the Uzawa update lambda <- t: sets D lambda to D t of
-/// `fields`, per block. Values stay.
-void update_derivatives(std::vector<Vector<Direction>> &lambda, const std::vector<ContactField<Direction>> &fields) {
+/// Derivative of the Uzawa update lambda <- t: sets D lambda to D t of `fields`, per block. Values stay.
+void update_derivatives(std::vector<Vector<Direction>>& lambda, const std::vector<ContactField<Direction>>& fields) {
   for (std::size_t b = 0; b < lambda.size(); ++b)
     for (Eigen::Index k = 0; k < lambda[b].size(); ++k) lambda[b][k].d = fields[b].traction[k].d;
 }
 
-/// kappa_s of the preconditioned scheme. `contraction`: of the updates; 0: not
-/// measured.
-double chosen_oversize(const UzawaAL &method, const Slots<double> &slots, const RegularisationField<double> &rho,
+/// kappa_s of the preconditioned scheme. `contraction`: of the updates; 0: not measured.
+double chosen_oversize(const UzawaAL& method, const Slots<double>& slots, const RegularisationField<double>& rho,
                        double contraction) {
-  constexpr double target = 5e-4, least = 300,
-                   most = 1e5;  // target: a contraction; least, most: nodal stiffnesses
+  constexpr double target = 5e-4, least = 300, most = 1e5;  // target: a contraction; least, most: nodal stiffnesses
   if (method.oversize) return *method.oversize;
   double smallest = std::numeric_limits<double>::infinity(), largest = 0;
   for (std::size_t p = 0; p < rho.size(); ++p) {
@@ -87,11 +68,10 @@ double chosen_oversize(const UzawaAL &method, const Slots<double> &slots, const 
   return std::max(1.0, std::min(std::max(measured, least / smallest), most / largest));
 }
 
-/// The state `at` with the multiplier whose trial at kappa_s rho is the
-/// traction t that was found: lambda = t - kappa_s rho g. In slip that trial is
-/// on the edge of the cone. Why: with lambda of the loop, kappa_s rho would
-/// magnify the violation that the augmentations left.
-State<double> restated(const Model &model, State<double> at, const RegularisationField<double> &rho) {
+/// The state `at` with the multiplier whose trial at kappa_s rho is the traction t that was found: lambda = t - kappa_s
+/// rho g. In slip that trial is on the edge of the cone. Why: with lambda of the loop, kappa_s rho would magnify the
+/// violation that the augmentations left.
+State<double> restated(const Model& model, State<double> at, const RegularisationField<double>& rho) {
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     if (at.contact.state[p] == ContactState::open) continue;
     const int k = model.points[p].multiplier, offset = tangential_offset(model, p);
@@ -104,26 +84,25 @@ State<double> restated(const Model &model, State<double> at, const Regularisatio
   return at;
 }
 
-/// The equilibrium that the passes of a scheme linearise.
+/// The equilibrium that the passes of a scheme linearise. It outlives what linearise() and record() return.
 struct SchemeEquilibrium {
-  const UzawaAL &method;
-  const State<double> &of_loop;
+  const UzawaAL& method;
+  const State<double>& of_loop;
   double oversize;                                       ///< kappa_s
-  std::vector<double> factor;                            ///< on the initial rho, where the scheme depends on that
+  std::vector<double> factor;                            ///< on the initial rho, if the scheme depends on that
   RegularisationField<double> rho;                       ///< kappa_s times that of the loop
   std::optional<State<double>> restated = std::nullopt;  ///< for the preconditioned scheme
 
-  const State<double> &state() const { return restated ? *restated : of_loop; }
+  const State<double>& state() const { return restated ? *restated : of_loop; }
 
-  LinearisedEquilibrium linearise(Differentiation &problem, const State<double> &previous, double time) const {
+  LinearisedEquilibrium linearise(Differentiation& problem, const State<double>& previous, double time) const {
     auto blocks = method.scheme().reads_regularisation ? regularisation_blocks(problem, factor)
                                                        : std::vector(problem.blocks.size(), constant<Direction>(rho));
     return LinearisedEquilibrium(problem, state(), rho, std::move(blocks), method.cone_radius(), time, false,
                                  previous.history);
   }
 
-  /// `objectives`: as RecordedEquilibrium takes it.
-  RecordedEquilibrium record(AdjointProblem &problem, const State<double> &previous, double time,
+  RecordedEquilibrium record(AdjointProblem& problem, const State<double>& previous, double time,
                              bool objectives) const {
     problem.tape.rewind(problem.slots_end);
     const auto recorded = method.scheme().reads_regularisation
@@ -134,16 +113,16 @@ struct SchemeEquilibrium {
 };
 
 /// With rho of the loop times `oversize`.
-SchemeEquilibrium scheme_equilibrium(const UzawaAL &method, const Slots<double> &slots, const State<double> &at,
+SchemeEquilibrium scheme_equilibrium(const UzawaAL& method, const Slots<double>& slots, const State<double>& at,
                                      std::vector<double> factor, double oversize) {
-  for (double &f : factor) f *= oversize;
+  for (double& f : factor) f *= oversize;
   auto rho = adapted(initial_regularisation(slots, method), factor);
   return {method, at, oversize, std::move(factor), std::move(rho)};
 }
 
 /// That of all schemes but the truncated one.
 template <class Problem>
-SchemeEquilibrium scheme_equilibrium(const UzawaAL &method, const Problem &problem, const Increment<double> &at) {
+SchemeEquilibrium scheme_equilibrium(const UzawaAL& method, const Problem& problem, const Increment<double>& at) {
   if (method.sensitivity != UzawaAL::Sensitivity::preconditioned)
     return scheme_equilibrium(method, problem.slots, at.state, at.rho_factor, method.scheme().oversize);
   const auto own = adapted(initial_regularisation(problem.slots, method), at.rho_factor);
@@ -153,33 +132,25 @@ SchemeEquilibrium scheme_equilibrium(const UzawaAL &method, const Problem &probl
   return {method, at.state, oversize, {}, std::move(rho), std::move(state)};
 }
 
-/// Iterates D lambda <- D t until each parameter has ended. False if the passes
-/// reach their limit, or if a tangent is singular. `change`: largest change of
-/// D lambda in a pass; q: ratio of the last two changes; `floors`: what
-/// rounding of rho Dg makes of a change. A parameter ends in one of four cases:
+/// Iterates D lambda <- D t until each parameter has ended. False if the passes reach their limit, or if a tangent is
+/// singular. `change`: largest change of D lambda in a pass; q: ratio of the last two changes; `floors`: what rounding
+/// of rho Dg makes of a change. A parameter ends in one of four cases:
 ///
-///   left <= enough   left = change q / (1 - q), the sum of all changes to
-///   come; enough: `tolerance` of D lambda stalled          change <= floors,
-///   or change <= rounding of D lambda drifts           changes below 1e-11 of
-///   D lambda do not fall. Cause: constraints that repeat one another, whose
-///                    multipliers drift by the rounding between them. It is no
-///                    slow mode: at such a q a slow mode would begin with
-///                    larger changes
-///   rests            for ten passes no change has fallen to half of the least,
-///   and D lambda has come no farther in all
-///                    of them than four such changes. A slow mode would go on
-///                    in its direction. What is left is the rounding of the
-///                    back-solves, which the factor's condition number
-///                    magnifies; up to 1e-9 of D lambda
+///   left <= enough   left = change q / (1 - q), the sum of all changes to come; enough: `tolerance` of D lambda
+///   stalled          change <= floors, or change <= rounding of D lambda
+///   drifts           changes below 1e-11 of D lambda do not fall. Cause: constraints that repeat one another, whose
+///                    multipliers drift by the rounding between them. It is no slow mode: at such a q a slow mode would
+///                    begin with larger changes
+///   rests            for ten passes no change has fallen to half of the least, and D lambda has come no farther in all
+///                    of them than four such changes. A slow mode would go on in its direction. What is left is the
+///                    rounding of the back-solves, which the factor's condition number magnifies; up to 1e-9 of D
+///                    lambda
 ///
-/// The rounding of Dg is that of its terms, and that of the forces that balance
-/// in it. Example: tractions do not depend on a thickness, so its Dg is this
-/// rounding alone.
-bool iterate(Differentiation &problem, LinearisedEquilibrium &linearised, const RegularisationField<double> &rho,
-             std::vector<Vector<Direction>> &lambda, double tolerance) {
-  double stiffest = 0,
-         rho_over_k = 0;  // largest rho; largest rho over k: traction per force
-                          // that rounds in a node
+/// The rounding of Dg is that of its terms, and that of the forces that balance in it. Example: tractions do not depend
+/// on a thickness, so its Dg is this rounding alone.
+bool iterate(Differentiation& problem, LinearisedEquilibrium& linearised, const RegularisationField<double>& rho,
+             std::vector<Vector<Direction>>& lambda, double tolerance) {
+  double stiffest = 0, rho_over_k = 0;  // largest rho; largest rho over k: traction per force that rounds in a node
   for (std::size_t p = 0; p < rho.size(); ++p) {
     stiffest = std::max(stiffest, rho[p].normal);
     rho_over_k = std::max(rho_over_k, rho[p].normal / problem.slots.stiffness[p]);
@@ -189,13 +160,13 @@ bool iterate(Differentiation &problem, LinearisedEquilibrium &linearised, const 
   Eigen::ArrayXd last = Eigen::ArrayXd::Zero(problem.parameters), carried = last, least = last;
   std::vector<int> since(problem.parameters, 0);  // pass of the least change
   Matrix<double> at_least;                        // D lambda after it
-  auto columns = [&](auto &&pick) { return gather(problem.blocks, problem.parameters, pick); };
-  auto &record = problem.record.emplace();
+  auto columns = [&](auto&& pick) { return gather(problem.blocks, problem.parameters, pick); };
+  auto& record = problem.record.emplace();
   detail::Progress progress;
   for (int pass = 1; pass <= detail::Progress::limit; ++pass) {
-    const Matrix<double> before = columns([&](auto &, int b) -> auto & { return lambda[b]; });
+    const Matrix<double> before = columns([&](auto&, int b) -> auto& { return lambda[b]; });
     if (!linearised.solve(lambda)) return false;
-    const Matrix<double> after = columns([&](auto &, int b) -> auto & { return linearised.fields()[b].traction; });
+    const Matrix<double> after = columns([&](auto&, int b) -> auto& { return linearised.fields()[b].traction; });
     update_derivatives(lambda, linearised.fields());
     const Vector<double> floors =
         8 * unit_roundoff * (stiffest * linearised.largest_motion() + rho_over_k * linearised.load());
@@ -206,8 +177,7 @@ bool iterate(Differentiation &problem, LinearisedEquilibrium &linearised, const 
     for (int j = 0; j < problem.parameters && after.rows() > 0; ++j) {
       const double change = (after.col(j) - before.col(j)).cwiseAbs().maxCoeff();
       const double size = after.col(j).cwiseAbs().maxCoeff();
-      // (A zero derivative has no size of its own; that of the last increment
-      // stands in.)
+      // (A zero derivative has no size of its own; that of the last increment stands in.)
       if (pass == 1) carried[j] = before.col(j).cwiseAbs().maxCoeff();
       const double q = last[j] > 0 ? change / last[j] : 1;
       const double left = q < 1 ? change * q / (1 - q) : change;
@@ -236,13 +206,13 @@ bool iterate(Differentiation &problem, LinearisedEquilibrium &linearised, const 
 }
 
 /// The truncated scheme: one pass per augmentation that was performed.
-bool differentiate_augmentations(const UzawaAL &method, Differentiation &problem, const State<double> &previous,
-                                 const Increment<double> &increment) {
+bool differentiate_augmentations(const UzawaAL& method, Differentiation& problem, const State<double>& previous,
+                                 const Increment<double>& increment) {
   auto lambda = carried_multiplier(problem, previous.contact.traction);
-  for (const auto &[at, rho_factor] : increment.augmented) {
+  for (const auto& [at, rho_factor] : increment.augmented) {
     const auto equilibrium = scheme_equilibrium(method, problem.slots, at, rho_factor, 1);
     auto linearised = equilibrium.linearise(problem, previous, increment.time);
-    for (auto &of_block : lambda)
+    for (auto& of_block : lambda)
       for (Eigen::Index k = 0; k < of_block.size(); ++k) of_block[k].v = at.multiplier[k];
     if (!linearised.solve(lambda)) return false;
     linearised.store_state(lambda);
@@ -252,24 +222,19 @@ bool differentiate_augmentations(const UzawaAL &method, Differentiation &problem
   return true;
 }
 
-/// Carries the derivative by lambda back through all updates: finds x = c + A^T
-/// x and seeds the tractions with x. c: the derivative by lambda that the
-/// outcome asks for; A: the linearised update. Anderson's extrapolation needs
-/// half the passes of the series sum (A^T)^k c, or fewer. Derivatives that
-/// earlier passes have gathered are restored, so those of the last pass alone
-/// remain. False if the passes reach their limit.
+/// Carries the derivative by lambda back through all updates: finds x = c + A^T x and seeds the tractions with x. c:
+/// the derivative by lambda that the outcome asks for; A: the linearised update. Anderson's extrapolation needs half
+/// the passes of the series sum (A^T)^k c, or fewer. Derivatives that earlier passes have gathered are restored, so
+/// those of the last pass alone remain. False if the passes reach their limit.
 ///
-///   left         c + A^T x - x: the derivative by the lambda that the
-///   increment began with. It converges to zero,
-///                except for the multiplier of a constraint that supports
-///                decide, which keeps its value of the last increment
-///   plain        x is the last image, not an extrapolation. Then `left` is the
-///   next term of the series, and its
+///   left         c + A^T x - x: the derivative by the lambda that the increment began with. It converges to zero,
+///                except for the multiplier of a constraint that supports decide, which keeps its value of the last
+///                increment
+///   plain        x is the last image, not an extrapolation. Then `left` is the next term of the series, and its
 ///                changes tell whether the series has converged or stalled
-///   contraction  of A; 0: not measured. Anderson's extrapolation hides it from
-///   the changes
-bool iterate_back(AdjointProblem &problem, RecordedEquilibrium &recorded, int objective, double contraction,
-                  Vector<double> &left) {
+///   contraction  of A; 0: not measured. Anderson's extrapolation hides it from the changes
+bool iterate_back(AdjointProblem& problem, RecordedEquilibrium& recorded, int objective, double contraction,
+                  Vector<double>& left) {
   constexpr double tolerance = 1e-14;
   constexpr double noise = 1e4 * unit_roundoff;  // changes below it that do not fall any more are rounding
   recorded.balance(objective);
@@ -277,7 +242,7 @@ bool iterate_back(AdjointProblem &problem, RecordedEquilibrium &recorded, int ob
   left = asked;
   if (left.size() == 0 || left.cwiseAbs().maxCoeff() == 0) return true;
   double area = 0, largest = 0, last = 0;
-  for (const auto &geometry : problem.slots.geometry) area = std::max(area, geometry.area);
+  for (const auto& geometry : problem.slots.geometry) area = std::max(area, geometry.area);
   const auto start = recorded.gathered(objective);
   Accelerator<double> accelerator(UzawaAL::Acceleration::anderson);
   Vector<double> x = asked;
@@ -308,18 +273,17 @@ bool iterate_back(AdjointProblem &problem, RecordedEquilibrium &recorded, int ob
   return false;
 }
 
-/// Adjoint of the truncated scheme: goes back through all augmentations that
-/// were performed, the last one first.
-bool pull_back_augmentations(const UzawaAL &method, AdjointProblem &problem, const State<double> &previous,
-                             const Increment<double> &increment) {
+/// Adjoint of the truncated scheme: goes back through all augmentations that were performed, the last one first.
+bool pull_back_augmentations(const UzawaAL& method, AdjointProblem& problem, const State<double>& previous,
+                             const Increment<double>& increment) {
   const int objectives = static_cast<int>(problem.objectives.size());
   std::vector<HistoryDerivative> gathered(objectives);
   std::vector<Vector<double>> traction(objectives);
   for (std::size_t k = increment.augmented.size(); k-- > 0;) {
-    const auto &[at, rho_factor] = increment.augmented[k];
+    const auto& [at, rho_factor] = increment.augmented[k];
     const bool last = k + 1 == increment.augmented.size();
-    auto recorded = scheme_equilibrium(method, problem.slots, at, rho_factor, 1)
-                        .record(problem, previous, increment.time, last && increment.requested);
+    const auto equilibrium = scheme_equilibrium(method, problem.slots, at, rho_factor, 1);
+    auto recorded = equilibrium.record(problem, previous, increment.time, last && increment.requested);
     if (!recorded.valid()) return false;
     for (int j = 0; j < objectives; ++j) {
       if (last)
@@ -332,7 +296,7 @@ bool pull_back_augmentations(const UzawaAL &method, AdjointProblem &problem, con
       if (last) {
         gathered[j] = history;
       } else {
-        for_each_part([](Vector<double> &sum, const Vector<double> &part) { sum += part; }, gathered[j].local,
+        for_each_part([](Vector<double>& sum, const Vector<double>& part) { sum += part; }, gathered[j].local,
                       history.local);
       }
     }
@@ -346,44 +310,42 @@ bool pull_back_augmentations(const UzawaAL &method, AdjointProblem &problem, con
 
 }  // namespace
 
-bool UzawaAL::differentiate_increment(Differentiation &problem, const State<double> &previous,
-                                      const Increment<double> &increment) const {
+bool UzawaAL::differentiate_increment(Differentiation& problem, const State<double>& previous,
+                                      const Increment<double>& increment) const {
   if (sensitivity == Sensitivity::truncated) return differentiate_augmentations(*this, problem, previous, increment);
   const bool preconditioned = sensitivity == Sensitivity::preconditioned;
+  // (a pass of the preconditioned scheme divides the error by some thousand, so 1e-12 suffices)
+  const double tolerance = preconditioned ? 1e-12 : 1e-13;
   const auto equilibrium = scheme_equilibrium(*this, problem, increment);
   auto linearised = equilibrium.linearise(problem, previous, increment.time);
   auto lambda = carried_multiplier(problem, equilibrium.state().multiplier);
   if (sensitivity == Sensitivity::oversized) {
     if (!linearised.solve(lambda)) return false;
     problem.record = {1, 1, 0};
-  } else {
-    // (a pass of the preconditioned scheme divides the error by some thousand,
-    // so 1e-12 suffices)
-    const double tolerance = preconditioned ? 1e-12 : 1e-13;
-    if (!iterate(problem, linearised, equilibrium.rho, lambda, tolerance)) {
-      if (problem.status == Status::cap && !preconditioned) problem.message += other_scheme;
-      return false;
-    }
+  } else if (!iterate(problem, linearised, equilibrium.rho, lambda, tolerance)) {
+    if (problem.status == Status::cap && !preconditioned) problem.message += other_scheme;
+    return false;
   }
   problem.record->oversize = equilibrium.oversize;
   linearised.store_state(lambda);
   return true;
 }
 
-bool UzawaAL::pull_back_increment(AdjointProblem &problem, const State<double> &previous,
-                                  const Increment<double> &increment) const {
+bool UzawaAL::pull_back_increment(AdjointProblem& problem, const State<double>& previous,
+                                  const Increment<double>& increment) const {
   if (sensitivity == Sensitivity::truncated) return pull_back_augmentations(*this, problem, previous, increment);
+  const bool preconditioned = sensitivity == Sensitivity::preconditioned;
+  const double contraction = preconditioned ? 0 : increment.contraction;
   const auto equilibrium = scheme_equilibrium(*this, problem, increment);
   auto recorded = equilibrium.record(problem, previous, increment.time, increment.requested);
   if (!recorded.valid()) return false;
-  const bool preconditioned = sensitivity == Sensitivity::preconditioned;
   for (int j = 0; j < static_cast<int>(problem.objectives.size()); ++j) {
     recorded.seed_outcome(j);
     Vector<double> carried;
     if (sensitivity == Sensitivity::oversized) {
       recorded.balance(j);
       carried = recorded.take_multiplier(j);
-    } else if (!iterate_back(problem, recorded, j, preconditioned ? 0 : increment.contraction, carried)) {
+    } else if (!iterate_back(problem, recorded, j, contraction, carried)) {
       if (problem.status == Status::cap && !preconditioned) problem.message += other_scheme;
       return false;
     }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/model/flow_points.hpp"
+#include "sensitivity/differentiation.hpp"
 #include "sensitivity/ties/scales.hpp"
 
 namespace stickslip {

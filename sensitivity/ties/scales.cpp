@@ -1,5 +1,7 @@
 #include "sensitivity/ties/scales.hpp"
 
+#include "sensitivity/differentiation.hpp"
+
 namespace stickslip {
 
 double elastic_traction(const Slots<double>& slots, int p) { return slots.stiffness[p] / slots.geometry[p].area; }

@@ -1,9 +1,12 @@
 /// What counts as a tie, and what counts as rounding, for all that asks whether a derivative holds.
 #pragma once
 
-#include "sensitivity/differentiation.hpp"
+#include "core/model/state.hpp"
+#include "sensitivity/direction.hpp"
 
 namespace stickslip {
+
+struct ParameterBlock;
 
 /// Largest margin, dimensionless, at which a state counts as being at a tie. The methods leave errors of up to 1e-10.
 inline constexpr double weak_margin = 1e-8;
