@@ -208,7 +208,7 @@ FAULTS = [
     ("Uzawa's derivatives settle a thousand times early", "sensitivity/uzawa.cpp",
      "q < 1 ? <<<change * q / (1 - q)>>> : change;", "1e-3 * change"),
     ("truncated derivative at the last multiplier", "sensitivity/uzawa.cpp",
-     "lambda[b][k].v = <<<augmented.state.multiplier[k]>>>;", "increment.state.multiplier[k]"),
+     "of_block[k].v = <<<at.multiplier[k]>>>;", "increment.state.multiplier[k]"),
     ("carried D lambda forgotten", "sensitivity/uzawa.cpp",
      "lambda.back()[k].d = <<<block.previous.contact.traction[k].d>>>;",
      "Direction::Gradient(0.0 * block.previous.contact.traction[k].d)"),
