@@ -1,10 +1,10 @@
 #include "sensitivity/differentiate.hpp"
 
 #include "core/model/storage.hpp"
-#include "sensitivity/branch_search.hpp"
 #include "sensitivity/nearest_change.hpp"
 #include "sensitivity/one_sided.hpp"
 #include "sensitivity/response_ties.hpp"
+#include "sensitivity/schemes.hpp"
 
 namespace stickslip {
 
@@ -210,8 +210,8 @@ Gradients Derivatives::finish(const Trajectory<double>& trajectory) {
       WholeStates states(now.model, now.slots, now.method, trajectory, now.workspace);
       const auto taken =
           consistent_at_ties(now.model, now.slots, now.method, trajectory, states, now.workspace, search);
-      if (taken) consistent = trajectory;
-      for (std::size_t n = 0; taken && n < taken->size(); ++n) (*taken)[n].give(consistent->increments[n]);
+      if (!taken.empty()) consistent = trajectory;
+      for (std::size_t n = 0; n < taken.size(); ++n) taken[n].give(consistent->increments[n]);
     }
     now.advance(consistent ? *consistent : trajectory, trajectory.solved_count(), false);
     now.gradients.search = search;

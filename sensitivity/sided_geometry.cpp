@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/model/pairing.hpp"
+#include "sensitivity/ties/scales.hpp"
 
 namespace stickslip {
 namespace {
@@ -98,12 +99,11 @@ std::optional<PointGeometry<Direction>> on_nodes(PointGeometry<Direction> geomet
   return geometry;
 }
 
-/// Whether two geometries of the same nodes have the same values, to the tolerance of a tie.
+/// Whether two geometries of the same nodes have the same values, so that nothing jumps.
 bool meets(const PointGeometry<Direction>& a, const PointGeometry<Direction>& b, double size) {
-  constexpr double tie = 1e-6;
-  return (values(a.normal) - values(b.normal)).cwiseAbs().maxCoeff() <= tie &&
-         (values(a.weights) - values(b.weights)).cwiseAbs().maxCoeff() <= tie &&
-         std::abs(a.gap.v - b.gap.v) <= tie * size && std::abs(a.area.v - b.area.v) <= tie * a.area.v;
+  return (values(a.normal) - values(b.normal)).cwiseAbs().maxCoeff() <= straight &&
+         (values(a.weights) - values(b.weights)).cwiseAbs().maxCoeff() <= straight &&
+         std::abs(a.gap.v - b.gap.v) <= straight * size && std::abs(a.area.v - b.area.v) <= straight * a.area.v;
 }
 
 }  // namespace

@@ -1,10 +1,6 @@
-#include "sensitivity/vertex_ties.hpp"
-
-#include <algorithm>
-
 #include "core/model/contact_geometry.hpp"
 #include "core/model/loading.hpp"
-#include "sensitivity/one_sided.hpp"
+#include "sensitivity/ties/tie.hpp"
 
 namespace stickslip {
 namespace {
@@ -52,8 +48,6 @@ VertexGeometry<T> vertex_geometry(const Model& model, const Slots<T>& slots, con
 /// Whether two patches may have a kink at their vertex: not where they join as one B-spline.
 bool has_kink(const Patch& first) { return first.smoothing != Smoothing::b_spline || !first.goes_on_after(); }
 
-constexpr double straight = 1e-6;  // sine up to which a turn is none, as in sided_geometry.cpp
-
 /// Whether derivatives jump at the end of a patch. Splines share the tangent there; theirs jump where the curvature
 /// does.
 bool changes_at(const Patch& patch, double bend) {
@@ -82,26 +76,53 @@ bool reads_gaps(const Scene& scene) {
 
 }  // namespace
 
-std::vector<VertexTie> vertex_ties(const Model& model, const Slots<double>& slots, const State<double>& state,
-                                   double time, double largest) {
-  std::vector<VertexTie> ties;
-  if (!model.slides_along_curves()) return ties;
+void VertexTie::find(const SolvedState& of, std::vector<Tie>& ties) {
+  const auto& [model, slots, state, memory, rho, cone, time, largest] = of;
+  if (!model.slides_along_curves()) return;
   const bool all = reads_gaps(model.scene);
   const Vector<double> compact = to_compact(model, state.displacement);
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     const auto& point = model.points[p];
+    const double negligible = weak_margin * largest;
     const bool open = state.contact.state[p] == ContactState::open;
-    const double elastic = slots.stiffness[p] / slots.geometry[p].area;
-    const bool touches = open && elastic * state.contact.gap[p] <= weak_margin * largest;
+    const bool touches = open && elastic_traction(slots, p) * state.contact.gap[p] <= negligible;
     if (open && !touches && !all) continue;
-    const bool bears = -state.contact.traction[point.multiplier] > weak_margin * largest;
+    const bool bears = -state.contact.traction[point.multiplier] > negligible;
     for_each_vertex(model, state, p, [&](int first, int second) {
       const auto at = vertex_geometry(model, slots, compact, time, p, first, second);
       if (!changes_at(model.curves[point.curve].patches[first], at.bend)) return;
-      if (std::abs(at.overshoot) <= weak_margin) ties.push_back({p, first, second, !bears || at.turn <= straight});
+      if (std::abs(at.overshoot) <= weak_margin)
+        ties.emplace_back(VertexTie{p, first, second, !bears || at.turn <= straight});
     });
   }
-  return ties;
+}
+
+std::vector<Choice> VertexTie::choices(const Model&) const {
+  if (!crosses) return {};
+  return {{first}, {second}};
+}
+
+Choice VertexTie::now(const Model&, const State<double>& at) const { return {at.contact.facing[point].patch}; }
+
+void VertexTie::set(const Model& model, const Choice& choice, State<double>& at) const {
+  const int patch = choice.branch;
+  const double xi = patch == first ? 1 : 0;
+  at.contact.facing[point] = {patch, xi, 0};
+  at.history.patch[point] = patch;
+  const auto& of = model.points[point];
+  if (of.foot >= 0) at.history.foot[of.foot] = xi - detail::foot_reference(model, of, patch);
+}
+
+Verdict VertexTie::verdict(const SidedDerivative& derivative) const {
+  const auto& [of, block, rho, side, scales, flows] = derivative;
+  const auto found = vertex_geometry(of.model, block.slots, to_compact(of.model, block.current.displacement), of.time,
+                                     point, first, second);
+  const double rate = derivative.rate(found.overshoot);
+  const double negligible = scales.negligible(scales.of_mesh / found.length)[0];
+  const bool on_second = of.at.contact.facing[point].patch == second;
+  const double by = (on_second ? -rate : rate) / negligible;
+  if (!(by > 1)) return {};
+  return {crosses, Choice{on_second ? first : second}, by};
 }
 
 void for_each_vertex_way(const Model& model, const Slots<Direction>& slots, const Vector<Direction>& displacement,
@@ -116,32 +137,6 @@ void for_each_vertex_way(const Model& model, const Slots<Direction>& slots, cons
       if (changes_at(patch, at.bend)) f(at.overshoot, at.length);
     });
   }
-}
-
-void set_patch(const Model& model, const VertexTie& tie, int patch, State<double>& at) {
-  const double xi = patch == tie.first ? 1 : 0;
-  at.contact.facing[tie.point] = {patch, xi, 0};
-  at.history.patch[tie.point] = patch;
-  const auto& point = model.points[tie.point];
-  if (point.foot >= 0) at.history.foot[point.foot] = xi - detail::foot_reference(model, point, patch);
-}
-
-VertexVerdict vertex_verdict(const Model& model, const ParameterBlock& block, const VertexTie& tie,
-                             const State<double>& at, double time, const SideDirection& along) {
-  constexpr double share = 1e-10, rigid = 1e-3;  // as for contact points (sensitivity/branches.cpp)
-  const auto found = vertex_geometry(model, block.slots, to_compact(model, block.current.displacement), time, tie.point,
-                                     tie.first, tie.second);
-  double motion = 0;
-  for (const auto& u : block.current.displacement) motion = std::max(motion, std::abs(u.d[0]));
-  for (Eigen::Index k = 0; k < block.slots.points.size(); ++k)
-    motion = std::max(motion, std::abs(block.slots.points.data()[k].d[0]));
-  const double rate = along.side * found.overshoot.d[0];
-  const double negligible =
-      share * std::max(rigid * motion / found.length, along.parameter > 0 ? 1 / along.parameter : 0.0);
-  const bool on_second = at.contact.facing[tie.point].patch == tie.second;
-  const double by = (on_second ? -rate : rate) / negligible;
-  if (!(by > 1)) return {};
-  return {on_second ? tie.first : tie.second, by};
 }
 
 }  // namespace stickslip
