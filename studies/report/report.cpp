@@ -6,6 +6,7 @@
 #include <map>
 
 #include "studies/io/input_fault.hpp"
+#include "studies/io/other_program.hpp"
 #include "studies/io/output_folder.hpp"
 #include "studies/report/about.hpp"
 #include "studies/report/certificates.hpp"
@@ -166,13 +167,19 @@ std::vector<Section> sections_of(const Study& all, const Study& study, Figures& 
 
 }  // namespace
 
+void check_pdf_writer() {
+  if (!output_of({"rsvg-convert", "--version"}, {}))
+    throw InputFault(
+        "--pdf: rsvg-convert makes the PDFs, and is not here; install it (Debian: apt install librsvg2-bin)");
+}
+
 std::vector<std::string> report_files() {
   std::vector<std::string> files(std::begin(figure_files), std::end(figure_files));
   files.emplace_back("report.html");
   return files;
 }
 
-void write_report(const std::filesystem::path& directory) try {
+void write_report(const std::filesystem::path& directory, Pdfs pdfs) try {
   const Study study = read_study(directory);
   const Study shown = sample_of(study);
   Figures figures;
@@ -180,20 +187,20 @@ void write_report(const std::filesystem::path& directory) try {
   const std::string first = "<section id=\"verdict\">\n" + first_screen(study, shown, figures) + "</section>\n";
   write_output(directory / "report.html",
                page(title.empty() ? "Frictional contact study" : title, first, sections_of(study, shown, figures)));
-  write_figures(directory, figures.figures, figures.plates);
+  write_figures(directory, figures.figures, figures.plates, pdfs);
 } catch (const json::exception& error) {  // rows have checksums; what else is recorded may have been edited
   throw InputFault(directory.string() + ": study.json, picture.json or rows without a checksum hold what stickslip " +
                    "does not write (" + error.what() + "); delete them, and run the study again with --resume");
 }
 
-void write_run_report(const std::filesystem::path& directory) try {
+void write_run_report(const std::filesystem::path& directory, Pdfs pdfs) try {
   const Study run = read_run(directory);
   Figures figures;
   const std::string title = text_at(run.description, "title");
   const std::string first = "<section id=\"run\">\n" + first_of_run(run, figures) + "</section>\n";
   write_output(directory / "report.html",
                page(title.empty() ? "Frictional contact" : title, first, sections_of_run(run, figures)));
-  write_figures(directory, figures.figures, figures.plates);
+  write_figures(directory, figures.figures, figures.plates, pdfs);
 } catch (const json::exception& error) {  // it may have been edited
   throw InputFault(directory.string() + ": result.json or picture.json hold what stickslip does not write (" +
                    error.what() + "); run the scene again with --report");
