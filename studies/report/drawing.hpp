@@ -118,6 +118,9 @@ class Drawing {
 /// failed (a diagonal cross).
 Path marker(std::string_view shape, double x, double y);
 
+/// A path in the notation of SVG.
+std::string svg_path(const Path& path);
+
 /// Width of a text in pixels, as Helvetica sets it.
 double text_width(std::string_view text, double size);
 

@@ -30,7 +30,7 @@ std::string csv_cell(const json& value) {
 /// How a row is drawn, as opposed to what it says.
 bool is_of_looks(const std::string& field) {
   static const std::set<std::string> names = {"guide_tag", "line", "of_cell", "order", "shown", "unmarked", "zero"};
-  return names.count(field) > 0 || field.starts_with("tag");
+  return names.count(field) > 0;
 }
 
 /// By name.
@@ -83,9 +83,9 @@ void write_figures(const fs::path& directory, const std::vector<Figure>& figures
                    Pdfs pdfs) {
   Files files;
   for (const auto& figure : figures) {
-    for (const auto& panel : figure.panels)
-      if (const auto drawing = draw_plot(figure, panel))
-        add_drawing(figure.id + (panel.title.empty() ? "" : "-" + slug(panel.title)), *drawing, files);
+    for (const auto& chart : figure.charts)
+      if (const auto drawing = draw_plot(figure, chart))
+        add_drawing(figure.id + (chart.title.empty() ? "" : "-" + slug(chart.title)), *drawing, files);
     files[figure.id + ".csv"] = to_csv(figure.rows);
   }
   for (const auto& plate : plates) {

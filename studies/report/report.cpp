@@ -89,12 +89,10 @@ std::optional<Figure> first_chart(const Study& study, std::size_t rows_of_verdic
   }
   figure->choices.clear();
   figure->folded.clear();
-  figure->panels.erase(figure->panels.begin() + 1, figure->panels.end());
-  figure->panels.front().title.clear();
+  figure->charts.erase(figure->charts.begin() + 1, figure->charts.end());
+  figure->charts.front().title.clear();
   constexpr std::size_t few = 4;  // rows, beside which a screen of 800 pixels has room for the whole chart
-  const double height = 220 - 20 * static_cast<double>(std::max(rows_of_verdict, few) - few);
-  figure->panels.front().spec["height"] = height;
-  tag_lines(figure->rows, "work", height, "setting");
+  figure->charts.front().height = 220 - 20 * static_cast<double>(std::max(rows_of_verdict, few) - few);
   figure->id = "first";
   figure->title = "What accuracy costs";
   figure->text = std::string("Error of the worst ") + (of == Of::responses ? "response" : "derivative") +
@@ -135,7 +133,7 @@ std::string of_solution(const Study& study, Figures& figures) {
   auto responses = response_histories(study);
   auto derivatives = derivative_histories(study, first_choice(responses, "response"));
   std::string out = figures.beside(std::move(responses), film_of_states(study)) + figures.show(std::move(derivatives));
-  if (has_close_up(study.picture)) out += figures.show(draw_picture(study.picture));
+  if (needs_close_up(study.picture)) out += figures.show(draw_picture(study.picture));
   return out + figures.show(tractions(study));
 }
 

@@ -124,8 +124,8 @@ TEST_F(ReportFiles, FiguresHoldWhatThePagesChartsShow) {
   page();
   const std::string work = file("enforcement-responses-against-work-factorisations.svg");
   EXPECT_THAT(work, HasSubstr(">exactly 0<"));
-  for (const char* option : {">1000<", ">Penalty, 1e9<", ">Uzawa AL, 1e-4<", ">1e-8<", ">Monolithic AL<"})
-    EXPECT_THAT(work, HasSubstr(option));
+  for (const char* words : {">1000<", ">1e9<", ">1e-4<", ">1e-8<", ">Penalty<", ">Uzawa AL<", ">Monolithic AL<"})
+    EXPECT_THAT(work, HasSubstr(words));
   EXPECT_THAT(file("error-stiffness-responses.svg"), HasSubstr(">slope -1<"));
 }
 
@@ -152,7 +152,7 @@ TEST_F(ReportFiles, LabelsOfTicksDiffer) {
                   {{"time", 1}, {"responses", {{"press", 5.2345}}}}};
   record(description(), cells);
   const auto figure = report::response_histories(study());
-  const std::string svg = report::draw_plot(*figure, figure->panels.front())->inline_svg();
+  const std::string svg = report::draw_plot(*figure, figure->charts.front())->inline_svg();
   EXPECT_THAT(svg, testing::AllOf(HasSubstr(">5.2342<"), HasSubstr(">5.2344<")));
 }
 
