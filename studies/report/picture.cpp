@@ -150,15 +150,6 @@ void draw_bodies(const Scene& scene, const json& obstacles, double scale, const 
   draw_outlines(scene.mesh, nodes, frame, drawing);
 }
 
-}  // namespace
-
-bool has_close_up(const json& picture) {
-  const auto scene = picture.is_object() ? lay_out(picture) : std::nullopt;
-  return scene && scene->zooms;
-}
-
-namespace {
-
 /// Whether a close-up has room beside the whole in half the width of a page.
 bool has_room_aside(const Scene& scene) { return scene.zooms && scene.whole.width() < 1.5 * scene.whole.height(); }
 
@@ -180,6 +171,11 @@ void draw_close_up(const Scene& scene, const json& obstacles, const Frame& main,
 }
 
 }  // namespace
+
+bool needs_close_up(const json& picture) {
+  const auto scene = picture.is_object() ? lay_out(picture) : std::nullopt;
+  return scene && scene->zooms && !has_room_aside(*scene);
+}
 
 std::optional<Plate> draw_overview(const json& picture) {
   if (!picture.is_object()) return std::nullopt;
@@ -237,9 +233,7 @@ std::optional<Plate> draw_picture(const json& picture) {
   }
   draw_stresses(scene->peak, height + 12, drawing);
   draw_states(scene->contact, height + 12, drawing);
-  Plate plate{"picture", title, text, drawing, {}, rows_of(*scene, exaggerated)};
-  if (has_room_aside(*scene)) plate.folded = "the first picture, larger";
-  return plate;
+  return Plate{"picture", title, text, drawing, {}, rows_of(*scene, exaggerated)};
 }
 
 }  // namespace stickslip::report
