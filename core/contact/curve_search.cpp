@@ -16,6 +16,11 @@ constexpr double past_end_of_curve = 0.01;
 /// this. So the angle exceeds 120 degrees, and the two sides of a corner never touch.
 constexpr double least_against = 0.5;
 
+/// A vertex of the curve may be inside of a patch by its max_depth if the patch is within so many patches of the one
+/// that it faced last; otherwise by a share of that.
+constexpr int neighbourhood = 8;
+constexpr double share_of_depth = 0.25;
+
 auto position_in(const Eigen::Matrix2Xd& positions) {
   return [&positions](int vertex) -> Vec<double, 2> { return positions.col(vertex); };
 }
@@ -42,8 +47,8 @@ Bounds<2> CurveSearch::bounds(int patch) const {
   return facet;
 }
 
-/// False if no facet of the box is eligible: its normals do not oppose `outward`, or, in contact of the curve with
-/// itself, x is too deep inside of the solid.
+/// False if no facet of the box is eligible, apart from those near the last one: its normals do not oppose `outward`,
+/// or, in contact of the curve with itself, x is too deep inside of the solid.
 bool CurveSearch::may_be_eligible(const Bounds<2>& box, const Query& query) const {
   constexpr double rounding = 1e-12;
   const Vec<double, 2>& outward = query.outward;
@@ -57,17 +62,15 @@ bool CurveSearch::may_be_eligible(const Bounds<2>& box, const Query& query) cons
     most += std::max(
         {near * box.normal_low[i], near * box.normal_high[i], far * box.normal_low[i], far * box.normal_high[i]});
   }
-  return most >= -query.own->max_depth - rounding * size_;
+  return most >= -share_of_depth * query.own->max_depth - rounding * size_;
 }
 
-/// Largest depth, length, at which x may be inside of a patch of its own curve: own->max_depth if it is within 8
-/// patches of the patch that x faced last, otherwise a quarter of that.
+/// Largest depth, length, at which x may be inside of a patch of its own curve.
 double CurveSearch::max_depth(int patch, const Query& query) const {
-  constexpr int neighbourhood = 8;
   const int count = static_cast<int>(patches_.size());
   bool is_near_last = false;
   for (const int turn : {-count, 0, count}) is_near_last |= std::abs(patch - query.last - turn) <= neighbourhood;
-  return (query.last != Patch::none && is_near_last ? 1 : 0.25) * query.own->max_depth;
+  return (query.last != Patch::none && is_near_last ? 1 : share_of_depth) * query.own->max_depth;
 }
 
 bool CurveSearch::is_eligible(int patch, const Query& query) const {
@@ -98,13 +101,17 @@ void CurveSearch::compare_facet(int patch, const Vec<double, 2>& x, Nearest& bes
 
 CurveSearch::Nearest CurveSearch::nearest_facet(const Query& query) const {
   Nearest best;
-  if (!query.x.allFinite()) return best;
+  if (facets_.empty() || !query.x.allFinite()) return best;
+  const auto compare = [&](int patch) {
+    if (is_eligible(patch, query)) compare_facet(patch, query.x, best);
+  };
+  const int count = static_cast<int>(patches_.size());
+  for (int k = -neighbourhood; query.last != Patch::none && k <= neighbourhood; ++k)
+    compare(((query.last + k) % count + count) % count);
   const auto skips = [&](const Bounds<2>& box) {
     return box.distance(query.x) > best.distance + band_ || !may_be_eligible(box, query);
   };
-  facets_.visit(query.x, skips, [&](int patch) {
-    if (is_eligible(patch, query)) compare_facet(patch, query.x, best);
-  });
+  facets_.visit(query.x, skips, compare);
   return best;
 }
 
