@@ -242,7 +242,7 @@ Scene two_disks(int cells, bool segment, double mu) {
   lower.radius = radius;
   lower.center = {0.0, -1.2};
   lower.cells = {cells + 1, cells + 1};
-  lower.facing = "up";
+  lower.facing = HalfDiskMesh::Facing::up;
   s.bodies = {{"upper", upper, LinearElastic{E, 0.3}, "", 1.0}, {"lower", lower, LinearElastic{1500.0, 0.2}, "", 1.0}};
   s.contacts = {contact("touch", "upper.arc", "lower.arc")};
   s.contacts[0].friction = friction;

@@ -585,7 +585,6 @@ TEST(Descriptions, ThatMakeNoMeshAreRefusedWithAReason) {
   bad.grade_towards = "north";
   expect_fault(bad, "Q4", 2, "not north");
   expect_fault(half_disk(4, 9, 1), "Q4", 2, "factor 2");
-  expect_fault(half_disk(4, 4, 1, "left"), "Q4", 2, "not left");
   expect_fault(half_disk(4, 4, 0), "Q4", 2, "grade");
   expect_fault(ring(2, 8, 0, 400), "Q4", 2, "360 degrees at most");
   expect_fault(ring(2, 8, 90, 10), "Q4", 2, "exceed");
