@@ -12,14 +12,14 @@ using nlohmann::json;
 namespace {
 
 /// None where the text is no pointer.
-std::optional<json::json_pointer> read(const std::string& text) try {
+std::optional<json::json_pointer> pointer_in(const std::string& text) try {
   return json::json_pointer(text);
 } catch (const json::parse_error&) {
   return std::nullopt;
 }
 
 /// The value of a pointer; null where there is none.
-const json* find(const json& root, const json::json_pointer& pointer) try {
+const json* named(const json& root, const json::json_pointer& pointer) try {
   return root.contains(pointer) ? &root.at(pointer) : nullptr;
 } catch (const json::out_of_range&) {  // an index beyond all numbers
   return nullptr;
@@ -37,23 +37,23 @@ std::string child_pointer(const std::string& parent, std::string_view key) {
   return parent + (json::json_pointer() / std::string(key)).to_string();
 }
 
-bool is_pointer(const std::string& text) { return !text.empty() && read(text); }
+bool is_pointer(const std::string& text) { return !text.empty() && pointer_in(text); }
 
 const json* value_at(const json& root, const std::string& pointer) {
-  const auto place = read(pointer);
-  return place ? find(root, *place) : nullptr;
+  const auto place = pointer_in(pointer);
+  return place ? named(root, *place) : nullptr;
 }
 
 std::string pointer_fault(const json& root, const std::string& text) {
-  const auto pointer = read(text);
+  const auto pointer = pointer_in(text);
   if (text.starts_with('/') && !pointer)
     return in_quotes(text) + " is no JSON pointer; in a name ~ is written ~0 and / is written ~1";
   if (!pointer || pointer->empty())
     return in_quotes(text) + " is no JSON pointer; must begin with / and name a value, such as /time/steps";
-  if (find(root, *pointer)) return "";
+  if (named(root, *pointer)) return "";
   auto missing = *pointer;  // the first part of it that names nothing
-  while (!find(root, missing.parent_pointer())) missing.pop_back();
-  const json& parent = *find(root, missing.parent_pointer());
+  while (!named(root, missing.parent_pointer())) missing.pop_back();
+  const json& parent = *named(root, missing.parent_pointer());
   const std::string reached = missing.parent_pointer().to_string(), &key = missing.back();
   const std::string message = text + " names nothing: " + (reached.empty() ? "the file" : reached);
   if (parent.is_array() && parent.empty()) return message + " is empty";

@@ -169,7 +169,7 @@ void draw_close_up(const Scene& scene, const json& obstacles, const Frame& main,
 }
 
 /// Where a picture has its parts, in pixels; the legend comes below.
-struct Layout {
+struct Arrangement {
   std::string id, title;
   double canvas;           ///< width of all
   double wide, height;     ///< of the whole
@@ -177,8 +177,8 @@ struct Layout {
   std::size_t mesh_lines;  ///< up to so many elements have them; of more they are one grey
 };
 
-Plate draw(const Scene& scene, const json& obstacles, const Layout& layout) {
-  const auto& [id, title, canvas, wide, height, gap, inset, mesh_lines] = layout;
+Plate draw(const Scene& scene, const json& obstacles, const Arrangement& arrangement) {
+  const auto& [id, title, canvas, wide, height, gap, inset, mesh_lines] = arrangement;
   const std::string text = in_words(scene, inset > 0);
   Drawing drawing(canvas, height + 44, title, text);
   const Frame frame(scene.whole, wide, height, 0);
