@@ -19,8 +19,6 @@ using nlohmann::json;
 
 namespace {
 
-constexpr double equally_good = 1e-12;  ///< errors of a response below this are rounding, and order no runs
-
 /// Whose curves there are: methods, then other programs.
 std::vector<std::string> owners_of(const Study& study) {
   std::vector<std::string> owners = study.families;
@@ -207,7 +205,7 @@ const Cell* best_cell(const Study& study, const std::string& family) {
     if (!best || error(cell) < error(*best)) best = &cell;
   }
   if (!best) return nullptr;
-  const double as_good = std::max(error(*best), equally_good);
+  const double as_good = std::max(error(*best), rounding_error);
   for (const auto& cell : study.cells)
     if (cell.family == family && cell.converged && cell.variant == study.main_variant && error(cell) <= as_good)
       if (error(*best) > as_good || rank(cell) < rank(*best)) best = &cell;

@@ -16,8 +16,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr double together = 0.1;    ///< curves that are nowhere further apart, relatively, are drawn as one
-constexpr double rounding = 1e-12;  ///< errors below it are equal
+constexpr double together = 0.1;  ///< curves that are nowhere further apart, relatively, are drawn as one
 const char* const worst_response = "worst response";
 
 /// One setting over the mesh levels.
@@ -34,7 +33,7 @@ double distance(const Curve& curve, const Curve& other) {
   for (const auto& [level, error] : other.errors) {
     const auto found = curve.errors.find(level);
     if (found == curve.errors.end()) return INFINITY;
-    if (std::max(found->second, error) > rounding) most = std::max(most, std::abs(found->second / error - 1));
+    if (std::max(found->second, error) > rounding_error) most = std::max(most, std::abs(found->second / error - 1));
   }
   return most;
 }
@@ -47,9 +46,9 @@ struct Bundle {
   double spread() const {
     double most = 0;
     for (const auto& [level, unused] : curves.front().errors) {
-      double least = INFINITY, largest = rounding;
+      double least = INFINITY, largest = rounding_error;
       for (const Curve& curve : curves) {
-        least = std::min(least, std::max(curve.errors.at(level), rounding));
+        least = std::min(least, std::max(curve.errors.at(level), rounding_error));
         largest = std::max(largest, curve.errors.at(level));
       }
       most = std::max(most, largest / least - 1);

@@ -41,6 +41,7 @@
     } else if (low === high) {
       [low, high] = [low - (Math.abs(low) || 1), low + (Math.abs(low) || 1)];
     }
+    const ticks = Math.max(2, Math.floor(room / 60)), decades = axis.log ? Math.floor(Math.log10(high / low)) : 0;
     const named = axis.log ? "datum.label === '' ? '' : numeral(datum.value)" : 'numeral(datum.value)';
     const title = axis.title.startsWith('{') ? rows[0]?.[axis.title.slice(1, -1)] ?? '' : axis.title;
     return {
@@ -48,7 +49,7 @@
       scale: {type: axis.log ? 'log' : 'linear', domain: [ground ?? low, high], nice: false, zero: false,
               padding: axis.bounded ? 0 : 18},
       axis: {labelExpr: ground ? `datum.value < ${5 * ground} ? '' : ${named}` : named, labelOverlap: true,
-             labelSeparation: 6, tickCount: Math.max(2, Math.floor(room / 60)),
+             labelSeparation: 6, tickCount: decades < 2 ? ticks : Math.min(ticks, decades),
              ...(axis.step && {tickMinStep: axis.step}), ...(ground && {minExtent: 64})},
     };
   }

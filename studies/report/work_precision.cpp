@@ -43,10 +43,10 @@ std::string why_it_may_be_folded(const Study& study, Against against, Of of) {
   for (const auto& cell : study.cells) {
     const auto error = worst(cell.discretization, prefix), own = worst(cell.enforcement, prefix);
     if (!error || !cell.converged || cell.variant != study.main_variant) continue;
-    constexpr double alike = 5, rounding = 1e-12;
+    constexpr double alike = 5;
     errors.push_back(*error);
-    exact += *error <= rounding;
-    of_method += *error > rounding && own && *error <= alike * *own && *own <= alike * *error;
+    exact += *error <= rounding_error;
+    of_method += *error > rounding_error && own && *error <= alike * *own && *own <= alike * *error;
   }
   if (errors.size() < 3) return "";
   const auto most = [&](std::ptrdiff_t n) { return 3 * n >= 2 * std::ssize(errors); };
