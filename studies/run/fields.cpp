@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/model/loading.hpp"
 #include "methods/stepping/checkpoints.hpp"
 #include "studies/input/obstacle_kinds.hpp"
 #include "studies/input/response_kinds.hpp"
