@@ -8,7 +8,7 @@
 #include <set>
 #include <system_error>
 
-#include "core/engine/mixed_rows.hpp"
+#include "core/engine/body_rows.hpp"
 #include "core/model/storage.hpp"
 #include "studies/run/ledger_parts.hpp"
 
