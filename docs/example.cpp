@@ -16,7 +16,7 @@ int main() {
   scene.contacts = {{"stop", "mass.node", "wall"}};
   scene.loads = {{"mass.node", Load::Kind::force, {F, 0.0}}};
   scene.legs = {{1, 1}};
-  scene.responses = {{"press", Response::Kind::contact_force, "stop", "normal"}};
+  scene.responses = {{"press", Response::Kind::contact_force, "stop", Response::Component::normal}};
   const Model model = make_model(scene);
   const auto slots = make_slots<double>(model, scene.as<double>());
   Workspace<double> workspace;

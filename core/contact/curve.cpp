@@ -6,9 +6,13 @@
 #include <map>
 #include <numbers>
 
-#include "core/contact/search.hpp"
-
 namespace stickslip {
+
+FacetPlace nearest_of_facet(const Vec<double, 2>& a, const Vec<double, 2>& b, const Vec<double, 2>& x) {
+  const Vec<double, 2> tau = b - a;
+  const double xi = (x - a).dot(tau) / tau.squaredNorm();
+  return {xi, (x - a - std::clamp(xi, 0.0, 1.0) * tau).norm()};
+}
 
 std::vector<Patch> make_patches(const std::vector<std::vector<int>>& facets, Smoothing smoothing, double corner,
                                 const Eigen::Matrix2Xd& positions) {
@@ -53,12 +57,11 @@ OwnVertex own_vertex(const std::vector<Patch>& patches, const Eigen::Matrix2Xd& 
   if (!std::isfinite(thickness)) return own;  // the side is not closed
   const Vec<double, 2> exit = x + thickness * inward;
   for (std::size_t p = 0; p < patches.size(); ++p) {
-    const Vec<double, 2> a = positions.col(patches[p].vertices[1]), tau = positions.col(patches[p].vertices[2]) - a;
-    const auto distance = [&](const Vec<double, 2>& from) {
-      return (from - a - std::clamp((from - a).dot(tau) / tau.squaredNorm(), 0.0, 1.0) * tau).norm();
-    };
+    const Vec<double, 2> a = positions.col(patches[p].vertices[1]), b = positions.col(patches[p].vertices[2]);
+    const Vec<double, 2> tau = b - a;
     const bool is_behind = cross(x - a, tau) < -at_facet_end * tau.squaredNorm();
-    own.wall[p] = is_behind && std::min(distance(x), distance(exit)) < 2 * thickness + tau.norm();
+    const double distance = std::min(nearest_of_facet(a, b, x).distance, nearest_of_facet(a, b, exit).distance);
+    own.wall[p] = is_behind && distance < 2 * thickness + tau.norm();
   }
   return own;
 }

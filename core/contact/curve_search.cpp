@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/contact/search.hpp"
-
 namespace stickslip {
 namespace {
 
@@ -18,6 +16,11 @@ constexpr double past_end_of_curve = 0.01;
 /// this. So the angle exceeds 120 degrees, and the two sides of a corner never touch.
 constexpr double least_against = 0.5;
 
+/// A vertex of the curve may be inside of a patch by its max_depth if the patch is within so many patches of the one
+/// that it faced last; otherwise by a share of that.
+constexpr int neighbourhood = 8;
+constexpr double share_of_depth = 0.25;
+
 auto position_in(const Eigen::Matrix2Xd& positions) {
   return [&positions](int vertex) -> Vec<double, 2> { return positions.col(vertex); };
 }
@@ -28,55 +31,25 @@ CurveSearch::CurveSearch(const std::vector<Patch>& patches, const Eigen::Matrix2
     : patches_(patches), positions_(positions) {
   if (!positions.allFinite()) return;  // Newton tried an iterate that overflows
   const int count = static_cast<int>(patches.size());
-  boxes_.reserve(count);
-  add_boxes(0, count);
-  size_ = (boxes_[0].high - boxes_[0].low).norm();
+  facets_ = BoxTree<2>(count, [this](int patch) { return bounds(patch); });
+  size_ = (facets_.whole().high - facets_.whole().low).norm();
   double longest = 0;
   for (int p = 0; p < count; ++p) longest = std::max(longest, (vertex(p, 1) - vertex(p, 0)).norm());
   band_ = at_facet_end * longest;
-  if (!std::isfinite(size_) || !(longest > 0)) boxes_.clear();
+  if (!std::isfinite(size_) || !(longest > 0)) facets_ = {};
 }
 
-void CurveSearch::add_boxes(int first, int last) {
-  constexpr int leaf = 4;
-  const std::size_t at = boxes_.size();
-  boxes_.push_back({{}, {}, {}, {}, first, last});
-  if (last - first <= leaf) return bound(boxes_[at]);
-  const int middle = (first + last) / 2;
-  add_boxes(first, middle);
-  const auto right = static_cast<int>(boxes_.size());
-  add_boxes(middle, last);
-  const Box &a = boxes_[at + 1], &b = boxes_[right];
-  boxes_[at] = {a.low.cwiseMin(b.low),
-                a.high.cwiseMax(b.high),
-                a.normal_low.cwiseMin(b.normal_low),
-                a.normal_high.cwiseMax(b.normal_high),
-                first,
-                last,
-                right};
+/// A facet of zero length has any normal.
+Bounds<2> CurveSearch::bounds(int patch) const {
+  const Vec<double, 2> a = vertex(patch, 0), b = vertex(patch, 1), tau = (b - a).normalized();
+  Bounds<2> facet{a.cwiseMin(b), a.cwiseMax(b)};
+  if (tau.squaredNorm() > 0) facet.normal_low = facet.normal_high = Vec<double, 2>(tau[1], -tau[0]);
+  return facet;
 }
 
-void CurveSearch::bound(Box& box) const {
-  box.low = box.high = vertex(box.first, 0);
-  box.normal_low.setConstant(1);
-  box.normal_high.setConstant(-1);
-  for (int p = box.first; p < box.last; ++p) {
-    const Vec<double, 2> a = vertex(p, 0), b = vertex(p, 1), tau = (b - a).normalized();
-    box.low = box.low.cwiseMin(a).cwiseMin(b);
-    box.high = box.high.cwiseMax(a).cwiseMax(b);
-    const bool has_normal = tau.squaredNorm() > 0;  // a facet of zero length gets the widest bounds
-    box.normal_low = box.normal_low.cwiseMin(has_normal ? Vec<double, 2>(tau[1], -tau[0]) : Vec<double, 2>(-1, -1));
-    box.normal_high = box.normal_high.cwiseMax(has_normal ? Vec<double, 2>(tau[1], -tau[0]) : Vec<double, 2>(1, 1));
-  }
-}
-
-double CurveSearch::distance(const Box& box, const Vec<double, 2>& x) const {
-  return (box.low - x).cwiseMax(x - box.high).cwiseMax(0.0).norm();
-}
-
-/// False if no facet of the box is eligible: its normals do not oppose `outward`, or, in contact of the curve with
-/// itself, x is too deep inside of the solid.
-bool CurveSearch::may_be_eligible(const Box& box, const Query& query) const {
+/// False if no facet of the box is eligible, apart from those near the last one: its normals do not oppose `outward`,
+/// or, in contact of the curve with itself, x is too deep inside of the solid.
+bool CurveSearch::may_be_eligible(const Bounds<2>& box, const Query& query) const {
   constexpr double rounding = 1e-12;
   const Vec<double, 2>& outward = query.outward;
   const Vec<double, 2> least =
@@ -89,18 +62,15 @@ bool CurveSearch::may_be_eligible(const Box& box, const Query& query) const {
     most += std::max(
         {near * box.normal_low[i], near * box.normal_high[i], far * box.normal_low[i], far * box.normal_high[i]});
   }
-  return most >= -max_depth(box.first, box.last, query) - rounding * size_;
+  return most >= -share_of_depth * query.own->max_depth - rounding * size_;
 }
 
-/// Largest depth, length, at which x may be inside of the patches first to last - 1 of its own curve: own->max_depth if
-/// one of them is within 8 patches of the patch that x faced last, otherwise a quarter of that.
-double CurveSearch::max_depth(int first, int last, const Query& query) const {
-  constexpr int neighbourhood = 8;
+/// Largest depth, length, at which x may be inside of a patch of its own curve.
+double CurveSearch::max_depth(int patch, const Query& query) const {
   const int count = static_cast<int>(patches_.size());
   bool is_near_last = false;
-  for (const int turn : {-count, 0, count})
-    is_near_last |= first <= query.last + turn + neighbourhood && last > query.last + turn - neighbourhood;
-  return (query.last != Patch::none && is_near_last ? 1 : 0.25) * query.own->max_depth;
+  for (const int turn : {-count, 0, count}) is_near_last |= std::abs(patch - query.last - turn) <= neighbourhood;
+  return (query.last != Patch::none && is_near_last ? 1 : share_of_depth) * query.own->max_depth;
 }
 
 bool CurveSearch::is_eligible(int patch, const Query& query) const {
@@ -113,40 +83,35 @@ bool CurveSearch::is_eligible(int patch, const Query& query) const {
   constexpr double beside = 0.5;  // facet lengths: farther past its ends x is not inside of a facet
   const double xi = off.dot(tau) / tau.squaredNorm();
   if (gap >= 0) return true;
-  return gap >= -max_depth(patch, patch + 1, query) && xi >= -beside && xi <= 1 + beside;
+  return gap >= -max_depth(patch, query) && xi >= -beside && xi <= 1 + beside;
 }
 
 void CurveSearch::compare_facet(int patch, const Vec<double, 2>& x, Nearest& best) const {
-  const Vec<double, 2> a = vertex(patch, 0), tau = vertex(patch, 1) - a;
-  const double xi = (x - a).dot(tau) / tau.squaredNorm();
-  const double distance = (x - a - std::clamp(xi, 0.0, 1.0) * tau).norm();
-  const double band = at_facet_end * tau.norm();
+  const Vec<double, 2> a = vertex(patch, 0), b = vertex(patch, 1);
+  const auto [xi, distance] = nearest_of_facet(a, b, x);
+  const double band = at_facet_end * (b - a).norm();
   if (distance > best.distance + band) return;
   if (distance > best.distance - band) {  // a tie: x projects into it, then least x, then least y
     const bool inside = xi >= 0 && xi <= 1, other = best.xi >= 0 && best.xi <= 1;
-    const Vec<double, 2> b = vertex(best.patch, 0);
-    if (inside == other ? a[0] > b[0] || (a[0] == b[0] && a[1] >= b[1]) : other) return;
+    const Vec<double, 2> first = vertex(best.patch, 0);
+    if (inside == other ? a[0] > first[0] || (a[0] == first[0] && a[1] >= first[1]) : other) return;
   }
   best = {patch, xi, distance};
 }
 
 CurveSearch::Nearest CurveSearch::nearest_facet(const Query& query) const {
-  const Vec<double, 2>& x = query.x;
   Nearest best;
-  if (boxes_.empty() || !x.allFinite()) return best;
-  const auto visit = [&](const auto& self, int at) -> void {
-    const Box& box = boxes_[at];
-    if (distance(box, x) > best.distance + band_ || !may_be_eligible(box, query)) return;
-    if (box.right == 0) {
-      for (int p = box.first; p < box.last; ++p)
-        if (is_eligible(p, query)) compare_facet(p, x, best);
-      return;
-    }
-    const bool left_first = distance(boxes_[at + 1], x) <= distance(boxes_[box.right], x);
-    self(self, left_first ? at + 1 : box.right);
-    self(self, left_first ? box.right : at + 1);
+  if (facets_.empty() || !query.x.allFinite()) return best;
+  const auto compare = [&](int patch) {
+    if (is_eligible(patch, query)) compare_facet(patch, query.x, best);
   };
-  visit(visit, 0);
+  const int count = static_cast<int>(patches_.size());
+  for (int k = -neighbourhood; query.last != Patch::none && k <= neighbourhood; ++k)
+    compare(((query.last + k) % count + count) % count);
+  const auto skips = [&](const Bounds<2>& box) {
+    return box.distance(query.x) > best.distance + band_ || !may_be_eligible(box, query);
+  };
+  facets_.visit(query.x, skips, compare);
   return best;
 }
 

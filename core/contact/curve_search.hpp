@@ -1,14 +1,13 @@
-/// Search, by a tree of bounding boxes, for the closest place of a master curve.
-///
-/// A box covers consecutive patches, and bounds the positions and the normals of their facets. The search skips each
-/// box that is too far away or whose normals do not oppose the slave side. So it visits about log n of n facets, also
-/// on a side in contact with itself, where the nearest n facets belong to the point's own neighbourhood.
+/// Search for the closest place of a master curve. It skips each box of facets that is too far away or whose normals do
+/// not oppose the slave side. So it visits few facets, also on a side in contact with itself, where the nearest facets
+/// belong to the point's own neighbourhood.
 ///
 /// At a corner the curve continues as two straight lines that end in their bisector. So the gap is continuous there,
 /// and a corner has no contact state of its own: beyond a convex corner a point has the gap to the line on its side of
 /// the bisector.
 #pragma once
 
+#include "core/contact/box_tree.hpp"
 #include "core/contact/curve.hpp"
 
 namespace stickslip {
@@ -50,18 +49,10 @@ class CurveSearch {
     const OwnVertex* own = nullptr;
     int last = Patch::none;
   };
-  /// Patches first to last - 1, with bounds of the positions of their ends and of their unit normals. The left child of
-  /// boxes_[k] is boxes_[k + 1]. `right`: index of the right child; 0: the box is a leaf.
-  struct Box {
-    Vec<double, 2> low, high, normal_low, normal_high;
-    int first, last, right = 0;
-  };
   Vec<double, 2> vertex(int patch, int end) const { return positions_.col(patches_[patch].vertices[1 + end]); }
-  void add_boxes(int first, int last);
-  void bound(Box& box) const;
-  double distance(const Box& box, const Vec<double, 2>& x) const;
-  bool may_be_eligible(const Box& box, const Query& query) const;
-  double max_depth(int first, int last, const Query& query) const;
+  Bounds<2> bounds(int patch) const;
+  bool may_be_eligible(const Bounds<2>& box, const Query& query) const;
+  double max_depth(int patch, const Query& query) const;
   Nearest nearest_facet(const Query& query) const;
   bool is_eligible(int patch, const Query& query) const;
   void compare_facet(int patch, const Vec<double, 2>& x, Nearest& best) const;
@@ -73,8 +64,8 @@ class CurveSearch {
 
   const std::vector<Patch>& patches_;
   const Eigen::Matrix2Xd& positions_;
-  std::vector<Box> boxes_;  ///< boxes_[0]: the whole curve; empty where a position is not finite
-  double band_ = 0;         ///< length within which two distances are equal
+  BoxTree<2> facets_;  ///< from the start to the end of each patch; empty if a position is not finite
+  double band_ = 0;    ///< length within which two distances are equal
   double size_ = std::numeric_limits<double>::infinity();  ///< diagonal of the box of the whole curve, length
 };
 

@@ -4,9 +4,55 @@
 #include <cmath>
 #include <limits>
 
+#include "core/contact/curve.hpp"
 #include "core/contact/segments.hpp"
 
 namespace stickslip {
+namespace {
+
+/// Share of a facet's length by which a projection may lie past the free end of the side. Why: coordinates of a mesh
+/// file are rounded, and that rounding must not decide whether a node at the end of its master faces it.
+constexpr double past_free_end = 1e-6;
+
+/// The nearest place of a facet, and its position.
+struct Foot : FacetPlace {
+  Vec<double, 2> position;
+};
+
+/// Whether foot a precedes foot b at the same distance. The order depends on geometry alone: a projection inside its
+/// facet precedes one at an end; then the lesser x, then the lesser y, precedes.
+bool precedes(const Foot& a, const Foot& b) {
+  const bool a_inside = a.xi >= 0 && a.xi <= 1, b_inside = b.xi >= 0 && b.xi <= 1;
+  if (a_inside != b_inside) return a_inside;
+  return a.position[0] < b.position[0] || (a.position[0] == b.position[0] && a.position[1] < b.position[1]);
+}
+
+}  // namespace
+
+std::optional<ClosestPoint> closest_point(const Points<double>& points, const std::vector<std::vector<int>>& facets,
+                                          const std::vector<int>& among, const Vec<double, 2>& x) {
+  int best = -1;
+  Foot foot{{0, std::numeric_limits<double>::infinity()}, {0, 0}};
+  for (int f : among) {
+    const Vec<double, 2> a = points.col(facets[f][0]).head<2>(), b = points.col(facets[f][1]).head<2>();
+    const FacetPlace place = nearest_of_facet(a, b, x);
+    const Foot candidate{place, a + std::clamp(place.xi, 0.0, 1.0) * (b - a)};
+    const double band = at_facet_end * (b - a).norm();
+    const bool tie = best >= 0 && std::abs(candidate.distance - foot.distance) <= band;
+    if (tie ? precedes(candidate, foot) : candidate.distance < foot.distance) {
+      foot = candidate;
+      best = f;
+    }
+  }
+  if (best < 0) return std::nullopt;
+  const bool start = foot.xi<at_facet_end, end = foot.xi> 1 - at_facet_end;
+  if (!start && !end) return ClosestPoint{best, -1};
+  const int vertex = facets[best][end ? 1 : 0];
+  for (int f : among)
+    if (facets[f][end ? 0 : 1] == vertex) return end ? ClosestPoint{best, f} : ClosestPoint{f, best};
+  const bool past_the_end = foot.xi < -past_free_end || foot.xi > 1 + past_free_end;
+  return past_the_end ? std::nullopt : std::optional<ClosestPoint>(ClosestPoint{best, -1});
+}
 
 FacetSearch::FacetSearch(const Points<double>& points, const std::vector<std::vector<int>>& facets)
     : points_(points), facets_(facets) {
@@ -17,51 +63,16 @@ FacetSearch::FacetSearch(const Points<double>& points, const std::vector<std::ve
     numbers.push_back(f);
     band_ = std::max(band_, at_facet_end * (b - a).norm());
   }
-  boxes_.reserve(2 * numbers.size());
-  if (!numbers.empty()) add_boxes(numbers, 0, static_cast<int>(numbers.size()));
+  boxes_ = BoxTree<2>(std::move(numbers), [this](int f) {
+    return Bounds<2>{end_of(f, 0).cwiseMin(end_of(f, 1)), end_of(f, 0).cwiseMax(end_of(f, 1))};
+  });
 }
 
-/// Adds the box of the facets numbers[first] to numbers[last - 1], then the boxes of its two halves. The box is halved
-/// along its longer side.
-void FacetSearch::add_boxes(std::vector<int>& numbers, int first, int last) {
-  Box box{end_of(numbers[first], 0), end_of(numbers[first], 0)};
-  for (int n = first; n < last; ++n)
-    for (int end = 0; end < 2; ++end) {
-      box.low = box.low.cwiseMin(end_of(numbers[n], end));
-      box.high = box.high.cwiseMax(end_of(numbers[n], end));
-    }
-  const std::size_t at = boxes_.size();
-  boxes_.push_back(box);
-  if (last - first == 1) {
-    boxes_[at].facet = numbers[first];
-    return;
-  }
-  const int longer = box.high[0] - box.low[0] >= box.high[1] - box.low[1] ? 0 : 1, middle = (first + last) / 2;
-  const auto comes_first = [&](int f, int g) {
-    const double x = end_of(f, 0)[longer] + end_of(f, 1)[longer], y = end_of(g, 0)[longer] + end_of(g, 1)[longer];
-    return x != y ? x < y : f < g;
-  };
-  std::nth_element(numbers.begin() + first, numbers.begin() + middle, numbers.begin() + last, comes_first);
-  add_boxes(numbers, first, middle);
-  boxes_[at].right = static_cast<int>(boxes_.size());
-  add_boxes(numbers, middle, last);
-}
-
-/// Numbers, ascending, of the facets in no box that is outside.
-template <class Outside>
-std::vector<int> FacetSearch::facets_but(Outside&& is_outside) const {
+/// Numbers, ascending, of the facets in no box that is skipped.
+template <class Skips>
+std::vector<int> FacetSearch::facets_but(Skips&& skips) const {
   std::vector<int> found;
-  const auto visit = [&](const auto& self, int at) -> void {
-    const Box& box = boxes_[at];
-    if (is_outside(box)) return;
-    if (box.facet >= 0) {
-      found.push_back(box.facet);
-      return;
-    }
-    self(self, at + 1);
-    self(self, box.right);
-  };
-  if (!boxes_.empty()) visit(visit, 0);
+  boxes_.visit(Vec<double, 2>::Zero(), skips, [&](int facet) { found.push_back(facet); });
   std::sort(found.begin(), found.end());
   return found;
 }
@@ -71,12 +82,11 @@ std::vector<int> FacetSearch::candidates(const std::array<int, 2>& slave) const 
   // it gives no segment in facing_segments().
   constexpr double margin = 1e-6;
   const Vec<double, 2> a = points_.col(slave[0]).head<2>(), tau = points_.col(slave[1]).head<2>() - a;
-  const auto is_outside = [&](const Box& box) {
+  return facets_but([&](const Bounds<2>& box) {
     const double middle = ((box.low + box.high) / 2 - a).dot(tau) / tau.squaredNorm();
     const double half = ((box.high - box.low) / 2).dot(tau.cwiseAbs()) / tau.squaredNorm();
     return middle + half < -margin || middle - half > 1 + margin;
-  };
-  return facets_but(is_outside);
+  });
 }
 
 std::vector<Segment> FacetSearch::facing(const std::array<int, 2>& slave, const std::vector<int>& ends) const {
@@ -89,28 +99,13 @@ std::vector<Segment> FacetSearch::facing(const std::array<int, 2>& slave, const 
   return segments;
 }
 
-double FacetSearch::facet_distance(int facet, const Vec<double, 2>& x) const {
-  const Vec<double, 2> c = end_of(facet, 0), tau = end_of(facet, 1) - c;
-  const double eta = (x - c).dot(tau) / tau.squaredNorm();
-  return (x - c - std::clamp(eta, 0.0, 1.0) * tau).norm();
-}
-
 FacetSearch::Nearest FacetSearch::nearest(const Vec<double, 2>& x) const {
   Nearest best;
-  const auto from = [&](int at) { return box_distance(boxes_[at], x); };
-  const auto visit = [&](const auto& self, int at) -> void {
-    const Box& box = boxes_[at];
-    if (from(at) > best.distance + band_) return;
-    if (box.facet >= 0) {
-      const double distance = facet_distance(box.facet, x);
-      if (distance < best.distance) best = {box.facet, distance};
-      return;
-    }
-    const bool left_first = from(at + 1) <= from(box.right);
-    self(self, left_first ? at + 1 : box.right);
-    self(self, left_first ? box.right : at + 1);
-  };
-  if (!boxes_.empty()) visit(visit, 0);
+  const auto skips = [&](const Bounds<2>& box) { return box.distance(x) > best.distance + band_; };
+  boxes_.visit(x, skips, [&](int facet) {
+    const double distance = nearest_of_facet(end_of(facet, 0), end_of(facet, 1), x).distance;
+    if (distance < best.distance) best = {facet, distance};
+  });
   return best;
 }
 
@@ -118,15 +113,8 @@ std::optional<ClosestPoint> FacetSearch::closest(const Vec<double, 2>& x) const 
   // Facets farther away than some ties of the nearest decide nothing; those that share its vertex are no farther.
   constexpr double ties = 8;
   const double near = nearest(x).distance + ties * band_;
-  const auto numbers = facets_but([&](const Box& box) { return box_distance(box, x) > near; });
-  std::vector<std::vector<int>> facets;
-  facets.reserve(numbers.size());
-  for (int f : numbers) facets.push_back(facets_[f]);
-  auto found = closest_point(points_, facets, x);
-  if (!found) return found;
-  for (int* facet : {&found->facet, &found->second})
-    if (*facet >= 0) *facet = numbers[*facet];
-  return found;
+  const auto among = facets_but([&](const Bounds<2>& box) { return box.distance(x) > near; });
+  return closest_point(points_, facets_, among, x);
 }
 
 }  // namespace stickslip

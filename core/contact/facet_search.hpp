@@ -1,7 +1,5 @@
-/// Search, by a tree of bounding boxes, for the facets of a side that a slave facet or a point may face.
-///
-/// A slave facet faces only what reaches into the strip perpendicular to it. The search skips each box outside of this
-/// strip, so it visits about log n boxes of n facets. The tree splits by position, so facets may come in any order. The
+/// Search for the facets of a side that a slave facet or a point may face. The facets may come in any order. A slave
+/// facet faces only what reaches into the strip perpendicular to it, so boxes outside of the strip are skipped. The
 /// results equal those of a comparison with all facets, bit for bit.
 #pragma once
 
@@ -10,11 +8,28 @@
 #include <optional>
 #include <vector>
 
-#include "core/contact/search.hpp"
+#include "core/contact/box_tree.hpp"
 #include "core/contact/segment.hpp"
 #include "core/mesh/mesh.hpp"
 
 namespace stickslip {
+
+/// Closest point of a side. `second` < 0: inside facet `facet`, or at a free end that only this facet has. Otherwise at
+/// a vertex: `facet` ends there and `second` starts there.
+struct ClosestPoint {
+  int facet = -1;
+  int second = -1;
+};
+
+/// Closest point of the facets to x, by comparison with all; none where x projects past a free end of the side.
+///
+///   points  nodal positions, D x nodes, length
+///   facets  the two nodes of each facet
+///   among   numbers of the facets that are compared
+///
+/// Among equally close points the choice depends on geometry alone and not on numbering.
+std::optional<ClosestPoint> closest_point(const Points<double>& points, const std::vector<std::vector<int>>& facets,
+                                          const std::vector<int>& among, const Vec<double, 2>& x);
 
 /// Search among the facets of one side at given nodal positions.
 class FacetSearch {
@@ -38,25 +53,14 @@ class FacetSearch {
   std::optional<ClosestPoint> closest(const Vec<double, 2>& x) const;
 
  private:
-  /// The left child of boxes_[k] is boxes_[k + 1]. `right`: index of the right child. `facet`: number of the facet of
-  /// a leaf; -1: the box has children.
-  struct Box {
-    Vec<double, 2> low, high;
-    int right = 0, facet = -1;
-  };
   Vec<double, 2> end_of(int facet, int end) const { return points_.col(facets_[facet][end]).head<2>(); }
-  void add_boxes(std::vector<int>& numbers, int first, int last);
-  double facet_distance(int facet, const Vec<double, 2>& x) const;
-  double box_distance(const Box& box, const Vec<double, 2>& x) const {
-    return (box.low - x).cwiseMax(x - box.high).cwiseMax(0.0).norm();
-  }
-  template <class Outside>
-  std::vector<int> facets_but(Outside&& is_outside) const;
+  template <class Skips>
+  std::vector<int> facets_but(Skips&& skips) const;
 
   const Points<double>& points_;
   const std::vector<std::vector<int>>& facets_;
-  std::vector<Box> boxes_;  ///< boxes_[0]: the whole side
-  double band_ = 0;         ///< length above the rounding of a distance
+  BoxTree<2> boxes_;
+  double band_ = 0;  ///< length above the rounding of a distance
 };
 
 }  // namespace stickslip

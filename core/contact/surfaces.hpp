@@ -61,9 +61,10 @@ template <class T>
 void slide_off(PointGeometry<T>& geometry, const Vec<T, 2>& x, const Vec<T, 2>& v, const Vec<T, 2>& to) {
   const Vec<T, 2> tau = to - v;
   const T half = T(0.5) * dot((x - v).eval(), tau) / dot(tau, tau);
-  geometry.weights.conservativeResize(geometry.weights.size() + 1);
-  geometry.weights[1] += half;
-  geometry.weights[geometry.weights.size() - 1] = -half;
+  decltype(geometry.weights) weights(geometry.weights.size() + 1);
+  weights << geometry.weights, -half;
+  weights[1] += half;
+  geometry.weights = std::move(weights);
 }
 
 /// Outward normal of the slave side at a node, length: sum over the node's facets (solid on their left) of unit normal

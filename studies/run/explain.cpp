@@ -85,7 +85,7 @@ std::string contact_lines(const Problem& problem) {
     const auto& contact = model.scene.contacts[c];
     int points = 0;
     for (const auto& point : model.points) points += point.contact == static_cast<int>(c);
-    const std::size_t slaves = surface_of(model, at_start, model.side(contact.slave)).nodes.size() -
+    const std::size_t slaves = surface_of(model, at_start, model.contact_sides[c].slave).nodes.size() -
                                nodes_without_area(model, at_start, static_cast<int>(c)).size();
     text += fmt::format("  {}: {} against {}, {}", contact.name, contact.slave, contact.master,
                         counted(points, "contact point"));
@@ -121,13 +121,15 @@ std::string engine_lines(const Input& input, const Problem& problem) {
   const auto& model = problem.model;
   const auto engine = input.linear_algebra.engine;
   const bool condensed = condenses(model, input.method, engine);
-  const auto tangent =
-      condensed ? nullptr : make_condensed_tangent(model, problem.slots, input.method, engine, input.backend);
+  FullBodies<double> bodies(model, problem.slots);
+  const SystemKind kind =
+      system_kind(model, has_unknown_multipliers(input.method), cone_radius_of(input.method), input.backend);
+  const auto tangent = condensed ? nullptr : make_condensed_tangent(model, problem.slots, kind, engine, bodies);
   std::string text = "linear algebra: ";
   text += tangent ? fmt::format(
                         "tangents of the bodies condensed, one after the other, to {} contact dofs; points change "
                         "their branches on a dense system of {} rows at the start\n",
-                        tangent->rows().kept, tangent->dense_rows())
+                        tangent->kept(), tangent->dense_rows())
           : !model.effects.linear_bulk ? "one sparse factorisation an iteration, the bodies' part assembled anew\n"
           : condensed ? fmt::format("bodies condensed once to {} contact dofs, Newton on a dense system\n",
                                     model.contact_nodes.size() * model.dimension)
