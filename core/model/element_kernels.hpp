@@ -30,13 +30,15 @@ using FlowPointSink = std::function<void(const FlowPoint<T>&)>;
 /// argument, or handed to it.
 template <class T>
 struct ElementKernels {
-  void (*forces)(const BodyElements<T>&, const Vector<T>& u, const Vector<T>& memory, Vector<T>& forces);
   void (*tangents)(const BodyElements<T>&, const BodyMotion<T>* at, const ElementSink<T>& sink);
   void (*energy)(const BodyElements<T>&, const Vector<T>& u, const Vector<T>& memory, T& energy);
   void (*plastic_strains)(const BodyElements<T>&, const Vector<T>& memory, const PlasticStrainSink<T>& sink);
   void (*edge_stretches)(const BodyElements<T>&, const ElementEdge& edge, const Vector<T>& u,
                          std::vector<ThicknessStretch<T>>& stretches);
-  /// Sets `after`. None in Reverse: the flow of an element is differentiated by itself (core/solids/element_work.hpp).
+  // None of these in Reverse: the work and the flow of an element are differentiated by themselves
+  // (core/solids/element_work.hpp).
+  void (*forces)(const BodyElements<T>&, const Vector<T>& u, const Vector<T>& memory, Vector<T>& forces) = nullptr;
+  /// Sets `after`.
   void (*flow)(const BodyElements<T>&, const Vector<T>& u, const Vector<T>& before, const FlowBranches& branches,
                Vector<T>& after) = nullptr;
   void (*flow_points)(const BodyElements<T>&, const BodyMotion<T>& at, const FlowPointSink<T>& sink) = nullptr;

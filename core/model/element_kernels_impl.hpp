@@ -378,8 +378,9 @@ template <class T, class Shape>
 const ElementKernels<T>& kernels_of_shape() {
   static constexpr ElementKernels<T> table = [] {
     using Of = detail::KernelsOf<T, Shape>;
-    ElementKernels<T> all{Of::forces, Of::tangents, Of::energy, Of::plastic_strains, Of::edge_stretches};
+    ElementKernels<T> all{Of::tangents, Of::energy, Of::plastic_strains, Of::edge_stretches};
     if constexpr (!std::is_same_v<T, Reverse>) {
+      all.forces = Of::forces;
       all.flow = Of::flow;
       all.flow_points = Of::flow_points;
     }

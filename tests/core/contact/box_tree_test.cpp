@@ -8,6 +8,8 @@
 #include <numeric>
 #include <random>
 
+#include "tests/support/largest.hpp"
+
 namespace stickslip {
 namespace {
 
@@ -33,13 +35,13 @@ void expect_the_nearest(const BoxTree<D>& tree, const std::vector<Bounds<D>>& al
   for (int trial = 0; trial < 50; ++trial) {
     const Vec<double, D> x = Vec<double, D>::Constant(uniform(random)) + Vec<double, D>::Unit(0);
     double least = std::numeric_limits<double>::infinity(), found = least;
-    for (const auto& box : all) least = std::min(least, box.distance(x));
+    for (const auto& box : all) least = smaller(least, box.distance(x));
     int asked = 0;
     const auto skips = [&](const Bounds<D>& box) {
       ++asked;
       return box.distance(x) > found;
     };
-    tree.visit(x, skips, [&](int item) { found = std::min(found, all[item].distance(x)); });
+    tree.visit(x, skips, [&](int item) { found = smaller(found, all[item].distance(x)); });
     EXPECT_EQ(found, least);
     EXPECT_LE(asked, 100) << "of " << 2 * all.size();  // of 1000 items at ten depths, a few neighbours each
   }
