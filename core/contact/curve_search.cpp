@@ -12,10 +12,6 @@ namespace {
 /// compliance of a penalty, or the first augmentation, moves the last node off its master and back for ever.
 constexpr double past_end_of_curve = 0.01;
 
-/// Two places of one curve can touch only if the cosine of the angle between their outward normals is less than minus
-/// this. So the angle exceeds 120 degrees, and the two sides of a corner never touch.
-constexpr double least_against = 0.5;
-
 auto position_in(const Eigen::Matrix2Xd& positions) {
   return [&positions](int vertex) -> Vec<double, 2> { return positions.col(vertex); };
 }
@@ -60,16 +56,6 @@ bool CurveSearch::may_be_eligible(const Bounds<2>& box, const Query& query) cons
   return most >= -query.own->max_depth - rounding * size_;
 }
 
-/// Largest depth, length, at which x may be inside of a patch of its own curve: own->max_depth if it is within 8
-/// patches of the patch that x faced last, otherwise a quarter of that.
-double CurveSearch::max_depth(int patch, const Query& query) const {
-  constexpr int neighbourhood = 8;
-  const int count = static_cast<int>(patches_.size());
-  bool is_near_last = false;
-  for (const int turn : {-count, 0, count}) is_near_last |= std::abs(patch - query.last - turn) <= neighbourhood;
-  return (query.last != Patch::none && is_near_last ? 1 : 0.25) * query.own->max_depth;
-}
-
 bool CurveSearch::is_eligible(int patch, const Query& query) const {
   const Vec<double, 2> a = vertex(patch, 0), tau = vertex(patch, 1) - a, &outward = query.outward;
   const double along = outward[0] * tau[1] - outward[1] * tau[0];  // facet length x outward . facet normal
@@ -80,7 +66,7 @@ bool CurveSearch::is_eligible(int patch, const Query& query) const {
   constexpr double beside = 0.5;  // facet lengths: farther past its ends x is not inside of a facet
   const double xi = off.dot(tau) / tau.squaredNorm();
   if (gap >= 0) return true;
-  return gap >= -max_depth(patch, query) && xi >= -beside && xi <= 1 + beside;
+  return gap >= -query.own->depth_in(patch, query.last) && xi >= -beside && xi <= 1 + beside;
 }
 
 void CurveSearch::compare_facet(int patch, const Vec<double, 2>& x, Nearest& best) const {

@@ -56,8 +56,12 @@ inline constexpr double least_share = 0.01;
 ///   masters  the two nodes of each master facet
 ///   ends     nodes at which the master ends. Such a node counts as projected to an end of the slave facet where it is
 ///            within 1e-6 of the facet's length of it
+///   depths   of a side in contact with itself: per master facet, how deep inside of it the slave facet may be, length;
+///            negative: it faces it nowhere. Such facets face each other only if their normals make more than 120
+///            degrees. Empty: the slave facet is of another side
 std::vector<Segment> facing_segments(const Points<double>& points, const std::array<int, 2>& slave,
-                                     const std::vector<std::vector<int>>& masters, const std::vector<int>& ends = {});
+                                     const std::vector<std::vector<int>>& masters, const std::vector<int>& ends = {},
+                                     const std::vector<double>& depths = {});
 
 namespace detail {
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -46,6 +47,7 @@ struct MasterCurve {
   /// polyline count as nodes behind those of the model (core/contact/segment.hpp).
   std::vector<std::vector<int>> facets = {};
   std::vector<int> ends = {};
+  std::map<int, OwnVertex> own = {};  ///< of a side that is integrated against itself: per node
   bool is_integrated() const { return !facets.empty(); }
 };
 

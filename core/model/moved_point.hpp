@@ -290,7 +290,10 @@ std::vector<Facing> facings(const ContactInput<T>& input, const Vector<T>& compa
         start.col(model.node_count + v) = values(vertex.start);
         moved.col(model.node_count + v) = values(vertex.moved);
       }
-      find_segments(model, static_cast<int>(c), start, moved, found);
+      std::vector<int> last;
+      for (int p = 0; !curve.own.empty() && p < static_cast<int>(found.size()); ++p)
+        last.push_back(model.points[p].curve == static_cast<int>(c) ? last_faced(input, p) : Patch::none);
+      find_segments(model, static_cast<int>(c), start, moved, last, found);
       continue;
     }
     const MovedCurve<T> now(input, curve, compact);
