@@ -6,7 +6,7 @@
 #include <set>
 
 #include "core/model/loading.hpp"
-#include "core/model/moved_point.hpp"
+#include "core/model/positions.hpp"
 
 namespace stickslip {
 namespace {
@@ -77,10 +77,8 @@ template <class F>
 void for_each_way(const Model& model, const Slots<double>& slots, const State<double>& at, const State<double>& reached,
                   double time, double turn, F&& f) {
   if (!slides_along_facets(model)) return;
-  const RegularisationField<double> unread_rho;
-  const ContactInput<double> input{model, slots, unread_rho, at.history, ConeRadius::augmented, time, nullptr};
   const Vector<double> compact = to_compact(model, at.displacement);
-  const auto moved = detail::nodal_displacement(compact);
+  const auto positions = detail::positions_at(model, slots, compact, time);
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
     if (point.curve < 0 || reached.contact.state[p] == ContactState::open) continue;
@@ -88,10 +86,9 @@ void for_each_way(const Model& model, const Slots<double>& slots, const State<do
     if (curve.is_integrated()) continue;
     const int faced = reached.contact.facing[p].patch;
     if (faced == Patch::none || !is_facet(curve.patches[faced])) continue;
-    const Placed<double> x{slots.points.col(point.nodes[0]).head<2>(), moved(point.places[0])};
-    f(static_cast<int>(p), least_way(curve.patches, faced, turn, [&](int vertex) -> Place {
-        return detail::vertex_position<double, double>(input, curve, vertex, moved) - x;
-      }));
+    const Placed<double> x = positions.slave(point);
+    f(static_cast<int>(p),
+      least_way(curve.patches, faced, turn, [&](int vertex) -> Place { return positions.vertex(curve, vertex) - x; }));
   }
 }
 
@@ -99,17 +96,14 @@ void for_each_way(const Model& model, const Slots<double>& slots, const State<do
 
 double integration_margin(const Model& model, const Slots<double>& slots, const State<double>& state, double time) {
   double least = std::numeric_limits<double>::infinity();
-  const RegularisationField<double> unread_rho;
-  const ContactInput<double> input{model, slots, unread_rho, state.history, ConeRadius::augmented, time, nullptr};
   const Vector<double> compact = to_compact(model, state.displacement);
+  const auto positions = detail::positions_at(model, slots, compact, time);
   for (int c = 0; c < static_cast<int>(model.curves.size()); ++c) {
     const auto& curve = model.curves[c];
     if (!model.slides_along_curves() || !curve.is_integrated()) continue;
     const auto of_start = [&](int node) -> Place { return detail::start_of(model, curve.obstacle, slots, node); };
     const auto present = [&](int node) -> Placed<double> {
-      if (node >= model.node_count)
-        return detail::vertex_position<double, double>(input, curve, node - model.node_count,
-                                                       detail::nodal_displacement(compact));
+      if (node >= model.node_count) return positions.vertex_of_polyline(curve.obstacle, node - model.node_count);
       return {of_start(node), state.displacement.segment<2>(2 * static_cast<Eigen::Index>(node))};
     };
     const auto ends = ends_of_slave(model, c);

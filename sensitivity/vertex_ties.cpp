@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "core/model/contact_geometry.hpp"
 #include "core/model/loading.hpp"
-#include "core/model/moved_point.hpp"
 #include "sensitivity/one_sided.hpp"
 
 namespace stickslip {
@@ -26,11 +26,8 @@ VertexGeometry<T> vertex_geometry(const Model& model, const Slots<T>& slots, con
                                   int p, int first, int second) {
   const auto& point = model.points[p];
   const auto& curve = model.curves[point.curve];
-  const RegularisationField<T> unread_rho;
-  const History<T> unread_history;
-  const ContactInput<T> input{model, slots, unread_rho, unread_history, ConeRadius::augmented, time, nullptr};
-  const auto displacement = detail::nodal_displacement(compact);
-  const auto placed = [&](int vertex) { return detail::vertex_position<T, T>(input, curve, vertex, displacement); };
+  const auto positions = detail::positions_at(model, slots, compact, time);
+  const auto placed = [&](int vertex) { return positions.vertex(curve, vertex); };
   const auto& ends = curve.patches[first].vertices;
   const Placed<T> vertex = placed(ends[2]);
   const auto position = [&](int of) -> Vec<T, 2> { return placed(of) - vertex; };
@@ -43,7 +40,7 @@ VertexGeometry<T> vertex_geometry(const Model& model, const Slots<T>& slots, con
     return std::pair(tangent, cross(values(slope), values(bend)) / (speed * speed * speed));
   };
   const Vec<T, 2> facet = -position(ends[1]);
-  const Vec<T, 2> x = Placed<T>{detail::point2(slots.points, point.nodes[0]), displacement(point.places[0])} - vertex;
+  const Vec<T, 2> x = positions.slave(point) - vertex;
   const auto [before, bend_before] = end_geometry(first, 1);
   const auto [after, bend_after] = end_geometry(second, 0);
   const Vec<T, 2> along = before + after;

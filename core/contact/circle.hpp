@@ -24,21 +24,10 @@ struct Circle {
   }
 };
 
-/// `numbers`: as of a plane. Singular where x is the centre.
-template <class T, class Point, class Read>
-PointGeometry<T> against(const Point& x, const Circle& circle, const Read& numbers) {
-  Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> n(2);
-  for (int i = 0; i < 2; ++i) n[i] = x[i] - numbers(circle.center[i]);
-  const T distance = norm(n);
-  const T sign(circle.inside ? -1.0 : 1.0);
-  for (int i = 0; i < 2; ++i) n[i] *= sign / distance;
-  return detail::rigid<T>(sign * (distance - numbers(circle.radius)), n);
-}
-
-/// The geometry of the place X + w. With D from the centre to X, the distance grows by |D + w| - |D| = (2 D + w).w /
-/// (|D + w| + |D|), which keeps the digits of w.
-template <class T, class Point, class Read>
-PointGeometry<T> against(const Point& X, const Point& w, const Circle& circle, const Read& numbers) {
+/// Geometry of the place X + w; arguments as of a plane. With D from the centre to X, the distance grows by |D + w| -
+/// |D| = (2 D + w).w / (|D + w| + |D|), which keeps the digits of w. Singular where X is the centre.
+template <class T, class Start, class Motion, class Read>
+PointGeometry<T> against(const Start& X, const Motion& w, const Circle& circle, const Read& numbers) {
   Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> n(2), D(2);
   T twice{};
   for (int i = 0; i < 2; ++i) {

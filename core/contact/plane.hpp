@@ -22,27 +22,21 @@ struct Plane {
   }
 };
 
-/// `numbers`: value of a number of the scene, as Numbers<T> gives it.
-template <class T, class Point, class Read>
-PointGeometry<T> against(const Point& x, const Plane& plane, const Read& numbers) {
-  const int D = static_cast<int>(x.size());
+/// Geometry of the place X + w: that of X, and the gap that w adds. `numbers`: value of a number of the scene, as
+/// Numbers<T> gives it.
+template <class T, class Start, class Motion, class Read>
+PointGeometry<T> against(const Start& X, const Motion& w, const Plane& plane, const Read& numbers) {
+  const int D = static_cast<int>(X.size());
   Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> n(D);
   for (int i = 0; i < D; ++i) n[i] = numbers(plane.normal[i]);
   const T length = norm(n);
-  T gap{};
+  T gap{}, change{};
   for (int i = 0; i < D; ++i) {
     n[i] /= length;
-    gap += (x[i] - numbers(plane.point[i])) * n[i];
+    gap += (X[i] - numbers(plane.point[i])) * n[i];
   }
-  return detail::rigid<T>(gap, n);
-}
-
-/// The geometry of the place X + w: that of X, and the gap that w adds.
-template <class T, class Point, class Read>
-PointGeometry<T> against(const Point& X, const Point& w, const Plane& plane, const Read& numbers) {
-  PointGeometry<T> geometry = against<T>(X, plane, numbers);
-  T change{};
-  for (int i = 0; i < static_cast<int>(w.size()); ++i) change += w[i] * geometry.normal[i];
+  PointGeometry<T> geometry = detail::rigid<T>(gap, n);
+  for (int i = 0; i < D; ++i) change += w[i] * n[i];
   geometry.gap += change;
   return geometry;
 }

@@ -1,10 +1,9 @@
 /// The list of rigid surfaces. Each has a file of its own: its description for the scene, which says its keys
 /// (core/algebra/described.hpp), whether it is made for space (is_in_space) and whether it is flat (is_flat), and
-/// against(x, surface, numbers), the geometry of a place. against(X, w, surface, numbers) is that of the place X + w:
-/// its gap is that of X and what the displacement w adds, so that a small displacement keeps its digits far from the
-/// origin. What it lacks does not compile. One with a place from which no part of it is nearer than another adds
-/// ambiguous_at(). A polyline has facets in place of against(): which one a place faces is found by search
-/// (core/contact/search.hpp).
+/// against(X, w, surface, numbers), the geometry of the place X + w: its gap is that of X and what the displacement w
+/// adds, so that a small displacement keeps its digits far from the origin. What it lacks does not compile. One with a
+/// place from which no part of it is nearer than another adds ambiguous_at(). A polyline has facets in place of
+/// against(): which one a place faces is found by search (core/contact/facet_search.hpp, curve_search.hpp).
 #pragma once
 
 #include <concepts>
@@ -28,7 +27,6 @@ template <class S>
 concept WholeSurface = requires(const S& surface, const Vec<double, 2>& x, const Numbers<double>& numbers) {
   { S::is_in_space } -> std::convertible_to<bool>;
   { S::is_flat } -> std::convertible_to<bool>;
-  { against<double>(x, surface, numbers) } -> std::same_as<PointGeometry<double>>;
   { against<double>(x, x, surface, numbers) } -> std::same_as<PointGeometry<double>>;
 };
 static_assert(WholeSurface<Plane> && WholeSurface<Circle> && !WholeSurface<Polyline>);
@@ -40,26 +38,21 @@ inline bool is_flat(const RigidSurface& surface) {
   return std::visit([](const auto& shape) { return shape.is_flat; }, surface);
 }
 
-/// Geometry of a place against a surface. pre: it is no polyline.
-template <class T, class Place, class Read>
-PointGeometry<T> against_rigid(const Place& x, const RigidSurface& surface, const Read& numbers) {
+/// Geometry of the place X + w against a surface. pre: it is no polyline.
+template <class T, class Start, class Motion, class Read>
+PointGeometry<T> against_rigid(const Start& X, const Motion& w, const RigidSurface& surface, const Read& numbers) {
   return std::visit(
       [&]<class S>(const S& shape) -> PointGeometry<T> {
         static_assert(WholeSurface<S> || std::is_same_v<S, Polyline>, "a rigid surface lacks something");
-        if constexpr (WholeSurface<S>) return against<T>(x, shape, numbers);
-        return {};
-      },
-      surface);
-}
-/// The same of the place X + w.
-template <class T, class Place, class Read>
-PointGeometry<T> against_rigid(const Place& X, const Place& w, const RigidSurface& surface, const Read& numbers) {
-  return std::visit(
-      [&]<class S>(const S& shape) -> PointGeometry<T> {
         if constexpr (WholeSurface<S>) return against<T>(X, w, shape, numbers);
         return {};
       },
       surface);
+}
+/// The same of a place.
+template <class T, class Place, class Read>
+PointGeometry<T> against_rigid(const Place& x, const RigidSurface& surface, const Read& numbers) {
+  return against_rigid<T>(x, Vector<T>(Vector<T>::Constant(x.size(), T(0))), surface, numbers);
 }
 
 /// The key of the surface that is wrong where x has no nearest place on it; nullptr where x has one.

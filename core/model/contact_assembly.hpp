@@ -4,8 +4,8 @@
 /// The multiplier lambda is an argument too: the methods differ only in what they pass for it.
 #pragma once
 
+#include "core/model/facings.hpp"
 #include "core/model/frames.hpp"
-#include "core/model/moved_point.hpp"
 
 namespace stickslip {
 
@@ -32,23 +32,10 @@ History<T> initial_history(const Model& model, const Slots<T>& slots) {
     const auto& point = model.points[p];
     if (model.slides_along_curves()) detail::take_labels(point.facing, history);
     if (point.foot < 0) continue;
-    if (point.curve >= 0 && point.facing.patch == Patch::none) {
-      if (point.facing.nearest != Patch::none)
-        history.foot[point.foot] = detail::place_beside_at_start(model, point, slots);
-      continue;
-    }
-    if (!point.segments.empty()) {
-      const auto foot = detail::initial_kinematics(model, point, slots).foot;
-      history.foot.segment(point.foot, point.curve >= 0 ? 1 : 2) = foot.head(point.curve >= 0 ? 1 : 2);
-      continue;
-    }
-    if (point.curve >= 0) {
-      history.foot[point.foot] = detail::foot_of_start(model, point, slots).shift;
-      continue;
-    }
-    const Vector<T> at = slots.points.col(point.nodes[0]);
-    history.foot.segment(point.foot, model.dimension) =
-        detail::obstacle_foot<T>(model.scene.obstacles[point.obstacle], at, slots.numbers);
+    with_dimension(model.dimension, [&]<int D>() {
+      const auto at = detail::place_point<D>(detail::positions_of_start(model, slots), point, point.facing);
+      for (int i = 0; i < point.feet(D); ++i) history.foot[point.foot + i] = at.foot[i];
+    });
   }
   return history;
 }
@@ -146,21 +133,19 @@ double tie_at(const ContactInput<T>& input, int p, const Vector<T>& compact) {
   return tie_length(point, input.slots.geometry[p], largest);
 }
 
-/// Present geometry of point p. `facing`: what it faces of its curve, not read against an obstacle;
-/// `displacement(place)`: of the contact node Model::contact_nodes[place], in the scalar U built on T.
-template <class U, class T, int D, class Displacement>
-MovedPoint<U, D> present_point(const ContactInput<T>& input, int p, const Facing* facing, Displacement&& displacement) {
+/// What is known of point p from earlier.
+template <class T>
+Earlier<T> earlier(const ContactInput<T>& input, int p) {
   const auto& point = input.model.points[p];
-  if constexpr (D == 2)
-    if (!point.segments.empty()) return moved_on_segments<U, T>(input, p, facing, displacement);
-  if constexpr (D == 2)
-    if (point.curve >= 0) return moved_on_curve<U, T>(input, p, *facing, displacement);
-  return moved_point<U, T, D>(input, p, displacement(point.places[0]));
+  Earlier<T> known{&input.slots.geometry[p]};
+  if (point.foot >= 0) known.foot = &input.previous.foot[point.foot];
+  if (point.foot >= 0 && point.curve >= 0) known.patch = input.previous.patch[p];
+  return known;
 }
 
 /// Outcome of a point with present geometry `at`. If it faces no master, it is open.
 template <class U, class T, int D, int Tangents>
-PointOutcome<U, Tangents> point_outcome(const ContactInput<T>& input, const MovedPoint<U, D>& at,
+PointOutcome<U, Tangents> point_outcome(const ContactInput<T>& input, const PlacedPoint<U, D>& at,
                                         const Traction<U, Tangents>& multiplier, const Vec<U, Tangents>& previous,
                                         const PointRegularisation<U>& rho, const FrictionLaw<U>& friction,
                                         double tie_length, const ContactState* state) {
@@ -169,13 +154,15 @@ PointOutcome<U, Tangents> point_outcome(const ContactInput<T>& input, const Move
                                               input.cone, tie_length, at.faces_master ? state : &open);
 }
 
-/// Outcome of point p with its present geometry, which is stored in `geometry`.
+/// Outcome of point p with its present geometry, which is stored in `geometry`. `facing`: what it faces of its curve;
+/// not read where it has none.
 template <class T, int D, int Tangents>
 PointOutcome<T, Tangents> evaluate_present(const ContactInput<T>& input, int p, const Vector<T>& compact,
-                                           const Facing* facing, const Traction<T, Tangents>& multiplier,
+                                           const Facing& facing, const Traction<T, Tangents>& multiplier,
                                            const ContactState* state, PointGeometry<T>& geometry) {
-  auto at = present_point<T, T, D>(input, p, facing,
-                                   [&](int place) -> Vec<T, D> { return compact.template segment<D>(place * D); });
+  const auto displacement = [&](int place) -> Vec<T, D> { return compact.template segment<D>(place * D); };
+  const Positions<T, T, decltype(displacement)> positions{input.model, input.slots, displacement, input.time};
+  auto at = place_point<D>(positions, input.model.points[p], facing, earlier(input, p));
   const auto outcome = point_outcome<T, T, D, Tangents>(
       input, at, multiplier, previous_placement<T, Tangents>(input, p), input.rho[p],
       input.slots.friction[input.model.points[p].contact], tie_at<T>(input, p, compact), state);
@@ -212,7 +199,7 @@ ContactField<T> evaluate_contact(const ContactInput<T>& input, const Vector<T>& 
       const auto lambda = detail::gather_traction<T, Tangents>(multiplier, point.multiplier);
       const auto outcome =
           present ? detail::evaluate_present<T, D, Tangents>(
-                        input, p, compact, along_curves ? &field.facing[p] : nullptr, lambda, state, field.moved[p])
+                        input, p, compact, along_curves ? field.facing[p] : point.facing, lambda, state, field.moved[p])
                   : evaluate_point<T, D, Tangents>(
                         input.slots.geometry[p], detail::relative_displacement<T, D>(input, p, compact), lambda,
                         detail::previous_placement<T, Tangents>(input, p), input.rho[p],
@@ -228,7 +215,7 @@ ContactField<T> evaluate_contact(const ContactInput<T>& input, const Vector<T>& 
       }
       if constexpr (Tangents > 0)
         if (point.foot >= 0)
-          for (int i = 0; i < (point.curve >= 0 ? 1 : D); ++i) field.foot[point.foot + i] = outcome.foot[i];
+          for (int i = 0; i < point.feet(D); ++i) field.foot[point.foot + i] = outcome.foot[i];
     });
   }
   return field;

@@ -18,7 +18,7 @@ template <class T>
 struct History {
   Vector<T> placement;  ///< s, the slip since the start, at tangential_offset()
   Vector<T> foot;       ///< where geometry is the present one: places on what is faced, at ContactPoint::foot, as
-                        ///< differences from the start (MovedPoint::foot)
+                        ///< differences from the start (PlacedPoint::foot)
   Vector<T> work;       ///< frictional work since the start, per contact; empty without friction
   Vector<T> bodies;     ///< what materials remember, at BodyMesh::first_memory; empty where none does
   /// Of points that slide along curves: the patch that a foot is on, per point, and whether the point faced it. One

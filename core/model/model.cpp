@@ -260,7 +260,7 @@ void place_feet(Model& model) {
   for (auto& point : model.points) {
     if (point.tangents == 0) continue;
     point.foot = model.foot_count;
-    model.foot_count += point.curve >= 0 ? 1 : model.dimension;  // a curve has one coordinate
+    model.foot_count += point.feet(model.dimension);
   }
 }
 

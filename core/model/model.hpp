@@ -49,6 +49,8 @@ struct MasterCurve {
   std::vector<int> ends = {};
   std::map<int, OwnVertex> own = {};  ///< of a side that is integrated against itself: per node
   bool is_integrated() const { return !facets.empty(); }
+  /// Whether its last patch ends where the first begins.
+  bool is_loop() const { return patches.back().next == 0; }
 };
 
 /// One slave node and its master. At small strain it does not change.
@@ -84,6 +86,8 @@ struct ContactPoint {
   int multiplier = 0;     ///< offset of its components in the multiplier vector
   int tangents = 0;       ///< 0 (frictionless) or D - 1
   int components() const { return 1 + tangents; }
+  /// Number of its coordinates in History::foot, in D dimensions. pre: it has a foot.
+  int feet(int D) const { return curve >= 0 ? 1 : D; }
 };
 
 /// A prescribed dof. supports[support] prescribes it along an axis, or along its inclined direction if axis ==

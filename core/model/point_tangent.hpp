@@ -66,28 +66,20 @@ void take_rows(const Traction<Probe, Tangents>& traction, const Traction<Probe, 
   }
 }
 
-/// Indices in Model::contact_nodes of the columns of a tangent. The first `faced` of them also have forces.
+/// Indices in Model::contact_nodes of the columns of a tangent: of the nodes that the point touches, and along a curve
+/// of those that its last foot is on. The first `faced` of them also have forces.
 template <class T>
-std::vector<int> places_of_tangent(const ContactInput<T>& input, int p, const Facing* facing, int& faced) {
+std::vector<int> places_of_tangent(const ContactInput<T>& input, int p, const Facing& facing, int& faced) {
   const auto& point = input.model.points[p];
-  std::vector<int> places = {point.places[0]};
-  if (!point.segments.empty()) {
-    if (!facing) places = point.places;
-    for (std::size_t n = 1; facing && n < facing->nodes.size(); ++n)
-      places.push_back(input.model.place_of(facing->nodes[n]));
-    faced = static_cast<int>(places.size());
-    return places;
-  }
-  const auto& curve = input.model.curves[point.curve];
-  const auto add_patch = [&](int patch) {
-    if (curve.obstacle >= 0 || patch == Patch::none) return;
-    for (int vertex : curve.patches[patch].vertices)
-      if (vertex != Patch::none && std::find(places.begin(), places.end(), curve.places[vertex]) == places.end())
-        places.push_back(curve.places[vertex]);
-  };
-  add_patch(facing->patch);
+  std::vector<int> places;
+  places.reserve(9);  // of the slave node and two patches
+  for_each_place(input.model, point, facing, [&](int place) { places.push_back(place); });
   faced = static_cast<int>(places.size());
-  if (point.foot >= 0 && (facing->patch != Patch::none || input.previous.faces[p])) add_patch(input.previous.patch[p]);
+  if (!point.segments.empty() || point.foot < 0) return places;
+  if (facing.patch != Patch::none || input.previous.faces[p])
+    for_each_place(input.model.curves[point.curve], input.previous.patch[p], [&](int place) {
+      if (std::find(places.begin(), places.end(), place) == places.end()) places.push_back(place);
+    });
   return places;
 }
 
@@ -98,7 +90,7 @@ inline bool has_places(const Model& model, const ContactPoint& point) {
 
 /// Tangent of an open point: it bears nothing wherever it is, and its rows are -A lambda.
 template <class T>
-PointTangent<T> open_tangent(const ContactInput<T>& input, int p, const Facing* facing) {
+PointTangent<T> open_tangent(const ContactInput<T>& input, int p, const Facing& facing) {
   const auto& point = input.model.points[p];
   PointTangent<T> tangent;
   int faced = 0, count = input.model.dimension;
@@ -117,9 +109,9 @@ PointTangent<T> open_tangent(const ContactInput<T>& input, int p, const Facing* 
 }
 
 /// Tangent by the displacements of the nodes at the places `of`, of which the first `faced` have forces, `at_once` dofs
-/// in one sweep. `facing`: what the point faces of its curve; nullptr against an obstacle.
+/// in one sweep. `facing`: what the point faces of its curve.
 template <class T, int Tangents, int at_once>
-PointTangent<T> tangent_by_places(const ContactInput<T>& input, int p, const Facing* facing, std::vector<int> of,
+PointTangent<T> tangent_by_places(const ContactInput<T>& input, int p, const Facing& facing, std::vector<int> of,
                                   int faced, const Vector<T>& compact, const Vector<T>& multiplier,
                                   ContactState state) {
   constexpr int C = 1 + Tangents;
@@ -144,7 +136,8 @@ PointTangent<T> tangent_by_places(const ContactInput<T>& input, int p, const Fac
       }
       return u;
     };
-    const auto at = present_point<Probe, T, 2>(input, p, facing, displacement);
+    const Positions<Probe, T, decltype(displacement)> positions{input.model, input.slots, displacement, input.time};
+    const auto at = place_point<2>(positions, input.model.points[p], facing, earlier(input, p));
     const auto lambda = seeded_multiplier<Probe, T, Tangents>(input, p, multiplier, seeded.count);
     const auto outcome = point_outcome<Probe, T, 2, Tangents>(input, at, lambda, fixed_input.placement, fixed_input.rho,
                                                               fixed_input.friction, 0, &state);
@@ -168,7 +161,7 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
                               const Vector<T>& multiplier, ContactState state, const std::vector<Facing>& facing = {}) {
   const auto& point = input.model.points[p];
   const bool by_places = detail::has_places(input.model, point);
-  const Facing* const found = by_places && point.curve >= 0 ? &facing[p] : nullptr;
+  const Facing& found = by_places && point.curve >= 0 ? facing[p] : point.facing;
   if (state == ContactState::open) return detail::open_tangent(input, p, found);
   return detail::with_point(input.model, point, [&]<int D, int Tangents>() {
     if constexpr (D == 2)
@@ -197,7 +190,10 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
     PointOutcome<Probe, Tangents> outcome;
     PointGeometry<Probe> geometry;
     if (present) {
-      auto at = detail::moved_point<Probe, T, D>(input, p, w);
+      const auto displacement = [&](int) { return w; };
+      const detail::Positions<Probe, T, decltype(displacement)> positions{input.model, input.slots, displacement,
+                                                                          input.time};
+      auto at = detail::on_obstacle<D>(positions, point, detail::earlier(input, p));
       outcome = detail::point_outcome<Probe, T, D, Tangents>(input, at, lambda, fixed_input.placement, fixed_input.rho,
                                                              fixed_input.friction, 0, &state);
       geometry = std::move(at.geometry);

@@ -1,6 +1,7 @@
 /// Definitions of the templates in slots.hpp, but those of the bodies' elements (core/model/bodies_impl.hpp).
 #pragma once
 
+#include "core/model/contact_geometry.hpp"
 #include "core/model/slots.hpp"
 
 namespace stickslip {

@@ -7,9 +7,9 @@
 
 #include "core/contact/contact_point.hpp"
 #include "core/model/history.hpp"
-#include "core/model/model.hpp"
 #include "core/model/result.hpp"
 #include "core/model/seconds.hpp"
+#include "core/model/stencil.hpp"
 
 namespace stickslip {
 
@@ -45,26 +45,17 @@ const T& area_in(const ContactField<T>& field, const S& slots, std::size_t p) {
   return geometry_in(field, slots, p).area;
 }
 
+/// What point p faces of its curve in a field.
+template <class T>
+const Facing& facing_in(const Model& model, const ContactField<T>& field, std::size_t p) {
+  return field.facing.empty() ? model.points[p].facing : field.facing[p];
+}
+
 /// Calls f(n, place) for each n. weights[n] of geometry_in() belongs to the node Model::contact_nodes[place].
 template <class T, class F>
 void for_each_place(const Model& model, const ContactField<T>& field, std::size_t p, F&& f) {
-  const auto& point = model.points[p];
-  if (field.facing.empty() || point.curve < 0) {
-    for (std::size_t n = 0; n < point.places.size(); ++n) f(n, point.places[n]);
-    return;
-  }
-  const Facing& facing = field.facing[p];
-  if (!facing.nodes.empty()) {
-    for (std::size_t n = 0; n < facing.nodes.size(); ++n) f(n, model.place_of(facing.nodes[n]));
-    return;
-  }
-  f(std::size_t{0}, point.places[0]);
-  const auto& curve = model.curves[point.curve];
-  const int patch = facing.patch;
-  if (curve.obstacle >= 0 || patch == Patch::none) return;
   std::size_t n = 0;
-  for (int vertex : curve.patches[patch].vertices)
-    if (vertex != Patch::none) f(++n, curve.places[vertex]);
+  for_each_place(model, model.points[p], facing_in(model, field, p), [&](int place) { f(n++, place); });
 }
 
 /// The nodes to which the weights of geometry_in() belong.

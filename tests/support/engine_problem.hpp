@@ -6,8 +6,8 @@
 
 #include "core/engine/condensed_engine.hpp"
 #include "core/engine/sparse_engine.hpp"
+#include "core/model/facings.hpp"
 #include "core/model/loading.hpp"
-#include "core/model/moved_point.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/scenes.hpp"
 

@@ -23,7 +23,8 @@ PointGeometry<double> over_facet() {
 }
 
 PointGeometry<double> over_plane() {
-  auto g = against<double>(Vec<double, 3>(0.1, 0.2, 0.9), Plane{{0.0, 0.0, 0.0}, {0.3, -0.2, 1.0}}, Numbers<double>{});
+  auto g =
+      against_rigid<double>(Vec<double, 3>(0.1, 0.2, 0.9), Plane{{0.0, 0.0, 0.0}, {0.3, -0.2, 1.0}}, Numbers<double>{});
   g.area = 0.7;
   return g;
 }
@@ -112,7 +113,7 @@ TEST(PointForce, PushesTheSlaveOutOfTheMaster) {
 /// The point with given numbers on a level floor, so that w = (slip placement reversed, gap).
 PointOutcome<double, 1> on_floor(Point w, double lambda_normal, double lambda_tangential, ConeRadius cone,
                                  double tie_length = 0, const ContactState* state = nullptr) {
-  auto g = against<double>(Point(0, 0.5), Plane{{0.0, 0.0}, {0.0, 1.0}}, Numbers<double>{});
+  auto g = against_rigid<double>(Point(0, 0.5), Plane{{0.0, 0.0}, {0.0, 1.0}}, Numbers<double>{});
   g.area = 1;
   Traction<double, 1> lambda;
   lambda.normal = lambda_normal;

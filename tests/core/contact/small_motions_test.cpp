@@ -25,7 +25,7 @@ TEST(SmallMotions, OnAnInclinedPlaneHaveTheirGap) {
   for (const double L : distances) {
     const Plane plane{{L + 1, L - 2}, {0.6, 0.8}};
     const Place X = far(L, 1 + 4, -2 - 3), w(3e-15, 1e-15);
-    const auto start = against<double>(X, plane, no_slots), now = against<double>(X, w, plane, no_slots);
+    const auto start = against_rigid<double>(X, plane, no_slots), now = against<double>(X, w, plane, no_slots);
     EXPECT_NEAR(now.gap - start.gap, 2.6e-15, 4 * unit_roundoff * (2.6e-15 + std::abs(start.gap))) << L;
   }
 }

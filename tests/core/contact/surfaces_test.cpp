@@ -41,13 +41,13 @@ void expect_vector(const PointGeometry<double>& g, double x, double y) {
 TEST(AgainstPlane, MeasuresAlongANormalOfAnyLength) {
   for (double length : {1e-6, 1.0, 1e6}) {
     const Plane plane{{1.0, 2.0}, {0.6 * length, 0.8 * length}};
-    const auto g = against<double>(Point(1 + 0.6 * 3 - 0.8 * 5, 2 + 0.8 * 3 + 0.6 * 5), plane, no_slots);
+    const auto g = against_rigid<double>(Point(1 + 0.6 * 3 - 0.8 * 5, 2 + 0.8 * 3 + 0.6 * 5), plane, no_slots);
     EXPECT_NEAR(g.gap, 3, rounding * 8);
     expect_vector(g, 0.6, 0.8);
     ASSERT_EQ(g.weights.size(), 1);
     EXPECT_EQ(g.weights[0], 1);
   }
-  EXPECT_LT(against<double>(Point(0, -0.1), Plane{{5.0, 0.0}, {0.0, 1.0}}, no_slots).gap, 0);  // penetration
+  EXPECT_LT(against_rigid<double>(Point(0, -0.1), Plane{{5.0, 0.0}, {0.0, 1.0}}, no_slots).gap, 0);  // penetration
 }
 
 TEST(AgainstPlane, HasARightHandedFrameForEveryNormalInSpace) {
@@ -56,7 +56,7 @@ TEST(AgainstPlane, HasARightHandedFrameForEveryNormalInSpace) {
     if (seed < 3) n = Vec<double, 3>::Unit(seed);
     if (seed == 3) n = Vec<double, 3>::Ones();
     const Plane plane{{0.1, 0.2, 0.3}, {n[0], n[1], n[2]}};
-    const auto g = against<double>(Vec<double, 3>(1, -2, 0.5), plane, no_slots);
+    const auto g = against_rigid<double>(Vec<double, 3>(1, -2, 0.5), plane, no_slots);
     expect_frame(g);
     const Vec<double, 3> e1 = g.tangents.col(0), e2 = g.tangents.col(1), normal = g.normal;
     EXPECT_NEAR(e1.cross(e2).dot(normal), 1, rounding);
@@ -67,13 +67,14 @@ TEST(AgainstPlane, HasARightHandedFrameForEveryNormalInSpace) {
 TEST(AgainstCircle, MeasuresFromTheRimOutsideAndInside) {
   const Circle disk{{1.0, 2.0}, 5.0, false}, cup{{1.0, 2.0}, 5.0, true};
   const Point above(1 + 6 * 0.6, 2 + 6 * 0.8), below(1 + 4 * 0.6, 2 + 4 * 0.8);
-  const auto outside = against<double>(above, disk, no_slots), inside = against<double>(below, cup, no_slots);
+  const auto outside = against_rigid<double>(above, disk, no_slots),
+             inside = against_rigid<double>(below, cup, no_slots);
   EXPECT_NEAR(outside.gap, 1, rounding * 6);
   expect_vector(outside, 0.6, 0.8);
   EXPECT_NEAR(inside.gap, 1, rounding * 6);
   expect_vector(inside, -0.6, -0.8);  // out of the cup's wall, to the centre
-  EXPECT_LT(against<double>(below, disk, no_slots).gap, 0);
-  EXPECT_LT(against<double>(above, cup, no_slots).gap, 0);
+  EXPECT_LT(against_rigid<double>(below, disk, no_slots).gap, 0);
+  EXPECT_LT(against_rigid<double>(above, cup, no_slots).gap, 0);
 }
 
 TEST(AgainstFacet, HasTheSolidOnTheLeftAndInterpolatesTheFoot) {
@@ -188,7 +189,7 @@ TEST(Derivatives, OfEverySurfaceAreThoseOfTheComplexStep) {
         using T = typename std::decay_t<decltype(x)>::Scalar;
         const Plane plane{{{0, 0}, {0, 1}}, {{0, 2}, {0, 3}}};
         const Numbers<T> numbers{{x[2], x[3], x[4], x[5]}};
-        return flat(against<T>(two(x, 0), plane, numbers));
+        return flat(against_rigid<T>(two(x, 0), plane, numbers));
       },
       6, "plane");
   expect_derivatives(
@@ -196,7 +197,7 @@ TEST(Derivatives, OfEverySurfaceAreThoseOfTheComplexStep) {
         using T = typename std::decay_t<decltype(x)>::Scalar;
         const Plane plane{{{0, 0}, {0, 1}, {0, 2}}, {{0, 3}, {0, 4}, {0, 5}}};
         const Numbers<T> numbers{{x[3], x[4], x[5], x[6], x[7], x[8]}};
-        return flat(against<T>(Vec<T, 3>(x[0], x[1], x[2]), plane, numbers));
+        return flat(against_rigid<T>(Vec<T, 3>(x[0], x[1], x[2]), plane, numbers));
       },
       9, "plane in space");
   for (bool inside : {false, true})
@@ -204,7 +205,7 @@ TEST(Derivatives, OfEverySurfaceAreThoseOfTheComplexStep) {
         [inside](const auto& x) {  // slave, centre, radius
           using T = typename std::decay_t<decltype(x)>::Scalar;
           const Circle circle{{Number{0, 0}, Number{0, 1}}, {0, 2}, inside};
-          return flat(against<T>(two(x, 0), circle, Numbers<T>{{x[2], x[3], x[4]}}));
+          return flat(against_rigid<T>(two(x, 0), circle, Numbers<T>{{x[2], x[3], x[4]}}));
         },
         5, inside ? "cup" : "circle");
   expect_derivatives(

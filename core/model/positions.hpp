@@ -1,0 +1,133 @@
+/// Where the nodes of bodies, the vertices of polylines and the obstacles are: at the start, or displaced.
+#pragma once
+
+#include <optional>
+
+#include "core/contact/placed.hpp"
+#include "core/model/slots.hpp"
+
+namespace stickslip::detail {
+
+/// Initial position of a node, or of a vertex of the polyline that is an obstacle (core/contact/segment.hpp).
+template <class T>
+Vec<T, 2> start_of(const Model& model, int obstacle, const Slots<T>& slots, int node) {
+  if (node < model.node_count) return point2(slots.points, node);
+  const auto& x = std::get<Polyline>(model.scene.obstacles[obstacle].shape).points[node - model.node_count];
+  return {slots.numbers(x[0]), slots.numbers(x[1])};
+}
+
+/// Rigid motion of an obstacle: a turn about its centre, then a shift.
+template <class T, int D>
+struct Frame {
+  Vec<T, D> shift = Vec<T, D>::Constant(T(0)), center = Vec<T, D>::Constant(T(0));
+  std::optional<Turn<T>> turn = {};  ///< 2D only; none: the obstacle does not rotate
+
+  /// Displacement seen from the obstacle. `X`: initial position; `u`: displacement, in a scalar built on T.
+  template <class U>
+  Vec<U, D> seen(const Vec<T, D>& X, const Vec<U, D>& u) const {
+    Vec<U, D> w;
+    for (int i = 0; i < D; ++i) w[i] = u[i] - U(shift[i]);
+    if constexpr (D == 2)
+      if (turn) {
+        const auto arm = [&](int i) { return U(X[i] - center[i]) + w[i]; };
+        w += turn->back().change(Vec<U, 2>(arm(0), arm(1)));
+      }
+    return w;
+  }
+  /// Displacement of the place X of the obstacle.
+  Vec<T, D> displacement(const Vec<T, D>& X) const {
+    Vec<T, D> u = shift;
+    if constexpr (D == 2)
+      if (turn) u += turn->change(Vec<T, 2>(X - center));
+    return u;
+  }
+};
+
+/// The frame of an obstacle at a time.
+template <int D, class T>
+Frame<T, D> frame_of_obstacle(const Obstacle& obstacle, double time, const Numbers<T>& numbers) {
+  Frame<T, D> frame;
+  for (const auto& [axis, table] : obstacle.move) frame.shift[axis - 'x'] = evaluate(table, time, numbers);
+  if (!obstacle.rotate) return frame;
+  for (int i = 0; i < D; ++i) frame.center[i] = numbers(obstacle.rotate->center[i]);
+  frame.turn = Turn<T>::from_degrees(evaluate(obstacle.rotate->angle, time, numbers));
+  return frame;
+}
+
+/// In place of displacements: those of the start, which are zero.
+struct Still {};
+
+/// Positions at displacements. Scalars: T of the slots, U built on T of the displacements.
+///
+///   Displacement  place -> displacement of the contact node Model::contact_nodes[place], as a Vec<U, D>; Still: all is
+///                 at the start, and so are the obstacles, whatever their tables are
+template <class U, class T, class Displacement>
+struct Positions {
+  static constexpr bool is_start = std::is_same_v<Displacement, Still>;
+  const Model& model;
+  const Slots<T>& slots;
+  Displacement displacement;
+  double time = 0;  ///< not read at the start
+
+  /// The frame of an obstacle.
+  template <int D>
+  Frame<T, D> frame(int obstacle) const {
+    if constexpr (is_start) return {};
+    return frame_of_obstacle<D>(model.scene.obstacles[obstacle], time, slots.numbers);
+  }
+  /// Displacement of the slave node of a point.
+  template <int D>
+  Vec<U, D> motion_of_slave(const ContactPoint& point) const {
+    if constexpr (is_start)
+      return Vec<U, D>::Constant(U(0));
+    else
+      return displacement(point.places[0]);
+  }
+  Placed<U, T> slave(const ContactPoint& point) const {
+    return {point2(slots.points, point.nodes[0]), motion_of_slave<2>(point)};
+  }
+  Placed<U, T> vertex_of_polyline(int obstacle, int number) const {
+    const auto frame_now = frame<2>(obstacle);
+    const Vec<T, 2> X = start_of(model, obstacle, slots, model.node_count + number), u = frame_now.displacement(X);
+    return {X, {U(u[0]), U(u[1])}};
+  }
+  /// A vertex of a curve.
+  Placed<U, T> vertex(const MasterCurve& curve, int number) const {
+    if (curve.obstacle >= 0) return vertex_of_polyline(curve.obstacle, number);
+    const Vec<T, 2> X = point2(slots.points, curve.nodes[number]);
+    if constexpr (is_start)
+      return {X, Vec<U, 2>::Constant(U(0))};
+    else
+      return {X, displacement(curve.places[number])};
+  }
+  /// A node of a body, or a vertex of the polyline that is the obstacle, numbered behind them.
+  Placed<U, T> node(int obstacle, int number) const {
+    if (number >= model.node_count) return vertex_of_polyline(obstacle, number - model.node_count);
+    const Vec<T, 2> X = point2(slots.points, number);
+    if constexpr (is_start)
+      return {X, Vec<U, 2>::Constant(U(0))};
+    else
+      return {X, displacement(model.place_of(number))};
+  }
+};
+
+/// Positions of the start.
+template <class T>
+Positions<T, T, Still> positions_of_start(const Model& model, const Slots<T>& slots) {
+  return {model, slots, {}};
+}
+
+/// The function place -> displacement of the contact node, from compact displacements.
+template <class T>
+auto nodal_displacement(const Vector<T>& compact) {
+  return [&compact](int place) -> Vec<T, 2> { return compact.template segment<2>(2 * place); };
+}
+
+/// Positions in the plane at compact displacements, which must outlive them.
+template <class T>
+auto positions_at(const Model& model, const Slots<T>& slots, const Vector<T>& compact, double time) {
+  const auto displacement = nodal_displacement(compact);
+  return Positions<T, T, decltype(displacement)>{model, slots, displacement, time};
+}
+
+}  // namespace stickslip::detail
