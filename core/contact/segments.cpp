@@ -146,8 +146,14 @@ std::vector<int> nodes_of_segments(int own, const std::vector<Segment>& facets, 
     if (node >= 0 && node < node_count && std::find(nodes.begin(), nodes.end(), node) == nodes.end())
       nodes.push_back(node);
   };
-  for (const auto& facet : facets) std::for_each(facet.slave.begin(), facet.slave.end(), add);
-  for (const auto& segment : segments) std::for_each(segment.master.begin(), segment.master.end(), add);
+  for (const auto& facet : facets) {
+    std::for_each(facet.slave.begin(), facet.slave.end(), add);
+    std::for_each(facet.slave_edge.begin(), facet.slave_edge.end(), add);
+  }
+  for (const auto& segment : segments) {
+    std::for_each(segment.master.begin(), segment.master.end(), add);
+    std::for_each(segment.master_edge.begin(), segment.master_edge.end(), add);
+  }
   return nodes;
 }
 

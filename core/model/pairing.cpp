@@ -317,6 +317,18 @@ void pair_along_curve(Model& model, const Points<double>& points, const Pairing&
   model.curves.push_back(std::move(curve));
 }
 
+/// The function facet -> side of a quadratic element that it is half of (Segment::slave_edge).
+auto quadratic_edges(const SideSet& side) {
+  std::map<int, std::array<int, 3>> of_middle;
+  for (const auto& edge : side.edges)
+    if (edge.size() == 3) of_middle[edge[2]] = {edge[0], edge[1], edge[2]};
+  return [of_middle](int a, int b) {
+    for (int node : {a, b})
+      if (const auto found = of_middle.find(node); found != of_middle.end()) return found->second;
+    return Segment{}.slave_edge;
+  };
+}
+
 /// Sets what the vertices of a curve in contact with itself may face.
 void set_own_vertices(const Eigen::Matrix2Xd& places, MasterCurve& curve) {
   for (std::size_t p = 0; p < curve.patches.size(); ++p) {
@@ -345,9 +357,11 @@ MasterCurve integrated_curve(const Model& model, const Points<double>& points, c
   const auto node_of = [&](int vertex) {
     return pairing.obstacle >= 0 ? model.node_count + vertex : curve.nodes[vertex];
   };
+  const auto edge_of = quadratic_edges(pairing.master);
   for (const auto& patch : curve.patches) {
     const int begin = node_of(patch.vertices[1]), end = node_of(patch.vertices[2]);
     curve.facets.push_back({begin, end});
+    curve.edges.push_back(edge_of(begin, end));
     if (patch.previous == Patch::none) curve.ends.push_back(begin);
     if (patch.next == Patch::none) curve.ends.push_back(end);
   }
@@ -377,10 +391,12 @@ std::set<int> corners_of(const SideSet& side, const Points<double>& points) {
 std::map<int, std::vector<Segment>> segments_of_nodes(const Facets& master, const Pairing& pairing, bool whole,
                                                       const std::set<int>& corners) {
   const std::set<int> nodes(pairing.slave.nodes.begin(), pairing.slave.nodes.end());
+  const auto edge_of = quadratic_edges(pairing.slave), edge_of_master = quadratic_edges(pairing.master);
   std::map<int, std::vector<Segment>> of_node;
   for (const auto& facet : pairing.slave.facets) {
     Segment whole_facet;
     whole_facet.slave = {facet[0], facet[1]};
+    whole_facet.slave_edge = edge_of(facet[0], facet[1]);
     const auto segments = whole ? std::vector<Segment>{whole_facet} : master.search.facing(whole_facet.slave);
     const auto may_carry = [&](int end) { return nodes.count(facet[end]) > 0; };
     const auto carries = [&](int end) {
@@ -390,6 +406,8 @@ std::map<int, std::vector<Segment>> segments_of_nodes(const Facets& master, cons
     for (Segment segment : segments)
       for (int end = 0; end < 2; ++end)
         if (carries(end)) {
+          segment.slave_edge = whole_facet.slave_edge;
+          segment.master_edge = edge_of_master(segment.master[0], segment.master[1]);
           segment.carrier = end;
           segment.sole_carrier = !carries(1 - end);
           of_node[facet[end]].push_back(segment);
@@ -448,9 +466,6 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
   if (has_facets && along_curve && !contact.segment) return pair_along_curve(model, points, pairing);
   if (!contact.segment) return pair_nodes(model, points, pairing);
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
-  const bool quadratic_master = pairing.obstacle < 0 && is_quadratic(model.bodies[pairing.master.body].mesh.shape);
-  if (is_quadratic(shape) || quadratic_master)
-    throw ModelError("segment integration needs linear elements on both sides", where);
   if (contact.is_of_itself() && !model.scene.finite_strain)
     throw ModelError("segment integration of a side against itself needs finite strain", where);
   if (model.dimension == 3 || pairing.slave.facets.empty() || !is_continuum(shape))

@@ -78,6 +78,8 @@ void find_segments(const Model& model, int curve, const Points<double>& start, c
         entry->second =
             of_itself ? search.facing(facet.slave, master.ends, depth_of) : search.facing(facet.slave, master.ends);
       for (Segment segment : entry->second) {
+        segment.slave_edge = facet.slave_edge;
+        segment.master_edge = master.edges[segment.facet];
         segment.carrier = facet.carrier;
         segment.sole_carrier = facet.sole_carrier;
         facing.pieces.push_back(segment);
