@@ -167,6 +167,13 @@ void read_pairs(const Contact& common, const JsonNode& between, bool self, Scene
     }
 }
 
+/// Whether a master is a side of a body, or a polyline.
+bool has_facets(const std::string& master, const SceneReading& reading) {
+  const auto& obstacles = reading.scene.obstacles;
+  const auto found = std::find_if(obstacles.begin(), obstacles.end(), [&](const auto& o) { return o.name == master; });
+  return found == obstacles.end() || std::holds_alternative<Polyline>(found->shape);
+}
+
 void read_contact(const std::string& name, const JsonNode& node, SceneReading& reading) {
   const auto between = node.value().is_object() ? node.find("between") : std::nullopt;
   if (!node.is_object(
@@ -200,6 +207,11 @@ void read_contact(const std::string& name, const JsonNode& node, SceneReading& r
   if (const auto friction = node.find("friction")) contact.friction = read_friction(*friction, reading);
   contact.offset = reading.optional(node, "offset", 0, any_number);
   if (const auto surface = node.find("surface")) read_surface(*surface, contact, reading);
+  const bool is_solid =
+      between || !slave_side || (is_continuum(slave_side->mesh->shape) && !slave_side->side.facets.empty());
+  // Why the default: the geometry of integrated contact is continuous, from facet to facet and over ends.
+  contact.segment =
+      is_solid && reading.scene.finite_strain && !node.find("surface") && has_facets(contact.master, reading);
   const bool self = between && node.find("self") && node.find("self")->boolean().value_or(false);
   if (const auto discretization = node.find("discretization")) {
     contact.segment = discretization->choice({"node", "segment"}) == "segment";
@@ -207,8 +219,7 @@ void read_contact(const std::string& name, const JsonNode& node, SceneReading& r
       discretization->error(R"(is "segment", which a side takes against itself at finite strain alone; allowed: "node")");
     if (contact.segment && contact.smoothing != Smoothing::none)
       discretization->error(R"(is "segment", which integrates along straight facets; with a smooth surface: "node")");
-    const bool solid = between || !slave_side || (is_continuum(slave_side->mesh->shape) && !slave_side->side.facets.empty());
-    if (contact.segment && !solid)
+    if (contact.segment && !is_solid)
       discretization->error("is \"segment\", which integrates along the facets of a solid body; the slave " +
                             shown(node.value()["slave"]) + " has none; allowed: \"node\"");
   }
