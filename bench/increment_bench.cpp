@@ -106,7 +106,6 @@ void register_all() {
           [=](benchmark::State& s) { increment(s, method, kind, backend, friction); }, cells);
     };
     by("sparse_mumps", Kind::sparse, Backend::mumps, true, {100, 224});
-    by("sparse_umfpack", Kind::sparse, Backend::umfpack, true, {100});
     by("condensed", Kind::condensed, Backend::automatic, true, {100, 224});
     by("sparse_frictionless", Kind::sparse, Backend::automatic, false, {100});
     by("condensed_frictionless", Kind::condensed, Backend::automatic, false, {100});

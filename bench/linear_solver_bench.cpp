@@ -146,10 +146,8 @@ void run(benchmark::State& state, Backend backend, Kind kind, Task task) {
 }
 
 void register_all() {
-  constexpr std::array<std::pair<const char*, Backend>, 4> backends{{{"cholmod", Backend::cholmod},
-                                                                     {"umfpack", Backend::umfpack},
-                                                                     {"mumps", Backend::mumps},
-                                                                     {"eigen", Backend::eigen}}};
+  constexpr std::array<std::pair<const char*, Backend>, 3> backends{
+      {{"cholmod", Backend::cholmod}, {"mumps", Backend::mumps}, {"eigen", Backend::eigen}}};
   constexpr std::array<std::pair<const char*, Kind>, 3> kinds{
       {{"spd", Kind::spd}, {"stuck", Kind::stuck}, {"sliding", Kind::sliding}}};
   constexpr std::array<std::pair<const char*, Task>, 5> tasks{{{"analyse", Task::analyse},

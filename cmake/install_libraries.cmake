@@ -18,7 +18,7 @@ install(FILES "${version_header}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/stick
 include(CMakePackageConfigHelpers)
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/stickslip")
 set(solver_packages "")
-if(TARGET SuiteSparse::CHOLMOD OR TARGET SuiteSparse::UMFPACK)
+if(TARGET SuiteSparse::CHOLMOD)
   list(APPEND solver_packages SuiteSparse)
 endif()
 if(TARGET MUMPS::dmumps_seq)

@@ -7,17 +7,21 @@ install(FILES LICENSE README.md CITATION.cff DESTINATION "${CMAKE_INSTALL_DOCDIR
 install(FILES LICENSE RENAME copyright DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
 # (of the charts in the report)
 install(FILES third_party/vega/THIRD_PARTY_NOTICES DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
-install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program PATTERN "stickslip.1" EXCLUDE)
+install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program PATTERN "manual.txt" EXCLUDE)
 install(DIRECTORY studies/scenes studies/meshes DESTINATION "${CMAKE_INSTALL_DATADIR}/stickslip" COMPONENT program)
-install(FILES docs/stickslip.1 DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT program)
-install(FILES tools/completion/stickslip.bash RENAME stickslip
+install(FILES tools/stickslip.bash RENAME stickslip
   DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" COMPONENT program)
-install(FILES tools/completion/stickslip.fish
-  DESTINATION "${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d" COMPONENT program)
-# zsh looks in site-functions of /usr/local, Debian's for packages in vendor-completions of /usr.
-install(FILES tools/completion/_stickslip DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/site-functions" COMPONENT local)
-install(FILES tools/completion/_stickslip
-  DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions" COMPONENT debian EXCLUDE_FROM_ALL)
+find_program(HELP2MAN_PROGRAM help2man)
+if(HELP2MAN_PROGRAM)
+  set(manual "${PROJECT_BINARY_DIR}/stickslip.1")
+  add_custom_command(OUTPUT "${manual}"
+    COMMAND bash "${PROJECT_SOURCE_DIR}/tools/manual.sh" "$<TARGET_FILE:stickslip>" > "${manual}"
+    DEPENDS stickslip docs/manual.txt tools/manual.sh VERBATIM)
+  add_custom_target(stickslip_manual ALL DEPENDS "${manual}")
+  install(FILES "${manual}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT program)
+else()
+  message(STATUS "help2man was not found: there is no manual page")
+endif()
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME stickslip)
@@ -34,7 +38,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # The reference BLAS would do, 3 to 6 times slower.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "libopenblas0-serial | libblas.so.3")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "librsvg2-bin, fonts-liberation")  # for report --pdf
 set(CPACK_STRIP_FILES ON)
-set(CPACK_INSTALL_CMAKE_PROJECTS
-  "${PROJECT_BINARY_DIR};${PROJECT_NAME};program;/;${PROJECT_BINARY_DIR};${PROJECT_NAME};debian;/")
+set(CPACK_INSTALL_CMAKE_PROJECTS "${PROJECT_BINARY_DIR};${PROJECT_NAME};program;/")
 include(CPack)

@@ -2,6 +2,7 @@
 /// method; `Method` is the closed set. What a struct lacks does not compile (WholeMethod). Beside its options it says
 ///
 ///   name, title, idea         key in files; its name on pages; how it works, in a sentence or two behind its title
+///   keys()                    its options as files write them (core/algebra/described.hpp): all may be left out
 ///   regularisation()          the option that rho is made from; regularisation_name; and automatic_multiple, the
 ///                             multiple of the local stiffness that "auto" stands for
 ///   tangential_share()        tangential over normal rho
@@ -23,11 +24,12 @@
 #include <concepts>
 #include <optional>
 #include <string_view>
+#include <tuple>
 #include <variant>
 #include <vector>
 
+#include "core/algebra/described.hpp"
 #include "core/contact/cone_radius.hpp"
-#include "core/model/scene.hpp"
 
 namespace stickslip {
 
@@ -42,6 +44,22 @@ struct Increment;
 struct Differentiation;
 struct AdjointProblem;
 
+// How options are written, beside an IfGiven, a Flag and words.
+
+struct RhoOption {};   ///< "auto", a number > 0 or {"absolute": a number > 0}
+struct AtLeastOne {};  ///< a whole number
+struct Nested {};      ///< an object that has keys() of its own
+
+/// A number that steers the iteration: nothing is differentiated by it.
+struct Setting {
+  Range range;
+};
+/// "auto" or such a number.
+struct AutoOrSetting {
+  Range range;
+  double example;
+};
+
 /// Newton's method, the same for all.
 struct NewtonOptions {
   double tolerance =
@@ -49,6 +67,16 @@ struct NewtonOptions {
   int max_iterations = 100;  ///< per solve; >= 1. A front of slip may pass one node an iteration
   bool line_search = true;   ///< backtracking where a full step stays in its active set and the residual does not fall
   void tighten(double to) { tolerance = std::min(tolerance, to); }
+
+  static constexpr auto keys() {
+    using Self = NewtonOptions;
+    return std::tuple{
+        Key{&Self::tolerance, "tolerance", "residual at which it stops, relative to the scale of each residual",
+            Setting{Range::below_one}},
+        Key{&Self::max_iterations, "max_iterations", "of each solve; beyond: status cap", AtLeastOne{}},
+        Key{&Self::line_search, "line_search",
+            "backtracking where a full step stays in its active set and the residual does not fall", Flag{}}};
+  }
 };
 
 /// Regularisation rho (force per length cubed) of each contact point. `relative` is a multiple of the local nodal
@@ -103,6 +131,13 @@ struct Penalty {
   Number tangential_ratio = 1.0;  ///< tangential over normal penalty; > 0
   NewtonOptions newton;
 
+  static constexpr auto keys() {
+    return std::tuple{Key{&Penalty::stiffness, "stiffness",
+                          "penalty in multiples of the local nodal stiffness (auto: 1e3), or absolute", RhoOption{}},
+                      Key{&Penalty::tangential_ratio, "tangential_ratio", "tangential over normal penalty",
+                          IfGiven{Range::positive, 0.5}},
+                      Key{&Penalty::newton, "newton", "Newton's method within an increment", Nested{}}};
+  }
   const Regularisation& regularisation() const { return stiffness; }
   Regularisation& regularisation() { return stiffness; }
   Number tangential_share() const { return tangential_ratio; }
@@ -150,6 +185,30 @@ struct UzawaAL {
   std::optional<double> oversize;  ///< kappa_s of the oversized and the preconditioned scheme, > 1; none: automatic
   NewtonOptions newton;
 
+  static constexpr auto keys() {
+    return std::tuple{
+        Key{&UzawaAL::scale, "scale",
+            "rho in multiples of the local nodal stiffness (auto: 100, or 10 at finite strain), or absolute",
+            RhoOption{}},
+        Key{&UzawaAL::tolerance, "tolerance",
+            "relative error left in the multiplier, and violation, at which the updates stop",
+            Setting{Range::below_one}},
+        Key{&UzawaAL::max_augmentations, "max_augmentations",
+            "of an increment; beyond: status cap, with the last iterate as the result", AtLeastOne{}},
+        Key{&UzawaAL::adapt, "adapt",
+            "multiplies rho by 4 where an augmentation left more than a quarter of the violation", Flag{}},
+        Key{&UzawaAL::acceleration, "acceleration",
+            "extrapolation of the updates; anderson takes several of the last, aitken two",
+            std::array{"none", "aitken", "anderson"}},
+        Key{&UzawaAL::cone, "cone",
+            "frozen: radius of the last augmentation, symmetric; fails where friction is large, and says so",
+            std::array{"augmented", "frozen"}},
+        Key{&UzawaAL::sensitivity, "sensitivity", "scheme of the derivatives",
+            std::array{"iterated", "truncated", "oversized", "preconditioned"}},
+        Key{&UzawaAL::oversize, "oversize", "factor on rho of the schemes oversized (auto: 1e3) and preconditioned",
+            AutoOrSetting{Range::above_one, 1e4}},
+        Key{&UzawaAL::newton, "newton", "Newton's method within an increment", Nested{}}};
+  }
   const Regularisation& regularisation() const { return scale; }
   Regularisation& regularisation() { return scale; }
   Number tangential_share() const { return 1.0; }
@@ -209,6 +268,14 @@ struct MonolithicAL {
   Cone cone = Cone::augmented;  ///< radius -mu z_N (augmented) or -mu lambda_N (multiplier): same zeros, another path
   NewtonOptions newton;
 
+  static constexpr auto keys() {
+    return std::tuple{Key{&MonolithicAL::scale, "scale",
+                          "rho in multiples of the local nodal stiffness (auto: 1), or absolute", RhoOption{}},
+                      Key{&MonolithicAL::cone, "cone",
+                          "radius by the trial pressure, or by the multiplier: same solution, another path",
+                          std::array{"augmented", "multiplier"}},
+                      Key{&MonolithicAL::newton, "newton", "Newton's method within an increment", Nested{}}};
+  }
   const Regularisation& regularisation() const { return scale; }
   Regularisation& regularisation() { return scale; }
   Number tangential_share() const { return 1.0; }
@@ -242,6 +309,7 @@ concept WholeMethod = std::copyable<M> && requires(const M& method, M& changed) 
   { M::idea } -> std::convertible_to<std::string_view>;
   { M::automatic_multiple } -> std::convertible_to<AutomaticMultiple>;
   { M::regularisation_name } -> std::convertible_to<std::string_view>;
+  M::keys();
   { M::has_unknown_multipliers } -> std::convertible_to<bool>;
   { M::prevents_penetration } -> std::convertible_to<bool>;
   { method.regularisation() } -> std::same_as<const Regularisation&>;

@@ -138,7 +138,7 @@ bool run(AdjointProblem& problem, WholeStates& states, const std::vector<TakenBr
     const auto& increment = states.increment(n);
     const auto& previous = states.before(n);
     std::optional<Increment<double>> with_branches;
-    if (!taken.empty()) taken[n].give(with_branches.emplace(increment));
+    if (n < taken.size()) taken[n].give(with_branches.emplace(increment));
     if (!pull_back_increment(problem, previous, with_branches ? *with_branches : increment)) return false;
     const std::size_t together = model.effects.plasticity ? 1 : columns_together;  // history needs what is inside
     if (problem.objectives.front().waiting.size() >= together) pull_back_inside(problem);
@@ -208,8 +208,7 @@ Gradients adjoint(const Model& model, const Slots<double>& slots, const Method& 
   std::vector<TakenBranches> taken;
   {
     const Stopwatch searching(gradients.search_seconds);
-    if (auto found = consistent_at_ties(model, slots, method, trajectory, states, workspace, gradients.search))
-      taken = std::move(*found);
+    taken = consistent_at_ties(model, slots, method, trajectory, states, workspace, gradients.search);
   }
   gradients.counters += gradients.search;
   const bool with_rho = scheme_of(method).reads_regularisation;

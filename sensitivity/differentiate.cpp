@@ -1,10 +1,10 @@
 #include "sensitivity/differentiate.hpp"
 
 #include "core/model/storage.hpp"
-#include "sensitivity/branch_search.hpp"
 #include "sensitivity/nearest_change.hpp"
 #include "sensitivity/one_sided.hpp"
 #include "sensitivity/response_ties.hpp"
+#include "sensitivity/schemes.hpp"
 
 namespace stickslip {
 
@@ -14,13 +14,10 @@ namespace {
 std::optional<std::vector<int>> dofs_read_inside(const Model& model) {
   std::vector<char> read(model.node_count, false);
   for (std::size_t i = 0; i < model.scene.responses.size(); ++i) {
-    const Response& response = model.scene.responses[i];
-    if (response.kind == Response::Kind::strain_energy) return std::nullopt;
-    if (response.kind != Response::Kind::displacement) continue;
-    const auto& place = model.response_places[i].nodes;
-    for (const auto& [node, weight] : place) read[node] = true;
-    if (place.empty())
-      for (int node : model.side(response.on).nodes) read[node] = true;
+    const auto kind = model.scene.responses[i].kind;
+    if (kind == Response::Kind::strain_energy) return std::nullopt;
+    if (kind != Response::Kind::displacement) continue;
+    for (int node : model.response_places[i].nodes) read[node] = true;
   }
   for (std::size_t b = 0; b < model.at_reactions.size(); ++b)
     for (int e : model.at_reactions[b])
@@ -213,8 +210,8 @@ Gradients Derivatives::finish(const Trajectory<double>& trajectory) {
       WholeStates states(now.model, now.slots, now.method, trajectory, now.workspace);
       const auto taken =
           consistent_at_ties(now.model, now.slots, now.method, trajectory, states, now.workspace, search);
-      if (taken) consistent = trajectory;
-      for (std::size_t n = 0; taken && n < taken->size(); ++n) (*taken)[n].give(consistent->increments[n]);
+      if (!taken.empty()) consistent = trajectory;
+      for (std::size_t n = 0; n < taken.size(); ++n) taken[n].give(consistent->increments[n]);
     }
     now.advance(consistent ? *consistent : trajectory, trajectory.solved_count(), false);
     now.gradients.search = search;

@@ -27,8 +27,8 @@ LinearisedEquilibrium::LinearisedEquilibrium(Differentiation& problem, const Sta
   load_ = std::move(alone[0]);
 }
 
-bool LinearisedEquilibrium::solve(std::vector<Vector<Direction>>& lambda,
-                                  std::vector<ContactField<Direction>>& fields) {
+bool LinearisedEquilibrium::solve(std::vector<Vector<Direction>>& lambda) {
+  if (!valid_) return false;
   std::vector<Vector<Direction>> compact;
   for (const auto& displacement : load_.displacement) compact.push_back(to_compact(problem_.model, displacement));
   increment_ = Matrix<double>();
@@ -46,7 +46,7 @@ bool LinearisedEquilibrium::solve(std::vector<Vector<Direction>>& lambda,
     }
     unproven_ = false;
     if (!unknown_ || pass >= refinements || (rows.accurate && !redundant_)) {
-      fields = std::move(rows.fields);
+      fields_ = std::move(rows.fields);
       return true;
     }
   }
@@ -115,12 +115,11 @@ LinearisedEquilibrium::Rows LinearisedEquilibrium::evaluate(const std::vector<Ve
   return rows;
 }
 
-void LinearisedEquilibrium::store_state(const std::vector<ContactField<Direction>>& fields,
-                                        const std::vector<Vector<Direction>>& lambda) {
+void LinearisedEquilibrium::store_state(const std::vector<Vector<Direction>>& lambda) {
   for (std::size_t b = 0; b < problem_.blocks.size(); ++b) {
     auto& block = problem_.blocks[b];
     block.current.multiplier = lambda[b];
-    block.current.contact = fields[b];
+    block.current.contact = fields_[b];
     block.current.history = next_history(input(static_cast<int>(b)), block.current.contact, lambda[b]);
   }
   if (problem_.model.effects.plasticity) {

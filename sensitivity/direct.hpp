@@ -36,16 +36,14 @@ class LinearisedEquilibrium {
                         std::vector<RegularisationField<Direction>> rho_blocks, ConeRadius cone, double time,
                         bool unknown, const History<double>& previous);
 
-  /// False if the tangent is singular.
-  bool valid() const { return valid_; }
-  /// Solves for the derivative. False if the tangent is singular.
-  ///
-  ///   lambda  per block: D lambda as a seed. If lambda is unknown, pass D lambda = 0; its solution is added
-  ///   fields  result, per block: local unknowns with all derivatives
-  bool solve(std::vector<Vector<Direction>>& lambda, std::vector<ContactField<Direction>>& fields);
+  /// Solves for the derivative. False if the tangent is singular. `lambda`: per block, D lambda as a seed. If lambda is
+  /// unknown, pass D lambda = 0; its solution is added.
+  bool solve(std::vector<Vector<Direction>>& lambda);
+  /// Of the last solve, per block: local unknowns with all derivatives.
+  const std::vector<ContactField<Direction>>& fields() const { return fields_; }
 
   /// Stores the derivatives of the last solve in the current state of every block. Displacements remain unexpanded.
-  void store_state(const std::vector<ContactField<Direction>>& fields, const std::vector<Vector<Direction>>& lambda);
+  void store_state(const std::vector<Vector<Direction>>& lambda);
 
   /// Largest derivatives, per parameter. largest_motion(): of contact displacements in this increment and of placements
   /// in the last, length. load(): of the forces of bodies and loads in the engine's rows, before they cancel.
@@ -95,6 +93,7 @@ class LinearisedEquilibrium {
   Solving solving_ = Solving::unrefined;  ///< unrefined as long as that is accurate
   PseudoLoad load_;
   Matrix<double> increment_, compact_;
+  std::vector<ContactField<Direction>> fields_;
 };
 
 }  // namespace stickslip

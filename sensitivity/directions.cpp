@@ -2,11 +2,13 @@
 #include <numeric>
 
 #include "core/engine/body_matrix.hpp"
+#include "core/model/element_kernels_impl.hpp"
 #include "sensitivity/differentiation.hpp"
 
 namespace stickslip {
 
 STICKSLIP_SLOTS(, Direction);
+STICKSLIP_ELEMENTS(Direction);
 
 namespace {
 

@@ -7,7 +7,6 @@
 
 #include "core/model/response.hpp"
 #include "sensitivity/adjoint.hpp"
-#include "sensitivity/branches.hpp"
 #include "sensitivity/one_sided.hpp"
 #include "sensitivity/open_responses.hpp"
 #include "sensitivity/quotients.hpp"

@@ -15,10 +15,8 @@ bool MonolithicAL::differentiate_increment(Differentiation& problem, const State
   std::vector<Vector<Direction>> lambda(problem.blocks.size(), lift(increment.state.multiplier));
   LinearisedEquilibrium linearised(problem, increment.state, rho, regularisation_blocks(problem), cone_radius(),
                                    increment.time, true, previous.history);
-  if (!linearised.valid()) return false;
-  std::vector<ContactField<Direction>> fields;
-  if (!linearised.solve(lambda, fields)) return false;
-  linearised.store_state(fields, lambda);
+  if (!linearised.solve(lambda)) return false;
+  linearised.store_state(lambda);
   return true;
 }
 

@@ -2,14 +2,21 @@
 
 #include <limits>
 
-#include "core/model/flow_points.hpp"
-#include "sensitivity/one_sided.hpp"
-#include "sensitivity/vertex_ties.hpp"
+#include "sensitivity/ties/tie.hpp"
 
 namespace stickslip {
 namespace {
 
-using ByDirection = Direction::Gradient;
+using ByDirection = RateScales::ByDirection;
+
+/// 1 over the size of each parameter of a block; 0 where it is not known.
+ByDirection per_size(const Model& model, const ParameterBlock& block) {
+  ByDirection per = ByDirection::Zero();
+  for (std::size_t d = 0; d < block.parameters.size(); ++d)
+    if (const double value = model.scene.parameters[block.parameters[d]].value; value != 0)
+      per[static_cast<Eigen::Index>(d)] = 1 / std::abs(value);
+  return per;
+}
 
 /// Reads the margins of one increment.
 class ChangeReader {
@@ -20,16 +27,10 @@ class ChangeReader {
         slots_(slots),
         of_(of),
         nearest_(nearest),
-        per_size_(ByDirection::Zero()),
-        motion_(ByDirection::Zero()) {
-    for (std::size_t d = 0; d < of.block.parameters.size(); ++d)
-      if (const double value = model.scene.parameters[of.block.parameters[d]].value; value != 0)
-        per_size_[static_cast<Eigen::Index>(d)] = 1 / std::abs(value);
-    for (const auto& u : of.at.displacement) motion_ = motion_.max(u.d.abs());
-  }
+        scales_(model, slots, of.block, of.at, per_size(model, of.block), of.largest),
+        negligible_(rounding_share * scales_.of_tractions) {}
 
   void read_contact() {
-    negligible_ = share * traction_rates(model_, slots_, of_.at).max(of_.largest * per_size_);
     for (int p = 0; p < static_cast<int>(model_.points.size()); ++p) read_point(p);
   }
 
@@ -41,30 +42,26 @@ class ChangeReader {
 
   /// At small strain: the weight of a master node is zero where the slave node leaves its facet.
   void read_facets() {
-    const ByDirection motion = motion_of_mesh();
     for (int p = 0; p < static_cast<int>(model_.points.size()); ++p) {
       const auto& point = model_.points[p];
       const auto& weights = of_.block.slots.geometry[p].weights;
-      const bool has_nodes = point.master == ContactPoint::Master::facet && point.of_polyline.empty();
+      const bool has_nodes = point.master == ContactPoint::Master::facet && point.obstacle < 0;
       if (!has_nodes || of_.state.contact.state[p] == ContactState::open || point.mesh_size == 0) continue;
       for (Eigen::Index k = point.slave_nodes; k < weights.size(); ++k) {
         const Direction share_of_node = weights[k].v < 0 ? -weights[k] : weights[k];
-        lower(share_of_node, share_of_node.v <= weak_margin, share * (rigid * motion / point.mesh_size).max(per_size_));
+        lower(share_of_node, share_of_node.v <= weak_margin, scales_.negligible(scales_.of_mesh / point.mesh_size));
       }
     }
   }
 
   void read_vertices() {
-    const ByDirection motion = motion_of_mesh();
     for_each_vertex_way(model_, of_.block.slots, of_.at.displacement, of_.state, of_.time,
                         [&](const Direction& way, double length) {
-                          lower(way, std::abs(way.v) <= weak_margin, share * (rigid * motion / length).max(per_size_));
+                          lower(way, std::abs(way.v) <= weak_margin, scales_.negligible(scales_.of_mesh / length));
                         });
   }
 
  private:
-  static constexpr double share = 1e-10, rigid = 1e-3;  // as for the verdicts at ties (sensitivity/branches.cpp)
-
   /// Lowers the distances by those to the zero of a margin. `tie`: it counts as zero; `negligible`: derivatives up to
   /// this count as zero.
   void lower(const Direction& margin, bool tie, const ByDirection& negligible) {
@@ -86,19 +83,11 @@ class ChangeReader {
     side = std::min(side, std::abs(way));
   }
 
-  /// Largest derivative of a displacement or of a node's place.
-  ByDirection motion_of_mesh() const {
-    ByDirection motion = motion_;
-    for (Eigen::Index k = 0; k < of_.block.slots.points.size(); ++k)
-      motion = motion.max(of_.block.slots.points.data()[k].d.abs());
-    return motion;
-  }
-
   void read_point(int p) {
     const auto& point = model_.points[p];
     const auto& contact = of_.at.contact;
     const ContactState state = of_.state.contact.state[p];
-    const double elastic = slots_.stiffness[p] / slots_.geometry[p].area;
+    const double elastic = elastic_traction(slots_, p);
     const double none = weak_margin * of_.largest;
     if (state == ContactState::open)
       return lower(contact.gap[p], elastic * contact.gap[p].v <= none, negligible_ / elastic);
@@ -163,11 +152,7 @@ class ChangeReader {
     const auto& [stress, before, after, modulus] = point.trial;
     const Direction bound = point.hardening.bound(before);
     const Direction excess = (stress - bound) / bound.v;
-    const ByDirection size = stress.d.abs()
-                                 .max(bound.d.abs())
-                                 .max(modulus.v * before.d.abs().max(after.d.abs()))
-                                 .max(rigid * modulus.v / point.size * motion_);
-    const ByDirection negligible = share * (size / bound.v).max(per_size_);
+    const ByDirection negligible = negligible_of_flow(point, bound, ByDirection::Zero(), scales_);
     lower(excess, std::abs(excess.v) <= weak_margin, negligible);
     if (!(after.v > before.v)) return;
     for (const auto& row : point.hardening.rows)
@@ -179,8 +164,7 @@ class ChangeReader {
   const Slots<double>& slots_;
   const DifferentiatedIncrement& of_;
   NearestChange& nearest_;
-  ByDirection per_size_;    ///< 1 over the size of each parameter; 0 where it is not known
-  ByDirection motion_;      ///< largest derivative of a displacement
+  RateScales scales_;
   ByDirection negligible_;  ///< of tractions
 };
 

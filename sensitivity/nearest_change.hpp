@@ -18,7 +18,7 @@
 /// their master to the next.
 #pragma once
 
-#include "sensitivity/branches.hpp"
+#include "sensitivity/differentiation.hpp"
 
 namespace stickslip {
 

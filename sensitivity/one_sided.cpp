@@ -4,9 +4,10 @@
 #include <limits>
 
 #include "core/model/response.hpp"
-#include "sensitivity/branch_search.hpp"
 #include "sensitivity/response_ties.hpp"
 #include "sensitivity/sided_geometry.hpp"
+#include "sensitivity/ties/search.hpp"
+#include "sensitivity/ties/tie.hpp"
 
 namespace stickslip {
 namespace {
@@ -18,7 +19,7 @@ Margins margins_of(const Model& model, const Slots<double>& slots, const State<d
   const auto& contact = state.contact;
   const auto tangential = [&](const Vector<double>& of, int first) { return norm(of.segment(first, point.tangents)); };
   const double pressure = -contact.traction[point.multiplier];
-  const double elastic = slots.stiffness[p] / slots.geometry[p].area;
+  const double elastic = elastic_traction(slots, p);
   const bool open = contact.state[p] == ContactState::open;
   const double distance = open ? elastic * contact.gap[p] : pressure;
   Margins margin{largest > 0                                                  ? distance / largest
@@ -61,25 +62,23 @@ bool has_tied_responses(const Model& model, const Slots<double>& slots, WholeSta
 std::size_t first_tie(const Model& model, const Slots<double>& slots, const Method& method,
                       const Trajectory<double>& trajectory, WholeStates& states) {
   const auto scales = traction_scales(model, slots, trajectory);
-  const auto has = [&](std::size_t n) {
-    if (!model.effects.plasticity && !model.slides_along_curves())  // (contact alone decides, and thin states have it)
-      return has_ties(model, slots, method, trajectory.initial, trajectory.increments[n], scales[n]);
-    const auto& increment = states.increment(n);
-    return has_ties(model, slots, method, states.before(n), increment, scales[n]);
-  };
+  const bool contact_decides = !model.effects.plasticity && !model.slides_along_curves();  // and thin states have it
   std::size_t n = 0;
-  while (n < scales.size() && !has(n)) ++n;
+  for (; n < scales.size(); ++n) {
+    const auto& increment = contact_decides ? trajectory.increments[n] : states.increment(n);
+    const auto& before = contact_decides ? trajectory.initial : states.before(n);
+    if (has_ties(model, slots, method, before, increment, scales[n])) break;
+  }
   return n;
 }
 
-/// Whether a width has an infinite derivative: at most one point is closed, and another is about to close.
-bool widens_at_once(const Model& model, const Slots<double>& slots, const State<double>& state, const Response& asked) {
-  if (asked.kind != Response::Kind::contact_half_width) return false;
+/// Whether a response is a width with an infinite derivative: at most one point is closed, and another is about to close.
+bool widens_at_once(const Model& model, const Slots<double>& slots, const State<double>& state, std::size_t response) {
+  if (model.scene.responses[response].kind != Response::Kind::contact_half_width) return false;
   const double largest = traction_scale(model, slots, state);
   const bool rings = model.scene.space == Space::axisymmetric;
   int wide = 0, weak = 0;  // closed points; points about to close
-  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
-    if (!model.is_of_contact(model.points[p].contact, asked.on)) continue;
+  for (int p : model.response_places[response].points) {
     const bool is_weak = margins_of(model, slots, state, p, largest).open <= weak_margin;
     const bool closed = state.contact.state[p] != ContactState::open;
     weak += is_weak;
@@ -107,14 +106,14 @@ struct SideRun {
   }
 
   /// Differentiates increment n, the one after the last. Then on_increment(increment) is called with the derivative in
-  /// blocks[0].current and the branches in `increment`. False if it has no derivative. `held`: as in
-  /// differentiate_side().
+  /// blocks[0].current and the branches in `increment`. False if it has no derivative. `unconfirmed`: as
+  /// in differentiate_side().
   template <class F>
-  bool advance(std::size_t n, double side, F&& on_increment, bool held = false) {
+  bool advance(std::size_t n, double side, F&& on_increment, Unconfirmed unconfirmed = Unconfirmed::fails) {
     Differentiation problem{method, model, slots, engine, blocks, 1, {}};
     Increment<double> increment = states.increment(n);
     const State<double>& previous = states.before(n);
-    const bool found = differentiate_side(problem, previous, increment, {side, parameter, scales[n]}, held);
+    const bool found = differentiate_side(problem, previous, increment, {side, parameter, scales[n]}, unconfirmed);
     counters += problem.counters;
     if (!found) return false;
     on_increment(increment);
@@ -147,7 +146,7 @@ void record_side(const Model& model, const Slots<double>& slots, const Parameter
   for (Eigen::Index i = 0; i < column.rows(); ++i) column(i, 0) = values[i].d[0];
   take_side_of_ties(model, block, block.current, side < 0 ? Ties::falling : Ties::growing, column);
   for (std::size_t i = 0; i < responses.size(); ++i)
-    if (!widens_at_once(model, slots, at.state, responses[i])) out(i, parameter) = column(i, 0);
+    if (!widens_at_once(model, slots, at.state, i)) out(i, parameter) = column(i, 0);
 }
 
 /// Both sides of the derivatives by one parameter, in column `parameter`. `first`: index of the first increment with
@@ -223,15 +222,13 @@ Margins margins(const Model& model, const Slots<double>& slots, const State<doub
 
 bool has_ties(const Model& model, const Slots<double>& slots, const Method& method, const State<double>& previous,
               const Increment<double>& increment, double largest) {
-  const auto weak = [&](const State<double>& at, const std::vector<double>& factor) {
+  const auto has = [&](const State<double>& at, const std::vector<double>& factor) {
     const auto rho = adapted(initial_regularisation(slots, method), factor);
-    return !weak_points(model, slots, at, rho, cone_radius_of(method), largest).empty() ||
-           !flow_ties(model, slots, at.displacement, previous.history.bodies).empty() ||
-           !vertex_ties(model, slots, at, increment.time, largest).empty();
+    return has_ties({model, slots, at, previous.history.bodies, rho, cone_radius_of(method), increment.time, largest});
   };
-  if (!scheme_of(method).of_each_augmentation) return weak(increment.state, increment.rho_factor);
+  if (!scheme_of(method).of_each_augmentation) return has(increment.state, increment.rho_factor);
   return std::any_of(increment.augmented.begin(), increment.augmented.end(),
-                     [&](const auto& sweep) { return weak(sweep.state, sweep.rho_factor); });
+                     [&](const auto& sweep) { return has(sweep.state, sweep.rho_factor); });
 }
 
 std::optional<OneSided> one_sided_derivatives(const Model& model, const Slots<double>& slots, const Method& method,
@@ -263,44 +260,33 @@ std::optional<OneSided> one_sided_derivatives(const Model& model, const Slots<do
   return sides;
 }
 
-void TakenBranches::give(Increment<double>& increment) const {
-  increment.state.contact = contact;
-  increment.state.flow = flow;
-  increment.state.history.foot = foot;
-  increment.state.history.patch = patch;
-  for (std::size_t k = 0; k < sweeps.size(); ++k) {
-    increment.augmented[k].state.contact = sweeps[k].first;
-    increment.augmented[k].state.flow = sweeps[k].second;
-  }
+TakenBranches::TakenBranches(Increment<double> of)
+    : end{std::move(of.state.contact), std::move(of.state.flow)},
+      foot(std::move(of.state.history.foot)),
+      patch(std::move(of.state.history.patch)) {
+  for (auto& sweep : of.augmented) sweeps.push_back({std::move(sweep.state.contact), std::move(sweep.state.flow)});
 }
 
-std::optional<std::vector<TakenBranches>> consistent_at_ties(const Model& model, const Slots<double>& slots,
-                                                             const Method& method, const Trajectory<double>& trajectory,
-                                                             WholeStates& states, Workspace<double>& workspace,
-                                                             Counters& counters) {
-  const std::size_t first = first_tie(model, slots, method, trajectory, states);
-  if (first == states.count()) return std::nullopt;
+void TakenBranches::give(Increment<double>& increment) const {
+  const auto give_to = [](State<double>& state, const OfState& taken) {
+    state.contact = taken.contact;
+    state.flow = taken.flow;
+  };
+  give_to(increment.state, end);
+  increment.state.history.foot = foot;
+  increment.state.history.patch = patch;
+  for (std::size_t k = 0; k < sweeps.size(); ++k) give_to(increment.augmented[k].state, sweeps[k]);
+}
+
+std::vector<TakenBranches> consistent_at_ties(const Model& model, const Slots<double>& slots, const Method& method,
+                                              const Trajectory<double>& trajectory, WholeStates& states,
+                                              Workspace<double>& workspace, Counters& counters) {
   std::vector<TakenBranches> taken;
-  for (const auto& increment : trajectory.increments) {
-    const auto& history = increment.state.history;
-    taken.push_back({increment.state.contact, {}, history.foot, history.patch, {}});
-    for (const auto& sweep : increment.augmented) taken.back().sweeps.push_back({sweep.state.contact, {}});
-  }
+  if (first_tie(model, slots, method, trajectory, states) == states.count()) return taken;
   SideRun run(method, model, slots, *workspace.engine, trajectory, states,
               make_slots<Direction>(model, all_growing(model.scene)), 1);
-  const auto take = [&](std::size_t n, Increment<double>& increment) {
-    taken[n].contact = std::move(increment.state.contact);
-    taken[n].flow = std::move(increment.state.flow);
-    taken[n].foot = std::move(increment.state.history.foot);
-    taken[n].patch = std::move(increment.state.history.patch);
-    for (std::size_t k = 0; k < increment.augmented.size(); ++k)
-      taken[n].sweeps[k] = {std::move(increment.augmented[k].state.contact),
-                            std::move(increment.augmented[k].state.flow)};
-  };
-  bool found = true;
-  for (std::size_t n = 0; n < states.count() && found; ++n)
-    found = run.advance(
-        n, 1, [&](Increment<double>& increment) { take(n, increment); }, true);
+  const auto take = [&](Increment<double>& increment) { taken.emplace_back(std::move(increment)); };
+  while (taken.size() < states.count() && run.advance(taken.size(), 1, take, Unconfirmed::holds)) continue;
   counters += run.counters;
   return taken;
 }

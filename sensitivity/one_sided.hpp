@@ -1,10 +1,9 @@
 /// One-sided derivatives at kinks of the solution, and one derivative that stands for both sides.
 ///
-/// For one parameter and one side, contact points at ties take the branches that their own derivatives confirm
-/// (sensitivity/branches.hpp); material points at ties do the same (sensitivity/flow_ties.hpp). A projection onto a
-/// vertex of the master passes to another facet on each side (sensitivity/sided_geometry.hpp). The derivative of the
-/// history then differs between the two sides. So both are carried to the end of the run, where they may agree again.
-/// Uzawa's truncated scheme does this in each augmentation.
+/// For one parameter and one side, what is at a tie takes the choice that its own derivative confirms
+/// (sensitivity/ties/tie.hpp). A projection onto a vertex of the master passes to another facet on each side
+/// (sensitivity/sided_geometry.hpp). The derivative of the history then differs between the two sides. So both are
+/// carried to the end of the run, where they may agree again. Uzawa's truncated scheme does this in each augmentation.
 ///
 /// Branches that no direction confirms would give a derivative of nothing, and leave it in the history. So at ties all
 /// parameters are differentiated with the branches of one direction, in which all parameters grow (consistent_at_ties).
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "sensitivity/differentiate.hpp"
+#include "sensitivity/ties/scales.hpp"
 #include "sensitivity/whole_states.hpp"
 
 namespace stickslip {
@@ -35,9 +35,6 @@ struct Margins {
   /// The least of the margins at which a derivative is reported to have two sides.
   double least() const { return std::min({open, slip, yield}); }
 };
-
-/// Largest margin at which a point counts as being at a tie.
-inline constexpr double weak_margin = 1e-8;
 
 /// Margins of one contact point.
 Margins margins(const Model& model, const Slots<double>& slots, const State<double>& state, int point);
@@ -65,26 +62,30 @@ struct OneSided {
 std::optional<OneSided> one_sided_derivatives(const Model& model, const Slots<double>& slots, const Method& method,
                                               const Trajectory<double>& trajectory, Workspace<double>& workspace);
 
-/// Whether a contact point or a material point is at a tie in an increment. `previous`: state at its start; `largest`:
+/// Whether anything is at a tie in an increment. `previous`: state at its start; `largest`:
 /// traction_scale() of the run so far.
 bool has_ties(const Model& model, const Slots<double>& slots, const Method& method, const State<double>& previous,
               const Increment<double>& increment, double largest);
 
-/// Branches of an increment with choices at its ties: contact, flow, and the same after each augmentation.
+/// The branches that an increment takes with the choices at its ties.
 struct TakenBranches {
-  ContactField<double> contact;
-  FlowBranches flow;
+  struct OfState {
+    ContactField<double> contact;
+    FlowBranches flow;
+  };
+  OfState end;
   Vector<double> foot;  ///< History::foot and History::patch, with the patches that were chosen at vertices
   std::vector<int> patch;
-  std::vector<std::pair<ContactField<double>, FlowBranches>> sweeps;
+  std::vector<OfState> sweeps;  ///< after each augmentation
+
+  explicit TakenBranches(Increment<double> of);
   void give(Increment<double>& increment) const;
 };
 
-/// Branches of all increments, chosen at ties along one direction of all parameters; none if there are no ties.
-/// `states`: of the trajectory. The work is added to `counters`.
-std::optional<std::vector<TakenBranches>> consistent_at_ties(const Model& model, const Slots<double>& slots,
-                                                             const Method& method, const Trajectory<double>& trajectory,
-                                                             WholeStates& states, Workspace<double>& workspace,
-                                                             Counters& counters);
+/// Branches of the increments, up to the first that has no derivative, chosen at ties along one direction of all
+/// parameters; empty if there are no ties. `states`: of the trajectory. The work is added to `counters`.
+std::vector<TakenBranches> consistent_at_ties(const Model& model, const Slots<double>& slots, const Method& method,
+                                              const Trajectory<double>& trajectory, WholeStates& states,
+                                              Workspace<double>& workspace, Counters& counters);
 
 }  // namespace stickslip

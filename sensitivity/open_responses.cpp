@@ -28,7 +28,7 @@ double reach_of(const Response& response, double force, double traction, double 
   switch (response.kind) {
     case Response::Kind::reaction:
     case Response::Kind::contact_force:
-      return force * (response.component == "moment" ? extent : 1);
+      return force * (response.component == Response::Component::moment ? extent : 1);
     case Response::Kind::contact_pressure:
       return traction;
     case Response::Kind::contact_half_width:

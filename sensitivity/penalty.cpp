@@ -16,10 +16,8 @@ bool Penalty::differentiate_increment(Differentiation& problem, const State<doub
   for (auto& block : problem.blocks) lambda.push_back(stored_traction(problem.model, block.previous));
   LinearisedEquilibrium linearised(problem, increment.state, rho, regularisation_blocks(problem), ConeRadius::augmented,
                                    increment.time, false, previous.history);
-  if (!linearised.valid()) return false;
-  std::vector<ContactField<Direction>> fields;
-  if (!linearised.solve(lambda, fields)) return false;
-  linearised.store_state(fields, lambda);
+  if (!linearised.solve(lambda)) return false;
+  linearised.store_state(lambda);
   return true;
 }
 

@@ -1,7 +1,11 @@
+#include "core/model/element_kernels_impl.hpp"
 #include "core/solids/element_work.hpp"
 #include "sensitivity/pull_back.hpp"
 
 namespace stickslip {
+
+STICKSLIP_ELEMENTS(Reverse);
+
 namespace {
 
 /// The law with plain numbers, and the numbers as they are on the tape.

@@ -3,24 +3,24 @@
 namespace stickslip {
 namespace {
 
-/// The values of which a response takes one. pre: can_tie(response).
-std::vector<double> samples_of(const Model& model, const Slots<double>& slots, const Response& response,
+/// The values of which Scene::responses[index] takes one. pre: can_tie of it.
+std::vector<double> samples_of(const Model& model, const Slots<double>& slots, std::size_t index,
                                const State<double>& state) {
-  const int axis = response.component.empty() ? 0 : response.component[0] - 'x';
+  const Response& response = model.scene.responses[index];
+  const ResponsePlace& place = model.response_places[index];
   std::vector<double> samples;
   if (response.kind == Response::Kind::displacement) {
-    for (int node : model.side(response.on).nodes) samples.push_back(state.displacement[node * model.dimension + axis]);
+    for (int node : place.nodes) samples.push_back(state.displacement[node * model.dimension + response.axis()]);
     return samples;
   }
-  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+  for (int p : place.points) {
     const auto& point = model.points[p];
-    if (!model.is_of_contact(point.contact, response.on)) continue;
     if (response.kind == Response::Kind::contact_pressure)
       samples.push_back(-state.contact.traction[point.multiplier]);
     else if (response.kind == Response::Kind::gap)
       samples.push_back(state.contact.gap[p]);
     else if (point.tangents > 0)
-      samples.push_back(detail::slip_component(model, slots, state, p, response.component));
+      samples.push_back(detail::slip_component(model, slots, state, p, response));
   }
   return samples;
 }
@@ -28,16 +28,19 @@ std::vector<double> samples_of(const Model& model, const Slots<double>& slots, c
 }  // namespace
 
 bool has_tied_responses(const Model& model, const Slots<double>& slots, const State<double>& state) {
-  return std::any_of(model.scene.responses.begin(), model.scene.responses.end(), [&](const Response& response) {
-    if (!can_tie(response)) return false;
-    const auto samples = samples_of(model, slots, response, state);
-    if (samples.empty()) return false;
+  for (std::size_t i = 0; i < model.scene.responses.size(); ++i) {
+    const Response& response = model.scene.responses[i];
+    if (!can_tie(response)) continue;
+    const auto samples = samples_of(model, slots, i, state);
+    if (samples.empty()) continue;
     const auto [least, most] = std::minmax_element(samples.begin(), samples.end());
     const double taken = response.take == Response::Take::max ? *most : *least;
     const double size = std::max(std::abs(*least), std::abs(*most));
-    return std::count_if(samples.begin(), samples.end(),
-                         [&](double sample) { return std::abs(sample - taken) <= take_tie * size; }) > 1;
-  });
+    if (std::count_if(samples.begin(), samples.end(),
+                      [&](double sample) { return std::abs(sample - taken) <= take_tie * size; }) > 1)
+      return true;
+  }
+  return false;
 }
 
 void take_side_of_ties(const Model& model, const ParameterBlock& block, const State<Direction>& at, Ties side,

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/model/pairing.hpp"
+#include "sensitivity/ties/scales.hpp"
 
 namespace stickslip {
 namespace {
@@ -18,7 +19,7 @@ bool may_leave(const ContactPoint& point) {
 }
 
 bool same_part(const ContactPoint& a, const ContactPoint& b) {
-  return a.master == b.master && a.nodes == b.nodes && a.of_polyline == b.of_polyline && a.segments == b.segments;
+  return a.master == b.master && a.nodes == b.nodes && a.corners == b.corners && a.segments == b.segments;
 }
 
 /// The point with the same slave node; nullptr if there is none.
@@ -37,6 +38,7 @@ std::vector<ContactPoint> paired_beside(const Model& model, const Points<Directi
   beside.dimension = model.dimension;
   beside.node_count = model.node_count;
   beside.bodies = model.bodies;
+  beside.contact_sides = model.contact_sides;
   for (std::size_t i = 0; i < beside.scene.numbers.size(); ++i)
     beside.scene.numbers[i] += step * numbers.at_slot[i].d[0];
   Points<double> moved(points.rows(), points.cols());
@@ -47,10 +49,12 @@ std::vector<ContactPoint> paired_beside(const Model& model, const Points<Directi
 
 /// Vertices of the polyline that a point faces; those of its first facet are the first two.
 std::vector<int> vertices_faced(const Model& model, const ContactPoint& point) {
-  std::vector<int> vertices = point.of_polyline;
-  for (const auto& segment : point.segments)
-    for (int node : segment.master)
-      if (node >= model.node_count) vertices.push_back(node - model.node_count);
+  std::vector<int> vertices;
+  const auto add = [&](int node) {
+    if (node >= model.node_count) vertices.push_back(node - model.node_count);
+  };
+  std::for_each(point.corners.begin(), point.corners.end(), add);
+  for (const auto& segment : point.segments) std::for_each(segment.master.begin(), segment.master.end(), add);
   return vertices;
 }
 
@@ -60,9 +64,10 @@ double speed(const Model& model, const Points<Direction>& points, const Numbers<
   for (const auto& point : model.points) {
     if (!may_leave(point)) continue;
     size = point.mesh_size > 0 ? std::min(size, point.mesh_size) : size;
-    for (const auto* nodes : {&point.nodes, &point.neighbours})
+    for (const auto* nodes : {&point.nodes, &point.corners})
       for (int node : *nodes)
-        for (Eigen::Index i = 0; i < points.rows(); ++i) fastest = std::max(fastest, std::abs(points(i, node).d[0]));
+        for (Eigen::Index i = 0; node < model.node_count && i < points.rows(); ++i)
+          fastest = std::max(fastest, std::abs(points(i, node).d[0]));
     const auto vertices = vertices_faced(model, point);
     if (vertices.empty()) continue;
     const auto& polyline = std::get<Polyline>(model.scene.obstacles[point.obstacle].shape);
@@ -94,18 +99,17 @@ std::optional<PointGeometry<Direction>> on_nodes(PointGeometry<Direction> geomet
   return geometry;
 }
 
-/// Whether two geometries of the same nodes have the same values, to the tolerance of a tie.
+/// Whether two geometries of the same nodes have the same values, so that nothing jumps.
 bool meets(const PointGeometry<Direction>& a, const PointGeometry<Direction>& b, double size) {
-  constexpr double tie = 1e-6;
-  return (values(a.normal) - values(b.normal)).cwiseAbs().maxCoeff() <= tie &&
-         (values(a.weights) - values(b.weights)).cwiseAbs().maxCoeff() <= tie &&
-         std::abs(a.gap.v - b.gap.v) <= tie * size && std::abs(a.area.v - b.area.v) <= tie * a.area.v;
+  return (values(a.normal) - values(b.normal)).cwiseAbs().maxCoeff() <= straight &&
+         (values(a.weights) - values(b.weights)).cwiseAbs().maxCoeff() <= straight &&
+         std::abs(a.gap.v - b.gap.v) <= straight * size && std::abs(a.area.v - b.area.v) <= straight * a.area.v;
 }
 
 }  // namespace
 
 SidedPairing sided_pairing(const Model& model, int parameter, double side) {
-  constexpr double step = 1e-7, beyond_end = 2e-6;  // widths: a vertex 1e-9 (core/contact/search.hpp), a free end 1e-6
+  constexpr double step = 1e-7, beyond_end = 2e-6;  // widths: a vertex 1e-9 (core/contact/curve.hpp), a free end 1e-6
   SidedPairing out;
   if (std::none_of(model.points.begin(), model.points.end(), may_leave)) return out;
   const auto numbers = seeded(model.scene, {parameter});
@@ -148,7 +152,7 @@ bool take_side(const Model& model, const SidedPairing& pairing, const std::vecto
     }
     slots.geometry[p] = *geometry;
     sided.points[p].master = other->master;
-    sided.points[p].of_polyline = other->of_polyline;
+    sided.points[p].corners = other->corners;
   }
   for (const auto& other : pairing.points)  // points that face the master on this side alone
     if (!counterpart(model.points, other))

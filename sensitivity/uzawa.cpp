@@ -52,17 +52,6 @@ void update_derivatives(std::vector<Vector<Direction>>& lambda, const std::vecto
     for (Eigen::Index k = 0; k < lambda[b].size(); ++k) lambda[b][k].d = fields[b].traction[k].d;
 }
 
-LinearisedEquilibrium linearise(const UzawaAL& method, Differentiation& problem, const State<double>& previous,
-                                const State<double>& at, std::vector<double> factor, double oversize, double time,
-                                RegularisationField<double>& rho) {
-  for (double& f : factor) f *= oversize;
-  rho = adapted(initial_regularisation(problem.slots, method), factor);
-  auto blocks = method.scheme().reads_regularisation ? regularisation_blocks(problem, factor)
-                                                     : std::vector(problem.blocks.size(), constant<Direction>(rho));
-  return LinearisedEquilibrium(problem, at, rho, std::move(blocks), method.cone_radius(), time, false,
-                               previous.history);
-}
-
 /// kappa_s of the preconditioned scheme. `contraction`: of the updates; 0: not measured.
 double chosen_oversize(const UzawaAL& method, const Slots<double>& slots, const RegularisationField<double>& rho,
                        double contraction) {
@@ -95,6 +84,54 @@ State<double> restated(const Model& model, State<double> at, const Regularisatio
   return at;
 }
 
+/// The equilibrium that the passes of a scheme linearise. It outlives what linearise() and record() return.
+struct SchemeEquilibrium {
+  const UzawaAL& method;
+  const State<double>& of_loop;
+  double oversize;                                       ///< kappa_s
+  std::vector<double> factor;                            ///< on the initial rho, if the scheme depends on that
+  RegularisationField<double> rho;                       ///< kappa_s times that of the loop
+  std::optional<State<double>> restated = std::nullopt;  ///< for the preconditioned scheme
+
+  const State<double>& state() const { return restated ? *restated : of_loop; }
+
+  LinearisedEquilibrium linearise(Differentiation& problem, const State<double>& previous, double time) const {
+    auto blocks = method.scheme().reads_regularisation ? regularisation_blocks(problem, factor)
+                                                       : std::vector(problem.blocks.size(), constant<Direction>(rho));
+    return LinearisedEquilibrium(problem, state(), rho, std::move(blocks), method.cone_radius(), time, false,
+                                 previous.history);
+  }
+
+  RecordedEquilibrium record(AdjointProblem& problem, const State<double>& previous, double time,
+                             bool objectives) const {
+    problem.tape.rewind(problem.slots_end);
+    const auto recorded = method.scheme().reads_regularisation
+                              ? adapted(initial_regularisation(problem.recorded, method), factor)
+                              : constant<Reverse>(rho);
+    return RecordedEquilibrium(problem, previous, state(), recorded, method.cone_radius(), time, false, objectives);
+  }
+};
+
+/// With rho of the loop times `oversize`.
+SchemeEquilibrium scheme_equilibrium(const UzawaAL& method, const Slots<double>& slots, const State<double>& at,
+                                     std::vector<double> factor, double oversize) {
+  for (double& f : factor) f *= oversize;
+  auto rho = adapted(initial_regularisation(slots, method), factor);
+  return {method, at, oversize, std::move(factor), std::move(rho)};
+}
+
+/// That of all schemes but the truncated one.
+template <class Problem>
+SchemeEquilibrium scheme_equilibrium(const UzawaAL& method, const Problem& problem, const Increment<double>& at) {
+  if (method.sensitivity != UzawaAL::Sensitivity::preconditioned)
+    return scheme_equilibrium(method, problem.slots, at.state, at.rho_factor, method.scheme().oversize);
+  const auto own = adapted(initial_regularisation(problem.slots, method), at.rho_factor);
+  const double oversize = chosen_oversize(method, problem.slots, own, at.contraction);
+  auto rho = adapted(own, std::vector<double>(own.size(), oversize));
+  auto state = restated(problem.model, at.state, rho);
+  return {method, at.state, oversize, {}, std::move(rho), std::move(state)};
+}
+
 /// Iterates D lambda <- D t until each parameter has ended. False if the passes reach their limit, or if a tangent is
 /// singular. `change`: largest change of D lambda in a pass; q: ratio of the last two changes; `floors`: what rounding
 /// of rho Dg makes of a change. A parameter ends in one of four cases:
@@ -112,7 +149,7 @@ State<double> restated(const Model& model, State<double> at, const Regularisatio
 /// The rounding of Dg is that of its terms, and that of the forces that balance in it. Example: tractions do not depend
 /// on a thickness, so its Dg is this rounding alone.
 bool iterate(Differentiation& problem, LinearisedEquilibrium& linearised, const RegularisationField<double>& rho,
-             std::vector<Vector<Direction>>& lambda, std::vector<ContactField<Direction>>& fields, double tolerance) {
+             std::vector<Vector<Direction>>& lambda, double tolerance) {
   double stiffest = 0, rho_over_k = 0;  // largest rho; largest rho over k: traction per force that rounds in a node
   for (std::size_t p = 0; p < rho.size(); ++p) {
     stiffest = std::max(stiffest, rho[p].normal);
@@ -128,9 +165,9 @@ bool iterate(Differentiation& problem, LinearisedEquilibrium& linearised, const 
   detail::Progress progress;
   for (int pass = 1; pass <= detail::Progress::limit; ++pass) {
     const Matrix<double> before = columns([&](auto&, int b) -> auto& { return lambda[b]; });
-    if (!linearised.solve(lambda, fields)) return false;
-    const Matrix<double> after = columns([&](auto&, int b) -> auto& { return fields[b].traction; });
-    update_derivatives(lambda, fields);
+    if (!linearised.solve(lambda)) return false;
+    const Matrix<double> after = columns([&](auto&, int b) -> auto& { return linearised.fields()[b].traction; });
+    update_derivatives(lambda, linearised.fields());
     const Vector<double> floors =
         8 * unit_roundoff * (stiffest * linearised.largest_motion() + rho_over_k * linearised.load());
     bool converged = true;
@@ -171,80 +208,18 @@ bool iterate(Differentiation& problem, LinearisedEquilibrium& linearised, const 
 /// The truncated scheme: one pass per augmentation that was performed.
 bool differentiate_augmentations(const UzawaAL& method, Differentiation& problem, const State<double>& previous,
                                  const Increment<double>& increment) {
-  RegularisationField<double> rho;
   auto lambda = carried_multiplier(problem, previous.contact.traction);
-  for (const auto& augmented : increment.augmented) {
-    auto linearised =
-        linearise(method, problem, previous, augmented.state, augmented.rho_factor, 1, increment.time, rho);
-    if (!linearised.valid()) return false;
-    for (std::size_t b = 0; b < lambda.size(); ++b)
-      for (Eigen::Index k = 0; k < lambda[b].size(); ++k) lambda[b][k].v = augmented.state.multiplier[k];
-    std::vector<ContactField<Direction>> fields;
-    if (!linearised.solve(lambda, fields)) return false;
-    linearised.store_state(fields, lambda);
-    update_derivatives(lambda, fields);
+  for (const auto& [at, rho_factor] : increment.augmented) {
+    const auto equilibrium = scheme_equilibrium(method, problem.slots, at, rho_factor, 1);
+    auto linearised = equilibrium.linearise(problem, previous, increment.time);
+    for (auto& of_block : lambda)
+      for (Eigen::Index k = 0; k < of_block.size(); ++k) of_block[k].v = at.multiplier[k];
+    if (!linearised.solve(lambda)) return false;
+    linearised.store_state(lambda);
+    update_derivatives(lambda, linearised.fields());
   }
   problem.record = {static_cast<int>(increment.augmented.size()), 1, 0};
   return true;
-}
-
-/// The preconditioned scheme: the fixed point of D lambda <- D t with the factor at kappa_s rho.
-bool differentiate_preconditioned(const UzawaAL& method, Differentiation& problem, const State<double>& previous,
-                                  const Increment<double>& increment) {
-  const auto own = adapted(initial_regularisation(problem.slots, method), increment.rho_factor);
-  const double oversize = chosen_oversize(method, problem.slots, own, increment.contraction);
-  const auto rho = adapted(own, std::vector<double>(own.size(), oversize));
-  const std::vector blocks(problem.blocks.size(), constant<Direction>(rho));
-  const State<double> at = restated(problem.model, increment.state, rho);
-  LinearisedEquilibrium linearised(problem, at, rho, blocks, method.cone_radius(), increment.time, false,
-                                   previous.history);
-  if (!linearised.valid()) return false;
-  auto lambda = carried_multiplier(problem, at.multiplier);
-  std::vector<ContactField<Direction>> fields;
-  // (A pass divides the error by some thousand, so 1e-12 suffices; the iterated scheme needs 1e-13.)
-  if (!iterate(problem, linearised, rho, lambda, fields, 1e-12)) return false;
-  problem.record->oversize = oversize;
-  linearised.store_state(fields, lambda);
-  return true;
-}
-
-}  // namespace
-
-bool UzawaAL::differentiate_increment(Differentiation& problem, const State<double>& previous,
-                                      const Increment<double>& increment) const {
-  using Sensitivity = UzawaAL::Sensitivity;
-  if (sensitivity == Sensitivity::truncated) return differentiate_augmentations(*this, problem, previous, increment);
-  if (sensitivity == Sensitivity::preconditioned)
-    return differentiate_preconditioned(*this, problem, previous, increment);
-  const bool oversized = sensitivity == Sensitivity::oversized;
-  const double oversize = scheme().oversize;
-  RegularisationField<double> rho;
-  auto linearised =
-      linearise(*this, problem, previous, increment.state, increment.rho_factor, oversize, increment.time, rho);
-  if (!linearised.valid()) return false;
-  auto lambda = carried_multiplier(problem, increment.state.multiplier);
-  std::vector<ContactField<Direction>> fields;
-  if (oversized) {
-    if (!linearised.solve(lambda, fields)) return false;
-    problem.record = {1, oversize, 0};
-  } else if (!iterate(problem, linearised, rho, lambda, fields, 1e-13)) {
-    if (problem.status == Status::cap) problem.message += other_scheme;
-    return false;
-  }
-  linearised.store_state(fields, lambda);
-  return true;
-}
-
-namespace {
-
-/// rho of the loop times `oversize`. The tape is rewound to the slots. If the scheme depends on rho, rho is recorded.
-RegularisationField<Reverse> recorded_regularisation(const UzawaAL& method, AdjointProblem& problem,
-                                                     std::vector<double> factor, double oversize) {
-  for (double& f : factor) f *= oversize;
-  problem.tape.rewind(problem.slots_end);
-  if (!method.scheme().reads_regularisation)
-    return constant<Reverse>(adapted(initial_regularisation(problem.slots, method), factor));
-  return adapted(initial_regularisation(problem.recorded, method), factor);
 }
 
 /// Carries the derivative by lambda back through all updates: finds x = c + A^T x and seeds the tractions with x. c:
@@ -305,11 +280,10 @@ bool pull_back_augmentations(const UzawaAL& method, AdjointProblem& problem, con
   std::vector<HistoryDerivative> gathered(objectives);
   std::vector<Vector<double>> traction(objectives);
   for (std::size_t k = increment.augmented.size(); k-- > 0;) {
-    const auto& augmented = increment.augmented[k];
+    const auto& [at, rho_factor] = increment.augmented[k];
     const bool last = k + 1 == increment.augmented.size();
-    RecordedEquilibrium recorded(problem, previous, augmented.state,
-                                 recorded_regularisation(method, problem, augmented.rho_factor, 1),
-                                 method.cone_radius(), increment.time, false, last && increment.requested);
+    const auto equilibrium = scheme_equilibrium(method, problem.slots, at, rho_factor, 1);
+    auto recorded = equilibrium.record(problem, previous, increment.time, last && increment.requested);
     if (!recorded.valid()) return false;
     for (int j = 0; j < objectives; ++j) {
       if (last)
@@ -334,52 +308,51 @@ bool pull_back_augmentations(const UzawaAL& method, AdjointProblem& problem, con
   return true;
 }
 
-/// Adjoint of the iterated scheme, or one pass (`once`), on an equilibrium recorded with the scheme's rho.
-bool pull_back_fixed_point(AdjointProblem& problem, RecordedEquilibrium& recorded, bool once, double contraction) {
+}  // namespace
+
+bool UzawaAL::differentiate_increment(Differentiation& problem, const State<double>& previous,
+                                      const Increment<double>& increment) const {
+  if (sensitivity == Sensitivity::truncated) return differentiate_augmentations(*this, problem, previous, increment);
+  const bool preconditioned = sensitivity == Sensitivity::preconditioned;
+  // (a pass of the preconditioned scheme divides the error by some thousand, so 1e-12 suffices)
+  const double tolerance = preconditioned ? 1e-12 : 1e-13;
+  const auto equilibrium = scheme_equilibrium(*this, problem, increment);
+  auto linearised = equilibrium.linearise(problem, previous, increment.time);
+  auto lambda = carried_multiplier(problem, equilibrium.state().multiplier);
+  if (sensitivity == Sensitivity::oversized) {
+    if (!linearised.solve(lambda)) return false;
+    problem.record = {1, 1, 0};
+  } else if (!iterate(problem, linearised, equilibrium.rho, lambda, tolerance)) {
+    if (problem.status == Status::cap && !preconditioned) problem.message += other_scheme;
+    return false;
+  }
+  problem.record->oversize = equilibrium.oversize;
+  linearised.store_state(lambda);
+  return true;
+}
+
+bool UzawaAL::pull_back_increment(AdjointProblem& problem, const State<double>& previous,
+                                  const Increment<double>& increment) const {
+  if (sensitivity == Sensitivity::truncated) return pull_back_augmentations(*this, problem, previous, increment);
+  const bool preconditioned = sensitivity == Sensitivity::preconditioned;
+  const double contraction = preconditioned ? 0 : increment.contraction;
+  const auto equilibrium = scheme_equilibrium(*this, problem, increment);
+  auto recorded = equilibrium.record(problem, previous, increment.time, increment.requested);
   if (!recorded.valid()) return false;
   for (int j = 0; j < static_cast<int>(problem.objectives.size()); ++j) {
     recorded.seed_outcome(j);
     Vector<double> carried;
-    if (once) {
+    if (sensitivity == Sensitivity::oversized) {
       recorded.balance(j);
       carried = recorded.take_multiplier(j);
     } else if (!iterate_back(problem, recorded, j, contraction, carried)) {
+      if (problem.status == Status::cap && !preconditioned) problem.message += other_scheme;
       return false;
     }
     problem.objectives[j].history = recorded.finish(j);
     problem.objectives[j].history.traction = carried;
   }
   return true;
-}
-
-/// Adjoint of the preconditioned scheme. rho is a constant, since the fixed point does not depend on it.
-bool pull_back_preconditioned(const UzawaAL& method, AdjointProblem& problem, const State<double>& previous,
-                              const Increment<double>& increment) {
-  const auto own = adapted(initial_regularisation(problem.slots, method), increment.rho_factor);
-  const double oversize = chosen_oversize(method, problem.slots, own, increment.contraction);
-  const auto rho = adapted(own, std::vector<double>(own.size(), oversize));
-  const State<double> at = restated(problem.model, increment.state, rho);
-  problem.tape.rewind(problem.slots_end);
-  RecordedEquilibrium recorded(problem, previous, at, constant<Reverse>(rho), method.cone_radius(), increment.time,
-                               false, increment.requested);
-  return pull_back_fixed_point(problem, recorded, false, 0);
-}
-
-}  // namespace
-
-bool UzawaAL::pull_back_increment(AdjointProblem& problem, const State<double>& previous,
-                                  const Increment<double>& increment) const {
-  using Sensitivity = UzawaAL::Sensitivity;
-  if (sensitivity == Sensitivity::truncated) return pull_back_augmentations(*this, problem, previous, increment);
-  if (sensitivity == Sensitivity::preconditioned) return pull_back_preconditioned(*this, problem, previous, increment);
-  const bool oversized = sensitivity == Sensitivity::oversized;
-  const double oversize = scheme().oversize;
-  RecordedEquilibrium recorded(problem, previous, increment.state,
-                               recorded_regularisation(*this, problem, increment.rho_factor, oversize), cone_radius(),
-                               increment.time, false, increment.requested);
-  const bool converged = pull_back_fixed_point(problem, recorded, oversized, increment.contraction);
-  if (!converged && problem.status == Status::cap) problem.message += other_scheme;
-  return converged;
 }
 
 }  // namespace stickslip

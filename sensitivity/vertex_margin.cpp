@@ -7,6 +7,7 @@
 
 #include "core/model/loading.hpp"
 #include "core/model/positions.hpp"
+#include "sensitivity/ties/scales.hpp"
 
 namespace stickslip {
 namespace {
@@ -55,7 +56,6 @@ std::vector<int> ends_of_slave(const Model& model, int curve) {
 /// `of_start(node)`: present and initial position.
 template <class At, class OfStart>
 bool has_kink_at(const MasterCurve& curve, int node, At&& present, OfStart&& of_start) {
-  constexpr double straight = 1e-6;  // as for vertices in node-to-segment contact
   const auto along = [&](int patch, const auto& where) -> Place {
     return where(curve.facets[patch][1]) - where(curve.facets[patch][0]);
   };

@@ -7,11 +7,11 @@ set -euo pipefail
 # libopenblas0-serial is named because SuiteSparse would else bring the reference BLAS, which is 3 to 6 times slower;
 # libmumps-seq-5.5 with libmumps-headers-dev, because libmumps-seq-dev would bring an MPI development tree.
 packages=(g++ cmake ninja-build libeigen3-dev libsuitesparse-dev libopenblas0-serial libmumps-seq-5.5
-  libmumps-headers-dev nlohmann-json3-dev libcli11-dev libfmt-dev fonts-liberation)
+  libmumps-headers-dev nlohmann-json3-dev libcli11-dev libfmt-dev help2man)
 case "${1:-}" in
   "") ;;
   test) packages+=(libgtest-dev libgmock-dev libbenchmark-dev librapidcheck-dev python3-jsonschema dpkg-dev file
-    zsh fish python3-numpy python3-scipy pybind11-dev python3-dev python3-nlopt) ;;
+    librsvg2-bin fonts-liberation python3-numpy python3-scipy pybind11-dev python3-dev python3-nlopt) ;;
   python) packages+=(pybind11-dev python3-dev python3-pip python3-setuptools python3-wheel python3-venv python3-numpy
     python3-pandas python3-matplotlib python3-nlopt jupyter-nbconvert python3-ipykernel) ;;
   *) echo "usage: $0 [test|python]" >&2; exit 2 ;;

@@ -64,25 +64,6 @@ class CholmodFactor {
 };
 #endif
 
-#ifdef STICKSLIP_WITH_UMFPACK
-/// Multifrontal LU factorisation, symmetric strategy (pivots on the diagonal preferred), METIS ordering.
-class UmfpackFactor {
- public:
-  /// Throws std::bad_alloc where memory ends, std::runtime_error where the analysis fails otherwise.
-  explicit UmfpackFactor(std::shared_ptr<const Pattern> pattern);
-  Factorisation factorise(const double* values);
-  void solve(const Matrix<double>& b, Matrix<double>& x, bool transposed);
-  std::string name() const;
-  long factor_nonzeros() const;
-  long factor_bytes() const;
-  static std::string library();
-
- private:
-  struct Data;
-  std::shared_ptr<Data> data_;
-};
-#endif
-
 #ifdef STICKSLIP_WITH_MUMPS
 /// Multifrontal LU, LDL^T (1 x 1 and 2 x 2 pivots) or LL^T factorisation by the symmetry, PORD ordering; the
 /// symmetric ones read the lower triangle.
@@ -132,10 +113,6 @@ struct FactorOf<double> {
 #ifdef STICKSLIP_WITH_CHOLMOD
                             ,
                             CholmodFactor
-#endif
-#ifdef STICKSLIP_WITH_UMFPACK
-                            ,
-                            UmfpackFactor
 #endif
 #ifdef STICKSLIP_WITH_MUMPS
                             ,

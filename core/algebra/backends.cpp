@@ -28,7 +28,6 @@ Backend preferred(Symmetry symmetry, int size) {
   if (symmetry == Symmetry::positive_definite && has_backend(Backend::cholmod)) return Backend::cholmod;
   if (size < small_matrix) return Backend::eigen;
   if (has_backend(Backend::mumps)) return Backend::mumps;
-  if (has_backend(Backend::umfpack)) return Backend::umfpack;
   return Backend::eigen;
 }
 
@@ -61,9 +60,6 @@ std::unique_ptr<Factor<T>> make_factor(Backend backend, std::shared_ptr<const Pa
 #ifdef STICKSLIP_WITH_CHOLMOD
     if (backend == Backend::cholmod) return std::make_unique<Factor<T>>(CholmodFactor(std::move(pattern), kept));
 #endif
-#ifdef STICKSLIP_WITH_UMFPACK
-    if (backend == Backend::umfpack) return std::make_unique<Factor<T>>(UmfpackFactor(std::move(pattern)));
-#endif
 #ifdef STICKSLIP_WITH_MUMPS
     if (backend == Backend::mumps) return std::make_unique<Factor<T>>(MumpsFactor(std::move(pattern), symmetry));
 #endif
@@ -83,12 +79,6 @@ bool has_backend(Backend backend) {
       return true;
     case Backend::cholmod:
 #ifdef STICKSLIP_WITH_CHOLMOD
-      return true;
-#else
-      return false;
-#endif
-    case Backend::umfpack:
-#ifdef STICKSLIP_WITH_UMFPACK
       return true;
 #else
       return false;
@@ -117,9 +107,6 @@ std::vector<std::string> linear_solver_libraries() {
   return {
 #ifdef STICKSLIP_WITH_CHOLMOD
       CholmodFactor::library(),
-#endif
-#ifdef STICKSLIP_WITH_UMFPACK
-      UmfpackFactor::library(),
 #endif
 #ifdef STICKSLIP_WITH_MUMPS
       MumpsFactor::library(),

@@ -3,30 +3,68 @@
 ///
 ///   key, about   the key that names it, and what it is
 ///   keys()       a tuple of Key: the keys of its object, in the order in which they are read
+///   example      JSON of an example of its object, if the examples of the keys that must be there make no good one
 #pragma once
 
 #include <array>
 #include <concepts>
+#include <string>
 
 #include "core/algebra/number.hpp"
 
 namespace stickslip {
 
-/// A number that must be there.
+// How a key is written. Those with an example must be there, but an IfGiven and a Grade.
+
+/// A number.
 struct InRange {
   Range range;
   double example;
 };
+/// A number; left out, what the struct begins with.
+struct IfGiven {
+  Range range;
+  double example;
+};
 
-/// A place that must be there: as many numbers as axes (a std::vector), or two (a std::array).
+/// A place: as many numbers as axes (a std::vector), or two (a std::array).
 struct Place2D {
   std::array<double, 2> example;
 };
+/// Four places in the plane.
+struct Corners2D {
+  std::array<std::array<double, 2>, 4> example;
+};
 
-/// A direction that must be there, as many numbers as axes, not all 0. `what` completes "must be ...".
+/// A direction, as many numbers as axes, not all 0. `what` completes "must be ...".
 struct Direction2D {
   const char* what;
   std::array<double, 2> example;
+};
+
+/// The angle in degrees at which a sector ends that starts at another. Where it ends after a full turn is where it
+/// starts, and then its end is no number of its own. Left out, what the struct begins with.
+template <class S>
+struct EndOfTurn {
+  Number S::*start;
+  double example;
+};
+
+/// A number of cells; numbers of cells along two directions.
+struct Count {
+  int example;
+};
+struct Counts {
+  std::array<int, 2> example;
+};
+
+/// {SIDE: ratio}: the ratio of the largest to the smallest cell, and in `towards` the name of the side at which the
+/// smallest is. Left out, what the struct begins with.
+template <class S, std::size_t n>
+struct Grade {
+  std::string S::*towards;
+  std::array<const char*, n> sides;
+  double example;
 };
 
 /// true or false; left out, what the struct begins with.

@@ -27,7 +27,7 @@ enum class Symmetry {
   general             ///< unsymmetric values (slip), symmetric structure: LU
 };
 
-enum class Backend { automatic, cholmod, umfpack, mumps, eigen };
+enum class Backend { automatic, cholmod, mumps, eigen };
 
 /// Work done so far; equal on every machine, so it is the primary measure of cost.
 struct SolverCounters {
@@ -120,7 +120,7 @@ class LinearSolver {
 /// Without CHOLMOD it is that of a square of cells in the plane.
 FactorSize predict_factor(std::shared_ptr<const Pattern> pattern, int kept);
 
-/// Names of the backends built in, for provenance: {"CHOLMOD 3.0.14", "UMFPACK 5.7.9", "MUMPS 5.5.1", "Eigen 3.4.0"}.
+/// Names of the backends built in, for provenance: {"CHOLMOD 3.0.14", "MUMPS 5.5.1", "Eigen 3.4.0"}.
 std::vector<std::string> linear_solver_libraries();
 /// True where the backend is built in.
 bool has_backend(Backend);

@@ -15,7 +15,7 @@ struct Number {
 };
 
 /// What a number of a scene must be. (studies/input/ranges.hpp has words and schema of each.)
-enum class Range { positive, not_negative, poisson_ratio };
+enum class Range { any, positive, not_negative, poisson_ratio, below_one, above_one };
 
 /// All numbers of a scene in the scalar T.
 template <class T>

@@ -61,14 +61,16 @@ struct OwnVertex {
   double max_depth = 0;         ///< length: beyond this depth it is not inside of a patch
   std::vector<char> wall = {};  ///< per patch: whether it belongs to the wall of the vertex (own_vertex())
 
-  /// How deep inside of patch p it may be, length: max_depth if p is within 8 patches of the patch that was faced last,
-  /// otherwise a quarter of that.
+  /// Number of patches from the one that was faced last within which it may be inside by all of max_depth; elsewhere by
+  /// a share of that.
+  static constexpr int neighbourhood = 8;
+  static constexpr double share_of_depth = 0.25;
+  /// How deep inside of patch p it may be, length. `last`: the patch that was faced last, or Patch::none.
   double depth_in(int p, int last) const {
-    constexpr int neighbourhood = 8;
     const int count = static_cast<int>(wall.size());
     bool is_near_last = false;
     for (const int turn : {-count, 0, count}) is_near_last |= std::abs(p - last - turn) <= neighbourhood;
-    return (last != Patch::none && is_near_last ? 1 : 0.25) * max_depth;
+    return (last != Patch::none && is_near_last ? 1 : share_of_depth) * max_depth;
   }
   bool may_face(const std::vector<Patch>& patches, int p) const {
     const auto& vertices = patches[p].vertices;

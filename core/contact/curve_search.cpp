@@ -38,8 +38,8 @@ Bounds<2> CurveSearch::bounds(int patch) const {
   return facet;
 }
 
-/// False if no facet of the box is eligible: its normals do not oppose `outward`, or, in contact of the curve with
-/// itself, x is too deep inside of the solid.
+/// False if no facet of the box is eligible, apart from those near the last one: its normals do not oppose `outward`,
+/// or, in contact of the curve with itself, x is too deep inside of the solid.
 bool CurveSearch::may_be_eligible(const Bounds<2>& box, const Query& query) const {
   constexpr double rounding = 1e-12;
   const Vec<double, 2>& outward = query.outward;
@@ -53,7 +53,7 @@ bool CurveSearch::may_be_eligible(const Bounds<2>& box, const Query& query) cons
     most += std::max(
         {near * box.normal_low[i], near * box.normal_high[i], far * box.normal_low[i], far * box.normal_high[i]});
   }
-  return most >= -query.own->max_depth - rounding * size_;
+  return most >= -OwnVertex::share_of_depth * query.own->max_depth - rounding * size_;
 }
 
 bool CurveSearch::is_eligible(int patch, const Query& query) const {
@@ -84,13 +84,17 @@ void CurveSearch::compare_facet(int patch, const Vec<double, 2>& x, Nearest& bes
 
 CurveSearch::Nearest CurveSearch::nearest_facet(const Query& query) const {
   Nearest best;
-  if (!query.x.allFinite()) return best;
+  if (facets_.empty() || !query.x.allFinite()) return best;
+  const auto compare = [&](int patch) {
+    if (is_eligible(patch, query)) compare_facet(patch, query.x, best);
+  };
+  const int count = static_cast<int>(patches_.size());
+  for (int k = -OwnVertex::neighbourhood; query.last != Patch::none && k <= OwnVertex::neighbourhood; ++k)
+    compare(((query.last + k) % count + count) % count);
   const auto skips = [&](const Bounds<2>& box) {
     return box.distance(query.x) > best.distance + band_ || !may_be_eligible(box, query);
   };
-  facets_.visit(query.x, skips, [&](int patch) {
-    if (is_eligible(patch, query)) compare_facet(patch, query.x, best);
-  });
+  facets_.visit(query.x, skips, compare);
   return best;
 }
 

@@ -30,10 +30,10 @@ bool precedes(const Foot& a, const Foot& b) {
 }  // namespace
 
 std::optional<ClosestPoint> closest_point(const Points<double>& points, const std::vector<std::vector<int>>& facets,
-                                          const Vec<double, 2>& x) {
+                                          const std::vector<int>& among, const Vec<double, 2>& x) {
   int best = -1;
   Foot foot{{0, std::numeric_limits<double>::infinity()}, {0, 0}};
-  for (std::size_t f = 0; f < facets.size(); ++f) {
+  for (int f : among) {
     const Vec<double, 2> a = points.col(facets[f][0]).head<2>(), b = points.col(facets[f][1]).head<2>();
     const FacetPlace place = nearest_of_facet(a, b, x);
     const Foot candidate{place, a + std::clamp(place.xi, 0.0, 1.0) * (b - a)};
@@ -41,16 +41,15 @@ std::optional<ClosestPoint> closest_point(const Points<double>& points, const st
     const bool tie = best >= 0 && std::abs(candidate.distance - foot.distance) <= band;
     if (tie ? precedes(candidate, foot) : candidate.distance < foot.distance) {
       foot = candidate;
-      best = static_cast<int>(f);
+      best = f;
     }
   }
   if (best < 0) return std::nullopt;
   const bool start = foot.xi<at_facet_end, end = foot.xi> 1 - at_facet_end;
   if (!start && !end) return ClosestPoint{best, -1};
   const int vertex = facets[best][end ? 1 : 0];
-  for (std::size_t f = 0; f < facets.size(); ++f)
-    if (facets[f][end ? 0 : 1] == vertex)
-      return end ? ClosestPoint{best, static_cast<int>(f)} : ClosestPoint{static_cast<int>(f), best};
+  for (int f : among)
+    if (facets[f][end ? 0 : 1] == vertex) return end ? ClosestPoint{best, f} : ClosestPoint{f, best};
   const bool past_the_end = foot.xi < -past_free_end || foot.xi > 1 + past_free_end;
   return past_the_end ? std::nullopt : std::optional<ClosestPoint>(ClosestPoint{best, -1});
 }
@@ -67,13 +66,6 @@ FacetSearch::FacetSearch(const Points<double>& points, const std::vector<std::ve
   boxes_ = BoxTree<2>(std::move(numbers), [this](int f) {
     return Bounds<2>{end_of(f, 0).cwiseMin(end_of(f, 1)), end_of(f, 0).cwiseMax(end_of(f, 1))};
   });
-}
-
-std::vector<std::vector<int>> FacetSearch::facets_of(const std::vector<int>& numbers) const {
-  std::vector<std::vector<int>> facets;
-  facets.reserve(numbers.size());
-  for (int f : numbers) facets.push_back(facets_[f]);
-  return facets;
 }
 
 /// Numbers, ascending, of the facets in no box that is skipped.
@@ -100,9 +92,14 @@ std::vector<int> FacetSearch::candidates(const std::array<int, 2>& slave) const 
 std::vector<Segment> FacetSearch::facing(const std::array<int, 2>& slave, const std::vector<int>& ends,
                                          const std::function<double(int)>& depth_of) const {
   const auto numbers = candidates(slave);
+  std::vector<std::vector<int>> facets;
   std::vector<double> depths;
-  if (depth_of) std::transform(numbers.begin(), numbers.end(), std::back_inserter(depths), depth_of);
-  auto segments = facing_segments(points_, slave, facets_of(numbers), ends, depths);
+  facets.reserve(numbers.size());
+  for (int f : numbers) {
+    facets.push_back(facets_[f]);
+    if (depth_of) depths.push_back(depth_of(f));
+  }
+  auto segments = facing_segments(points_, slave, facets, ends, depths);
   for (Segment& segment : segments) segment.facet = numbers[segment.facet];
   return segments;
 }
@@ -126,12 +123,8 @@ std::optional<ClosestPoint> FacetSearch::closest(const Vec<double, 2>& x) const 
   // Facets farther away than some ties of the nearest decide nothing; those that share its vertex are no farther.
   constexpr double ties = 8;
   const double near = nearest(x).distance + ties * band_;
-  const auto numbers = facets_but([&](const Bounds<2>& box) { return box.distance(x) > near; });
-  auto found = closest_point(points_, facets_of(numbers), x);
-  if (!found) return found;
-  for (int* facet : {&found->facet, &found->second})
-    if (*facet >= 0) *facet = numbers[*facet];
-  return found;
+  const auto among = facets_but([&](const Bounds<2>& box) { return box.distance(x) > near; });
+  return closest_point(points_, facets_, among, x);
 }
 
 }  // namespace stickslip

@@ -26,10 +26,11 @@ struct ClosestPoint {
 ///
 ///   points  nodal positions, D x nodes, length
 ///   facets  the two nodes of each facet
+///   among   numbers of the facets that are compared
 ///
 /// Among equally close points the choice depends on geometry alone and not on numbering.
 std::optional<ClosestPoint> closest_point(const Points<double>& points, const std::vector<std::vector<int>>& facets,
-                                          const Vec<double, 2>& x);
+                                          const std::vector<int>& among, const Vec<double, 2>& x);
 
 /// Search among the facets of one side at given nodal positions.
 class FacetSearch {
@@ -58,7 +59,6 @@ class FacetSearch {
 
  private:
   Vec<double, 2> end_of(int facet, int end) const { return points_.col(facets_[facet][end]).head<2>(); }
-  std::vector<std::vector<int>> facets_of(const std::vector<int>& numbers) const;
   template <class Skips>
   std::vector<int> facets_but(Skips&& skips) const;
 

@@ -1,12 +1,35 @@
 /// Axis-parallel block of cells[0] x cells[1] cells, numbered as a grid (core/mesh/grid.hpp).
 #pragma once
 
+#include <array>
 #include <string>
+#include <tuple>
 
-#include "core/mesh/descriptions.hpp"
+#include "core/algebra/described.hpp"
 #include "core/mesh/grid.hpp"
 
 namespace stickslip {
+
+/// Sides left right bottom top. `grade` > 1 makes cells grow away from the side named in `grade_towards` by that total
+/// ratio (largest cell / smallest cell).
+struct BoxMesh {
+  static constexpr const char *key = "box", *about = "a rectangle; sides left, right, bottom, top";
+  static constexpr Filling filling = Filling::continuum;
+  std::array<Number, 2> min, max;
+  std::array<int, 2> cells{1, 1};
+  std::string grade_towards;  ///< empty: uniform
+  Number grade = 1.0;
+
+  double cell_count() const { return product(cells); }
+  static constexpr auto keys() {
+    return std::tuple{Key{&BoxMesh::min, "min", "lower left corner (length)", Place2D{{0, 0}}},
+                      Key{&BoxMesh::max, "max", "upper right corner (length)", Place2D{{4, 2}}},
+                      Key{&BoxMesh::cells, "cells", "along x, along y", Counts{{16, 8}}},
+                      Key{&BoxMesh::grade, "grade",
+                          "largest cell over smallest, smallest at the side that is named (left out: all alike)",
+                          Grade{&BoxMesh::grade_towards, grid_sides, 8}}};
+  }
+};
 
 /// What is wrong with the description, or "".
 std::string fault(const BoxMesh&, const std::string& element, int dimension);

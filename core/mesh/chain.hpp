@@ -3,12 +3,65 @@
 /// `anchor`.
 #pragma once
 
+#include <array>
 #include <string>
+#include <tuple>
+#include <vector>
 
-#include "core/mesh/descriptions.hpp"
+#include "core/algebra/described.hpp"
 #include "core/mesh/mesh.hpp"
 
 namespace stickslip {
+
+/// One node and the anchor of its spring (grounded_spring), at the same place.
+struct PointMesh {
+  static constexpr const char *key = "point", *about = "one node on a spring; sides node, anchor";
+  static constexpr Filling filling = Filling::point;
+  std::vector<Number> at;  ///< 2 or 3 coordinates
+
+  double cell_count() const { return 1; }
+  static constexpr auto keys() {
+    return std::tuple{Key{&PointMesh::at, "at", "of the node, and of its anchor (length)", Place2D{{0, 0}}}};
+  }
+};
+
+struct LineMesh {
+  static constexpr const char *key = "line",
+                              *about =
+                                  "a straight chain of bars; sides start, end, nodes (all), interior (all but the "
+                                  "two ends)";
+  static constexpr Filling filling = Filling::bars;
+  std::vector<Number> from, to;
+  int cells = 1;
+
+  double cell_count() const { return cells; }
+  static constexpr auto keys() {
+    return std::tuple{Key{&LineMesh::from, "from", "first node (length)", Place2D{{0, 0}}},
+                      Key{&LineMesh::to, "to", "last node (length)", Place2D{{1, 0}}},
+                      Key{&LineMesh::cells, "cells", "number of bars", Count{30}}};
+  }
+};
+
+struct ArcMesh {
+  static constexpr const char *key = "arc", *about = "a chain of bars along a circle; sides as of a line",
+                              *example = R"({"center": [0, 0], "radius": 1, "from_angle": 0, "to_angle": 180,
+                                             "cells": 9})";
+  static constexpr Filling filling = Filling::bars;
+  std::array<Number, 2> center;
+  Number radius, from_angle, to_angle;
+  int cells = 1;
+
+  double cell_count() const { return cells; }
+  static constexpr auto keys() {
+    return std::tuple{
+        Key{&ArcMesh::center, "center", "of the circle (length)", Place2D{{0, 0}}},
+        Key{&ArcMesh::radius, "radius", "of the circle, on which the nodes are (length)", InRange{Range::positive, 1}},
+        Key{&ArcMesh::from_angle, "from_angle", "of the first node, in degrees from the x axis, counter-clockwise",
+            InRange{Range::any, -11.25}},
+        Key{&ArcMesh::to_angle, "to_angle", "of the last node, in degrees", InRange{Range::any, 191.25}},
+        Key{&ArcMesh::cells, "cells", "number of bars", Count{9}}};
+  }
+};
 
 /// What is wrong with the description, or "".
 std::string fault(const PointMesh&, const std::string& element, int dimension);

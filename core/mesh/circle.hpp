@@ -1,7 +1,7 @@
 /// Nodes of quadratic elements on a circle.
 #pragma once
 
-#include "core/mesh/descriptions.hpp"
+#include "core/algebra/number.hpp"
 #include "core/mesh/mesh.hpp"
 
 namespace stickslip {

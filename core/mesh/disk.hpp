@@ -6,13 +6,33 @@
 /// outermost. Side `arc`, closed, counter-clockwise from the angle -45 degrees.
 #pragma once
 
+#include <array>
 #include <string>
+#include <tuple>
 
+#include "core/algebra/described.hpp"
 #include "core/mesh/circle.hpp"
-#include "core/mesh/descriptions.hpp"
 #include "core/mesh/structured.hpp"
 
 namespace stickslip {
+
+struct DiskMesh {
+  static constexpr const char *key = "disk", *about = "rings around a square core; side arc";
+  static constexpr Filling filling = Filling::continuum;
+  std::array<Number, 2> center;
+  Number radius;
+  std::array<int, 2> cells{4, 2};
+  Number grade = 1.0;
+
+  double cell_count() const { return std::pow(cells[0], 2) + 4 * product(cells); }
+  static constexpr auto keys() {
+    return std::tuple{
+        Key{&DiskMesh::center, "center", "of the circle (length)", Place2D{{0, 0}}},
+        Key{&DiskMesh::radius, "radius", "of the circle (length)", InRange{Range::positive, 1}},
+        Key{&DiskMesh::cells, "cells", "along a quarter of the arc, rings around the core", Counts{{8, 6}}},
+        Key{&DiskMesh::grade, "grade", "innermost ring over outermost", IfGiven{Range::positive, 4}}};
+  }
+};
 
 /// What is wrong with the description, or "".
 std::string fault(const DiskMesh&, const std::string& element, int dimension);

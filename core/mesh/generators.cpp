@@ -1,22 +1,12 @@
 #include "core/mesh/generators.hpp"
 
-#include <map>
 #include <stdexcept>
 
 namespace stickslip {
 
-std::string fault(const ImportedMesh& imported, const std::string& element, int dimension) {
-  if (imported.mesh.dimension != dimension) return "an imported mesh is plane, the space is not";
-  static const std::map<ElementShape, std::string> names = {
-      {ElementShape::tri3, "T3"}, {ElementShape::quad4, "Q4"}, {ElementShape::tri6, "T6"}, {ElementShape::quad8, "Q8"}};
-  const std::string& own = names.at(imported.mesh.shape);
-  const bool averaged = own == "Q4" && has_mean_dilatation(element);
-  if (!element.empty() && element != own && !averaged)
-    return "body " + imported.body + " is made of " + own + ", not " + element;
-  return "";
+Filling filling_of(const MeshDescription& description) {
+  return std::visit([](const auto& mesh) { return mesh.filling; }, description);
 }
-
-Mesh topology(const ImportedMesh& imported, const std::string&, int) { return imported.mesh; }
 
 std::string mesh_fault(const MeshDescription& description, const std::string& element, int dimension) {
   return std::visit([&](const auto& mesh) { return fault(mesh, element, dimension); }, description);

@@ -1,7 +1,9 @@
 /// From the description of a mesh to its topology (numbers play no part) and its coordinates (in any scalar, so that
 /// the derivative with respect to every dimension is exact). One file per family: box, quad, ring, disk, half_disk,
-/// chain; each gives fault, topology and coordinates of its descriptions, and `bend` where it has curved sides: what
-/// moves the middles of quadratic elements onto them.
+/// chain. It holds the description for the scene, as the user wrote it, which says its keys
+/// (core/algebra/described.hpp), `filling` and cell_count(), the number of its quadrilaterals or bars; fault, topology
+/// and coordinates; and `bend` if it has curved sides: what moves the middles of quadratic elements onto them. What a
+/// description lacks does not compile.
 #pragma once
 
 #include <string>
@@ -9,9 +11,9 @@
 
 #include "core/mesh/box.hpp"
 #include "core/mesh/chain.hpp"
-#include "core/mesh/descriptions.hpp"
 #include "core/mesh/disk.hpp"
 #include "core/mesh/half_disk.hpp"
+#include "core/mesh/imported.hpp"
 #include "core/mesh/mesh.hpp"
 #include "core/mesh/middles.hpp"
 #include "core/mesh/quad.hpp"
@@ -19,14 +21,12 @@
 
 namespace stickslip {
 
-std::string fault(const ImportedMesh&, const std::string& element, int dimension);
-Mesh topology(const ImportedMesh&, const std::string& element, int dimension);
+/// In the order in which messages and the schema name them.
+using MeshDescription =
+    std::variant<BoxMesh, QuadMesh, RingMesh, DiskMesh, HalfDiskMesh, PointMesh, LineMesh, ArcMesh, ImportedMesh>;
 
-/// Coordinates as read: constants.
-template <class T>
-Points<T> coordinates(const ImportedMesh& imported, const Numbers<T>&, int) {
-  return imported.points.unaryExpr([](double x) { return T(x); });
-}
+/// What the mesh is made of.
+Filling filling_of(const MeshDescription&);
 
 /// What is wrong with a description, this element and this dimension of the space, as a sentence without a full stop;
 /// "" if nothing. `element`: "Q4", "Q4_mean_dilatation", "Q8", "T3" or "T6" (plane meshes), "bar" (chains), "point", or

@@ -7,10 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "core/mesh/descriptions.hpp"
 #include "core/mesh/structured.hpp"
 
 namespace stickslip {
+
+/// The sides of a grid that cells may be graded towards.
+inline constexpr std::array grid_sides{"left", "right", "bottom", "top"};
 
 Mesh grid(const std::array<int, 2>& cells, const std::string& element);
 

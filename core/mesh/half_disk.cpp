@@ -24,13 +24,12 @@ std::string fault(const HalfDiskMesh& disk, const std::string& element, int dime
   if (many > 2 * few) return "cells of a half disk must not differ by more than a factor 2, or its elements would fold";
   if (!(disk.radius.value > 0)) return "radius must be greater than 0";
   if (!(disk.grade.value > 0)) return "grade must be greater than 0";
-  if (disk.facing != "down" && disk.facing != "up") return "facing is down or up, not " + disk.facing;
   return "";
 }
 
 Mesh topology(const HalfDiskMesh& disk, const std::string& element, int) {
   const HalfDiskLayout layout(disk);
-  const bool up = disk.facing == "up";
+  const bool up = disk.facing == HalfDiskMesh::Facing::up;
   Mesh mesh;
   mesh.shape = structured_shape(element);
   mesh.node_count = layout.node_count();

@@ -16,14 +16,40 @@
 /// node.
 #pragma once
 
+#include <array>
 #include <string>
+#include <tuple>
 #include <vector>
 
+#include "core/algebra/described.hpp"
 #include "core/mesh/circle.hpp"
-#include "core/mesh/descriptions.hpp"
 #include "core/mesh/structured.hpp"
 
 namespace stickslip {
+
+/// The arc points where it faces. Graded towards the pole of the arc.
+struct HalfDiskMesh {
+  static constexpr const char *key = "half_disk", *about = "fine at the pole of its arc; sides arc, flat",
+                              *example = R"({"center": [0, 1], "radius": 1, "cells": [20, 20], "grade": 10})";
+  static constexpr Filling filling = Filling::continuum;
+  enum class Facing { down, up };
+  std::array<Number, 2> center;
+  Number radius;
+  std::array<int, 2> cells{8, 8};
+  Number grade = 1.0;
+  Facing facing = Facing::down;
+
+  double cell_count() const { return std::pow(cells[0], 2) / 2 + 2 * product(cells); }
+  static constexpr auto keys() {
+    return std::tuple{
+        Key{&HalfDiskMesh::center, "center", "middle of the flat side (length)", Place2D{{0, 1}}},
+        Key{&HalfDiskMesh::radius, "radius", "of the circle (length)", InRange{Range::positive, 1}},
+        Key{&HalfDiskMesh::cells, "cells", "along a quarter of the arc, from the arc to the centre", Counts{{20, 20}}},
+        Key{&HalfDiskMesh::grade, "grade", "largest cell over smallest along the arc, smallest at the pole",
+            IfGiven{Range::positive, 10}},
+        Key{&HalfDiskMesh::facing, "facing", "where the arc points to", std::array{"down", "up"}}};
+  }
+};
 
 /// What is wrong with the description, or "".
 std::string fault(const HalfDiskMesh&, const std::string& element, int dimension);
@@ -66,7 +92,7 @@ Points<T> coordinates(const HalfDiskMesh& disk, const Numbers<T>& numbers, int) 
   const Position corner = on_arc + Position(-inwards, reach * cos(lean));
 
   Points<T> points(2, layout.node_count());
-  const T radius = numbers(disk.radius), up(disk.facing == "up" ? -1.0 : 1.0);
+  const T radius = numbers(disk.radius), up(disk.facing == HalfDiskMesh::Facing::up ? -1.0 : 1.0);
   auto place = [&](int node, const Position& at, double side) {
     points(0, node) = numbers(disk.center[0]) + radius * at[0] * T(side);
     points(1, node) = numbers(disk.center[1]) + radius * (at[1] - T(1.0)) * up;

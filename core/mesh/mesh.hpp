@@ -13,6 +13,9 @@ namespace stickslip {
 
 enum class ElementShape { point, bar2, tri3, quad4, tri6, quad8 };
 
+/// What a mesh is made of.
+enum class Filling { point, bars, continuum };
+
 /// Nodes of one element of the shape: corners first, then the middles of the sides in turn.
 int nodes_of(ElementShape);
 /// Corners of a plane element; nodes of the others.

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/mesh/descriptions.hpp"
+#include "core/mesh/imported.hpp"
 
 namespace stickslip {
 

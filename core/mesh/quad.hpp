@@ -2,12 +2,34 @@
 /// right, top and left.
 #pragma once
 
+#include <array>
 #include <string>
+#include <tuple>
 
-#include "core/mesh/descriptions.hpp"
+#include "core/algebra/described.hpp"
 #include "core/mesh/grid.hpp"
 
 namespace stickslip {
+
+/// Sides and grading as a box.
+struct QuadMesh {
+  static constexpr const char *key = "quad", *about =
+                                                 "a quadrilateral; sides bottom (from its first corner to the "
+                                                 "second), right, top, left";
+  static constexpr Filling filling = Filling::continuum;
+  std::array<std::array<Number, 2>, 4> corners;
+  std::array<int, 2> cells{1, 1};
+  std::string grade_towards;
+  Number grade = 1.0;
+
+  double cell_count() const { return product(cells); }
+  static constexpr auto keys() {
+    return std::tuple{
+        Key{&QuadMesh::corners, "corners", "counter-clockwise (length)", Corners2D{{{{0, 0}, {4, 0}, {3, 2}, {1, 2}}}}},
+        Key{&QuadMesh::cells, "cells", "along bottom and top, along left and right", Counts{{16, 8}}},
+        Key{&QuadMesh::grade, "grade", "as of a box", Grade{&QuadMesh::grade_towards, grid_sides, 8}}};
+  }
+};
 
 /// What is wrong with the description, or "".
 std::string fault(const QuadMesh&, const std::string& element, int dimension);

@@ -3,13 +3,44 @@
 /// from_angle) and `end` where it is open. A ring of 360 degrees is closed: its last row of nodes is the first.
 #pragma once
 
+#include <array>
 #include <string>
+#include <tuple>
 
+#include "core/algebra/described.hpp"
 #include "core/mesh/circle.hpp"
-#include "core/mesh/descriptions.hpp"
 #include "core/mesh/grid.hpp"
 
 namespace stickslip {
+
+/// Angles in degrees from +x. `grade`: as in a box, towards inner or outer.
+struct RingMesh {
+  static constexpr const char *key = "ring",
+                              *about = "between two circles; sides inner, outer, of an open ring also start, end",
+                              *example = R"({"center": [0, 0], "inner": 1, "outer": 2, "cells": [8, 100]})";
+  static constexpr Filling filling = Filling::continuum;
+  std::array<Number, 2> center;
+  Number inner, outer, from_angle = 0.0, to_angle = 360.0;
+  std::array<int, 2> cells{1, 8};  ///< [along the radius, around]
+  std::string grade_towards;
+  Number grade = 1.0;
+
+  double cell_count() const { return product(cells); }
+  static constexpr auto keys() {
+    return std::tuple{
+        Key{&RingMesh::center, "center", "of both circles (length)", Place2D{{0, 0}}},
+        Key{&RingMesh::inner, "inner", "radius (length)", InRange{Range::positive, 1}},
+        Key{&RingMesh::outer, "outer", "radius (length), greater than inner", InRange{Range::positive, 2}},
+        Key{&RingMesh::cells, "cells", "along the radius, around", Counts{{8, 25}}},
+        Key{&RingMesh::from_angle, "from_angle",
+            "where an open ring starts, in degrees from the x axis, counter-clockwise", IfGiven{Range::any, 0}},
+        Key{&RingMesh::to_angle, "to_angle", "where it ends, in degrees; 360 further than from_angle: closed",
+            EndOfTurn{&RingMesh::from_angle, 90}},
+        Key{&RingMesh::grade, "grade",
+            "largest cell over smallest, smallest at the side that is named (left out: all alike)",
+            Grade{&RingMesh::grade_towards, std::array{"inner", "outer"}, 3}}};
+  }
+};
 
 /// Whether two angles, in degrees, span a full turn, to rounding.
 bool is_full_turn(double from_angle, double to_angle);

@@ -30,6 +30,9 @@ std::vector<T> graded_fractions(const T& ratio, int cells) {
   return fractions;
 }
 
+/// Number of cells of a rectangle of them. (A double: an int may not hold what a file asks for.)
+inline double product(const std::array<int, 2>& cells) { return static_cast<double>(cells[0]) * cells[1]; }
+
 /// Shape of the corners of an element in a generated plane mesh: a triangle for "T3" and "T6", else a quadrilateral;
 /// "" means "Q4". Middles of T6 and Q8 come later (core/mesh/middles.hpp).
 inline ElementShape structured_shape(const std::string& element) {

@@ -2,6 +2,8 @@
 /// evaluation serves all: the initial geometry, which is kept at small strain, is that at the positions of the start.
 #pragma once
 
+#include "core/contact/segments.hpp"
+#include "core/contact/surfaces.hpp"
 #include "core/model/positions.hpp"
 
 namespace stickslip::detail {
@@ -279,25 +281,18 @@ PlacedPoint<U, D> place_point(const Positions<U, T, Displacement>& positions, co
   return on_obstacle<D>(positions, point, earlier);
 }
 
-/// Position of vertex k of ContactPoint::of_polyline.
-template <class T>
-Vec<T, 2> polyline_vertex(const Model& model, const ContactPoint& point, int k, const Slots<T>& slots) {
-  return start_of(model, point.obstacle, slots, model.node_count + point.of_polyline[k]);
-}
-
 /// Geometry against the facet or the vertex that a point faces for good.
 template <class T>
-PointGeometry<T> on_facets(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
-  const bool rigid = !point.of_polyline.empty(), at_facet = point.master == ContactPoint::Master::facet;
-  const Vec<T, 2> x = point2(slots.points, point.nodes[0]);
-  const auto corner = [&](int k) { return polyline_vertex(model, point, k, slots); };
-  const auto node = [&](int n) { return point2(slots.points, n); };
-  if (rigid && at_facet) return fixed(against_facet<T>(x, corner(0), corner(1)));
-  if (rigid) return fixed(against_vertex<T>(x, corner(0), corner(1), corner(2)));
-  if (at_facet) return against_facet<T>(x, node(point.nodes[1]), node(point.nodes[2]));
-  const Vec<T, 2> v = node(point.nodes[1]);
-  auto geometry = against_vertex<T>(x, node(point.neighbours[0]), v, node(point.neighbours[1]));
-  for (std::size_t n = 2; n < point.nodes.size(); ++n) slide_off<T>(geometry, x, v, node(point.nodes[n]));
+PointGeometry<T> on_corners(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
+  const auto place = [&](int node) { return start_of(model, point.obstacle, slots, node); };
+  const auto corner = [&](int k) { return place(point.corners[k]); };
+  const Vec<T, 2> x = place(point.nodes[0]);
+  const bool at_facet = point.master == ContactPoint::Master::facet;
+  PointGeometry<T> geometry =
+      at_facet ? against_facet<T>(x, corner(0), corner(1)) : against_vertex<T>(x, corner(0), corner(1), corner(2));
+  if (point.obstacle >= 0) return fixed(std::move(geometry));
+  for (std::size_t n = 2; !at_facet && n < point.nodes.size(); ++n)
+    slide_off<T>(geometry, x, corner(1), place(point.nodes[n]));
   return geometry;
 }
 
@@ -307,12 +302,14 @@ PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point,
   using Master = ContactPoint::Master;
   PointGeometry<T> geometry;
   if (point.master == Master::facet || point.master == Master::vertex) {
-    geometry = on_facets(model, point, slots);
+    geometry = on_corners(model, point, slots);
     geometry.gap += offset_of(point, model, slots);
     geometry.area = whole_area(point, slots);
   } else {
-    geometry = with_dimension(model.dimension, [&]<int D>() {
-      return place_point<D>(positions_of_start(model, slots), point, point.facing).geometry;
+    with_dimension(model.dimension, [&]<int D>() {
+      auto at = place_point<D>(positions_of_start(model, slots), point, point.facing);
+      geometry = std::move(at.geometry);
+      if (!at.faces_master) geometry.gap += offset_of(point, model, slots);
     });
   }
   if (point.master == Master::segments && point.curve >= 0) geometry.area = whole_area(point, slots);
@@ -334,10 +331,10 @@ Vector<T> spin(const Model& model, int p, const Slots<T>& slots) {
   Vector<T> foot = Vector<T>::Constant(model.dimension, T(0));
   if (point.obstacle < 0 || !model.scene.obstacles[point.obstacle].rotate) return foot;
   const T gap = geometry.gap - offset_of(point, model, slots);
-  const bool at_vertex = !point.of_polyline.empty() && point.master == ContactPoint::Master::vertex;
+  const bool at_vertex = point.master == ContactPoint::Master::vertex;
   for (int i = 0; i < model.dimension; ++i) {
     if (at_vertex) {
-      foot[i] = polyline_vertex(model, point, 1, slots)[i];
+      foot[i] = start_of(model, point.obstacle, slots, point.corners[1])[i];
       continue;
     }
     for (int n = 0; n < point.slave_nodes; ++n) foot[i] += geometry.weights[n] * slots.points(i, point.nodes[n]);

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "core/mesh/sides.hpp"
+#include "core/model/scene.hpp"
 #include "core/solids/continuum.hpp"
 
 namespace stickslip {

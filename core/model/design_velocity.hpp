@@ -10,9 +10,10 @@
 #include <vector>
 
 #include "core/mesh/mesh.hpp"
-#include "core/model/scene.hpp"
 
 namespace stickslip {
+
+struct Scene;
 
 /// Solves the equation for one body and one set of nodes whose values are given; factorised once.
 class ShapeExtension {

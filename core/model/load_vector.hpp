@@ -53,12 +53,10 @@ void add_total_force(const Load& load, const SideSet& side, const Slots<T>& slot
     for (int i = 0; i < D; ++i) forces[node * D + i] += T(area / total) * slots.numbers(load.vector[i]);
 }
 
-/// int N_a b dV of a continuum, and half of each bar's volume at either end.
+/// int N_a b dV of body b if it is a continuum, and half of each bar's volume at either end.
 template <class T>
-void add_body_force(const Model& model, const Load& load, const Slots<T>& slots, Vector<T>& forces) {
+void add_body_force(const Model& model, const Load& load, int b, const Slots<T>& slots, Vector<T>& forces) {
   const int D = model.dimension;
-  int b = 0;
-  while (model.scene.bodies[b].name != load.on) ++b;
   const auto& body = model.bodies[b];
   auto add = [&](int node, const T& volume) {
     for (int i = 0; i < D; ++i) forces[node * D + i] += volume * slots.numbers(load.vector[i]);
@@ -127,10 +125,11 @@ void for_each_followed_edge(const Model& model, const Slots<T>& slots, double t,
     const Load& load = model.scene.loads[follower.load];
     const T factor = load.history ? evaluate(*load.history, t, slots.numbers) : T(1);
     const T pressure = factor * slots.numbers(load.vector[0]);
-    for (std::size_t k = 0; k < follower.side.edges.size(); ++k) {
+    const SideSet& side = model.load_sides[follower.load];
+    for (std::size_t k = 0; k < side.edges.size(); ++k) {
       const ElementEdge* const behind = follower.backing.empty() ? nullptr : &follower.backing[k];
-      FollowedEdge<T> edge{follower.side.edges[k], {}, follower.side.body, pressure, behind};
-      for (int node : edge.nodes) edge.loaded.push_back(is_of(follower.side, node));
+      FollowedEdge<T> edge{side.edges[k], {}, side.body, pressure, behind};
+      for (int node : edge.nodes) edge.loaded.push_back(is_of(side, node));
       if (behind) edge.stretch = edge_stretches(model, slots, edge.body, *behind, u);
       f(edge);
     }
@@ -212,14 +211,15 @@ void for_each_follower_tangent(const Model& model, const Slots<T>& slots, const 
 }
 
 template <class T>
-Vector<T> load_vector(const Model& model, const Load& load, const Slots<T>& slots) {
+Vector<T> load_vector(const Model& model, int index, const Slots<T>& slots) {
+  const Load& load = model.scene.loads[index];
+  const SideSet& side = model.load_sides[index];
   Vector<T> forces = Vector<T>::Constant(model.dof_count(), T(0));
   if (load.kind == Load::Kind::pressure && !model.followers.empty()) return forces;  // (follower_forces)
   if (load.kind == Load::Kind::body_force) {
-    detail::add_body_force(model, load, slots, forces);
+    detail::add_body_force(model, load, side.body, slots, forces);
     return forces;
   }
-  const SideSet side = model.side(load.on);
   if (load.kind == Load::Kind::force || side.edges.empty())
     detail::add_total_force(load, side, slots, model.dimension, forces);
   else

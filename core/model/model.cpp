@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "core/mesh/generators.hpp"
 #include "core/mesh/sides.hpp"
@@ -23,8 +24,8 @@ int body_index(const Scene& scene, const std::string& name) {
 
 /// Throws ModelError where a load or a contact acts on nothing but the axis of revolution, which has no area.
 void check_areas(const Model& model, const Points<double>& points) {
-  const auto has_area = [&](const std::string& side) {
-    const auto edges = model.side(side).edges;
+  const auto has_area = [&](const SideSet& side) {
+    const auto& edges = side.edges;
     const auto off_axis = [&](int node) { return !model.is_on_axis(points, node); };
     return edges.empty() || std::any_of(edges.begin(), edges.end(), [&](const auto& edge) {
              return std::any_of(edge.begin(), edge.end(), off_axis);
@@ -33,10 +34,29 @@ void check_areas(const Model& model, const Points<double>& points) {
   const std::string why = " lies on the axis of revolution, where it has no area";
   const auto& scene = model.scene;
   for (std::size_t l = 0; l < scene.loads.size(); ++l)
-    if (scene.loads[l].kind != Load::Kind::body_force && !has_area(scene.loads[l].on))
+    if (scene.loads[l].kind != Load::Kind::body_force && !has_area(model.load_sides[l]))
       throw ModelError(scene.loads[l].on + why, "/loads/" + std::to_string(l) + "/on");
-  for (const auto& contact : scene.contacts)
-    if (!has_area(contact.slave)) throw ModelError(contact.slave + why, "/contacts/" + contact.name + "/slave");
+  for (std::size_t c = 0; c < scene.contacts.size(); ++c)
+    if (const auto& contact = scene.contacts[c]; !has_area(model.contact_sides[c].slave))
+      throw ModelError(contact.slave + why, "/contacts/" + contact.name + "/slave");
+}
+
+/// Resolves the sides that supports, loads and contacts name.
+void resolve_sides(Model& model) {
+  const auto& scene = model.scene;
+  for (const auto& support : scene.supports) model.support_sides.push_back(model.side(support.on));
+  for (const auto& load : scene.loads)
+    if (load.kind == Load::Kind::body_force)
+      model.load_sides.push_back({.body = body_index(scene, load.on)});
+    else
+      model.load_sides.push_back(model.side(load.on));
+  for (const auto& contact : scene.contacts) {
+    ContactSides sides{.slave = model.side(contact.slave)};
+    for (std::size_t o = 0; o < scene.obstacles.size(); ++o)
+      if (scene.obstacles[o].name == contact.master) sides.obstacle = static_cast<int>(o);
+    if (sides.obstacle < 0) sides.master = model.side(contact.master);
+    model.contact_sides.push_back(std::move(sides));
+  }
 }
 
 /// Ends of the increments: equal steps of each leg, and the breakpoints of every table in it.
@@ -107,9 +127,15 @@ std::optional<std::vector<double>> weights_at(ElementShape shape, const Points<d
   return weights;
 }
 
-/// The nodes of the first element of a body that holds x, with their weights; empty where none does.
-std::vector<std::pair<int, double>> find_in_body(const BodyMesh& body, const Points<double>& points,
-                                                 const Eigen::VectorXd& x) {
+/// Nodes of an element, and their weights at a place in it.
+struct WeightedNodes {
+  std::vector<int> nodes;
+  std::vector<double> weights;
+};
+
+/// The nodes of the first element of a body that holds x; none where no element does.
+std::optional<WeightedNodes> find_in_body(const BodyMesh& body, const Points<double>& points,
+                                          const Eigen::VectorXd& x) {
   const int count = nodes_of(body.mesh.shape);
   std::vector<int> nodes(count);
   Eigen::VectorXd low(x.size()), high(x.size());
@@ -123,45 +149,64 @@ std::vector<std::pair<int, double>> find_in_body(const BodyMesh& body, const Poi
     }
     const double slack = 1e-6 * (high - low).norm();
     if ((x.array() < low.array() - slack).any() || (x.array() > high.array() + slack).any()) continue;
-    const auto weights = weights_at(body.mesh.shape, points, nodes, x);
-    if (!weights) continue;
-    std::vector<std::pair<int, double>> weighted;
-    for (std::size_t a = 0; a < nodes.size(); ++a) weighted.emplace_back(nodes[a], (*weights)[a]);
-    return weighted;
+    if (const auto weights = weights_at(body.mesh.shape, points, nodes, x)) return WeightedNodes{nodes, *weights};
   }
-  return {};
+  return std::nullopt;
 }
 
-/// Finds where a response with `at` is taken, in the body that it names, or the first that holds the point. Throws
-/// ModelError where no element holds it.
-ResponsePlace locate_response(const Model& model, const Points<double>& points, const Response& response) {
-  ResponsePlace place;
-  if (response.at.empty()) return place;
-  Eigen::VectorXd x(model.dimension);
-  for (int i = 0; i < model.dimension; ++i) x[i] = response.at[i].value;
-  if (response.kind == Response::Kind::displacement) {
-    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-      if (!response.on.empty() && model.scene.bodies[b].name != response.on) continue;
-      auto nodes = find_in_body(model.bodies[b], points, x);
-      if (nodes.empty()) continue;
-      place.bodies.push_back(static_cast<int>(b));
-      if (place.nodes.empty()) place.nodes = std::move(nodes);
-    }
-    const std::string of_body = response.on.empty() ? "" : " of " + response.on;
-    if (place.nodes.empty())
-      throw ModelError("no element" + of_body + " holds the point of `at`", "/responses/" + response.name);
-    return place;
+/// Finds a point x in the bodies of `place`, and leaves those that hold it. Throws ModelError if none does.
+void locate_in_bodies(const Model& model, const Points<double>& points, const Eigen::VectorXd& x,
+                      const Response& response, ResponsePlace& place) {
+  for (int b : std::exchange(place.bodies, {})) {
+    auto found = find_in_body(model.bodies[b], points, x);
+    if (!found) continue;
+    place.bodies.push_back(b);
+    if (place.bodies.size() > 1) continue;
+    place.nodes = std::move(found->nodes);
+    place.weights = std::move(found->weights);
   }
-  double nearest = INFINITY;
-  for (std::size_t p = 0; p < model.points.size(); ++p) {
-    const double distance = (points.col(model.points[p].nodes[0]) - x).norm();
-    if (model.is_of_contact(model.points[p].contact, response.on) && distance < nearest) {
-      nearest = distance;
-      place.contact_point = static_cast<int>(p);
-    }
-  }
-  if (place.contact_point < 0)
+  const std::string of_body = response.on.empty() ? "" : " of " + response.on;
+  if (place.nodes.empty())
+    throw ModelError("no element" + of_body + " holds the point of `at`", "/responses/" + response.name);
+}
+
+/// Leaves of the points of `place` the one that is nearest to x, the first of equals. Throws ModelError if it has none.
+void locate_on_contact(const Model& model, const Points<double>& points, const Eigen::VectorXd& x,
+                       const Response& response, ResponsePlace& place) {
+  const auto distance = [&](int p) { return (points.col(model.points[p].nodes[0]) - x).norm(); };
+  const auto nearest = std::min_element(place.points.begin(), place.points.end(),
+                                        [&](int p, int q) { return distance(p) < distance(q); });
+  if (nearest == place.points.end())
     throw ModelError("no slave node of the contact faces its master", "/responses/" + response.name);
+  place.points = {*nearest};
+}
+
+/// Resolves what a response is taken of. Throws ModelError if it names what is not there.
+ResponsePlace place_of(const Model& model, const Points<double>& points, const Response& response) {
+  using Kind = Response::Kind;
+  const auto& scene = model.scene;
+  ResponsePlace place;
+  if (response.kind == Kind::strain_energy) return place;
+  const bool at_point = !response.at.empty();
+  const Eigen::VectorXd x = Eigen::VectorXd::NullaryExpr(static_cast<Eigen::Index>(response.at.size()),
+                                                         [&](Eigen::Index i) { return response.at[i].value; });
+  const bool of_side = response.kind == Kind::reaction || (response.kind == Kind::displacement && !at_point);
+  if (of_side) {
+    place.nodes = model.side(response.on).nodes;
+  } else if (response.kind == Kind::displacement || response.kind == Kind::plastic_strain) {
+    for (int b = 0; b < static_cast<int>(scene.bodies.size()); ++b)
+      if (response.on.empty() || scene.bodies[b].name == response.on) place.bodies.push_back(b);
+    if (at_point) locate_in_bodies(model, points, x, response, place);
+  } else {
+    for (int c = 0; c < static_cast<int>(scene.contacts.size()); ++c)
+      if (scene.contacts[c].name == response.on || scene.contacts[c].group == response.on) place.contacts.push_back(c);
+    const auto is_of = [&](int contact) {
+      return std::find(place.contacts.begin(), place.contacts.end(), contact) != place.contacts.end();
+    };
+    for (int p = 0; p < static_cast<int>(model.points.size()); ++p)
+      if (is_of(model.points[p].contact)) place.points.push_back(p);
+    if (at_point) locate_on_contact(model, points, x, response, place);
+  }
   return place;
 }
 
@@ -171,9 +216,9 @@ ElementLists elements_at_reactions(const Model& model) {
   const auto is_reaction = [](const Response& response) { return response.kind == Response::Kind::reaction; };
   if (std::none_of(responses.begin(), responses.end(), is_reaction)) return {};
   std::vector<char> wanted(model.node_count, 0);
-  for (const auto& response : responses)
-    if (is_reaction(response))
-      for (int node : model.side(response.on).nodes) wanted[node] = 1;
+  for (std::size_t i = 0; i < responses.size(); ++i)
+    if (is_reaction(responses[i]))
+      for (int node : model.response_places[i].nodes) wanted[node] = 1;
   ElementLists lists(model.bodies.size());
   for (std::size_t b = 0; b < lists.size(); ++b) {
     const auto& body = model.bodies[b];
@@ -246,12 +291,13 @@ std::vector<ElementEdge> elements_behind(const BodyMesh& body, const std::vector
 }
 
 Follower follower(const Model& model, int load) {
-  Follower follower{load, model.side(model.scene.loads[load].on)};
+  Follower follower{load};
   if (model.scene.space != Space::plane_stress) return follower;
-  const auto& body = model.scene.bodies[follower.side.body];
+  const SideSet& side = model.load_sides[load];
+  const auto& body = model.scene.bodies[side.body];
   if (const auto fault = pressure_fault(model.scene, body); !fault.empty())
     throw ModelError(fault, "/loads/" + std::to_string(load) + "/on");
-  follower.backing = elements_behind(model.bodies[follower.side.body], follower.side.edges);
+  follower.backing = elements_behind(model.bodies[side.body], side.edges);
   return follower;
 }
 
@@ -266,7 +312,7 @@ void place_feet(Model& model) {
 
 }  // namespace
 
-SideSet resolve_side(const Scene& scene, const std::vector<BodyMesh>& bodies, const std::string& text) {
+SideSet Model::side(const std::string& text) const {
   const SideExpression expression = parse_side_expression(text);
   if (!expression.error.empty()) throw ModelError(expression.error);
   SideSet set;
@@ -284,16 +330,13 @@ SideSet resolve_side(const Scene& scene, const std::vector<BodyMesh>& bodies, co
   return set;
 }
 
-SideSet Model::side(const std::string& expression) const { return resolve_side(scene, bodies, expression); }
-
 bool Model::is_on_axis(const Points<double>& points, int node) const {
   return scene.space == Space::axisymmetric && std::abs(points(0, node)) <= 1e-12 * points.cwiseAbs().maxCoeff();
 }
 
 std::string space_fault(Space space, const Body& body) {
-  const bool lumped = std::holds_alternative<PointMesh>(body.mesh) || std::holds_alternative<LineMesh>(body.mesh) ||
-                      std::holds_alternative<ArcMesh>(body.mesh);
-  if (space == Space::axisymmetric && lumped) return "an axisymmetric space has no points and no bars";
+  if (space == Space::axisymmetric && filling_of(body.mesh) != Filling::continuum)
+    return "an axisymmetric space has no points and no bars";
   if (space == Space::plane_stress && has_mean_dilatation(body.element))
     return "Q4_mean_dilatation is for plane_strain and axisymmetric: in plane stress the thickness gives way";
   return "";
@@ -370,6 +413,7 @@ Model make_model(const Scene& scene, Seconds& spent) {
       throw ModelError(scene.bodies[b].name + ": " + error.what(), "/parameters");
     }
   }
+  resolve_sides(model);
   number_dofs(model, points);
   if (scene.space == Space::axisymmetric) check_areas(model, points);
   {
@@ -377,8 +421,7 @@ Model make_model(const Scene& scene, Seconds& spent) {
     pair_contacts(model, points);
   }
   place_contact_nodes(model);
-  for (const auto& response : scene.responses)
-    model.response_places.push_back(locate_response(model, points, response));
+  for (const auto& response : scene.responses) model.response_places.push_back(place_of(model, points, response));
   model.at_reactions = elements_at_reactions(model);
   for (int l = 0; scene.finite_strain && l < static_cast<int>(scene.loads.size()); ++l)
     if (scene.loads[l].kind == Load::Kind::pressure) model.followers.push_back(follower(model, l));

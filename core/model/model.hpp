@@ -61,18 +61,19 @@ struct ContactPoint {
   /// mortar segments.
   enum class Master { obstacle, facet, vertex, segments, curve };
   Master master = Master::obstacle;
-  int contact = 0;               ///< index in Scene::contacts
-  int obstacle = -1;             ///< index in Scene::obstacles; -1: deformable master
-  int curve = -1;                ///< index in Model::curves; -1: its master is no curve
-  Facing facing = {};            ///< what it faces of the curve at the start
-  OwnVertex own = {};            ///< set if the slave side is its own master
-  int foot = -1;                 ///< offset of its foot in History::foot; -1: it has none
-  std::vector<int> nodes;        ///< slave nodes, then master nodes. facet: its two; vertex: itself, then the far ends
-                                 ///< of the facets whose end the projection is; curve: of the initial patch
-  int slave_nodes = 1;           ///< number of slave nodes in `nodes`; more than 1 if segment-integrated
-  std::vector<int> places;       ///< index of `nodes` in Model::contact_nodes
-  std::vector<int> neighbours;   ///< vertex: the vertices before and after it, whose facets share the normal
-  std::vector<int> of_polyline;  ///< points of the polyline: the facet's two, or the vertex between its neighbours
+  int contact = 0;          ///< index in Scene::contacts
+  int obstacle = -1;        ///< index in Scene::obstacles; -1: deformable master
+  int curve = -1;           ///< index in Model::curves; -1: its master is no curve
+  Facing facing = {};       ///< what it faces of the curve at the start
+  OwnVertex own = {};       ///< set if the slave side is its own master
+  int foot = -1;            ///< offset of its foot in History::foot; -1: it has none
+  std::vector<int> nodes;   ///< slave nodes, then master nodes. facet: its two; vertex: itself, then the far ends
+                            ///< of the facets whose end the projection is; curve: of the initial patch
+  int slave_nodes = 1;      ///< number of slave nodes in `nodes`; more than 1 if segment-integrated
+  std::vector<int> places;  ///< index of `nodes` in Model::contact_nodes
+  /// facet: its two ends; vertex: itself between its neighbours, whose facets share the normal. Vertices of a polyline
+  /// count as nodes behind those of the model (core/contact/segment.hpp).
+  std::vector<int> corners;
   std::vector<std::pair<int, int>> area_facets;  ///< facets of the slave side at the node
   std::vector<std::pair<int, int>>
       facet_places;  ///< the same as indices in Model::contact_nodes; for solid bodies along a curve
@@ -125,9 +126,9 @@ struct Effects {
 /// Nodes and facets of a side expression, in the numbering of the model.
 struct SideSet {
   int body = 0;
-  std::vector<int> nodes;
-  std::vector<std::vector<int>> facets;
-  std::vector<std::vector<int>> edges;  ///< Side::edges
+  std::vector<int> nodes = {};
+  std::vector<std::vector<int>> facets = {};
+  std::vector<std::vector<int>> edges = {};  ///< Side::edges
 };
 
 /// The element of an edge, by its number in its body, and the corner at which the edge starts.
@@ -135,19 +136,26 @@ struct ElementEdge {
   int element = 0, corner = 0;
 };
 
-/// A pressure that follows its side at finite strain.
+/// A pressure that follows its side at finite strain: the side of its load.
 struct Follower {
-  int load = 0;  ///< index in Scene::loads
-  SideSet side = {};
+  int load = 0;                           ///< index in Scene::loads
   std::vector<ElementEdge> backing = {};  ///< per edge: its element; empty if the thickness is constant
 };
 
-/// Place of a response that names a point: nodes and weights of the element that contains it, or the nearest contact
-/// point. The point moves with the shape parameters, so nodes and weights are constant.
+/// The two sides of a contact, as it names them.
+struct ContactSides {
+  SideSet slave, master = {};  ///< master: empty if it is an obstacle
+  int obstacle = -1;           ///< index in Scene::obstacles; -1: deformable master
+};
+
+/// Where a response is taken, as far as its kind asks. A point that it names moves with the shape parameters, so nodes
+/// and weights are constant.
 struct ResponsePlace {
-  std::vector<std::pair<int, double>> nodes;
-  int contact_point = -1;
-  std::vector<int> bodies = {};  ///< bodies that contain the point; `nodes` are of the first
+  std::vector<int> nodes;       ///< of its side; beside `at` of the element that holds the point
+  std::vector<double> weights;  ///< of these at the point; empty for a side
+  std::vector<int> bodies;      ///< that it names; beside `at` those that hold the point, `nodes` are of the first
+  std::vector<int> contacts;    ///< indices in Scene::contacts
+  std::vector<int> points;      ///< indices in Model::points: of its contacts; beside `at` the nearest one alone
 };
 
 /// Elements of each body.
@@ -170,6 +178,9 @@ struct Model {
   std::vector<int> free_dofs;
   std::vector<int> contact_nodes;              ///< ascending; all nodes of all contact points
   std::vector<DesignVelocity> velocities;      ///< one per shape motion
+  std::vector<SideSet> support_sides;          ///< per support
+  std::vector<SideSet> load_sides;             ///< per load; of a body force the body alone
+  std::vector<ContactSides> contact_sides;     ///< per contact
   std::vector<ResponsePlace> response_places;  ///< per response
   ElementLists at_reactions;  ///< elements at sides whose reactions are responses; empty: no reaction is
   std::vector<double> times;  ///< ends of the increments, including the breakpoints of all tables
@@ -191,13 +202,10 @@ struct Model {
   }
   /// Whether points slide along curves.
   bool slides_along_curves() const { return effects.current_geometry && !curves.empty(); }
-  /// The nodes and facets of "body.side", "body.a & body.b", "body.a - body.b". Throws ModelError.
+  /// The nodes and facets of "body.side", "body.a & body.b", "body.a - body.b". Throws ModelError. Those that the scene
+  /// names are resolved above, once: nothing that is evaluated asks for a name.
   SideSet side(const std::string& expression) const;
   int contact_index(const std::string& name) const;
-  /// Whether a contact has this name, or belongs to a group of this name.
-  bool is_of_contact(int contact, const std::string& name) const {
-    return scene.contacts[contact].name == name || scene.contacts[contact].group == name;
-  }
   /// Whether a node lies on the axis of revolution, to the rounding of the coordinates. Such a node is held on the
   /// axis.
   bool is_on_axis(const Points<double>& points, int node) const;
@@ -214,9 +222,6 @@ std::string radius_fault(Space space, const Points<double>& points, const BodyMe
 /// each entry by itself was checked when it was read. `spent`: result, seconds of the contact search.
 Model make_model(const Scene& scene);
 Model make_model(const Scene& scene, Seconds& spent);
-
-/// Nodes and facets of a side expression such as "a.b - a.c" on the meshes of a scene. Throws ModelError.
-SideSet resolve_side(const Scene& scene, const std::vector<BodyMesh>& bodies, const std::string& expression);
 
 /// Index of a node in Model::framed, or -1.
 inline int framed_index(const Model& model, int node) {

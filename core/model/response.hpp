@@ -84,19 +84,18 @@ Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> place_of(const Model& model, const 
 /// Component x y z of a force, or its moment about a point of the plane, counter-clockwise, with the arm to a place.
 template <class T, class Force, class Place>
 T component_of(const Response& response, const Force& force, const Place& x, const Numbers<T>& numbers) {
-  if (response.component != "moment") return force[response.component[0] - 'x'];
+  if (response.component != Response::Component::moment) return force[response.axis()];
   return (x[0] - numbers(response.about[0])) * force[1] - (x[1] - numbers(response.about[1])) * force[0];
 }
 
-/// Accumulated tangential slip of a point along a component: x y z, or "" for its own tangent (2D).
+/// Accumulated tangential slip of a point along the component of a response.
 template <class T>
-T slip_component(const Model& model, const Slots<T>& slots, const State<T>& state, int p,
-                 const std::string& component) {
+T slip_component(const Model& model, const Slots<T>& slots, const State<T>& state, int p, const Response& response) {
   const int offset = tangential_offset(model, p);
-  if (component.empty()) return state.history.placement[offset];
+  if (response.component == Response::Component::own) return state.history.placement[offset];
   T s{};
   for (int a = 0; a < model.points[p].tangents; ++a)
-    s += geometry_in(state.contact, slots, p).tangents(component[0] - 'x', a) * state.history.placement[offset + a];
+    s += geometry_in(state.contact, slots, p).tangents(response.axis(), a) * state.history.placement[offset + a];
   return s;
 }
 
@@ -108,7 +107,7 @@ T contact_force(const Model& model, const Slots<T>& slots, const Response& respo
   for (int p : of_contact) {
     const auto& point = model.points[p];
     const auto& geometry = geometry_in(state.contact, slots, p);
-    if (response.component == "normal") {
+    if (response.component == Response::Component::normal) {
       force -= geometry.area * state.contact.traction[point.multiplier];
       continue;
     }
@@ -220,24 +219,19 @@ T contact_response(const Model& model, const Slots<T>& slots, const Response& re
   using Kind = Response::Kind;
   if (response.kind == Kind::dissipation) {
     T work{};
-    for (Eigen::Index c = 0; c < state.history.work.size(); ++c)
-      if (model.is_of_contact(static_cast<int>(c), response.on)) work += state.history.work[c];
+    for (int c : place.contacts)
+      if (c < state.history.work.size()) work += state.history.work[c];
     return work;
   }
-  std::vector<int> of_contact;
-  for (int p = 0; p < static_cast<int>(model.points.size()); ++p)
-    if (model.is_of_contact(model.points[p].contact, response.on) &&
-        (place.contact_point < 0 || place.contact_point == p))
-      of_contact.push_back(p);
-  if (response.kind == Kind::contact_force) return contact_force(model, slots, response, state, of_contact);
-  if (response.kind == Kind::contact_half_width) return contact_half_width(model, slots, response, state, of_contact);
+  if (response.kind == Kind::contact_force) return contact_force(model, slots, response, state, place.points);
+  if (response.kind == Kind::contact_half_width) return contact_half_width(model, slots, response, state, place.points);
   std::vector<T> samples, weights;
-  for (int p : of_contact) {
+  for (int p : place.points) {
     if (response.kind == Kind::slip && model.points[p].tangents == 0) continue;
     weights.push_back(area_in(state.contact, slots, p));
     if (response.kind == Kind::contact_pressure) samples.push_back(-state.contact.traction[model.points[p].multiplier]);
     if (response.kind == Kind::gap) samples.push_back(state.contact.gap[p]);
-    if (response.kind == Kind::slip) samples.push_back(slip_component(model, slots, state, p, response.component));
+    if (response.kind == Kind::slip) samples.push_back(slip_component(model, slots, state, p, response));
   }
   return samples.empty() ? T(0) : take_of(response.take, samples, weights, ties);
 }
@@ -253,17 +247,17 @@ struct NodalForces {
 
 namespace detail {
 
-/// Mean (by volume), largest or least equivalent plastic strain of a body.
+/// Mean (by volume), largest or least equivalent plastic strain of bodies.
 template <class T>
-T plastic_strain(const Model& model, const Slots<T>& slots, const Response& response, const State<T>& state) {
+T plastic_strain(const Model& model, const Slots<T>& slots, Response::Take take, const std::vector<int>& bodies,
+                 const State<T>& state) {
   std::vector<T> samples, volumes;
-  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
-    if (model.scene.bodies[b].name == response.on)
-      for_each_plastic_strain(model, slots, b, state.history.bodies, [&](const T& strain, const T& volume) {
-        samples.push_back(strain);
-        volumes.push_back(volume);
-      });
-  return samples.empty() ? T(0) : take_of(response.take, samples, volumes, Ties::mean);
+  for (int b : bodies)
+    for_each_plastic_strain(model, slots, b, state.history.bodies, [&](const T& strain, const T& volume) {
+      samples.push_back(strain);
+      volumes.push_back(volume);
+    });
+  return samples.empty() ? T(0) : take_of(take, samples, volumes, Ties::mean);
 }
 
 }  // namespace detail
@@ -274,28 +268,30 @@ T evaluate_response(const Model& model, const Slots<T>& slots, int index, const 
                     const NodalForces<T>& forces, Ties ties = Ties::mean) {
   const Response& response = model.scene.responses[index];
   const ResponsePlace& place = model.response_places[index];
-  const int D = model.dimension, axis = response.component.empty() ? 0 : response.component[0] - 'x';
+  const int D = model.dimension;
   if (response.kind == Response::Kind::reaction) {
     T sum{};
-    for (int node : model.side(response.on).nodes)
+    for (int node : place.nodes)
       sum += detail::component_of(response, forces.held.segment(node * D, D),
                                   detail::place_of(model, slots, state, node), slots.numbers);
     return sum;
   }
   if (response.kind == Response::Kind::displacement) {
-    if (!place.nodes.empty()) {
+    const auto moved = [&](int node) -> const T& { return state.displacement[node * D + response.axis()]; };
+    if (!place.weights.empty()) {
       T u{};
-      for (const auto& [node, weight] : place.nodes) u += T(weight) * state.displacement[node * D + axis];
+      for (std::size_t a = 0; a < place.nodes.size(); ++a) u += T(place.weights[a]) * moved(place.nodes[a]);
       return u;
     }
     std::vector<T> samples;
-    for (int node : model.side(response.on).nodes) samples.push_back(state.displacement[node * D + axis]);
+    for (int node : place.nodes) samples.push_back(moved(node));
     return detail::take_of(response.take, samples, std::vector<T>(samples.size(), T(1)), ties);
   }
   if (response.kind == Response::Kind::strain_energy)
     return model.effects.linear_bulk ? T(T(0.5) * dot(forces.internal, state.displacement))
                                      : bulk_energy(model, slots, state.displacement, state.history.bodies);
-  if (response.kind == Response::Kind::plastic_strain) return detail::plastic_strain(model, slots, response, state);
+  if (response.kind == Response::Kind::plastic_strain)
+    return detail::plastic_strain(model, slots, response.take, place.bodies, state);
   return detail::contact_response(model, slots, response, place, state, ties);
 }
 

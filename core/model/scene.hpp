@@ -18,7 +18,7 @@
 #include "core/contact/curve.hpp"
 #include "core/contact/friction_law.hpp"
 #include "core/contact/rigid_surfaces.hpp"
-#include "core/mesh/descriptions.hpp"
+#include "core/mesh/generators.hpp"
 #include "core/model/table.hpp"
 #include "core/solids/materials.hpp"
 
@@ -113,13 +113,17 @@ struct Response {
     contact_half_width
   };
   enum class Take { mean, max, min };
+  enum class Component { own, x, y, z, normal, moment };  ///< own: of a slip in the plane, along its own tangent
   std::string name;
   Kind kind = Kind::displacement;
-  std::string on;         ///< side expression, or contact name, as the kind asks
-  std::string component;  ///< x y z normal moment
+  std::string on;  ///< side expression, or name of a contact or body, as the kind asks
+  Component component = Component::own;
   Take take = Take::mean;
   std::vector<Number> about = {};  ///< of a moment, or of a half width
   std::vector<Number> at;          ///< point of the initial configuration instead of `on`
+
+  /// 0, 1, 2 of x, y, z. pre: the component is one of them.
+  int axis() const { return static_cast<int>(component) - static_cast<int>(Component::x); }
 };
 
 /// A side of a body, or one node of it, moves along a direction: a shape parameter, whose slot holds the distance, 0.

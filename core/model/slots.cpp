@@ -1,6 +1,4 @@
-#include <Eigen/LU>
-
-#include "core/model/flow_points.hpp"
+#include "core/model/element_kernels_impl.hpp"
 
 namespace stickslip {
 
@@ -9,7 +7,6 @@ ElementLists inverted_elements(const Model& model, const Slots<double>& slots, c
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     const auto& body = model.bodies[b];
     const auto continuum = [&]<class Shape, Kinematics kinematics, class L>(const L& law) {
-      constexpr int rows = stress_dimension(kinematics);
       for (int e = 0; law.is_finite && e < body.mesh.element_count(); ++e) {
         const auto nodes = detail::element_nodes(body, e);
         const auto local = detail::gather_displacements<double, Shape>(u, nodes.data());
@@ -17,10 +14,8 @@ ElementLists inverted_elements(const Model& model, const Slots<double>& slots, c
         for_each_strain_in<double, Shape, kinematics>(
             law.is_finite, detail::gather_coordinates<double, Shape>(slots.points, nodes.data()), 1.0, local,
             [&](const auto& H, double) {
-              const Mat<double, rows> F = Mat<double, rows>::Identity() + H;
-              positive &= F.template topLeftCorner<2, 2>().determinant() > 0;
-              if constexpr (rows == 3) positive &= F(2, 2) > 0;  // (where both are negative their product is not)
-              if constexpr (rows == 2 && !Remembers<L>) positive &= law.stretch_across(H) > 0;
+              positive &= !is_inverted(H);
+              if constexpr (kinematics == Kinematics::plane && !Remembers<L>) positive &= law.stretch_across(H) > 0;
             });
         if (!positive) inverted[b].push_back(e);
       }

@@ -1,107 +1,16 @@
-/// Slots: every number that a residual reads, in the scalar T: nodal coordinates, material numbers, initial contact
-/// geometry, friction, loads. T is double in the solver, Dual<N> for derivatives by parameters (pseudo-loads), complex
-/// in the oracle.
+/// What is made of a scene in a scalar: its slots, and what the bodies answer at displacements.
 #pragma once
 
 #include <functional>
 #include <type_traits>
-#include <variant>
 #include <vector>
 
-#include "core/contact/contact_point.hpp"
-#include "core/contact/segments.hpp"
-#include "core/contact/surfaces.hpp"
 #include "core/mesh/generators.hpp"
+#include "core/model/element_nodes.hpp"
 #include "core/model/history.hpp"
-#include "core/model/model.hpp"
-#include "core/model/supports.hpp"
-#include "core/solids/edges.hpp"
-#include "core/solids/elements.hpp"
-#include "core/solids/materials.hpp"
+#include "core/model/slot_values.hpp"
 
 namespace stickslip {
-
-/// Nodal forces of a load at history = 1, on the dofs on which it acts.
-template <class T>
-struct NodalLoad {
-  std::vector<int> dofs;  ///< ascending
-  std::vector<T> forces;
-
-  explicit NodalLoad(const Vector<T>& all) {
-    for (int dof = 0; dof < all.size(); ++dof)
-      if (!vanishes(all[dof])) {
-        dofs.push_back(dof);
-        forces.push_back(all[dof]);
-      }
-  }
-  Vector<T> all(int dof_count) const {
-    Vector<T> spread = Vector<T>::Constant(dof_count, T(0));
-    for (std::size_t k = 0; k < dofs.size(); ++k) spread[dofs[k]] = forces[k];
-    return spread;
-  }
-};
-
-template <class T>
-struct Slots {
-  Numbers<T> numbers;
-  Points<T> points;                        ///< D x nodes
-  std::vector<Law<T>> laws;                ///< per body
-  std::vector<Depth<T>> depths;            ///< per body
-  std::vector<PointGeometry<T>> geometry;  ///< per contact point
-  std::vector<T> stiffness;                ///< per contact point: local nodal stiffness k_i (force per length)
-  std::vector<FrictionLaw<T>> friction;    ///< per contact; not read if frictionless
-  std::vector<NodalLoad<T>> loads;         ///< per load
-  std::vector<Matrix<T>> frames;           ///< per framed node: D x D, frame vectors as columns
-  std::vector<Vector<T>> spins;            ///< per contact point: displacement of its obstacle per degree of rotation,
-                                           ///< length; empty: no obstacle rotates
-  std::vector<Vector<T>> arcs;    ///< per curve that is integrated: initial arc length along it to the beginning
-                                  ///< of each facet, and of all; empty for another; no entry: none is
-  bool current_geometry = false;  ///< of the model's effects
-};
-
-/// Gap of a point, length, up to which it counts as zero. If the initial gap is not exactly zero: the rounding of the
-/// coordinates. If it is: the rounding of the displacements alone, so a contact that begins closed has the same
-/// branches under every load, however small. `largest_displacement`: of the point's nodes, length.
-template <class T>
-double tie_length(const ContactPoint& point, const PointGeometry<T>& geometry, double largest_displacement = 0) {
-  constexpr double terms = 256;  // terms summed in a displacement, times some condition number
-  return value(geometry.gap) == 0 ? terms * unit_roundoff * largest_displacement : point.tie_length;
-}
-
-namespace detail {
-
-template <class T>
-Vec<T, 2> point2(const Points<T>& points, int node) {
-  return {points(0, node), points(1, node)};
-}
-
-/// Law of a body: that of its material, or that of bars made of it.
-template <class T>
-Law<T> make_law(const Scene& scene, const Body& body, const Mesh& mesh, const Numbers<T>& numbers) {
-  return std::visit(
-      [&]<class M>(const M& material) -> Law<T> {
-        if constexpr (HoldsPoint<M>) {
-          return law_of<T>(material, numbers);
-        } else {
-          if constexpr (FillsBars<M>)
-            if (mesh.shape == ElementShape::bar2) {
-              const BarLaw<T> bar{numbers(material.E) * numbers(body.area), numbers(body.area), scene.finite_strain};
-              return bar_of<T>(material, bar, numbers);
-            }
-          return law_of<T>(material, scene.space, scene.finite_strain, numbers);
-        }
-      },
-      body.material);
-}
-
-/// Cross-section of bars, area.
-template <class T>
-T area_of(const Law<T>& bars) {
-  if (const auto* plastic = std::get_if<PlasticBarLaw<T>>(&bars)) return plastic->elastic.area;
-  return std::get<BarLaw<T>>(bars).area;
-}
-
-}  // namespace detail
 
 /// Motion of the bodies in an increment: displacements at its end, and the bodies' memory at its start
 /// (History::bodies).
@@ -125,9 +34,9 @@ template <class T>
 Vector<T> bulk_forces(const Model& model, const Slots<T>& slots, const Vector<T>& u, const Vector<T>& memory,
                       const ElementLists* only = nullptr);
 
-/// Nodal forces of a load at history = 1, all dofs; zero for a pressure that follows its side.
+/// Nodal forces of Scene::loads[load] at history = 1, all dofs; zero for a pressure that follows its side.
 template <class T>
-Vector<T> load_vector(const Model& model, const Load& load, const Slots<T>& slots);
+Vector<T> load_vector(const Model& model, int load, const Slots<T>& slots);
 
 /// Receives the nodes of an element and its tangent, node-major. It is a function and no template parameter, so that
 /// elements of all shapes and laws are compiled once per scalar, and not once per caller.
@@ -169,11 +78,14 @@ template <class T>
 std::vector<ThicknessStretch<T>> edge_stretches(const Model& model, const Slots<T>& slots, int b,
                                                 const ElementEdge& edge, const Vector<T>& u);
 
-/// Calls f(a, volume) at each point of body b with its equivalent plastic strain and volume (of a bar, length times
+template <class T>
+using PlasticStrainSink = std::function<void(const T& a, const T& volume)>;
+
+/// Calls sink(a, volume) at each point of body b with its equivalent plastic strain and volume (of a bar, length times
 /// cross-section); nothing where it does not flow. `memory`: what bodies remember.
 template <class T>
 void for_each_plastic_strain(const Model& model, const Slots<T>& slots, int b, const Vector<T>& memory,
-                             const std::type_identity_t<std::function<void(const T& a, const T& volume)>>& f);
+                             const std::type_identity_t<PlasticStrainSink<T>>& sink);
 
 /// Elements that displacements invert, body by body; none where the bodies' strains are small.
 ElementLists inverted_elements(const Model& model, const Slots<double>& slots, const Vector<double>& u);
@@ -206,12 +118,12 @@ namespace stickslip {
                                       const FlowBranches&);                                                    \
   EXTERN template T bulk_energy(const Model&, const Slots<T>&, const Vector<T>&, const Vector<T>&);            \
   EXTERN template void for_each_plastic_strain(const Model&, const Slots<T>&, int, const Vector<T>&,           \
-                                               const std::function<void(const T&, const T&)>&);                \
+                                               const PlasticStrainSink<T>&);                                   \
   EXTERN template void for_each_element_tangent(const Model&, const Slots<T>&, int, const std::vector<int>*,   \
                                                 const ElementSink<T>&, const BodyMotion<T>*);                  \
   EXTERN template std::vector<ThicknessStretch<T>> edge_stretches(const Model&, const Slots<T>&, int,          \
                                                                   const ElementEdge&, const Vector<T>&);       \
-  EXTERN template Vector<T> load_vector(const Model&, const Load&, const Slots<T>&);                           \
+  EXTERN template Vector<T> load_vector(const Model&, int, const Slots<T>&);                                   \
   EXTERN template Points<T> initial_points(const Model&, const Numbers<T>&);                                   \
   EXTERN template Slots<T> make_slots(const Model&, const Numbers<T>&, Points<T>, const std::vector<double>*); \
   EXTERN template Slots<T> make_slots(const Model&, const Numbers<T>&)

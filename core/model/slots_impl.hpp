@@ -144,6 +144,29 @@ Points<T> initial_points(const Model& model, const Numbers<T>& numbers) {
   return points;
 }
 
+namespace detail {
+
+/// Law of a body: that of its material, or that of bars made of it.
+template <class T>
+Law<T> make_law(const Scene& scene, const Body& body, const Mesh& mesh, const Numbers<T>& numbers) {
+  return std::visit(
+      [&]<class M>(const M& material) -> Law<T> {
+        if constexpr (HoldsPoint<M>) {
+          return law_of<T>(material, numbers);
+        } else {
+          if constexpr (FillsBars<M>)
+            if (mesh.shape == ElementShape::bar2) {
+              const BarLaw<T> bar{numbers(material.E) * numbers(body.area), numbers(body.area), scene.finite_strain};
+              return bar_of<T>(material, bar, numbers);
+            }
+          return law_of<T>(material, scene.space, scene.finite_strain, numbers);
+        }
+      },
+      body.material);
+}
+
+}  // namespace detail
+
 template <class T>
 Slots<T> make_slots(const Model& model, const Numbers<T>& numbers) {
   return make_slots(model, numbers, initial_points(model, numbers));
@@ -185,7 +208,8 @@ Slots<T> make_slots(const Model& model, const Numbers<T>& numbers, Points<T> poi
     slots.stiffness.assign(stiffness->begin(), stiffness->end());
   else
     slots.stiffness = contact_stiffness(model, slots);
-  for (const auto& load : model.scene.loads) slots.loads.emplace_back(load_vector(model, load, slots));
+  for (int l = 0; l < static_cast<int>(model.scene.loads.size()); ++l)
+    slots.loads.emplace_back(load_vector(model, l, slots));
   const auto& obstacles = model.scene.obstacles;
   const bool turns =
       std::any_of(obstacles.begin(), obstacles.end(), [](const auto& o) { return o.rotate.has_value(); });

@@ -75,7 +75,7 @@ struct State {
   Vector<T> multiplier;    ///< lambda of the increment's last equilibrium, laid out as traction
   ContactField<T> contact;
   History<T> history;      ///< at the end of the increment
-  FlowBranches flow = {};  ///< for derivatives alone: branches of ties (sensitivity/flow_ties.hpp)
+  FlowBranches flow = {};  ///< for derivatives alone: branches of ties (sensitivity/ties/flow_tie.hpp)
 };
 
 /// Uzawa: equilibrium after one augmentation. Kept only for the truncated scheme.

@@ -92,7 +92,7 @@ void number_dofs(Model& model, const Points<double>& points) {
     if (model.is_on_axis(points, node)) axis.insert(node);
   for (int s = 0; s < static_cast<int>(scene.supports.size()); ++s) {
     const auto constraints = constraints_of(scene, s);
-    for (int node : model.side(scene.supports[s].on).nodes)
+    for (int node : model.support_sides[s].nodes)
       for (const auto& constraint : constraints) {
         const bool radial = axis.count(node) > 0 && constraint.axis != 'y';
         if (radial)

@@ -3,7 +3,7 @@
 ///
 ///   H_pq = B_pq,ia u_ia        dV
 ///
-/// H is the displacement gradient. In the plane it has four components, B_pq,ia = delta_ip dN_a/dX_q, and dV is area
+/// H is the displacement gradient. In the plane B_pq,ia = delta_ip dN_a/dX_q, and dV is area
 /// times thickness. Of revolution (X_0 = r, X_1 axial) the hoop strain H_22 = u_r / r joins them, and dV is area times
 /// the circumference 2 pi r. With mean dilatation, at small strain, the trace of H is replaced by its mean over the
 /// element,
@@ -39,7 +39,8 @@ void with_kinematics(Kinematics kinematics, F&& f) {
 /// plane body, unread in one of revolution.
 template <class T, class Shape, Kinematics kinematics = Kinematics::plane>
 struct Gradient {
-  static constexpr int nodes = Shape::nodes, rows = stress_dimension(kinematics), components = rows == 2 ? 4 : 5;
+  static constexpr int nodes = Shape::nodes;
+  static constexpr TensorLayout layout = layout_of(kinematics);
   static constexpr bool revolved = is_of_revolution(kinematics), averaged = has_mean_dilatation(kinematics);
   Mat<T, 2, nodes> dN;
   T volume;
@@ -90,8 +91,8 @@ struct Gradient {
 
   /// Displacement gradient of nodal displacements (2 x nodes), in their scalar: T, or a Dual built on it.
   template <class U>
-  Mat<U, rows> of(const Mat<U, 2, nodes>& u) const {
-    Mat<U, rows> H = Mat<U, rows>::Constant(U(0));
+  Tensor<U, layout> of(const Mat<U, 2, nodes>& u) const {
+    auto H = Tensor<U, layout>::constant(U(0));
     for (int a = 0; a < nodes; ++a)
       for (int i = 0; i < 2; ++i) for_each(i, a, [&](int p, int q, const T& b) { H(p, q) += b * u(i, a); });
     return H;

@@ -53,82 +53,75 @@ struct ElementWork {
 namespace detail {
 
 /// The stress of one point, and the derivative of its work over its volume, A : P, by H.
-template <int rows>
+template <TensorLayout layout>
 struct PointWork {
-  Mat<double, rows> stress, by_gradient;
+  Tensor<double, layout> stress, by_gradient;
 };
 
+/// The numbers of a law, the first of them with the derivative `first`.
+template <class Probe, class Law>
+auto seeded_numbers(const Law& law, int first) {
+  const auto numbers = law.numbers();
+  std::array<Probe, std::tuple_size_v<std::decay_t<decltype(numbers)>>> probes;
+  for (std::size_t m = 0; m < probes.size(); ++m) probes[m] = Probe::seed(numbers[m], first + static_cast<int>(m));
+  return probes;
+}
+
 /// Of a law with a symmetric tangent. `by_law` gets what the `seeds` first numbers of the law make of the work.
-template <int rows, std::size_t seeds, class Law, std::size_t count>
-PointWork<rows> point_work(const Law& law, const Mat<double, rows>& H, const Mat<double, rows>& A, double volume,
-                           std::array<double, count>& by_law) {
+template <std::size_t seeds, TensorLayout layout, class Law, std::size_t count>
+PointWork<layout> point_work(const Law& law, const Tensor<double, layout>& H, const Tensor<double, layout>& A,
+                             double volume, std::array<double, count>& by_law) {
   using Probe = Dual<1 + static_cast<int>(seeds)>;
-  Mat<Probe, rows> seeded;
-  for (int k = 0; k < rows * rows; ++k) {
-    seeded.data()[k] = Probe(H.data()[k]);
-    seeded.data()[k].d[0] = A.data()[k];
+  Tensor<Probe, layout> probe, P;
+  for (int k = 0; k < H.size; ++k) {
+    probe[k] = Probe(H[k]);
+    probe[k].d[0] = A[k];
   }
-  Mat<Probe, rows> P;
-  if constexpr (seeds > 0) {
-    std::array<Probe, count> numbers;
-    for (std::size_t m = 0; m < count; ++m) numbers[m] = Probe::seed(law.numbers()[m], 1 + static_cast<int>(m));
-    P = law.with(numbers).template stress<Probe, rows>(seeded);
-  } else {
-    P = law.template stress<Probe, rows>(seeded);
-  }
-  PointWork<rows> work;
-  for (int k = 0; k < rows * rows; ++k) {
-    work.stress.data()[k] = P.data()[k].v;
-    work.by_gradient.data()[k] = P.data()[k].d[0];
-    for (std::size_t m = 0; m < seeds; ++m) by_law[m] += volume * A.data()[k] * P.data()[k].d[1 + m];
-  }
-  return work;
+  if constexpr (seeds > 0)
+    P = law.with(seeded_numbers<Probe>(law, 1)).stress(probe);
+  else
+    P = law.stress(probe);
+  for (int k = 0; k < H.size; ++k)
+    for (std::size_t m = 0; m < seeds; ++m) by_law[m] += volume * A[k] * P[k].d[1 + m];
+  return {P.map([](const Probe& x) { return x.v; }), P.map([](const Probe& x) { return double(x.d[0]); })};
 }
 
 /// Of a law that remembers, with b over the volume and the branch of its flow; `by_before`: derivatives by the memory
 /// before.
-template <int rows, class Law, std::size_t count, class Memory>
-PointWork<rows> point_work(const Law& law, const Mat<double, rows>& H, const Mat<double, rows>& A, double volume,
-                           std::array<double, count>& by_law, const Memory& before, int branch, const Memory& b,
-                           Memory& by_before) {
-  constexpr int components = rows == 2 ? 4 : 5, memory = Law::memory;
+template <TensorLayout layout, class Law, std::size_t count, class Memory>
+PointWork<layout> point_work(const Law& law, const Tensor<double, layout>& H, const Tensor<double, layout>& A,
+                             double volume, std::array<double, count>& by_law, const Memory& before, int branch,
+                             const Memory& b, Memory& by_before) {
+  constexpr int components = H.size, memory = Law::memory;
   using Probe = Dual<components + memory + static_cast<int>(count)>;
-  std::array<Probe, count> numbers;
-  for (std::size_t m = 0; m < count; ++m)
-    numbers[m] = Probe::seed(law.numbers()[m], components + memory + static_cast<int>(m));
-  const auto probed = law.with(numbers);
-  Mat<Probe, rows> seeded = Mat<Probe, rows>::Constant(Probe(0.0));
-  for (int p = 0; p < rows; ++p)
-    for (int q = 0; q < rows; ++q)
-      if ((p == 2) == (q == 2)) seeded(p, q) = Probe::seed(H(p, q), component(p, q));
+  const auto probed = law.with(seeded_numbers<Probe>(law, components + memory));
+  const auto probe = seeded<Probe>(H);
   Vec<Probe, memory> remembered;
   for (int m = 0; m < memory; ++m) remembered[m] = Probe::seed(before[m], components + m);
-  const Vec<Probe, memory> after = probed.template flow<Probe, rows>(seeded, remembered, branch);
-  const Mat<Probe, rows> P = probed.template stress<Probe, rows>(seeded, after);
+  const Vec<Probe, memory> after = probed.flow(probe, remembered, branch);
+  const Tensor<Probe, layout> P = probed.stress(probe, after);
   Probe sum(0.0);
-  for (int k = 0; k < rows * rows; ++k) sum += A.data()[k] * P.data()[k];
+  for (int k = 0; k < components; ++k) sum += A[k] * P[k];
   for (int m = 0; m < memory; ++m) sum += b[m] * after[m];
-  PointWork<rows> work{stickslip::values(P), Mat<double, rows>::Zero()};
-  for (int p = 0; p < rows; ++p)
-    for (int q = 0; q < rows; ++q)
-      if ((p == 2) == (q == 2)) work.by_gradient(p, q) = sum.d[component(p, q)];
+  PointWork<layout> work;
+  work.stress = P.map([](const Probe& x) { return x.v; });
+  for (int k = 0; k < components; ++k) work.by_gradient[k] = sum.d[k];
   for (int m = 0; m < memory; ++m) by_before[m] = sum.d[components + m];
   for (std::size_t m = 0; m < count; ++m) by_law[m] += volume * sum.d[components + memory + static_cast<int>(m)];
   return work;
 }
 
 /// Adds the derivatives of one point's work by its gradient, over the volume but that by the volume itself.
-template <int nodes, int rows, class By>
-void add_by_gradient(const StateOfElement<nodes>& state, const Mat<double, rows>& A, const PointWork<rows>& work,
+template <int nodes, TensorLayout layout, class By>
+void add_by_gradient(const StateOfElement<nodes>& state, const Tensor<double, layout>& A, const PointWork<layout>& work,
                      By& by) {
   const auto& [P, Q] = work;
-  by.volume += A.cwiseProduct(P).sum();
-  by.dN += P.template topLeftCorner<2, 2>().transpose().lazyProduct(state.weight) +
-           Q.template topLeftCorner<2, 2>().transpose().lazyProduct(state.motion);
+  by.volume += A.full().cwiseProduct(P.full()).sum();
+  by.dN += P.matrix().transpose().lazyProduct(state.weight) + Q.matrix().transpose().lazyProduct(state.motion);
   if constexpr (decltype(by.hoop)::RowsAtCompileTime > 0)
     by.hoop += P(2, 2) * state.weight.row(0).transpose() + Q(2, 2) * state.motion.row(0).transpose();
   if constexpr (decltype(by.exchange)::ColsAtCompileTime > 0)
-    by.exchange += P.trace() * state.weight + Q.trace() * state.motion;
+    by.exchange += P.full().trace() * state.weight + Q.full().trace() * state.motion;
 }
 
 /// The derivatives of the work of an element with mean dilatation at finite strain: the Dual of the whole element.
@@ -145,9 +138,7 @@ auto averaged_work(const Law& law, const Mat<double, 2, Shape::nodes>& coordinat
   using Probe = Dual<inputs>;
   Mat<Probe, 2, n> X;
   for (int k = 0; k < 2 * n; ++k) X.data()[k] = Probe::seed(coordinates.data()[k], k);
-  std::array<Probe, count> numbers;
-  for (int m = 0; m < count; ++m) numbers[m] = Probe::seed(law.numbers()[m], 2 * n + 1 + m);
-  const auto probed = law.with(numbers);
+  const auto probed = law.with(seeded_numbers<Probe>(law, 2 * n + 1));
   ElementWork<n, static_cast<std::size_t>(count)> out;
   for (const auto& state : states) {
     Mat<Probe, 2, n> u;
@@ -189,28 +180,24 @@ template <class Shape, Kinematics kinematics, class Law, std::size_t count>
 void add_joined(const Law& law, const Gradient<double, Shape, kinematics>& gradient,
                 const Mat<double, 2 * Shape::nodes>& S, Wanted wanted, ByGradient<Shape, kinematics>& by,
                 std::array<double, count>& by_law) {
-  constexpr int rows = stress_dimension(kinematics);
   using Probe = Dual<static_cast<int>(count)>;
-  std::array<Probe, count> numbers;
-  for (std::size_t m = 0; m < count; ++m) numbers[m] = Probe::seed(law.numbers()[m], static_cast<int>(m));
-  const auto probed = law.with(numbers);
+  const auto probed = law.with(seeded_numbers<Probe>(law, 0));
   for (int a = 0; a < Shape::nodes; ++a)
     for (int i = 0; i < 2; ++i) {
       const Mat<double, 2, Shape::nodes> motion(S.col(2 * a + i).data());
-      const Mat<double, rows> H = gradient.of(motion), P = law.template stress<double, rows>(H);
+      const auto H = gradient.of(motion), P = law.stress(H);
       const auto on_unit = [&](const auto& stress) {  // B e : stress
         auto sum = 0.0 * stress(0, 0);
         gradient.for_each(i, a, [&](int p, int r, double x) { sum += x * stress(p, r); });
         return sum;
       };
       by.volume += 0.5 * on_unit(P);
-      by.dN.col(a) += P.template block<1, 2>(i, 0).transpose();
+      by.dN.col(a) += P.matrix().row(i).transpose();
       if constexpr (Gradient<double, Shape, kinematics>::revolved)
         if (i == 0) by.hoop[a] += P(2, 2);
-      if constexpr (Gradient<double, Shape, kinematics>::averaged) by.exchange(i, a) += P.trace();
+      if constexpr (Gradient<double, Shape, kinematics>::averaged) by.exchange(i, a) += P.full().trace();
       if (!wanted.law) continue;
-      const Mat<Probe, rows> with_numbers = probed.template stress<Probe, rows>(H.template cast<Probe>());
-      const Probe work = on_unit(with_numbers);
+      const Probe work = on_unit(probed.stress(H.map([](double x) { return Probe(x); })));
       for (std::size_t m = 0; m < count; ++m) by_law[m] += 0.5 * gradient.volume * work.d[static_cast<int>(m)];
     }
 }
@@ -223,7 +210,7 @@ auto element_work(const Law& law, const Mat<double, 2, Shape::nodes>& coordinate
                   const std::vector<StateOfElement<Shape::nodes>>& states, Wanted wanted = {}) {
   if constexpr (detail::averages<Law, kinematics>())
     if (law.is_finite) return detail::averaged_work<Shape, kinematics>(law, coordinates, depth, states);
-  constexpr int n = Shape::nodes, rows = stress_dimension(kinematics), points = points_of<Shape>(kinematics);
+  constexpr int n = Shape::nodes, points = points_of<Shape>(kinematics);
   constexpr std::size_t count = std::tuple_size_v<decltype(law.numbers())>;
   ElementWork<n, count> out;
   if constexpr (requires { Law::memory; })
@@ -244,17 +231,17 @@ auto element_work(const Law& law, const Mat<double, 2, Shape::nodes>& coordinate
       if (joins) detail::add_joined<Shape, kinematics>(law, gradient, S, wanted, of_point, out.law);
     for (std::size_t s = 0; s < states.size() && !joins; ++s) {
       const auto& state = states[s];
-      const Mat<double, rows> H = gradient.of(state.motion), A = gradient.of(state.weight);
-      detail::PointWork<rows> work;
+      const auto H = gradient.of(state.motion), A = gradient.of(state.weight);
+      detail::PointWork<layout_of(kinematics)> work;
       if constexpr (requires { Law::memory; }) {
         using Memory = Vec<double, Law::memory>;
         const Eigen::Index remembered = q * Law::memory;
         const Memory b = state.memory.template segment<Law::memory>(remembered) / gradient.volume;
         Memory by_before;
         const int branch = state.branches ? state.branches[remembered] : flow_branch::by_values;
-        work = detail::point_work<rows>(law, H, A, gradient.volume, out.law,
-                                        Memory(state.last_memory.template segment<Law::memory>(remembered)), branch, b,
-                                        by_before);
+        work = detail::point_work(law, H, A, gradient.volume, out.law,
+                                  Memory(state.last_memory.template segment<Law::memory>(remembered)), branch, b,
+                                  by_before);
         out.last_memory[s].template segment<Law::memory>(remembered) = gradient.volume * by_before;
         for (int a = 0; a < n; ++a)
           for (int i = 0; i < 2; ++i)
@@ -262,9 +249,9 @@ auto element_work(const Law& law, const Mat<double, 2, Shape::nodes>& coordinate
               out.motion[s](i, a) += gradient.volume * work.by_gradient(p, r) * x;
             });
       } else if (wanted.law) {
-        work = detail::point_work<rows, count>(law, H, A, gradient.volume, out.law);
+        work = detail::point_work<count>(law, H, A, gradient.volume, out.law);
       } else {
-        work = detail::point_work<rows, 0>(law, H, A, gradient.volume, out.law);
+        work = detail::point_work<0>(law, H, A, gradient.volume, out.law);
       }
       if (wanted.geometry) detail::add_by_gradient(state, A, work, of_point);
     }

@@ -54,16 +54,16 @@ Mat<T, 2, Shape::nodes> averaged_forces(const Law& law, const Mat<G, 2, Shape::n
                                         T* after = nullptr) {
   using Element = MeanDilatation<T, G, Shape, kinematics>;
   const Element element(coordinates, depth, u);
-  std::array<Mat<T, 3>, Element::points> P;
+  std::array<typename Element::Strain, Element::points> P;
   for (std::size_t q = 0; q < Element::points; ++q) {
     if constexpr (requires { Law::memory; }) {
       [[maybe_unused]] const int branch = memory.branch();
       Vec<T, Law::memory> remembered = memory.template take<Law::memory>();
-      if constexpr (flows) remembered = law.template flow<T, 3>(element.strain(q), remembered, branch);
+      if constexpr (flows) remembered = law.flow(element.strain(q), remembered, branch);
       if (after) after = std::copy(remembered.begin(), remembered.end(), after);
-      P[q] = law.template stress<T, 3>(element.strain(q), remembered);
+      P[q] = law.stress(element.strain(q), remembered);
     } else {
-      P[q] = law.template stress<T, 3>(element.strain(q));
+      P[q] = law.stress(element.strain(q));
     }
   }
   return element.forces(P);
@@ -82,13 +82,12 @@ Mat<T, 2, Shape::nodes> element_forces(const Law& law, const std::type_identity_
       return detail::averaged_forces<false, T, Shape, kinematics, G>(law, coordinates, u, depth, memory);
   Mat<T, 2, Shape::nodes> forces = Mat<T, 2, Shape::nodes>::Constant(T(0));
   for_each_gradient<G, Shape, kinematics>(coordinates, depth, [&](const auto& gradient) {
-    constexpr int rows = stress_dimension(kinematics);
-    Mat<T, rows> sigma;
+    Tensor<T, layout_of(kinematics)> sigma;
     if constexpr (requires { Law::memory; })
-      sigma = law.template stress<T, rows>(gradient.of(u), memory.template take<Law::memory>());
+      sigma = law.stress(gradient.of(u), memory.template take<Law::memory>());
     else
-      sigma = law.template stress<T, rows>(gradient.of(u));
-    for (int k = 0; k < rows * rows; ++k) sigma.data()[k] = sigma.data()[k] * gradient.volume;
+      sigma = law.stress(gradient.of(u));
+    for (int k = 0; k < sigma.size; ++k) sigma[k] = sigma[k] * gradient.volume;
     for (int a = 0; a < Shape::nodes; ++a)
       for (int i = 0; i < 2; ++i)
         gradient.for_each(i, a, [&](int p, int q, const G& b) { forces(i, a) += sigma(p, q) * b; });
@@ -98,9 +97,6 @@ Mat<T, 2, Shape::nodes> element_forces(const Law& law, const std::type_identity_
 
 namespace detail {
 
-/// Place of H_pq, or sigma_pq, among those that are not always zero: 00 01 10 11 22.
-constexpr int component(int p, int q) { return p == 2 ? 4 : 2 * p + q; }
-
 /// A law whose tangent is the same at all displacements.
 template <class Law>
 concept IsLinear = !requires {
@@ -108,33 +104,32 @@ concept IsLinear = !requires {
 }
 &&!Law::is_finite;
 
+/// H with a derivative by each of its components, in their order.
+template <class Probe, class T, TensorLayout layout>
+Tensor<Probe, layout> seeded(const Tensor<T, layout>& H) {
+  Tensor<Probe, layout> probe;
+  for (int k = 0; k < H.size; ++k) probe[k] = Probe::seed(H[k], k);
+  return probe;
+}
+
 /// dsigma/dH times a volume, component by component; of a law that remembers, with the flow from `before`.
-template <class T, int components, int rows, class Law>
-Mat<T, components> material_tangent(const Law& law, const Mat<T, rows>& H, const T& volume, ElementMemory<T>& before) {
-  using Probe = Dual<components, T>;
-  Mat<Probe, rows> seeded = Mat<Probe, rows>::Constant(Probe(T(0)));
-  for (int p = 0; p < rows; ++p)
-    for (int q = 0; q < rows; ++q)
-      if ((p == 2) == (q == 2)) seeded(p, q) = Probe::seed(H(p, q), component(p, q));
-  Mat<Probe, rows> sigma;
+template <class T, TensorLayout layout, class Law, int size = Tensor<T, layout>::size>
+Mat<T, size> material_tangent(const Law& law, const Tensor<T, layout>& H, const T& volume, ElementMemory<T>& before) {
+  using Probe = Dual<size, T>;
+  const Tensor<Probe, layout> probe = seeded<Probe>(H);
+  Tensor<Probe, layout> sigma;
   if constexpr (requires { Law::memory; }) {
     const int branch = before.branch();
     const auto memory = before.template take<Law::memory>();
     const Vec<Probe, Law::memory> constant = memory.unaryExpr([](const T& x) { return Probe(x); });
-    sigma = law.template stress<Probe, rows>(seeded, law.template flow<Probe, rows>(seeded, constant, branch));
+    sigma = law.stress(probe, law.flow(probe, constant, branch));
   } else {
-    sigma = law.template stress<Probe, rows>(seeded);
+    sigma = law.stress(probe);
   }
-  Mat<T, components> tangent;
-  for (int p = 0; p < rows; ++p)
-    for (int q = 0; q < rows; ++q)
-      if ((p == 2) == (q == 2)) tangent.row(component(p, q)) = sigma(p, q).d * volume;
+  Mat<T, size> tangent;
+  for (int k = 0; k < size; ++k) tangent.row(k) = sigma[k].d * volume;
   return tangent;
 }
-
-}  // namespace detail
-
-namespace detail {
 
 /// Tangent of an element with mean dilatation at finite strain.
 template <class T, class Shape, Kinematics kinematics, class Law>
@@ -170,30 +165,28 @@ Mat<T, 2 * Shape::nodes> element_tangent(const Law& law, const Mat<T, 2, Shape::
   constexpr int n = Shape::nodes;
   if constexpr (detail::averages<Law, kinematics>())
     if (law.is_finite) return detail::averaged_tangent<T, Shape, kinematics>(law, coordinates, u, depth, before);
-  constexpr int rows = stress_dimension(kinematics), components = rows == 2 ? 4 : 5;
+  using Stress = Tensor<T, layout_of(kinematics)>;
   // Derivatives of a symmetric tangent are dear, so they are made of its lower blocks alone.
   constexpr bool mirrors = tells_constants<T>;
   Mat<T, 2 * n> K = Mat<T, 2 * n>::Constant(T(0));
-  Mat<T, components> at_unit_volume;
+  Mat<T, Stress::size> at_unit_volume;
   if constexpr (detail::IsLinear<Law>)
-    at_unit_volume = detail::material_tangent<T, components, rows>(law, Mat<T, rows>::Constant(T(0)), T(1), before);
+    at_unit_volume = detail::material_tangent(law, Stress::constant(T(0)), T(1), before);
   for_each_gradient<T, Shape, kinematics>(coordinates, depth, [&](const auto& gradient) {
-    Mat<T, components> C;
+    Mat<T, Stress::size> C;
     if constexpr (detail::IsLinear<Law>)
       C = at_unit_volume * gradient.volume;
     else
-      C = detail::material_tangent<T, components, rows>(law, gradient.of(u), gradient.volume, before);
+      C = detail::material_tangent(law, gradient.of(u), gradient.volume, before);
     for (int b = 0; b < n; ++b)
       for (int k = 0; k < 2; ++k) {
-        Vec<T, components> column = Vec<T, components>::Constant(T(0));  // dsigma/du_kb
+        auto column = Stress::constant(T(0));  // dsigma/du_kb
         gradient.for_each(k, b, [&](int p, int q, const T& x) {
-          for (int c = 0; c < components; ++c) column[c] += C(c, detail::component(p, q)) * x;
+          for (int c = 0; c < column.size; ++c) column[c] += C(c, column.place(p, q)) * x;
         });
         for (int a = mirrors ? b : 0; a < n; ++a)
           for (int i = 0; i < 2; ++i)
-            gradient.for_each(i, a, [&](int p, int q, const T& x) {
-              K(a * 2 + i, b * 2 + k) += column[detail::component(p, q)] * x;
-            });
+            gradient.for_each(i, a, [&](int p, int q, const T& x) { K(a * 2 + i, b * 2 + k) += column(p, q) * x; });
       }
   });
   if constexpr (mirrors)
@@ -207,13 +200,12 @@ Mat<T, 2 * Shape::nodes> element_tangent(const Law& law, const Mat<T, 2, Shape::
 template <class T, class Shape, Kinematics kinematics = Kinematics::plane, class Law>
 T element_energy(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates, const Mat<T, 2, Shape::nodes>& u,
                  const T& depth = T(1), ElementMemory<T> memory = {}) {
-  constexpr int rows = stress_dimension(kinematics);
   T energy{};
   for_each_strain_in<T, Shape, kinematics>(law.is_finite, coordinates, depth, u, [&](const auto& H, const T& volume) {
     if constexpr (requires { Law::memory; })
-      energy += law.template energy<T, rows>(H, memory.template take<Law::memory>()) * volume;
+      energy += law.energy(H, memory.template take<Law::memory>()) * volume;
     else
-      energy += law.template energy<T, rows>(H) * volume;
+      energy += law.energy(H) * volume;
   });
   return energy;
 }
@@ -222,10 +214,9 @@ T element_energy(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates, con
 template <class T, class Shape, Kinematics kinematics = Kinematics::plane, class Law>
 void element_flow(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates, const Mat<T, 2, Shape::nodes>& u,
                   ElementMemory<T> before, T* after) {
-  constexpr int rows = stress_dimension(kinematics);
   for_each_strain_in<T, Shape, kinematics>(law.is_finite, coordinates, T(1), u, [&](const auto& H, const T&) {
     const int branch = before.branch();
-    const Vec<T, Law::memory> flown = law.template flow<T, rows>(H, before.template take<Law::memory>(), branch);
+    const Vec<T, Law::memory> flown = law.flow(H, before.template take<Law::memory>(), branch);
     std::copy(flown.begin(), flown.end(), after);
     after += Law::memory;
   });

@@ -11,8 +11,8 @@
 /// across means e_22 = -lame / (lame + 2 G) (e_00 + e_11), at finite strain too, whose thickness follows: no unknown is
 /// added.
 ///
-/// It remembers four numbers a point: 00, 11 and 01 of e_p, or of C_p^-1 - I, and a. The component across the plane
-/// follows, for flow keeps the volume. Differentiable but where a point is about to flow, or to stop, or ends at a
+/// It remembers e_p, or C_p^-1 - I, and a: in space seven numbers a point; in the plane and of revolution four, 00, 11, 01
+/// and a, since the component across the plane follows: flow keeps the volume. Differentiable but where a point is about to flow, or to stop, or ends at a
 /// corner of a table. Sources: [SH98] 3.3, 3.4; exponential map and logarithmic strain: [S92].
 #pragma once
 
@@ -50,10 +50,11 @@ struct PlaneStressReturn {
 
 template <class T>
 struct J2Law {
-  static constexpr int memory = 4;
+  static constexpr int memory_in(TensorLayout layout) { return layout == TensorLayout::full9 ? 7 : 4; }
+  static constexpr int memory = memory_in(TensorLayout::plane4);  ///< a point of a plane element
   static constexpr bool is_made_for(Kinematics, bool /*finite_strain*/) { return true; }
-  template <class U>
-  using Memory = Vec<U, memory>;
+  template <class U, TensorLayout layout>
+  using Memory = std::type_identity_t<Vec<U, memory_in(layout)>>;
 
   T lame, shear;
   Hardening<T> hardening;
@@ -94,158 +95,191 @@ struct J2Law {
 
   /// The memory that a displacement gradient H leaves of the one before. (Of an inverted element: the same.) `branch`:
   /// of flow_branch.
-  template <class U, int D>
-  Memory<U> flow(const Mat<U, D>& H, const Memory<U>& before, int branch = flow_branch::by_values) const {
-    if (is_inverted(H) || branch == flow_branch::none) return before;
-    Strain<U> e = elastic_strain<U, D>(H, before);
-    const Strain<U> flown =
-        space == Space::plane_stress ? flow_of_plane_stress(e, before[3], branch) : flow_of(e, before[3], branch);
-    if (branch == flow_branch::by_values && value(flown[4]) == 0) return before;
-    Memory<U> after;
-    after[3] = before[3] + flown[4];
+  template <class U, TensorLayout layout>
+  Memory<U, layout> flow(const Tensor<U, layout>& H, const Memory<U, layout>& before,
+                         int branch = flow_branch::by_values) const {
+    if (turns_over(H) || branch == flow_branch::none) return before;
+    const auto trial = elastic_strain(H, before);
+    const auto [flown, growth] = flow_of<layout>(trial, plastic_strain(before), branch);
+    if (branch == flow_branch::by_values && value(growth) == 0) return before;
+    constexpr int plastic = memory_in(layout) - 1, block = Tensor<U, layout>::block;
+    Memory<U, layout> after;
+    after[plastic] = before[plastic] + growth;
     if (!is_finite) {
-      for (int k = 0; k < 3; ++k) after[k] = before[k] + flown[k];
+      for (int k = 0; k < plastic; ++k) after[k] = before[k] + flown[k];
       return after;
     }
     // C_p^-1 - I = F^-1 (exp(2 e) - F F^T) F^-T
-    const PlaneTensor<U> left = stretch<U, D>(H, PlaneTensor<U>::Constant(U(0)));
-    const PlaneTensor<U> grown =
-        exp_minus_one<U>(PlaneTensor<U>(U(2) * (e.template head<3>() - flown.template head<3>())));
-    Mat<U, 2> between;
-    between << grown[0] - left[0], grown[2] - left[2], grown[2] - left[2], grown[1] - left[1];
-    const U J = (U(1) + H(0, 0)) * (U(1) + H(1, 1)) - H(0, 1) * H(1, 0);
-    Mat<U, 2> inverse;
-    inverse << (U(1) + H(1, 1)) / J, -H(0, 1) / J, -H(1, 0) / J, (U(1) + H(0, 0)) / J;
-    const Mat<U, 2> C = inverse.lazyProduct(between).eval().lazyProduct(inverse.transpose()).eval();
-    after.template head<3>() << C(0, 0), C(1, 1), (C(0, 1) + C(1, 0)) / U(2);
+    using Part = Symmetric<U, block>;
+    const Part left = stretch(H, Part(Part::Constant(U(0))));
+    const Part grown = exp_minus_one<U>(Part(U(2) * (trial.template head<plastic>() - flown.template head<plastic>())));
+    const Mat<U, block> between = matrix_of<U, block>(grown - left), inverse = inverse_of(H);
+    const Mat<U, block> C = inverse.lazyProduct(between).eval().lazyProduct(inverse.transpose()).eval();
+    after.template head<plastic>() = symmetric_of<U, block>(C);
     return after;
   }
 
   /// The numbers that decide which branch the flow takes.
-  template <class U, int D>
-  FlowTrial<U> trial(const Mat<U, D>& H, const Memory<U>& before, int branch = flow_branch::by_values) const {
+  template <class U, TensorLayout layout>
+  FlowTrial<U> trial(const Tensor<U, layout>& H, const Memory<U, layout>& before,
+                     int branch = flow_branch::by_values) const {
     using std::sqrt;
-    const Strain<U> tau = hooke(elastic_strain<U, D>(H, before));
+    const auto tau = hooke(elastic_strain(H, before));
     const U across = space == Space::plane_stress ? U(0) : tau[3];
     const U a = tau[0] - tau[1], b = tau[1] - across, c = across - tau[0];
-    const U squares = (a * a + b * b + c * c) / U(2) + U(3) * tau[2] * tau[2];
-    return {value(squares) > 0 ? U(sqrt(squares)) : U(0), before[3], flow<U, D>(H, before, branch)[3], U(T(3) * shear)};
+    const U squares = (a * a + b * b + c * c) / U(2) + squares_of_shear(3, tau);
+    return {value(squares) > 0 ? U(sqrt(squares)) : U(0), plastic_strain(before),
+            plastic_strain(flow(H, before, branch)), U(T(3) * shear)};
   }
   /// FlowTrial::margin of a motion.
-  template <int D>
-  double margin(const Mat<double, D>& H, const Memory<double>& before) const {
-    return trial<double, D>(H, before).margin(hardening);
+  template <TensorLayout layout>
+  double margin(const Tensor<double, layout>& H, const Memory<double, layout>& before) const {
+    return trial(H, before).margin(hardening);
   }
 
   /// Equivalent plastic strain at a memory.
-  template <class U>
-  static const U& plastic_strain(const Memory<U>& memory) {
-    return memory[3];
+  template <class U, int count>
+  static const U& plastic_strain(const Vec<U, count>& memory) {
+    return memory[count - 1];
   }
 
   /// Stress of a displacement gradient at a memory, with no flow more: Cauchy's, at finite strain the first
   /// Piola-Kirchhoff one.
-  template <class U, int D>
-  Mat<U, D> stress(const Mat<U, D>& H, const Memory<U>& memory) const {
-    if (is_inverted(H)) return Mat<U, D>::Constant(U(std::numeric_limits<double>::quiet_NaN()));
-    const Strain<U> tau = hooke(elastic_strain<U, D>(H, memory));
-    Mat<U, D> sigma = Mat<U, D>::Constant(U(0));
-    sigma(0, 0) = tau[0];
-    sigma(1, 1) = tau[1];
-    sigma(0, 1) = sigma(1, 0) = tau[2];
-    if constexpr (D == 3) sigma(2, 2) = is_finite ? U(tau[3] / (U(1) + H(2, 2))) : tau[3];
-    if (!is_finite) return sigma;
-    const U F00 = U(1) + H(0, 0), F11 = U(1) + H(1, 1), J = F00 * F11 - H(0, 1) * H(1, 0);
-    sigma(0, 0) = (tau[0] * F11 - tau[2] * H(0, 1)) / J;
-    sigma(0, 1) = (tau[2] * F00 - tau[0] * H(1, 0)) / J;
-    sigma(1, 0) = (tau[2] * F11 - tau[1] * H(0, 1)) / J;
-    sigma(1, 1) = (tau[1] * F00 - tau[2] * H(1, 0)) / J;
-    return sigma;
+  template <class U, TensorLayout layout>
+  Tensor<U, layout> stress(const Tensor<U, layout>& H, const Memory<U, layout>& memory) const {
+    if (turns_over(H)) return Tensor<U, layout>::constant(U(std::numeric_limits<double>::quiet_NaN()));
+    const auto tau = hooke(elastic_strain(H, memory));
+    Tensor<U, layout> P;
+    if constexpr (layout == TensorLayout::hoop5) P(2, 2) = is_finite ? U(tau[3] / (U(1) + H(2, 2))) : tau[3];
+    if (!is_finite) {
+      P.matrix() = matrix_of<U, P.block>(tau.template head<memory_in(layout) - 1>());
+    } else if constexpr (layout == TensorLayout::full9) {
+      P.matrix() = matrix_of<U, 3>(tau).lazyProduct(inverse_of(H).transpose());
+    } else {
+      const U F00 = U(1) + H(0, 0), F11 = U(1) + H(1, 1), J = F00 * F11 - H(0, 1) * H(1, 0);
+      P(0, 0) = (tau[0] * F11 - tau[2] * H(0, 1)) / J;
+      P(0, 1) = (tau[2] * F00 - tau[0] * H(1, 0)) / J;
+      P(1, 0) = (tau[2] * F11 - tau[1] * H(0, 1)) / J;
+      P(1, 1) = (tau[1] * F00 - tau[2] * H(1, 0)) / J;
+    }
+    return P;
   }
 
   /// Stretch across the plane.
-  double stretch_across(const Mat<double, 2>& H, const Memory<double>& memory) const {
+  double stretch_across(const PlaneGradient<double>& H, const Vec<double, memory>& memory) const {
     if (space != Space::plane_stress) return 1;
-    const double e = elastic_strain<double, 2>(H, memory)[3];
+    const double e = elastic_strain(H, memory)[3];
     return is_finite ? std::exp(e) * std::sqrt(1 + growth_of_plastic_area(memory)) : 1 + e - memory[0] - memory[1];
   }
 
   /// Cauchy's stress across the plane.
-  double stress_across(const Mat<double, 2>& H, const Memory<double>& memory) const {
+  double stress_across(const PlaneGradient<double>& H, const Vec<double, memory>& memory) const {
     if (space == Space::plane_stress) return 0;
     const double J = is_finite ? (1 + H(0, 0)) * (1 + H(1, 1)) - H(0, 1) * H(1, 0) : 1;
-    return hooke(elastic_strain<double, 2>(H, memory))[3] / J;
+    return hooke(elastic_strain(H, memory))[3] / J;
   }
 
   /// Elastic energy per initial volume.
-  template <class U, int D>
-  U energy(const Mat<U, D>& H, const Memory<U>& memory) const {
-    const Strain<U> e = elastic_strain<U, D>(H, memory), tau = hooke(e);
-    return (tau[0] * e[0] + tau[1] * e[1] + tau[3] * e[3]) / U(2) + tau[2] * e[2];
+  template <class U, TensorLayout layout>
+  U energy(const Tensor<U, layout>& H, const Memory<U, layout>& memory) const {
+    const auto e = elastic_strain(H, memory), tau = hooke(e);
+    U energy = (tau[0] * e[0] + tau[1] * e[1] + tau[3] * e[3]) / U(2) + tau[2] * e[2];
+    for (int k = 4; k < e.size(); ++k) energy += tau[k] * e[k];
+    return energy;
   }
 
  private:
-  /// Components 00, 11, 01, 22; of a flow, the equivalent plastic strain behind them.
-  template <class U>
-  using Strain = Vec<U, 5>;
+  /// Of a tensor of space, symmetric: 00, 11, 01, 22; in space 02 and 12 behind them.
+  template <class U, TensorLayout layout>
+  using Strain = Vec<U, layout == TensorLayout::full9 ? 6 : 4>;
+  template <class U, TensorLayout layout>
+  struct Flow {
+    Strain<U, layout> strain;  ///< the plastic part of a trial strain
+    U growth;                  ///< of a
+  };
 
-  template <class U, int D>
-  bool is_inverted(const Mat<U, D>& H) const {
-    if (!is_finite) return false;
-    const double J = (1 + value(H(0, 0))) * (1 + value(H(1, 1))) - value(H(0, 1)) * value(H(1, 0));
-    if constexpr (D == 3)
-      if (!(value(H(2, 2)) > -1)) return true;
-    return !(J > 0);
+  /// Whether an element is inverted, and that matters.
+  template <class U, TensorLayout layout>
+  bool turns_over(const Tensor<U, layout>& H) const {
+    return is_finite && is_inverted(H);
   }
 
-  /// F (I + C) F^T - I in the plane.
-  template <class U, int D>
-  static PlaneTensor<U> stretch(const Mat<U, D>& H, const PlaneTensor<U>& C) {
+  /// F (I + C) F^T - I.
+  template <class U>
+  static Symmetric<U, 3> stretch(const Tensor<U, TensorLayout::full9>& H, const Symmetric<U, 3>& C) {
+    const Mat<U, 3> F = H.plus_one();
+    const Mat<U, 3> grown = F.lazyProduct(matrix_of<U, 3>(C)).eval().lazyProduct(F.transpose());
+    return symmetric_of<U, 3>(left_strain(H) + grown);
+  }
+  template <class U, TensorLayout layout>
+  static Symmetric<U, 2> stretch(const Tensor<U, layout>& H, const Symmetric<U, 2>& C) {
     const U F00 = U(1) + H(0, 0), F11 = U(1) + H(1, 1), &a = H(0, 1), &b = H(1, 0);
     return {H(0, 0) * (U(2) + H(0, 0)) + a * a + F00 * F00 * C[0] + U(2) * F00 * a * C[2] + a * a * C[1],
             H(1, 1) * (U(2) + H(1, 1)) + b * b + F11 * F11 * C[1] + U(2) * F11 * b * C[2] + b * b * C[0],
             a + b + H(0, 0) * b + a * H(1, 1) + F00 * b * C[0] + (F00 * F11 + a * b) * C[2] + a * F11 * C[1]};
   }
 
-  template <class U, int D>
-  Strain<U> elastic_strain(const Mat<U, D>& H, const Memory<U>& memory) const {
-    using std::log1p, stickslip::log1p;
-    U across(0);
-    if constexpr (D == 3) across = H(2, 2);
-    Strain<U> e;
-    e[4] = U(0);
-    if (!is_finite) {
-      e[0] = H(0, 0) - memory[0];
-      e[1] = H(1, 1) - memory[1];
-      e[2] = (H(0, 1) + H(1, 0)) / U(2) - memory[2];
-      e[3] = space == Space::plane_stress ? elastic_across(e) : U(across + memory[0] + memory[1]);
-      return e;
+  /// F^-1 of the components that matrix() has.
+  template <class U, TensorLayout layout>
+  static auto inverse_of(const Tensor<U, layout>& H) {
+    Mat<U, Tensor<U, layout>::block> inverse;
+    if constexpr (layout == TensorLayout::full9) {
+      inverse = cofactors<U>(H.plus_one()).transpose() / (U(1) + growth(H));
+    } else {
+      const U J = (U(1) + H(0, 0)) * (U(1) + H(1, 1)) - H(0, 1) * H(1, 0);
+      inverse << (U(1) + H(1, 1)) / J, -H(0, 1) / J, -H(1, 0) / J, (U(1) + H(0, 0)) / J;
     }
-    const PlaneTensor<U> twice = log_of_one_plus<U>(stretch<U, D>(H, memory.template head<3>()));
-    for (int k = 0; k < 3; ++k) e[k] = twice[k] / U(2);
-    e[3] = space == Space::plane_stress ? elastic_across(e)
-                                        : U(log1p(across) - log1p(growth_of_plastic_area(memory)) / U(2));
-    return e;
+    return inverse;
   }
 
-  /// The strain across that leaves no stress there.
-  template <class U>
-  U elastic_across(const Strain<U>& e) const {
-    return -U(lame) / U(lame + T(2) * shear) * (e[0] + e[1]);
+  template <class U, TensorLayout layout>
+  Strain<U, layout> elastic_strain(const Tensor<U, layout>& H, const Memory<U, layout>& memory) const {
+    using std::log1p, stickslip::log1p;
+    constexpr int plastic = memory_in(layout) - 1;
+    Strain<U, layout> e;
+    if (is_finite) {
+      e.template head<plastic>() = log_of_one_plus<U>(stretch(H, memory.template head<plastic>().eval())) / U(2);
+    } else {
+      for (int k = 0; k < plastic; ++k) {
+        const auto [p, q] = symmetric_places[k];
+        e[k] = (p == q ? H(p, q) : U((H(p, q) + H(q, p)) / U(2))) - memory[k];
+      }
+    }
+    if constexpr (layout != TensorLayout::full9) {
+      U across(0);
+      if constexpr (layout == TensorLayout::hoop5) across = H(2, 2);
+      if (space == Space::plane_stress)
+        e[3] = -U(lame) / U(lame + T(2) * shear) * (e[0] + e[1]);  // no stress across
+      else if (is_finite)
+        e[3] = log1p(across) - log1p(growth_of_plastic_area(memory)) / U(2);
+      else
+        e[3] = across + memory[0] + memory[1];
+    }
+    return e;
   }
 
   /// det C_p^-1 - 1 in the plane; in space it is 0.
   template <class U>
-  static U growth_of_plastic_area(const Memory<U>& memory) {
+  static U growth_of_plastic_area(const Vec<U, memory>& memory) {
     return memory[0] + memory[1] + memory[0] * memory[1] - memory[2] * memory[2];
   }
 
-  template <class U>
-  Strain<U> hooke(const Strain<U>& e) const {
+  template <class S>
+  S hooke(const S& e) const {
+    using U = typename S::Scalar;
     const U pressure = U(lame) * (e[0] + e[1] + e[3]);
-    Strain<U> tau = U(T(2) * shear) * e;
+    S tau = U(T(2) * shear) * e;
     for (int k : {0, 1, 3}) tau[k] += pressure;
     return tau;
+  }
+
+  /// Their sum, times a factor.
+  template <class S>
+  static auto squares_of_shear(int factor, const S& tau) {
+    using U = typename S::Scalar;
+    U sum = U(factor) * tau[2] * tau[2];
+    for (int k = 4; k < tau.size(); ++k) sum += U(factor) * tau[k] * tau[k];
+    return sum;
   }
 
   std::size_t first_row() const { return 2 * static_cast<std::size_t>(part - 1); }
@@ -257,35 +291,35 @@ struct J2Law {
   }
 
   /// Plastic part of a trial strain: d n, and d; zero where it stays within the bound.
-  template <class U>
-  Strain<U> flow_of(const Strain<U>& trial, const U& hardened, int branch) const {
+  template <TensorLayout layout, class U>
+  Flow<U, layout> flow_of(const Strain<U, layout>& trial, const U& hardened, int branch) const {
     using std::sqrt;
-    Strain<U> flown = Strain<U>::Constant(U(0));
+    if constexpr (layout == TensorLayout::plane4)
+      if (space == Space::plane_stress) return flow_of_plane_stress(trial, hardened, branch);
+    const Flow<U, layout> none{Strain<U, layout>::Constant(U(0)), U(0)};
     const U third = (trial[0] + trial[1] + trial[3]) / U(3);
-    Strain<U> deviator = trial;
+    Strain<U, layout> deviator = trial;
     for (int k : {0, 1, 3}) deviator[k] -= third;
     const U squares = deviator[0] * deviator[0] + deviator[1] * deviator[1] + deviator[3] * deviator[3] +
-                      U(2) * deviator[2] * deviator[2];
-    if (!(value(squares) > 0)) return flown;
+                      squares_of_shear(2, deviator);
+    if (!(value(squares) > 0)) return none;
     const U q = U(shear) * sqrt(U(6) * squares);
-    if (branch == flow_branch::by_values && !passes(q, hardening.bound(hardened))) return flown;
+    if (branch == flow_branch::by_values && !passes(q, hardening.bound(hardened))) return none;
     const auto flow_on = [&](const U& bound, const T& slope) -> U { return (q - bound) / U(T(3) * shear + slope); };
     const U d = hardening.grow(hardened, flow_on, branch).d;
-    flown = U(3) * U(shear) * d / q * deviator;
-    flown[4] = d;
-    return flown;
+    return {U(3) * U(shear) * d / q * deviator, d};
   }
 
   template <class U>
-  Strain<U> flow_of_plane_stress(const Strain<U>& trial, const U& hardened, int branch) const {
+  Flow<U, TensorLayout::plane4> flow_of_plane_stress(const Vec<U, 4>& trial, const U& hardened, int branch) const {
     using std::sqrt;
-    Strain<U> flown = Strain<U>::Constant(U(0));
-    const Strain<U> tau = hooke(trial);
+    const Vec<U, 4> tau = hooke(trial);
     const U p = (tau[0] + tau[1]) / U(2), apart = (tau[0] - tau[1]) / U(2);
     const U stiffness = U(T(shear * (T(3) * lame + T(2) * shear) / (lame + T(2) * shear)));
     const U square = apart * apart + tau[2] * tau[2];
     const double q = std::sqrt(value(p) * value(p) + 3 * value(square));
-    if (branch == flow_branch::by_values && !passes(q, value(hardening.bound(hardened)))) return flown;
+    if (branch == flow_branch::by_values && !passes(q, value(hardening.bound(hardened))))
+      return {Vec<U, 4>::Constant(U(0)), U(0)};
     const auto flow_on = [&](const U& bound, const T& slope) -> U {
       const detail::PlaneStressReturn<U> back{p, square, stiffness, U(shear), bound, U(slope)};
       const detail::PlaneStressReturn<double> plain{value(p),     value(square), value(stiffness),
@@ -295,12 +329,7 @@ struct J2Law {
     const auto [d, bound, slope] = hardening.grow(hardened, flow_on, branch);
     const U m = d / (bound + U(slope) * d);
     const U mean = m * p / (U(1) + stiffness * m) / U(2), shares = U(1.5) * m / (U(1) + U(3) * U(shear) * m);
-    flown[0] = mean + shares * apart;
-    flown[1] = mean - shares * apart;
-    flown[2] = shares * tau[2];
-    flown[3] = -U(2) * mean;
-    flown[4] = d;
-    return flown;
+    return {Vec<U, 4>(mean + shares * apart, mean - shares * apart, shares * tau[2], -U(2) * mean), d};
   }
 };
 

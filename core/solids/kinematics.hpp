@@ -1,6 +1,8 @@
 /// Spaces, and how displacements become strains in them.
 #pragma once
 
+#include "core/solids/tensor.hpp"
+
 namespace stickslip {
 
 enum class Space { plane_strain, plane_stress, axisymmetric, solid };
@@ -14,8 +16,10 @@ constexpr bool is_of_revolution(Kinematics k) {
 constexpr bool has_mean_dilatation(Kinematics k) {
   return k == Kinematics::plane_mean_dilatation || k == Kinematics::revolution_mean_dilatation;
 }
-/// Rows of the displacement gradient H and of the stress: 3 where out of the plane a component matters.
-constexpr int stress_dimension(Kinematics k) { return k == Kinematics::plane ? 2 : 3; }
+/// The layout of the displacement gradient and of the stress.
+constexpr TensorLayout layout_of(Kinematics k) {
+  return k == Kinematics::plane ? TensorLayout::plane4 : TensorLayout::hoop5;
+}
 
 /// The kinematics of a body in a space with or without mean dilatation.
 constexpr Kinematics kinematics_of(Space space, bool mean_dilatation) {

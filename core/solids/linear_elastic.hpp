@@ -57,37 +57,32 @@ struct LinearElasticLaw {
     return law;
   }
 
-  /// Stress of a displacement gradient H (D x D), in the scalar of H: U is T, or a Dual built on T.
-  template <class U, int D>
-  Mat<U, D> stress(const Mat<U, D>& H) const {
-    U trace = H(0, 0);
-    for (int i = 1; i < D; ++i) trace += H(i, i);
-    Mat<U, D> sigma;
-    for (int i = 0; i < D; ++i)
-      for (int j = 0; j < D; ++j) {
-        sigma(i, j) = (H(i, j) + H(j, i)) * U(shear);
-        if (i == j) sigma(i, j) += trace * U(lame);
-      }
+  /// Stress of a displacement gradient H, in the scalar of H: U is T, or a Dual built on T.
+  template <class U, TensorLayout layout>
+  Tensor<U, layout> stress(const Tensor<U, layout>& H) const {
+    const U trace = H.trace();
+    Tensor<U, layout> sigma;
+    H.for_each([&](int i, int j) {
+      sigma(i, j) = (H(i, j) + H(j, i)) * U(shear);
+      if (i == j) sigma(i, j) += trace * U(lame);
+    });
     return sigma;
   }
 
   /// Stretch across the plane.
-  double stretch_across(const Mat<double, 2>& H) const {
+  double stretch_across(const PlaneGradient<double>& H) const {
     return space == Space::plane_stress ? 1 - value(lame) / (2 * value(shear)) * H.trace() : 1;
   }
 
   /// Stress across the plane.
-  double stress_across(const Mat<double, 2>& H) const {
+  double stress_across(const PlaneGradient<double>& H) const {
     return space == Space::plane_strain ? value(lame) * H.trace() : 0;
   }
 
   /// Energy per volume.
-  template <class U, int D>
-  U energy(const Mat<U, D>& H) const {
-    const Mat<U, D> sigma = stress<U, D>(H);
-    U twice{};
-    for (int k = 0; k < D * D; ++k) twice += sigma.data()[k] * H.data()[k];
-    return U(0.5) * twice;
+  template <class U, TensorLayout layout>
+  U energy(const Tensor<U, layout>& H) const {
+    return U(0.5) * contracted(stress(H), H);
   }
 };
 

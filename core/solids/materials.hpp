@@ -48,18 +48,18 @@ namespace detail {
 
 /// Whether a law has what it takes, with `memory...` the memory behind the motion where it remembers.
 template <class L, class... Memory>
-concept ContinuumLawWith = requires(const L& law, const Mat<double, 2>& H, const Memory&... memory) {
+concept ContinuumLawWith = requires(const L& law, const PlaneGradient<double>& H, const Memory&... memory) {
   { law.is_finite } -> std::convertible_to<bool>;
   { L::is_made_for(Kinematics::plane, true) } -> std::same_as<bool>;
   { law.with(law.numbers()) } -> std::same_as<L>;
-  { law.template stress<double, 2>(H, memory...) } -> std::same_as<Mat<double, 2>>;
+  { law.stress(H, memory...) } -> std::same_as<PlaneGradient<double>>;
   { law.stretch_across(H, memory...) } -> std::same_as<double>;
   { law.stress_across(H, memory...) } -> std::same_as<double>;
-  { law.template energy<double, 2>(H, memory...) } -> std::same_as<double>;
+  { law.energy(H, memory...) } -> std::same_as<double>;
 };
 /// Whether the stretch across the plane has derivatives: loads at finite strain act on areas that follow it.
 template <class L, class Probe = Dual<4, double>>
-concept StretchHasDerivatives = requires(const L& law, const Mat<Probe, 2>& H) {
+concept StretchHasDerivatives = requires(const L& law, const PlaneGradient<Probe>& H) {
   { law.stretch_across(H) } -> std::same_as<Probe>;
 };
 template <class L, class... Memory>
@@ -71,12 +71,12 @@ concept TwoNodeLawWith = requires(const L& law, const Mat<double, 2>& X, const V
   { law.template energy<2>(X, d, memory...) } -> std::same_as<double>;
 };
 template <class L>
-concept Flows = requires(const L& law, const Mat<double, 2>& H, const Vec<double, memory_of<L>()>& memory) {
-  { law.template flow<double, 2>(H, memory) } -> std::same_as<Vec<double, memory_of<L>()>>;
-  { law.template trial<double, 2>(H, memory) } -> std::same_as<FlowTrial<double>>;
+concept Flows = requires(const L& law, const PlaneGradient<double>& H, const Vec<double, memory_of<L>()>& memory) {
+  { law.flow(H, memory) } -> std::same_as<Vec<double, memory_of<L>()>>;
+  { law.trial(H, memory) } -> std::same_as<FlowTrial<double>>;
   { law.hardening.piece_count() } -> std::same_as<int>;
   { L::plastic_strain(memory) } -> std::convertible_to<double>;
-  { law.at_rest().template stress<double, 2>(H) } -> std::same_as<Mat<double, 2>>;
+  { law.at_rest().stress(H) } -> std::same_as<PlaneGradient<double>>;
 };
 template <class L>
 concept TwoNodesFlow = requires(const L& law, const Mat<double, 2>& X, const Vec<double, 2>& d,

@@ -20,7 +20,7 @@ class MeanDilatation {
  public:
   static constexpr int nodes = Shape::nodes;
   static constexpr std::size_t points = static_cast<std::size_t>(points_of<Shape>(kinematics));
-  using Strain = Mat<T, 3>;
+  using Strain = Tensor<T, TensorLayout::hoop5>;
 
   MeanDilatation(const Mat<G, 2, nodes>& coordinates, const G& depth, const Mat<T, 2, nodes>& u) {
     using std::log1p, stickslip::log1p;
@@ -32,9 +32,8 @@ class MeanDilatation {
     for (std::size_t q = 0; q < points; ++q) {
       gradients_[q] = {quadrature[q], coordinates, depth};
       const Strain& H = H_[q] = gradients_[q].of(u);
-      const T plane = H(0, 0) + H(1, 1) + (H(0, 0) * H(1, 1) - H(0, 1) * H(1, 0));
-      growth[q] = plane + H(2, 2) + plane * H(2, 2);
-      inverted |= !(value(plane) > -1 && value(H(2, 2)) > -1);
+      growth[q] = stickslip::growth(H);
+      inverted |= is_inverted(H);
       volume += gradients_[q].volume;
       mean += growth[q] * gradients_[q].volume;
     }
@@ -43,13 +42,13 @@ class MeanDilatation {
     volume_ = volume;
     for (std::size_t q = 0; q < points; ++q) {
       if (inverted) {
-        strain_[q] = Strain::Constant(T(std::numeric_limits<double>::quiet_NaN()));
+        strain_[q] = Strain::constant(T(std::numeric_limits<double>::quiet_NaN()));
         continue;
       }
       const T more = exp_minus_one<T>(T((log1p(mean) - log1p(growth[q])) / T(3)));  // a - 1
       scale_[q] = T(1) + more;
       J_[q] = T(1) + growth[q];
-      strain_[q] = scale_[q] * H_[q];
+      strain_[q] = H_[q].map([&](const T& h) { return T(scale_[q] * h); });
       for (int i = 0; i < 3; ++i) strain_[q](i, i) += more;
     }
   }
@@ -65,13 +64,12 @@ class MeanDilatation {
     for (std::size_t q = 0; q < points; ++q) {
       const auto& gradient = gradients_[q];
       const Strain& H = H_[q];
-      T work{};
-      for (int k = 0; k < 9; ++k) work += P[q].data()[k] * H.data()[k];
+      T work = contracted(P[q], H);
       for (int i = 0; i < 3; ++i) work += P[q](i, i);
       const T share = scale_[q] * work * gradient.volume / T(3);
       pressure += share;
       const T out = T(1) + H(2, 2), J = J_[q] / out;
-      Strain inverse = Strain::Constant(T(0));  // F^-T
+      Strain inverse;  // F^-T
       inverse(0, 0) = (T(1) + H(1, 1)) / J;
       inverse(1, 1) = (T(1) + H(0, 0)) / J;
       inverse(0, 1) = -H(1, 0) / J;

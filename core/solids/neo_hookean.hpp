@@ -1,14 +1,15 @@
-/// Compressible neo-Hookean material at finite strain, in the plane and of revolution.
+/// Compressible neo-Hookean material at finite strain: in space, in the plane and of revolution.
 ///
 ///   W = G ((tr C - 3)/2 - ln J) + U(J),   U = lame/2 (J - 1)^2 (quadratic) or lame/2 (ln J)^2 (log)
 ///   P = dW/dF = G (F - F^-T) + J U'(J) F^-T,   F = I + H,   C = F^T F,   J = det F
 ///
 ///   lame = E nu / ((1+nu)(1-2nu)),  G = E / (2(1+nu)): Hooke's law at small H, for both U
 ///
-/// Both are written in H, so that a small strain does not vanish beside one. In the plane j = J - 1 = tr H + det H,
-/// F^-T is the cofactor matrix over J, and J F - cof F = j F + (F - cof F). Of revolution the hoop stretch F_22 = 1 + h
-/// stands beside the plane, whose j and J these then are: the volume is J F_22. An element with J <= 0 or F_22 <= 0 is
-/// inverted: its stress is not a number, so that no residual passes it. Differentiable where neither is. Source: [W06].
+/// Both are written in H, so that a small strain does not vanish beside one. In space P = (G (F F^T - I) + J U' I) F^-T.
+/// In the plane j = J - 1 = tr H + det H, F^-T is the cofactor matrix over J, and J F - cof F = j F + (F - cof F). Of
+/// revolution the hoop stretch F_22 = 1 + h stands beside the plane, whose j and J these then are: the volume is J F_22.
+/// An element with J <= 0 or F_22 <= 0 is inverted: its stress is not a number, so that no residual passes it.
+/// Differentiable where neither is. Source: [W06].
 ///
 /// In plane stress F_22 is the stretch of the thickness that leaves P_22 = 0,
 ///
@@ -85,69 +86,39 @@ struct NeoHookeanLaw {
     return {space == Space::plane_stress ? lame_of_plane_stress(lame, shear) : lame, shear};
   }
 
-  /// First Piola-Kirchhoff stress of a displacement gradient H (2 x 2, or 3 x 3 with nothing but H_22 out of the
-  /// plane), in the scalar of H: U is T, or a Dual built on T.
-  template <class U, int D>
-  Mat<U, D> stress(const Mat<U, D>& H) const {
-    using std::log1p, stickslip::log1p;
-    const U j = plane_growth(H), J = U(1) + j;
-    bool inverted = !(value(J) > 0);
-    if constexpr (D == 3) inverted |= !(value(H(2, 2)) > -1);
-    if (inverted) return Mat<U, D>::Constant(U(std::numeric_limits<double>::quiet_NaN()));
-    const U shear_over_J = U(shear) / J, F00 = U(1) + H(0, 0), F11 = U(1) + H(1, 1), apart = H(0, 0) - H(1, 1),
-            sheared = H(0, 1) + H(1, 0);
-    const bool quadratic = volumetric == NeoHookean::Volumetric::quadratic;
-    U across;  // J_3 U'(J_3) / J, J_3 the volume
-    if constexpr (D == 2) {
-      if (space == Space::plane_stress) {
-        const U h = thickening(j);
-        across = -shear_over_J * h * (U(2) + h);
-      } else {
-        across = quadratic ? U(U(lame) * j) : U(U(lame) * log1p(j) / J);
-      }
-    } else {
-      across = quadratic ? U(U(lame) * growth(H) * (U(1) + H(2, 2))) : U(U(lame) * log1p(growth(H)) / J);
-    }
-    Mat<U, D> P;
-    if constexpr (D == 3) {
-      const U h = H(2, 2), F22 = U(1) + h;
-      P.setConstant(U(0));
-      P(2, 2) = U(shear) * h * (U(2) + h) / F22 + across * J / F22;
-    }
-    P(0, 0) = shear_over_J * (j * F00 + apart) + across * F11;
-    P(1, 1) = shear_over_J * (j * F11 - apart) + across * F00;
-    P(0, 1) = shear_over_J * (j * H(0, 1) + sheared) - across * H(1, 0);
-    P(1, 0) = shear_over_J * (j * H(1, 0) + sheared) - across * H(0, 1);
-    return P;
+  /// First Piola-Kirchhoff stress of a displacement gradient H, in the scalar of H: U is T, or a Dual built on T.
+  template <class U, TensorLayout layout>
+  Tensor<U, layout> stress(const Tensor<U, layout>& H) const {
+    if (is_inverted(H)) return Tensor<U, layout>::constant(U(std::numeric_limits<double>::quiet_NaN()));
+    if constexpr (layout == TensorLayout::full9)
+      return stress_in_space(H);
+    else
+      return stress_about_plane(H);
   }
 
   /// Stretch across the plane; not a number where plane stress has none.
   template <class U>
-  U stretch_across(const Mat<U, 2>& H) const {
-    return space == Space::plane_stress ? U(U(1) + thickening(plane_growth(H))) : U(1);
+  U stretch_across(const PlaneGradient<U>& H) const {
+    return space == Space::plane_stress ? U(U(1) + thickening(growth(H))) : U(1);
   }
 
   /// Cauchy's stress across the plane, U'(J).
-  double stress_across(const Mat<double, 2>& H) const {
-    if (space == Space::plane_stress) return 0;
-    const double j = plane_growth(H);
-    return volumetric == NeoHookean::Volumetric::quadratic ? value(lame) * j : value(lame) * std::log1p(j) / (1 + j);
+  double stress_across(const PlaneGradient<double>& H) const {
+    return space == Space::plane_stress ? 0 : value(slope(T(growth(H))));
   }
 
   /// Energy per initial volume. The first invariant counts what is left of it without the growth of the volume,
   /// (tr C - 3)/2 - (J - 1), for both are of the first order in H and the energy is of the second.
-  template <class U, int D>
-  U energy(const Mat<U, D>& H) const {
+  template <class U, TensorLayout layout>
+  U energy(const Tensor<U, layout>& H) const {
     using std::log1p, stickslip::log1p;
-    U j = plane_growth(H), squares{};
-    for (int k = 0; k < D * D; ++k) squares += H.data()[k] * H.data()[k];
-    U half = squares / U(2) - (H(0, 0) * H(1, 1) - H(0, 1) * H(1, 0));
+    U j = growth_of_matrix(H), half = contracted(H, H) / U(2) - nonlinear_growth(H);
     const auto thicken = [&](const U& h) {
       half -= j * h;
       j += h + j * h;
     };
-    if constexpr (D == 3) thicken(H(2, 2));
-    if (D == 2 && space == Space::plane_stress) {
+    if constexpr (layout == TensorLayout::hoop5) thicken(H(2, 2));
+    if (layout == TensorLayout::plane4 && space == Space::plane_stress) {
       const U h = thickening(j);
       half += h * h / U(2);
       thicken(h);
@@ -157,10 +128,49 @@ struct NeoHookeanLaw {
   }
 
  private:
-  /// J - 1 in the plane.
-  template <class U, int D>
-  static U plane_growth(const Mat<U, D>& H) {
-    return H(0, 0) + H(1, 1) + (H(0, 0) * H(1, 1) - H(0, 1) * H(1, 0));
+  /// U'(J), j = J - 1.
+  template <class U>
+  U slope(const U& j) const {
+    using std::log1p, stickslip::log1p;
+    return volumetric == NeoHookean::Volumetric::quadratic ? U(U(lame) * j) : U(U(lame) * log1p(j) / (U(1) + j));
+  }
+
+  /// P = (G (F F^T - I) + J U'(J) I) F^-T.
+  template <class U>
+  Tensor<U, TensorLayout::full9> stress_in_space(const Tensor<U, TensorLayout::full9>& H) const {
+    const U j = growth(H), J = U(1) + j;
+    Mat<U, 3> tau = U(shear) * left_strain(H);
+    for (int i = 0; i < 3; ++i) tau(i, i) += J * slope(j);
+    return Tensor<U, TensorLayout::full9>(tau.lazyProduct(cofactors<U>(H.plus_one())).eval() / J);
+  }
+
+  /// Of the plane, and of what stands apart from it.
+  template <class U, TensorLayout layout>
+  Tensor<U, layout> stress_about_plane(const Tensor<U, layout>& H) const {
+    using std::log1p, stickslip::log1p;
+    const U j = growth_of_matrix(H), J = U(1) + j;
+    const U shear_over_J = U(shear) / J, F00 = U(1) + H(0, 0), F11 = U(1) + H(1, 1), apart = H(0, 0) - H(1, 1),
+            sheared = H(0, 1) + H(1, 0);
+    U across;  // J_3 U'(J_3) / J, J_3 the volume
+    Tensor<U, layout> P;
+    if constexpr (layout == TensorLayout::plane4) {
+      if (space == Space::plane_stress) {
+        const U h = thickening(j);
+        across = -shear_over_J * h * (U(2) + h);
+      } else {
+        across = slope(j);
+      }
+    } else {
+      const U h = H(2, 2), F22 = U(1) + h;
+      const bool quadratic = volumetric == NeoHookean::Volumetric::quadratic;
+      across = quadratic ? U(U(lame) * growth(H) * F22) : U(U(lame) * log1p(growth(H)) / J);
+      P(2, 2) = U(shear) * h * (U(2) + h) / F22 + across * J / F22;
+    }
+    P(0, 0) = shear_over_J * (j * F00 + apart) + across * F11;
+    P(1, 1) = shear_over_J * (j * F11 - apart) + across * F00;
+    P(0, 1) = shear_over_J * (j * H(0, 1) + sheared) - across * H(1, 0);
+    P(1, 0) = shear_over_J * (j * H(1, 0) + sheared) - across * H(0, 1);
+    return P;
   }
   /// F_22 - 1 of plane stress, where the plane grows by j; not a number where there is none.
   template <class U>
@@ -185,13 +195,6 @@ struct NeoHookeanLaw {
     const double sign = r * c > 0 ? -1 : 1;
     const double x = root_of(detail::LogarithmicThickness<double>{sign, r, c});
     return exp_minus_one<U>(U(sign) * solve_implicit<U>(detail::LogarithmicThickness<U>{sign, ratio, area}, x));
-  }
-  /// The volume's.
-  template <class U, int D>
-  static U growth(const Mat<U, D>& H) {
-    const U j = plane_growth(H);
-    if constexpr (D == 2) return j;
-    if constexpr (D == 3) return j + H(2, 2) + j * H(2, 2);
   }
 };
 

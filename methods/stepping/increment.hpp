@@ -102,13 +102,9 @@ void account_for(Increment<T>& increment, const Equilibrium<T>& equilibrium, int
   }
 }
 
-/// One increment by the method of the run: from the state `previous` to `time`, looked for from `start` on. It never
-/// throws; the status says how it ended. `rho_factor`: adaption of rho so far, per point; empty: none.
+/// Solves an increment by the method of the run. Defined in methods/all_methods.hpp.
 template <class T>
 Increment<T> solve_increment(Run<T>& run, const State<T>& previous, const std::vector<double>& rho_factor, double time,
-                             const Start<T>& start) {
-  return std::visit([&](const auto& method) { return method.solve_increment(run, previous, rho_factor, time, start); },
-                    run.method);
-}
+                             const Start<T>& start);
 
 }  // namespace stickslip

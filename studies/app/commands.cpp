@@ -310,14 +310,17 @@ int schema_command(const std::string& kind) {
   return done;
 }
 
-int report_command(const std::string& directory) {
+int report_command(const ReportArguments& arguments) {
+  const std::string& directory = arguments.directory;
+  const Pdfs pdfs = arguments.pdf ? Pdfs::added : Pdfs::left_out;
   check_recorded(directory);
   const bool of_run = holds(directory, "result.json");
   if (!of_run && !holds(directory, "results.jsonl"))
     throw InputFault(directory + ": there are no results; run `stickslip study`, or `stickslip run` first");
+  if (arguments.pdf) check_pdf_writer();
   const OutputFolder folder(directory, report_files());
   if (of_run) {
-    write_run_report(directory);
+    write_run_report(directory, pdfs);
     say(std::cout, "{}\n", printable((std::filesystem::path(directory) / "report.html").string()));
     return done;
   }
@@ -326,7 +329,7 @@ int report_command(const std::string& directory) {
   if (!stored.sound()) std::cerr << printable("note: " + directory + "/results.jsonl: " + stored.faults()) << '\n';
   if (stored.rows.empty())
     throw InputFault(directory + ": there are no rows in results.jsonl; run `stickslip study` with --resume first");
-  write_report(directory);
+  write_report(directory, pdfs);
   say(std::cout, "{}\n", printable((std::filesystem::path(directory) / "report.html").string()));
   return done;
 }

@@ -34,6 +34,11 @@ struct VerifyArguments {
   bool json = false;
 };
 
+struct ReportArguments {
+  std::string directory;
+  bool pdf = false;  ///< figures also as PDF
+};
+
 int run_command(const RunArguments& arguments);
 int explain_command(const RunArguments& arguments);
 int gradcheck_command(const RunArguments& arguments);
@@ -43,6 +48,6 @@ int study_command(const StudyArguments& arguments);
 int merge_command(const std::vector<std::string>& directories, const std::string& output);
 int compare_command(const CompareArguments& arguments);
 int verify_command(const VerifyArguments& arguments);
-int report_command(const std::string& directory);
+int report_command(const ReportArguments& arguments);
 
 }  // namespace stickslip

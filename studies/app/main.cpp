@@ -37,8 +37,9 @@ struct Arguments {
   StudyArguments study;
   CompareArguments compare;
   VerifyArguments verify;
+  ReportArguments report;
   std::vector<std::string> shards;
-  std::string directory, merged, schema_of = "scene";
+  std::string merged, schema_of = "scene";
   bool methods_json = false;
 };
 
@@ -145,6 +146,11 @@ void add_verify(CLI::App& command, VerifyArguments& verify) {
   command.add_flag("--json", verify.json, "one JSON document on standard output and nothing else");
 }
 
+void add_report(CLI::App& command, ReportArguments& report) {
+  command.add_option("DIR", report.directory, "directory of a study or a run")->required();
+  command.add_flag("--pdf", report.pdf, "write the figures as PDF too, by rsvg-convert");
+}
+
 /// Adds all commands, in the order of the help. `given` must outlive the actions.
 Actions add_commands(CLI::App& app, Arguments& given) {
   Actions actions;
@@ -176,10 +182,9 @@ Actions add_commands(CLI::App& app, Arguments& given) {
   add_verify(add("verify", "check a result by its files alone: equilibrium, contact, friction, energy",
                  [&] { return on_standard_output(verify_command(given.verify)); }),
              given.verify);
-  add("report", "rebuild report.html of a study or a run from recorded results",
-      [&] { return with_files(report_command(given.directory)); })
-      .add_option("DIR", given.directory, "directory of a study or a run")
-      ->required();
+  add_report(add("report", "rebuild report.html of a study or a run from recorded results",
+                 [&] { return with_files(report_command(given.report)); }),
+             given.report);
   add("methods", "list the methods and their options", [&] {
     return on_standard_output(methods_command(given.methods_json));
   }).add_flag("--json", given.methods_json, "as JSON");

@@ -5,8 +5,10 @@
 #include "studies/app/schema_texts.hpp"
 #include "studies/input/friction_laws.hpp"
 #include "studies/input/materials.hpp"
+#include "studies/input/mesh_kinds.hpp"
 #include "studies/input/method_options.hpp"
 #include "studies/input/obstacle_kinds.hpp"
+#include "studies/input/response_kinds.hpp"
 #include "studies/sweep/closed_forms.hpp"
 
 namespace stickslip {
@@ -15,36 +17,6 @@ namespace {
 using Schema = nlohmann::ordered_json;
 
 constexpr const char* draft = "https://json-schema.org/draft/2020-12/schema";
-
-/// Schema of one kind of response, with the keys that it has.
-Schema kind_schema(const std::string& kind, const Schema& parts, const Schema& keys) {
-  Schema properties = Schema::object();
-  for (const char* list : {"required", "optional"})
-    for (const std::string key : parts.at(list)) properties[key] = keys.at(key);
-  const Schema own = parts.value("descriptions", Schema::object());
-  for (const auto& [key, text] : own.items()) properties[key]["description"] = text;
-  const bool moment = properties.contains("about") && properties.contains("component");
-  if (properties.contains("component")) {
-    Schema components = {"x", "y", "z"};
-    if (kind == "contact_force") components.push_back("normal");
-    if (moment) components.push_back("moment");
-    properties["component"]["enum"] = components;
-    properties["component"]["examples"] = Schema::array({kind == "contact_force" ? "normal" : "x"});
-  }
-  Schema schema{{"type", "object"},
-                {"description", parts.at("description")},
-                {"examples", {parts.at("example")}},
-                {"required", parts.at("required")},
-                {"additionalProperties", false},
-                {"properties", properties}};
-  for (const auto& key : parts.value("one_of", Schema::array())) schema["anyOf"].push_back({{"required", {key}}});
-  if (moment) {  // the two go together
-    schema["if"] = {{"properties", {{"component", {{"const", "moment"}}}}}};
-    schema["then"] = {{"required", {"about"}}};
-    schema["else"] = {{"properties", {{"about", false}}}};
-  }
-  return schema;
-}
 
 /// {"KEY": {...}} with one of the kinds' keys.
 template <class Kinds>
@@ -67,15 +39,6 @@ void add_obstacle_kinds(Schema& obstacle) {
   obstacle["oneOf"] = one;
 }
 
-/// {"KIND": {...}}, one of the kinds.
-Schema response_schema() {
-  const Schema texts = Schema::parse(schema_texts::response);
-  Schema kinds = Schema::object();
-  for (const auto& [kind, parts] : texts.at("kinds").items()) kinds[kind] = kind_schema(kind, parts, texts.at("keys"));
-  return {{"type", "object"},   {"title", "one of the following"}, {"minProperties", 1},
-          {"maxProperties", 1}, {"additionalProperties", false},   {"properties", kinds}};
-}
-
 Schema document(const char* title, const char* properties, const Schema& required, const Schema& definitions) {
   return {{"$schema", draft},
           {"title", title},
@@ -91,7 +54,7 @@ Schema document(const char* title, const char* properties, const Schema& require
 Schema scene_schema() {
   Schema definitions = Schema::parse(schema_texts::common);
   definitions.update(Schema::parse(schema_texts::motion));
-  definitions["mesh"] = Schema::parse(schema_texts::mesh);
+  definitions["mesh"] = mesh_schema();
   definitions["material"] = one_of(material_kinds());
   definitions["response"] = response_schema();
   definitions["method"] = method_schema(OptionLists::refused);

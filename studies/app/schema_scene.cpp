@@ -201,7 +201,7 @@ const char* const scene = R"json({
         "description": "sparse: one large matrix; condensed: bodies reduced to contact unknowns; auto: the cheaper",
         "enum": ["auto", "sparse", "condensed"], "default": "auto"},
       "backend": {"description": "library of the sparse factorisations, where the build has it",
-        "enum": ["auto", "cholmod", "mumps", "umfpack", "eigen"], "default": "auto"}}},
+        "enum": ["auto", "cholmod", "mumps", "eigen"], "default": "auto"}}},
   "output": {"description": "what is written", "type": "object", "examples": [{"fields": "all"}],
     "additionalProperties": false, "properties": {
       "fields": {"description": "increments with fields: the last, all, or every n-th and the last",

@@ -1,5 +1,6 @@
 /// What files may hold, in JSON Schema: for every key its type, its meaning with unit, its default and an example. This
-/// is where they are described, but for materials and obstacles, which have tables of their own (studies/input):
+/// is where they are described, but for what says its keys itself: meshes, materials, obstacles and
+/// laws of friction (core), options of methods (methods/options.hpp) and kinds of responses (studies/input):
 /// editors read it by `stickslip schema`, and the tables of docs/ are printed from it (tools/key_tables.py).
 ///
 /// "title" is the name of a type in the tables; "default" is what holds where the key is left out.
@@ -10,11 +11,9 @@ namespace stickslip::schema_texts {
 // Definitions by name.
 extern const char* const common;  ///< of both files
 extern const char* const motion;
-extern const char* const mesh;
 
 // Properties by key.
 extern const char* const scene;
-extern const char* const response;  ///< of all kinds of responses
 extern const char* const study;
 
 }  // namespace stickslip::schema_texts

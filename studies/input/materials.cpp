@@ -127,17 +127,6 @@ MaterialKind entry_of(std::type_identity<GroundedSpring>) {
 }
 
 template <Described M>
-Schema material_schema() {
-  const auto keys = schema_of_keys<M>();
-  return {{"description", M::about},
-          {"type", "object"},
-          {"examples", Schema::array({keys.example})},
-          {"required", keys.required},
-          {"additionalProperties", false},
-          {"properties", keys.properties}};
-}
-
-template <Described M>
 std::optional<Material> read_described_material(const JsonNode& node, SceneReading& reading) {
   return read_described<M>(node, reading);
 }
@@ -157,7 +146,7 @@ MaterialKind material_kind() {
       "a material of core/solids/materials.hpp lacks its keys(), or entry_of() in studies/input/materials.cpp");
   MaterialKind kind;
   if constexpr (Described<M>)
-    kind = {M::key, material_schema<M>, M::place, read_described_material<M>};
+    kind = {M::key, schema_of_object<M>, M::place, read_described_material<M>};
   else
     kind = entry_of(std::type_identity<M>());
   kind.goes_with = goes_with<M>;

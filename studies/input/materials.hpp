@@ -9,9 +9,6 @@
 
 namespace stickslip {
 
-/// What a mesh is made of, as far as materials ask.
-enum class Filling { point, bars, continuum };
-
 struct MaterialKind {
   const char* key;                                                               ///< of {"KEY": {...}}
   nlohmann::ordered_json (*schema)();                                            ///< JSON Schema of what it holds

@@ -4,6 +4,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "studies/input/described.hpp"
 #include "studies/input/scene_reading.hpp"
 
 namespace stickslip {
@@ -11,91 +12,18 @@ namespace {
 
 using nlohmann::json;
 
-constexpr Rule below_one{"a number > 0 and < 1", [](double x) { return x > 0 && x < 1; }};
-constexpr Rule above_one{"a number > 1", [](double x) { return x > 1; }};
-
-/// Values of an enumeration by name.
-template <class E>
-struct Words {
-  std::vector<std::pair<std::string, E>> values;
-};
-/// Name of an option, its meaning, and values that show how it is written ("" where the default does), as JSON.
-struct Option {
-  const char *name, *about, *examples = "";
-  operator const char*() const { return name; }
-};
-
-// One list of options a method; it serves reading, writing, describing and the names in messages. A number with a slot
-// is a Number, one that only steers the iteration a double.
-
-constexpr const char* rho_examples = R"(["auto", 100, {"absolute": 2400}])";
-constexpr Option newton_option{"newton", "Newton's method within an increment"};
-
-template <class Visitor>
-void visit_options(NewtonOptions& newton, Visitor&& visit) {
-  visit(Option{"tolerance", "residual at which it stops, relative to the scale of each residual"}, newton.tolerance,
-        below_one);
-  visit(Option{"max_iterations", "of each solve; beyond: status cap"}, newton.max_iterations);
-  visit(Option{"line_search", "backtracking where a full step stays in its active set and the residual does not fall"},
-        newton.line_search);
-}
-
-template <class Visitor>
-void visit_options(Penalty& method, Visitor&& visit) {
-  visit(Option{"stiffness", "penalty in multiples of the local nodal stiffness (auto: 1e3), or absolute", rho_examples},
-        method.stiffness);
-  visit(Option{"tangential_ratio", "tangential over normal penalty", "[0.5]"}, method.tangential_ratio);
-  visit(newton_option, method.newton);
-}
-
-template <class Visitor>
-void visit_options(UzawaAL& method, Visitor&& visit) {
-  using Acceleration = UzawaAL::Acceleration;
-  using Cone = UzawaAL::Cone;
-  using Sensitivity = UzawaAL::Sensitivity;
-  visit(
-      Option{"scale", "rho in multiples of the local nodal stiffness (auto: 100, or 10 at finite strain), or absolute",
-             rho_examples},
-      method.scale);
-  visit(Option{"tolerance", "relative error left in the multiplier, and violation, at which the updates stop"},
-        method.tolerance, below_one);
-  visit(Option{"max_augmentations", "of an increment; beyond: status cap, with the last iterate as the result"},
-        method.max_augmentations);
-  visit(Option{"adapt", "multiplies rho by 4 where an augmentation left more than a quarter of the violation"},
-        method.adapt);
-  visit(Option{"acceleration", "extrapolation of the updates; anderson takes several of the last, aitken two"},
-        method.acceleration,
-        Words<Acceleration>{
-            {{"none", Acceleration::none}, {"aitken", Acceleration::aitken}, {"anderson", Acceleration::anderson}}});
-  visit(
-      Option{"cone", "frozen: radius of the last augmentation, symmetric; fails where friction is large, and says so"},
-      method.cone, Words<Cone>{{{"augmented", Cone::augmented}, {"frozen", Cone::frozen}}});
-  visit(Option{"sensitivity", "scheme of the derivatives"}, method.sensitivity,
-        Words<Sensitivity>{{{"iterated", Sensitivity::iterated},
-                            {"truncated", Sensitivity::truncated},
-                            {"oversized", Sensitivity::oversized},
-                            {"preconditioned", Sensitivity::preconditioned}}});
-  visit(Option{"oversize", "factor on rho of the schemes oversized (auto: 1e3) and preconditioned", R"(["auto", 1e4])"},
-        method.oversize, above_one);
-  visit(newton_option, method.newton);
-}
-
-template <class Visitor>
-void visit_options(MonolithicAL& method, Visitor&& visit) {
-  using Cone = MonolithicAL::Cone;
-  visit(Option{"scale", "rho in multiples of the local nodal stiffness (auto: 1), or absolute", rho_examples},
-        method.scale);
-  visit(Option{"cone", "radius by the trial pressure, or by the multiplier: same solution, another path"}, method.cone,
-        Words<Cone>{{{"augmented", Cone::augmented}, {"multiplier", Cone::multiplier}}});
-  visit(newton_option, method.newton);
+/// Calls visit(key, option, how) for each option of a method, or of newton.
+template <class Options, class Visitor>
+void visit_options(Options& options, Visitor&& visit) {
+  std::apply([&](const auto&... key) { (visit(key, options.*key.member, key.how), ...); },
+             std::remove_const_t<Options>::keys());
 }
 
 /// Names of the options of a method, or of newton.
 template <class Options>
 std::vector<std::string> option_names() {
   std::vector<std::string> names;
-  Options options;
-  visit_options(options, [&](const char* name, auto&&...) { names.emplace_back(name); });
+  std::apply([&](const auto&... key) { (names.emplace_back(key.key), ...); }, Options::keys());
   return names;
 }
 
@@ -114,8 +42,8 @@ struct Reader {
   const JsonNode& node;
   SceneReading& reading;
 
-  void operator()(const char* name, Regularisation& option) {
-    const auto given = node.find(name);
+  void operator()(const auto& key, Regularisation& option, const RhoOption&) {
+    const auto given = node.find(key.key);
     if (!given || given->value() == "auto") return;
     if (given->value().is_object()) {
       option.kind = Regularisation::Kind::absolute;
@@ -128,37 +56,28 @@ struct Reader {
       given->must_be(R"("auto", a number > 0 or {"absolute": a number > 0})");
     }
   }
-  void operator()(const char* name, Number& option) { option = reading.optional(node, name, option.value, positive); }
-  void operator()(const char* name, double& option, const Rule& rule) {
-    if (const auto given = node.find(name)) option = reading.setting(*given, rule).value_or(option);
+  void operator()(const auto& key, double& option, const Setting& how) {
+    if (const auto given = node.find(key.key)) option = reading.setting(*given, rule_of(how.range)).value_or(option);
   }
-  void operator()(const char* name, std::optional<double>& option, const Rule& rule) {
-    const auto given = node.find(name);
+  void operator()(const auto& key, std::optional<double>& option, const AutoOrSetting& how) {
+    const auto given = node.find(key.key);
     if (!given || given->value() == "auto") return;
+    const Rule rule = rule_of(how.range);
     if (given->value().is_number())
       option = reading.setting(*given, rule);
     else
       given->must_be("\"auto\" or " + std::string(rule.text));
   }
-  void operator()(const char* name, int& option) {
-    if (const auto given = node.find(name)) option = reading.count(*given, 1).value_or(option);
+  void operator()(const auto& key, int& option, const AtLeastOne&) {
+    if (const auto given = node.find(key.key)) option = reading.count(*given, 1).value_or(option);
   }
-  void operator()(const char* name, bool& option) {
-    if (const auto given = node.find(name)) option = given->boolean().value_or(option);
-  }
-  template <class E>
-  void operator()(const char* name, E& option, const Words<E>& words) {
-    const auto given = node.find(name);
-    if (!given) return;
-    std::vector<std::string> allowed;
-    for (const auto& [word, unused] : words.values) allowed.push_back(word);
-    const auto choice = given->choice(allowed);
-    for (const auto& [word, value] : words.values)
-      if (word == choice) option = value;
-  }
-  void operator()(const char* name, NewtonOptions& newton) {
-    const auto given = node.find(name);
+  void operator()(const auto& key, NewtonOptions& newton, const Nested&) {
+    const auto given = node.find(key.key);
     if (given && given->is_object({{}, option_names<NewtonOptions>()})) visit_options(newton, Reader{*given, reading});
+  }
+  /// As of any struct of the scene.
+  void operator()(const auto& key, auto& option, const auto& how) {
+    detail::read_key(node, reading, key.key, option, how);
   }
 };
 
@@ -166,35 +85,33 @@ struct Reader {
 struct Writer {
   json& object;
 
-  void operator()(const char* name, const Regularisation& option) {
+  void operator()(const auto& key, const Regularisation& option, const RhoOption&) {
     switch (option.kind) {
       case Regularisation::Kind::automatic:
-        object[name] = "auto";
+        object[key.key] = "auto";
         break;
       case Regularisation::Kind::relative:
-        object[name] = option.value.value;
+        object[key.key] = option.value.value;
         break;
       case Regularisation::Kind::absolute:
-        object[name] = {{"absolute", option.value.value}};
+        object[key.key] = {{"absolute", option.value.value}};
         break;
     }
   }
-  void operator()(const char* name, const Number& option) { object[name] = option.value; }
-  void operator()(const char* name, double option, const Rule&) { object[name] = option; }
-  void operator()(const char* name, const std::optional<double>& option, const Rule&) {
-    object[name] = option ? json(*option) : json("auto");
+  void operator()(const auto& key, const Number& option, const IfGiven&) { object[key.key] = option.value; }
+  void operator()(const auto& key, const std::optional<double>& option, const AutoOrSetting&) {
+    object[key.key] = option ? json(*option) : json("auto");
   }
-  void operator()(const char* name, int option) { object[name] = option; }
-  void operator()(const char* name, bool option) { object[name] = option; }
-  template <class E>
-  void operator()(const char* name, E option, const Words<E>& words) {
-    for (const auto& [word, value] : words.values)
-      if (value == option) object[name] = word;
+  template <class E, std::size_t n>
+  void operator()(const auto& key, E option, const std::array<const char*, n>& words) {
+    object[key.key] = words[static_cast<std::size_t>(option)];
   }
-  void operator()(const char* name, NewtonOptions newton) {
-    object[name] = json::object();
-    visit_options(newton, Writer{object[name]});
+  void operator()(const auto& key, const NewtonOptions& newton, const Nested&) {
+    object[key.key] = json::object();
+    visit_options(newton, Writer{object[key.key]});
   }
+  /// A number, or true or false.
+  void operator()(const auto& key, const auto& option, const auto&) { object[key.key] = option; }
 };
 
 /// Describes the options of one object by JSON Schemas, with meaning, default and examples.
@@ -203,61 +120,63 @@ struct Describer {
   Schema& properties;
   OptionLists lists;
 
-  void add(const Option& option, const Schema& schema, const char* title, const Schema& standard) {
-    Schema& own = properties[option.name];
-    own["description"] = option.about;
+  /// `examples`: values that show how it is written; null: its default does.
+  void add(const auto& key, const Schema& schema, const std::string& title, const Schema& standard,
+           const Schema& examples = nullptr) {
+    Schema& own = properties[key.key];
+    own["description"] = key.about;
     own["title"] = title;
     if (lists == OptionLists::refused)
       own.update(schema);
     else
       own["anyOf"] = {schema, {{"type", "array"}, {"minItems", 1}, {"items", schema}}};
     if (!standard.is_null()) own["default"] = standard;
-    own["examples"] = *option.examples ? Schema::parse(option.examples) : Schema::array({standard});
+    own["examples"] = examples.is_null() ? Schema::array({standard}) : examples;
   }
-  void operator()(const Option& option, const Regularisation&) {
-    const Schema number{{"type", "number"}, {"exclusiveMinimum", 0}};
+  void operator()(const auto& key, const Regularisation&, const RhoOption&) {
+    const Schema number = plain(Range::positive);
     Schema absolute = Schema::object();
-    Describer{absolute, lists}.add({"absolute", "rho itself (force per length cubed)", "[2400]"}, number, "number > 0",
-                                   {});
+    const Key own{&Regularisation::value, "absolute", "rho itself (force per length cubed)", RhoOption{}};
+    Describer{absolute, lists}.add(own, number, "number > 0", {}, {2400});
     const Schema object{
         {"type", "object"}, {"required", {"absolute"}}, {"additionalProperties", false}, {"properties", absolute}};
-    add(option, {{"anyOf", {{{"const", "auto"}}, number, object}}}, R"("auto", number > 0 or object)", "auto");
+    add(key, {{"anyOf", {{{"const", "auto"}}, number, object}}}, R"("auto", number > 0 or object)", "auto",
+        {"auto", 100, {{"absolute", 2400}}});
   }
-  void operator()(const Option& option, const Number& value) {
-    add(option, {{"type", "number"}, {"exclusiveMinimum", 0}}, "number > 0", value.value);
+  void operator()(const auto& key, const Number& option, const IfGiven& how) {
+    add(key, plain(how.range), "number > 0", option.value, Schema::array({how.example}));
   }
-  static Schema ruled(const Rule& rule) {
-    Schema schema{{"type", "number"}, {"exclusiveMinimum", rule.holds(0.5) ? 0 : 1}};
-    if (!rule.holds(1.5)) schema["exclusiveMaximum"] = 1;
-    return schema;
+  void operator()(const auto& key, double option, const Setting& how) {
+    add(key, schema_of(how.range), rule_of(how.range).text, option);
   }
-  void operator()(const Option& option, double value, const Rule& rule) { add(option, ruled(rule), rule.text, value); }
-  void operator()(const Option& option, const std::optional<double>& value, const Rule& rule) {
-    add(option, {{"anyOf", {{{"const", "auto"}}, ruled(rule)}}}, (R"("auto" or )" + std::string(rule.text)).c_str(),
-        value ? Schema(*value) : Schema("auto"));
+  void operator()(const auto& key, const std::optional<double>& option, const AutoOrSetting& how) {
+    add(key, {{"anyOf", {{{"const", "auto"}}, schema_of(how.range)}}},
+        R"("auto" or )" + std::string(rule_of(how.range).text), option ? Schema(*option) : Schema("auto"),
+        {"auto", how.example});
   }
-  void operator()(const Option& option, int value) {
-    add(option, {{"type", "integer"}, {"minimum", 1}}, "whole number >= 1", value);
+  void operator()(const auto& key, int option, const AtLeastOne&) {
+    add(key, {{"type", "integer"}, {"minimum", 1}}, "whole number >= 1", option);
   }
-  void operator()(const Option& option, bool value) { add(option, {{"type", "boolean"}}, "true or false", value); }
-  template <class E>
-  void operator()(const Option& option, E value, const Words<E>& words) {
-    Schema allowed = Schema::array(), standard;
-    for (const auto& [word, each] : words.values) {
-      allowed.push_back(word);
-      if (each == value) standard = word;
-    }
-    add(option, {{"enum", allowed}}, "one of the words", standard);
+  void operator()(const auto& key, bool option, const Flag&) {
+    add(key, {{"type", "boolean"}}, "true or false", option);
   }
-  void operator()(const Option& option, NewtonOptions newton) {
+  template <class E, std::size_t n>
+  void operator()(const auto& key, E option, const std::array<const char*, n>& words) {
+    add(key, {{"enum", words}}, "one of the words", words[static_cast<std::size_t>(option)]);
+  }
+  void operator()(const auto& key, const NewtonOptions& newton, const Nested&) {
     Schema own = Schema::object();
     visit_options(newton, Describer{own, lists});
-    properties[option.name] = {{"description", option.about},
-                               {"type", "object"},
-                               {"examples", {{{"max_iterations", 50}}}},
-                               {"additionalProperties", false},
-                               {"properties", own}};
+    properties[key.key] = {{"description", key.about},
+                           {"type", "object"},
+                           {"examples", {{{"max_iterations", 50}}}},
+                           {"additionalProperties", false},
+                           {"properties", own}};
   }
+
+ private:
+  /// Without a reference to a definition.
+  static Schema plain(Range) { return {{"type", "number"}, {"exclusiveMinimum", 0}}; }
 };
 
 bool has(const std::vector<std::string>& names, const std::string& name) {
@@ -364,8 +283,7 @@ nlohmann::ordered_json method_schema(OptionLists lists) {
 
 json to_json(const Method& method) {
   json options = json::object();
-  Method copy = method;
-  std::visit([&](auto& chosen) { visit_options(chosen, Writer{options}); }, copy);
+  std::visit([&](const auto& chosen) { visit_options(chosen, Writer{options}); }, method);
   return {{std::string(name_of(method)), options}};
 }
 

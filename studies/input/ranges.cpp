@@ -12,6 +12,8 @@ struct RangeWords {
 
 RangeWords words_of(Range range) {
   switch (range) {
+    case Range::any:
+      return {any_number, R"({"type": "number"})"};
     case Range::positive:
       return {positive, R"({"$ref": "#/$defs/positive"})"};
     case Range::not_negative:
@@ -19,6 +21,10 @@ RangeWords words_of(Range range) {
     case Range::poisson_ratio:
       return {poisson_ratio, R"({"title": "number > -1 and < 0.5", "type": "number",
         "exclusiveMinimum": -1, "exclusiveMaximum": 0.5})"};
+    case Range::below_one:
+      return {below_one, R"({"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1})"};
+    case Range::above_one:
+      return {above_one, R"({"type": "number", "exclusiveMinimum": 1})"};
   }
   throw std::logic_error("no range");
 }

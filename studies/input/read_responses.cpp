@@ -7,52 +7,7 @@
 namespace stickslip {
 namespace {
 
-/// What a kind of response is taken of, and which keys it has besides.
-struct Kind {
-  const char* name;
-  Response::Kind kind;
-  bool of_contact;  ///< key "contact"; otherwise "on", where the kind has any
-  enum class Component { none, axis, axis_or_normal, axis_in_space } component;
-  bool sampled;  ///< keys "take" and "at"
-};
-
-constexpr std::array kinds{
-    Kind{"reaction", Response::Kind::reaction, false, Kind::Component::axis, false},
-    Kind{"contact_force", Response::Kind::contact_force, true, Kind::Component::axis_or_normal, false},
-    Kind{"displacement", Response::Kind::displacement, false, Kind::Component::axis, true},
-    Kind{"contact_pressure", Response::Kind::contact_pressure, true, Kind::Component::none, true},
-    Kind{"gap", Response::Kind::gap, true, Kind::Component::none, true},
-    Kind{"slip", Response::Kind::slip, true, Kind::Component::axis_in_space, true},
-    Kind{"dissipation", Response::Kind::dissipation, true, Kind::Component::none, false},
-    Kind{"strain_energy", Response::Kind::strain_energy, false, Kind::Component::none, false},
-    Kind{"plastic_strain", Response::Kind::plastic_strain, false, Kind::Component::none, true},
-    Kind{"contact_half_width", Response::Kind::contact_half_width, true, Kind::Component::none, false},
-};
-
-bool has_moment(const Kind& kind, const SceneReading& reading) {
-  return reading.dimension() == 2 &&
-         (kind.kind == Response::Kind::reaction || kind.kind == Response::Kind::contact_force);
-}
-
-Keys keys_of(const Kind& kind, const SceneReading& reading) {
-  Keys keys;
-  if (kind.of_contact) keys.required.push_back("contact");
-  if (kind.kind == Response::Kind::reaction) keys.required.push_back("on");
-  if (kind.kind == Response::Kind::displacement) keys.optional.push_back("on");
-  if (kind.component == Kind::Component::axis_in_space)
-    (reading.dimension() == 3 ? keys.required : keys.optional).push_back("component");
-  else if (kind.component != Kind::Component::none)
-    keys.required.push_back("component");
-  if (kind.sampled) keys.optional.emplace_back("take");
-  if (kind.kind == Response::Kind::plastic_strain)
-    keys.required.emplace_back("on");
-  else if (kind.sampled)
-    keys.optional.emplace_back("at");
-  if (has_moment(kind, reading) || kind.kind == Response::Kind::contact_half_width) keys.optional.push_back("about");
-  return keys;
-}
-
-void read_contact_name(const JsonNode& node, const Kind& kind, Response& response, SceneReading& reading) {
+void read_contact_name(const JsonNode& node, const ResponseKind& kind, Response& response, SceneReading& reading) {
   const auto name = node.text();
   if (!name) return;
   response.on = *name;
@@ -108,29 +63,36 @@ std::vector<Number> read_place(const JsonNode& node, SceneReading& reading) {
   return place;
 }
 
-void read_component(const JsonNode& node, const JsonNode& component, const Kind& kind, Response& response,
+Response::Component component_of(const std::string& word) {
+  constexpr std::array words{"", "x", "y", "z", "normal", "moment"};  // in the order of Component
+  return static_cast<Response::Component>(std::find(words.begin(), words.end(), word) - words.begin());
+}
+
+void read_component(const JsonNode& node, const JsonNode& component, const ResponseKind& kind, Response& response,
                     SceneReading& reading) {
   auto allowed = reading.axes();
-  if (kind.component == Kind::Component::axis_or_normal) allowed.insert(allowed.begin(), "normal");
-  const bool moment = has_moment(kind, reading);
+  if (kind.component == ResponseKind::Component::axis_or_normal) allowed.insert(allowed.begin(), "normal");
+  const bool moment = has_moment(kind, reading.dimension());
   if (moment) allowed.emplace_back("moment");
-  response.component = component.choice(allowed).value_or(allowed.front());
+  response.component = component_of(component.choice(allowed).value_or(allowed.front()));
   const auto about = moment ? node.find("about") : std::nullopt;
   if (about) response.about = read_place(*about, reading);
-  if (about && response.component != "moment") about->error_at_key(R"("about" belongs to the component "moment")");
-  if (!about && response.component == "moment")
-    node.error(R"(the key "about" is missing: the point [x, y] that the moment is about)");
+  const bool is_moment = response.component == Response::Component::moment;
+  if (about && !is_moment) about->error_at_key(R"("about" belongs to the component "moment")");
+  if (!about && is_moment) node.error(R"(the key "about" is missing: the point [x, y] that the moment is about)");
 }
 
 void read_response(const std::string& name, const JsonNode& outer, SceneReading& reading) {
   check_characters(outer, name);
   std::vector<std::string> names;
-  for (const Kind& each : kinds) names.emplace_back(each.name);
+  const auto kinds = response_kinds();
+  for (const ResponseKind& each : kinds) names.emplace_back(each.name);
   const auto found = outer.kind(names);
   if (!found) return;
   const JsonNode& node = found->second;
-  const Kind& kind = *std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) { return k.name == found->first; });
-  if (!node.is_object(keys_of(kind, reading))) return;
+  const ResponseKind& kind =
+      *std::find_if(kinds.begin(), kinds.end(), [&](const ResponseKind& k) { return k.name == found->first; });
+  if (!node.is_object(keys_of(kind, reading.dimension()))) return;
   if (kind.kind == Response::Kind::contact_half_width && reading.dimension() == 3)
     node.error_at_key("a half width needs a plane space");
 
@@ -146,7 +108,8 @@ void read_response(const std::string& name, const JsonNode& outer, SceneReading&
     read_on(*on, at.has_value(), response, reading);
   if (kind.kind == Response::Kind::displacement && !on && !at)
     node.error(R"(one of the keys is missing: "on", a side BODY.SIDE, or "at", a point)");
-  if (component && kind.component != Kind::Component::none) read_component(node, *component, kind, response, reading);
+  if (component && kind.component != ResponseKind::Component::none)
+    read_component(node, *component, kind, response, reading);
   if (take && kind.sampled) {
     const auto way = take->choice({"mean", "max", "min"}).value_or("mean");
     response.take = way == "max" ? Response::Take::max : way == "min" ? Response::Take::min : Response::Take::mean;
@@ -199,10 +162,6 @@ void read_objective(const std::string& name, const JsonNode& node, SceneReading&
 }
 
 }  // namespace
-
-std::string_view name_of(Response::Kind kind) {
-  return std::find_if(kinds.begin(), kinds.end(), [&](const Kind& each) { return each.kind == kind; })->name;
-}
 
 void read_responses(const JsonNode& node, SceneReading& reading) {
   if (!node.is_map("responses by name")) return;

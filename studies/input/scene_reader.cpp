@@ -41,7 +41,6 @@ void read_linear_solver(const JsonNode& node, const Scene& scene, Input& input) 
   if (const auto backend = node.find("backend")) {
     const std::map<std::string, Backend> all{{"auto", Backend::automatic},
                                              {"cholmod", Backend::cholmod},
-                                             {"umfpack", Backend::umfpack},
                                              {"mumps", Backend::mumps},
                                              {"eigen", Backend::eigen}};
     std::vector<std::string> names;

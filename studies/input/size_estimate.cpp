@@ -14,21 +14,6 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-double product(const std::array<int, 2>& cells) { return static_cast<double>(cells[0]) * cells[1]; }
-
-/// Quadrilateral cells of a generator, or bars.
-struct CountCells {
-  double operator()(const BoxMesh& m) const { return product(m.cells); }
-  double operator()(const QuadMesh& m) const { return product(m.cells); }
-  double operator()(const RingMesh& m) const { return product(m.cells); }
-  double operator()(const DiskMesh& m) const { return std::pow(m.cells[0], 2) + 4 * product(m.cells); }
-  double operator()(const HalfDiskMesh& m) const { return std::pow(m.cells[0], 2) / 2 + 2 * product(m.cells); }
-  double operator()(const PointMesh&) const { return 1; }
-  double operator()(const LineMesh& m) const { return m.cells; }
-  double operator()(const ArcMesh& m) const { return m.cells; }
-  double operator()(const ImportedMesh& m) const { return m.mesh.node_count; }
-};
-
 double from_file(const char* path) {
   std::ifstream file(path);
   double bytes = 0;
@@ -52,8 +37,14 @@ std::string in_words(double bytes) {
 double estimated_nodes(const MeshDescription& mesh, const std::string& element) {
   // nodes a cell: its corner and, where the sides are curved, their middles; T6 has the diagonal's too
   const double each = element == "Q8" ? 3 : element == "T6" ? 4 : 1;
-  return std::holds_alternative<ImportedMesh>(mesh) ? CountCells()(std::get<ImportedMesh>(mesh))
-                                                    : each * std::visit(CountCells(), mesh);
+  return std::visit(
+      [&]<class M>(const M& kind) -> double {
+        if constexpr (std::is_same_v<M, ImportedMesh>)
+          return kind.mesh.node_count;
+        else
+          return each * kind.cell_count();
+      },
+      mesh);
 }
 
 double estimated_bytes(const ProblemSize& size) {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/model/scene.hpp"
+#include "core/mesh/generators.hpp"
 
 namespace stickslip {
 

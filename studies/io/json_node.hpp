@@ -19,6 +19,8 @@ struct Rule {
 inline constexpr Rule any_number{"a number", [](double) { return true; }};
 inline constexpr Rule positive{"a number > 0", [](double x) { return x > 0; }};
 inline constexpr Rule not_negative{"a number >= 0", [](double x) { return x >= 0; }};
+inline constexpr Rule below_one{"a number > 0 and < 1", [](double x) { return x > 0 && x < 1; }};
+inline constexpr Rule above_one{"a number > 1", [](double x) { return x > 1; }};
 inline constexpr Rule poisson_ratio{"a number > -1 and < 0.5", [](double nu) { return nu > -1 && nu < 0.5; }};
 
 /// Keys of an object.

@@ -19,8 +19,6 @@ using nlohmann::json;
 
 namespace {
 
-constexpr double equally_good = 1e-12;  ///< errors of a response below this are rounding, and order no runs
-
 /// Whose curves there are: methods, then other programs.
 std::vector<std::string> owners_of(const Study& study) {
   std::vector<std::string> owners = study.families;
@@ -52,25 +50,6 @@ std::string shade(const std::string& color, std::size_t count) {
     const double part = std::stoi(color.substr(i, 2), nullptr, 16);
     out += fmt::format("{:02X}", std::lround(by >= 0 ? part + by * (255 - part) : part * (1 + by)));
   }
-  return out;
-}
-
-const char* number_label =
-    "datum.value == 0 ? '0' : replace(abs(datum.value) < 1e-3 || abs(datum.value) >= 1e4 ? "
-    "replace(format(datum.value, '~e'), '+', '') : format(datum.value, '~r'), '\u2212', '-')";
-
-json series_channel(const char* range) {
-  return {{"field", "series"},
-          {"type", "nominal"},
-          {"title", nullptr},
-          {"scale", {{"domain", "$series"}, {"range", range}}},
-          {"legend", nullptr}};
-}
-
-json ordinal_channel(const char* range) {
-  json out = series_channel(range);
-  out["type"] = "ordinal";
-  out["scale"]["type"] = "ordinal";
   return out;
 }
 
@@ -213,110 +192,6 @@ void offer_cells(Figure& figure, const std::vector<std::string>& chosen) {
   if (choice.options.size() > 1) figure.choices.push_back(choice);
 }
 
-json channel(const std::string& field, const std::string& title, bool logarithmic) {
-  json scale = {{"nice", false}, {"padding", 18}, {"zero", false}};
-  if (logarithmic) scale = {{"type", "log"}, {"nice", false}, {"padding", 18}};
-  return {{"field", field},
-          {"type", "quantitative"},
-          {"title", title},
-          {"scale", scale},
-          {"axis", {{"labelExpr", number_label}, {"labelOverlap", true}}}};
-}
-
-json only_if(const std::string& test) { return json::array({{{"filter", test}}}); }
-
-json tooltip(const std::vector<std::pair<std::string, std::string>>& fields) {
-  json out = json::array();
-  for (const auto& [field, title] : fields) out.push_back({{"field", field}, {"title", title}});
-  return out;
-}
-
-void add_panel(Figure& figure, Panel panel) {
-  panel.spec["transform"] = only_if("datum.panel == '" + panel.only + "'");
-  figure.panels.push_back(std::move(panel));
-}
-
-namespace {
-
-/// The point nearest to the pointer, wherever in the chart that is: its tooltip shows, and its marker stands out.
-json near_the_pointer() {
-  return {{"name", "near"},
-          {"select", {{"type", "point"}, {"on", "pointerover"}, {"clear", "pointerout"}, {"nearest", true}}}};
-}
-
-/// Words at each of the four sides.
-std::vector<json> words_beside(const std::string& tag) {
-  constexpr int aside = 9, above = -8, below = 15;
-  std::vector<json> out;
-  for (const bool left : {false, true})
-    for (const bool low : {false, true}) {
-      const std::string side = std::string(left ? "left" : "right") + (low ? " below" : "");
-      json mark = {{"type", "text"}, {"align", left ? "right" : "left"}, {"fontSize", 11}, {"color", "$ink"}};
-      mark.update({{"dx", left ? -aside : aside}, {"dy", low ? below : above}});
-      out.push_back({{"transform", only_if(fmt::format("isValid(datum.{0}) && datum.{0}_at == '{1}'", tag, side))},
-                     {"mark", mark},
-                     {"encoding", {{"text", {{"field", tag}}}}}});
-    }
-  return out;
-}
-
-}  // namespace
-
-json curves(const std::string& description, const json& x, const json& y, const json& tips, const std::string& tag) {
-  json line = {{"transform", only_if("!datum.failed && !datum.guide")},
-               {"mark", {{"type", "line"}, {"strokeWidth", 2}}},
-               {"encoding",
-                {{"color", series_channel("$colors")},
-                 {"strokeDash", ordinal_channel("$dashes")},
-                 {"detail", {{"field", "line"}}},
-                 {"order", {{"field", "order"}, {"type", "quantitative"}}}}}};
-  json points = {{"transform", only_if("!datum.failed && !datum.guide && !datum.unmarked")},
-                 {"mark", {{"type", "point"}, {"filled", false}, {"strokeWidth", 2}, {"opacity", 1}}},
-                 {"encoding",
-                  {{"color", series_channel("$colors")},
-                   {"shape", series_channel("$shapes")},
-                   {"size", ordinal_channel("$sizes")},
-                   {"strokeWidth", {{"condition", {{"param", "near"}, {"empty", false}, {"value", 4}}}, {"value", 2}}},
-                   {"tooltip", tips}}},
-                 {"params", json::array({near_the_pointer()})}};
-  json failures = {
-      {"transform", only_if("datum.failed")},
-      {"mark",
-       {{"type", "point"}, {"shape", "M-1,-1L1,1M-1,1L1,-1"}, {"size", 110}, {"strokeWidth", 2.5}, {"opacity", 1}}},
-      {"encoding", {{"color", series_channel("$colors")}, {"tooltip", tips}}}};
-  json ground = {
-      {"transform", json::array({{{"filter", "datum.zero && !datum.guide"}},
-                                 {{"aggregate", json::array({{{"op", "min"}, {"field", "shown"}, {"as", "shown"}}})},
-                                  {"groupby", json::array()}},
-                                 {{"filter", "isValid(datum.shown)"}}})},
-      {"encoding", {{"y", {{"field", "shown"}, {"type", "quantitative"}}}}},
-      {"layer", json::array({{{"mark", {{"type", "rule"}, {"strokeDash", {1, 3}}, {"color", "$ink"}}}},
-                             {{"mark",
-                               {{"type", "text"},
-                                {"align", "left"},
-                                {"baseline", "bottom"},
-                                {"dy", -4},
-                                {"dx", 4},
-                                {"x", 0},
-                                {"color", "$ink"},
-                                {"fontSize", 11},
-                                {"text", "exactly 0"}}}}})}};
-  json layers = json::array({line, points, failures});
-  for (json& words : words_beside(tag)) layers.push_back(std::move(words));
-  for (json& layer : layers) {
-    layer["encoding"]["x"] = x;
-    layer["encoding"]["y"] = y;
-  }
-  layers.insert(layers.begin(), ground);
-  return {{"description", description},
-          {"width", "container"},
-          {"height", chart_height},
-          {"autosize", {{"type", "fit-x"}, {"contains", "padding"}}},
-          {"padding", {{"left", 5}, {"top", 5}, {"right", 14}, {"bottom", 5}}},  // room for the end of a tick's label
-          {"data", {{"name", "rows"}}},
-          {"layer", layers}};
-}
-
 const Cell* best_cell(const Study& study, const std::string& family) {
   const Cell* best = nullptr;
   const auto error = [](const Cell& c) {
@@ -330,7 +205,7 @@ const Cell* best_cell(const Study& study, const std::string& family) {
     if (!best || error(cell) < error(*best)) best = &cell;
   }
   if (!best) return nullptr;
-  const double as_good = std::max(error(*best), equally_good);
+  const double as_good = std::max(error(*best), rounding_error);
   for (const auto& cell : study.cells)
     if (cell.family == family && cell.converged && cell.variant == study.main_variant && error(cell) <= as_good)
       if (error(*best) > as_good || rank(cell) < rank(*best)) best = &cell;

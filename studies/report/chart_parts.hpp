@@ -1,4 +1,4 @@
-/// What the charts are made of: series, rows, choices, and the words of Vega-Lite.
+/// What the charts are made of: series, rows and choices.
 #pragma once
 
 #include <map>
@@ -66,34 +66,5 @@ std::string knob_title(const std::vector<std::string>& knobs);
 /// Labels of the best cell of each family and, where asked, of the converged cell furthest from the reference.
 enum class Furthest { left_out, added };
 std::vector<std::string> telling_cells(const Study& study, Furthest furthest);
-
-/// An axis over a field of the rows.
-nlohmann::json channel(const std::string& field, const std::string& title, bool logarithmic);
-/// [{"filter": test}].
-nlohmann::json only_if(const std::string& test);
-nlohmann::json tooltip(const std::vector<std::pair<std::string, std::string>>& fields);
-/// Adds a panel that shows the rows of its own alone: those whose `panel` is panel.only.
-void add_panel(Figure&, Panel panel);
-
-/// Lines, markers, crosses for what failed, and the ground for exact zeros. Rows: series, line, order, shown, zero,
-/// failed, and in the field `tag` a word beside the marker, at the side that `tag`_at says: "right", "left", "right
-/// below" or "left below".
-nlohmann::json curves(const std::string& description, const nlohmann::json& x, const nlohmann::json& y,
-                      const nlohmann::json& tips, const std::string& tag = "tag");
-
-/// The field of the words in a work-precision chart against the field `across`.
-std::string tag_field(const std::string& across);
-
-/// Writes beside the lines of such a chart, of so many pixels' height: the option's value at both ends, so that a
-/// reader sees which way a line runs, and the name of its series, so that grey print needs no legend. A line that stays
-/// in one place, where the option does nothing, has its name alone. No word covers another, a marker or a curve: a name
-/// is tried on each side of each point, and is left to the legend where there is no room; then so are its values. Words
-/// that have no room in the lower chart on paper have the field `tag`_tall. What narrow screens show beside a point,
-/// names alone or what tells those of a method apart, is in `tag`_narrow and `tag`_narrow_at.
-void tag_lines(nlohmann::json& rows, const std::string& across, double height, const std::string& text_field);
-
-/// Writes the name of each line, its `line`, beside one of its points, where it has room in a chart that stands beside
-/// one other and in one beside two; for narrow screens as tag_lines does.
-void name_lines(nlohmann::json& rows, const std::string& across);
 
 }  // namespace stickslip::report

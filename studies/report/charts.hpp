@@ -1,9 +1,10 @@
-/// The charts: each is a set of rows and Vega-Lite panels over them.
+/// The figures of a report: each is a set of rows and charts over them.
 #pragma once
 
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "studies/report/drawing.hpp"
@@ -13,27 +14,45 @@
 
 namespace stickslip::report {
 
-/// How one curve looks, in every panel of a figure: colour by method, and marker and dash so that grey print tells too.
+/// How one curve looks, in every chart of a figure: colour by method, and marker and dash so that grey print tells too.
 struct Series {
   std::string name, color, shape;
   std::vector<int> dash;
   int size = 60;  ///< of the marker, px^2: methods differ, so that equal points show as nested markers
 };
 
-/// One coordinate system. `spec` is Vega-Lite over the data set "rows"; the strings "$series", "$colors", "$shapes",
-/// "$dashes", "$sizes" stand for the series that are in the rows shown, "$ink" for the colour of the text. A title
-/// "{field}" of an axis stands for what the rows shown have there.
-struct Panel {
-  std::string title;
-  nlohmann::json spec;
-  std::string x, y;  ///< fields of the rows, for the picture that needs no script
-  bool x_log = true, y_log = true;
-  std::string only;  ///< rows of this panel: those whose `panel` is this; empty: all
-  bool folded = false;
-  std::string tag = "tag";  ///< field of the words beside points
+constexpr double chart_height = 330;  ///< in pixels of the page, unless a chart has another
+
+enum class Spacing { linear, logarithmic };
+
+/// What stands along an axis.
+struct Quantity {
+  std::string field;  ///< of the rows
+  std::string title;  ///< "{FIELD}" stands for what the rows shown have there
+  Spacing spacing = Spacing::linear;
+  double least_step = 0;  ///< between ticks: 1 of what is counted
+  bool bounded = false;   ///< nothing lies below its least value
 };
 
-constexpr double chart_height = 330;  ///< of a panel, in pixels, unless its specification says another
+/// Fields of the rows with the words at the ends of lines: their names, and values; without a name no words.
+struct EndWords {
+  std::string name, value = {};
+};
+
+/// Points and lines over two axes. Written as a line drawing (plot.hpp), and by page.js, which draws it as Vega-Lite.
+///
+/// Rows have `series`, `line` (rows of one are joined, by `order`) and `failed` (a cross, joined to nothing), and where
+/// they need it `zero` (an exact zero, which stands off the values that the axis names), `unmarked` (a point of a line
+/// alone), and `guide` (a line that theory gives, with the words `guide_tag`).
+struct Chart {
+  std::string title;
+  Quantity x, y;
+  std::vector<std::pair<std::string, std::string>> tooltip;  ///< fields of the rows, with what they are called
+  std::string only = {};  ///< rows of this chart: those whose `panel` is this; empty: all
+  bool folded = false;
+  EndWords words = {};
+  double height = chart_height;
+};
 
 /// A choice of rows: those whose `field` is (one of) the chosen, among rows whose `when_field` is `when`.
 struct Choice {
@@ -47,7 +66,7 @@ struct Figure {
   std::string id, title, text;
   nlohmann::json rows = nlohmann::json::array();  ///< what is drawn, and all that its CSV holds
   std::vector<Series> series;
-  std::vector<Panel> panels;
+  std::vector<Chart> charts;
   std::vector<Choice> choices;
   std::string folded;  ///< why a reader may pass it by: it is then folded behind its title and this; "" shows it
 };

@@ -16,7 +16,6 @@
 namespace stickslip::report {
 namespace {
 
-constexpr double rounding = 1e-12;    ///< what sixteen digits leave: no mesh errs by so little
 constexpr double much_faster = 1.25;  ///< seconds of runs this short vary by some 20 %
 
 std::vector<const Cell*> runs_of(const Study& study) {
@@ -112,7 +111,7 @@ std::optional<Measure> measure_of(const Study& study, Of of) {
   if (asked.empty()) asked = {1e-2, 1e-4, 1e-6};
   std::sort(asked.rbegin(), asked.rend());
   for (const double error : asked) measure.levels.push_back({error});
-  const double digits = discretization_reference(study) == "the given values" ? digits_of_given_values : rounding;
+  const double digits = discretization_reference(study) == "the given values" ? digits_of_given_values : rounding_error;
   if (const auto own = own_error(study, of); measure.on_same_mesh && own && *own > digits)
     measure.levels.push_back({*own, fmt::format("own error of {}: ", fmt::join(what_else_errs(study), ", "))});
   return measure;

@@ -92,11 +92,13 @@ std::optional<Figure> derivative_histories(const Study& study, const std::string
   if (figure.rows.empty()) return std::nullopt;
   figure.series = series.list;
   add_given(figure, study, Of::sensitivities, end);
-  json spec =
-      curves("Derivative over time", channel("time", time_title(told), false), channel("value", "{response}", false),
-             has_sides ? tooltip({{"series", "run"}, {"time", "time"}, {"value", "value"}, {"side", "side"}})
-                       : tooltip({{"series", "run"}, {"time", "time"}, {"value", "value"}}));
-  figure.panels.push_back({"", spec, "time", "value", false, false, "time", false});
+  Chart chart{.title = "",
+              .x = {"time", time_title(told)},
+              .y = {"value", "{response}"},
+              .tooltip = {{"series", "run"}, {"time", "time"}, {"value", "value"}},
+              .only = "time"};
+  if (has_sides) chart.tooltip.emplace_back("side", "side");
+  figure.charts.push_back(std::move(chart));
   figure.title = "Histories: derivatives over time";
   figure.folded = "of any response by any parameter";
   figure.text = is_frictionless(study)

@@ -13,6 +13,8 @@ std::string in_page(const std::string& color) {
   return is_named(color) ? "var(--" + color + ")" : color;
 }
 
+}  // namespace
+
 std::string svg_path(const Path& path) {
   std::string out;
   for (const auto& piece : path.pieces) {
@@ -21,8 +23,6 @@ std::string svg_path(const Path& path) {
   }
   return out;
 }
-
-}  // namespace
 
 Path& Path::circle(double x, double y, double r) {
   const double k = 0.5522847498 * r;  // quarter of a circle by a cubic, off by 3e-4 of r

@@ -1,7 +1,6 @@
-/// A line drawing, written once and given out as SVG (inside a page or as a file of its own), as PDF and
-/// as PGF.
+/// A line drawing, written once and given out as SVG (inside a page or as a file of its own) and as PGF.
 ///
-/// Coordinates are pixels of SVG, y down; a pixel is 0.75 points of PDF. Colours are "#RRGGBB" or one of the names ink,
+/// Coordinates are pixels of SVG, y down; a pixel is 0.75 points of PGF. Colours are "#RRGGBB" or one of the names ink,
 /// soft, line, paper: in a page these follow its light or dark scheme, in files they are those of the light one. ""
 /// draws nothing.
 #pragma once
@@ -66,7 +65,7 @@ class Drawing {
   Drawing(double width, double height, std::string title, std::string description)
       : width_(width), height_(height), title_(std::move(title)), description_(std::move(description)) {}
 
-  /// `tooltip`: what a reader sees who points at it; not in PDF.
+  /// `tooltip`: what a reader sees who points at it; not in PGF.
   void path(Path path, Style style, std::string tooltip = {});
   void line(double x1, double y1, double x2, double y2, const Style& style);
   void text(double x, double y, std::string text, const TextStyle& style = {});
@@ -82,8 +81,6 @@ class Drawing {
 
   std::string inline_svg() const;
   std::string svg_file() const;
-  /// Its fonts are embedded, where the program was built with them.
-  std::string pdf() const;
   /// For LaTeX, which sets the texts in the font of the document.
   std::string pgf() const;
   /// Moves, lines and curves of all shapes.
@@ -109,7 +106,6 @@ class Drawing {
   };
   using Item = std::variant<Shape, Text, Clip, Unclip>;
   class SvgWriter;
-  class PdfWriter;
   class PgfWriter;
 
   double width_, height_;
@@ -121,6 +117,9 @@ class Drawing {
 /// A marker of some 9 pixels by its name: circle, square, triangle-up (-down, -left, -right), diamond, cross (upright),
 /// failed (a diagonal cross).
 Path marker(std::string_view shape, double x, double y);
+
+/// A path in the notation of SVG.
+std::string svg_path(const Path& path);
 
 /// Width of a text in pixels, as Helvetica sets it.
 double text_width(std::string_view text, double size);

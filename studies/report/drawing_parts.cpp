@@ -42,29 +42,13 @@ std::string short_number(double value) {
   return text == "-0" ? "0" : text;
 }
 
-std::string in_font(std::string_view text) {
-  std::string out;
-  for (std::size_t i = 0; i < text.size();) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const std::size_t length = byte < 0x80 ? 1 : byte < 0xE0 ? 2 : byte < 0xF0 ? 3 : 4;
-    if (length == 1) {
-      out += byte < 32 || byte == 127 ? ' ' : static_cast<char>(byte);
-    } else if (length == 2 && (byte == 0xC2 || byte == 0xC3) && i + 1 < text.size()) {
-      out += static_cast<char>((byte & 0x03) << 6 | (static_cast<unsigned char>(text[i + 1]) & 0x3F));  // Latin-1
-    } else {
-      out += '?';
-    }
-    i += length;
-  }
-  return out;
-}
-
 double text_width(std::string_view text, double size) {
+  constexpr int other_letter = 556;
   double width = 0;
-  for (const char c : in_font(text)) {
-    const int place = static_cast<unsigned char>(c) - 32;
-    width +=
-        place >= 0 && place < static_cast<int>(helvetica.size()) ? helvetica[static_cast<std::size_t>(place)] : 556;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if ((byte & 0xC0) == 0x80) continue;  // a letter's first byte stands for it
+    width += byte >= 32 && byte - 32u < helvetica.size() ? helvetica[byte - 32u] : other_letter;
   }
   return width * size / 1000;
 }

@@ -1,8 +1,7 @@
-/// What the writers of a drawing (SVG, PDF, PGF) share.
+/// What the writers of a drawing (SVG, PGF) share.
 #pragma once
 
 #include <string>
-#include <string_view>
 
 namespace stickslip::report {
 
@@ -14,8 +13,5 @@ std::string in_light(const std::string& color);
 
 /// A number without what carries nothing: "12.5", "3".
 std::string short_number(double value);
-
-/// Latin-1 of a text in UTF-8: what lies beyond it is '?'.
-std::string in_font(std::string_view text);
 
 }  // namespace stickslip::report

@@ -26,12 +26,3 @@ STICKSLIP_EMBED(vega_js, STICKSLIP_VEGA_DIR "/vega.min.js")
 STICKSLIP_EMBED(vega_lite_js, STICKSLIP_VEGA_DIR "/vega-lite.min.js")
 STICKSLIP_EMBED(vega_embed_js, STICKSLIP_VEGA_DIR "/vega-embed.min.js")
 STICKSLIP_EMBED(third_party_notices, STICKSLIP_VEGA_DIR "/THIRD_PARTY_NOTICES")
-#ifdef STICKSLIP_FONT_DIR
-STICKSLIP_EMBED(upright_font, STICKSLIP_FONT_DIR "/LiberationSans-Regular.ttf")
-STICKSLIP_EMBED(bold_font, STICKSLIP_FONT_DIR "/LiberationSans-Bold.ttf")
-#else
-namespace stickslip::report::embedded {
-std::string_view upright_font() { return {}; }
-std::string_view bold_font() { return {}; }
-}  // namespace stickslip::report::embedded
-#endif

@@ -13,8 +13,4 @@ std::string_view vega_lite_js();
 std::string_view vega_embed_js();
 std::string_view third_party_notices();
 
-/// Liberation Sans as TrueType; empty where the build did not find it.
-std::string_view upright_font();
-std::string_view bold_font();
-
 }  // namespace stickslip::report::embedded

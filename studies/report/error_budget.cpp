@@ -214,15 +214,14 @@ std::optional<Figure> error_budget(const Study& study) {
       "than its noise, or exactly zero, is not drawn.";
   figure.rows = rows_of(study);
   if (figure.rows.empty()) return std::nullopt;
-  name_lines(figure.rows, "option_value");
   figure.series = series_of_parts();
-  const json tips = tooltip({{"label", "method"}, {"part", "part"}, {"value", "value"}, {"noise", "noise"}});
   for (const std::string& panel : distinct(figure.rows, "panel")) {
-    json spec = curves(figure.title + ", " + panel, channel("option_value", "{axis}", true),
-                       channel("shown", "part of the relative error, its size", true), tips, tag_field("option_value"));
-    spec["transform"] = only_if("isValid(datum.shown) && datum.panel == '" + panel + "'");
-    figure.panels.push_back(
-        {panel, spec, "option_value", "shown", true, true, panel, false, tag_field("option_value")});
+    figure.charts.push_back({.title = panel,
+                             .x = {"option_value", "{axis}", Spacing::logarithmic},
+                             .y = {"shown", "part of the relative error, its size", Spacing::logarithmic},
+                             .tooltip = {{"label", "method"}, {"part", "part"}, {"value", "value"}, {"noise", "noise"}},
+                             .only = panel,
+                             .words = {"line"}});
     offer(figure, "Setting", "curve", "", panel);
   }
   offer(figure, "Quantity", "quantity", quantity_in_words(first_quantity(study)));

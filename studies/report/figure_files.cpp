@@ -6,6 +6,8 @@
 #include <map>
 #include <set>
 
+#include "studies/io/input_fault.hpp"
+#include "studies/io/other_program.hpp"
 #include "studies/io/output_folder.hpp"
 #include "studies/io/printing.hpp"
 #include "studies/report/chart_parts.hpp"
@@ -28,7 +30,7 @@ std::string csv_cell(const json& value) {
 /// How a row is drawn, as opposed to what it says.
 bool is_of_looks(const std::string& field) {
   static const std::set<std::string> names = {"guide_tag", "line", "of_cell", "order", "shown", "unmarked", "zero"};
-  return names.count(field) > 0 || field.starts_with("tag");
+  return names.count(field) > 0;
 }
 
 /// By name.
@@ -36,9 +38,21 @@ using Files = std::map<std::string, std::string>;
 
 void add_drawing(const std::string& stem, const Drawing& drawing, Files& files) {
   files[stem + ".svg"] = drawing.svg_file();
-  files[stem + ".pdf"] = drawing.pdf();
   constexpr std::size_t most_pieces = 20'000;  // TeX's memory holds some ten times that
   if (drawing.pieces() <= most_pieces) files[stem + ".pgf"] = drawing.pgf();
+}
+
+/// PDFs of the drawings in a folder, the same bytes each time.
+void add_pdfs(const fs::path& folder, const Files& drawings) {
+  Files pdfs;
+  for (const auto& [name, content] : drawings) {
+    const fs::path svg = folder / name;
+    if (svg.extension() != ".svg") continue;
+    auto pdf = output_of({"rsvg-convert", "--format=pdf", fs::absolute(svg)}, {{"SOURCE_DATE_EPOCH", "0"}});
+    if (!pdf) throw InputFault(svg.string() + ": rsvg-convert makes no PDF of it");
+    pdfs[svg.stem().string() + ".pdf"] = *std::move(pdf);
+  }
+  write_outputs(folder, {pdfs.begin(), pdfs.end()});
 }
 
 }  // namespace
@@ -65,12 +79,13 @@ std::string to_csv(const json& rows) {
   return out;
 }
 
-void write_figures(const fs::path& directory, const std::vector<Figure>& figures, const std::vector<Plate>& plates) {
+void write_figures(const fs::path& directory, const std::vector<Figure>& figures, const std::vector<Plate>& plates,
+                   Pdfs pdfs) {
   Files files;
   for (const auto& figure : figures) {
-    for (const auto& panel : figure.panels)
-      if (const auto drawing = draw_plot(figure, panel))
-        add_drawing(figure.id + (panel.title.empty() ? "" : "-" + slug(panel.title)), *drawing, files);
+    for (const auto& chart : figure.charts)
+      if (const auto drawing = draw_plot(figure, chart))
+        add_drawing(figure.id + (chart.title.empty() ? "" : "-" + slug(chart.title)), *drawing, files);
     files[figure.id + ".csv"] = to_csv(figure.rows);
   }
   for (const auto& plate : plates) {
@@ -79,6 +94,7 @@ void write_figures(const fs::path& directory, const std::vector<Figure>& figures
   }
   remove_outputs(directory, {std::begin(figure_files), std::end(figure_files)});
   write_outputs(directory / "figures", {files.begin(), files.end()});
+  if (pdfs == Pdfs::added) add_pdfs(directory / "figures", files);
 }
 
 }  // namespace stickslip::report

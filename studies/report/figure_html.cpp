@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "studies/report/drawing_parts.hpp"
 #include "studies/report/figure_files.hpp"
 #include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
@@ -46,9 +47,9 @@ std::string what_is_chosen(const Figure& figure) {
   return out.empty() ? out : "<p class=\"chosen\">" + escape(out) + "</p>\n";
 }
 
-/// The panel for readers without scripts; "" where it has nothing to draw.
-std::string plain_picture(const Figure& figure, const Panel& panel) {
-  const auto drawing = draw_plot(figure, panel);
+/// The chart for readers without scripts; "" where it has nothing to draw.
+std::string plain_picture(const Figure& figure, const Chart& chart) {
+  const auto drawing = draw_plot(figure, chart);
   return drawing ? drawing->inline_svg() : std::string();
 }
 
@@ -101,22 +102,50 @@ std::string behind_a_fold(const std::string& id, const std::string& title, const
       id, escape(title), escape(fold), figure);
 }
 
+json axis_json(const Quantity& quantity) {
+  return {{"field", quantity.field},
+          {"title", quantity.title},
+          {"log", quantity.spacing == Spacing::logarithmic},
+          {"step", quantity.least_step},
+          {"bounded", quantity.bounded}};
+}
+
+/// What page.js draws a chart from.
+json chart_json(const Figure& figure, const Chart& chart) {
+  json out = {{"description", figure.title + (chart.title.empty() ? "" : ", " + chart.title)},
+              {"x", axis_json(chart.x)},
+              {"y", axis_json(chart.y)},
+              {"tips", chart.tooltip},
+              {"only", chart.only},
+              {"height", chart.height}};
+  if (!chart.words.name.empty()) out["words"] = {{"name", chart.words.name}, {"value", chart.words.value}};
+  return out;
+}
+
+/// Series as page.js draws them: a marker by its path, as large as it is in a legend where its `size` is 4.
+json series_json(const std::vector<Series>& list) {
+  constexpr double of_unit = 16;
+  json out = json::array();
+  for (const auto& s : list)
+    out.push_back({{"name", s.name},
+                   {"color", s.color},
+                   {"shape", svg_path(marker(s.shape, 0, 0))},
+                   {"dash", s.dash},
+                   {"size", s.size / of_unit}});
+  return out;
+}
+
 std::string to_html(const Figure& figure) {
   std::string open, folded_panels;
-  json specs = json::array();
+  json charts = json::array();
   for (const bool folded : {false, true})
-    for (const auto& panel : figure.panels)
-      if (panel.folded == folded) {
-        json spec = panel.spec;
-        spec["usermeta"] = {{"panel", panel.only}};
-        specs.push_back(spec);
+    for (const auto& chart : figure.charts)
+      if (chart.folded == folded) {
+        charts.push_back(chart_json(figure, chart));
         (folded ? folded_panels : open) += fmt::format(
             "<div class=\"panel\"><h4>{}</h4><div class=\"vega\"></div><div class=\"static\">{}</div></div>\n",
-            escape(panel.title), plain_picture(figure, panel));
+            escape(chart.title), plain_picture(figure, chart));
       }
-  json series = json::array();
-  for (const auto& s : figure.series)
-    series.push_back({{"name", s.name}, {"color", s.color}, {"shape", s.shape}, {"dash", s.dash}, {"size", s.size}});
   const json table = compact(figure.rows);
   std::string controls;
   for (const auto& choice : figure.choices) controls += control(choice);
@@ -133,8 +162,9 @@ std::string to_html(const Figure& figure) {
                             {"texts", table["texts"]},
                             {"columns", columns_of(figure.rows)},
                             {"rows", table["rows"]},
-                            {"series", series},
-                            {"panels", specs}}));
+                            {"series", series_json(figure.series)},
+                            {"failed", svg_path(marker("failed", 0, 0))},
+                            {"charts", charts}}));
   return behind_a_fold(figure.id, figure.title, figure.folded, out);
 }
 
@@ -164,7 +194,7 @@ std::string Figures::show(std::optional<Plate> plate) {
 
 std::string Figures::beside(std::optional<Figure> figure, std::optional<Plate> plate) {
   const auto open = [](const Figure& f) {
-    return std::count_if(f.panels.begin(), f.panels.end(), [](const Panel& panel) { return !panel.folded; });
+    return std::count_if(f.charts.begin(), f.charts.end(), [](const Chart& chart) { return !chart.folded; });
   };
   const bool together = figure && plate && figure->folded.empty() && plate->folded.empty() && open(*figure) == 1;
   const std::string left = show(std::move(figure)), right = show(std::move(plate));

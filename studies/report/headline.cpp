@@ -16,8 +16,6 @@ namespace stickslip::report {
 
 namespace {
 
-constexpr double rounding = 1e-12;  ///< of a response: what sixteen digits leave after a solve
-
 std::vector<const Cell*> main_cells(const Study& study) {
   std::vector<const Cell*> out;
   for (const auto& cell : study.cells)
@@ -92,7 +90,7 @@ std::string mesh_sentence(const Study& study) {
   if (!error) return {};
   std::string out = fmt::format("Against {} the {} is off by {} in its worst response", discretization_reference(study),
                                 own ? "run that enforces contact best" : "best run", percent(*error));
-  if (*error <= rounding) return out + ", which is rounding.";
+  if (*error <= rounding_error) return out + ", which is rounding.";
   if (*error <= digits_of_given_values && discretization_reference(study) == "the given values")
     return out + ", which is within the digits that are given.";
   if (own && *best_method < *own)

@@ -76,15 +76,14 @@ std::optional<Figure> convergence_histories(const Study& study) {
   figure.text += augmented ? "; an augmented run starts anew with each augmentation, which is the sawtooth." : ".";
   show_zeros(figure.rows, "error");
   figure.series = series.list;
-  const json tips = tooltip({{"series", "run"},
-                             {"iteration", "iteration"},
-                             {"error", "residual"},
-                             {"changed", "points that changed state"},
-                             {"augmentation", "augmentation"}});
-  json x = channel("iteration", "iteration within the step", false);
-  x["axis"]["tickMinStep"] = 1;
-  figure.panels.push_back({"", curves(figure.title, x, channel("shown", "relative residual", true), tips), "iteration",
-                           "shown", false, true, "", false});
+  figure.charts.push_back({.title = "",
+                           .x = {.field = "iteration", .title = "iteration within the step", .least_step = 1},
+                           .y = {"shown", "relative residual", Spacing::logarithmic},
+                           .tooltip = {{"series", "run"},
+                                       {"iteration", "iteration"},
+                                       {"error", "residual"},
+                                       {"changed", "points that changed state"},
+                                       {"augmentation", "augmentation"}}});
   offer_cells(figure, shown);
   return figure;
 }

@@ -90,21 +90,6 @@ void add_guides(json& rows) {
   }
 }
 
-json with_guides(json spec, const json& x, const json& y) {
-  json guide = {
-      {"transform", only_if("datum.guide")},
-      {"encoding", {{"x", x}, {"y", y}, {"detail", {{"field", "line"}}}}},
-      {"layer",
-       json::array(
-           {{{"mark", {{"type", "line"}, {"strokeDash", {3, 3}}, {"strokeWidth", 1}, {"color", "$ink"}}}},
-            {{"transform", only_if("datum.guide_tag != ''")},
-             {"mark",
-              {{"type", "text"}, {"align", "right"}, {"dx", -6}, {"dy", 13}, {"color", "$ink"}, {"fontSize", 11}}},
-             {"encoding", {{"text", {{"field", "guide_tag"}}}}}}})}};
-  spec["layer"].insert(spec["layer"].begin(), guide);
-  return spec;
-}
-
 }  // namespace
 
 std::vector<std::vector<std::string>> knob_groups(const Study& study) {
@@ -151,18 +136,21 @@ std::optional<Figure> error_against_knob(const Study& study, const std::vector<s
   if (std::any_of(figure.rows.begin(), figure.rows.end(), [](const json& r) { return r.value("unmarked", false); }))
     figure.text += "A level line is the best run of a method without the option. ";
   figure.text += "Crosses are runs that did not converge.";
-  const json tips =
-      tooltip({{"label", "method"}, {"option_value", "value of the option"}, {"error", "error"}, {"status", "status"}});
   for (const std::string panel : {"responses", "sensitivities"}) {
     if (distinct(figure.rows, "quantity", panel).empty()) continue;
     const bool derivative = panel == "sensitivities";
-    const json x = channel("option_value", knob_title(knobs), true);
-    const json y =
-        channel("shown", derivative ? "relative error of the sensitivity" : "relative error of the response", true);
-    const json spec = with_guides(curves(figure.title + ", " + panel, x, y, tips), x, y);
     const bool noise = !tells_apart(study, derivative ? Of::sensitivities : Of::responses) &&
                        tells_apart(study, derivative ? Of::responses : Of::sensitivities);
-    add_panel(figure, {panel, spec, "option_value", "shown", true, true, panel, noise});
+    const char* const error = derivative ? "relative error of the sensitivity" : "relative error of the response";
+    figure.charts.push_back({.title = panel,
+                             .x = {"option_value", knob_title(knobs), Spacing::logarithmic},
+                             .y = {"shown", error, Spacing::logarithmic},
+                             .tooltip = {{"label", "method"},
+                                         {"option_value", "value of the option"},
+                                         {"error", "error"},
+                                         {"status", "status"}},
+                             .only = panel,
+                             .folded = noise});
     offer(figure, derivative ? "Sensitivity" : "Response", "quantity", "", panel);
   }
   offer(figure, "Scene", "scene", study.main_variant);
@@ -192,18 +180,21 @@ std::optional<Figure> iterations_against_knob(const Study& study, const std::vec
   });
   if (figure.rows.empty()) return std::nullopt;
   figure.series = series.list;
-  const json tips =
-      tooltip({{"label", "method"}, {"option_value", "value of the option"}, {"count", "count"}, {"status", "status"}});
   for (const auto& [panel, unused] : counted_along_knobs) {
     const auto along_the_knob = [&panel = panel](const json& r) {
       return r["panel"] == panel && !r.value("unmarked", false);
     };
     if (std::none_of(figure.rows.begin(), figure.rows.end(), along_the_knob)) continue;
-    const json spec = curves(figure.title + ", " + panel, channel("option_value", knob_title(knobs), true),
-                             channel("count", panel, true), tips);
-    add_panel(figure, {panel, spec, "option_value", "count", true, true, panel, false});
+    figure.charts.push_back({.title = panel,
+                             .x = {"option_value", knob_title(knobs), Spacing::logarithmic},
+                             .y = {"count", panel, Spacing::logarithmic},
+                             .tooltip = {{"label", "method"},
+                                         {"option_value", "value of the option"},
+                                         {"count", "count"},
+                                         {"status", "status"}},
+                             .only = panel});
   }
-  if (figure.panels.empty()) return std::nullopt;
+  if (figure.charts.empty()) return std::nullopt;
   offer(figure, "Scene", "scene", study.main_variant);
   return figure;
 }

@@ -16,8 +16,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr double together = 0.1;    ///< curves that are nowhere further apart, relatively, are drawn as one
-constexpr double rounding = 1e-12;  ///< errors below it are equal
+constexpr double together = 0.1;  ///< curves that are nowhere further apart, relatively, are drawn as one
 const char* const worst_response = "worst response";
 
 /// One setting over the mesh levels.
@@ -34,7 +33,7 @@ double distance(const Curve& curve, const Curve& other) {
   for (const auto& [level, error] : other.errors) {
     const auto found = curve.errors.find(level);
     if (found == curve.errors.end()) return INFINITY;
-    if (std::max(found->second, error) > rounding) most = std::max(most, std::abs(found->second / error - 1));
+    if (std::max(found->second, error) > rounding_error) most = std::max(most, std::abs(found->second / error - 1));
   }
   return most;
 }
@@ -47,9 +46,9 @@ struct Bundle {
   double spread() const {
     double most = 0;
     for (const auto& [level, unused] : curves.front().errors) {
-      double least = INFINITY, largest = rounding;
+      double least = INFINITY, largest = rounding_error;
       for (const Curve& curve : curves) {
-        least = std::min(least, std::max(curve.errors.at(level), rounding));
+        least = std::min(least, std::max(curve.errors.at(level), rounding_error));
         largest = std::max(largest, curve.errors.at(level));
       }
       most = std::max(most, largest / least - 1);
@@ -171,20 +170,22 @@ std::optional<Figure> mesh_convergence(const Study& study) {
   figure.text =
       "Each level halves the elements. Against the level, runs that differ by less than 10 % on every mesh are one "
       "curve. Where a loose setting's curve levels off, its own error has overtaken the mesh's. ";
-  const json y = channel("shown", "relative error against " + discretization_reference(study), true);
-  json x = channel("level", "mesh level", false);
-  x["axis"]["tickMinStep"] = 1;
-  const auto add = [&](const json& across, const std::string& title, const std::string& panel, const json& tips) {
-    add_panel(figure, {"against " + title, curves(figure.title + ", against " + title, across, y, tips), panel, "shown",
-                       panel != "level", true, panel, false});
-  };
-  add(x, "the mesh level", "level", tooltip({{"label", "runs"}, {"level", "mesh level"}, {"error", "error"}}));
+  const Quantity error{"shown", "relative error against " + discretization_reference(study), Spacing::logarithmic};
+  figure.charts.push_back({.title = "against the mesh level",
+                           .x = {.field = "level", .title = "mesh level", .least_step = 1},
+                           .y = error,
+                           .tooltip = {{"label", "runs"}, {"level", "mesh level"}, {"error", "error"}},
+                           .only = "level"});
   if (!distinct(figure.rows, "series", "seconds").empty()) {
     figure.text +=
         "Cost is in seconds, since counts are of unlike matrices; shown at first are the most accurate run of each "
         "method and the one furthest off.";
-    add(channel("seconds", "seconds", true), "seconds", "seconds",
-        tooltip({{"label", "method"}, {"level", "mesh level"}, {"error", "error"}, {"seconds", "seconds"}}));
+    figure.charts.push_back(
+        {.title = "against seconds",
+         .x = {"seconds", "seconds", Spacing::logarithmic},
+         .y = error,
+         .tooltip = {{"label", "method"}, {"level", "mesh level"}, {"error", "error"}, {"seconds", "seconds"}},
+         .only = "seconds"});
   }
   offer(figure, "Quantity", "quantity", worst_response);
   const auto main =

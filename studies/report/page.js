@@ -23,36 +23,35 @@
     return Number.isInteger(x) && Math.abs(x) < 1e7 && x % 1000 ? String(x) :
         x.toExponential(5).replace(/\.?0*e\+?/, 'e');
   }
+  vega.expressionFunction('numeral', numeral);
   const shown = (value) => typeof value === 'number' ? numeral(value) : String(value ?? '');
 
-  /** The specification with the words $series, $colors, ... replaced by the series that occur in the rows. */
-  function filled(spec, series, rows, width) {
-    const names = new Set(rows.map((row) => row.series));
-    const present = series.filter((s) => names.has(s.name));
-    const ink = css('--ink');
-    const words = new Map([
-      ['$series', present.map((s) => s.name)],
-      ['$colors', present.map((s) => s.color === '$ink' ? ink : s.color)],
-      ['$shapes', present.map((s) => s.shape)],
-      ['$dashes', present.map((s) => s.dash)],
-      ['$sizes', present.map((s) => s.size)],
-      ['$ink', ink],
-    ]);
-    const copy = JSON.parse(JSON.stringify(spec), (key, value) => words.has(value) ? words.get(value) : value);
-    copy.datasets = {rows};
-    placeGroundWords(copy, rows);
-    for (const layer of copy.layer)
-      for (const [name, room] of [['x', width - 110], ['y', copy.height]]) {
-        const channel = layer.encoding?.[name];
-        if (channel?.scale) fitAxis(channel, rows.filter((row) => !(row.zero && name === 'y')).map((row) => row[channel.field]));
-        const ground = name === 'y' && rows.find((row) => row.zero)?.[channel?.field];
-        if (channel?.scale && ground) addGround(channel, ground);
-        if (channel?.axis && name === 'x') channel.axis.labelSeparation = 6;
-        if (channel?.axis && !channel.axis.values) channel.axis.tickCount = Math.max(2, Math.floor(room / 60));
-        if (channel?.title?.startsWith('{')) channel.title = rows[0]?.[channel.title.slice(1, -1)] ?? '';
-        if (channel?.title) channel.title = wrapped(channel.title, room / 7);
-      }
-    return copy;
+  /** Whether a row has a place along an axis. */
+  const hasPlace = (row, axis) => Number.isFinite(row[axis.field]) && (!axis.log || row[axis.field] > 0);
+
+  /** An axis in Vega-Lite; `ground` is where exact zeros stand on it, and `room` its length in pixels. */
+  function channel(axis, rows, room, ground) {
+    const values = rows.map((row) => row[axis.field]).filter((value) => value !== ground);
+    let low = values.reduce((a, b) => Math.min(a, b), ground && !values.length ? ground : Infinity);
+    let high = values.reduce((a, b) => Math.max(a, b), ground && !values.length ? ground : -Infinity);
+    if (axis.log && high < 10 * low) {  // a decade at least
+      const middle = Math.sqrt(low) * Math.sqrt(high);
+      low = axis.bounded ? low : middle / Math.sqrt(10);
+      high = 10 * low;
+    } else if (low === high) {
+      [low, high] = [low - (Math.abs(low) || 1), low + (Math.abs(low) || 1)];
+    }
+    const ticks = Math.max(2, Math.floor(room / 60)), decades = axis.log ? Math.floor(Math.log10(high / low)) : 0;
+    const named = axis.log ? "datum.label === '' ? '' : numeral(datum.value)" : 'numeral(datum.value)';
+    const title = axis.title.startsWith('{') ? rows[0]?.[axis.title.slice(1, -1)] ?? '' : axis.title;
+    return {
+      field: axis.field, type: 'quantitative', title: wrapped(title, room / 7),
+      scale: {type: axis.log ? 'log' : 'linear', domain: [ground ?? low, high], nice: false, zero: false,
+              padding: axis.bounded ? 0 : 18},
+      axis: {labelExpr: ground ? `datum.value < ${5 * ground} ? '' : ${named}` : named, labelOverlap: true,
+             labelSeparation: 6, tickCount: decades < 2 ? ticks : Math.min(ticks, decades),
+             ...(axis.step && {tickMinStep: axis.step}), ...(ground && {minExtent: 64})},
+    };
   }
 
   /** A text in lines of so many letters, broken between words. */
@@ -66,57 +65,72 @@
     return lines;
   }
 
-  /** Gives a logarithmic axis its ticks and at least a decade, and another axis of one single value a length. */
-  function fitAxis(channel, values) {
-    const log = channel.scale.type === 'log';
-    const usable = values.filter((value) => Number.isFinite(value) && (!log || value > 0));
-    if (!usable.length) return;
-    let low = usable.reduce((a, b) => Math.min(a, b), Infinity);
-    let high = usable.reduce((a, b) => Math.max(a, b), -Infinity);
-    if (log && high < 10 * low && 'domainMin' in channel.scale) {
-      channel.scale.domainMax = high = 10 * low;
-    } else if (log && high < 10 * low) {
-      const middle = Math.sqrt(low) * Math.sqrt(high);
-      channel.scale.domain = [low, high] = [middle / Math.sqrt(10), middle * Math.sqrt(10)];
+  /** The ends of the lines with the words that stand there: the name and the option's value, or the value alone. */
+  function endsOf(rows, words) {
+    const lines = new Map(), names = [], values = [];
+    for (const row of words ? rows : []) lines.set(row.line, [...(lines.get(row.line) ?? []), row]);
+    for (const line of lines.values()) {
+      line.sort((a, b) => a.order - b.order);
+      const first = line[0], last = line.at(-1), moves = first.shown !== last.shown && first[words.value] !== undefined;
+      names.push({...last, words: moves ? `${last[words.name]}, ${last[words.value]}` : last[words.name]});
+      if (moves) values.push({...first, words: first[words.value]});
     }
-    if (log) channel.axis.values = logTicks(Math.log10(low), Math.log10(high));
-    if (low === high) channel.scale.domain = [low - (Math.abs(low) || 1), low + (Math.abs(low) || 1)];
+    return [...names, ...values];
   }
 
-  /** The place of exact zeros, off the values that the axis names. */
-  function addGround(channel, ground) {
-    channel.axis.values = [ground, ...(channel.axis.values ?? []).filter((tick) => tick > 5 * ground)];
-    channel.axis.labelExpr = `datum.value <= ${ground * 1.01} ? '0' : ${channel.axis.labelExpr}`;
-    if (channel.scale.domain) channel.scale.domain = [ground, Math.max(...channel.scale.domain)];
+  /** A chart of these rows in Vega-Lite; `data` is of its figure. */
+  function specification(chart, data, rows, width, height) {
+    const names = new Set(rows.map((row) => row.series)), ink = css('--ink');
+    const present = data.series.filter((s) => names.has(s.name));
+    const by = (type, range) => ({field: 'series', type, title: null, legend: null,
+                                  scale: {type: 'ordinal', domain: present.map((s) => s.name), range: present.map(range)}});
+    const color = by('nominal', (s) => s.color === '$ink' ? ink : s.color);
+    const tooltip = chart.tips.map(([field, title]) => ({field, title}));
+    const ground = rows.find((row) => row.zero)?.[chart.y.field];
+    const x = channel(chart.x, rows, width - 110), y = channel(chart.y, rows, height, ground);
+    const guides = rows.filter((row) => row.guide), curves = rows.filter((row) => !row.failed && !row.guide);
+    const layer = (values, mark, encoding, more) => ({data: {values}, mark, encoding: {x, y, ...encoding}, ...more});
+    const zeros = {y: {field: chart.y.field, type: 'quantitative'}};
+    const layers = [
+      layer(guides, {type: 'line', strokeDash: [3, 3], strokeWidth: 1, color: ink}, {detail: {field: 'line'}}),
+      layer(guides.filter((row) => row.guide_tag), {type: 'text', align: 'right', dx: -6, dy: 13, color: ink, fontSize: 11},
+            {text: {field: 'guide_tag'}}),
+      layer(curves, {type: 'line', strokeWidth: 2},
+            {color, strokeDash: by('ordinal', (s) => s.dash), detail: {field: 'line'},
+             order: {field: 'order', type: 'quantitative'}}, {name: 'lines'}),
+      layer(curves.filter((row) => !row.unmarked), {type: 'point', filled: false, opacity: 1},
+            {color, shape: by('nominal', (s) => s.shape), size: by('ordinal', (s) => s.size), tooltip,
+             strokeWidth: {condition: {param: 'near', empty: false, value: 4}, value: 2}},
+            {name: 'points', params: [{name: 'near', select: {type: 'point', on: 'pointerover', clear: 'pointerout',
+                                                              nearest: true}}]}),
+      layer(rows.filter((row) => row.failed), {type: 'point', shape: data.failed, size: 4, strokeWidth: 2.5, opacity: 1},
+            {color, tooltip}),
+      layer(endsOf(curves, chart.words), {type: 'point', opacity: 0, size: 60}, {}, {name: 'ends'}),
+    ];
+    const words = {type: 'text', x: -6, align: 'right', text: 'exactly 0', color: ink, fontSize: 12};
+    if (ground)
+      for (const mark of [{type: 'rule', strokeDash: [1, 3], color: ink}, words])
+        layers.unshift({data: {values: [{[chart.y.field]: ground}]}, mark, encoding: zeros});
+    return {
+      $schema: 'https://vega.github.io/schema/vega-lite/v6.json', description: chart.description,
+      width: 'container', height, autosize: {type: 'fit-x', contains: 'padding'},
+      padding: {left: 5, top: 5, right: 14, bottom: 5},  // room for the end of a tick's label
+      layer: layers,
+    };
   }
 
-  /** Moves the words of the line of exact zeros to its right end, where a zero stands at the left one alone. */
-  function placeGroundWords(spec, rows) {
-    const words = spec.layer.flatMap((layer) => layer.layer ?? []).find((layer) => layer.mark.text === 'exactly 0');
-    const x = spec.layer.find((layer) => layer.encoding?.x?.scale)?.encoding.x;
-    if (!words || !x) return;
-    const place = (row) => x.scale.type === 'log' ? Math.log10(row[x.field]) : row[x.field];
-    const places = rows.map(place).filter(Number.isFinite);
-    const low = Math.min(...places), high = Math.max(...places);
-    const lacks = x.scale.type === 'log' ? Math.max(0, 1 - (high - low)) / 2 : 0;  // of the decade that is shown
-    const shares = rows.filter((row) => row.zero).map((row) => (place(row) - low + lacks) / (high - low + 2 * lacks));
-    if (shares.some((share) => share < 0.2) && !shares.some((share) => share > 0.75))
-      Object.assign(words.mark, {align: 'right', x: 'width', dx: -4});
+  /** Adds the words at the ends of lines, each where it covers no line, no marker and no other words. */
+  function withWords(spec) {
+    spec.marks.push({
+      type: 'text', name: 'words', from: {data: 'ends_marks'}, interactive: false,
+      encode: {update: {text: {field: 'datum.words'}, fill: {value: css('--ink')}, fontSize: {value: 11}}},
+      transform: [{type: 'label', size: {signal: '[width, height]'}, padding: 0,
+                   avoidMarks: ['lines_pathgroup', 'points_marks'], offset: [4],
+                   anchor: ['top-right', 'top-left', 'bottom-right', 'bottom-left', 'right', 'left', 'top', 'bottom']}],
+    });
+    return spec;
   }
 
-  /** Powers of ten around two exponents, thinned out to nine or so; over few decades also 2 and 5 times them. */
-  function logTicks(low, high) {
-    const step = Math.max(1, Math.ceil((high - low + 1) / 9)), ticks = [];
-    for (let e = Math.floor(low / step) * step; e <= high + step; e += step)
-      for (const m of high - low < 2 ? [1, 2, 5] : [1]) ticks.push(m * 10 ** e);
-    return ticks;
-  }
-
-  const markers = {
-    'circle': 'M18,8a4,4 0 1,0 8,0a4,4 0 1,0 -8,0', 'square': 'M18,4h8v8h-8Z', 'diamond': 'M22,3l5,5l-5,5l-5,-5Z',
-    'triangle-up': 'M22,3l5,9h-10Z', 'triangle-down': 'M22,13l5,-9h-10Z', 'triangle-left': 'M17,8l9,5v-10Z',
-    'triangle-right': 'M27,8l-9,5v-10Z', 'cross': 'M18,8h8M22,4v8',
-  };
   const switchedOff = new WeakMap();  // by figure, names of series
 
   /** A button for each series that is among the rows: it takes the series out of all panels and puts it back. */
@@ -131,7 +145,8 @@
       button.type = 'button';
       button.setAttribute('aria-pressed', !off.has(s.name));
       button.innerHTML = `<svg width="44" height="16" aria-hidden="true" fill="none" stroke="${color}" stroke-width="2">` +
-          `<path d="M0,8H44" stroke-dasharray="${s.dash.at(-1) ? s.dash : 'none'}"/>${marked.has(s.name) ? `<path d="${markers[s.shape]}"/>` : ''}</svg>`;
+          `<path d="M0,8H44" stroke-dasharray="${s.dash.at(-1) ? s.dash : 'none'}"/>` +
+          (marked.has(s.name) ? `<path transform="translate(22,8)" d="${s.shape}"/></svg>` : '</svg>');
       button.append(s.name.replaceAll(/e-(?=\d)/g, 'e-\u2060'));  // not broken after its hyphen
       button.addEventListener('click', () => {
         off.has(s.name) ? off.delete(s.name) : off.add(s.name);
@@ -176,14 +191,6 @@
     line.textContent = selects.map((select) => select.parentElement.firstChild.data + select.value).join('; ');
   }
 
-  /** A row with the words beside its point that have room in a narrow panel, instead of the others. */
-  const inBrief = (row) => Object.fromEntries(Object.entries(row)
-      .filter(([field]) => !field.startsWith('tag') || field.includes('_narrow'))
-      .map(([field, entry]) => [field.replace('_narrow', ''), entry]));
-
-  /** A row without words beside its point that have no room in the lower chart on paper. */
-  const onPaper = (row) => Object.fromEntries(Object.entries(row).filter(([field]) => !row[field + '_tall']));
-
   /** Draws a figure: as wide as its place, or as wide as paper is. */
   async function draw(figure, paper) {
     tellChosen(figure);
@@ -191,19 +198,18 @@
     const rows = off ? all.filter((row) => !off.has(row.series)) : all;
     const panels = figure.querySelectorAll('.panel');
     const inPanels = [];
-    for (const [i, spec] of data.panels.entries()) {
+    for (const [i, chart] of data.charts.entries()) {
       const panel = panels[i];
       if (panel.closest('details:not([open])')) continue;  // has no width yet; drawn when it is opened
-      const only = spec.usermeta.panel;
-      const own = (only ? rows.filter((row) => row.panel === only) : rows)
-          .map((row) => paper ? onPaper(row) : panel.clientWidth < 400 ? inBrief(row) : row);
-      panel.hidden = !all.some((row) => !only || row.panel === only);
+      const isOwn = (row) => (!chart.only || row.panel === chart.only) && hasPlace(row, chart.x) && hasPlace(row, chart.y);
+      const own = all.filter(isOwn), height = paper ? Math.min(chart.height, 220) : chart.height;
+      panel.hidden = own.length === 0;
       if (panel.hidden) continue;
-      inPanels.push(...(only ? all.filter((row) => row.panel === only) : all));
-      const full = filled(spec, data.series, own, paper ?? panel.clientWidth);
-      if (paper) Object.assign(full, {width: paper, height: Math.min(full.height, 220)});
-      await vegaEmbed(panel.querySelector('.vega'), full, {
-        mode: 'vega-lite', renderer: 'svg', config: config(), logLevel: vega.Error,
+      inPanels.push(...own);
+      const spec = specification(chart, data, rows.filter(isOwn), paper ?? panel.clientWidth, height);
+      if (paper) spec.width = paper;
+      await vegaEmbed(panel.querySelector('.vega'), spec, {
+        mode: 'vega-lite', renderer: 'svg', config: config(), logLevel: vega.Error, patch: withWords,
         actions: {export: true, source: false, compiled: false, editor: false},
         tooltip: {theme: dark.matches ? 'dark' : 'light', formatTooltip: tooltipTable},
         downloadFileName: figure.id + '-' + i,

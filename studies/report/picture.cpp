@@ -19,8 +19,6 @@ using nlohmann::json;
 
 namespace {
 
-constexpr double canvas = 1000, tallest = 520;  // of the picture; the legend comes below
-
 /// A square around the contact points that touch (around all where none does), and some room; empty without points.
 Box close_up(const std::vector<ContactPoint>& contact, double scale) {
   Box touching, all;
@@ -150,15 +148,6 @@ void draw_bodies(const Scene& scene, const json& obstacles, double scale, const 
   draw_outlines(scene.mesh, nodes, frame, drawing);
 }
 
-}  // namespace
-
-bool has_close_up(const json& picture) {
-  const auto scene = picture.is_object() ? lay_out(picture) : std::nullopt;
-  return scene && scene->zooms;
-}
-
-namespace {
-
 /// Whether a close-up has room beside the whole in half the width of a page.
 bool has_room_aside(const Scene& scene) { return scene.zooms && scene.whole.width() < 1.5 * scene.whole.height(); }
 
@@ -179,67 +168,67 @@ void draw_close_up(const Scene& scene, const json& obstacles, const Frame& main,
   drawing.path(Path().rectangle(left, 0.5, size - 1, size - 1), {"ink"});
 }
 
-}  // namespace
+/// Where a picture has its parts, in pixels; the legend comes below.
+struct Arrangement {
+  std::string id, title;
+  double canvas;           ///< width of all
+  double wide, height;     ///< of the whole
+  double gap, inset;       ///< beside it; of a close-up; inset 0: none
+  std::size_t mesh_lines;  ///< up to so many elements have them; of more they are one grey
+};
 
-std::optional<Plate> draw_overview(const json& picture) {
-  if (!picture.is_object()) return std::nullopt;
-  const auto scene = lay_out(picture);
-  if (!scene) return std::nullopt;
-  constexpr double canvas_here = 640, lowest = 160, highest = 330, inset = 300, gap = 20;
-  constexpr std::size_t lines_up_to = 1500;
-  const bool aside = has_room_aside(*scene);
-  const double wide = aside ? canvas_here - inset - gap : canvas_here;
-  const double least = aside ? inset : lowest;
-  const double height = std::clamp(wide * scene->whole.height() / scene->whole.width(), least, highest);
-  const std::string title = "The scene", text = in_words(*scene, aside);
-  Drawing drawing(canvas_here, height + 44, title, text);
-  const Frame frame(scene->whole, wide, height, 0);
-  const auto nodes = deformed(scene->mesh, scene->scale);
+Plate draw(const Scene& scene, const json& obstacles, const Arrangement& arrangement) {
+  const auto& [id, title, canvas, wide, height, gap, inset, mesh_lines] = arrangement;
+  const std::string text = in_words(scene, inset > 0);
+  Drawing drawing(canvas, height + 44, title, text);
+  const Frame frame(scene.whole, wide, height, 0);
+  const auto nodes = deformed(scene.mesh, scene.scale);
   drawing.clip(Path().rectangle(0, 0, wide, height));
-  draw_bodies(*scene, array_at(picture, "obstacles"), scene->scale, nodes, frame,
-              scene->mesh.elements.size() <= lines_up_to, drawing);
+  draw_bodies(scene, obstacles, scene.scale, nodes, frame, scene.mesh.elements.size() <= mesh_lines, drawing);
   drawing.part(0, 0, wide, height);
-  if (aside) {
+  if (inset > 0) {
     drawing.part(wide + gap, 0, inset, inset);
-    draw_close_up(*scene, array_at(picture, "obstacles"), frame, wide + gap, inset, drawing);
+    draw_close_up(scene, obstacles, frame, wide + gap, inset, drawing);
   } else {
-    draw_contact(scene->contact, scene->scale, frame, drawing);
+    draw_contact(scene.contact, scene.scale, frame, drawing);
     drawing.unclip();
   }
-  draw_stresses(scene->peak, height + 12, drawing);
-  draw_states(scene->contact, height + 12, drawing);
-  return Plate{"overview", title, text, drawing, {}, rows_of(*scene, nodes)};
+  draw_stresses(scene.peak, height + 12, drawing);
+  draw_states(scene.contact, height + 12, drawing);
+  return Plate{id, title, text, drawing, {}, rows_of(scene, nodes)};
+}
+
+/// The scene of picture.json; nothing where there is nothing to draw.
+std::optional<Scene> scene_of(const json& picture) { return picture.is_object() ? lay_out(picture) : std::nullopt; }
+
+/// The height at which the whole fills a width.
+double height_of(const Scene& scene, double wide) { return wide * scene.whole.height() / scene.whole.width(); }
+
+}  // namespace
+
+bool needs_close_up(const json& picture) {
+  const auto scene = scene_of(picture);
+  return scene && scene->zooms && !has_room_aside(*scene);
+}
+
+std::optional<Plate> draw_overview(const json& picture) {
+  const auto scene = scene_of(picture);
+  if (!scene) return std::nullopt;
+  constexpr double canvas = 640, lowest = 160, highest = 330, gap = 20;
+  const double inset = has_room_aside(*scene) ? 300 : 0, wide = inset > 0 ? canvas - inset - gap : canvas;
+  const double height = std::clamp(height_of(*scene, wide), std::max(lowest, inset), highest);
+  return draw(*scene, array_at(picture, "obstacles"),
+              {"overview", "The scene", canvas, wide, height, gap, inset, 1500});
 }
 
 std::optional<Plate> draw_picture(const json& picture) {
-  if (!picture.is_object()) return std::nullopt;
-  const auto scene = lay_out(picture);
+  const auto scene = scene_of(picture);
   if (!scene) return std::nullopt;
-  const json& obstacles = array_at(picture, "obstacles");
-  const double gap = 24, wide = scene->zooms ? 560 : canvas, inset = 416;
-  const double tall = std::clamp(wide * scene->whole.height() / scene->whole.width(), 120.0, tallest);
-  const double height = scene->zooms ? std::max(tall, inset) : tall;
-  const std::string title = "Deformed bodies and contact states", text = in_words(*scene, true);
-  Drawing drawing(canvas, height + 44, title, text);
-  constexpr std::size_t lines_up_to = 4000;  // more mesh lines than that are one grey
-
-  const Frame main(scene->whole, wide, height, 0);
-  const auto exaggerated = deformed(scene->mesh, scene->scale);
-  drawing.clip(Path().rectangle(0, 0, wide, height));
-  draw_bodies(*scene, obstacles, scene->scale, exaggerated, main, scene->mesh.elements.size() <= lines_up_to, drawing);
-  drawing.part(0, 0, wide, height);
-  if (scene->zooms) {
-    drawing.part(wide + gap, 0, inset, inset);
-    draw_close_up(*scene, obstacles, main, wide + gap, inset, drawing);
-  } else {
-    draw_contact(scene->contact, scene->scale, main, drawing);
-    drawing.unclip();
-  }
-  draw_stresses(scene->peak, height + 12, drawing);
-  draw_states(scene->contact, height + 12, drawing);
-  Plate plate{"picture", title, text, drawing, {}, rows_of(*scene, exaggerated)};
-  if (has_room_aside(*scene)) plate.folded = "the first picture, larger";
-  return plate;
+  constexpr double canvas = 1000, lowest = 120, highest = 520, gap = 24;
+  const double inset = scene->zooms ? 416 : 0, wide = inset > 0 ? canvas - inset - gap : canvas;
+  const double height = std::max(std::clamp(height_of(*scene, wide), lowest, highest), inset);
+  return draw(*scene, array_at(picture, "obstacles"),
+              {"picture", "Deformed bodies and contact states", canvas, wide, height, gap, inset, 4000});
 }
 
 }  // namespace stickslip::report

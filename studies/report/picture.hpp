@@ -13,10 +13,10 @@ namespace stickslip::report {
 /// it is seen along z. `picture` is picture.json. Nothing where there is nothing to draw (one place, no picture).
 std::optional<Plate> draw_picture(const nlohmann::json& picture);
 
-/// Whether draw_picture() shows the contact apart, and so more than draw_overview().
-bool has_close_up(const nlohmann::json& picture);
+/// Whether draw_picture() shows the contact larger, which draw_overview() has no room for.
+bool needs_close_up(const nlohmann::json& picture);
 
-/// The same without the close-up, for half the width of a page.
+/// The same for half the width of a page, with the close-up only where the bodies leave room beside them.
 std::optional<Plate> draw_overview(const nlohmann::json& picture);
 
 }  // namespace stickslip::report

@@ -16,8 +16,10 @@ namespace {
 
 constexpr double width = 640, left = 74, right = 620, top = 12, bottom = 300;  // of the picture, of the axes
 
-bool is_shown(const Figure& figure, const Panel& panel, const json& row) {
-  if (!panel.only.empty() && row.value("panel", "") != panel.only) return false;
+bool is_log(const Quantity& quantity) { return quantity.spacing == Spacing::logarithmic; }
+
+bool is_shown(const Figure& figure, const Chart& chart, const json& row) {
+  if (!chart.only.empty() && row.value("panel", "") != chart.only) return false;
   for (const auto& choice : figure.choices) {
     if (!choice.when_field.empty() && row.value(choice.when_field, "") != choice.when) continue;
     const std::string value = row.value(choice.field, "");
@@ -26,48 +28,33 @@ bool is_shown(const Figure& figure, const Panel& panel, const json& row) {
   const auto drawable = [&](const std::string& field, bool logarithmic) {
     return row.contains(field) && row[field].is_number() && (!logarithmic || row[field].get<double>() > 0);
   };
-  return drawable(panel.x, panel.x_log) && drawable(panel.y, panel.y_log);
+  return drawable(chart.x.field, is_log(chart.x)) && drawable(chart.y.field, is_log(chart.y));
 }
 
-/// What is drawn of a panel: its rows, the guides beside them, and the axes they span.
+/// What is drawn of a chart: its rows, the guides beside them, and the axes they span.
 struct Frame {
   std::vector<const json*> rows, guides;
   Axis x, y;
   std::optional<double> ground;  ///< where exact zeros stand, off what the axis names
 };
 
-/// The channel of an axis, with its title; null where no layer has one.
-json channel_of(const json& spec, const std::string& name) {
-  for (const auto& layer : spec["layer"])
-    if (layer.contains("encoding") && layer["encoding"].contains(name) && layer["encoding"][name].contains("title"))
-      return layer["encoding"][name];
-  return nullptr;
-}
-
 /// A title "{field}" is what the row has there.
-std::string axis_text(const json& spec, const std::string& name, const json& row) {
-  const json channel = channel_of(spec, name);
-  const std::string title = channel.is_null() ? std::string() : channel["title"].get<std::string>();
+std::string axis_text(const Quantity& quantity, const json& row) {
+  const std::string& title = quantity.title;
   return title.starts_with('{') ? row.value(title.substr(1, title.size() - 2), "") : title;
-}
-
-/// Whether nothing can lie below the least value of the axis.
-bool is_bounded(const json& spec, const std::string& name) {
-  const json channel = channel_of(spec, name);
-  return !channel.is_null() && channel["scale"].contains("domainMin");
 }
 
 double number_of(const json& row, const std::string& field) { return row[field].get<double>(); }
 
-std::optional<double> ground_of(const std::vector<const json*>& rows, const Panel& panel) {
+std::optional<double> ground_of(const std::vector<const json*>& rows, const Chart& chart) {
   const auto zero = std::find_if(rows.begin(), rows.end(), [](const json* r) { return r->value("zero", false); });
-  return zero == rows.end() ? std::nullopt : std::optional(number_of(**zero, panel.y));
+  return zero == rows.end() ? std::nullopt : std::optional(number_of(**zero, chart.y.field));
 }
 
-std::optional<Frame> frame_of(const Figure& figure, const Panel& panel) {
+std::optional<Frame> frame_of(const Figure& figure, const Chart& chart) {
   std::vector<const json*> rows, guides;
   for (const auto& row : figure.rows)
-    if (is_shown(figure, panel, row)) (row.value("guide", false) ? guides : rows).push_back(&row);
+    if (is_shown(figure, chart, row)) (row.value("guide", false) ? guides : rows).push_back(&row);
   if (rows.empty()) return std::nullopt;
   std::vector<const json*> all = rows;
   all.insert(all.end(), guides.begin(), guides.end());
@@ -77,10 +64,10 @@ std::optional<Frame> frame_of(const Figure& figure, const Panel& panel) {
     });
     return std::pair{number_of(**low, field), number_of(**high, field)};
   };
-  const auto [x_low, x_high] = bounds(panel.x);
-  const auto [y_low, y_high] = bounds(panel.y);
-  return Frame{rows, guides, Axis(x_low, x_high, panel.x_log, left, right, is_bounded(panel.spec, "x")),
-               Axis(y_low, y_high, panel.y_log, bottom, top), ground_of(rows, panel)};
+  const auto [x_low, x_high] = bounds(chart.x.field);
+  const auto [y_low, y_high] = bounds(chart.y.field);
+  return Frame{rows, guides, Axis(x_low, x_high, is_log(chart.x), left, right, chart.x.bounded),
+               Axis(y_low, y_high, is_log(chart.y), bottom, top), ground_of(rows, chart)};
 }
 
 /// Ticks with their labels, in as many digits as tell them apart.
@@ -96,15 +83,9 @@ std::vector<std::pair<double, std::string>> labelled(const std::vector<double>& 
   return out;
 }
 
-/// The least step between ticks that the axis allows: 1 where it counts; 0 where it says nothing.
-double least_step(const json& spec, const std::string& name) {
-  const json channel = channel_of(spec, name);
-  return channel.is_null() ? 0 : channel["axis"].value("tickMinStep", 0.0);
-}
-
-void draw_axes(const Frame& frame, const json& spec, Drawing& drawing) {
+void draw_axes(const Frame& frame, const Chart& chart, Drawing& drawing) {
   const Style grid{"line"};
-  for (const auto& [tick, label] : labelled(frame.x.ticks(least_step(spec, "x")))) {
+  for (const auto& [tick, label] : labelled(frame.x.ticks(chart.x.least_step))) {
     drawing.line(frame.x(tick), top, frame.x(tick), bottom, grid);
     drawing.text(frame.x(tick), bottom + 16, label, {Anchor::middle});
   }
@@ -114,32 +95,23 @@ void draw_axes(const Frame& frame, const json& spec, Drawing& drawing) {
     drawing.text(left - 6, frame.y(tick) + 4, label, {Anchor::end});
   }
   drawing.path(Path().move(left, top).line(left, bottom).line(right, bottom), {"ink"});
-  drawing.text((left + right) / 2, bottom + 36, axis_text(spec, "x", *frame.rows.front()), {Anchor::middle});
-  drawing.text(14, (top + bottom) / 2, axis_text(spec, "y", *frame.rows.front()), {Anchor::middle, 12, "ink", true});
+  drawing.text((left + right) / 2, bottom + 36, axis_text(chart.x, *frame.rows.front()), {Anchor::middle});
+  drawing.text(14, (top + bottom) / 2, axis_text(chart.y, *frame.rows.front()), {Anchor::middle, 12, "ink", true});
 }
 
 /// The line on which exact zeros stand, where there are any.
-void draw_ground(const Frame& frame, const Panel& panel, Drawing& drawing) {
+void draw_ground(const Frame& frame, Drawing& drawing) {
   if (!frame.ground) return;
   const double y = frame.y(*frame.ground);
   drawing.line(left, y, right, y, {"ink", "", 1, {1, 3}});
-  drawing.text(left - 6, y + 4, "0", {Anchor::end});
-  const auto some_exact_in = [&](double from, double to) {
-    return std::any_of(frame.rows.begin(), frame.rows.end(), [&](const json* row) {
-      const double x = frame.x(number_of(*row, panel.x));
-      return row->value("zero", false) && x > from && x < to;
-    });
-  };
-  constexpr double words = 80;
-  const bool at_right = some_exact_in(left - words, left + words) && !some_exact_in(right - words, right + words);
-  drawing.text(at_right ? right - 4 : left + 4, y - 4, "exactly 0", {at_right ? Anchor::end : Anchor::start, 11});
+  drawing.text(left - 6, y + 4, "exactly 0", {Anchor::end});
 }
 
 /// Lines that theory gives.
-void draw_guides(const Frame& frame, const Panel& panel, Drawing& drawing) {
+void draw_guides(const Frame& frame, const Chart& chart, Drawing& drawing) {
   std::map<std::string, Path> lines;
   for (const json* row : frame.guides) {
-    const double x = frame.x(number_of(*row, panel.x)), y = frame.y(number_of(*row, panel.y));
+    const double x = frame.x(number_of(*row, chart.x.field)), y = frame.y(number_of(*row, chart.y.field));
     Path& path = lines[row->value("line", "")];
     path.empty() ? path.move(x, y) : path.line(x, y);
     if (const std::string tag = row->value("guide_tag", ""); !tag.empty())
@@ -148,50 +120,104 @@ void draw_guides(const Frame& frame, const Panel& panel, Drawing& drawing) {
   for (const auto& [name, path] : lines) drawing.path(path, {"ink", "", 1, {3, 3}});
 }
 
-/// The names of curves, and the option's values at their ends.
-void draw_tags(const Frame& frame, const Panel& panel, Drawing& drawing) {
-  constexpr double size = 11, aside = 9, above = 8, below = 15;
-  for (const json* row : frame.rows) {
-    const std::string tag = row->value(panel.tag, ""), side = row->value(panel.tag + "_at", "");
-    if (tag.empty()) continue;
-    const double x = frame.x(number_of(*row, panel.x)), y = frame.y(number_of(*row, panel.y));
-    const bool fits = side.starts_with("right") && x + aside + text_width(tag, size) < width;
-    drawing.text(fits ? x + aside : x - aside, side.ends_with("below") ? y + below : y - above, tag,
-                 {fits ? Anchor::start : Anchor::end, size});
-  }
-}
-
 bool has_markers(const Frame& frame, const Series& series) {
   return std::any_of(frame.rows.begin(), frame.rows.end(), [&](const json* row) {
     return row->value("series", "") == series.name && !row->value("unmarked", false);
   });
 }
 
-/// Markers and lines of one series; false where it has none.
-bool draw_series(const Frame& frame, const Panel& panel, const Series& series, Drawing& drawing) {
-  std::map<std::string, std::vector<const json*>> lines;
-  bool present = false;
-  const auto place = [&](const json& row) {
-    return std::pair{frame.x(number_of(row, panel.x)), frame.y(number_of(row, panel.y))};
+/// The points of a line, in order.
+using Line = std::vector<const json*>;
+
+/// The lines of a series.
+std::vector<Line> lines_of(const Frame& frame, const Series& series) {
+  std::map<std::string, Line> by_name;
+  for (const json* row : frame.rows)
+    if (row->value("series", "") == series.name && !row->value("failed", false))
+      by_name[row->value("line", "")].push_back(row);
+  std::vector<Line> out;
+  for (auto& [name, line] : by_name) {
+    std::stable_sort(line.begin(), line.end(),
+                     [](const json* a, const json* b) { return number_of(*a, "order") < number_of(*b, "order"); });
+    out.push_back(std::move(line));
+  }
+  return out;
+}
+
+/// Pixels of the drawing.
+struct Place {
+  double x, y;
+};
+Place place_of(const Frame& frame, const Chart& chart, const json& row) {
+  return {frame.x(number_of(row, chart.x.field)), frame.y(number_of(row, chart.y.field))};
+}
+
+/// The option's values at the ends of lines, each where it covers no marker and no other value.
+class EndValues {
+ public:
+  EndValues(const Frame& frame, const Chart& chart) : frame_(frame), chart_(chart) {
+    constexpr double marker = 5;
+    for (const json* row : frame.rows) {
+      const auto [x, y] = place_of(frame, chart, *row);
+      taken_.push_back({x - marker, x + marker, y - marker, y + marker});
+    }
+  }
+
+  void draw(const Line& line, Drawing& drawing) {
+    const auto [x1, y1] = place_of(frame_, chart_, *line.front());
+    const auto [x2, y2] = place_of(frame_, chart_, *line.back());
+    if (std::abs(x1 - x2) > size || std::abs(y1 - y2) > size)
+      for (const json* end : {line.back(), line.front()}) draw_value(*end, drawing);
+  }
+
+ private:
+  struct Box {
+    double left, right, top, bottom;
+    bool overlaps(const Box& other) const {
+      return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
+    }
   };
+  static constexpr double size = 11, aside = 7, above = 6, below = 14;
+
+  void draw_value(const json& row, Drawing& drawing) {
+    const std::string value = row.value(chart_.words.value, "");
+    const auto [x, y] = place_of(frame_, chart_, row);
+    const double wide = text_width(value, size);
+    for (const double base : {y - above, y + below})
+      for (const double from : {x + aside, x - aside - wide}) {
+        const Box box{from, from + wide, base - size, base};
+        if (box.left < left || box.right > width || box.bottom > bottom ||
+            std::any_of(taken_.begin(), taken_.end(), [&](const Box& other) { return box.overlaps(other); }))
+          continue;
+        taken_.push_back(box);
+        return drawing.text(from, base, value, {Anchor::start, size});
+      }
+  }
+
+  const Frame& frame_;
+  const Chart& chart_;
+  std::vector<Box> taken_;
+};
+
+/// Markers and lines of one series; false where it has none.
+bool draw_series(const Frame& frame, const Chart& chart, const Series& series, EndValues& values, Drawing& drawing) {
+  bool present = false;
   for (const json* row : frame.rows) {
     if (row->value("series", "") != series.name) continue;
     present = true;
-    const auto [x, y] = place(*row);
+    const auto [x, y] = place_of(frame, chart, *row);
     const bool failed = row->value("failed", false);
-    if (!failed) lines[row->value("line", "")].push_back(row);
     if (failed || !row->value("unmarked", false))
       drawing.path(marker(failed ? "failed" : series.shape, x, y), style_of(series, false));
   }
-  for (auto& [name, points] : lines) {
-    std::stable_sort(points.begin(), points.end(),
-                     [&](const json* a, const json* b) { return number_of(*a, "order") < number_of(*b, "order"); });
+  for (const Line& line : lines_of(frame, series)) {
     Path path;
-    for (const json* row : points) {
-      const auto [x, y] = place(*row);
+    for (const json* row : line) {
+      const auto [x, y] = place_of(frame, chart, *row);
       path.empty() ? path.move(x, y) : path.line(x, y);
     }
     drawing.path(path, style_of(series, true));
+    if (!chart.words.value.empty()) values.draw(line, drawing);
   }
   return present;
 }
@@ -246,22 +272,22 @@ Style style_of(const Series& series, bool dashed) {
   return style;
 }
 
-std::optional<Drawing> draw_plot(const Figure& figure, const Panel& panel) {
-  const auto frame = frame_of(figure, panel);
+std::optional<Drawing> draw_plot(const Figure& figure, const Chart& chart) {
+  const auto frame = frame_of(figure, chart);
   if (!frame) return std::nullopt;
-  Drawing drawing(width, bottom, figure.title + (panel.title.empty() ? "" : ", " + panel.title), figure.text);
-  draw_axes(*frame, panel.spec, drawing);
-  draw_ground(*frame, panel, drawing);
-  draw_guides(*frame, panel, drawing);
+  Drawing drawing(width, bottom, figure.title + (chart.title.empty() ? "" : ", " + chart.title), figure.text);
+  draw_axes(*frame, chart, drawing);
+  draw_ground(*frame, drawing);
+  draw_guides(*frame, chart, drawing);
+  EndValues values(*frame, chart);
   double legend = bottom + 58;
   for (const auto& series : figure.series) {
-    if (!draw_series(*frame, panel, series, drawing)) continue;
+    if (!draw_series(*frame, chart, series, values, drawing)) continue;
     drawing.line(left, legend, left + 34, legend, style_of(series, true));
     if (has_markers(*frame, series)) drawing.path(marker(series.shape, left + 17, legend), style_of(series, false));
     drawing.text(left + 42, legend + 4, series.name);
     legend += 18;
   }
-  draw_tags(*frame, panel, drawing);
   drawing.set_height(legend);
   return drawing;
 }

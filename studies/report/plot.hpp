@@ -1,4 +1,4 @@
-/// A panel as a line drawing: for readers and printers without scripts, and for the files in DIR/figures.
+/// A chart as a line drawing: for readers and printers without scripts, and for the files in DIR/figures.
 #pragma once
 
 #include <optional>
@@ -8,10 +8,10 @@
 
 namespace stickslip::report {
 
-/// The rows that are chosen at first in one panel of a figure: curves with the option's values at their ends, guides,
-/// the line of exact zeros, markers, crosses for failed runs, ticks at round numbers, a legend. Nothing where no row
-/// can be drawn.
-std::optional<Drawing> draw_plot(const Figure& figure, const Panel& panel);
+/// The rows that are chosen at first in one chart of a figure: curves, the values at their ends where these have room,
+/// guides, the line of exact zeros, markers, crosses for failed runs, ticks at round numbers, a legend. Nothing where
+/// no row can be drawn.
+std::optional<Drawing> draw_plot(const Figure& figure, const Chart& chart);
 
 /// One axis: values onto pixels, linear or logarithmic (over a decade at least), with some room at both ends, but none
 /// below `low` where the axis is `bounded` there.

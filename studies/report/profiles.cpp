@@ -118,16 +118,19 @@ std::optional<Figure> profiles(const Study& study, Of of) {
     add_stairs(figure, base, solved[c].work, problems.size(), least / 1.3, 1.3 * largest);
   }
   figure.series = series.list;
-  const auto panel = [&](const std::string& name, const std::string& title, const json& x) {
-    const json tips = tooltip({{"series", "method"}, {"x", x["title"].get<std::string>()}, {"share", "share solved"}});
-    const json share = channel("share", "share of the problems solved", false);
-    add_panel(figure,
-              {title, curves(figure.title + ", " + title, x, share, tips), "x", "share", true, false, name, false});
+  const auto add = [&](const std::string& panel, const std::string& title, const Quantity& x) {
+    figure.charts.push_back({.title = title,
+                             .x = x,
+                             .y = {"share", "share of the problems solved"},
+                             .tooltip = {{"series", "method"}, {"x", x.title}, {"share", "share solved"}},
+                             .only = panel});
   };
-  json factor = channel("x", "work over the least work for the problem", true);
-  factor["scale"] = {{"type", "log"}, {"nice", false}, {"domainMin", 1}};  // nothing takes less than the least work
-  panel("factor", "performance profile", factor);
-  panel("work", "data profile", channel("x", "work (factorisations and weighted back-solves)", true));
+  add("factor", "performance profile",
+      {.field = "x",
+       .title = "work over the least work for the problem",
+       .spacing = Spacing::logarithmic,
+       .bounded = true});  // nothing takes less than the least work
+  add("work", "data profile", {"x", "work (factorisations and weighted back-solves)", Spacing::logarithmic});
   const bool of_meshes = std::all_of(study.cells.begin(), study.cells.end(), [](auto& c) { return c.scene.empty(); });
   if (of_meshes)
     figure.folded = "of the meshes of one scene alone";

@@ -12,6 +12,9 @@
 namespace stickslip::report {
 
 /// One swept option of a method and the value this cell gave it.
+/// Errors of a response below this are what sixteen digits leave after a solve, and order no runs.
+constexpr double rounding_error = 1e-12;
+
 struct Knob {
   std::string name;             ///< option name; "NAME (absolute)" where the value is {"absolute": number}
   std::string text;             ///< the value as shown

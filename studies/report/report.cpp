@@ -6,6 +6,7 @@
 #include <map>
 
 #include "studies/io/input_fault.hpp"
+#include "studies/io/other_program.hpp"
 #include "studies/io/output_folder.hpp"
 #include "studies/report/about.hpp"
 #include "studies/report/certificates.hpp"
@@ -88,12 +89,10 @@ std::optional<Figure> first_chart(const Study& study, std::size_t rows_of_verdic
   }
   figure->choices.clear();
   figure->folded.clear();
-  figure->panels.erase(figure->panels.begin() + 1, figure->panels.end());
-  figure->panels.front().title.clear();
+  figure->charts.erase(figure->charts.begin() + 1, figure->charts.end());
+  figure->charts.front().title.clear();
   constexpr std::size_t few = 4;  // rows, beside which a screen of 800 pixels has room for the whole chart
-  const double height = 220 - 20 * static_cast<double>(std::max(rows_of_verdict, few) - few);
-  figure->panels.front().spec["height"] = height;
-  tag_lines(figure->rows, "work", height, "setting");
+  figure->charts.front().height = 220 - 20 * static_cast<double>(std::max(rows_of_verdict, few) - few);
   figure->id = "first";
   figure->title = "What accuracy costs";
   figure->text = std::string("Error of the worst ") + (of == Of::responses ? "response" : "derivative") +
@@ -134,7 +133,7 @@ std::string of_solution(const Study& study, Figures& figures) {
   auto responses = response_histories(study);
   auto derivatives = derivative_histories(study, first_choice(responses, "response"));
   std::string out = figures.beside(std::move(responses), film_of_states(study)) + figures.show(std::move(derivatives));
-  if (has_close_up(study.picture)) out += figures.show(draw_picture(study.picture));
+  if (needs_close_up(study.picture)) out += figures.show(draw_picture(study.picture));
   return out + figures.show(tractions(study));
 }
 
@@ -166,13 +165,19 @@ std::vector<Section> sections_of(const Study& all, const Study& study, Figures& 
 
 }  // namespace
 
+void check_pdf_writer() {
+  if (!output_of({"rsvg-convert", "--version"}, {}))
+    throw InputFault(
+        "--pdf: rsvg-convert makes the PDFs, and is not here; install it (Debian: apt install librsvg2-bin)");
+}
+
 std::vector<std::string> report_files() {
   std::vector<std::string> files(std::begin(figure_files), std::end(figure_files));
   files.emplace_back("report.html");
   return files;
 }
 
-void write_report(const std::filesystem::path& directory) try {
+void write_report(const std::filesystem::path& directory, Pdfs pdfs) try {
   const Study study = read_study(directory);
   const Study shown = sample_of(study);
   Figures figures;
@@ -180,20 +185,20 @@ void write_report(const std::filesystem::path& directory) try {
   const std::string first = "<section id=\"verdict\">\n" + first_screen(study, shown, figures) + "</section>\n";
   write_output(directory / "report.html",
                page(title.empty() ? "Frictional contact study" : title, first, sections_of(study, shown, figures)));
-  write_figures(directory, figures.figures, figures.plates);
+  write_figures(directory, figures.figures, figures.plates, pdfs);
 } catch (const json::exception& error) {  // rows have checksums; what else is recorded may have been edited
   throw InputFault(directory.string() + ": study.json, picture.json or rows without a checksum hold what stickslip " +
                    "does not write (" + error.what() + "); delete them, and run the study again with --resume");
 }
 
-void write_run_report(const std::filesystem::path& directory) try {
+void write_run_report(const std::filesystem::path& directory, Pdfs pdfs) try {
   const Study run = read_run(directory);
   Figures figures;
   const std::string title = text_at(run.description, "title");
   const std::string first = "<section id=\"run\">\n" + first_of_run(run, figures) + "</section>\n";
   write_output(directory / "report.html",
                page(title.empty() ? "Frictional contact" : title, first, sections_of_run(run, figures)));
-  write_figures(directory, figures.figures, figures.plates);
+  write_figures(directory, figures.figures, figures.plates, pdfs);
 } catch (const json::exception& error) {  // it may have been edited
   throw InputFault(directory.string() + ": result.json or picture.json hold what stickslip does not write (" +
                    error.what() + "); run the scene again with --report");

@@ -7,6 +7,12 @@
 
 namespace stickslip {
 
+/// Whether figures are also written as PDF, which rsvg-convert (of librsvg) makes.
+enum class Pdfs { left_out, added };
+
+/// Throws InputFault, which says how to install it, if rsvg-convert is not there.
+void check_pdf_writer();
+
 /// What the names of the files of a report are.
 std::vector<std::string> report_files();
 
@@ -18,9 +24,9 @@ std::vector<std::string> report_files();
 /// Conventions it relies on: interface tractions `normal` are negative in compression
 /// and pressure is drawn positive, for the analytic curves too; an analytic curve's `s` is the contact's `arc`, its `x`
 /// (used where present) the contact's `x`; contact points of picture.json stand at their deformed place.
-void write_report(const std::filesystem::path& directory);
+void write_report(const std::filesystem::path& directory, Pdfs pdfs = Pdfs::left_out);
 
 /// The same of the run in `directory`, from result.json and, where it is there, picture.json.
-void write_run_report(const std::filesystem::path& directory);
+void write_run_report(const std::filesystem::path& directory, Pdfs pdfs = Pdfs::left_out);
 
 }  // namespace stickslip

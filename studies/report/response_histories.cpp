@@ -207,24 +207,24 @@ std::optional<Figure> response_histories(const Study& study) {
   }
   figure.series = series.list;
   add_given(figure, study, Of::responses, end);
-  const auto tips = [](const char* x, const char* title) {
-    return tooltip({{"series", "run"}, {x, title}, {"value", "value"}});
-  };
-  const json over_time = curves("Response over time", channel("time", time_title(told), false),
-                                channel("value", "{response}", false), tips("time", "time"));
-  add_panel(figure, {"response over time", over_time, "time", "value", false, false, "time", false});
+  figure.charts.push_back({.title = "response over time",
+                           .x = {"time", time_title(told)},
+                           .y = {"value", "{response}"},
+                           .tooltip = {{"series", "run"}, {"time", "time"}, {"value", "value"}},
+                           .only = "time"});
   const bool has_path = !distinct(figure.rows, "path", "path").empty();
   figure.title =
       has_path ? "Histories: responses over time, and forces along displacements" : "Histories: responses over time";
   const Pair first = first_pair(pairs, told);
   const std::string response = first_over_time(first, told);
   figure.text = in_words(told, first, response, has_path);
-  if (has_path) {
-    const json path = curves("Force along displacement", channel("displacement", "{against}", false),
-                             channel("value", "{force}", false), tips("displacement", "displacement"));
-    add_panel(figure, {"force along displacement", path, "displacement", "value", false, false, "path",
-                       is_level(told, first.force)});
-  }
+  if (has_path)
+    figure.charts.push_back({.title = "force along displacement",
+                             .x = {"displacement", "{against}"},
+                             .y = {"value", "{force}"},
+                             .tooltip = {{"series", "run"}, {"displacement", "displacement"}, {"value", "value"}},
+                             .only = "path",
+                             .folded = is_level(told, first.force)});
   offer(figure, "Response", "response", response, "time");
   offer(figure, "Path", "path", first.words(), "path");
   offer_cells(figure, shown);

@@ -187,10 +187,10 @@ std::string ledger_table(const Cell& cell) {
 
 std::string first_of_run(const Study& run, Figures& figures) {
   auto responses = response_histories(run);
-  const bool wide = responses && responses->panels.size() > 1;  // then they stand side by side below
+  const bool wide = responses && responses->charts.size() > 1;  // then they stand side by side below
   constexpr double low = 200;                                   // so that the first screen has them whole
   if (wide)
-    for (Panel& panel : responses->panels) panel.spec["height"] = low;
+    for (Chart& chart : responses->charts) chart.height = low;
   const std::string scene = figures.show(draw_overview(run.picture)), histories = figures.show(std::move(responses));
   std::string out =
       banner(run.cells.front()) + "<p class=\"reason\">" + escape_sentence(how_it_ended(run.cells.front())) + "</p>\n";
@@ -213,7 +213,7 @@ std::vector<Section> sections_of_run(const Study& run, Figures& figures) {
   auto derivatives = derivative_histories(run, first_choice(response_histories(run), "response"));
   if (derivatives) derivatives->folded.clear();
   std::string solution = figures.beside(std::move(derivatives), film_of_states(run));
-  if (has_close_up(run.picture)) solution += figures.show(draw_picture(run.picture));
+  if (needs_close_up(run.picture)) solution += figures.show(draw_picture(run.picture));
   solution += figures.show(tractions(run));
   auto convergence = convergence_histories(run);
   if (convergence) convergence->folded.clear();

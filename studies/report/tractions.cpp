@@ -199,23 +199,25 @@ bool is_level(const json& rows, const std::string& panel) {
   return high - low <= alike * std::max(std::abs(low), std::abs(high));
 }
 
-/// One panel a kind of traction that is not zero everywhere, and one of the differences. What is the same at all points
+/// One chart a kind of traction that is not zero everywhere, and one of the differences. What is the same at all points
 /// of all runs is folded, where there is something else.
-void add_panels(Figure& figure) {
-  const json tips = tooltip({{"series", "run"}, {"s", "position"}, {"value", "value"}, {"state", "state"}});
-  for (const auto& [panel, title, logarithmic] :
-       {std::tuple{std::string("pressure"), "pressure p", false},
-        std::tuple{std::string("tangential traction"), "tangential traction q", false},
-        std::tuple{std::string("difference"), "difference / largest traction", true}}) {
+void add_charts(Figure& figure) {
+  for (const auto& [panel, title, spacing] :
+       {std::tuple{std::string("pressure"), "pressure p", Spacing::linear},
+        std::tuple{std::string("tangential traction"), "tangential traction q", Spacing::linear},
+        std::tuple{std::string("difference"), "difference / largest traction", Spacing::logarithmic}}) {
     if (std::none_of(figure.rows.begin(), figure.rows.end(),
                      [&panel = panel](const json& r) { return r["panel"] == panel && r["value"] != 0; }))
       continue;
-    const json spec = curves(figure.title + ": " + title, channel("s", "position along the interface", false),
-                             channel("shown", title, logarithmic), tips);
-    add_panel(figure, {title, spec, "s", "shown", false, logarithmic, panel, is_level(figure.rows, panel)});
+    figure.charts.push_back({.title = title,
+                             .x = {"s", "position along the interface"},
+                             .y = {"shown", title, spacing},
+                             .tooltip = {{"series", "run"}, {"s", "position"}, {"value", "value"}, {"state", "state"}},
+                             .only = panel,
+                             .folded = is_level(figure.rows, panel)});
   }
-  if (std::all_of(figure.panels.begin(), figure.panels.end(), [](const Panel& panel) { return panel.folded; }))
-    for (Panel& panel : figure.panels) panel.folded = false;
+  if (std::all_of(figure.charts.begin(), figure.charts.end(), [](const Chart& chart) { return chart.folded; }))
+    for (Chart& chart : figure.charts) chart.folded = false;
 }
 
 }  // namespace
@@ -247,8 +249,8 @@ std::optional<Figure> tractions(const Study& study) {
         "lie on each other. Shown at first are the most "
         "accurate run of each method and the one furthest off.",
         in_words(*reference));
-  add_panels(figure);
-  if (figure.panels.empty()) return std::nullopt;  // nothing touches, and nothing should
+  add_charts(figure);
+  if (figure.charts.empty()) return std::nullopt;  // nothing touches, and nothing should
   offer(figure, "Contact", "contact");
   offer_cells(figure, shown);
   return figure;

@@ -43,10 +43,10 @@ std::string why_it_may_be_folded(const Study& study, Against against, Of of) {
   for (const auto& cell : study.cells) {
     const auto error = worst(cell.discretization, prefix), own = worst(cell.enforcement, prefix);
     if (!error || !cell.converged || cell.variant != study.main_variant) continue;
-    constexpr double alike = 5, rounding = 1e-12;
+    constexpr double alike = 5;
     errors.push_back(*error);
-    exact += *error <= rounding;
-    of_method += *error > rounding && own && *error <= alike * *own && *own <= alike * *error;
+    exact += *error <= rounding_error;
+    of_method += *error > rounding_error && own && *error <= alike * *own && *own <= alike * *error;
   }
   if (errors.size() < 3) return "";
   const auto most = [&](std::ptrdiff_t n) { return 3 * n >= 2 * std::ssize(errors); };
@@ -146,29 +146,29 @@ void describe(const Study& study, const Subject& subject, Figure& figure) {
   if (subject.derivative) figure.text += "Costs are those of the solution and its derivatives together.";
 }
 
-/// One panel a measure of cost, where some run has it.
-void add_panels(const Subject& subject, Figure& figure) {
+/// One chart a measure of cost, where some run has it.
+void add_charts(const Subject& subject, Figure& figure) {
   const std::string y_title = subject.is_of_state() ? "measure"
                               : subject.derivative  ? "relative error of the sensitivity"
                                                     : "relative error of the response";
-  const json y = channel("shown", y_title, true);
-  const json tips = tooltip({{"label", "method"},
-                             {"error", "error"},
-                             {"work", "work"},
-                             {"seconds", "seconds"},
-                             {"backsolves", "back-solves"},
-                             {"status", "status"}});
-  const auto panel = [&](const std::string& field, const std::string& title, bool folded) {
+  const auto add = [&](const std::string& field, const std::string& title, bool folded) {
     const auto positive = [&](const json& r) { return r[field].get<double>() > 0; };
     if (std::none_of(figure.rows.begin(), figure.rows.end(), positive)) return;
-    tag_lines(figure.rows, field, chart_height, "setting");
-    json spec = curves(figure.title + ", against " + title, channel(field, title, true), y, tips, tag_field(field));
-    spec["transform"] = only_if("datum." + field + " > 0");
-    figure.panels.push_back({"against " + title, spec, field, "shown", true, true, "", folded, tag_field(field)});
+    figure.charts.push_back({.title = "against " + title,
+                             .x = {field, title, Spacing::logarithmic},
+                             .y = {"shown", y_title, Spacing::logarithmic},
+                             .tooltip = {{"label", "method"},
+                                         {"error", "error"},
+                                         {"work", "work"},
+                                         {"seconds", "seconds"},
+                                         {"backsolves", "back-solves"},
+                                         {"status", "status"}},
+                             .folded = folded,
+                             .words = {"series", "setting"}});
   };
-  panel("work", "work (factorisations)", false);
-  panel("seconds", "seconds", false);
-  panel("backsolves", "back-solves", true);
+  add("work", "work (factorisations)", false);
+  add("seconds", "seconds", false);
+  add("backsolves", "back-solves", true);
 }
 
 }  // namespace
@@ -183,8 +183,8 @@ std::optional<Figure> work_precision(const Study& study, Against against, Of of)
   figure.series = series.list;
   describe(study, subject, figure);
   figure.folded = subject.is_of_state() ? "of the final states" : why_it_may_be_folded(study, against, of);
-  add_panels(subject, figure);
-  if (figure.panels.empty()) return std::nullopt;
+  add_charts(subject, figure);
+  if (figure.charts.empty()) return std::nullopt;
   offer(figure, "Quantity", "quantity", subject.worst_name());
   offer(figure, "Scene", "scene", study.main_variant);
   return figure;

@@ -211,9 +211,8 @@ void refuse_overflow(CaseResult& result) {
   if (!words.empty()) refuse(result.gradients, words + " is");
 }
 
-/// Whether a support, or an anchor, holds a node of a side.
-bool is_held(const Model& model, const std::string& side) {
-  const auto nodes = model.side(side).nodes;
+/// Whether a support, or an anchor, holds one of the nodes.
+bool is_held(const Model& model, const std::vector<int>& nodes) {
   return std::any_of(model.constraints.begin(), model.constraints.end(), [&](const Constraint& constraint) {
     return std::find(nodes.begin(), nodes.end(), constraint.dof / model.dimension) != nodes.end();
   });
@@ -225,11 +224,11 @@ void check_responses(const Model& model, const Slots<double>& slots) {
   for (std::size_t i = 0; i < model.scene.responses.size(); ++i) {
     const auto& response = model.scene.responses[i];
     const std::string pointer = child_pointer("/responses", response.name);
-    if (response.kind == Response::Kind::reaction && !is_held(model, response.on))
+    const auto& place = model.response_places[i];
+    if (response.kind == Response::Kind::reaction && !is_held(model, place.nodes))
       throw ModelError("no support acts on " + response.on + ", so there is no reaction", pointer + "/reaction/on");
-    const int p = model.response_places[i].contact_point;
-    if (p < 0) continue;
-    const auto& point = model.points[static_cast<std::size_t>(p)];
+    if (response.at.empty() || place.points.empty()) continue;
+    const auto& point = model.points[place.points[0]];
     const auto distance = [&](int node) {
       double squared = 0;
       for (std::size_t k = 0; k < response.at.size(); ++k)
@@ -237,9 +236,9 @@ void check_responses(const Model& model, const Slots<double>& slots) {
       return std::sqrt(squared);
     };
     const double nearest = distance(point.nodes[0]);
-    for (int c = 0; c < static_cast<int>(model.scene.contacts.size()); ++c)
+    for (const int c : place.contacts)
       for (const int node : nodes_without_area(model, slots.points, c))
-        if (model.is_of_contact(c, response.on) && distance(node) < nearest)
+        if (distance(node) < nearest)
           throw ModelError("the point of \"at\" is the node of " + model.scene.contacts[c].slave +
                                " on the axis of revolution, where quadratic elements have no area, so that it has no "
                                "contact of its own; take the place of a neighbour, or linear elements",

@@ -133,7 +133,7 @@ json scales_json(const CaseResult& result) {
     switch (response.kind) {
       case Kind::reaction:
       case Kind::contact_force:
-        scale = scales.force * (response.component == "moment" ? extent : 1);
+        scale = scales.force * (response.component == Response::Component::moment ? extent : 1);
         break;
       case Kind::displacement:
       case Kind::gap:

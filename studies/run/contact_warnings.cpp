@@ -7,6 +7,7 @@
 #include "core/contact/curve_search.hpp"
 #include "core/contact/facet_search.hpp"
 #include "core/model/contact_assembly.hpp"
+#include "core/model/master_curve.hpp"
 #include "core/model/pairing.hpp"
 #include "core/model/response.hpp"
 #include "methods/newton/residuals.hpp"
@@ -73,9 +74,7 @@ SideCurve curve_of_polyline(const Problem& problem, const Obstacle& obstacle, co
     const PlanePlace x(problem.slots.numbers(polyline.points[v][0]), problem.slots.numbers(polyline.points[v][1]));
     curve.places.col(v) = x + obstacle_displacement(problem, obstacle, x, time);
   }
-  std::vector<std::vector<int>> facets;  // the solid is on the right of a polyline, and on the left of a facet
-  for (int v = 0; v + 1 < count + polyline.closed; ++v) facets.push_back({(v + 1) % count, v});
-  curve.patches = make_patches(facets, contact.smoothing, contact.corner, curve.places);
+  curve.patches = make_patches(facets_of(polyline), contact.smoothing, contact.corner, curve.places);
   return curve;
 }
 
@@ -107,15 +106,16 @@ Points<double> positions_of(const Problem& problem, const State<double>& state) 
          Eigen::Map<const Matrix<double>>(state.displacement.data(), model.dimension, model.node_count);
 }
 
-const Obstacle* obstacle_of(const Model& model, const Contact& contact) {
-  for (const auto& obstacle : model.scene.obstacles)
-    if (obstacle.name == contact.master) return &obstacle;
-  return nullptr;
+/// The master of Scene::contacts[c], if it is an obstacle.
+const Obstacle* obstacle_of(const Model& model, int c) {
+  const int obstacle = model.contact_sides[c].obstacle;
+  return obstacle < 0 ? nullptr : &model.scene.obstacles[obstacle];
 }
 
 /// Whether a contact looks from its slave's nodes alone at a master that has nodes, or vertices, of its own.
-bool may_overlook_master(const Model& model, const Contact& contact) {
-  const Obstacle* const obstacle = obstacle_of(model, contact);
+bool may_overlook_master(const Model& model, int c) {
+  const Contact& contact = model.scene.contacts[c];
+  const Obstacle* const obstacle = obstacle_of(model, c);
   return model.dimension == 2 && !contact.segment && !contact.is_of_itself() &&
          (!obstacle || std::holds_alternative<Polyline>(obstacle->shape));
 }
@@ -137,14 +137,14 @@ void find_master_inside(const Problem& problem, const State<double>& state, doub
                         ContactMeasures& measures) {
   const auto& [model, slots, unused] = problem;
   const auto& contact = model.scene.contacts[c];
+  const auto& sides = model.contact_sides[c];
   const Points<double> points = positions_of(problem, state);
-  const Obstacle* const obstacle = obstacle_of(model, contact);
-  const SideCurve slave =
-      curve_of_side(surface_of(model, slots.points, model.side(contact.slave)), points, contact, false);
+  const Obstacle* const obstacle = obstacle_of(model, c);
+  const SideCurve slave = curve_of_side(surface_of(model, slots.points, sides.slave), points, contact, false);
   if (slave.patches.empty()) return;
-  const SideCurve master =
-      obstacle ? curve_of_polyline(problem, *obstacle, contact, time)
-               : curve_of_side(surface_of(model, slots.points, model.side(contact.master)), points, contact, true);
+  const SideCurve master = obstacle
+                               ? curve_of_polyline(problem, *obstacle, contact, time)
+                               : curve_of_side(surface_of(model, slots.points, sides.master), points, contact, true);
   const auto [force, penetration] = press_and_penetration(problem, state.contact, c);
   double stiffness = 0;
   int count = 0;
@@ -188,7 +188,7 @@ double unbalanced_moment(const Problem& problem, const State<double>& state, int
   return moment;
 }
 
-bool is_moment(const Response& response) { return response.component == "moment"; }
+bool is_moment(const Response& response) { return response.component == Response::Component::moment; }
 
 bool asks_for_moments(const Scene& scene) {
   return std::any_of(scene.responses.begin(), scene.responses.end(), is_moment);
@@ -204,7 +204,7 @@ void add_masters_inside(const CaseResult& result, int c, std::vector<Warning>& w
   constexpr double missed = 0.1;  // force that the overlap stands for, of the force of the contact
   const auto& model = result.problem->model;
   const auto& contact = model.scene.contacts[c];
-  if (!may_overlook_master(model, contact)) return;
+  if (!may_overlook_master(model, c)) return;
   const auto slides_far = [&](const Warning& warning) {
     return warning.code == WarningCode::large_sliding && warning.where == contact.name;
   };
@@ -218,7 +218,7 @@ void add_masters_inside(const CaseResult& result, int c, std::vector<Warning>& w
     time = step.increment->time;
   }
   if (!(worst.inside > 0)) return;
-  const bool polyline = obstacle_of(model, contact) != nullptr;
+  const bool polyline = obstacle_of(model, c) != nullptr;
   warnings.push_back(
       {WarningCode::master_inside, contact.name, worst.inside,
        polyline ? R"(refine the slave's mesh, or integrate over segments ("discretization": "segment"))"
@@ -246,10 +246,9 @@ std::vector<std::array<int, 2>> faced_facets(const Model& model, const ContactFi
     const auto& vertices = curve.patches[patch].vertices;
     return {{curve.nodes[vertices[1]], curve.nodes[vertices[2]]}};
   }
-  if (point.master == ContactPoint::Master::facet) return {{point.nodes[1], point.nodes[2]}};
-  if (point.master == ContactPoint::Master::vertex)
-    return {{point.neighbours[0], point.nodes[1]}, {point.nodes[1], point.neighbours[1]}};
-  return {};
+  std::vector<std::array<int, 2>> facets;
+  for (std::size_t k = 1; k < point.corners.size(); ++k) facets.push_back({point.corners[k - 1], point.corners[k]});
+  return facets;
 }
 
 /// A contact where it is pressed hardest: how wide its pressed points are apart, and the facets that they are on.
@@ -355,7 +354,7 @@ bool touches(const CaseResult& result, int c) {
 
 Warning turned_warning(const Problem& problem, int c, const std::string& words, int faulty) {
   const auto& contact = problem.model.scene.contacts[c];
-  const Obstacle& obstacle = *obstacle_of(problem.model, contact);
+  const Obstacle& obstacle = *obstacle_of(problem.model, c);
   const char* remedy = std::holds_alternative<Polyline>(obstacle.shape)
                            ? "turn the points of the polyline round: its solid is on their right"
                        : std::holds_alternative<Plane>(obstacle.shape)
@@ -369,9 +368,8 @@ Warning turned_warning(const Problem& problem, int c, const std::string& words, 
 ContactMeasures measures_of_contact(const Problem& problem, const State<double>& state, double time, int contact) {
   ContactMeasures measures;
   const auto& model = problem.model;
-  if (may_overlook_master(model, model.scene.contacts[contact]))
-    find_master_inside(problem, state, time, contact, measures);
-  if (asks_for_moments(model.scene) && !obstacle_of(model, model.scene.contacts[contact]))
+  if (may_overlook_master(model, contact)) find_master_inside(problem, state, time, contact, measures);
+  if (asks_for_moments(model.scene) && !obstacle_of(model, contact))
     measures.moment = unbalanced_moment(problem, state, contact);
   return measures;
 }
@@ -382,9 +380,9 @@ std::string turned_surface(const Problem& problem, int contact_index, int& fault
   constexpr double against = 1e-9;  // cosine: less is a side along the obstacle's normal, to rounding
   const auto& [model, slots, unused] = problem;
   const auto& contact = model.scene.contacts[contact_index];
-  const Obstacle* const obstacle = obstacle_of(model, contact);
+  const Obstacle* const obstacle = obstacle_of(model, contact_index);
   if (!obstacle || model.dimension != 2) return "";
-  const SideSet side = surface_of(model, slots.points, model.side(contact.slave));
+  const SideSet side = surface_of(model, slots.points, model.contact_sides[contact_index].slave);
   if (!is_continuum(model.bodies[side.body].mesh.shape)) return "";  // points and bars have no inside
   std::map<int, PlanePlace> outward;
   for (const auto& facet : side.facets) {

@@ -85,7 +85,7 @@ std::string contact_lines(const Problem& problem) {
     const auto& contact = model.scene.contacts[c];
     int points = 0;
     for (const auto& point : model.points) points += point.contact == static_cast<int>(c);
-    const std::size_t slaves = surface_of(model, at_start, model.side(contact.slave)).nodes.size() -
+    const std::size_t slaves = surface_of(model, at_start, model.contact_sides[c].slave).nodes.size() -
                                nodes_without_area(model, at_start, static_cast<int>(c)).size();
     text += fmt::format("  {}: {} against {}, {}", contact.name, contact.slave, contact.master,
                         counted(points, "contact point"));

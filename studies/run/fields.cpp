@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/model/loading.hpp"
 #include "methods/stepping/checkpoints.hpp"
 #include "studies/input/obstacle_kinds.hpp"
 #include "studies/input/response_kinds.hpp"
@@ -33,8 +34,7 @@ Matrix<double> element_stress(const Problem& problem, const State<double>& state
     const auto& law = problem.slots.laws[b];
     Vector<double> volumes = Vector<double>::Zero(model.bodies[b].mesh.element_count());
     for_each_strain(problem, state, b, [&](int e, const auto& H, double volume, const double* memory) {
-      constexpr int rows = std::decay_t<decltype(H)>::RowsAtCompileTime;
-      const auto [xx, yy, zz, xy] = stress_of<rows>(law, H, memory);
+      const auto [xx, yy, zz, xy] = stress_of(law, H, memory);
       Eigen::Matrix<double, 6, 1> components;
       components << xx, yy, zz, xy, 0, 0;
       stress.col(first + e) += volume * components;
@@ -122,7 +122,7 @@ Matrix<double> element_thickness(const Problem& problem, const State<double>& st
     means.resize(first + problem.model.bodies[b].mesh.element_count(), 1);
     std::vector<double> volumes(means.size() - first, 0);
     for_each_strain(problem, state, b, [&](int e, const auto& H, double volume, const double* memory) {
-      if constexpr (std::decay_t<decltype(H)>::RowsAtCompileTime == 2) {
+      if constexpr (std::is_same_v<decltype(H), const PlaneGradient<double>&>) {
         const double stretch = thickness_stretch(problem.slots.laws[b], H, memory);
         volumes[e] += volume;
         means[first + e] += (stretch - means[first + e]) * volume / volumes[e];

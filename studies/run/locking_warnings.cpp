@@ -147,15 +147,14 @@ double spurious_pressure(const Problem& problem, const State<double>& state, std
   std::vector<double> volume(mesh.element_count(), 0), change = volume;
   for_each_strain(problem, state, b, [&](int e, const auto& H, double v, const double*) {
     volume[e] += v;
-    change[e] += v * H.trace();
+    change[e] += v * H.full().trace();
   });
   const auto around = means_around(mesh, volume, change, 0.0);
   const double bulk = moduli->lame + 2 * moduli->shear / 3;
   double spurious = 0, all = 0;
   for_each_strain(problem, state, b, [&](int e, const auto& H, double v, const double* memory) {
-    constexpr int rows = std::decay_t<decltype(H)>::RowsAtCompileTime;
-    const auto [xx, yy, zz, xy] = stress_of<rows>(law, H, memory);
-    spurious += v * std::pow(bulk * (H.trace() - around[e]), 2);
+    const auto [xx, yy, zz, xy] = stress_of(law, H, memory);
+    spurious += v * std::pow(bulk * (H.full().trace() - around[e]), 2);
     all += v * (xx * xx + yy * yy + zz * zz + 2 * xy * xy);
   });
   return all > 0 ? std::sqrt(spurious / all) : 0;
@@ -173,7 +172,7 @@ double parasitic_shear(const Problem& problem, const State<double>& state, std::
   if (edges.empty()) return 0;
   using Strain = Mat<double, 2>;  // in the plane; Green's at finite strain
   const auto strain_of = [&](const auto& H) {
-    const Strain h = H.template topLeftCorner<2, 2>();
+    const Strain h = H.matrix();
     Strain strain = (h + h.transpose()) / 2;
     if (problem.model.scene.finite_strain) strain += h.transpose() * h / 2;
     return strain;

@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 
+#include "core/solids/mean_dilatation.hpp"
 #include "studies/run/case.hpp"
 
 namespace stickslip {
@@ -10,8 +11,9 @@ namespace stickslip {
 /// Calls f(e, H, volume, memory) at each quadrature point of each element of body b; not for bodies that are no
 /// continuum.
 ///
-///   H       displacement gradient (with mean dilatation the averaged one): 2 x 2, or 3 x 3 if out-of-plane components
-///   matter volume  of the point at unit thickness memory  of the point; nullptr: it has none
+///   H       displacement gradient, a Tensor (with mean dilatation the averaged one)
+///   volume  of the point at unit thickness
+///   memory  of the point; nullptr: it has none
 template <class F>
 void for_each_strain(const Problem& problem, const State<double>& state, std::size_t b, F&& f) {
   const auto& body = problem.model.bodies[b];
@@ -34,27 +36,29 @@ void for_each_strain(const Problem& problem, const State<double>& state, std::si
 }
 
 /// Stress (xx, yy, zz, xy) at a displacement gradient and the memory of its point; Cauchy stress at finite strain.
-template <int rows>
-std::array<double, 4> stress_of(const Law<double>& law, const Mat<double, rows>& H, const double* memory) {
+template <TensorLayout layout>
+std::array<double, 4> stress_of(const Law<double>& law, const Tensor<double, layout>& H, const double* memory) {
   return std::visit(
       [&]<class L>(const L& of) -> std::array<double, 4> {
         if constexpr (ContinuumLaw<L>) {
-          Mat<double, rows> s;
+          Mat<double, H.rows> s;
           double across = 0, stretch = 1;  // out of the plane
           const auto take = [&](const auto&... remembered) {
-            s = of.template stress<double, rows>(H, remembered...);
-            if constexpr (rows == 2) across = of.stress_across(H, remembered...);
-            if constexpr (rows == 2) stretch = of.stretch_across(H, remembered...);
+            s = of.stress(H, remembered...).full();
+            if constexpr (layout == TensorLayout::plane4) {
+              across = of.stress_across(H, remembered...);
+              stretch = of.stretch_across(H, remembered...);
+            }
           };
           if constexpr (Remembers<L>)
             take(Vec<double, L::memory>(Eigen::Map<const Vec<double, L::memory>>(memory)));
           else
             take();
           if (of.is_finite) {
-            const Mat<double, rows> F = Mat<double, rows>::Identity() + H;
+            const Mat<double, H.rows> F = Mat<double, H.rows>::Identity() + H.full();
             s = s * F.transpose() / (F.determinant() * stretch);
           }
-          if constexpr (rows == 3) across = s(2, 2);
+          if constexpr (H.rows == 3) across = s(2, 2);
           return {s(0, 0), s(1, 1), across, s(0, 1)};
         }
         return {};
@@ -63,7 +67,7 @@ std::array<double, 4> stress_of(const Law<double>& law, const Mat<double, rows>&
 }
 
 /// Stretch of the thickness at an in-plane displacement gradient and the memory of its point.
-inline double thickness_stretch(const Law<double>& law, const Mat<double, 2>& H, const double* memory) {
+inline double thickness_stretch(const Law<double>& law, const PlaneGradient<double>& H, const double* memory) {
   return std::visit(
       [&]<class L>(const L& of) -> double {
         if constexpr (ContinuumLaw<L>) {

@@ -24,7 +24,8 @@ constexpr double degree = M_PI / 180;
 BodyMeasures deformation_of(const Problem& problem, const State<double>& state, std::size_t b) {
   BodyMeasures largest;
   for_each_strain(problem, state, b, [&](int, const auto& H, double, const double*) {
-    largest.strain = std::max(largest.strain, (H + H.transpose()).cwiseAbs().maxCoeff() / 2);
+    const auto all = H.full();
+    largest.strain = std::max(largest.strain, (all + all.transpose()).cwiseAbs().maxCoeff() / 2);
     largest.rotation = std::max(largest.rotation, std::abs(H(1, 0) - H(0, 1)) / 2);
   });
   return largest;

@@ -17,8 +17,7 @@ dpkg-deb -x "$package" "$root/system"
 doc=$root/system/usr/share/doc/stickslip
 share=$root/system/usr/share
 for file in "$share/man/man1/stickslip.1" "$doc/LICENSE" "$doc/copyright" "$doc/THIRD_PARTY_NOTICES" "$doc/README.md" \
-  "$share/bash-completion/completions/stickslip" "$share/zsh/vendor-completions/_stickslip" \
-  "$share/fish/vendor_completions.d/stickslip.fish"; do
+  "$share/bash-completion/completions/stickslip"; do
   [ -s "$file" ] || { echo "the package lacks $file"; exit 1; }
 done
 

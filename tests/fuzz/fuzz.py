@@ -57,7 +57,7 @@ CHOICES = [
     ("strain", ["small", "finite"]), ("space", ["plane_strain", "plane_stress", "axisymmetric"]),
     ("surface", ["faceted", "smooth", {"smooth": "b_spline"}, {"smooth": "catmull_rom", "corner": 60}]),
     ("discretization", ["node", "segment"]), ("engine", ["auto", "sparse", "condensed"]),
-    ("backend", ["auto", "eigen", "umfpack", "mumps", "cholmod"]), ("fields", ["all", "last", 2]),
+    ("backend", ["auto", "eigen", "mumps", "cholmod"]), ("fields", ["all", "last", 2]),
     ("element", ["Q4", "T3", "Q8", "T6", "Q4_mean_dilatation"]),
     ("friction", [0, 0.3, 1, 20, {"coulomb": 0.3, "limit": 1}, {"tresca": 1}])]
 METHODS = [

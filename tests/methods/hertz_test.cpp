@@ -26,7 +26,7 @@ Scene cylinders(int cells, double mu, double shear) {
   upper.grade = 40.0;
   lower = upper;
   lower.center = {0.0, -radius};
-  lower.facing = "up";
+  lower.facing = HalfDiskMesh::Facing::up;
   s.bodies = {{"upper", upper, LinearElastic{E, nu}, "", 1.0}, {"lower", lower, LinearElastic{E, nu}, "", 1.0}};
   s.contacts = {scenes::contact("touch", "upper.arc", "lower.arc")};
   if (mu > 0) s.contacts[0].friction = scenes::parameter(s, "mu", mu);

@@ -6,6 +6,7 @@
 #include "tests/support/largest.hpp"
 #include "tests/support/same_bits.hpp"
 #include "tests/support/solved.hpp"
+#include "tests/support/solved_run.hpp"
 
 namespace stickslip {
 namespace {
@@ -31,25 +32,21 @@ struct Both {
 };
 
 Both both(const Scene& scene, const Method& method, LinearAlgebra::Engine engine = LinearAlgebra::Engine::automatic) {
-  const Model model = make_model(scene);
-  const auto slots = make_slots<double>(model, scene.as<double>());
-  Workspace<double> workspace;
   RunOptions options;
   options.linear_algebra.engine = engine;
-  const auto trajectory = solve(model, slots, method, options, workspace);
+  scenes::SolvedRun run(scene, method, options);
   Both out;
-  out.forward = differentiate(model, slots, method, trajectory, workspace);
-  out.direct = objective_gradients(model, slots, trajectory, out.forward.of_responses);
-  out.condition = workspace.engine->condition_estimate();  // of the scheme's
-  out.backward = adjoint(model, slots, method, trajectory, workspace);
+  out.forward = run.direct();
+  out.direct = run.objectives_of(out.forward);
+  out.condition = run.workspace.engine->condition_estimate();  // of the scheme's
+  out.backward = run.backward();
   out.adjoint = out.backward.of_objectives;
   // what an objective adds up: its size over that of the parameter, or its largest derivative
-  const Vector<double> values = objective_values(model, slots, trajectory);
+  const Vector<double> values = objective_values(run.model, run.slots, run.trajectory);
   out.scale = out.direct.cwiseAbs();
   for (Eigen::Index i = 0; i < out.scale.rows(); ++i)
     for (Eigen::Index j = 0; j < out.scale.cols(); ++j)
-      out.scale(i, j) =
-          std::max(largest_entry(out.direct.row(i)), std::abs(values[i] / model.scene.parameters[j].value));
+      out.scale(i, j) = std::max(largest_entry(out.direct.row(i)), std::abs(values[i] / scene.parameters[j].value));
   return out;
 }
 
@@ -180,25 +177,16 @@ TEST(Adjoint, DoesNotChangeTheSolution) {
     Scene alone = scene;
     alone.parameters.clear();
     alone.objectives.clear();
-    const Model model = make_model(scene), without = make_model(alone);
-    const auto slots = make_slots<double>(model, scene.as<double>());
-    const auto expected = solve(without, make_slots<double>(without, alone.as<double>()), method);
-    Workspace<double> workspace;
-    const auto trajectory = solve(model, slots, method, {}, workspace);
-    EXPECT_GT(adjoint(model, slots, method, trajectory, workspace).of_objectives.size(), 0);
-    expect_same_bits(trajectory, expected, std::string(name_of(method)) + " with its adjoint");
-    expect_same_bits(solve(model, slots, method, {}, workspace), expected,
-                     std::string(name_of(method)) + " solved again after it");
+    const auto expected = scenes::SolvedRun(alone, method).trajectory;
+    scenes::SolvedRun run(scene, method);
+    EXPECT_GT(run.backward().of_objectives.size(), 0);
+    expect_same_bits(run.trajectory, expected, std::string(name_of(method)) + " with its adjoint");
+    expect_same_bits(run.again(), expected, std::string(name_of(method)) + " solved again after it");
   }
 }
 
 TEST(Adjoint, OfNoObjectiveIsNothing) {
-  Scene scene = scenes::two_boxes(6, 9);
-  const Model model = make_model(scene);
-  const auto slots = make_slots<double>(model, scene.as<double>());
-  Workspace<double> workspace;
-  const auto trajectory = solve(model, slots, MonolithicAL{}, {}, workspace);
-  EXPECT_EQ(adjoint(model, slots, MonolithicAL{}, trajectory, workspace).of_objectives.size(), 0);
+  EXPECT_EQ(scenes::SolvedRun(scenes::two_boxes(6, 9), MonolithicAL{}).backward().of_objectives.size(), 0);
 }
 
 }  // namespace

@@ -8,11 +8,7 @@
 namespace stickslip {
 namespace {
 
-using scenes::finite_methods;
-using scenes::parameter;
-using scenes::response;
-using scenes::run;
-using scenes::table;
+using namespace scenes;
 using Kind = Response::Kind;
 
 constexpr double k = 1000, overlap = 0.05, press = k * overlap;

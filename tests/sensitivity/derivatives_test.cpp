@@ -3,9 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "core/model/response.hpp"
-#include "sensitivity/branch_search.hpp"
+#include "sensitivity/schemes.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/solved.hpp"
+#include "tests/support/solved_run.hpp"
 
 namespace stickslip {
 namespace {
@@ -90,12 +91,9 @@ TEST(Derivatives, OfManyParametersAreThoseOfEachAlone) {
   EXPECT_EQ(parameter_groups(make_model(scene)), (std::vector<std::vector<int>>{{1, 3, 5, 7}, {0, 2, 4, 6}}));
   Vector<double> responses;
   const auto gradient_of = [&](const Scene& of) {
-    const Model model = make_model(of);
-    const auto slots = make_slots<double>(model, of.as<double>());
-    Workspace<double> workspace;
-    const auto trajectory = solve(model, slots, MonolithicAL{}, {}, workspace);
-    responses = evaluate_responses(model, slots, trajectory.increments[0].state, 1.0);
-    return differentiate(model, slots, MonolithicAL{}, trajectory, workspace).of_responses[0];
+    scenes::SolvedRun run(of, MonolithicAL{});
+    responses = evaluate_responses(run.model, run.slots, run.trajectory.increments[0].state, 1.0);
+    return run.direct().of_responses[0];
   };
   const Matrix<double> all = gradient_of(scene);
   constexpr double rounding = 1e-11;  // by condition numbers up to 1e4, of a response over the parameter

@@ -12,13 +12,7 @@
 namespace stickslip {
 namespace {
 
-using scenes::finite_methods;
-using scenes::finite_schemes;
-using scenes::parameter;
-using scenes::relative;
-using scenes::response;
-using scenes::run;
-using scenes::table;
+using namespace scenes;
 using Kind = Response::Kind;
 
 Obstacle plane(const std::string& name, std::array<Number, 2> point, std::array<double, 2> normal) {

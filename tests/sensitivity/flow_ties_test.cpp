@@ -1,7 +1,6 @@
 /// One-sided derivatives where bodies begin to flow, or end at a corner of their table, exactly at the end of a step:
 /// against closed forms, and against the complex step of the whole run on either side.
-#include "sensitivity/flow_ties.hpp"
-
+#include "sensitivity/ties/flow_tie.hpp"
 #include "tests/support/both_modes.hpp"
 #include "tests/support/sides.hpp"
 

@@ -95,15 +95,11 @@ TEST(FrictionLawDerivatives, EqualTheOracleInWhichEveryPieceOccurs) {
 TEST(FrictionLawDerivatives, HaveBothSidesAtTheCorner) {
   for (const Method& method : scenes::exact_methods()) {
     const Scene scene = limited_slider(0.25, 25);  // mu N = limit
-    const Model model = make_model(scene);
-    const auto slots = make_slots<double>(model, scene.as<double>());
-    Workspace<double> workspace;
-    const auto trajectory = solve(model, slots, method, {}, workspace);
-    const auto sides = one_sided_derivatives(model, slots, method, trajectory, workspace);
+    const auto sides = scenes::SolvedRun(scene, method).both_sides();
     ASSERT_TRUE(sides) << name_of(method);
     const auto side = [&](const Matrix<double>& of, const std::string& name) {  // of the first response, u
       int j = 0;
-      while (model.scene.parameters[j].name != name) ++j;
+      while (scene.parameters[j].name != name) ++j;
       return of(0, j);
     };
     EXPECT_NEAR(side(sides->backward[3], "mu"), -0.1, 1e-8)

@@ -16,20 +16,14 @@ namespace ties = random_ties;
 constexpr double inf = std::numeric_limits<double>::infinity();
 
 /// A run with its derivatives in direct mode.
-struct Certified {
-  Model model;
-  Slots<double> slots;
-  Trajectory<double> trajectory;
+struct Certified : scenes::SolvedRun {
   Gradients gradients;
   std::optional<OneSided> sides;
 
-  Certified(const Scene& scene, const Method& method)
-      : model(make_model(scene)), slots(make_slots<double>(model, scene.as<double>())) {
-    Workspace<double> workspace;
-    trajectory = solve(model, slots, method, {}, workspace);
+  Certified(const Scene& scene, const Method& by) : SolvedRun(scene, by) {
     if (!trajectory.increments.back().usable()) return;
-    gradients = differentiate(model, slots, method, trajectory, workspace);
-    sides = one_sided_derivatives(model, slots, method, trajectory, workspace);
+    gradients = direct();
+    sides = both_sides();
   }
   /// {below, above} at increment n.
   std::pair<double, double> nearest(const std::string& parameter, std::size_t n = 0) const {
@@ -220,12 +214,9 @@ void expect_same_sides(Scene scene, const Method& method, const std::string& wha
   if (direct.gradients.of_responses.size() != direct.trajectory.increments.size()) return;
   scene.sensitivity_mode = SensitivityMode::adjoint;
   scenes::ask_for_objectives(scene);
-  const Model model = make_model(scene);
-  const auto slots = make_slots<double>(model, scene.as<double>());
-  Workspace<double> workspace;
-  const auto trajectory = solve(model, slots, method, {}, workspace);
-  const auto gradients = adjoint(model, slots, method, trajectory, workspace);
-  const auto sides = one_sided_derivatives(model, slots, method, trajectory, workspace);
+  scenes::SolvedRun run(scene, method);
+  const auto gradients = run.backward();
+  const auto sides = run.both_sides();
   ASSERT_EQ(gradients.of_objectives.rows(), static_cast<Eigen::Index>(scene.objectives.size()));
   if (direct.sides) {
     ASSERT_TRUE(sides);
@@ -233,7 +224,7 @@ void expect_same_sides(Scene scene, const Method& method, const std::string& wha
   if (!sides) return;
   ++tied;
   const bool ties_of_contact = direct.sides.has_value();
-  for (std::size_t n = 0; n < trajectory.increments.size(); ++n)
+  for (std::size_t n = 0; n < run.trajectory.increments.size(); ++n)
     for (const bool above : {false, true}) {
       const auto& wanted = ties_of_contact ? (above ? direct.sides->forward : direct.sides->backward)[n]
                                            : (above ? direct.gradients.from_above : direct.gradients.from_below)[n];

@@ -5,6 +5,7 @@
 
 #include "sensitivity/sided_geometry.hpp"
 #include "tests/support/solved.hpp"
+#include "tests/support/solved_run.hpp"
 
 namespace stickslip {
 namespace {
@@ -12,13 +13,12 @@ namespace {
 using namespace scenes;
 
 struct Sides {
-  Model model;
+  Scene scene;
   std::optional<OneSided> of;
   long factorizations = 0;
 
   /// {backward, forward} at increment n.
   std::pair<double, double> at(const std::string& response, const std::string& parameter, std::size_t n = 0) const {
-    const auto& scene = model.scene;
     const auto i =
         std::find_if(scene.responses.begin(), scene.responses.end(), [&](auto& r) { return r.name == response; }) -
         scene.responses.begin();
@@ -30,13 +30,9 @@ struct Sides {
 };
 
 Sides sides(const Scene& scene, const Method& method) {
-  Sides out{make_model(scene), {}};
-  const auto slots = make_slots<double>(out.model, scene.as<double>());
-  Workspace<double> workspace;
-  const auto trajectory = solve(out.model, slots, method, {}, workspace);
-  EXPECT_TRUE(is_converged(trajectory.status)) << trajectory.message;
-  out.of = one_sided_derivatives(out.model, slots, method, trajectory, workspace);
-  return out;
+  SolvedRun run(scene, method);
+  EXPECT_TRUE(is_converged(run.trajectory.status)) << run.trajectory.message;
+  return {scene, run.both_sides()};
 }
 
 std::vector<Method> exact_methods() {

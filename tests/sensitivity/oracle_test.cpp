@@ -8,6 +8,7 @@
 #include "tests/support/largest.hpp"
 #include "tests/support/same_bits.hpp"
 #include "tests/support/solved.hpp"
+#include "tests/support/solved_run.hpp"
 
 namespace stickslip {
 namespace {
@@ -252,15 +253,11 @@ TEST(Oracle, DifferentiatingDoesNotChangeTheSolution) {
     const Scene scene = scenes::two_boxes(6, 9);
     Scene alone = scene;
     alone.parameters.clear();
-    const Model model = make_model(scene), without = make_model(alone);
-    const auto slots = make_slots<double>(model, scene.as<double>());
-    const auto expected = solve(without, make_slots<double>(without, alone.as<double>()), method);
-    Workspace<double> workspace;
-    const auto trajectory = solve(model, slots, method, {}, workspace);
-    differentiate(model, slots, method, trajectory, workspace);
-    expect_same_bits(trajectory, expected, std::string(name_of(method)) + " differentiated");
-    expect_same_bits(solve(model, slots, method, {}, workspace), expected,
-                     std::string(name_of(method)) + " solved again after it");
+    const auto expected = scenes::SolvedRun(alone, method).trajectory;
+    scenes::SolvedRun run(scene, method);
+    run.direct();
+    expect_same_bits(run.trajectory, expected, std::string(name_of(method)) + " differentiated");
+    expect_same_bits(run.again(), expected, std::string(name_of(method)) + " solved again after it");
   }
 }
 

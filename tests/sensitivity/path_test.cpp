@@ -7,11 +7,7 @@
 namespace stickslip {
 namespace {
 
-using scenes::contact;
-using scenes::parameter;
-using scenes::response;
-using scenes::run;
-using scenes::table;
+using namespace scenes;
 using Kind = Response::Kind;
 
 Obstacle floor_plane(const std::string& name, std::array<Number, 2> point) {

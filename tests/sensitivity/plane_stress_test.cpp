@@ -10,12 +10,7 @@
 namespace stickslip {
 namespace {
 
-using scenes::finite_methods;
-using scenes::finite_schemes;
-using scenes::parameter;
-using scenes::response;
-using scenes::run;
-using scenes::table;
+using namespace scenes;
 using Kind = Response::Kind;
 using Volumetric = NeoHookean::Volumetric;
 

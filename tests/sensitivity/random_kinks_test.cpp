@@ -2,8 +2,8 @@
 /// by differences of the solver to either side on the same steps.
 #include <gtest/gtest.h>
 
-#include "sensitivity/one_sided.hpp"
 #include "tests/support/random_ties.hpp"
+#include "tests/support/solved_run.hpp"
 
 namespace stickslip {
 namespace {
@@ -16,20 +16,18 @@ struct Tally {
 
 void check(const Scene& scene, const Method& method, const std::string& what, Tally& tally) {
   ++tally.scenes;
-  const Model model = make_model(scene);
-  const auto slots = make_slots<double>(model, scene.as<double>());
-  Workspace<double> workspace;
-  const auto trajectory = solve(model, slots, method, {}, workspace);
+  scenes::SolvedRun run(scene, method);
+  const auto& trajectory = run.trajectory;
+  const auto& stiffness = run.slots.stiffness;
   const auto table = trajectory.step_table();
   if (!trajectory.increments.back().usable() || trajectory.counters.cutbacks > 0) {
     ++tally.unsolved;
     return;
   }
-  const auto gradients = differentiate(model, slots, method, trajectory, workspace);
-  const auto sides = one_sided_derivatives(model, slots, method, trajectory, workspace);
+  const auto gradients = run.direct();
+  const auto sides = run.both_sides();
   const auto base = responses(scene, method, table);
-  const double stiffest =
-      slots.stiffness.empty() ? 0 : *std::max_element(slots.stiffness.begin(), slots.stiffness.end());
+  const double stiffest = stiffness.empty() ? 0 : *std::max_element(stiffness.begin(), stiffness.end());
   if (gradients.of_responses.size() != table.size() || base.size() == 0) {
     ++tally.unsolved;
     return;

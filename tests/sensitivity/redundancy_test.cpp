@@ -10,6 +10,7 @@
 #include "tests/support/largest.hpp"
 #include "tests/support/random_contacts.hpp"
 #include "tests/support/solved.hpp"
+#include "tests/support/solved_run.hpp"
 
 namespace stickslip {
 namespace {
@@ -36,12 +37,8 @@ TEST(Constraints, RepeatOneAnotherWhereANodeIsHeldMoreThanItCanMove) {
 TEST(CriticalFriction, LeavesNoDerivativeOfAnySize) {
   for (const double push : {20.0, 20.0 * (1 + 1e-15)}) {
     const Scene scene = scenes::wedge(2, push, 10, 100, -50);
-    const Model model = make_model(scene);
-    const auto slots = make_slots<double>(model, scene.as<double>());
     for (const Method& method : {Method(Penalty{}), Method(UzawaAL{}), Method(MonolithicAL{})}) {
-      Workspace<double> workspace;
-      const auto trajectory = solve(model, slots, method, {}, workspace);
-      const auto gradients = differentiate(model, slots, method, trajectory, workspace);
+      const auto gradients = scenes::SolvedRun(scene, method).direct();
       for (const auto& of : gradients.of_responses)  // a stick's, or of a spring: u is 0.4 at most, by a push of 20
         EXPECT_LE(largest_entry(of), 1e3) << name_of(method) << push;
     }

@@ -1,7 +1,6 @@
 /// One-sided derivatives where points that slide along a curve are just at a vertex of it: against the complex step of
 /// the whole run on either side.
-#include "sensitivity/vertex_ties.hpp"
-
+#include "sensitivity/ties/vertex_tie.hpp"
 #include "tests/support/both_modes.hpp"
 #include "tests/support/sides.hpp"
 

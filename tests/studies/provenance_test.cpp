@@ -38,7 +38,7 @@ TEST(Provenance, TellsTheTimeInUtcByIso8601) {
 
 TEST(VersionText, NamesTheTermsThatTheLinkedLibrariesSet) {
   const std::string text = version_text();
-  const bool gpl = has_backend(Backend::cholmod) || has_backend(Backend::umfpack);
+  const bool gpl = has_backend(Backend::cholmod);
   EXPECT_EQ(text.find("GPL-2.0-or-later") != std::string::npos, gpl) << text;
   EXPECT_EQ(text.find("CeCILL-C") != std::string::npos, has_backend(Backend::mumps)) << text;
   EXPECT_NE(text.find("BSD-3-Clause"), std::string::npos);

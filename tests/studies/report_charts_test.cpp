@@ -4,6 +4,7 @@
 #include "studies/report/charts.hpp"
 #include "studies/report/html.hpp"
 #include "tests/studies/recorded_study.hpp"
+#include "tests/support/largest.hpp"
 
 namespace stickslip::report_charts {
 namespace {

@@ -33,14 +33,6 @@ using testing::Not;
 
 class ReportCurves : public recorded::StudyOnDisk {};
 
-/// On which side of their points the words of the chart against work stand.
-std::map<std::string, std::string> sides_of_words(const report::Figure& figure) {
-  std::map<std::string, std::string> out;
-  for (const auto& row : figure.rows)
-    if (row.contains("tag_work")) out[row["tag_work"]] = row["tag_work_at"];
-  return out;
-}
-
 TEST_F(ReportCurves, GivesEachMethodAMarkerOfItsOwn) {
   std::vector<json> cells;
   for (const double scale : {1, 10, 100, 1000})
@@ -77,57 +69,6 @@ TEST_F(ReportCurves, DrawsErrorsOfExactlyZeroBelowAllOthersAndNamesThem) {
       EXPECT_LT(row["shown"], least);
     }
   EXPECT_EQ(zeros, 1);
-  EXPECT_THAT(page(), HasSubstr("exactly 0"));
-}
-
-/// Two lines end at one point: the second has its name at its beginning, left of a point that stands far right.
-TEST_F(ReportCurves, NamesALineAtItsOtherEndWhereAnotherNameStands) {
-  std::vector<json> cells;
-  for (const int scale : {1, 10})
-    for (const double tolerance : {1e-4, 1e-8}) {
-      const int factorizations = tolerance == 1e-4 ? 10 : scale == 1 ? 12 : 40;
-      cells.push_back(cell("uzawa_al", {{"scale", scale}, {"tolerance", tolerance}}, tolerance, factorizations));
-    }
-  record(description(), cells);
-  const auto side = sides_of_words(*report::work_precision(study(), Against::same_mesh, Of::responses));
-  EXPECT_TRUE(side.count("Uzawa AL scale=1, 1e-4"));
-  EXPECT_FALSE(side.count("Uzawa AL scale=10, 1e-4"));
-  ASSERT_TRUE(side.count("Uzawa AL scale=10, 1e-8"));
-  EXPECT_THAT(side.at("Uzawa AL scale=10, 1e-8"), testing::StartsWith("left"));
-}
-
-/// On its right stand the markers of another curve.
-TEST_F(ReportCurves, NamesNoLineAcrossMarkersOfAnother) {
-  std::vector<json> cells = {cell("uzawa_al", json::object(), 1e-4, 100)};
-  for (const int stiffness : {1, 2, 3}) cells.push_back(cell("penalty", {{"stiffness", stiffness}}, 1e-4, 105));
-  for (const std::size_t i : {1u, 2u, 3u}) {
-    cells[i]["cost"]["counts"]["factorizations"] = 100 + 20 * i;
-    cells[i]["errors"]["enforcement"]["response:press"] = 1e-4 * (1 + 0.1 * static_cast<double>(i));
-  }
-  record(description(), cells);
-  const auto side = sides_of_words(*report::work_precision(study(), Against::same_mesh, Of::responses));
-  ASSERT_TRUE(side.count("Uzawa AL"));
-  EXPECT_NE(side.at("Uzawa AL"), "right");
-}
-
-/// Longer names than a phone has room for beside those of wide screens, which say values too.
-TEST_F(ReportCurves, NamesEveryLineOnNarrowScreensToo) {
-  auto cells = three_methods();
-  for (const double tolerance : {1e-4, 1e-8})
-    cells.push_back(cell("uzawa_al", {{"scale", 100}, {"tolerance", tolerance}}, 0.1 * tolerance, 90));
-  record(description(), cells);
-  const auto figure = report::work_precision(study(), Against::same_mesh, Of::responses);
-  std::set<std::string> series, names;
-  for (const auto& s : figure->series) series.insert(s.name);
-  for (const auto& row : figure->rows)
-    if (row.contains("tag_work_narrow")) {
-      EXPECT_THAT(row["series"].get<std::string>(), testing::EndsWith(row["tag_work_narrow"].get<std::string>()));
-      EXPECT_TRUE(row.contains("tag_work_narrow_at"));
-      names.insert(row["series"]);
-    }
-  EXPECT_EQ(names, series);
-  EXPECT_TRUE(names.count("Uzawa AL scale=100"));
-  EXPECT_THAT(page(), HasSubstr("panel.clientWidth < 400 ? inBrief(row)"));
 }
 
 TEST_F(ReportCurves, WithoutFrictionHasNoMeasuresOfIt) {

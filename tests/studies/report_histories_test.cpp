@@ -59,7 +59,7 @@ TEST_F(ReportHistories, DrawEachForceAlongEachDisplacementAndTheLoopFirst) {
   record_steps(to_and_fro(40));
   const auto figure = report::response_histories(study());
   ASSERT_TRUE(figure);
-  ASSERT_EQ(figure->panels.size(), 2u);
+  ASSERT_EQ(figure->charts.size(), 2u);
   ASSERT_TRUE(choice(*figure, "path"));
   EXPECT_THAT(choice(*figure, "path")->options, testing::UnorderedElementsAre("grip against u", "press against u"));
   EXPECT_THAT(choice(*figure, "path")->chosen, testing::ElementsAre("grip against u"));  // press draws a line
@@ -119,10 +119,10 @@ TEST_F(ReportHistories, BeginWithWhatChangesAndFoldThePathOfAForceThatStays) {
   record_steps(steps);
   const auto figure = report::response_histories(study());
   EXPECT_THAT(choice(*figure, "response")->chosen, testing::ElementsAre("u"));
-  EXPECT_TRUE(figure->panels[1].folded);
+  EXPECT_TRUE(figure->charts[1].folded);
   EXPECT_THAT(figure->text, HasSubstr("The curves of u lie on each other: the runs shown at first differ by 0 of"));
   record_steps(to_and_fro(40));
-  EXPECT_FALSE(report::response_histories(study())->panels[1].folded);
+  EXPECT_FALSE(report::response_histories(study())->charts[1].folded);
 }
 
 /// Where loads are found by arc length, time goes back past a limit point.
@@ -132,7 +132,7 @@ TEST_F(ReportHistories, OfAPathByArcLengthBeginWithTheDisplacement) {
   record_steps(steps);
   const auto figure = report::response_histories(study());
   EXPECT_THAT(choice(*figure, "response")->chosen, testing::ElementsAre("u"));
-  EXPECT_THAT(report::draw_plot(*figure, figure->panels[0])->inline_svg(), HasSubstr(">time, which scales the load<"));
+  EXPECT_THAT(report::draw_plot(*figure, figure->charts[0])->inline_svg(), HasSubstr(">time, which scales the load<"));
 }
 
 TEST_F(ReportHistories, OfDerivativesDoNotBeginWithRounding) {
@@ -148,8 +148,8 @@ TEST_F(ReportHistories, OfDerivativesDoNotBeginWithRounding) {
 TEST_F(ReportHistories, NameTheChosenResponsesOnTheAxes) {
   record_steps(to_and_fro(40));
   const auto figure = report::response_histories(study());
-  const std::string over_time = report::draw_plot(*figure, figure->panels[0])->inline_svg(),
-                    path = report::draw_plot(*figure, figure->panels[1])->inline_svg();
+  const std::string over_time = report::draw_plot(*figure, figure->charts[0])->inline_svg(),
+                    path = report::draw_plot(*figure, figure->charts[1])->inline_svg();
   EXPECT_THAT(over_time, testing::AllOf(HasSubstr(">time<"), HasSubstr(">grip<")));
   EXPECT_THAT(path, testing::AllOf(HasSubstr(">u<"), HasSubstr(">grip<"), Not(HasSubstr("{"))));
 }
@@ -194,7 +194,7 @@ TEST_F(ReportHistories, WithoutKindsDrawNoPath) {
   record(description(), cells);
   const auto figure = report::response_histories(study());
   ASSERT_TRUE(figure);
-  EXPECT_EQ(figure->panels.size(), 1u);
+  EXPECT_EQ(figure->charts.size(), 1u);
 }
 
 TEST_F(ReportHistories, DrawEachDerivativeOverTimeAndThatWithMostToSeeFirst) {
@@ -214,7 +214,7 @@ TEST_F(ReportHistories, DrawEachDerivativeOverTimeAndThatWithMostToSeeFirst) {
     }
   EXPECT_EQ(points.size(), 7u);
   for (const auto& [label, n] : points) EXPECT_EQ(n, 40) << label;
-  EXPECT_THAT(report::draw_plot(*figure, figure->panels[0])->inline_svg(), HasSubstr(">d grip / d mu<"));
+  EXPECT_THAT(report::draw_plot(*figure, figure->charts[0])->inline_svg(), HasSubstr(">d grip / d mu<"));
 }
 
 TEST_F(ReportHistories, OfDerivativesBeginWithTheResponseThatIsShown) {

@@ -143,9 +143,9 @@ TEST(ReportPicture, ShowsASmallContactLargerBesideTheWhole) {
   ASSERT_TRUE(overview);
   EXPECT_THAT(overview->text, HasSubstr("In the frame: the contact at true scale."));
   const std::string svg = overview->drawing.inline_svg();
-  EXPECT_NE(svg.find("the-scene-clip-2"), std::string::npos);                         // a window of its own
-  EXPECT_THAT(report::draw_picture(narrow_contact(9))->folded, HasSubstr("larger"));  // it says the same again
-  EXPECT_THAT(report::draw_overview(picture())->text, Not(HasSubstr("Right:")));      // the contact is the whole side
+  EXPECT_NE(svg.find("the-scene-clip-2"), std::string::npos);  // a window of its own
+  EXPECT_FALSE(report::needs_close_up(narrow_contact(9)));
+  EXPECT_THAT(report::draw_overview(picture())->text, Not(HasSubstr("Right:")));  // the contact is the whole side
 }
 
 /// Widths of the symbols in a drawing, which are the only shapes in their colour.

@@ -74,7 +74,7 @@ TEST_F(Report, CarriesEachChartsRowsUnderOneListOfFields) {
   EXPECT_GE(charts.size(), 6u);  // two costs of accuracy, one closed form, a knob, tractions, histories at least
   for (const auto& chart : charts) {
     EXPECT_FALSE(chart["rows"].empty());
-    EXPECT_FALSE(chart["panels"].empty());
+    EXPECT_FALSE(chart["charts"].empty());
     for (const auto& row : chart["rows"]) EXPECT_EQ(row.size(), chart["fields"].size());
   }
 }

@@ -113,10 +113,10 @@ TEST(SceneReader, ReadsABlockOnAFloor) {
   ASSERT_EQ(scene.responses.size(), 3u);  // by name: press, pull, tip
   EXPECT_EQ(scene.responses[0].kind, Response::Kind::contact_force);
   EXPECT_EQ(scene.responses[0].on, "sole");
-  EXPECT_EQ(scene.responses[0].component, "normal");
+  EXPECT_EQ(scene.responses[0].component, Response::Component::normal);
   EXPECT_EQ(scene.responses[1].kind, Response::Kind::reaction);
   EXPECT_EQ(scene.responses[2].take, Response::Take::max);
-  EXPECT_EQ(scene.responses[2].component, "y");
+  EXPECT_EQ(scene.responses[2].component, Response::Component::y);
   const auto& method = std::get<MonolithicAL>(input.method);
   EXPECT_EQ(method.scale.kind, Regularisation::Kind::relative);
   EXPECT_EQ(method.scale.value.value, 2);

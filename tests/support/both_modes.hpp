@@ -1,8 +1,8 @@
 /// Derivatives of objectives by both modes: backward in time, and forward by those of the responses.
 #pragma once
 
-#include "sensitivity/adjoint.hpp"
 #include "tests/support/largest.hpp"
+#include "tests/support/solved_run.hpp"
 
 namespace stickslip::scenes {
 
@@ -17,13 +17,8 @@ inline void ask_for_objectives(Scene& scene) {
 /// Largest difference of the two modes, of each objective over the largest of its derivatives; NaN where one of them
 /// has none.
 inline double difference_of_modes(const Scene& scene, const Method& method) {
-  const Model model = make_model(scene);
-  const auto slots = make_slots<double>(model, scene.as<double>());
-  Workspace<double> workspace;
-  const auto trajectory = solve(model, slots, method, {}, workspace);
-  const auto forward = differentiate(model, slots, method, trajectory, workspace);
-  const Matrix<double> direct = objective_gradients(model, slots, trajectory, forward.of_responses);
-  const Matrix<double> backward = adjoint(model, slots, method, trajectory, workspace).of_objectives;
+  SolvedRun run(scene, method);
+  const Matrix<double> direct = run.objectives_of(run.direct()), backward = run.backward().of_objectives;
   if (direct.size() == 0 || backward.rows() != direct.rows()) return std::numeric_limits<double>::quiet_NaN();
   double worst = 0;
   for (Eigen::Index i = 0; i < direct.rows(); ++i)

@@ -31,7 +31,7 @@ allowed() {
 }
 folders="core/algebra core/mesh core/solids core/contact core/model core/engine methods sensitivity
   studies/io studies/input studies/run studies/report studies/sweep studies/verify studies/app studies/python"
-solver_headers='<(cholmod|umfpack|dmumps_c|SuiteSparse_config)[^>]*>'
+solver_headers='<(cholmod|dmumps_c|SuiteSparse_config)[^>]*>'
 printing='<(nlohmann|fmt|CLI)/|<(iostream|print)>|\b(printf|fprintf|puts) *\(|\b(cout|cerr)\b'
 
 check() {
@@ -84,7 +84,7 @@ core/model #include "methods/options.hpp"
 core/model #include "core/engine/engine.hpp"
 core/model #include <nlohmann/json.hpp>
 methods #include "sensitivity/direct.hpp"
-methods #include <umfpack.h>
+methods #include <dmumps_c.h>
 sensitivity #include "studies/io/vtu.hpp"
 sensitivity std::cout << "iteration";
 studies/app #include "bench/kernels.hpp"

@@ -1,5 +1,6 @@
 #include "tests/support/scenes.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace stickslip::scenes {
@@ -18,7 +19,8 @@ Response response(const std::string& name, Response::Kind kind, const std::strin
   r.name = name;
   r.kind = kind;
   r.on = on;
-  r.component = component;
+  const std::vector<std::string> words{"", "x", "y", "z", "normal", "moment"};
+  r.component = static_cast<Response::Component>(std::find(words.begin(), words.end(), component) - words.begin());
   r.take = take;
   return r;
 }
@@ -240,7 +242,7 @@ Scene two_disks(int cells, bool segment, double mu) {
   lower.radius = radius;
   lower.center = {0.0, -1.2};
   lower.cells = {cells + 1, cells + 1};
-  lower.facing = "up";
+  lower.facing = HalfDiskMesh::Facing::up;
   s.bodies = {{"upper", upper, LinearElastic{E, 0.3}, "", 1.0}, {"lower", lower, LinearElastic{1500.0, 0.2}, "", 1.0}};
   s.contacts = {contact("touch", "upper.arc", "lower.arc")};
   s.contacts[0].friction = friction;

@@ -153,14 +153,14 @@ class EveryBackend : public testing::TestWithParam<Backend> {
 };
 
 std::string name_of(const testing::TestParamInfo<Backend>& backend) {
-  constexpr const char* names[] = {"automatic", "cholmod", "umfpack", "mumps", "eigen"};
+  constexpr const char* names[] = {"automatic", "cholmod", "mumps", "eigen"};
   return names[static_cast<int>(backend.param)];
 }
 
 /// Those of this build (the listing test holds them to what it says of itself).
 std::vector<Backend> built_backends() {
   std::vector<Backend> built;
-  for (auto each : {Backend::automatic, Backend::cholmod, Backend::umfpack, Backend::mumps, Backend::eigen})
+  for (auto each : {Backend::automatic, Backend::cholmod, Backend::mumps, Backend::eigen})
     if (has_backend(each)) built.push_back(each);
   return built;
 }
@@ -543,9 +543,8 @@ TEST(LinearSolver, NamesWhatIsBuiltIn) {
   };
   EXPECT_TRUE(listed("Eigen"));
   EXPECT_EQ(listed("CHOLMOD"), has_backend(Backend::cholmod));
-  EXPECT_EQ(listed("UMFPACK"), has_backend(Backend::umfpack));
   EXPECT_EQ(listed("MUMPS"), has_backend(Backend::mumps));
-  for (const Backend backend : {Backend::cholmod, Backend::umfpack, Backend::mumps}) {
+  for (const Backend backend : {Backend::cholmod, Backend::mumps}) {
     if (!has_backend(backend)) {
       EXPECT_THROW(LinearSolver<double>{backend}, std::invalid_argument);
     }

@@ -63,7 +63,7 @@ struct Sheets {
 TEST(SchurComplement, IsThatOfDenseAlgebraByEveryBackend) {
   // rounding of the entries times a condition number of the sheets of some 1e3
   constexpr double rounding = 1e-12;
-  for (Backend backend : {Backend::automatic, Backend::cholmod, Backend::mumps, Backend::umfpack, Backend::eigen})
+  for (Backend backend : {Backend::automatic, Backend::cholmod, Backend::mumps, Backend::eigen})
     for (double stiffer : {1.0, 1e9})
       for (int side : {2, 5, 12}) {
         if (!has_backend(backend)) continue;
@@ -81,7 +81,7 @@ TEST(SchurComplement, IsThatOfDenseAlgebraByEveryBackend) {
 
 TEST(SchurComplement, StandsBetweenTheHalvesOfASolveByEveryBackend) {
   constexpr double rounding = 1e-12;  // times a condition number of the sheets of some 1e3
-  for (Backend backend : {Backend::automatic, Backend::cholmod, Backend::mumps, Backend::umfpack, Backend::eigen})
+  for (Backend backend : {Backend::automatic, Backend::cholmod, Backend::mumps, Backend::eigen})
     for (double stiffer : {1.0, 1e9})
       for (int side : {2, 5, 12}) {
         if (!has_backend(backend)) continue;

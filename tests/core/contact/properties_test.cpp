@@ -13,6 +13,7 @@
 #include "core/contact/facet_search.hpp"
 #include "core/contact/rigid_surfaces.hpp"
 #include "core/contact/surfaces.hpp"
+#include "tests/support/closest.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/largest.hpp"
 
@@ -101,7 +102,7 @@ std::pair<double, double> two_distances(const Curve& c, const Point& x) {
   return {first, second};
 }
 
-/// The place that closest_point() names.
+/// The place that closest_of_all() names.
 Point foot(const Curve& c, const ClosestPoint& closest, const Point& x) {
   const Point a = c.points.col(c.facets[closest.facet][0]), b = c.points.col(c.facets[closest.facet][1]);
   if (closest.second >= 0) return b;  // where the first of the two ends
@@ -127,7 +128,7 @@ TEST(ClosestPointProperties, TheTreeFindsWhatAComparisonWithAllFinds) {
     const FacetSearch search(c.points, c.facets);
     for (int i = 0; i < 8; ++i) {
       const Point x = anywhere(c);
-      const auto all = closest_point(c.points, c.facets, x), found = search.closest(x);
+      const auto all = closest_of_all(c.points, c.facets, x), found = search.closest(x);
       RC_ASSERT(found.has_value() == all.has_value());
       if (!all) continue;
       RC_ASSERT(found->facet == all->facet);
@@ -140,7 +141,7 @@ TEST(ClosestPointProperties, IsNoFartherThanAnySampledPointOfTheCurve) {
   EXPECT_TRUE(rc::check([] {
     const auto c = curve();
     const Point x = beside(c);
-    const auto closest = closest_point(c.points, c.facets, x);
+    const auto closest = closest_of_all(c.points, c.facets, x);
     RC_PRE(closest.has_value());
     const double found = (x - foot(c, *closest, x)).norm();
     for (const auto& facet : c.facets)
@@ -156,7 +157,7 @@ TEST(ClosestPointProperties, IsOrthogonalInAFacetAndElseAnEnd) {
   EXPECT_TRUE(rc::check([] {
     const auto c = curve();
     const Point x = beside(c);
-    const auto closest = closest_point(c.points, c.facets, x);
+    const auto closest = closest_of_all(c.points, c.facets, x);
     RC_PRE(closest.has_value());
     const Point a = c.points.col(c.facets[closest->facet][0]), b = c.points.col(c.facets[closest->facet][1]);
     const Point y = foot(c, *closest, x);
@@ -177,7 +178,7 @@ TEST(ClosestPointProperties, IsMissingOnlyPastAFreeEnd) {
   EXPECT_TRUE(rc::check([] {
     const auto c = curve();
     const Point x = near(c);
-    RC_PRE(!closest_point(c.points, c.facets, x).has_value());
+    RC_PRE(!closest_of_all(c.points, c.facets, x).has_value());
     const Point first = c.points.col(0), last = c.points.rightCols(1);
     const double least = two_distances(c, x).first;
     RC_ASSERT(std::min((x - first).norm(), (x - last).norm()) <= least + close_by);
@@ -188,7 +189,7 @@ TEST(ClosestPointProperties, MovesWithTheCurveAndThePoint) {
   EXPECT_TRUE(rc::check([] {
     const auto c = curve();
     const Point x = beside(c);
-    const auto closest = closest_point(c.points, c.facets, x);
+    const auto closest = closest_of_all(c.points, c.facets, x);
     const auto [nearest, next] = two_distances(c, x);
     RC_PRE(closest.has_value() && closest->second < 0 && next - nearest > 1e-6);  // no tie that rounding may turn
     const auto facet = c.facets[closest->facet];
@@ -197,7 +198,7 @@ TEST(ClosestPointProperties, MovesWithTheCurveAndThePoint) {
     const auto move = motion();
     auto moved = c;
     for (int i = 0; i < c.points.cols(); ++i) moved.points.col(i) = move(c.points.col(i));
-    const auto again = closest_point(moved.points, moved.facets, move(x));
+    const auto again = closest_of_all(moved.points, moved.facets, move(x));
     RC_ASSERT(again.has_value());
     RC_ASSERT(again->facet == closest->facet && again->second < 0);
     const auto h = against_facet<double>(move(x), moved.points.col(facet[0]), moved.points.col(facet[1]));
@@ -215,10 +216,10 @@ TEST(ClosestPointProperties, DoesNotDependOnTheOrderOfTheFacets) {
   EXPECT_TRUE(rc::check([] {
     const auto c = curve();
     const Point x = near(c);
-    const auto closest = closest_point(c.points, c.facets, x);
+    const auto closest = closest_of_all(c.points, c.facets, x);
     auto other = c;
     std::reverse(other.facets.begin(), other.facets.end());
-    const auto again = closest_point(other.points, other.facets, x);
+    const auto again = closest_of_all(other.points, other.facets, x);
     RC_ASSERT(again.has_value() == closest.has_value());
     if (closest) RC_ASSERT(foot(other, *again, x) == foot(c, *closest, x));
   }));

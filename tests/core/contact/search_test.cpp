@@ -5,7 +5,7 @@
 #include <numeric>
 #include <set>
 
-#include "core/contact/facet_search.hpp"
+#include "tests/support/closest.hpp"
 
 namespace stickslip {
 namespace {
@@ -25,7 +25,7 @@ const Facets in_order = {{0, 1}, {1, 2}, {2, 3}, {3, 4}};
 
 /// Nodes of the facet, or the vertex of two facets: what is found, apart from the facets' numbers.
 std::vector<int> found(const Points<double>& points, const Facets& facets, double x, double y) {
-  const auto closest = closest_point(points, facets, {x, y});
+  const auto closest = closest_of_all(points, facets, {x, y});
   if (!closest) return {};
   if (closest->second < 0) return facets[closest->facet];
   EXPECT_EQ(facets[closest->facet][1], facets[closest->second][0]);
@@ -48,7 +48,7 @@ TEST(ClosestPoint, IsTheVertexBetweenTwoFacetsWhereBothLookPast) {
 }
 
 TEST(ClosestPoint, NamesTheFacetThatEndsAtAVertexFirst) {
-  const auto closest = closest_point(roof_and_valley(), {{1, 2}, {0, 1}}, {3.0, 2.0});
+  const auto closest = closest_of_all(roof_and_valley(), {{1, 2}, {0, 1}}, {3.0, 2.0});
   ASSERT_TRUE(closest.has_value());
   EXPECT_EQ(closest->facet, 1);
   EXPECT_EQ(closest->second, 0);
@@ -70,7 +70,7 @@ TEST(ClosestPoint, IsNoneBeyondAFreeEndAndTheLastFacetOnIt) {
   EXPECT_EQ(found(points, facets, 2.0, 0.3), (std::vector{0, 1}));
   EXPECT_EQ(found(points, facets, 0.0, 0.3), (std::vector{1, 2}));
   EXPECT_EQ(found(points, facets, 2 + 1e-12, 0.3), (std::vector{0, 1}));  // rounding of a coordinate
-  EXPECT_FALSE(closest_point(points, {}, {1, 1}).has_value());
+  EXPECT_FALSE(closest_of_all(points, {}, {1, 1}).has_value());
 }
 
 TEST(ClosestPoint, HasNoFreeEndOnAClosedCurve) {

@@ -186,9 +186,10 @@ TEST(ResponsePlaces, InterpolateLinearFieldsInTheElementThatHoldsThem) {
       const auto points = make_points<double>(scene.bodies[0].mesh, scene.as<double>(), 2);
       Eigen::Vector2d found(0, 0);
       double total = 0;
-      for (const auto& [node, weight] : model.response_places[0].nodes) {
-        found += weight * points.col(node);
-        total += weight;
+      const auto& place = model.response_places[0];
+      for (std::size_t a = 0; a < place.nodes.size(); ++a) {
+        found += place.weights[a] * points.col(place.nodes[a]);
+        total += place.weights[a];
       }
       EXPECT_NEAR(found[0], x, 1e-15 * 8);  // a few roundings of numbers up to 2
       EXPECT_NEAR(found[1], y, 1e-15 * 8);
@@ -206,7 +207,8 @@ TEST(ResponsePlaces, OfAContactAreTheNearestContactPoint) {
   scene.responses = {scenes::response("p", Response::Kind::contact_pressure, "touch")};
   scene.responses[0].at = {1.3, 1.0};
   const Model model = make_model(scene);
-  const int p = model.response_places[0].contact_point;
+  ASSERT_EQ(model.response_places[0].points.size(), 1);
+  const int p = model.response_places[0].points[0];
   const auto points = make_points<double>(scene.bodies[0].mesh, scene.as<double>(), 2);
   EXPECT_DOUBLE_EQ(points(0, model.points[p].nodes[0]), 1.4);
 }

@@ -48,6 +48,40 @@ Block block(std::vector<Response> responses, std::array<double, 2> floor_normal 
 /// The first response at the block's state.
 double first(const Block& b) { return evaluate_responses(b.model, b.slots, b.state, 1.0)[0]; }
 
+/// The same model, in which nothing has the name that the scene gave it.
+Model without_names(Model model) {
+  for (auto& body : model.scene.bodies) body.name.clear();
+  for (auto& obstacle : model.scene.obstacles) obstacle.name.clear();
+  for (auto& contact : model.scene.contacts) contact.name = contact.slave = contact.master = "";
+  for (auto& load : model.scene.loads) load.on.clear();
+  for (auto& support : model.scene.supports) support.on.clear();
+  for (auto& response : model.scene.responses) response.name = response.on = "";
+  for (auto& body : model.bodies) body.mesh.sides.clear();
+  return model;
+}
+
+TEST(Names, AreResolvedOnce) {
+  Block b = block({response("u", Kind::displacement, "block.right", "x", Take::max),
+                   response("pull", Kind::reaction, "block.left", "x"),
+                   response("press", Kind::contact_force, "sole", "normal"),
+                   response("half", Kind::contact_half_width, "sole"), response("slip", Kind::slip, "sole"),
+                   response("heat", Kind::dissipation, "sole"), response("energy", Kind::strain_energy, "")});
+  b.scene.loads = {scenes::force("block.top", {1.0, -2.0}), {"block", Load::Kind::body_force, {0.5, -3.0}, {}}};
+  b.model = make_model(b.scene);
+  const Model nameless = without_names(b.model);
+  const auto numbers = b.scene.as<double>();
+  b.slots = make_slots<double>(b.model, numbers);
+  const auto slots = make_slots<double>(nameless, numbers);
+  b.state.displacement = Vector<double>::LinSpaced(b.model.dof_count(), 0.1, 0.3);
+  b.state.history.placement.setConstant(0.25);
+  b.state.history.work[0] = 0.7;
+  for (const auto& point : b.model.points) b.state.contact.traction[point.multiplier] = -2;
+  const auto values = evaluate_responses(b.model, b.slots, b.state, 1.0);
+  EXPECT_TRUE((values.array().abs() > 0).all());
+  EXPECT_EQ(evaluate_responses(nameless, slots, b.state, 1.0), values);
+  EXPECT_EQ(dead_forces(nameless, slots, 1.0), dead_forces(b.model, b.slots, 1.0));
+}
+
 TEST(DisplacementResponse, TakesMeanLargestAndSmallestOfASide) {
   for (const auto& [take, expected] : {std::pair{Take::mean, 0.25}, {Take::max, 0.8}, {Take::min, -0.3}}) {
     auto b = block({response("u", Kind::displacement, "block.right", "y", take)});

@@ -33,7 +33,7 @@ Scene half_disks(const std::string& master, int lower_cells) {
   lower.center = {0.0, -1.3};
   lower.radius = rim;
   lower.cells = {lower_cells, 6};
-  lower.facing = "up";
+  lower.facing = HalfDiskMesh::Facing::up;
   s.bodies = {{"upper", upper, LinearElastic{E, nu}, "", 1.0}, {"lower", lower, LinearElastic{E, 0.2}, "", 1.0}};
   s.obstacles = {{"disk", Circle{{0.0, -1.3}, rim, false}, {}}, {"cup", Circle{{0.0, 0.8}, rim, true}, {}}};
   s.contacts = {scenes::contact("touch", "upper.arc", master)};

@@ -98,7 +98,7 @@ TYPED_TEST(Continuum, HasTheAreaOfItsPolygonAndGradientsOfLinearFieldsExactly) {
   for (const auto& point : Shape::quadrature()) {
     const Gradient<double, Shape> gradient(point, X);
     area += gradient.volume;
-    EXPECT_LE(largest_entry(gradient.of(u) - H), 20 * epsilon);  // some ten operations
+    EXPECT_LE(largest_entry(gradient.of(u).full() - H), 20 * epsilon);  // some ten operations
     EXPECT_NEAR(point.value.sum(), 1, 4 * epsilon);
     EXPECT_LE(largest_entry(gradient.dN.rowwise().sum()), 20 * epsilon);
   }

@@ -85,7 +85,7 @@ TEST(MeanDilatation, HasOneVolumeAndNoForceWhereItIsInverted) {
   const MeanDilatation<double, double, Quad4, Kinematics::plane_mean_dilatation> element(X, 1.0, u);
   std::array<double, 4> J;
   for (std::size_t q = 0; q < 4; ++q) {
-    const Mat<double, 3> F = Mat<double, 3>::Identity() + element.strain(q);
+    const Mat<double, 3> F = Mat<double, 3>::Identity() + element.strain(q).full();
     J[q] = F(2, 2) * (F(0, 0) * F(1, 1) - F(0, 1) * F(1, 0));
     EXPECT_NEAR(J[q], J[0], 1e-14);
   }

@@ -1,0 +1,72 @@
+/// What the elements of a body do, as a table of functions for each shape and scalar. A function visits all elements of
+/// a body, so that the law and the kinematics are looked up once; the templates of core/solids/elements.hpp that it is
+/// made of are compiled in one source for a shape (core/model/elements/), and in no other.
+#pragma once
+
+#include "core/algebra/reverse.hpp"
+#include "core/model/slots.hpp"
+
+namespace stickslip {
+
+/// Elements of one body. `only`: those that are visited; nullptr: all.
+template <class T>
+struct BodyElements {
+  const Model& model;
+  const Slots<T>& slots;
+  int b;
+  const std::vector<int>* only = nullptr;
+
+  const BodyMesh& body() const { return model.bodies[b]; }
+  int count() const { return only ? static_cast<int>(only->size()) : body().mesh.element_count(); }
+  int operator[](int k) const { return only ? (*only)[k] : k; }
+};
+
+template <class T>
+struct FlowPoint;  ///< core/model/flow_points.hpp
+template <class T>
+using FlowPointSink = std::function<void(const FlowPoint<T>&)>;
+
+/// The functions behind those of slots.hpp, which say what their arguments are. What they compute is added to the last
+/// argument, or handed to it.
+template <class T>
+struct ElementKernels {
+  void (*forces)(const BodyElements<T>&, const Vector<T>& u, const Vector<T>& memory, Vector<T>& forces);
+  void (*tangents)(const BodyElements<T>&, const BodyMotion<T>* at, const ElementSink<T>& sink);
+  void (*energy)(const BodyElements<T>&, const Vector<T>& u, const Vector<T>& memory, T& energy);
+  void (*plastic_strains)(const BodyElements<T>&, const Vector<T>& memory, const PlasticStrainSink<T>& sink);
+  void (*edge_stretches)(const BodyElements<T>&, const ElementEdge& edge, const Vector<T>& u,
+                         std::vector<ThicknessStretch<T>>& stretches);
+  /// Sets `after`. None in Reverse: the flow of an element is differentiated by itself (core/solids/element_work.hpp).
+  void (*flow)(const BodyElements<T>&, const Vector<T>& u, const Vector<T>& before, const FlowBranches& branches,
+               Vector<T>& after) = nullptr;
+  void (*flow_points)(const BodyElements<T>&, const BodyMotion<T>& at, const FlowPointSink<T>& sink) = nullptr;
+};
+
+/// Stands for the shape of bars and springs.
+template <int D>
+struct TwoNodes {};
+
+/// The table of a shape: core/model/element_kernels_impl.hpp, instantiated by STICKSLIP_ELEMENTS.
+template <class T, class Shape>
+const ElementKernels<T>& kernels_of_shape();
+
+/// The table of body b.
+template <class T>
+const ElementKernels<T>& kernels_of(const Model& model, int b) {
+  const ElementKernels<T>* kernels =
+      with_dimension(model.dimension, []<int D>() { return &kernels_of_shape<T, TwoNodes<D>>(); });
+  with_shape(model.bodies[b].mesh.shape, [&]<class Shape>(Shape) { kernels = &kernels_of_shape<T, Shape>(); });
+  return *kernels;
+}
+
+/// All tables in a scalar: of one shape, and of every one, in one source each.
+#define STICKSLIP_ELEMENTS_OF(T, ...) template const ElementKernels<T>& kernels_of_shape<T, __VA_ARGS__>()
+#define STICKSLIP_ELEMENTS(T)            \
+  STICKSLIP_ELEMENTS_OF(T, TwoNodes<2>); \
+  STICKSLIP_ELEMENTS_OF(T, TwoNodes<3>); \
+  STICKSLIP_ELEMENTS_OF(T, Tri3);        \
+  STICKSLIP_ELEMENTS_OF(T, Quad4);       \
+  STICKSLIP_ELEMENTS_OF(T, Tri6);        \
+  STICKSLIP_ELEMENTS_OF(T, Quad8)
+
+}  // namespace stickslip

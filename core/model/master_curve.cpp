@@ -1,0 +1,159 @@
+#include "core/model/master_curve.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace stickslip {
+namespace {
+
+/// The facets of a side in contact with itself, or of a segment-integrated one, in order along the side. The order does
+/// not depend on numbering. Longer chains of facets come first. A closed chain starts at the vertex farthest from its
+/// mean vertex; among equally far ones at the one with least x, then least y.
+std::vector<std::vector<int>> ordered_facets(const std::vector<std::vector<int>>& facets,
+                                             const Points<double>& points) {
+  std::map<int, int> starting;
+  std::set<int> ends;
+  for (std::size_t f = 0; f < facets.size(); ++f) {
+    starting[facets[f][0]] = static_cast<int>(f);
+    ends.insert(facets[f][1]);
+  }
+  struct Chain {
+    double length = 0;
+    std::vector<int> facets;
+  };
+  std::vector<Chain> chains;
+  std::vector<char> taken(facets.size(), 0);
+  const auto follow = [&](int f) {
+    Chain chain;
+    for (auto next = starting.find(facets[f][0]); next != starting.end() && !taken[next->second];
+         next = starting.find(facets[chain.facets.back()][1])) {
+      taken[next->second] = 1;
+      chain.facets.push_back(next->second);
+      chain.length += (points.col(facets[next->second][1]) - points.col(facets[next->second][0])).norm();
+    }
+    chains.push_back(std::move(chain));
+  };
+  for (std::size_t f = 0; f < facets.size(); ++f)
+    if (ends.count(facets[f][0]) == 0) follow(static_cast<int>(f));
+  for (std::size_t f = 0; f < facets.size(); ++f) {
+    if (taken[f]) continue;
+    follow(static_cast<int>(f));
+    auto& loop = chains.back().facets;
+    const auto place = [&](int facet) -> Vec<double, 2> { return points.col(facets[facet][0]).head<2>(); };
+    Vec<double, 2> middle = Vec<double, 2>::Zero();
+    for (int facet : loop) middle += place(facet) / static_cast<double>(loop.size());
+    const double same = 1e-9 * chains.back().length;
+    const auto comes_first = [&](int a, int b) {
+      const double apart = (place(a) - middle).norm() - (place(b) - middle).norm();
+      if (std::abs(apart) > same) return apart > 0;
+      if (std::abs(place(a)[0] - place(b)[0]) > same) return place(a)[0] < place(b)[0];
+      return place(a)[1] < place(b)[1];
+    };
+    std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end(), comes_first), loop.end());
+  }
+  std::stable_sort(chains.begin(), chains.end(),
+                   [](const Chain& a, const Chain& b) { return a.length > b.length * (1 + 1e-9); });
+  std::vector<std::vector<int>> ordered;
+  for (const auto& chain : chains)
+    for (int f : chain.facets) ordered.push_back(facets[f]);
+  return ordered;
+}
+
+/// Sets what the vertices of a curve in contact with itself may face.
+void set_own_vertices(const Eigen::Matrix2Xd& places, MasterCurve& curve) {
+  for (std::size_t p = 0; p < curve.patches.size(); ++p) {
+    const Patch& patch = curve.patches[p];
+    for (int vertex : {patch.vertices[1], patch.vertices[2]}) {
+      if (curve.own.count(curve.nodes[vertex]) > 0) continue;
+      Vec<double, 2> outward = Vec<double, 2>::Zero();
+      double size = 0;
+      int count = 0;
+      for (const Patch& at : curve.patches)
+        if (at.vertices[1] == vertex || at.vertices[2] == vertex) {
+          const Vec<double, 2> along = places.col(at.vertices[2]) - places.col(at.vertices[1]);
+          outward += Vec<double, 2>(along[1], -along[0]);
+          size += along.norm();
+          ++count;
+        }
+      curve.own.emplace(curve.nodes[vertex], own_vertex(curve.patches, places, vertex, outward, size / count));
+    }
+  }
+}
+
+}  // namespace
+
+QuadraticEdges::QuadraticEdges(const SideSet& side) {
+  for (const auto& edge : side.edges)
+    if (edge.size() == 3) of_middle_[edge[2]] = {edge[0], edge[1], edge[2]};
+}
+
+std::array<int, 3> QuadraticEdges::of_facet(int a, int b) const {
+  for (int node : {a, b})
+    if (const auto found = of_middle_.find(node); found != of_middle_.end()) return found->second;
+  return Segment{}.slave_edge;
+}
+
+Eigen::Matrix2Xd vertices_of(const Polyline& polyline, const Numbers<double>& numbers) {
+  Eigen::Matrix2Xd vertices(2, static_cast<Eigen::Index>(polyline.points.size()));
+  for (Eigen::Index v = 0; v < vertices.cols(); ++v)
+    for (int i = 0; i < 2; ++i) vertices(i, v) = numbers(polyline.points[v][i]);
+  return vertices;
+}
+
+std::vector<std::vector<int>> facets_of(const Polyline& polyline) {
+  const int count = static_cast<int>(polyline.points.size());
+  std::vector<std::vector<int>> facets;
+  for (int v = 0; v + 1 < count + polyline.closed; ++v) facets.push_back({(v + 1) % count, v});
+  return facets;
+}
+
+std::pair<MasterCurve, Eigen::Matrix2Xd> make_curve(const Model& model, const Points<double>& points, int contact_index,
+                                                    int obstacle, std::vector<std::vector<int>> facets) {
+  const Contact& contact = model.scene.contacts[contact_index];
+  MasterCurve curve;
+  curve.contact = contact_index;
+  curve.obstacle = obstacle;
+  Eigen::Matrix2Xd places;
+  if (obstacle >= 0) {
+    const auto& polyline = std::get<Polyline>(model.scene.obstacles[obstacle].shape);
+    places = vertices_of(polyline, model.scene.as<double>());
+    facets = facets_of(polyline);
+    if (contact.segment) std::reverse(facets.begin(), facets.end());  // each begins where the one before ends
+  } else {
+    if (contact.is_of_itself() || contact.segment) facets = ordered_facets(facets, points);
+    std::map<int, int> number;
+    for (auto& facet : facets)
+      for (int& node : facet) {
+        const auto [found, is_new] = number.emplace(node, static_cast<int>(number.size()));
+        if (is_new) curve.nodes.push_back(node);
+        node = found->second;
+      }
+    places.resize(2, static_cast<Eigen::Index>(curve.nodes.size()));
+    for (std::size_t v = 0; v < curve.nodes.size(); ++v)
+      places.col(static_cast<Eigen::Index>(v)) = points.col(curve.nodes[v]).head<2>();
+  }
+  curve.vertex_count = static_cast<int>(places.cols());
+  curve.patches = make_patches(facets, contact.smoothing, contact.corner, places);
+  return {std::move(curve), std::move(places)};
+}
+
+MasterCurve integrated_curve(const Model& model, const Points<double>& points, int contact, int obstacle,
+                             const SideSet& master) {
+  auto [curve, places] = make_curve(model, points, contact, obstacle, master.facets);
+  if (model.scene.contacts[contact].is_of_itself()) set_own_vertices(places, curve);
+  const QuadraticEdges edges(master);
+  const auto node_of = [&, &nodes = curve.nodes](int vertex) {
+    return obstacle >= 0 ? model.node_count + vertex : nodes[vertex];
+  };
+  for (const auto& patch : curve.patches) {
+    const int begin = node_of(patch.vertices[1]), end = node_of(patch.vertices[2]);
+    curve.facets.push_back({begin, end});
+    curve.edges.push_back(edges.of_facet(begin, end));
+    if (patch.previous == Patch::none) curve.ends.push_back(begin);
+    if (patch.next == Patch::none) curve.ends.push_back(end);
+  }
+  return curve;
+}
+
+}  // namespace stickslip

@@ -1,8 +1,0 @@
-#include "methods/penalty.hpp"
-
-namespace stickslip {
-
-template Increment<double> Penalty::solve_increment(Run<double>&, const State<double>&, const std::vector<double>&,
-                                                    double, const Start<double>&) const;
-
-}  // namespace stickslip

@@ -1,8 +1,0 @@
-#include "methods/uzawa.hpp"
-
-namespace stickslip {
-
-template Increment<double> UzawaAL::solve_increment(Run<double>&, const State<double>&, const std::vector<double>&,
-                                                    double, const Start<double>&) const;
-
-}  // namespace stickslip

@@ -1,0 +1,26 @@
+#include "sensitivity/ties/tie.hpp"
+
+#include <type_traits>
+
+namespace stickslip {
+namespace {
+
+enum class HowMany { all, any };
+
+/// The ties of each kind, one kind after the other. `any`: it stops where there are some.
+template <class... Kind>
+std::vector<Tie> found(const SolvedState& of, HowMany wanted, std::type_identity<std::variant<Kind...>>) {
+  std::vector<Tie> ties;
+  static_cast<void>(((Kind::find(of, ties), wanted == HowMany::any && !ties.empty()) || ...));
+  return ties;
+}
+
+constexpr std::type_identity<KindOfTie> all_kinds;
+
+}  // namespace
+
+std::vector<Tie> ties_of(const SolvedState& of) { return found(of, HowMany::all, all_kinds); }
+
+bool has_ties(const SolvedState& of) { return !found(of, HowMany::any, all_kinds).empty(); }
+
+}  // namespace stickslip

@@ -1,0 +1,142 @@
+#include "core/model/contact_geometry.hpp"
+#include "core/model/loading.hpp"
+#include "sensitivity/ties/tie.hpp"
+
+namespace stickslip {
+namespace {
+
+/// A contact point near the vertex of two patches.
+template <class T>
+struct VertexGeometry {
+  T overshoot;    ///< distance past the line that separates the patches, over the length of the first facet
+  double turn;    ///< sine of the angle between the tangents
+  double bend;    ///< jump of the curvature, times the length
+  double length;  ///< of the first facet
+};
+
+double cross(const Vec<double, 2>& a, const Vec<double, 2>& b) { return a[0] * b[1] - a[1] * b[0]; }
+
+/// `compact`: displacements of the contact nodes.
+template <class T>
+VertexGeometry<T> vertex_geometry(const Model& model, const Slots<T>& slots, const Vector<T>& compact, double time,
+                                  int p, int first, int second) {
+  const auto& point = model.points[p];
+  const auto& curve = model.curves[point.curve];
+  const auto positions = detail::positions_at(model, slots, compact, time);
+  const auto placed = [&](int vertex) { return positions.vertex(curve, vertex); };
+  const auto& ends = curve.patches[first].vertices;
+  const Placed<T> vertex = placed(ends[2]);
+  const auto position = [&](int of) -> Vec<T, 2> { return placed(of) - vertex; };
+  const auto end_geometry = [&](int patch, double end) {
+    const auto weights = detail::patch_weights<T>(curve.patches[patch], T(end));
+    const Vec<T, 2> slope = detail::on_patch<T>(curve.patches[patch], weights.slope, position),
+                    bend = detail::on_patch<T>(curve.patches[patch], weights.bend, position);
+    const double speed = value(norm(slope));
+    const Vec<T, 2> tangent = slope / norm(slope);
+    return std::pair(tangent, cross(values(slope), values(bend)) / (speed * speed * speed));
+  };
+  const Vec<T, 2> facet = -position(ends[1]);
+  const Vec<T, 2> x = positions.slave(point) - vertex;
+  const auto [before, bend_before] = end_geometry(first, 1);
+  const auto [after, bend_after] = end_geometry(second, 0);
+  const Vec<T, 2> along = before + after;
+  const T length = norm(facet);
+  return {dot(x, along) / (norm(along) * length), std::abs(cross(values(before), values(after))),
+          std::abs(bend_after - bend_before) * value(length), value(length)};
+}
+
+/// Whether two patches may have a kink at their vertex: not where they join as one B-spline.
+bool has_kink(const Patch& first) { return first.smoothing != Smoothing::b_spline || !first.goes_on_after(); }
+
+/// Whether derivatives jump at the end of a patch. Splines share the tangent there; theirs jump where the curvature
+/// does.
+bool changes_at(const Patch& patch, double bend) {
+  return patch.smoothing == Smoothing::none || !patch.goes_on_after() || bend > straight;
+}
+
+/// Calls f(first, second) for both ends of the patch that point p faces, if another patch joins there.
+template <class F>
+void for_each_vertex(const Model& model, const State<double>& state, int p, F&& f) {
+  const auto& point = model.points[p];
+  if (point.curve < 0 || !point.segments.empty() || state.contact.facing.empty()) return;
+  const auto& patches = model.curves[point.curve].patches;
+  const int now = state.contact.facing[p].patch;
+  if (now == Patch::none) return;
+  for (const auto& [first, second] : {std::pair(patches[now].previous, now), std::pair(now, patches[now].next)}) {
+    if (first == Patch::none || second == Patch::none || !has_kink(patches[first])) continue;
+    const int other = first == now ? second : first;
+    if (point.own.vertex == Patch::none || point.own.may_face(patches, other)) f(first, second);
+  }
+}
+
+bool reads_gaps(const Scene& scene) {
+  return std::any_of(scene.responses.begin(), scene.responses.end(),
+                     [](const Response& response) { return response.kind == Response::Kind::gap; });
+}
+
+}  // namespace
+
+void VertexTie::find(const SolvedState& of, std::vector<Tie>& ties) {
+  const auto& [model, slots, state, memory, rho, cone, time, largest] = of;
+  if (!model.slides_along_curves()) return;
+  const bool all = reads_gaps(model.scene);
+  const Vector<double> compact = to_compact(model, state.displacement);
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    const auto& point = model.points[p];
+    const double negligible = weak_margin * largest;
+    const bool open = state.contact.state[p] == ContactState::open;
+    const bool touches = open && elastic_traction(slots, p) * state.contact.gap[p] <= negligible;
+    if (open && !touches && !all) continue;
+    const bool bears = -state.contact.traction[point.multiplier] > negligible;
+    for_each_vertex(model, state, p, [&](int first, int second) {
+      const auto at = vertex_geometry(model, slots, compact, time, p, first, second);
+      if (!changes_at(model.curves[point.curve].patches[first], at.bend)) return;
+      if (std::abs(at.overshoot) <= weak_margin)
+        ties.emplace_back(VertexTie{p, first, second, !bears || at.turn <= straight});
+    });
+  }
+}
+
+std::vector<Choice> VertexTie::choices(const Model&) const {
+  if (!crosses) return {};
+  return {{first}, {second}};
+}
+
+Choice VertexTie::now(const Model&, const State<double>& at) const { return {at.contact.facing[point].patch}; }
+
+void VertexTie::set(const Model& model, const Choice& choice, State<double>& at) const {
+  const int patch = choice.branch;
+  const double xi = patch == first ? 1 : 0;
+  at.contact.facing[point] = {patch, xi, 0};
+  at.history.patch[point] = patch;
+  const auto& of = model.points[point];
+  if (of.foot >= 0) at.history.foot[of.foot] = xi - detail::foot_reference(model, of, patch);
+}
+
+Verdict VertexTie::verdict(const SidedDerivative& derivative) const {
+  const auto& [of, block, rho, side, scales, flows] = derivative;
+  const auto found = vertex_geometry(of.model, block.slots, to_compact(of.model, block.current.displacement), of.time,
+                                     point, first, second);
+  const double rate = derivative.rate(found.overshoot);
+  const double negligible = scales.negligible(scales.of_mesh / found.length)[0];
+  const bool on_second = of.at.contact.facing[point].patch == second;
+  const double by = (on_second ? -rate : rate) / negligible;
+  if (!(by > 1)) return {};
+  return {crosses, Choice{on_second ? first : second}, by};
+}
+
+void for_each_vertex_way(const Model& model, const Slots<Direction>& slots, const Vector<Direction>& displacement,
+                         const State<double>& state, double time,
+                         const std::function<void(const Direction&, double)>& f) {
+  const Vector<Direction> compact = to_compact(model, displacement);
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    if (state.contact.state[p] == ContactState::open) continue;
+    for_each_vertex(model, state, p, [&](int first, int second) {
+      const auto at = vertex_geometry(model, slots, compact, time, p, first, second);
+      const auto& patch = model.curves[model.points[p].curve].patches[first];
+      if (changes_at(patch, at.bend)) f(at.overshoot, at.length);
+    });
+  }
+}
+
+}  // namespace stickslip

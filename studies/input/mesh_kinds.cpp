@@ -1,0 +1,138 @@
+#include "studies/input/mesh_kinds.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <sstream>
+#include <type_traits>
+#include <utility>
+
+#include "studies/input/described.hpp"
+#include "studies/io/atomic_file.hpp"
+
+namespace stickslip {
+namespace {
+
+using Schema = nlohmann::ordered_json;
+
+// What numbers of one mesh must be beside each other.
+
+void compare(const JsonNode& node, const BoxMesh& box) {
+  for (int axis = 0; axis < 2; ++axis)
+    if (box.max[axis].value <= box.min[axis].value)
+      node.find("max")->elements()[axis].must_be("greater than min, which is " + shown(box.min[axis].value));
+}
+
+void compare(const JsonNode& node, const RingMesh& ring) {
+  if (ring.outer.value <= ring.inner.value)
+    node.find("outer")->must_be("greater than inner, which is " + shown(ring.inner.value));
+}
+
+/// A generator without its type.
+struct MeshKind {
+  const char* key;
+  Filling filling;
+  Schema (*schema)();
+  std::optional<MeshDescription> (*read)(const JsonNode& node, SceneReading& reading);
+};
+
+template <Described M>
+std::optional<MeshDescription> read_generator(const JsonNode& node, SceneReading& reading) {
+  auto mesh = read_described<M>(node, reading);
+  if (!mesh) return std::nullopt;
+  if constexpr (requires { compare(node, *mesh); }) compare(node, *mesh);
+  return *std::move(mesh);
+}
+
+template <std::size_t... i>
+constexpr std::array<MeshKind, sizeof...(i)> mesh_kinds_of(std::index_sequence<i...>) {
+  const auto kind = []<class M>(std::type_identity<M>) {
+    return MeshKind{M::key, M::filling, schema_of_object<M>, read_generator<M>};
+  };
+  return {kind(std::type_identity<std::variant_alternative_t<i, MeshDescription>>())...};
+}
+
+/// All, in the order of MeshDescription, the last of which is the mesh of a file.
+constexpr auto mesh_kinds = mesh_kinds_of(std::make_index_sequence<std::variant_size_v<MeshDescription> - 1>());
+
+/// The mesh file's content, read at most once; none where it cannot be read.
+const MeshFile* mesh_file(const JsonNode& node, const std::string& name, SceneReading& reading) {
+  const std::string path = (reading.folder / name).lexically_normal().string();
+  auto found = reading.mesh_files.find(path);
+  if (found == reading.mesh_files.end()) {
+    constexpr std::uintmax_t most = std::uintmax_t{1} << 30;  // some 10 million nodes
+    if (const std::string fault = unreadable(path, most); !fault.empty()) {
+      node.error("the mesh file " + path + " " + fault);
+      return nullptr;
+    }
+    const std::string text = read_file(path);
+    std::istringstream content(text);
+    found = reading.mesh_files.emplace(path, MeshFile{read_msh(content, path), fingerprint(text)}).first;
+  }
+  reading.mesh_fingerprints[name] = found->second.fingerprint;
+  for (const std::string& error : found->second.content.errors) reading.diagnostics.error({{}, "", error});
+  return &found->second;
+}
+
+std::optional<MeshDescription> read_gmsh(const JsonNode& mesh, const JsonNode& node, SceneReading& reading) {
+  const auto name = node.text();
+  const auto body = mesh.find("body");
+  if (!body) mesh.error(R"(the key "body" is missing: the physical name of a surface in the mesh file)");
+  const auto body_name = body ? body->text() : std::nullopt;
+  const MeshFile* file = name ? mesh_file(node, *name, reading) : nullptr;
+  if (!file || !body_name) return std::nullopt;
+  for (const ImportedMesh& each : file->content.bodies)
+    if (each.body == *body_name) return each;
+  // a file that is at fault may lack the body for that reason
+  if (file->content.errors.empty()) body->error(body_error(file->content, *body_name));
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<MeshDescription> read_mesh(const JsonNode& node, SceneReading& reading) {
+  std::vector<std::string> keys;
+  keys.reserve(mesh_kinds.size() + 1);
+  for (const auto& kind : mesh_kinds) keys.emplace_back(kind.key);
+  keys.emplace_back("gmsh");
+  const auto named = node.kind(keys, {"sphere"}, {"body"});
+  if (!named) return std::nullopt;
+  const auto& [name, mesh] = *named;
+  if (name != "gmsh")
+    if (const auto body = node.find("body")) body->error_at_key("belongs to gmsh, not to " + name);
+  const auto generator = std::find_if(mesh_kinds.begin(), mesh_kinds.end(),
+                                      [&name = name](const MeshKind& kind) { return name == kind.key; });
+  const bool from_file = generator == mesh_kinds.end();
+  if (reading.dimension() == 3 && (from_file || generator->filling == Filling::continuum)) {
+    std::vector<std::string> allowed;
+    for (const auto& kind : mesh_kinds)
+      if (kind.filling != Filling::continuum) allowed.emplace_back(kind.key);
+    mesh.error_at_key(in_quotes(name) +
+                      " in the space solid is not available in this version; allowed: " + listed(allowed));
+    return std::nullopt;
+  }
+  return from_file ? read_gmsh(node, mesh, reading) : generator->read(mesh, reading);
+}
+
+Schema mesh_schema() {
+  Schema properties = Schema::object(), one = Schema::array();
+  for (const auto& kind : mesh_kinds) {
+    properties[kind.key] = kind.schema();
+    one.push_back({{"required", {kind.key}}});
+  }
+  properties["gmsh"] = {
+      {"description", "file of gmsh beside the scene, MSH 2.2 or 4.1 ASCII; sides: its physical curves; with body"},
+      {"type", "string"},
+      {"examples", {"two_half_disks.msh"}}};
+  properties["body"] = {{"description", "beside gmsh: the physical name of a surface in the file"},
+                        {"type", "string"},
+                        {"examples", {"upper"}}};
+  one.push_back({{"required", {"gmsh", "body"}}});
+  return {{"type", "object"},
+          {"title", "one of the following"},
+          {"additionalProperties", false},
+          {"properties", properties},
+          {"oneOf", one}};
+}
+
+}  // namespace stickslip

@@ -1,0 +1,17 @@
+/// Meshes as files name them: schema and readers, made from what each generator says of its keys
+/// (core/algebra/described.hpp); and meshes of files. A generator more needs nothing here.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "studies/input/scene_reading.hpp"
+
+namespace stickslip {
+
+/// The "mesh" of a body; none where it is at fault. Faults are reported.
+std::optional<MeshDescription> read_mesh(const JsonNode&, SceneReading&);
+
+/// JSON Schema of the "mesh" of a body.
+nlohmann::ordered_json mesh_schema();
+
+}  // namespace stickslip

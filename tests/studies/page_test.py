@@ -1,0 +1,194 @@
+#!/usr/bin/env python3
+"""page_test.py STICKSLIP SOURCE: a report as a browser shows it: charts, words, hover, legend, choices, paper, a phone,
+dark. Chromium is driven by its DevTools protocol through a pipe. Exit code 77, which ctest counts as skipped, where
+there is no Chromium."""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+SKIPPED = 77
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+HELPERS = """
+  const pause = (time) => new Promise((done) => setTimeout(done, time));
+  const all = (selector, within = document) => [...within.querySelectorAll(selector)];
+  const seen = (element) => element.getBoundingClientRect();
+  const until = async (holds) => { for (let i = 0; i < 200 && !holds(); ++i) await pause(50); return Boolean(holds()); };
+  const drawn = (figure) => all('.panel:not([hidden]) .vega svg.marks', figure);
+  const chart = document.getElementById('enforcement-responses');
+  const points = () => drawn(chart).slice(0, 1).flatMap(
+      (svg) => all('g.mark-symbol.role-mark path', svg).filter((path) => path.getAttribute('opacity') !== '0'));
+"""
+CHARTS = """
+  const figures = all('figure[data-chart]').filter((figure) => !figure.closest('details'));
+  const plain = (figure) => all('.panel:not([hidden]) .static', figure).some(
+      (place) => !place.hidden && !place.closest('details:not([open])'));
+  for (const figure of figures) { figure.scrollIntoView(); await until(() => drawn(figure).length && !plain(figure)); }
+  const covered = [], words = [];
+  for (const svg of all('.vega svg.marks')) {
+    const texts = all('g.mark-text.role-mark text', svg).filter(
+        (text) => text.textContent && text.getAttribute('opacity') !== '0');
+    const boxes = texts.map(seen), air = 3;  // between lines
+    words.push(...texts.map((text) => text.textContent));
+    boxes.forEach((a, i) => boxes.slice(0, i).forEach((b, j) => {
+      if (a.left < b.right && b.left < a.right && a.top + air < b.bottom && b.top + air < a.bottom)
+        covered.push([texts[i].textContent, texts[j].textContent]);
+    }));
+  }
+  const labels = all('g.role-axis-label text');
+  return {figures: figures.length, bare: figures.filter((figure) => !drawn(figure).length || plain(figure)).length, words,
+          covered, numbers: labels.map((text) => text.textContent), paint: labels[0].getAttribute('fill'),
+          ink: getComputedStyle(document.documentElement).getPropertyValue('--ink').trim(),
+          beyond: document.documentElement.scrollWidth - innerWidth};
+"""
+PLACE_OF_A_POINT = """
+  chart.scrollIntoView();
+  await until(() => points().length > 0);
+  const at = seen(points()[0]);
+  return {x: at.left + at.width / 2, y: at.top + at.height / 2};
+"""
+TOOLTIP = "await until(() => document.querySelector('#vg-tooltip-element.visible'));" \
+          "return document.querySelector('#vg-tooltip-element').textContent;"
+LEGEND = """
+  const button = () => chart.querySelector('.legend button'), before = points().length;
+  button().click();
+  const less = await until(() => points().length < before), pressed = button().getAttribute('aria-pressed');
+  button().click();
+  return {less, pressed, again: await until(() => points().length === before)};
+"""
+CHOICE = """
+  const choice = chart.querySelector('.choices select'), places = () => points().map((path) => seen(path).top).join();
+  const former = places();
+  choice.value = [...choice.options].at(-1).value;
+  choice.dispatchEvent(new Event('change', {bubbles: true}));
+  const data = chart.querySelector('details.data'), more = chart.querySelector('details.panels-folded');
+  data.open = more.open = true;
+  return {changed: await until(() => places() !== former), rows: await until(() => all('tbody tr', data).length > 5),
+          unfolded: await until(() => drawn(more).length > 0)};
+"""
+BEFORE_PAPER = """
+  const open = all('details[open]').length;
+  dispatchEvent(new Event('beforeprint'));
+  const wide = await until(() => Number(drawn(chart)[0].getAttribute('width')) > 600 && all('details[open]').length > open);
+  dispatchEvent(new Event('afterprint'));
+  return {wide, closed: all('details[open]').length === open};
+"""
+
+
+class Browser:
+    """A page in Chromium: a message is a JSON text that ends in a zero, written to its file 3 and read from its 4."""
+
+    def __init__(self, program, folder, page):
+        to_read, self.out = os.pipe()
+        self.into, to_write = os.pipe()
+        places = f"exec {program} \"$@\" 3<&{to_read} 4>&{to_write}"
+        options = ["--headless=new", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe", f"--user-data-dir={folder}"]
+        self.process = subprocess.Popen(["bash", "-c", places, "browser", *options], pass_fds=(to_read, to_write),
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(to_read)
+        os.close(to_write)
+        self.number, self.rest, self.session = 0, b"", {}
+        target = self.ask("Target.createTarget", url="about:blank")["targetId"]
+        self.session = {"sessionId": self.ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]}
+        self.ask("Page.enable")
+        self.page = page
+
+    def message(self):
+        while b"\0" not in self.rest:
+            part = os.read(self.into, 1 << 20)
+            if not part:
+                sys.exit("Chromium ended")
+            self.rest += part
+        text, _, self.rest = self.rest.partition(b"\0")
+        return json.loads(text)
+
+    def ask(self, method, **given):
+        self.number += 1
+        request = {"id": self.number, "method": method, "params": given, **self.session}
+        os.write(self.out, json.dumps(request).encode() + b"\0")
+        answer = self.message()
+        while answer.get("id") != self.number:
+            answer = self.message()
+        return answer["result"]
+
+    def open(self, width, scheme="light"):
+        """Opens the page in a window of that width."""
+        self.ask("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
+        self.ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
+        self.ask("Page.navigate", url=self.page)
+        while self.message().get("method") != "Page.loadEventFired":
+            pass
+
+    def run(self, script):
+        """What the script returns in the page."""
+        answer = self.ask("Runtime.evaluate", expression="(async () => {" + HELPERS + script + "})()", awaitPromise=True,
+                          returnByValue=True)
+        if "exceptionDetails" in answer:
+            sys.exit(json.dumps(answer))
+        return answer["result"].get("value")
+
+    def close(self):
+        self.ask("Page.disable")
+        self.process.terminate()
+        self.process.wait()
+
+
+def check(name, holds, found):
+    if not holds:
+        sys.exit(f"{name}: {json.dumps(found)[:3000]}")
+
+
+def check_charts(name, found):
+    check(name, found["figures"] >= 4 and found["bare"] == 0, found)
+    check(f"{name}: words cover each other", not found["covered"], found)
+    check(f"{name}: wider than the window", found["beyond"] <= 0, found)
+    check(f"{name}: numbers of axes", not [text for text in found["numbers"] if "+" in text or "\u2212" in text], found)
+    check(f"{name}: colours", found["paint"] == found["ink"], found)
+
+
+def check_page(browser):
+    browser.open(1200)
+    wide = browser.run(CHARTS)
+    check_charts("charts", wide)
+    check("words at the ends of lines", {"1e-8", "exactly 0"} <= set(wide["words"]) and
+          any(words.startswith("Uzawa AL scale=") for words in wide["words"]), wide)
+    browser.ask("Input.dispatchMouseEvent", type="mouseMoved", **browser.run(PLACE_OF_A_POINT))
+    tooltip = browser.run(TOOLTIP)
+    check("hover", "method" in tooltip and "factorisations" not in tooltip and "Penalty" in tooltip, tooltip)
+    legend = browser.run(LEGEND)
+    check("legend", legend == {"less": True, "pressed": "false", "again": True}, legend)
+    choice = browser.run(CHOICE)
+    check("choice", all(choice.values()), choice)
+    paper = browser.run(BEFORE_PAPER)
+    check("paper", all(paper.values()), paper)
+    check("paper", len(browser.ask("Page.printToPDF")["data"]) > 100_000, "no PDF")
+    browser.open(390)
+    check_charts("a phone", browser.run(CHARTS))
+    browser.open(1200, "dark")
+    dark = browser.run(CHARTS)
+    check_charts("dark", dark)
+    check("dark", dark["ink"] != wide["ink"], dark)
+
+
+def main():
+    program, source = sys.argv[1], pathlib.Path(sys.argv[2])
+    chromium = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if not chromium:
+        print("skipped: there is no Chromium here (Debian: apt install chromium)")
+        sys.exit(SKIPPED)
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+        study = pathlib.Path(folder) / "study"
+        subprocess.run([program, "study", source / "studies/scenes/greco_plate.study.json", "-o", study],
+                       check=True, capture_output=True)
+        browser = Browser(chromium, pathlib.Path(folder) / "profile", (study / "report.html").as_uri())
+        try:
+            check_page(browser)
+        finally:
+            browser.close()
+
+
+if __name__ == "__main__":
+    main()
