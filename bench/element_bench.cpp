@@ -2,7 +2,7 @@
 /// per element); forces that carry derivatives; and the assembly of the sparse engine, its pattern included.
 #include <benchmark/benchmark.h>
 
-#include "core/engine/sparse_engine.hpp"
+#include "core/engine/engine.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace stickslip {
@@ -54,7 +54,8 @@ void assembly(benchmark::State& state, const std::string& element) {
   const Plate<double> plate(static_cast<int>(state.range(0)), element);
   long nonzeros = 0;
   for (auto _ : state) {
-    const SparseEngine<double> engine(plate.model, plate.slots, true, ConeRadius::augmented, Backend::eigen);
+    const auto engine =
+        sparse_engine(plate.model, plate.slots, system_kind(plate.model, true, ConeRadius::augmented, Backend::eigen));
     nonzeros = engine.nonzeros();
   }
   per_element(state, plate.model);

@@ -3,6 +3,7 @@
 
 #include "core/engine/engine.hpp"
 #include "core/engine/shared_forces.hpp"
+#include "core/model/point_tangent.hpp"
 #include "sensitivity/rays.hpp"
 #include "sensitivity/redundancy.hpp"
 

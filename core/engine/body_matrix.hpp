@@ -1,44 +1,14 @@
 /// The bodies' stiffness as one sparse matrix over chosen dofs, in the frames of the nodes (model/frames.hpp).
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
-#include "core/algebra/linear_solver.hpp"
+#include "core/engine/body_rows.hpp"
 #include "core/model/frames.hpp"
 
 namespace stickslip {
-
-/// Rows of dense blocks that add up to a matrix, one list after another; -1: a row that is not there.
-struct RowLists {
-  std::vector<int> start = {0};  ///< one more than there are lists
-  std::vector<int> row;
-  void add(const std::vector<int>& rows);
-  int count() const { return static_cast<int>(start.size()) - 1; }
-};
-
-/// Bodies by their stiffness: all, those of which it is constant, and the others.
-enum class BodyKind { all, constant, changing };
-bool is_among(const Model& model, std::size_t body, BodyKind kind);
-
-/// One list for each element, body by body: where each of its dofs (node-major) stands in the matrix.
-RowLists element_rows(const Model& model, const std::vector<int>& row_of_dof, BodyKind kind = BodyKind::all);
-
-/// Pattern of a sum of such blocks; every diagonal entry is stored.
-std::shared_ptr<Pattern> make_pattern(int size, const RowLists& lists);
-
-/// The matrix of the bodies of constant stiffness, with their contact dofs, prescribed ones among them, behind the
-/// other free ones.
-struct ContactLast {
-  std::vector<int> interior;  ///< free dofs outside the contact, as rows follow one another
-  std::vector<int> contact;   ///< dofs of the contact, likewise
-  RowLists lists;
-  std::shared_ptr<Pattern> pattern;
-};
-ContactLast with_contact_last(const Model& model);
-
-/// Entry of (row, column) in the pattern. pre: it exists.
-int locate(const Pattern& pattern, int row, int column);
 
 /// Values of the bodies' tangent on a pattern, whose first lists are those of element_rows(). `at`: the motion where it
 /// is taken; nullptr: the start.
@@ -73,6 +43,40 @@ std::vector<T> assemble_bodies(const Model& model, const Slots<T>& slots, const 
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     if (is_among(model, b, kind)) for_each_framed_tangent<T>(model, slots, static_cast<int>(b), at, std::ref(add));
   return values;
+}
+
+/// The bodies' tangent as a part of a system: on its pattern, over its dofs.
+template <class T>
+struct BodyMatrix {
+  std::vector<int> row_of_dof;  ///< -1: none
+  std::vector<int> dofs;        ///< of the rows
+  RowLists lists = {};          ///< of the blocks that add up to it; none where it stays as it is
+  std::shared_ptr<Pattern> pattern = nullptr;
+  std::vector<T> values = {};
+
+  /// The matrix times vectors of all dofs, or its transpose; zero where there is no row.
+  Matrix<T> times(const Matrix<T>& u, bool transposed) const;
+  double largest_diagonal() const;
+};
+
+template <class T>
+Matrix<T> BodyMatrix<T>::times(const Matrix<T>& u, bool transposed) const {
+  Matrix<T> rows = Matrix<T>::Zero(u.rows(), u.cols());
+  for (std::size_t j = 0; j < dofs.size(); ++j)
+    for (int k = pattern->column_start[j]; k < pattern->column_start[j + 1]; ++k)
+      if (pattern->row[k] < static_cast<int>(dofs.size())) {
+        const int row = dofs[pattern->row[k]], column = dofs[j];
+        rows.row(transposed ? column : row) += values[k] * u.row(transposed ? row : column);
+      }
+  return rows;
+}
+
+template <class T>
+double BodyMatrix<T>::largest_diagonal() const {
+  double largest = 0;
+  for (int i = 0; i < static_cast<int>(dofs.size()); ++i)
+    largest = std::max(largest, value(values[locate(*pattern, i, i)]));
+  return largest;
 }
 
 /// Of a scalar that is solved in: as STICKSLIP_SLOTS.

@@ -34,36 +34,48 @@ void put_rows(const From& rows, const std::vector<int>& dofs, To& all) {
 }  // namespace detail
 
 template <class T>
+bool SchurFactor<T>::factorise(std::vector<T> values) {
+  const int others = pattern->size - kept;
+  shift = detail::shift_of(*pattern, values, others);
+  for (int k = 0; k < kept; ++k) values[locate(*pattern, others + k, others + k)] += shift[k];
+  return solver.factorise(values.data());
+}
+
+template <class T>
+Matrix<T> SchurFactor<T>::schur() {
+  Matrix<T> S = solver.schur_complement();
+  S.diagonal() -= shift.template cast<T>();
+  return T(0.5) * (S + S.transpose());
+}
+
+template <class T>
 Condensation<T>::Condensation(const Model& model, Backend backend)
-    : model_(model), rows_(with_contact_last(model)), solver_(backend) {
-  if (!rows_.interior.empty())
-    solver_.analyse(rows_.pattern, Symmetry::positive_definite, static_cast<int>(rows_.contact.size()));
-  counters.analyses = solver_.counters().analyses;
+    : model_(model), rows_(constant_bodies(model)), factor_{LinearSolver<T>(backend)} {
+  factor_.kept = static_cast<int>(rows_.contact.size());
+  if (!rows_.interior.empty()) factor_.solver.analyse(rows_.pattern, Symmetry::positive_definite, factor_.kept);
+  counters.analyses = factor_.solver.counters().analyses;
 }
 
 template <class T>
 bool Condensation<T>::factorise(const Slots<T>& slots) {
   const Pattern& pattern = *rows_.pattern;
-  const int interior = static_cast<int>(rows_.interior.size()), contacts = static_cast<int>(rows_.contact.size());
+  const int contacts = static_cast<int>(rows_.contact.size());
   auto values = assemble_bodies<T>(model_, slots, rows_.lists, pattern, nullptr, BodyKind::constant);
   rows_.lists = {};
-  if (interior == 0) {
+  rows_.row_of_dof = std::vector<int>();
+  if (rows_.interior.empty()) {
     schur_ = Matrix<T>::Zero(contacts, contacts);
     for (int j = 0; j < contacts; ++j)
       for (int e = pattern.column_start[j]; e < pattern.column_start[j + 1]; ++e) schur_(pattern.row[e], j) = values[e];
     return valid_ = true;
   }
-  const Vector<double> shift = detail::shift_of(pattern, values, interior);
-  for (int k = 0; k < contacts; ++k) values[locate(pattern, interior + k, interior + k)] += shift[k];
-  valid_ = solver_.factorise(values.data());
-  if (valid_) schur_ = solver_.schur_complement();
-  counters.analyses = solver_.counters().analyses;
-  counters.factorizations = solver_.counters().factorizations;
-  counters.backsolves = solver_.counters().backsolves;
-  if (!valid_) return false;
-  schur_.diagonal() -= shift.template cast<T>();
-  schur_ = (T(0.5) * (schur_ + schur_.transpose())).eval();
-  return true;
+  factor_.pattern = rows_.pattern;
+  valid_ = factor_.factorise(std::move(values));
+  if (valid_) schur_ = factor_.schur();
+  counters.analyses = factor_.solver.counters().analyses;
+  counters.factorizations = factor_.solver.counters().factorizations;
+  counters.backsolves = factor_.solver.counters().backsolves;
+  return valid_;
 }
 
 template <class T>
@@ -82,7 +94,7 @@ Reduction<T> Condensation<T>::reduce(const Matrix<T>& rows) {
       detail::take_rows(rows.col(inside[k]), rows_.interior, b.block(0, column, interior, 1));
       detail::take_rows(rows.col(inside[k]), rows_.contact, b.block(interior, column, contacts, 1));
     }
-    solved = solver_.reduce(b);
+    solved = factor_.solver.reduce(b);
     if (b.cols() == rows.cols()) return solved;
   }
   Reduction<T> reduced{Matrix<T>(contacts, rows.cols()),
@@ -102,7 +114,7 @@ Matrix<T> Condensation<T>::expand(const Matrix<T>& compact, Matrix<T> others, co
   std::vector<int> inside;
   for (std::size_t k = 0; wanted && k < rows_.interior.size(); ++k)
     if (std::binary_search(wanted->begin(), wanted->end(), rows_.interior[k])) inside.push_back(static_cast<int>(k));
-  const Matrix<T> expanded = solver_.expand(compact, std::move(others), wanted ? &inside : nullptr);
+  const Matrix<T> expanded = factor_.solver.expand(compact, std::move(others), wanted ? &inside : nullptr);
   detail::put_rows(expanded, rows_.interior, all);
   return all;
 }

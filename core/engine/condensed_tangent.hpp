@@ -6,82 +6,211 @@
 ///
 /// K is symmetric, and K_ii positive definite but where a body buckles. One Cholesky factorisation with the contact
 /// dofs last makes S = K_cc - K_ci K_ii^-1 K_ic, whatever friction does to the symmetry of C. The rest is the dense
-/// system of core/engine/contact_system.hpp, of those contact dofs that points touch (core/engine/untouched_rows.hpp),
+/// system of core/engine/dense_system.hpp, of those contact dofs that points touch (core/engine/untouched_rows.hpp),
 /// so that points which change their branches while K stays cost no sparse factor. The sparse pattern is that of the
 /// bodies alone, and stays the same wherever points slide to.
 #pragma once
 
-#include <memory>
-#include <vector>
+#include <utility>
 
-#include "core/engine/body_matrix.hpp"
-#include "core/engine/contact_system.hpp"
-#include "core/engine/tangent_system.hpp"
+#include "core/engine/condensation_impl.hpp"
+#include "core/engine/dense_system.hpp"
+#include "core/engine/full_bodies.hpp"
 #include "core/engine/untouched_rows.hpp"
 
 namespace stickslip {
 
-/// Rows of the bodies: their free dofs, those of the contact last.
-struct CondensedRows {
-  std::vector<int> row_of_dof;  ///< -1: prescribed
-  std::vector<int> dofs;        ///< of the rows
-  int kept = 0;                 ///< how many rows are of the contact
-  RowLists lists;               ///< of the elements
-  std::shared_ptr<Pattern> pattern;
-
-  explicit CondensedRows(const Model& model);
-};
-
-/// Whether tangents can be condensed: those of contact between bodies with something inside, whose tangents change and
-/// are symmetric and, as long as no path leads past its limit points, definite.
-bool can_condense_tangents(const Model& model);
-
+/// Rows of the engine are over all dofs.
 template <class T>
 class CondensedTangent : public TangentSystem<T> {
  public:
-  /// Orders and analyses the bodies' matrix. `symmetry`: of the whole tangent.
-  CondensedTangent(const Model& model, const Slots<T>& slots, bool unknown_multipliers, Symmetry symmetry,
-                   Backend backend);
+  /// Orders and analyses the bodies' matrix. `bodies` must outlive it.
+  CondensedTangent(const Model& model, const Slots<T>& slots, const SystemKind& kind, FullBodies<T>& bodies);
 
-  const CondensedRows& rows() const { return rows_; }
-  const std::vector<int>& row_of_dof() const override { return rows_.row_of_dof; }
-  const std::vector<int>& dofs() const override { return rows_.dofs; }
-  const Pattern& pattern() const override { return *rows_.pattern; }
-  /// Size of the bodies' factor, and rows of the dense system at the start where no point is open.
-  FactorSize factor_size() const { return solver_.factor_size(); }
+  /// Size of the bodies' factor, its rows and those of the contact among them, and entries of its pattern.
+  FactorSize factor_size() const { return factor_.solver.factor_size(); }
+  int rows() const { return matrix_.pattern->size; }
+  int kept() const { return factor_.kept; }
+  /// Rows of the dense system at the start where no point is open.
   int dense_rows() const { return dense_rows_; }
-  /// Takes the bodies' matrix, values on the pattern of rows(). False where K_ii is not positive definite.
-  bool condense(const std::vector<T>& bodies, Counters& counters);
-  /// Contact dofs that the dense system has: those that points have touched since condense().
-  const std::vector<int>& touched() const { return untouched_.touched(); }
-  /// Gives the dense system these contact dofs. pre: condense() returned true.
-  void touch(const std::vector<int>& rows);
-  /// Makes the dense factor. pre: condense() returned true. `hold`: ContactSystem::factorise.
-  bool factorise(const std::vector<PointTangent<T>>& tangents, const Vector<double>& hold);
+
+  void take_over() override { take_bodies(); }
+  void take_bodies() override {
+    matrix_.values = bodies_.tangent(matrix_);
+    condensed_ = false;
+  }
+  /// Condenses the bodies' tangent. False where K_ii is not positive definite.
+  bool accepts_bodies(Counters& counters) override { return condensed_ || condense(counters); }
+  Matrix<T> times(const Matrix<T>& u, bool transposed) const override { return matrix_.times(u, transposed); }
+  double stiffness() const override { return matrix_.largest_diagonal(); }
+  /// (A tangent that depends on the displacement alone may serve again.)
+  const Vector<T>* condensed_at() const override {
+    return condensed_ && model_.memory_count == 0 && model_.followers.empty() ? bodies_.linearised_at() : nullptr;
+  }
+
+  bool factorise(const std::vector<PointTangent<T>>& tangents, const Vector<double>& hold, Counters& counters) override;
   BlockVector<T> solve(const BlockVector<T>& rows, Solving how) override;
-  bool reversed() const override { return system_.reversed(); }  // (K_ii is positive definite)
+  bool reversed() const override { return dense_.reversed(); }  // (K_ii is positive definite)
   /// The larger one of the bodies' and the dense system's.
-  double condition_estimate() override;
-  const std::string& message() const override { return system_.message(); }
+  double condition_estimate() override {
+    return std::max(factor_.solver.condition_estimate(), dense_.condition_estimate());
+  }
+  EngineMemory<T> memory() const override;
+  void restore(const EngineMemory<T>& memory, Counters& counters) override;
+
+  bool is_free(Eigen::Index row) const override { return matrix_.row_of_dof[row] >= 0; }
+  bool condenses_tangents() const override { return true; }
+  const std::string& message() const override { return dense_.message(); }
   std::string name() const override;
+  int unknowns() const override {
+    return static_cast<int>(matrix_.dofs.size()) + (kind_.unknown_multipliers ? model_.multiplier_count : 0);
+  }
+  long nonzeros() const override { return matrix_.pattern->nonzeros(); }
   void add_holdings(EngineHoldings& held) const override;
 
  private:
+  bool condense(Counters& counters);
   /// Per contact dof: whether a point of these tangents touches it, or what holds the nodes.
   std::vector<char> touched_by(const std::vector<PointTangent<T>>& tangents, const Vector<double>& hold) const;
   void eliminate_all_but(const std::vector<char>& touched);
 
   const Model& model_;
-  CondensedRows rows_;
-  int dense_rows_;
+  const SystemKind kind_;
+  FullBodies<T>& bodies_;
+  BodyMatrix<T> matrix_;  ///< rows of the contact last
+  SchurFactor<T> factor_;
+  int dense_rows_ = 0;
   bool analysis_counted_ = false;
-  std::vector<int> kept_;  ///< place of the kept rows among the contact dofs, in their order
-  Matrix<T> schur_;        ///< over all contact dofs; zero where they are prescribed
+  bool condensed_ = false;  ///< the last tangent that was taken
+  std::vector<int> kept_;   ///< place of the kept rows among the contact dofs, in their order
+  Matrix<T> schur_;         ///< over all contact dofs; zero where they are prescribed
   UntouchedRows<T> untouched_;
   bool eliminated_ = false;  ///< the untouched rows, of the present S
-  LinearSolver<T> solver_;
-  ContactSystem<T> system_;
+  DenseSystem<T> dense_;
 };
+
+template <class T>
+CondensedTangent<T>::CondensedTangent(const Model& model, const Slots<T>& slots, const SystemKind& kind,
+                                      FullBodies<T>& bodies)
+    : model_(model),
+      kind_(kind),
+      bodies_(bodies),
+      factor_{LinearSolver<T>(kind.backend)},
+      dense_(model, slots, kind, untouched_.reduced()) {
+  ContactLast rows = all_bodies(model);
+  factor_.pattern = rows.pattern;
+  factor_.kept = static_cast<int>(rows.contact.size());
+  factor_.solver.analyse(rows.pattern, Symmetry::positive_definite, factor_.kept);
+  matrix_ = {std::move(rows.row_of_dof), std::move(rows.interior), std::move(rows.lists), std::move(rows.pattern)};
+  matrix_.dofs.insert(matrix_.dofs.end(), rows.contact.begin(), rows.contact.end());
+  const auto contacts = static_cast<Eigen::Index>(model.contact_nodes.size()) * model.dimension;
+  for (Eigen::Index c = 0; c < contacts; ++c)
+    if (dense_.is_free(c)) kept_.push_back(static_cast<int>(c));
+  schur_ = Matrix<T>::Zero(contacts, contacts);
+  const auto touched = touched_by(std::vector<PointTangent<T>>(model.points.size()), {});
+  dense_rows_ = kind.unknown_multipliers ? model.multiplier_count : 0;
+  for (int row : kept_) dense_rows_ += touched[row];
+}
+
+template <class T>
+std::vector<char> CondensedTangent<T>::touched_by(const std::vector<PointTangent<T>>& tangents,
+                                                  const Vector<double>& hold) const {
+  const int D = model_.dimension;
+  std::vector<char> touched(schur_.rows(), hold.size() > 0);
+  for (std::size_t p = 0; p < tangents.size(); ++p)
+    for (int place : tangents[p].places.empty() ? model_.points[p].places : tangents[p].places)
+      std::fill_n(touched.begin() + place * D, D, 1);
+  return touched;
+}
+
+template <class T>
+bool CondensedTangent<T>::condense(Counters& counters) {
+  if (!std::exchange(analysis_counted_, true)) ++counters.analyses;
+  const auto before = factor_.solver.counters();
+  const bool valid = factor_.factorise(matrix_.values);
+  counters.factorizations += factor_.solver.counters().factorizations - before.factorizations;
+  if (!valid || factor_.solver.counters().fallbacks > before.fallbacks) return false;
+  const Matrix<T> S = factor_.schur();
+  for (int j = 0; j < factor_.kept; ++j)
+    for (int i = 0; i < factor_.kept; ++i) schur_(kept_[i], kept_[j]) = S(i, j);
+  eliminated_ = false;
+  return condensed_ = true;
+}
+
+template <class T>
+void CondensedTangent<T>::eliminate_all_but(const std::vector<char>& touched) {
+  untouched_.eliminate(schur_, kept_, touched);
+  dense_.take_rows(untouched_.touched());
+  eliminated_ = true;
+}
+
+template <class T>
+bool CondensedTangent<T>::factorise(const std::vector<PointTangent<T>>& tangents, const Vector<double>& hold,
+                                    Counters& counters) {
+  ++counters.assemblies;
+  auto touched = touched_by(tangents, hold);
+  if (!eliminated_ || !untouched_.has(touched)) {
+    if (eliminated_)  // points go on: what they touched they may touch again
+      for (int row : untouched_.touched()) touched[row] = 1;
+    eliminate_all_but(touched);
+  }
+  Counters of_dense;  // (the bodies' factor is the one that counts)
+  return dense_.factorise(tangents, hold, of_dense);
+}
+
+template <class T>
+BlockVector<T> CondensedTangent<T>::solve(const BlockVector<T>& rows, Solving how) {
+  const Eigen::Index columns = rows.u.cols();
+  Matrix<T> b(this->rows(), columns);
+  detail::take_rows(rows.u, matrix_.dofs, b);
+  auto reduced = factor_.solver.reduce(b);
+  Matrix<T> contact = Matrix<T>::Zero(schur_.rows(), columns);
+  detail::put_rows(reduced.kept, kept_, contact);
+  auto solved = dense_.solve({untouched_.reduce(contact), rows.l}, how);
+  untouched_.expand(contact, solved.u);
+  Matrix<T> kept(factor_.kept, columns);
+  detail::take_rows(solved.u, kept_, kept);
+  Matrix<T> x(this->rows(), columns);
+  x.topRows(x.rows() - factor_.kept) = factor_.solver.expand(kept, std::move(reduced.others));
+  x.bottomRows(factor_.kept) = kept;
+  BlockVector<T> out{Matrix<T>::Zero(model_.dof_count(), columns), solved.l};
+  detail::put_rows(x, matrix_.dofs, out.u);
+  return out;
+}
+
+template <class T>
+EngineMemory<T> CondensedTangent<T>::memory() const {
+  const Vector<T>* at = condensed_at();
+  return at ? EngineMemory<T>{.condensed_at = *at, .touched = untouched_.touched()} : EngineMemory<T>{};
+}
+
+template <class T>
+void CondensedTangent<T>::restore(const EngineMemory<T>& memory, Counters& counters) {
+  condensed_ = false;
+  if (memory.condensed_at.size() == 0) return;
+  bodies_.linearise({memory.condensed_at, Vector<T>()});
+  take_bodies();
+  condense(counters);
+  std::vector<char> touched(schur_.rows(), false);
+  for (int row : memory.touched) touched[row] = true;
+  eliminate_all_but(touched);
+}
+
+template <class T>
+std::string CondensedTangent<T>::name() const {
+  return "sparse, tangents condensed by " + factor_.solver.name() + ", dense " + dense_.factor_name();
+}
+
+template <class T>
+void CondensedTangent<T>::add_holdings(EngineHoldings& held) const {
+  dense_.add_holdings(held);
+  held.bodies = static_cast<long>(matrix_.values.size() * sizeof(T));
+  held.condensed = static_cast<long>(schur_.size() * sizeof(T)) + untouched_.bytes();
+  held.matrix += matrix_.pattern->bytes();
+  held.matrix_entries = static_cast<long>(matrix_.pattern->nonzeros());
+  held.factor += factor_.solver.factor_bytes();
+  held.factor_entries = factor_.solver.factor_nonzeros();
+}
 
 extern template class CondensedTangent<double>;
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/engine/sparse_engine.hpp"
+#include "core/engine/body_rows.hpp"
 
 namespace stickslip {
 namespace {
@@ -72,10 +72,8 @@ EnginePrice price_of_changing(const Model& model, bool unknown_multipliers, Symm
 
 }  // namespace
 
-bool can_condense(const Model& model) { return model.effects.linear_bulk || has_mixed_bodies(model); }
-
 FactorSize bodies_factor(const Model& model) {
-  const ContactLast rows = with_contact_last(model);
+  const ContactLast rows = constant_bodies(model);
   if (rows.pattern->size == 0) return {};
   return predict_factor(rows.pattern, static_cast<int>(rows.contact.size()));
 }

@@ -14,9 +14,6 @@ struct EnginePrice {
   double condensed = 0;  ///< as far as bodies can be; infinite where none can
 };
 
-/// Whether all bodies can be condensed, or some of them.
-bool can_condense(const Model& model);
-
 /// Factor of the bodies of constant stiffness that condenses them, the contact dofs eliminated last; analysed, not
 /// made.
 FactorSize bodies_factor(const Model& model);

@@ -3,89 +3,202 @@
 /// laid out anew where a point gets further.
 #pragma once
 
-#include <optional>
+#include <cmath>
+#include <numeric>
 
-#include "core/engine/body_matrix.hpp"
-#include "core/engine/tangent_system.hpp"
+#include "core/engine/full_bodies.hpp"
+#include "core/engine/point_system.hpp"
 
 namespace stickslip {
 
 template <class T>
-class SparseSystem : public TangentSystem<T> {
+class SparseSystem : public PointSystem<T> {
  public:
-  using Places = std::vector<std::vector<int>>;  ///< per point: places of its nodes (Model::contact_nodes)
+  /// `bodies` must outlive it.
+  SparseSystem(const Model& model, const Slots<T>& slots, const SystemKind& kind, const FullBodies<T>& bodies);
 
-  /// `row_of_dof`, `dofs`: rows of the bodies; both must outlive it.
-  SparseSystem(const Model& model, const Slots<T>& slots, bool unknown_multipliers, Symmetry symmetry, Backend backend,
-               const std::vector<int>& row_of_dof, const std::vector<int>& dofs)
-      : model_(model),
-        slots_(slots),
-        unknown_multipliers_(unknown_multipliers),
-        symmetry_(symmetry),
-        row_of_dof_(row_of_dof),
-        dofs_(dofs),
-        size_(static_cast<int>(dofs.size()) + (unknown_multipliers ? model.multiplier_count : 0)),
-        solver_(backend) {}
-
-  /// Those of the points where nothing has slid.
-  Places places_at_start() const;
-  /// Makes the pattern of these blocks of the bodies and of points with these places. Returns all blocks.
-  RowLists lay_out(RowLists bodies, const Places& places);
-  /// Places that have room for these tangents; none where the pattern has.
-  std::optional<Places> places_for(const std::vector<PointTangent<T>>& tangents) const;
-  const Places& places() const { return places_; }  ///< that the pattern has; none slides: empty
-
-  /// Makes the factor anew. `bodies`: their matrix on the pattern. `hold`: as of Engine::factorise().
-  bool factorise(const std::vector<T>& bodies, const std::vector<PointTangent<T>>& tangents, const Vector<double>& hold,
-                 Counters& counters);
-  /// Whether the factor is that of these tangents up to rounding, as long as the bodies' matrix is the same.
-  bool is_factor_of(const std::vector<PointTangent<T>>& tangents, const Vector<double>& hold) const {
-    return valid_ && detail::same_values(hold, held_) && detail::same_tangents(tangents, factorised_);
-  }
-  /// In place of factorise(), where few points changed since and the bodies' matrix is the same.
-  bool update(const std::vector<PointTangent<T>>& tangents, const Vector<double>& hold, Counters& counters);
-  void drop_update() { update_.clear(); }
-  int solves() const { return update_.empty() ? 1 : 2; }
-
-  const std::vector<int>& row_of_dof() const override { return row_of_dof_; }
-  const std::vector<int>& dofs() const override { return dofs_; }
-  const Pattern& pattern() const override { return *pattern_; }
-  BlockVector<T> solve(const BlockVector<T>& rows, Solving how) override;
-  bool reversed() const override;
+  void take_over() override { lay_out({}); }
+  void take_bodies() override { matrix_.values = bodies_.tangent(matrix_); }
+  Matrix<T> times(const Matrix<T>& u, bool transposed) const override { return matrix_.times(u, transposed); }
+  double stiffness() const override { return matrix_.largest_diagonal(); }
   double condition_estimate() override { return solver_.condition_estimate(); }
-  const std::string& message() const override { return solver_.message(); }
-  std::string name() const override { return solver_.name(); }
-  void add_holdings(EngineHoldings& held) const override;
-  int size() const { return size_; }
+  EngineMemory<T> memory() const override { return {places_, model_.effects.linear_bulk ? made_ : FactorRecipe<T>{}}; }
+  void restore(const EngineMemory<T>& memory, Counters& counters) override {
+    if (memory.places != places_) lay_out(memory.places);
+    this->restore_factor(memory.factor, counters);
+  }
 
-  FactorRecipe<T> recipe() const { return {valid_, factorised_, held_, update_}; }
-  /// Goes back to a factor that was made from `recipe`: later solves have the same bits as they had then.
-  void restore(const FactorRecipe<T>& recipe, const std::vector<T>& bodies, Counters& counters);
+  bool is_free(Eigen::Index row) const override { return matrix_.row_of_dof[row] >= 0; }
+  const std::string& message() const override { return solver_.message(); }
+  std::string name() const override {
+    const std::string by = solver_.name();
+    return by.empty() ? "sparse" : "sparse, " + by;
+  }
+  long nonzeros() const override { return matrix_.pattern->nonzeros(); }
+  void add_holdings(EngineHoldings& held) const override;
 
  private:
-  /// Rows of a point's entries.
-  std::vector<int> rows_of(std::size_t p, const std::vector<int>& places) const;
+  using PointSystem<T>::model_, PointSystem<T>::kind_, PointSystem<T>::displacements_, PointSystem<T>::multipliers_,
+      PointSystem<T>::row_of_contact_, PointSystem<T>::row_of_multiplier_, PointSystem<T>::made_;
+  using Places = std::vector<std::vector<int>>;  ///< per point: places of its nodes (Model::contact_nodes)
+
+  /// Makes the pattern for points with these places, and assembles the bodies. `places`: empty: where nothing has slid.
+  void lay_out(Places places);
+  const std::vector<int>& places_with_room(std::size_t p) const {
+    return places_.empty() ? model_.points[p].places : places_[p];
+  }
+  bool has_room() const;
   /// Places of a point whose tangent it is, with those of the patches around.
   std::vector<int> places_around(std::size_t p, const PointTangent<T>& tangent) const;
-  void add_points(const std::vector<PointTangent<T>>& tangents);
+  /// Entry of each (row, column) pair of these rows; -1: of a row that is not there.
+  std::vector<int> entries_of(const std::vector<int>& rows) const;
+  void add_points();
 
-  const Model& model_;
-  const Slots<T>& slots_;
-  bool unknown_multipliers_;
-  Symmetry symmetry_;
-  const std::vector<int>&row_of_dof_, &dofs_;
-  int size_;
-  Places places_;
-  std::shared_ptr<Pattern> pattern_;
-  std::vector<std::vector<int>> point_map_;  ///< per point: entry of each (row, column) pair of its rows, -1 if fixed
-  std::vector<T> values_;
+  bool make_factor(Counters& counters) override;
+  Matrix<T> solve_factor(const Matrix<T>& b, bool transposed) override { return solver_.solve(b, transposed); }
+  Matrix<T> multiply(const Matrix<T>& x, bool transposed) const override;
+  int determinant_sign() const override { return solver_.determinant_sign(); }
+
+  const FullBodies<T>& bodies_;
+  BodyMatrix<T> matrix_;  ///< of the bodies alone
+  Places places_;         ///< that the pattern has room for; empty: those of the points where nothing has slid
+  std::vector<std::vector<int>> point_map_;  ///< per point: entries_of its rows; none where points slide along curves
+  std::vector<T> values_;                    ///< that are factorised
   LinearSolver<T> solver_;
-  bool analysed_ = false, valid_ = false;
-  std::vector<PointTangent<T>> factorised_;
-  TangentUpdate update_;
-  Vector<double> held_;
+  bool analysed_ = false;
 };
 
-extern template class SparseSystem<double>;
+template <class T>
+SparseSystem<T>::SparseSystem(const Model& model, const Slots<T>& slots, const SystemKind& kind,
+                              const FullBodies<T>& bodies)
+    : PointSystem<T>(model, slots, kind),
+      bodies_(bodies),
+      matrix_{bodies.row_of_dof(), bodies.dofs()},
+      solver_(kind.backend) {
+  displacements_ = matrix_.dofs;
+  multipliers_.resize(kind.unknown_multipliers ? model.multiplier_count : 0);
+  std::iota(multipliers_.begin(), multipliers_.end(), 0);
+  row_of_multiplier_.resize(multipliers_.size());
+  std::iota(row_of_multiplier_.begin(), row_of_multiplier_.end(), static_cast<int>(displacements_.size()));
+  row_of_contact_.reserve(model.contact_nodes.size() * model.dimension);
+  for (int node : model.contact_nodes)
+    for (int i = 0; i < model.dimension; ++i) row_of_contact_.push_back(matrix_.row_of_dof[node * model.dimension + i]);
+}
+
+template <class T>
+void SparseSystem<T>::lay_out(Places places) {
+  places_ = std::move(places);
+  const bool slides = model_.slides_along_curves();
+  auto lists = bodies_.blocks(matrix_.row_of_dof);
+  for (std::size_t p = 0; p < model_.points.size(); ++p) lists.add(this->rows_of(p, places_with_room(p)));
+  matrix_.pattern = make_pattern(static_cast<int>(this->size()), lists);
+  matrix_.lists = std::move(lists);
+  take_bodies();
+  if (model_.effects.linear_bulk) matrix_.lists = {};
+  point_map_.clear();
+  if (!slides) point_map_.reserve(model_.points.size());
+  for (std::size_t p = 0; p < model_.points.size() && !slides; ++p)
+    point_map_.push_back(entries_of(this->rows_of(p, model_.points[p].places)));
+  analysed_ = false;
+}
+
+template <class T>
+std::vector<int> SparseSystem<T>::entries_of(const std::vector<int>& rows) const {
+  std::vector<int> map;
+  map.reserve(rows.size() * rows.size());
+  for (int row : rows)
+    for (int column : rows) map.push_back(row < 0 || column < 0 ? -1 : locate(*matrix_.pattern, row, column));
+  return map;
+}
+
+template <class T>
+std::vector<int> SparseSystem<T>::places_around(std::size_t p, const PointTangent<T>& tangent) const {
+  std::vector<int> places = tangent.places;
+  std::sort(places.begin(), places.end());
+  if (model_.points[p].curve < 0) return places;
+  const auto& curve = model_.curves[model_.points[p].curve];
+  const auto add = [&](const Patch& patch) {
+    for (int vertex : patch.vertices)
+      if (vertex != Patch::none) places.push_back(curve.places[vertex]);
+  };
+  const auto is_faced = [&](const Patch& patch) {
+    const auto holds = [&](int vertex) {
+      return std::find(tangent.places.begin(), tangent.places.end(), curve.places[vertex]) != tangent.places.end();
+    };
+    return holds(patch.vertices[1]) || holds(patch.vertices[2]);
+  };
+  if (curve.obstacle < 0 && tangent.places.size() > 1)
+    for (const auto& patch : curve.patches)
+      if (is_faced(patch)) add(patch);
+  std::sort(places.begin(), places.end());
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  return places;
+}
+
+/// Whether the pattern has room for the tangents of made_.
+template <class T>
+bool SparseSystem<T>::has_room() const {
+  for (std::size_t p = 0; p < made_.tangents.size(); ++p) {
+    const auto& room = places_with_room(p);
+    for (int place : made_.tangents[p].places)
+      if (!std::binary_search(room.begin(), room.end(), place)) return false;
+  }
+  return true;
+}
+
+template <class T>
+void SparseSystem<T>::add_points() {
+  for (std::size_t p = 0; p < made_.tangents.size(); ++p) {
+    const auto own =
+        point_map_.empty() ? entries_of(this->rows_of(p, this->places_of(p, made_.tangents[p]))) : std::vector<int>();
+    const auto& map = point_map_.empty() ? own : point_map_[p];
+    const int n = static_cast<int>(std::lround(std::sqrt(static_cast<double>(map.size()))));
+    this->for_each_entry_of(p, made_.tangents[p], [&](int row, int column, const T& x) {
+      if (const int entry = map[row * n + column]; entry >= 0) values_[entry] += x;
+    });
+  }
+}
+
+template <class T>
+bool SparseSystem<T>::make_factor(Counters& counters) {
+  if (model_.slides_along_curves() && !has_room()) {
+    Places places;
+    for (std::size_t p = 0; p < made_.tangents.size(); ++p)
+      places.push_back(made_.tangents[p].places.empty() ? places_with_room(p) : places_around(p, made_.tangents[p]));
+    lay_out(std::move(places));
+  }
+  values_ = matrix_.values;
+  this->for_each_hold([&](int row, const T& x) { values_[locate(*matrix_.pattern, row, row)] += x; });
+  add_points();
+  if (!std::exchange(analysed_, true)) {
+    solver_.analyse(matrix_.pattern, kind_.symmetry);
+    ++counters.analyses;
+  }
+  const long before = solver_.counters().factorizations;
+  const bool valid = solver_.factorise(values_.data());
+  counters.factorizations += solver_.counters().factorizations - before;
+  return valid;
+}
+
+template <class T>
+Matrix<T> SparseSystem<T>::multiply(const Matrix<T>& x, bool transposed) const {
+  const Pattern& pattern = *matrix_.pattern;
+  Matrix<T> product = Matrix<T>::Zero(x.rows(), x.cols());
+  for (int j = 0; j < pattern.size; ++j)
+    for (int k = pattern.column_start[j]; k < pattern.column_start[j + 1]; ++k)
+      product.row(transposed ? j : pattern.row[k]) += values_[k] * x.row(transposed ? pattern.row[k] : j);
+  return product;
+}
+
+template <class T>
+void SparseSystem<T>::add_holdings(EngineHoldings& held) const {
+  held.bodies = static_cast<long>(matrix_.values.size() * sizeof(T));
+  held.unsymmetric = kind_.symmetry == Symmetry::general;
+  held.matrix = static_cast<long>(values_.size() * sizeof(T)) + matrix_.pattern->bytes();
+  for (const auto& map : point_map_) held.matrix += static_cast<long>(map.size() * sizeof(int));
+  held.factor = solver_.factor_bytes();
+  held.matrix_entries = static_cast<long>(matrix_.pattern->nonzeros());
+  held.factor_entries = solver_.factor_nonzeros();
+}
 
 }  // namespace stickslip

@@ -61,7 +61,7 @@ std::optional<Solutions<T>> try_all_branches(Run<T>& run, const State<T>& previo
   if (!can_try_all_branches(run.model)) return std::nullopt;
   if (!run.condensation) run.condensation = std::make_shared<Condensation<T>>(run.model, run.slots, Backend::automatic);
   if (!run.condensation->valid()) return std::nullopt;
-  CondensedEngine<T> engine(run.model, run.slots, false, ConeRadius::augmented, run.condensation);
+  auto engine = condensed_engine(run.model, run.slots, SystemKind{}, run.condensation);  // (factorises nothing)
   const auto initial = initial_regularisation(run.slots, run.method);
   const auto rho = factor.empty() ? initial : adapted(initial, factor);
   const ContactInput<T> input{run.model, run.slots, rho, previous.history, ConeRadius::augmented, time};

@@ -28,7 +28,7 @@
 
 #include <optional>
 
-#include "core/engine/condensed_engine.hpp"
+#include "core/engine/engine.hpp"
 #include "core/model/loading.hpp"
 #include "methods/stepping/increment.hpp"
 
@@ -115,7 +115,7 @@ Vector<double> damping(const Model& model, const Slots<T>& slots, const std::vec
 ///   engine  its begin() has applied loads and prescribed motions, and returned `u`
 ///   stored  tractions of the penalty's history; nullptr: constraints are exact, and rho is not read
 template <class T>
-ContactProblem contact_problem(const ContactInput<T>& input, const CondensedEngine<T>& engine, const Vector<T>& u,
+ContactProblem contact_problem(const ContactInput<T>& input, const Engine<T>& engine, const Vector<T>& u,
                                const Matrix<T>& schur, const Vector<T>* stored) {
   const Model& model = input.model;
   ContactProblem problem;
@@ -171,7 +171,7 @@ ContactProblem contact_problem(const ContactInput<T>& input, const CondensedEngi
 
 /// The state of a solution, without its dissipation. `u`: as above.
 template <class T>
-State<T> as_state(const ContactInput<T>& input, CondensedEngine<T>& engine, Vector<T> u, const ContactProblem& problem,
+State<T> as_state(const ContactInput<T>& input, const Engine<T>& engine, Vector<T> u, const ContactProblem& problem,
                   const BranchSolution& solution) {
   for (std::size_t i = 0; i < problem.dofs.size(); ++i) u[problem.dofs[i]] += T(solution.increment[i]);
   State<T> state;

@@ -4,7 +4,8 @@ namespace stickslip {
 
 EnginePrice predict_price(const Model& model, const Method& method, const FactorSize& factor) {
   const bool unknown = has_unknown_multipliers(method);
-  return predict_price(model, unknown, detail::symmetry_of(model, unknown, cone_radius_of(method)), factor);
+  const auto kind = system_kind(model, unknown, cone_radius_of(method), Backend::automatic);
+  return predict_price(model, unknown, kind.symmetry, factor);
 }
 
 bool condenses(const Model& model, const Method& method, LinearAlgebra::Engine engine,

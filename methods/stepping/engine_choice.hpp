@@ -1,9 +1,9 @@
 /// Which engine solves a run, by predicted prices, and the engine itself.
 #pragma once
 
-#include "core/engine/condensed_engine.hpp"
+#include "core/engine/condensed_tangent.hpp"
 #include "core/engine/engine_price.hpp"
-#include "core/engine/sparse_engine.hpp"
+#include "core/engine/sparse_system.hpp"
 #include "methods/stepping/run.hpp"
 
 namespace stickslip {
@@ -16,19 +16,31 @@ EnginePrice predict_price(const Model& model, const Method& method, const Factor
 bool condenses(const Model& model, const Method& method, LinearAlgebra::Engine engine,
                const std::optional<FactorSize>& factor = std::nullopt);
 
-/// What condenses the tangents of a run, analysed; nothing where they are not condensed.
+/// What condenses the tangents of a run, analysed; nothing where they are not condensed. `bodies` must outlive it.
 template <class T>
-std::shared_ptr<CondensedTangent<T>> make_condensed_tangent(const Model& model, const Slots<T>& slots,
-                                                            const Method& method, const LinearAlgebra::Engine engine,
-                                                            Backend backend) {
+std::unique_ptr<CondensedTangent<T>> make_condensed_tangent(const Model& model, const Slots<T>& slots,
+                                                            const SystemKind& kind, LinearAlgebra::Engine engine,
+                                                            FullBodies<T>& bodies) {
   if (!can_condense_tangents(model) || engine == LinearAlgebra::Engine::sparse) return nullptr;
-  const bool unknown = has_unknown_multipliers(method);
-  const auto symmetry = detail::symmetry_of(model, unknown, cone_radius_of(method));
-  auto tangent = std::make_shared<CondensedTangent<T>>(model, slots, unknown, symmetry, backend);
+  auto tangent = std::make_unique<CondensedTangent<T>>(model, slots, kind, bodies);
   if (engine == LinearAlgebra::Engine::automatic &&
-      !prefers_condensed_tangents(tangent->factor_size(), tangent->dense_rows(), symmetry))
+      !prefers_condensed_tangents(tangent->factor_size(), tangent->dense_rows(), kind.symmetry))
     tangent.reset();
   return tangent;
+}
+
+/// The engine of bodies none of which is condensed: each tangent is, or it is sparse.
+template <class T>
+Engine<T> engine_of_full_bodies(const Model& model, const Slots<T>& slots, const SystemKind& kind,
+                                LinearAlgebra::Engine engine) {
+  if constexpr (std::is_same_v<T, double>) {
+    auto bodies = std::make_unique<FullBodies<T>>(model, slots);
+    if (auto tangent = make_condensed_tangent(model, slots, kind, engine, *bodies)) {
+      auto instead = std::make_unique<SparseSystem<T>>(model, slots, kind, *bodies);
+      return {model, slots, std::move(bodies), std::move(tangent), std::move(instead)};
+    }
+  }
+  return sparse_engine(model, slots, kind);
 }
 
 /// Makes the engine of a run: dense on the contact dofs if all bodies are condensed, otherwise sparse. If the workspace
@@ -36,28 +48,21 @@ std::shared_ptr<CondensedTangent<T>> make_condensed_tangent(const Model& model, 
 template <class T>
 void make_engine(const Model& model, const Slots<T>& slots, const Method& method, const RunOptions& options,
                  Workspace<T>& workspace) {
-  const bool unknown_multipliers = has_unknown_multipliers(method);
-  const ConeRadius cone = cone_radius_of(method);
+  const auto kind = system_kind(model, has_unknown_multipliers(method), cone_radius_of(method), options.backend);
   const auto engine = options.linear_algebra.engine;
-  std::shared_ptr<Condensation<T>> condensed;  // the condensable bodies of a mixed scene
   if (can_condense(model) && engine != LinearAlgebra::Engine::sparse) {
     auto bodies = workspace.condensation;
     const bool shared = bodies != nullptr;
     if (!bodies) bodies = std::make_shared<Condensation<T>>(model, options.backend);
     if (shared || condenses(model, method, engine, bodies->factor_size())) {
       if (!std::exchange(workspace.condensation, bodies)) bodies->factorise(slots);
-      if (bodies->valid() && !model.effects.linear_bulk) condensed = bodies;
-      if (bodies->valid() && model.effects.linear_bulk) {
-        workspace.engine = std::make_shared<CondensedEngine<T>>(model, slots, unknown_multipliers, cone, bodies);
+      if (bodies->valid()) {
+        workspace.engine = std::make_shared<Engine<T>>(condensed_engine(model, slots, kind, std::move(bodies)));
         return;
       }
     }
   }
-  std::shared_ptr<CondensedTangent<T>> tangent;
-  if constexpr (std::is_same_v<T, double>)
-    if (!condensed) tangent = make_condensed_tangent(model, slots, method, engine, options.backend);
-  workspace.engine = std::make_shared<SparseEngine<T>>(model, slots, unknown_multipliers, cone, options.backend,
-                                                       std::move(condensed), std::move(tangent));
+  workspace.engine = std::make_shared<Engine<T>>(engine_of_full_bodies(model, slots, kind, engine));
 }
 
 }  // namespace stickslip

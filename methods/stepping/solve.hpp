@@ -218,7 +218,7 @@ Uniqueness uniqueness_of(Run<T>& run) {
     if (!run.condensation->valid()) return Uniqueness::unique;
     const RegularisationField<double> rho(model.points.size(), {1, 1});
     const auto start = initial_state<double>(model, run.slots);
-    CondensedEngine<double> engine(model, run.slots, false, ConeRadius::augmented, run.condensation);
+    auto engine = condensed_engine(model, run.slots, SystemKind{}, run.condensation);  // (factorises nothing)
     const ContactInput<double> input{model, run.slots, rho, start.history};
     const auto u = engine.begin(0, start.displacement, {});
     return uniqueness_of(contact_problem<double>(input, engine, u, run.condensation->schur(), nullptr));

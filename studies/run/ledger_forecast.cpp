@@ -41,13 +41,17 @@ struct Size {
   Condensed what() const { return condensed ? Condensed::all : mixed ? Condensed::part : Condensed::nothing; }
 };
 
+SystemKind kind_of(const Input& input, const Model& model) {
+  return system_kind(model, has_unknown_multipliers(input.method), cone_radius_of(input.method), input.backend);
+}
+
 Size size_of(const Input& input, const Model& model) {
   Size n{};
   const bool condenses_some = condenses(model, input.method, input.linear_algebra.engine);
   n.condensed = condenses_some && model.effects.linear_bulk;
   n.mixed = condenses_some && !n.condensed;
   n.unknown = has_unknown_multipliers(input.method);
-  n.unsymmetric = detail::symmetry_of(model, n.unknown, cone_radius_of(input.method)) == Symmetry::general;
+  n.unsymmetric = kind_of(input, model).symmetry == Symmetry::general;
   n.dofs = model.dof_count();
   n.contact_dofs = static_cast<double>(model.contact_nodes.size()) * model.dimension;
   n.free = static_cast<double>(model.free_dofs.size());
@@ -260,11 +264,11 @@ Factors condensed_factors(const Model& model, const Size& n) {
 Factors condensed_tangent_factors(const CondensedTangent<double>& tangent, bool unsymmetric) {
   constexpr double of_touched = 5;
   Factors out;
-  const double rows = tangent.dense_rows(), kept = tangent.rows().kept;
+  const double rows = tangent.dense_rows(), kept = tangent.kept();
   const FactorSize size = tangent.factor_size();
-  out.tangent_entries = {"", static_cast<double>(tangent.rows().pattern->nonzeros())};
+  out.tangent_entries = {"", static_cast<double>(tangent.nonzeros())};
   out.dense = rows * rows;
-  const double within = std::max(of_touched, of_library(tangent.rows().pattern->size));
+  const double within = std::max(of_touched, of_library(tangent.rows()));
   out.tangent = {"factor", real_bytes * (size.entries + rows * rows) / (unsymmetric ? 2 : 1), within};
   out.stored = {"factor_entries", static_cast<double>(size.entries), within};
   out.schur = {"condensed", 2 * real_bytes * kept * kept, of_touched};  // and what is left of it
@@ -273,9 +277,10 @@ Factors condensed_tangent_factors(const CondensedTangent<double>& tangent, bool 
 
 Factors sparse_factors(const Input& input, const Problem& problem, const Size& n) {
   const Model& model = problem.model;
+  FullBodies<double> bodies(model, problem.slots);
   if (const auto tangent = n.mixed ? nullptr
-                                   : make_condensed_tangent<double>(model, problem.slots, input.method,
-                                                                    input.linear_algebra.engine, input.backend))
+                                   : make_condensed_tangent(model, problem.slots, kind_of(input, model),
+                                                            input.linear_algebra.engine, bodies))
     return condensed_tangent_factors(*tangent, n.unsymmetric);
   Factors out;
   std::optional<MixedRows> mixed;

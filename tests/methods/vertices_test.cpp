@@ -1,7 +1,7 @@
 /// Points that go to and fro between two facets, and are kept on one (Evaluator::keep_patches).
 #include <gtest/gtest.h>
 
-#include "core/engine/sparse_engine.hpp"
+#include "core/engine/engine.hpp"
 #include "methods/newton/residuals.hpp"
 #include "tests/support/sliding_scenes.hpp"
 
@@ -13,7 +13,7 @@ TEST(KeptPatches, MayBeLeftByAFacetAndNoFarther) {
   scene.contacts[0].smoothing = Smoothing::none;
   const Model model = make_model(scene);
   const auto slots = make_slots<double>(model, scene.as<double>());
-  SparseEngine<double> engine(model, slots, true, ConeRadius::augmented, Backend::automatic);
+  auto engine = sparse_engine(model, slots, system_kind(model, true, ConeRadius::augmented, Backend::automatic));
   const RegularisationField<double> rho(model.points.size(), {1, 1});
   const auto start = initial_state<double>(model, slots);
   const ContactInput<double> input{model, slots, rho, start.history, ConeRadius::augmented, 0.1};

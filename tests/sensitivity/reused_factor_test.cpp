@@ -2,7 +2,7 @@
 /// refined, or the tangent is factorised anew. Held by engines that hand on a factor of another tangent.
 #include <gtest/gtest.h>
 
-#include "core/engine/sparse_engine.hpp"
+#include "core/engine/sparse_system.hpp"
 #include "sensitivity/schemes.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/solved.hpp"
@@ -13,10 +13,10 @@ namespace {
 using namespace scenes;
 
 /// Says of whatever factor it has that it is that of the tangents asked for.
-class CarelessEngine : public SparseEngine<double> {
+class CarelessSystem : public SparseSystem<double> {
  public:
-  using SparseEngine::SparseEngine;
-  bool update(const std::vector<PointTangent<double>>&, Counters&, const Vector<double>& = {}) override { return true; }
+  using SparseSystem::SparseSystem;
+  bool update(const std::vector<PointTangent<double>>&, const Vector<double>&, Counters&) override { return true; }
 };
 
 struct Outcome {
@@ -33,7 +33,10 @@ Outcome differentiate_last(const Scene& scene, const M& method, std::optional<do
   const State<double>& previous =
       increments.size() > 1 ? increments[increments.size() - 2].state : run.trajectory.initial;
   constexpr bool unknown = std::is_same_v<M, MonolithicAL>;
-  CarelessEngine engine(run.model, run.slots, unknown, method.cone_radius(), Backend::automatic);
+  const auto kind = system_kind(run.model, unknown, method.cone_radius(), Backend::automatic);
+  auto bodies = std::make_unique<FullBodies<double>>(run.model, run.slots);
+  auto system = std::make_unique<CarelessSystem>(run.model, run.slots, kind, *bodies);
+  Engine<double> engine(run.model, run.slots, std::move(bodies), std::move(system));
   auto blocks = parameter_blocks(run.model);
   for (auto& block : blocks) {
     block.previous.multiplier = lift(previous.multiplier);

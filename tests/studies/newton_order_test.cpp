@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "core/engine/sparse_engine.hpp"
+#include "core/engine/engine.hpp"
 #include "methods/method.hpp"
 #include "tests/studies/cases.hpp"
 #include "tests/support/tangents.hpp"
@@ -55,8 +55,8 @@ struct Solved {
 std::vector<double> roundings(const Solved& s) {
   const auto& [model, slots, unused] = *s.problem;
   const auto multipliers = std::holds_alternative<MonolithicAL>(s.method) ? Multipliers::unknown : Multipliers::given;
-  SparseEngine<double> engine(model, slots, multipliers == Multipliers::unknown, ConeRadius::augmented,
-                              Backend::automatic);
+  auto engine = sparse_engine(
+      model, slots, system_kind(model, multipliers == Multipliers::unknown, ConeRadius::augmented, Backend::automatic));
   Account account;
   const Anchor<double> none;
   std::vector<double> all;

@@ -4,10 +4,11 @@
 #include <memory>
 #include <vector>
 
-#include "core/engine/condensed_engine.hpp"
-#include "core/engine/sparse_engine.hpp"
+#include "core/engine/condensation.hpp"
+#include "core/engine/engine.hpp"
 #include "core/model/facings.hpp"
 #include "core/model/loading.hpp"
+#include "core/model/point_tangent.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -60,15 +61,12 @@ struct EngineProblem {
     open.states.assign(states.size(), ContactState::open);
     return open.tangents();
   }
-  SparseEngine<double> sparse(bool unknown) const {
-    return {model, slots, unknown, ConeRadius::augmented, Backend::automatic};
-  }
+  SystemKind kind(bool unknown) const { return system_kind(model, unknown, ConeRadius::augmented, Backend::automatic); }
+  Engine<double> sparse(bool unknown) const { return sparse_engine(model, slots, kind(unknown)); }
   std::shared_ptr<Condensation<double>> condensation() const {
     return std::make_shared<Condensation<double>>(model, slots, Backend::automatic);
   }
-  CondensedEngine<double> condensed(bool unknown) const {
-    return {model, slots, unknown, ConeRadius::augmented, condensation()};
-  }
+  Engine<double> condensed(bool unknown) const { return condensed_engine(model, slots, kind(unknown), condensation()); }
   /// Rows with zeros at prescribed dofs.
   Matrix<double> rows(int columns) const {
     Matrix<double> r(model.dof_count(), columns);

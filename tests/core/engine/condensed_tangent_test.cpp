@@ -1,6 +1,9 @@
 /// Tangents of bodies that change, condensed: the sparse engine with them against the same with one sparse factor.
+#include "core/engine/condensed_tangent.hpp"
+
 #include <gtest/gtest.h>
 
+#include "core/engine/sparse_system.hpp"
 #include "tests/support/engine_problem.hpp"
 #include "tests/support/sliding_scenes.hpp"
 
@@ -10,17 +13,21 @@ namespace {
 struct Pair {
   EngineProblem problem;
   bool unknown;
-  SparseEngine<double> plain, condensed;
+  Engine<double> plain, condensed;
 
   Pair(const Scene& scene, bool unknown_multipliers)
       : problem(scene),
         unknown(unknown_multipliers),
         plain(problem.sparse(unknown)),
-        condensed(problem.model, problem.slots, unknown, ConeRadius::augmented, Backend::automatic, nullptr,
-                  std::make_shared<CondensedTangent<double>>(
-                      problem.model, problem.slots, unknown,
-                      detail::symmetry_of(problem.model, unknown, ConeRadius::augmented), Backend::automatic)) {
+        condensed(engine_that_condenses()) {
     for (auto* engine : {&plain, &condensed}) engine->begin(1, problem.u, memory());
+  }
+  Engine<double> engine_that_condenses() const {
+    const auto kind = problem.kind(unknown);
+    auto bodies = std::make_unique<FullBodies<double>>(problem.model, problem.slots);
+    auto system = std::make_unique<CondensedTangent<double>>(problem.model, problem.slots, kind, *bodies);
+    auto instead = std::make_unique<SparseSystem<double>>(problem.model, problem.slots, kind, *bodies);
+    return {problem.model, problem.slots, std::move(bodies), std::move(system), std::move(instead)};
   }
   Vector<double> memory() const { return Vector<double>::Zero(problem.model.memory_count); }
   /// Both engines at a motion, with the tangents of the problem.
@@ -78,10 +85,10 @@ TEST(CondensedTangent, HasTheDenseRowsThatPointsTouch) {
   for (const bool unknown : {false, true}) {
     Pair pair(scenes::sliding_die(), unknown);
     auto& problem = pair.problem;
-    const CondensedTangent<double> tangent(problem.model, problem.slots, unknown, Symmetry::general,
-                                           Backend::automatic);
+    FullBodies<double> bodies(problem.model, problem.slots);
+    const CondensedTangent<double> tangent(problem.model, problem.slots, problem.kind(unknown), bodies);
     const int multipliers = unknown ? problem.model.multiplier_count : 0;
-    EXPECT_LT(tangent.dense_rows(), tangent.rows().kept + multipliers);
+    EXPECT_LT(tangent.dense_rows(), tangent.kept() + multipliers);
     Counters of_plain, of_condensed;
     pair.factorise(0.01 * problem.u, of_plain, of_condensed);
     pair.expect_same_solutions();

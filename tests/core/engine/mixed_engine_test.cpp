@@ -14,14 +14,14 @@ struct Pair {
   EngineProblem problem;
   Vector<double> memory;
   std::shared_ptr<Condensation<double>> condensation = problem.condensation();
-  SparseEngine<double> full, mixed;
+  Engine<double> full, mixed;
   Vector<double> of_mixed;  ///< engine displacement
 
   explicit Pair(const Scene& scene, bool unknown = false)
       : problem(scene),
         memory(1e-3 * derivatives::arbitrary(problem.model.memory_count, 7).cwiseAbs()),
         full(problem.sparse(unknown)),
-        mixed(problem.model, problem.slots, unknown, ConeRadius::augmented, Backend::automatic, condensation) {
+        mixed(condensed_engine(problem.model, problem.slots, problem.kind(unknown), condensation)) {
     full.begin(time, problem.u, memory);
     of_mixed = mixed.begin(time, problem.u, memory);
   }

@@ -1,0 +1,143 @@
+/// The tangent of condensed bodies and contact points: a dense system of the contact dofs and the multipliers.
+///
+///   [ S + C_uu  C_ul ]
+///   [ C_lu      C_ll ]      S: the bodies on their contact dofs (engine/condensation.hpp); C: of the points
+///
+/// Rows of the multipliers of open points hold nothing but these, and are left out of the factor. Vectors u are over
+/// the contact dofs (Layout::compact), l over the multipliers.
+#pragma once
+
+#include "core/algebra/dense_factor.hpp"
+#include "core/engine/point_system.hpp"
+
+namespace stickslip {
+
+template <class T>
+class DenseSystem : public PointSystem<T> {
+ public:
+  /// `stiffness`: S; must outlive the system.
+  DenseSystem(const Model& model, const Slots<T>& slots, const SystemKind& kind, const Matrix<T>& stiffness);
+
+  /// From the next factorise() on the system has these displacements alone: of the free ones, all that points touch.
+  void take_rows(const std::vector<int>& rows) {
+    displacements_ = rows;
+    std::fill(row_of_contact_.begin(), row_of_contact_.end(), -1);
+    for (std::size_t i = 0; i < rows.size(); ++i) row_of_contact_[rows[i]] = static_cast<int>(i);
+  }
+
+  // (S stays as it is, or is looked after by whoever changes it)
+  void take_over() override {}
+  void take_bodies() override {}
+  Matrix<T> times(const Matrix<T>& u, bool /*transposed*/) const override { return stiffness_ * u; }  // (symmetric)
+  double stiffness() const override {
+    double largest = 0;
+    for (Eigen::Index i = 0; i < stiffness_.rows(); ++i) largest = std::max(largest, value(stiffness_(i, i)));
+    return largest;
+  }
+  BlockVector<T> solve(const BlockVector<T>& rows, Solving how) override;
+  double condition_estimate() override { return made_.valid ? factor_.condition_estimate() : 0; }
+  EngineMemory<T> memory() const override { return {.factor = made_}; }
+  void restore(const EngineMemory<T>& memory, Counters& counters) override {
+    this->restore_factor(memory.factor, counters);
+  }
+
+  bool is_free(Eigen::Index row) const override { return free_[row]; }
+  bool has_costly_factors() const override { return false; }
+  const std::string& message() const override { return factor_.message(); }
+  std::string factor_name() const { return kind_.symmetry == Symmetry::positive_definite ? "LL^T" : "LU"; }
+  std::string name() const override { return "condensed, dense " + factor_name(); }
+  long nonzeros() const override { return static_cast<long>(this->unknowns()) * this->unknowns(); }
+  void add_holdings(EngineHoldings& held) const override {
+    held.matrix_entries = held.factor_entries = static_cast<long>(matrix_.size());
+    held.matrix = static_cast<long>(matrix_.size() * sizeof(T));
+    held.factor = factor_.bytes();
+    held.unsymmetric = kind_.symmetry == Symmetry::general;
+  }
+
+ private:
+  using PointSystem<T>::model_, PointSystem<T>::kind_, PointSystem<T>::displacements_, PointSystem<T>::multipliers_,
+      PointSystem<T>::row_of_contact_, PointSystem<T>::row_of_multiplier_, PointSystem<T>::made_;
+
+  bool make_factor(Counters& counters) override;
+  void take_multipliers();
+  Matrix<T> solve_factor(const Matrix<T>& b, bool transposed) override { return factor_.solve(b, transposed); }
+  Matrix<T> multiply(const Matrix<T>& x, bool transposed) const override {
+    return transposed ? Matrix<T>(matrix_.transpose() * x) : Matrix<T>(matrix_ * x);
+  }
+  int determinant_sign() const override { return factor_.determinant_sign(); }
+  bool leaves_out(const PointTangent<T>& tangent) const override {
+    return kind_.unknown_multipliers && tangent.row_w.cwiseAbs().maxCoeff() == 0;
+  }
+
+  const Matrix<T>& stiffness_;
+  std::vector<char> free_;   ///< per contact dof
+  Vector<T> open_diagonal_;  ///< of the multiplier rows that are not in the factor
+  Matrix<T> matrix_;         ///< the one that is factorised
+  DenseFactor<T> factor_;
+};
+
+template <class T>
+DenseSystem<T>::DenseSystem(const Model& model, const Slots<T>& slots, const SystemKind& kind,
+                            const Matrix<T>& stiffness)
+    : PointSystem<T>(model, slots, kind), stiffness_(stiffness) {
+  const auto contacts = model.contact_nodes.size() * model.dimension;
+  free_.reserve(contacts);
+  row_of_contact_.reserve(contacts);
+  displacements_.reserve(contacts);
+  for (int node : model.contact_nodes)
+    for (int i = 0; i < model.dimension; ++i) {
+      free_.push_back(model.free_index[node * model.dimension + i] >= 0);
+      row_of_contact_.push_back(free_.back() ? static_cast<int>(displacements_.size()) : -1);
+      if (free_.back()) displacements_.push_back(static_cast<int>(free_.size()) - 1);
+    }
+}
+
+/// Leaves out those of open points.
+template <class T>
+void DenseSystem<T>::take_multipliers() {
+  multipliers_.clear();
+  row_of_multiplier_.assign(model_.multiplier_count, -1);
+  open_diagonal_ = Vector<T>::Constant(model_.multiplier_count, T(1));
+  if (!kind_.unknown_multipliers) return;
+  for (std::size_t p = 0; p < made_.tangents.size(); ++p) {
+    const bool open = leaves_out(made_.tangents[p]);
+    for (int c = 0; c < model_.points[p].components(); ++c) {
+      const int k = model_.points[p].multiplier + c;
+      if (open) {
+        open_diagonal_[k] = made_.tangents[p].row_l(c, c);
+      } else {
+        row_of_multiplier_[k] = static_cast<int>(this->size());
+        multipliers_.push_back(k);
+      }
+    }
+  }
+}
+
+template <class T>
+bool DenseSystem<T>::make_factor(Counters& counters) {
+  take_multipliers();
+  const auto free = static_cast<Eigen::Index>(displacements_.size());
+  Matrix<T>& K = matrix_;
+  K = Matrix<T>::Zero(this->size(), this->size());
+  for (Eigen::Index j = 0; j < free; ++j)
+    for (Eigen::Index i = 0; i < free; ++i) K(i, j) = stiffness_(displacements_[i], displacements_[j]);
+  this->for_each_hold([&](int row, const T& x) { K(row, row) += x; });
+  for (std::size_t p = 0; p < made_.tangents.size(); ++p) {
+    const auto rows = this->rows_of(p, this->places_of(p, made_.tangents[p]));
+    this->for_each_entry_of(p, made_.tangents[p], [&](int row, int column, const T& x) {
+      if (rows[row] >= 0 && rows[column] >= 0) K(rows[row], rows[column]) += x;
+    });
+  }
+  return factor_.factorise(K, kind_.symmetry == Symmetry::positive_definite, counters.factorizations);
+}
+
+template <class T>
+BlockVector<T> DenseSystem<T>::solve(const BlockVector<T>& rows, Solving how) {
+  auto out = PointSystem<T>::solve(rows, how);
+  if (kind_.unknown_multipliers)
+    for (int k = 0; k < model_.multiplier_count; ++k)
+      if (row_of_multiplier_[k] < 0) out.l.row(k) = rows.l.row(k) / open_diagonal_[k];
+  return out;
+}
+
+}  // namespace stickslip

@@ -1,0 +1,11 @@
+#include "core/engine/engine.hpp"
+
+#include "core/engine/condensed_tangent.hpp"
+#include "core/engine/engine_impl.hpp"
+
+namespace stickslip {
+
+template class CondensedTangent<double>;
+STICKSLIP_ENGINES(, double);
+
+}  // namespace stickslip
