@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/engine/engine.hpp"
+#include "core/model/point_tangent.hpp"
 
 namespace stickslip {
 

@@ -143,7 +143,8 @@ void place_open_vertices(const ContactInput<T>& input, const Vector<T>& compact,
     of = point.curve;
     facing.nearest =
         now->search.nearest_of_itself(now->slave(point), now->outward(point), point.own, last_faced(input, p));
-    field.foot[point.foot] = place_beside(input.positions(compact), point, facing.nearest);
+    const bool is_near = facing.nearest != Patch::none;
+    field.foot[point.foot] = is_near ? place_beside(input.positions(compact), point, facing.nearest) : T(0);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 
 #include "core/engine/shared_forces.hpp"
+#include "core/model/point_tangent.hpp"
 #include "methods/newton/assumed_branches.hpp"
 
 namespace stickslip {

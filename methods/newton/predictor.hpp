@@ -8,6 +8,7 @@
 /// follows.
 #pragma once
 
+#include "core/model/point_tangent.hpp"
 #include "methods/newton/newton_tangent.hpp"
 
 namespace stickslip {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/engine/sparse_system.hpp"
+#include "core/model/point_tangent.hpp"
 #include "sensitivity/schemes.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/solved.hpp"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/model/loading.hpp"
+#include "core/model/point_tangent.hpp"
 #include "methods/newton/newton.hpp"
 #include "methods/newton/regularisation.hpp"
 #include "tests/support/compiled_slots.hpp"
