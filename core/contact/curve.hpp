@@ -49,6 +49,10 @@ struct Patch {
   bool goes_on_after() const { return vertices[3] != none; }   ///< whether it joins `next` without a corner
 };
 
+/// Two places of one curve can touch only if the cosine of the angle between their outward normals is less than minus
+/// this. So the angle exceeds 120 degrees, and the two sides of a corner never touch.
+inline constexpr double least_against = 0.5;
+
 /// A contact point that is a vertex of the curve that it faces: a side in contact with itself. It faces only patches
 /// that come after it on the curve, so of two positions that touch exactly one is the slave. It never faces a patch
 /// that it is a vertex of, nor a patch of its own wall.
@@ -57,6 +61,17 @@ struct OwnVertex {
   double max_depth = 0;         ///< length: beyond this depth it is not inside of a patch
   std::vector<char> wall = {};  ///< per patch: whether it belongs to the wall of the vertex (own_vertex())
 
+  /// Number of patches from the one that was faced last within which it may be inside by all of max_depth; elsewhere by
+  /// a share of that.
+  static constexpr int neighbourhood = 8;
+  static constexpr double share_of_depth = 0.25;
+  /// How deep inside of patch p it may be, length. `last`: the patch that was faced last, or Patch::none.
+  double depth_in(int p, int last) const {
+    const int count = static_cast<int>(wall.size());
+    bool is_near_last = false;
+    for (const int turn : {-count, 0, count}) is_near_last |= std::abs(p - last - turn) <= neighbourhood;
+    return (last != Patch::none && is_near_last ? 1 : share_of_depth) * max_depth;
+  }
   bool may_face(const std::vector<Patch>& patches, int p) const {
     const auto& vertices = patches[p].vertices;
     return vertices[1] > vertex && !wall[p] && std::find(vertices.begin(), vertices.end(), vertex) == vertices.end();

@@ -12,15 +12,6 @@ namespace {
 /// compliance of a penalty, or the first augmentation, moves the last node off its master and back for ever.
 constexpr double past_end_of_curve = 0.01;
 
-/// Two places of one curve can touch only if the cosine of the angle between their outward normals is less than minus
-/// this. So the angle exceeds 120 degrees, and the two sides of a corner never touch.
-constexpr double least_against = 0.5;
-
-/// A vertex of the curve may be inside of a patch by its max_depth if the patch is within so many patches of the one
-/// that it faced last; otherwise by a share of that.
-constexpr int neighbourhood = 8;
-constexpr double share_of_depth = 0.25;
-
 auto position_in(const Eigen::Matrix2Xd& positions) {
   return [&positions](int vertex) -> Vec<double, 2> { return positions.col(vertex); };
 }
@@ -62,15 +53,7 @@ bool CurveSearch::may_be_eligible(const Bounds<2>& box, const Query& query) cons
     most += std::max(
         {near * box.normal_low[i], near * box.normal_high[i], far * box.normal_low[i], far * box.normal_high[i]});
   }
-  return most >= -share_of_depth * query.own->max_depth - rounding * size_;
-}
-
-/// Largest depth, length, at which x may be inside of a patch of its own curve.
-double CurveSearch::max_depth(int patch, const Query& query) const {
-  const int count = static_cast<int>(patches_.size());
-  bool is_near_last = false;
-  for (const int turn : {-count, 0, count}) is_near_last |= std::abs(patch - query.last - turn) <= neighbourhood;
-  return (query.last != Patch::none && is_near_last ? 1 : share_of_depth) * query.own->max_depth;
+  return most >= -OwnVertex::share_of_depth * query.own->max_depth - rounding * size_;
 }
 
 bool CurveSearch::is_eligible(int patch, const Query& query) const {
@@ -83,7 +66,7 @@ bool CurveSearch::is_eligible(int patch, const Query& query) const {
   constexpr double beside = 0.5;  // facet lengths: farther past its ends x is not inside of a facet
   const double xi = off.dot(tau) / tau.squaredNorm();
   if (gap >= 0) return true;
-  return gap >= -max_depth(patch, query) && xi >= -beside && xi <= 1 + beside;
+  return gap >= -query.own->depth_in(patch, query.last) && xi >= -beside && xi <= 1 + beside;
 }
 
 void CurveSearch::compare_facet(int patch, const Vec<double, 2>& x, Nearest& best) const {
@@ -106,7 +89,7 @@ CurveSearch::Nearest CurveSearch::nearest_facet(const Query& query) const {
     if (is_eligible(patch, query)) compare_facet(patch, query.x, best);
   };
   const int count = static_cast<int>(patches_.size());
-  for (int k = -neighbourhood; query.last != Patch::none && k <= neighbourhood; ++k)
+  for (int k = -OwnVertex::neighbourhood; query.last != Patch::none && k <= OwnVertex::neighbourhood; ++k)
     compare(((query.last + k) % count + count) % count);
   const auto skips = [&](const Bounds<2>& box) {
     return box.distance(query.x) > best.distance + band_ || !may_be_eligible(box, query);

@@ -52,7 +52,6 @@ class CurveSearch {
   Vec<double, 2> vertex(int patch, int end) const { return positions_.col(patches_[patch].vertices[1 + end]); }
   Bounds<2> bounds(int patch) const;
   bool may_be_eligible(const Bounds<2>& box, const Query& query) const;
-  double max_depth(int patch, const Query& query) const;
   Nearest nearest_facet(const Query& query) const;
   bool is_eligible(int patch, const Query& query) const;
   void compare_facet(int patch, const Vec<double, 2>& x, Nearest& best) const;

@@ -89,20 +89,30 @@ std::vector<int> FacetSearch::candidates(const std::array<int, 2>& slave) const 
   });
 }
 
-std::vector<Segment> FacetSearch::facing(const std::array<int, 2>& slave, const std::vector<int>& ends) const {
+std::vector<Segment> FacetSearch::facing(const std::array<int, 2>& slave, const std::vector<int>& ends,
+                                         const std::function<double(int)>& depth_of) const {
   const auto numbers = candidates(slave);
   std::vector<std::vector<int>> facets;
+  std::vector<double> depths;
   facets.reserve(numbers.size());
-  for (int f : numbers) facets.push_back(facets_[f]);
-  auto segments = facing_segments(points_, slave, facets, ends);
+  for (int f : numbers) {
+    facets.push_back(facets_[f]);
+    if (depth_of) depths.push_back(depth_of(f));
+  }
+  auto segments = facing_segments(points_, slave, facets, ends, depths);
   for (Segment& segment : segments) segment.facet = numbers[segment.facet];
   return segments;
 }
 
 FacetSearch::Nearest FacetSearch::nearest(const Vec<double, 2>& x) const {
+  return nearest(x, [](int) { return true; });
+}
+
+FacetSearch::Nearest FacetSearch::nearest(const Vec<double, 2>& x, const std::function<bool(int)>& counts) const {
   Nearest best;
   const auto skips = [&](const Bounds<2>& box) { return box.distance(x) > best.distance + band_; };
   boxes_.visit(x, skips, [&](int facet) {
+    if (!counts(facet)) return;
     const double distance = nearest_of_facet(end_of(facet, 0), end_of(facet, 1), x).distance;
     if (distance < best.distance) best = {facet, distance};
   });

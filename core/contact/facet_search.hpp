@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -41,14 +42,18 @@ class FacetSearch {
   /// Numbers, ascending, of the facets that reach into the strip perpendicular to a slave facet: all that it may face,
   /// and few others.
   std::vector<int> candidates(const std::array<int, 2>& slave) const;
-  /// Segments of a slave facet, as facing_segments() finds them among all facets.
-  std::vector<Segment> facing(const std::array<int, 2>& slave, const std::vector<int>& ends = {}) const;
+  /// Segments of a slave facet, as facing_segments() finds them among all facets. `depth_of(facet)`: its `depths`, of a
+  /// side in contact with itself.
+  std::vector<Segment> facing(const std::array<int, 2>& slave, const std::vector<int>& ends = {},
+                              const std::function<double(int)>& depth_of = nullptr) const;
   /// The facet nearest to x; -1 where there is none.
   struct Nearest {
     int facet = -1;
     double distance = std::numeric_limits<double>::infinity();  ///< length
   };
   Nearest nearest(const Vec<double, 2>& x) const;
+  /// The nearest of those for which `counts(facet)` holds.
+  Nearest nearest(const Vec<double, 2>& x, const std::function<bool(int)>& counts) const;
   /// The closest point of the side, as closest_point() finds it among all facets.
   std::optional<ClosestPoint> closest(const Vec<double, 2>& x) const;
 

@@ -13,6 +13,8 @@ struct Segment {
   static constexpr int none = -1;
   std::array<int, 2> slave{};               ///< nodes a -> b of the slave facet, solid on the left
   std::array<int, 2> master{{none, none}};  ///< nodes c -> d of the master facet; none: the master has no facets
+  /// The sides of quadratic elements that the two facets are halves of: start, end, middle; none: of linear ones.
+  std::array<int, 3> slave_edge{{none, none, none}}, master_edge = slave_edge;
   int facet = none;                         ///< number of the master facet on its side
   int first_end = start, last_end = end;    ///< start, end, or the master node that is projected there
   int carrier = 0;                          ///< 0 or 1: the slave node that carries the multiplier

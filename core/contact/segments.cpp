@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/contact/curve.hpp"
+
 namespace stickslip {
 namespace {
 
@@ -49,21 +51,24 @@ Vec<double, 2> way_along(const Vec<double, 2>& x, const Vec<double, 2>& nu, cons
   return from - eta * tau;
 }
 
-/// The projections of the master facets onto the slave facet a + xi tau, 0 <= xi <= 1.
+/// The projections of the master facets onto the slave facet a + xi tau, 0 <= xi <= 1. `depths`: of facing_segments().
 Shadows shadows(const Points<double>& points, const Vec<double, 2>& a, const Vec<double, 2>& tau,
-                const std::vector<std::vector<int>>& masters, const std::vector<int>& ends) {
+                const std::vector<std::vector<int>>& masters, const std::vector<int>& ends,
+                const std::vector<double>& depths) {
   Shadows out;
   const Vec<double, 2> nu(tau[1], -tau[0]);
+  const double least = (depths.empty() ? band : least_against) * nu.norm();
   for (std::size_t f = 0; f < masters.size(); ++f) {
     const auto& facet = masters[f];
     const Vec<double, 2> c = points.col(facet[0]), d = points.col(facet[1]), along = d - c;
     const double turn = nu.dot(Vec<double, 2>(along[1], -along[0]));
-    if (std::abs(turn) <= band * nu.norm() * along.norm()) continue;
+    const bool is_opposite = turn < -least * along.norm() && (depths.empty() || depths[f] >= 0);
+    if (!is_opposite && turn <= band * nu.norm() * along.norm()) continue;
     Break high = break_at((c - a).dot(tau) / tau.squaredNorm(), facet[0], ends),
           low = break_at((d - a).dot(tau) / tau.squaredNorm(), facet[1], ends);
     if (turn > 0) std::swap(high, low);  // a facet opposite to the slave runs from high to low
     if (high.xi > band && low.xi < 1 - band && high.xi - low.xi > band)
-      (turn < 0 ? out.opposite : out.alike).push_back({{facet[0], facet[1]}, static_cast<int>(f), low, high});
+      (is_opposite ? out.opposite : out.alike).push_back({{facet[0], facet[1]}, static_cast<int>(f), low, high});
   }
   return out;
 }
@@ -85,10 +90,11 @@ std::vector<Break> breakpoints(const std::vector<Shadow>& all) {
 }  // namespace
 
 std::vector<Segment> facing_segments(const Points<double>& points, const std::array<int, 2>& slave,
-                                     const std::vector<std::vector<int>>& masters, const std::vector<int>& ends) {
+                                     const std::vector<std::vector<int>>& masters, const std::vector<int>& ends,
+                                     const std::vector<double>& depths) {
   const Vec<double, 2> a = points.col(slave[0]), tau = points.col(slave[1]).head<2>() - points.col(slave[0]).head<2>();
   const Vec<double, 2> nu = Vec<double, 2>(tau[1], -tau[0]) / tau.norm();
-  const auto candidates = shadows(points, a, tau, masters, ends);
+  const auto candidates = shadows(points, a, tau, masters, ends, depths);
   const auto breaks = breakpoints(candidates.opposite);
   std::vector<Segment> segments;
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
@@ -101,15 +107,18 @@ std::vector<Segment> facing_segments(const Points<double>& points, const std::ar
     double least = std::numeric_limits<double>::infinity();
     for (const auto& shadow : candidates.opposite) {
       if (!shadow.covers(middle)) continue;
-      const double distance = way(shadow).norm();
-      if (distance < least) {
+      const Vec<double, 2> off = way(shadow);
+      const double distance = off.norm();
+      const bool is_too_deep = !depths.empty() && off.dot(nu) > depths[shadow.facet];
+      if (distance < least && !is_too_deep) {
         least = distance;
         nearest = &shadow;
       }
     }
     // Beyond the other face of the solid x is outside, and penetrates no face on its far side.
     const auto is_between = [&](const Shadow& shadow) {
-      const double from = shadow.covers(middle) ? way(shadow).dot(nu) : 0;
+      const bool is_itself = shadow.nodes == slave;
+      const double from = !is_itself && shadow.covers(middle) ? way(shadow).dot(nu) : 0;
       return from > 0 && from < least;
     };
     if (!nearest ||
@@ -137,8 +146,14 @@ std::vector<int> nodes_of_segments(int own, const std::vector<Segment>& facets, 
     if (node >= 0 && node < node_count && std::find(nodes.begin(), nodes.end(), node) == nodes.end())
       nodes.push_back(node);
   };
-  for (const auto& facet : facets) std::for_each(facet.slave.begin(), facet.slave.end(), add);
-  for (const auto& segment : segments) std::for_each(segment.master.begin(), segment.master.end(), add);
+  for (const auto& facet : facets) {
+    std::for_each(facet.slave.begin(), facet.slave.end(), add);
+    std::for_each(facet.slave_edge.begin(), facet.slave_edge.end(), add);
+  }
+  for (const auto& segment : segments) {
+    std::for_each(segment.master.begin(), segment.master.end(), add);
+    std::for_each(segment.master_edge.begin(), segment.master_edge.end(), add);
+  }
   return nodes;
 }
 

@@ -29,6 +29,13 @@
 ///   off = G N + u         eta = E + off . tau / (tau_m . tau)         x - y = off - (eta - E) tau_m
 ///
 /// tau and tau_m run along the two facets as they are now. G and E are linear along the slave facet.
+///
+/// A side of a quadratic element is two facets, each from one of its nodes to the next. The element moves along
+///
+///   x(s) = (1 - s) x_a + s x_b + s (1 - s) d      d = x_middle - (x_start + x_end) / 2
+///
+/// on either, so a place has the facet's weights, and in addition s (1 - s) times those of d. Facets decide what faces
+/// what; gap, foot, normal and weights are those of the curve. psi_j is linear on the facets, so A_j > 0 for all nodes.
 #pragma once
 
 #include <algorithm>
@@ -56,18 +63,55 @@ inline constexpr double least_share = 0.01;
 ///   masters  the two nodes of each master facet
 ///   ends     nodes at which the master ends. Such a node counts as projected to an end of the slave facet where it is
 ///            within 1e-6 of the facet's length of it
+///   depths   of a side in contact with itself: per master facet, how deep inside of it the slave facet may be, length;
+///            negative: it faces it nowhere. Such facets face each other only if their normals make more than 120
+///            degrees. Empty: the slave facet is of another side
 std::vector<Segment> facing_segments(const Points<double>& points, const std::array<int, 2>& slave,
-                                     const std::vector<std::vector<int>>& masters, const std::vector<int>& ends = {});
+                                     const std::vector<std::vector<int>>& masters, const std::vector<int>& ends = {},
+                                     const std::vector<double>& depths = {});
 
 namespace detail {
 
+/// Bulge of a facet that is half of the side of a quadratic element: d. Zero, and not curved, on a linear one.
+template <class T, class S>
+struct Bulge {
+  bool is_curved = false;
+  Vec<S, 2> start = Vec<S, 2>::Constant(S(0));
+  Vec<T, 2> moved = Vec<T, 2>::Constant(T(0));
+  Vec<T, 2> now() const { return {T(start[0]) + moved[0], T(start[1]) + moved[1]}; }
+};
+
+template <class T, class S, class Position>
+Bulge<T, S> bulge_of(const std::array<int, 3>& edge, Position&& position) {
+  Bulge<T, S> bulge;
+  if (edge[2] == Segment::none) return bulge;
+  const Placed<T, S> a = position(edge[0]), b = position(edge[1]), middle = position(edge[2]);
+  bulge.is_curved = true;
+  bulge.start = S(0.5) * ((middle.start - a.start) + (middle.start - b.start));
+  bulge.moved = T(0.5) * ((middle.moved - a.moved) + (middle.moved - b.moved));
+  return bulge;
+}
+
+/// Solves way = s straight + s (1 - s) bent for s, from the solution without `bent`. Newton steps double the digits, and
+/// in T carry its derivatives.
+template <class T>
+T along_bulge(const T& way, const T& straight, const T& bent) {
+  constexpr int steps = 5;
+  T s = way / straight;
+  for (int k = 0; k < steps; ++k)
+    s += (way - s * straight - s * (T(1) - s) * bent) / (straight + (T(1) - T(2) * s) * bent);
+  return s;
+}
+
 /// Coordinate of a segment's end along the slave facet: 0 at its first node a, 1 at its second. `tau`: vector from a to
 /// the second node. `position(node)`: Placed.
-template <class T, class Position, class Place>
-T end_coordinate(int segment_end, Position&& position, const Place& a, const Vec<T, 2>& tau) {
+template <class T, class S, class Position, class Place>
+T end_coordinate(int segment_end, Position&& position, const Place& a, const Vec<T, 2>& tau,
+                 const Bulge<T, S>& bulge) {
   if (segment_end == Segment::start) return T(0);
   if (segment_end == Segment::end) return T(1);
-  return dot(Vec<T, 2>(position(segment_end) - a), tau) / dot(tau, tau);
+  const T way = dot(Vec<T, 2>(position(segment_end) - a), tau), straight = dot(tau, tau);
+  return bulge.is_curved ? along_bulge<T>(way, straight, dot(bulge.now(), tau)) : T(way / straight);
 }
 
 /// Slave facet a -> b over the line of its master facet c -> d, as they were at the start, in S, and as they are now.
@@ -78,9 +122,12 @@ struct FacingFacets {
   S distance{}, apart{};                   ///< G likewise
   Vec<S, 2> normal;                        ///< N
   Vec<T, 2> tau, facet, shift, stretched;  ///< tau, tau_m; u_a - u_c, u_d - u_c
+  Bulge<T, S> bulge;                       ///< of the master
+  S bulge_along{}, bulge_apart{};          ///< what E and G grow by with the slave's bulge
 
-  FacingFacets(const Placed<T, S>& a, const Placed<T, S>& b, const Placed<T, S>& c, const Placed<T, S>& d)
-      : tau(b - a), facet(d - c), shift(a.moved - c.moved), stretched(d.moved - c.moved) {
+  FacingFacets(const Placed<T, S>& a, const Placed<T, S>& b, const Placed<T, S>& c, const Placed<T, S>& d,
+               const Bulge<T, S>& of_slave, const Bulge<T, S>& of_master)
+      : tau(b - a), facet(d - c), shift(a.moved - c.moved), stretched(d.moved - c.moved), bulge(of_master) {
     const Vec<S, 2> line = d.start - c.start, from = a.start - c.start, to = b.start - c.start;
     const S square = dot(line, line);
     length = norm(line);
@@ -89,6 +136,9 @@ struct FacingFacets {
     along = dot(to, line) / square - first;
     distance = dot(from, normal);
     apart = dot(to, normal) - distance;
+    if (!of_slave.is_curved) return;
+    bulge_along = dot(of_slave.start, line) / square;
+    bulge_apart = dot(of_slave.start, normal);
   }
 };
 
@@ -97,23 +147,41 @@ template <class T>
 struct Foot {
   Vec<T, 2> off;               ///< x - y
   Vec<T, 2> normal;            ///< unit, out of the master
-  std::array<T, 2> weights{};  ///< on a facet: shape functions of its two nodes
-  T shift{};                   ///< on a facet: eta - E
+  std::array<T, 2> weights{};  ///< on a facet: 1 - eta, eta
+  T eta{}, E{}, shift{};       ///< on a facet; shift = eta - E
+  Vec<T, 2> tangent = {};      ///< on a facet: dy/deta
   Vec<T, 2> moved = {};        ///< on an obstacle: y, from the initial place of the slave point
 };
 
 /// Foot on a master facet of the slave point at the coordinate s, which moves by `moved` more than the facet's node a.
+/// `is_curved`: the slave facet is.
 template <class T, class S>
-Foot<T> foot_on_facet(const FacingFacets<T, S>& facets, const T& s, const Vec<T, 2>& moved) {
+Foot<T> foot_on_facet(const FacingFacets<T, S>& facets, const T& s, const Vec<T, 2>& moved, bool is_curved) {
   Foot<T> foot;
-  const T E = T(facets.first) + s * facets.along, G = T(facets.distance) + s * facets.apart;
+  foot.E = T(facets.first) + s * facets.along;
+  T G = T(facets.distance) + s * facets.apart;
+  if (is_curved) {
+    foot.E += s * (T(1) - s) * facets.bulge_along;
+    G += s * (T(1) - s) * facets.bulge_apart;
+  }
   for (int i = 0; i < 2; ++i)
-    foot.off[i] = G * facets.normal[i] + (facets.shift[i] + moved[i] - E * facets.stretched[i]);
-  foot.shift = dot(foot.off, facets.tau) / dot(facets.facet, facets.tau);
-  foot.off -= foot.shift * facets.facet;
-  const T eta = E + foot.shift, length = norm(facets.facet);
-  foot.normal = Vec<T, 2>(facets.facet[1] / length, -facets.facet[0] / length);
-  foot.weights = {T(1) - eta, eta};
+    foot.off[i] = G * facets.normal[i] + (facets.shift[i] + moved[i] - foot.E * facets.stretched[i]);
+  const T way = dot(foot.off, facets.tau), straight = dot(facets.facet, facets.tau);
+  foot.tangent = facets.facet;
+  if (facets.bulge.is_curved) {
+    const Vec<T, 2> d = facets.bulge.now();
+    foot.eta = along_bulge<T>(foot.E * straight + way, straight, dot(d, facets.tau));
+    foot.shift = foot.eta - foot.E;
+    foot.off -= foot.shift * facets.facet + foot.eta * (T(1) - foot.eta) * d;
+    foot.tangent += (T(1) - T(2) * foot.eta) * d;
+  } else {
+    foot.shift = way / straight;
+    foot.off -= foot.shift * facets.facet;
+    foot.eta = foot.E + foot.shift;
+  }
+  const T length = norm(foot.tangent);
+  foot.normal = Vec<T, 2>(foot.tangent[1] / length, -foot.tangent[0] / length);
+  foot.weights = {T(1) - foot.eta, foot.eta};
   return foot;
 }
 
@@ -170,32 +238,52 @@ SegmentIntegrals<T> integrate_segments(const std::vector<Segment>& segments, con
   sums.weights = decltype(sums.weights)::Constant(static_cast<Eigen::Index>(nodes.size()), T(0));
   const auto place = [&](int node) { return std::find(nodes.begin(), nodes.end(), node) - nodes.begin(); };
   auto share = [&](int node, const T& w) { sums.weights[place(node)] += w; };
+  const auto share_bulge = [&](const std::array<int, 3>& edge, const T& w) {
+    share(edge[2], w);
+    for (int end = 0; end < 2; ++end) share(edge[end], T(-0.5) * w);
+  };
   for (const auto& segment : segments) {
     const bool has_facet = segment.master[0] != Segment::none;
     const Placed<T, S> a = position(segment.slave[0]), b = position(segment.slave[1]);
+    const auto bulge = detail::bulge_of<T, S>(segment.slave_edge, position);
     std::optional<detail::FacingFacets<T, S>> facets;
-    if (has_facet) facets.emplace(a, b, position(segment.master[0]), position(segment.master[1]));
+    if (has_facet)
+      facets.emplace(a, b, position(segment.master[0]), position(segment.master[1]), bulge,
+                     detail::bulge_of<T, S>(segment.master_edge, position));
     const Vec<T, 2> tau = b - a, stretched = b.moved - a.moved;
     const Vec<S, 2> Tau = b.start - a.start;
     const T length = norm(tau);
-    const Vec<T, 2> nu(tau[1] / length, -tau[0] / length);
-    const T from = detail::end_coordinate<T>(segment.first_end, position, a, tau),
-            to = detail::end_coordinate<T>(segment.last_end, position, a, tau);
+    Vec<T, 2> nu(tau[1] / length, -tau[0] / length);
+    const T from = detail::end_coordinate<T>(segment.first_end, position, a, tau, bulge),
+            to = detail::end_coordinate<T>(segment.last_end, position, a, tau, bulge);
     const bool rigid = place(segment.master[0]) == static_cast<std::ptrdiff_t>(nodes.size());
     IntegrationPoint<T> point;
     point.slave_length = T(norm(Tau));
     for (int q = 0; q < 3; ++q) {
       const T s = point.xi = from + (to - from) * T(0.5 * (1 + gauss[q]));
-      const Vec<T, 2> moved = s * stretched, X(T(a.start[0]) + s * Tau[0], T(a.start[1]) + s * Tau[1]);
-      const detail::Foot<T>& foot = point.foot =
-          has_facet ? detail::foot_on_facet<T, S>(*facets, s, moved) : rigid_foot(X, Vec<T, 2>(a.moved + moved));
+      Vec<T, 2> moved = s * stretched, X(T(a.start[0]) + s * Tau[0], T(a.start[1]) + s * Tau[1]);
+      T stretch = point.slave_length;
+      const T bend = s * (T(1) - s), turn = T(1) - T(2) * s;
+      if (bulge.is_curved) {
+        moved += bend * bulge.moved;
+        for (int i = 0; i < 2; ++i) X[i] += bend * bulge.start[i];
+        stretch = norm(Vec<T, 2>(T(Tau[0]) + turn * bulge.start[0], T(Tau[1]) + turn * bulge.start[1]));
+        const Vec<T, 2> along = tau + turn * bulge.now();
+        nu = Vec<T, 2>(along[1], -along[0]) / norm(along);
+      }
+      const detail::Foot<T>& foot = point.foot = has_facet
+                                                     ? detail::foot_on_facet<T, S>(*facets, s, moved, bulge.is_curved)
+                                                     : rigid_foot(X, Vec<T, 2>(a.moved + moved));
       const T psi = segment.sole_carrier ? T(1) : segment.carrier == 0 ? T(1) - s : s;
-      const T dA = point.area = psi * (to - from) * point.slave_length * T(weight[q]) * depth.at(X[0]);
+      const T dA = point.area = psi * (to - from) * stretch * T(weight[q]) * depth.at(X[0]);
       sums.area += dA;
       share(segment.slave[0], dA * (T(1) - s));
       share(segment.slave[1], dA * s);
       if (!rigid)
         for (int m = 0; m < 2; ++m) share(segment.master[m], -dA * foot.weights[m]);
+      if (bulge.is_curved) share_bulge(segment.slave_edge, dA * bend);
+      if (!rigid && has_facet && facets->bulge.is_curved)
+        share_bulge(segment.master_edge, -dA * foot.eta * (T(1) - foot.eta));
       for (int i = 0; i < 2; ++i) {
         sums.gap[i] += dA * foot.off[i];
         sums.normal[i] += dA * (foot.normal[i] - (rigid ? T(0) : nu[i]));
@@ -242,7 +330,9 @@ SegmentKinematics<T> segment_kinematics(const std::vector<Segment>& segments, co
                     (segment.carrier == 0 ? T(0) : point.slave_length),
             growth = T(facets->along * length) + point.slave_length;
     kinematics.foot[0] += point.area * (start + point.xi * growth + point.foot.shift * length);
-    for (int i = 0; i < 2; ++i) kinematics.tangent[i] += point.area * facets->facet[i] / T(length);
+    if (segment.slave_edge[2] != Segment::none)
+      kinematics.foot[0] += point.area * (point.xi * (T(1) - point.xi) * facets->bulge_along * length);
+    for (int i = 0; i < 2; ++i) kinematics.tangent[i] += point.area * point.foot.tangent[i] / T(length);
   };
   const auto sums = integrate_segments<T, S>(segments, nodes, position, depth, rigid_foot, accumulate);
   for (int i = 0; i < 2; ++i) {
@@ -257,7 +347,10 @@ SegmentKinematics<T> segment_kinematics(const std::vector<Segment>& segments, co
 template <class T, class InitialPosition>
 T area_of_facets(const std::vector<Segment>& facets, InitialPosition&& initial_position, const Depth<T>& depth) {
   std::vector<int> nodes;
-  for (const auto& facet : facets) nodes.insert(nodes.end(), facet.slave.begin(), facet.slave.end());
+  for (const auto& facet : facets) {
+    nodes.insert(nodes.end(), facet.slave.begin(), facet.slave.end());
+    nodes.insert(nodes.end(), facet.slave_edge.begin(), facet.slave_edge.end());
+  }
   const auto position = [&](int node) { return at_start<T>(initial_position(node)); };
   const auto here = [](const auto&...) { return detail::Foot<T>{Vec<T, 2>(T(0), T(0)), Vec<T, 2>(T(0), T(1))}; };
   return integrate_segments<T, T>(facets, nodes, position, depth, here, [](auto&&...) {}).area;

@@ -97,7 +97,10 @@ void find_moved_segments(const ContactInput<T>& input, int curve, const Vector<T
     start.col(model.node_count + v) = values(vertex.start);
     moved.col(model.node_count + v) = values(vertex.moved);
   }
-  find_segments(model, curve, start, moved, found);
+  std::vector<int> last;
+  for (int p = 0; !master.own.empty() && p < static_cast<int>(found.size()); ++p)
+    last.push_back(model.points[p].curve == curve ? last_faced(input, p) : Patch::none);
+  find_segments(model, curve, start, moved, last, found);
 }
 
 /// What each contact point faces of its curve. `compact`: displacements of the contact nodes; `kept`: per point, the

@@ -60,7 +60,39 @@ std::vector<std::vector<int>> ordered_facets(const std::vector<std::vector<int>>
   return ordered;
 }
 
+/// Sets what the vertices of a curve in contact with itself may face.
+void set_own_vertices(const Eigen::Matrix2Xd& places, MasterCurve& curve) {
+  for (std::size_t p = 0; p < curve.patches.size(); ++p) {
+    const Patch& patch = curve.patches[p];
+    for (int vertex : {patch.vertices[1], patch.vertices[2]}) {
+      if (curve.own.count(curve.nodes[vertex]) > 0) continue;
+      Vec<double, 2> outward = Vec<double, 2>::Zero();
+      double size = 0;
+      int count = 0;
+      for (const Patch& at : curve.patches)
+        if (at.vertices[1] == vertex || at.vertices[2] == vertex) {
+          const Vec<double, 2> along = places.col(at.vertices[2]) - places.col(at.vertices[1]);
+          outward += Vec<double, 2>(along[1], -along[0]);
+          size += along.norm();
+          ++count;
+        }
+      curve.own.emplace(curve.nodes[vertex], own_vertex(curve.patches, places, vertex, outward, size / count));
+    }
+  }
+}
+
 }  // namespace
+
+QuadraticEdges::QuadraticEdges(const SideSet& side) {
+  for (const auto& edge : side.edges)
+    if (edge.size() == 3) of_middle_[edge[2]] = {edge[0], edge[1], edge[2]};
+}
+
+std::array<int, 3> QuadraticEdges::of_facet(int a, int b) const {
+  for (int node : {a, b})
+    if (const auto found = of_middle_.find(node); found != of_middle_.end()) return found->second;
+  return Segment{}.slave_edge;
+}
 
 Eigen::Matrix2Xd vertices_of(const Polyline& polyline, const Numbers<double>& numbers) {
   Eigen::Matrix2Xd vertices(2, static_cast<Eigen::Index>(polyline.points.size()));
@@ -107,12 +139,17 @@ std::pair<MasterCurve, Eigen::Matrix2Xd> make_curve(const Model& model, const Po
 }
 
 MasterCurve integrated_curve(const Model& model, const Points<double>& points, int contact, int obstacle,
-                             const std::vector<std::vector<int>>& facets) {
-  MasterCurve curve = make_curve(model, points, contact, obstacle, facets).first;
-  const auto node_of = [&](int vertex) { return obstacle >= 0 ? model.node_count + vertex : curve.nodes[vertex]; };
+                             const SideSet& master) {
+  auto [curve, places] = make_curve(model, points, contact, obstacle, master.facets);
+  if (model.scene.contacts[contact].is_of_itself()) set_own_vertices(places, curve);
+  const QuadraticEdges edges(master);
+  const auto node_of = [&, &nodes = curve.nodes](int vertex) {
+    return obstacle >= 0 ? model.node_count + vertex : nodes[vertex];
+  };
   for (const auto& patch : curve.patches) {
     const int begin = node_of(patch.vertices[1]), end = node_of(patch.vertices[2]);
     curve.facets.push_back({begin, end});
+    curve.edges.push_back(edges.of_facet(begin, end));
     if (patch.previous == Patch::none) curve.ends.push_back(begin);
     if (patch.next == Patch::none) curve.ends.push_back(end);
   }

@@ -1,6 +1,8 @@
 /// Master curves of contacts: the facets of a side or of a polyline, in order, as patches.
 #pragma once
 
+#include <array>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -22,8 +24,20 @@ std::vector<std::vector<int>> facets_of(const Polyline& polyline);
 std::pair<MasterCurve, Eigen::Matrix2Xd> make_curve(const Model& model, const Points<double>& points, int contact,
                                                     int obstacle, std::vector<std::vector<int>> facets);
 
-/// The same of segment-integrated contact at finite strain: with the nodes of the patches.
+/// The sides of quadratic elements that facets of a side are halves of (Segment::slave_edge).
+class QuadraticEdges {
+ public:
+  explicit QuadraticEdges(const SideSet& side);
+  /// Start, end and middle; Segment::none of a facet of a linear element.
+  std::array<int, 3> of_facet(int a, int b) const;
+
+ private:
+  std::map<int, std::array<int, 3>> of_middle_;
+};
+
+/// The same of segment-integrated contact at finite strain: with the nodes of the patches, and with what the nodes of a
+/// side in contact with itself may face. `master`: the side; not read of a polyline.
 MasterCurve integrated_curve(const Model& model, const Points<double>& points, int contact, int obstacle,
-                             const std::vector<std::vector<int>>& facets);
+                             const SideSet& master);
 
 }  // namespace stickslip

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -46,6 +48,8 @@ struct MasterCurve {
   /// polyline count as nodes behind those of the model (core/contact/segment.hpp).
   std::vector<std::vector<int>> facets = {};
   std::vector<int> ends = {};
+  std::vector<std::array<int, 3>> edges = {};  ///< per facet: the side of a quadratic element that it is half of
+  std::map<int, OwnVertex> own = {};  ///< of a side that is integrated against itself: per node
   bool is_integrated() const { return !facets.empty(); }
   /// Whether its last patch ends where the first begins.
   bool is_loop() const { return patches.back().next == 0; }

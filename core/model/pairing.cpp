@@ -201,21 +201,48 @@ void pair_along_curve(Model& model, const Points<double>& points, const Pairing&
   model.curves.push_back(std::move(curve));
 }
 
-/// Segments that the multiplier of each slave node acts on. `whole`: one segment per whole slave facet, without a
-/// master, because what it faces is found later.
-std::map<int, std::vector<Segment>> segments_of_nodes(const Facets& master, const Pairing& pairing, bool whole) {
+/// Nodes in which a side turns by more than 60 degrees.
+std::set<int> corners_of(const SideSet& side, const Points<double>& points) {
+  constexpr double least_cosine = 0.5 - 1e-9;
+  std::map<int, Vec<double, 2>> ends_along;
+  const auto along = [&](const std::vector<int>& facet) -> Vec<double, 2> {
+    return (points.col(facet[1]) - points.col(facet[0])).head<2>().normalized();
+  };
+  for (const auto& facet : side.facets) ends_along.emplace(facet[1], along(facet));
+  std::set<int> corners;
+  for (const auto& facet : side.facets)
+    if (const auto before = ends_along.find(facet[0]); before != ends_along.end())
+      if (before->second.dot(along(facet)) < least_cosine) corners.insert(facet[0]);
+  return corners;
+}
+
+/// Segments that the multiplier of each slave node acts on.
+///
+///   whole    one segment per whole slave facet, without a master, because what it faces is found later
+///   corners  nodes that carry no multiplier on a facet whose other node carries one. Why: two faces that meet at an edge
+///            face other masters, and one multiplier has one normal
+std::map<int, std::vector<Segment>> segments_of_nodes(const Facets& master, const Pairing& pairing, bool whole,
+                                                      const std::set<int>& corners) {
   const std::set<int> nodes(pairing.slave.nodes.begin(), pairing.slave.nodes.end());
-  const auto carries = [&](int node) { return nodes.count(node) > 0; };
+  const QuadraticEdges slave_edges(pairing.slave), master_edges(pairing.master);
   std::map<int, std::vector<Segment>> of_node;
   for (const auto& facet : pairing.slave.facets) {
     Segment whole_facet;
     whole_facet.slave = {facet[0], facet[1]};
+    whole_facet.slave_edge = slave_edges.of_facet(facet[0], facet[1]);
     const auto segments = whole ? std::vector<Segment>{whole_facet} : master.search.facing(whole_facet.slave);
+    const auto may_carry = [&](int end) { return nodes.count(facet[end]) > 0; };
+    const auto carries = [&](int end) {
+      const bool is_left = corners.count(facet[end]) > 0 && corners.count(facet[1 - end]) == 0;
+      return may_carry(end) && !(is_left && may_carry(1 - end));
+    };
     for (Segment segment : segments)
       for (int end = 0; end < 2; ++end)
-        if (carries(facet[end])) {
+        if (carries(end)) {
+          segment.slave_edge = whole_facet.slave_edge;
+          segment.master_edge = master_edges.of_facet(segment.master[0], segment.master[1]);
           segment.carrier = end;
-          segment.sole_carrier = !carries(facet[1 - end]);
+          segment.sole_carrier = !carries(1 - end);
           of_node[facet[end]].push_back(segment);
         }
   }
@@ -226,10 +253,11 @@ std::map<int, std::vector<Segment>> segments_of_nodes(const Facets& master, cons
 void pair_segments(Model& model, const Points<double>& points, const Pairing& pairing) {
   const Facets master = facets_of_master(model, points, pairing);
   const bool slides = model.scene.finite_strain && !master.facets.empty();
-  auto of_node = segments_of_nodes(master, pairing, slides || master.facets.empty());
+  const auto corners = model.scene.finite_strain ? corners_of(pairing.slave, points) : std::set<int>{};
+  auto of_node = segments_of_nodes(master, pairing, slides || master.facets.empty(), corners);
   const int curve = slides ? static_cast<int>(model.curves.size()) : -1;
   if (slides)
-    model.curves.push_back(integrated_curve(model, points, pairing.index, pairing.obstacle, pairing.master.facets));
+    model.curves.push_back(integrated_curve(model, points, pairing.index, pairing.obstacle, pairing.master));
   const std::size_t first = model.points.size();
   for (int node : pairing.slave.nodes) {
     if (of_node[node].empty()) continue;
@@ -243,7 +271,8 @@ void pair_segments(Model& model, const Points<double>& points, const Pairing& pa
   }
   if (!slides) return;
   std::vector<Facing> found(model.points.size());
-  find_segments(model, curve, master.points, Points<double>::Zero(master.points.rows(), master.points.cols()), found);
+  find_segments(model, curve, master.points, Points<double>::Zero(master.points.rows(), master.points.cols()),
+                std::vector<int>(found.size(), Patch::none), found);
   for (std::size_t p = first; p < model.points.size(); ++p) {
     model.points[p].facing = found[p];
     model.points[p].nodes = found[p].nodes;
@@ -271,10 +300,8 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
   if (has_facets && along_curve && !contact.segment) return pair_along_curve(model, points, pairing);
   if (!contact.segment) return pair_nodes(model, points, pairing);
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
-  const bool quadratic_master = pairing.obstacle < 0 && is_quadratic(model.bodies[pairing.master.body].mesh.shape);
-  if (is_quadratic(shape) || quadratic_master)
-    throw ModelError("segment integration needs linear elements on both sides", where);
-  if (contact.is_of_itself()) throw ModelError("segment integration is between two sides", where);
+  if (contact.is_of_itself() && !model.scene.finite_strain)
+    throw ModelError("segment integration of a side against itself needs finite strain", where);
   if (model.dimension == 3 || pairing.slave.facets.empty() || !is_continuum(shape))
     throw ModelError("segment integration needs a slave side of facets of a solid body", where);
   pair_segments(model, points, pairing);

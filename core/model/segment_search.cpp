@@ -1,6 +1,9 @@
 #include "core/model/segment_search.hpp"
 
+#include <algorithm>
+#include <limits>
 #include <map>
+#include <optional>
 
 #include "core/contact/facet_search.hpp"
 #include "core/contact/segments.hpp"
@@ -20,14 +23,49 @@ double area_share(const std::vector<Segment>& segments, const ContactPoint& poin
   return area / area_of_facets<double>(point.segments, initial, Depth<double>{});
 }
 
+/// How deep a slave facet of a side in contact with itself may be inside of its other facets.
+class OwnDepths {
+ public:
+  /// `last`: of find_segments().
+  OwnDepths(const Model& model, int curve, const std::vector<int>& last) : curve_(model.curves[curve]) {
+    for (std::size_t p = 0; p < model.points.size(); ++p)
+      if (model.points[p].curve == curve && last[p] != Patch::none)
+        for (const Segment& facet : model.points[p].segments) last_[facet.slave[0]].push_back(last[p]);
+  }
+  /// The depth, length; negative: the slave facet faces this one nowhere.
+  double operator()(const std::array<int, 2>& slave, int facet) const {
+    double depth = std::numeric_limits<double>::infinity();
+    for (int node : slave) {
+      const OwnVertex& own = curve_.own.at(node);
+      if (!own.may_face(curve_.patches, facet)) return -1;
+      depth = std::min(depth, depth_of(own, slave[0], facet));
+    }
+    return depth;
+  }
+
+ private:
+  double depth_of(const OwnVertex& own, int slave, int facet) const {
+    double depth = own.depth_in(facet, Patch::none);
+    if (const auto faced = last_.find(slave); faced != last_.end())
+      for (int last : faced->second) depth = std::max(depth, own.depth_in(facet, last));
+    return depth;
+  }
+
+  const MasterCurve& curve_;
+  std::map<int, std::vector<int>> last_;  ///< per first node of a slave facet: the patches that its points faced
+};
+
 }  // namespace
 
 void find_segments(const Model& model, int curve, const Points<double>& start, const Points<double>& moved,
-                   std::vector<Facing>& found) {
+                   const std::vector<int>& last, std::vector<Facing>& found) {
   const auto& master = model.curves[curve];
   // (places from a node of the master at the start, so that what lies far from the origin is found as near it)
   const Points<double> positions = (start.colwise() - start.col(master.facets[0][0])) + moved;
   const FacetSearch search(positions, master.facets);
+  const bool of_itself = !master.own.empty();
+  std::optional<OwnDepths> depths;
+  if (of_itself) depths.emplace(model, curve, last);
   std::map<std::array<int, 2>, std::vector<Segment>> of_facet;
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
@@ -35,8 +73,13 @@ void find_segments(const Model& model, int curve, const Points<double>& start, c
     Facing facing;
     for (const Segment& facet : point.segments) {
       const auto [entry, is_new] = of_facet.try_emplace(facet.slave);
-      if (is_new) entry->second = search.facing(facet.slave, master.ends);
+      const auto depth_of = [&](int of) { return (*depths)(facet.slave, of); };
+      if (is_new)
+        entry->second =
+            of_itself ? search.facing(facet.slave, master.ends, depth_of) : search.facing(facet.slave, master.ends);
       for (Segment segment : entry->second) {
+        segment.slave_edge = facet.slave_edge;
+        segment.master_edge = master.edges[segment.facet];
         segment.carrier = facet.carrier;
         segment.sole_carrier = facet.sole_carrier;
         facing.pieces.push_back(segment);
@@ -45,8 +88,13 @@ void find_segments(const Model& model, int curve, const Points<double>& start, c
     if (!facing.pieces.empty() && !(area_share(facing.pieces, point, start, moved, model.node_count) >= least_share))
       facing.pieces.clear();
     if (facing.pieces.empty()) {
-      const auto nearest = search.nearest(positions.col(point.nodes[0]).head<2>());
-      facing.distance = nearest.distance;
+      const Vec<double, 2> x = positions.col(point.nodes[0]).head<2>();
+      const auto counts = [&](int facet) {
+        return !of_itself || master.own.at(point.nodes[0]).may_face(master.patches, facet);
+      };
+      const auto nearest = search.nearest(x, counts);
+      const bool is_any = nearest.facet >= 0;  // (else a side that may touch itself nowhere near)
+      facing.distance = is_any ? nearest.distance : (positions.rowwise().maxCoeff() - positions.rowwise().minCoeff()).norm();
       facing.nearest = nearest.facet;
     } else {
       facing.patch = facing.pieces.front().facet;

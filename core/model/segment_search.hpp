@@ -8,11 +8,12 @@ namespace stickslip {
 /// Sets found[p] for each point p of an integrated curve.
 ///
 ///   curve  index in Model::curves
-///   start  initial positions of the nodes, D x nodes, length; where the master is a polyline, then those of its
-///   vertices moved  displacements likewise
+///   start  initial positions of the nodes, D x nodes, length; if the master is a polyline, then those of its vertices
+///   moved  displacements likewise
+///   last   of a side in contact with itself: per point, the patch that it faced in the last increment, or Patch::none
 ///
 /// A point less than 1 % of whose area faces the curve counts as facing nothing.
 void find_segments(const Model& model, int curve, const Points<double>& start, const Points<double>& moved,
-                   std::vector<Facing>& found);
+                   const std::vector<int>& last, std::vector<Facing>& found);
 
 }  // namespace stickslip

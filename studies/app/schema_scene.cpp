@@ -107,8 +107,8 @@ const char* const scene = R"json({
               "corner": {"description": "facets that turn by more stay a corner (degrees)", "type": "number",
                 "exclusiveMinimum": 0, "maximum": 180, "default": 30, "examples": [60]}}}]},
         "discretization": {
-          "description": "node: node-to-segment; segment: mortar, gap and slip integrated along both sides",
-          "enum": ["node", "segment"], "default": "node"}}}},
+          "description": "node: node-to-segment; segment: mortar, gap and slip integrated along both sides. Left out: segment at finite strain, of solid bodies against one another and polylines, if no surface is given; else node",
+          "enum": ["node", "segment"], "examples": ["segment"]}}}},
   "supports": {"description": "what is held or moved; supports that share a node must agree on it",
     "title": "list of objects", "type": "array", "examples": [[{"on": "block.left", "move": {"x": 0, "y": 0}}]],
     "items": {"type": "object", "required": ["on"], "additionalProperties": false, "properties": {

@@ -167,13 +167,20 @@ void read_pairs(const Contact& common, const JsonNode& between, bool self, Scene
     }
 }
 
+/// Whether a master is a side of a body, or a polyline.
+bool has_facets(const std::string& master, const SceneReading& reading) {
+  const auto& obstacles = reading.scene.obstacles;
+  const auto found = std::find_if(obstacles.begin(), obstacles.end(), [&](const auto& o) { return o.name == master; });
+  return found == obstacles.end() || std::holds_alternative<Polyline>(found->shape);
+}
+
 void read_contact(const std::string& name, const JsonNode& node, SceneReading& reading) {
   const auto between = node.value().is_object() ? node.find("between") : std::nullopt;
   if (!node.is_object(
           between ? Keys{{"between"}, {"slave", "master", "self", "friction", "offset", "surface", "discretization"}}
                   : Keys{{"slave", "master"}, {"between", "self", "friction", "offset", "surface", "discretization"}}))
     return;
-  for (const char* key : between ? std::vector{"slave", "master", "discretization"} : std::vector{"self"})
+  for (const char* key : between ? std::vector{"slave", "master"} : std::vector{"self"})
     if (const auto other = node.find(key))
       other->error_at_key(between ? R"(does not go with "between", which names bodies)" : R"(belongs to "between")");
   Contact contact;
@@ -200,21 +207,23 @@ void read_contact(const std::string& name, const JsonNode& node, SceneReading& r
   if (const auto friction = node.find("friction")) contact.friction = read_friction(*friction, reading);
   contact.offset = reading.optional(node, "offset", 0, any_number);
   if (const auto surface = node.find("surface")) read_surface(*surface, contact, reading);
-  if (between) {
-    const auto self = node.find("self");
-    return read_pairs(contact, *between, self && self->boolean().value_or(false), reading);
-  }
+  const bool is_solid =
+      between || !slave_side || (is_continuum(slave_side->mesh->shape) && !slave_side->side.facets.empty());
+  // Why the default: the geometry of integrated contact is continuous, from facet to facet and over ends.
+  contact.segment =
+      is_solid && reading.scene.finite_strain && !node.find("surface") && has_facets(contact.master, reading);
+  const bool self = between && node.find("self") && node.find("self")->boolean().value_or(false);
   if (const auto discretization = node.find("discretization")) {
     contact.segment = discretization->choice({"node", "segment"}) == "segment";
-    if (contact.segment && contact.is_of_itself())
-      discretization->error(R"(is "segment", which is between two sides; of a side that touches itself: "node")");
+    if (contact.segment && (between ? self : contact.is_of_itself()) && !reading.scene.finite_strain)
+      discretization->error(R"(is "segment", which a side takes against itself at finite strain alone; allowed: "node")");
     if (contact.segment && contact.smoothing != Smoothing::none)
       discretization->error(R"(is "segment", which integrates along straight facets; with a smooth surface: "node")");
-    const bool solid = !slave_side || (is_continuum(slave_side->mesh->shape) && !slave_side->side.facets.empty());
-    if (contact.segment && !solid)
+    if (contact.segment && !is_solid)
       discretization->error("is \"segment\", which integrates along the facets of a solid body; the slave " +
                             shown(node.value()["slave"]) + " has none; allowed: \"node\"");
   }
+  if (between) return read_pairs(contact, *between, self, reading);
   reading.scene.contacts.push_back(std::move(contact));
 }
 

@@ -16,18 +16,59 @@ Master::Master(const Scene& scene, const Json& contact, const std::string& slave
   const std::string kind = surface.is_object() ? surface.value("smooth", "catmull_rom") : surface.get<std::string>();
   smooth_ = kind == "faceted" ? 0 : kind == "b_spline" ? 2 : 1;
   frozen_ = !scene.finite && smooth_ == 0 && !contact.contains("between") && !itself_;
-  Facets facets = rigid() ? Facets{} : facets_of(scene.side(master));
+  if (!rigid()) facets = facets_of(scene.side(master));
+  std::vector<std::array<int, 2>> lines;
+  for (const auto& facet : facets) lines.push_back(facet.ends);
   if (obstacle.contains("polyline")) {  // the solid is on its right
     const Json& points = obstacle["polyline"].at("points");
     const bool closed = points.front() == points.back();
     const int count = static_cast<int>(points.size()) - closed;
     at_.resize(2, count);
     for (int v = 0; v < count; ++v) at_.col(v) = vec3(points[v]).head<2>();
-    for (int v = 0; v + 1 < count + closed; ++v) facets.push_back({(v + 1) % count, v});
+    for (int v = 0; v + 1 < count + closed; ++v) lines.push_back({(v + 1) % count, v});
   }
-  for (const auto& [from, to] : facets) patches.push_back({{from, from, to, to}});
+  for (const auto& [from, to] : lines) patches.push_back({{from, from, to, to}});
   place_vertices(scene.points);
   link(surface.is_object() ? surface.value("corner", 30.0) : 30.0);
+  if (itself_) number_nodes();
+}
+
+/// Numbers the nodes chain by chain, long ones first. A loop begins at the node that is farthest from the mean of its
+/// nodes; of equals, at that with the least x, then y.
+void Master::number_nodes() {
+  struct Chain {
+    double length = 0;
+    std::vector<int> nodes = {};
+  };
+  std::vector<Chain> chains;
+  for (int first = 0; first < std::ssize(patches); ++first) {
+    const bool is_seen = std::ranges::any_of(
+        chains, [&](const Chain& chain) { return std::ranges::count(chain.nodes, patches[first].vertex[1]) > 0; });
+    int start = first;
+    while (patches[start].beside[0] >= 0 && patches[start].beside[0] != first) start = patches[start].beside[0];
+    if (is_seen) continue;
+    const bool is_loop = patches[start].beside[0] >= 0;
+    Chain chain;
+    int p = start;
+    do {
+      chain.nodes.push_back(patches[p].vertex[1]);
+      chain.length += patches[p].length;
+      if (patches[p].beside[1] < 0) chain.nodes.push_back(patches[p].vertex[2]);
+      p = patches[p].beside[1];
+    } while (p >= 0 && p != start);
+    Vec2 mean = Vec2::Zero();
+    for (const int node : chain.nodes) mean += at_.col(node) / static_cast<double>(chain.nodes.size());
+    const double same = at_end * chain.length;
+    const auto comes_first = [&](int a, int b) {
+      const double apart = (at_.col(a) - mean).norm() - (at_.col(b) - mean).norm(), across = at_(0, a) - at_(0, b);
+      return std::abs(apart) > same ? apart > 0 : std::abs(across) > same ? across < 0 : at_(1, a) < at_(1, b);
+    };
+    if (is_loop) std::ranges::rotate(chain.nodes, std::ranges::min_element(chain.nodes, comes_first));
+    chains.push_back(chain);
+  }
+  std::ranges::stable_sort(chains, [](const Chain& a, const Chain& b) { return a.length > b.length * (1 + at_end); });
+  for (const auto& chain : chains)
+    for (const int node : chain.nodes) number_.emplace(node, static_cast<int>(number_.size()));
 }
 
 /// Neighbours of the patches, corners, and lengths along the master at the start.
@@ -78,7 +119,25 @@ Vec2 Master::position(const Place& place, int derivative) const {
   return at_(Eigen::all, patches[place.patch].vertex) * functions(place, derivative);
 }
 
-void Master::set_wall(const Seeker& seeker) {
+double Master::depth_in(const Facet& facet, int patch, const std::map<int, Touch>& last) const {
+  const auto& vertex = patches[patch].vertex;
+  const int count = static_cast<int>(patches.size());
+  double depth = infinity;
+  for (const int node : facet.ends) {
+    const bool comes_after = number_.at(vertex[1]) > number_.at(node);
+    if (!comes_after || walls_.at(node)[patch] || vertex[1] == node || vertex[2] == node) return -1;
+    double share = 0.25;  // of the wall, unless the patch is near what was faced last
+    for (const int end : facet.ends)
+      if (const auto found = last.find(end); found != last.end() && found->second.faced >= 0) {
+        const int apart = std::abs(number_.at(patches[found->second.faced].vertex[1]) - number_.at(vertex[1]));
+        if (std::min(apart, count - apart) <= 8) share = 1;
+      }
+    depth = std::min(depth, share * depths_.at(node));
+  }
+  return depth;
+}
+
+void Master::set_wall(const Seeker& seeker, double size) {
   const Vec2 x = seeker.x.head<2>(), inward = -seeker.outward.normalized();
   double thickness = infinity;
   for (const auto& patch : patches) {
@@ -87,6 +146,7 @@ void Master::set_wall(const Seeker& seeker) {
     const bool is_own = patch.vertex[1] == seeker.node || patch.vertex[2] == seeker.node;
     if (!is_own && xi >= 0 && xi <= 1 && depth > 0) thickness = std::min(thickness, depth);
   }
+  depths_[seeker.node] = std::max(size, thickness);
   for (const auto& patch : patches) {
     const Line line = line_of(patch);
     const bool is_behind = cross(x - line.from, line.tau) < -at_end * line.tau.squaredNorm();

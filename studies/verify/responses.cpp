@@ -76,8 +76,7 @@ std::optional<double> at_place(const State& state, const Contact& contact, const
   if (kind == "slip") return slides ? std::optional(touch.slid) : std::nullopt;
   if (kind != "contact_force") return std::nullopt;
   Vec3 x = Vec3::Zero();  // the force is shared by the slave's nodes
-  for (const auto& [node, weight] : touch.weights)
-    if (contact.segment ? weight > 0 : node == touch.node) x += weight * state.place(node);
+  for (const auto& [node, weight] : touch.slave) x += weight * state.place(node);
   return touch.area * (how.at("component") == "normal" ? touch.pressure() : part_of(how, touch.traction, x));
 }
 

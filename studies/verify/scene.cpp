@@ -119,10 +119,23 @@ Mat3 Body::stiffness() const {
 Facets facets_of(const Side& side) {
   Facets facets;
   for (const auto& edge : side.edges) {
-    if (edge.size() == 3) facets.push_back({edge[0], edge[2]});
-    facets.push_back({edge.back() == edge[1] ? edge[0] : edge[2], edge[1]});
+    if (edge.size() == 2) facets.push_back({{edge[0], edge[1]}});
+    if (edge.size() == 3) facets.insert(facets.end(), {{{edge[0], edge[2]}, edge}, {{edge[2], edge[1]}, edge}});
   }
   return facets;
+}
+
+std::vector<std::pair<int, double>> Facet::weights(double s, int derivative) const {
+  const double ends_of[2][2] = {{1 - s, s}, {-1, 1}}, bulge = derivative == 0 ? s * (1 - s) : 1 - 2 * s;
+  std::vector<std::pair<int, double>> of{{ends[0], ends_of[derivative][0]}, {ends[1], ends_of[derivative][1]}};
+  if (!edge.empty()) of.insert(of.end(), {{edge[2], bulge}, {edge[0], -bulge / 2}, {edge[1], -bulge / 2}});
+  return of;
+}
+
+Vec3 Facet::at(const Field& x, double s, int derivative) const {
+  Vec3 place = Vec3::Zero();
+  for (const auto& [node, weight] : weights(s, derivative)) place += weight * x.col(node);
+  return place;
 }
 
 Scene::Scene(const Json& scene, const Json& mesh) : json(scene) {

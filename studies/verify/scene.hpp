@@ -76,8 +76,17 @@ struct Side {
   bool has(int node) const { return nodes.contains(node); }
 };
 
-/// The ends of the edges of a side; of edges with a middle, those of their halves.
-using Facets = std::vector<std::array<int, 2>>;
+/// An edge of a side, or half of one that has a middle: x(s) = (1 - s) x_a + s x_b, and of a half in addition
+/// s (1 - s) (x_middle - (x_start + x_end) / 2).
+struct Facet {
+  std::array<int, 2> ends;
+  Nodes edge = {};  ///< of a half: start, end, middle
+  bool has(int node) const { return ends[0] == node || ends[1] == node; }
+  /// Of the nodes, at s, or their derivatives.
+  std::vector<std::pair<int, double>> weights(double s, int derivative = 0) const;
+  Vec3 at(const Field& x, double s, int derivative = 0) const;
+};
+using Facets = std::vector<Facet>;
 Facets facets_of(const Side& side);
 
 struct Scene {

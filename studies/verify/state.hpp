@@ -113,6 +113,8 @@ struct Seeker {
   Vec2 outward = Vec2::Zero();  ///< sum of the normals of its facets, times their lengths; zero: it has none
 };
 
+struct Touch;
+
 class Master {
  public:
   /// `slave`: side expression; the same as `master` where a side touches itself.
@@ -123,16 +125,21 @@ class Master {
   Vec2 position(const Place& place, int derivative = 0) const;
   Foot foot(const Seeker& seeker) const;
   Foot foot(const Place& place) const;  ///< there
-  /// What a point of a side that touches itself does not face: its own wall. `seeker`: the point at the start.
-  void set_wall(const Seeker& seeker);
+  /// What a point of a side that touches itself does not face: its own wall. `seeker`: the point at the start; `size`:
+  /// of its facets, length.
+  void set_wall(const Seeker& seeker, double size);
+  /// How deep a facet of a side that touches itself may be inside of a patch; negative: it may not face it.
+  double depth_in(const Facet& facet, int patch, const std::map<int, Touch>& last) const;
 
   std::vector<Patch> patches;
+  Facets facets;    ///< of a side of a body: those of the patches
   double loop = 0;  ///< length of a closed master; 0: it is open
   Json obstacle;    ///< empty: the master deforms
   Motion motion;    ///< of an obstacle
 
  private:
   void link(double corner);
+  void number_nodes();
   Eigen::Vector4d functions(const Place& place, int derivative = 0) const;  ///< N_i
   bool may_face(const Seeker& seeker, int patch) const;
   Place closest(const Seeker& seeker) const;
@@ -144,6 +151,8 @@ class Master {
   int smooth_ = 0;                          ///< 0: facets, 1: Catmull-Rom, 2: B-spline
   bool itself_ = false, frozen_ = false;    ///< frozen: facets of the start, at small strain
   std::map<int, std::vector<char>> walls_;  ///< of each node, the patches of its own wall
+  std::map<int, double> depths_;            ///< of each node: the thickness of the wall, or the size of its facets
+  std::map<int, int> number_;               ///< of each node of a side that touches itself, along it
 };
 
 /// A place of contact: a slave node, or the multiplier of one. Its weights are 1 of the slave, -N_i of the master. The
@@ -157,6 +166,8 @@ struct Touch : Foot {
   Vec3 carried = Vec3::Zero();                           ///< motion of an obstacle's surface there in this increment
   Vec3 relative = Vec3::Zero(), tangent = Vec3::Zero();  ///< w of small strain; m of segments
   double along = 0;                                      ///< Z of segments
+  std::vector<std::pair<int, double>> slave = {};        ///< weights of the slave's nodes, without those of the master
+  int faced = -1;                                        ///< of segments: the patch of the first
   Vec3 traction = Vec3::Zero();                          ///< on the slave, force per area of the start
   Vec2 compliance = Vec2::Zero();  ///< of the springs of a penalty, normal and tangential; zero: multipliers
   double slid = 0;                 ///< slip since the start along e
@@ -182,12 +193,13 @@ class Contact {
  private:
   /// Part of a slave facet that faces one patch of the master (-1: an obstacle without patches).
   struct Piece {
-    std::array<int, 2> facet;
+    Facet facet;
     int patch;
     double from, to;
   };
   Seeker seeker(int node, const Field& x) const;
-  std::vector<Piece> cut(const std::array<int, 2>& facet, const Field& x) const;
+  bool carries(int node, const Facet& facet) const;
+  std::vector<Piece> cut(const Facet& facet, const Field& x) const;
   double integrate(const Piece& piece, int node, const Field& x, Touch& touch) const;
   Touch on_pieces(int node, const Field& x) const;
   void move(Touch& touch, const Touch& last, const Field& u, double time) const;
@@ -198,6 +210,7 @@ class Contact {
   Master master_;
   Facets facets_;
   std::map<int, double> areas_;
+  std::set<int> corners_;  ///< where the slave side turns by more than 60 degrees
   double last_time_ = at_rest;
 };
 
