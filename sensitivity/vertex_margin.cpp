@@ -112,14 +112,16 @@ double integration_margin(const Model& model, const Slots<double>& slots, const 
     };
     for (std::size_t p = 0; p < model.points.size(); ++p) {
       if (model.points[p].curve != c || state.contact.state[p] == ContactState::open) continue;
-      for (const auto& segment : state.contact.facing[p].pieces)
+      for (const auto& segment : state.contact.facing[p].pieces) {
+        const auto bulge = detail::bulge_of<double, double>(segment.slave_edge, present);
         for (int side : {0, 1})
           for (int node : segment.master) {
             if (!is_end(ends, segment.slave[side]) || !has_kink_at(curve, node, present, of_start)) continue;
             const Placed<double> a = present(segment.slave[0]);
             const Place tau = present(segment.slave[1]) - a;
-            least = std::min(least, std::abs(detail::end_coordinate<double>(node, present, a, tau) - side));
+            least = std::min(least, std::abs(detail::end_coordinate<double>(node, present, a, tau, bulge) - side));
           }
+      }
     }
   }
   return least;

@@ -15,10 +15,10 @@ struct Segment {
   std::array<int, 2> master{{none, none}};  ///< nodes c -> d of the master facet; none: the master has no facets
   /// The sides of quadratic elements that the two facets are halves of: start, end, middle; none: of linear ones.
   std::array<int, 3> slave_edge{{none, none, none}}, master_edge = slave_edge;
-  int facet = none;                         ///< number of the master facet on its side
-  int first_end = start, last_end = end;    ///< start, end, or the master node that is projected there
-  int carrier = 0;                          ///< 0 or 1: the slave node that carries the multiplier
-  bool sole_carrier = false;                ///< the other slave node carries no multiplier, so psi = 1
+  int facet = none;                       ///< number of the master facet on its side
+  int first_end = start, last_end = end;  ///< start, end, or the master node that is projected there
+  int carrier = 0;                        ///< 0 or 1: the slave node that carries the multiplier
+  bool sole_carrier = false;              ///< the other slave node carries no multiplier, so psi = 1
   friend bool operator==(const Segment&, const Segment&) = default;
 };
 

@@ -106,13 +106,66 @@ T along_bulge(const T& way, const T& straight, const T& bent) {
 /// Coordinate of a segment's end along the slave facet: 0 at its first node a, 1 at its second. `tau`: vector from a to
 /// the second node. `position(node)`: Placed.
 template <class T, class S, class Position, class Place>
-T end_coordinate(int segment_end, Position&& position, const Place& a, const Vec<T, 2>& tau,
-                 const Bulge<T, S>& bulge) {
+T end_coordinate(int segment_end, Position&& position, const Place& a, const Vec<T, 2>& tau, const Bulge<T, S>& bulge) {
   if (segment_end == Segment::start) return T(0);
   if (segment_end == Segment::end) return T(1);
   const T way = dot(Vec<T, 2>(position(segment_end) - a), tau), straight = dot(tau, tau);
   return bulge.is_curved ? along_bulge<T>(way, straight, dot(bulge.now(), tau)) : T(way / straight);
 }
+
+/// A point of a slave facet.
+template <class T>
+struct SlavePoint {
+  Vec<T, 2> start, moved;  ///< initial place; displacement, less that of the facet's first node
+  Vec<T, 2> normal;        ///< unit, outward, as it is now
+  T stretch{};             ///< initial length per coordinate
+};
+
+/// Slave facet a -> b.
+template <class T, class S>
+class SlaveFacet {
+ public:
+  template <class Position>
+  SlaveFacet(const Segment& segment, Position&& position)
+      : a(position(segment.slave[0])),
+        b(position(segment.slave[1])),
+        bulge(bulge_of<T, S>(segment.slave_edge, position)),
+        along_start_(b.start - a.start),
+        along_(b - a),
+        stretched_(b.moved - a.moved),
+        length_(norm(along_start_)) {}
+  /// The point at the coordinate s.
+  SlavePoint<T> at(const T& s) const {
+    SlavePoint<T> point;
+    Vec<T, 2> along = along_, slope;
+    for (int i = 0; i < 2; ++i) point.start[i] = T(a.start[i]) + s * along_start_[i];
+    point.moved = s * stretched_;
+    point.stretch = T(length_);
+    if (bulge.is_curved) {
+      const T bend = s * (T(1) - s), turn = T(1) - T(2) * s;
+      for (int i = 0; i < 2; ++i) {
+        point.start[i] += bend * bulge.start[i];
+        slope[i] = T(along_start_[i]) + turn * bulge.start[i];
+      }
+      point.moved += bend * bulge.moved;
+      point.stretch = norm(slope);
+      along += turn * bulge.now();
+    }
+    const T length = norm(along);
+    point.normal = Vec<T, 2>(along[1] / length, -along[0] / length);
+    return point;
+  }
+  const Vec<T, 2>& along() const { return along_; }
+  const S& length() const { return length_; }  ///< initial, of the straight facet
+
+  Placed<T, S> a, b;
+  Bulge<T, S> bulge;
+
+ private:
+  Vec<S, 2> along_start_;
+  Vec<T, 2> along_, stretched_;
+  S length_;
+};
 
 /// Slave facet a -> b over the line of its master facet c -> d, as they were at the start, in S, and as they are now.
 template <class T, class S>
@@ -125,10 +178,14 @@ struct FacingFacets {
   Bulge<T, S> bulge;                       ///< of the master
   S bulge_along{}, bulge_apart{};          ///< what E and G grow by with the slave's bulge
 
-  FacingFacets(const Placed<T, S>& a, const Placed<T, S>& b, const Placed<T, S>& c, const Placed<T, S>& d,
-               const Bulge<T, S>& of_slave, const Bulge<T, S>& of_master)
-      : tau(b - a), facet(d - c), shift(a.moved - c.moved), stretched(d.moved - c.moved), bulge(of_master) {
-    const Vec<S, 2> line = d.start - c.start, from = a.start - c.start, to = b.start - c.start;
+  FacingFacets(const SlaveFacet<T, S>& slave, const Placed<T, S>& c, const Placed<T, S>& d,
+               const Bulge<T, S>& of_master)
+      : tau(slave.along()),
+        facet(d - c),
+        shift(slave.a.moved - c.moved),
+        stretched(d.moved - c.moved),
+        bulge(of_master) {
+    const Vec<S, 2> line = d.start - c.start, from = slave.a.start - c.start, to = slave.b.start - c.start;
     const S square = dot(line, line);
     length = norm(line);
     normal << line[1] / length, -line[0] / length;
@@ -136,21 +193,20 @@ struct FacingFacets {
     along = dot(to, line) / square - first;
     distance = dot(from, normal);
     apart = dot(to, normal) - distance;
-    if (!of_slave.is_curved) return;
-    bulge_along = dot(of_slave.start, line) / square;
-    bulge_apart = dot(of_slave.start, normal);
+    if (!slave.bulge.is_curved) return;
+    bulge_along = dot(slave.bulge.start, line) / square;
+    bulge_apart = dot(slave.bulge.start, normal);
   }
 };
 
 /// Foot of a slave point on its master.
 template <class T>
 struct Foot {
-  Vec<T, 2> off;               ///< x - y
-  Vec<T, 2> normal;            ///< unit, out of the master
-  std::array<T, 2> weights{};  ///< on a facet: 1 - eta, eta
-  T eta{}, E{}, shift{};       ///< on a facet; shift = eta - E
-  Vec<T, 2> tangent = {};      ///< on a facet: dy/deta
-  Vec<T, 2> moved = {};        ///< on an obstacle: y, from the initial place of the slave point
+  Vec<T, 2> off;           ///< x - y
+  Vec<T, 2> normal;        ///< unit, out of the master
+  T eta{}, E{}, shift{};   ///< on a facet; shift = eta - E
+  Vec<T, 2> tangent = {};  ///< on a facet: dy/deta
+  Vec<T, 2> moved = {};    ///< on an obstacle: y, from the initial place of the slave point
 };
 
 /// Foot on a master facet of the slave point at the coordinate s, which moves by `moved` more than the facet's node a.
@@ -181,7 +237,6 @@ Foot<T> foot_on_facet(const FacingFacets<T, S>& facets, const T& s, const Vec<T,
   }
   const T length = norm(foot.tangent);
   foot.normal = Vec<T, 2>(foot.tangent[1] / length, -foot.tangent[0] / length);
-  foot.weights = {T(1) - foot.eta, foot.eta};
   return foot;
 }
 
@@ -237,56 +292,44 @@ SegmentIntegrals<T> integrate_segments(const std::vector<Segment>& segments, con
   SegmentIntegrals<T> sums;
   sums.weights = decltype(sums.weights)::Constant(static_cast<Eigen::Index>(nodes.size()), T(0));
   const auto place = [&](int node) { return std::find(nodes.begin(), nodes.end(), node) - nodes.begin(); };
-  auto share = [&](int node, const T& w) { sums.weights[place(node)] += w; };
-  const auto share_bulge = [&](const std::array<int, 3>& edge, const T& w) {
-    share(edge[2], w);
-    for (int end = 0; end < 2; ++end) share(edge[end], T(-0.5) * w);
+  const auto share = [&](int node, const T& w) { sums.weights[place(node)] += w; };
+  // w times the shape functions of a facet, at its coordinate s
+  const auto share_along = [&](const std::array<int, 2>& facet, const std::array<int, 3>& edge, bool is_curved,
+                               const T& s, const T& w) {
+    share(facet[0], w * (T(1) - s));
+    share(facet[1], w * s);
+    if (!is_curved) return;
+    const T bend = w * s * (T(1) - s);
+    share(edge[2], bend);
+    for (int k = 0; k < 2; ++k) share(edge[k], T(-0.5) * bend);
   };
   for (const auto& segment : segments) {
-    const bool has_facet = segment.master[0] != Segment::none;
-    const Placed<T, S> a = position(segment.slave[0]), b = position(segment.slave[1]);
-    const auto bulge = detail::bulge_of<T, S>(segment.slave_edge, position);
+    const detail::SlaveFacet<T, S> slave(segment, position);
     std::optional<detail::FacingFacets<T, S>> facets;
-    if (has_facet)
-      facets.emplace(a, b, position(segment.master[0]), position(segment.master[1]), bulge,
+    if (segment.master[0] != Segment::none)
+      facets.emplace(slave, position(segment.master[0]), position(segment.master[1]),
                      detail::bulge_of<T, S>(segment.master_edge, position));
-    const Vec<T, 2> tau = b - a, stretched = b.moved - a.moved;
-    const Vec<S, 2> Tau = b.start - a.start;
-    const T length = norm(tau);
-    Vec<T, 2> nu(tau[1] / length, -tau[0] / length);
-    const T from = detail::end_coordinate<T>(segment.first_end, position, a, tau, bulge),
-            to = detail::end_coordinate<T>(segment.last_end, position, a, tau, bulge);
+    const auto end = [&](int of) {
+      return detail::end_coordinate<T>(of, position, slave.a, slave.along(), slave.bulge);
+    };
+    const T from = end(segment.first_end), to = end(segment.last_end);
     const bool rigid = place(segment.master[0]) == static_cast<std::ptrdiff_t>(nodes.size());
     IntegrationPoint<T> point;
-    point.slave_length = T(norm(Tau));
+    point.slave_length = T(slave.length());
     for (int q = 0; q < 3; ++q) {
       const T s = point.xi = from + (to - from) * T(0.5 * (1 + gauss[q]));
-      Vec<T, 2> moved = s * stretched, X(T(a.start[0]) + s * Tau[0], T(a.start[1]) + s * Tau[1]);
-      T stretch = point.slave_length;
-      const T bend = s * (T(1) - s), turn = T(1) - T(2) * s;
-      if (bulge.is_curved) {
-        moved += bend * bulge.moved;
-        for (int i = 0; i < 2; ++i) X[i] += bend * bulge.start[i];
-        stretch = norm(Vec<T, 2>(T(Tau[0]) + turn * bulge.start[0], T(Tau[1]) + turn * bulge.start[1]));
-        const Vec<T, 2> along = tau + turn * bulge.now();
-        nu = Vec<T, 2>(along[1], -along[0]) / norm(along);
-      }
-      const detail::Foot<T>& foot = point.foot = has_facet
-                                                     ? detail::foot_on_facet<T, S>(*facets, s, moved, bulge.is_curved)
-                                                     : rigid_foot(X, Vec<T, 2>(a.moved + moved));
+      const auto at = slave.at(s);
+      const detail::Foot<T>& foot = point.foot =
+          facets ? detail::foot_on_facet<T, S>(*facets, s, at.moved, slave.bulge.is_curved)
+                 : rigid_foot(at.start, Vec<T, 2>(slave.a.moved + at.moved));
       const T psi = segment.sole_carrier ? T(1) : segment.carrier == 0 ? T(1) - s : s;
-      const T dA = point.area = psi * (to - from) * stretch * T(weight[q]) * depth.at(X[0]);
+      const T dA = point.area = psi * (to - from) * at.stretch * T(weight[q]) * depth.at(at.start[0]);
       sums.area += dA;
-      share(segment.slave[0], dA * (T(1) - s));
-      share(segment.slave[1], dA * s);
-      if (!rigid)
-        for (int m = 0; m < 2; ++m) share(segment.master[m], -dA * foot.weights[m]);
-      if (bulge.is_curved) share_bulge(segment.slave_edge, dA * bend);
-      if (!rigid && has_facet && facets->bulge.is_curved)
-        share_bulge(segment.master_edge, -dA * foot.eta * (T(1) - foot.eta));
+      share_along(segment.slave, segment.slave_edge, slave.bulge.is_curved, s, dA);
+      if (!rigid) share_along(segment.master, segment.master_edge, facets->bulge.is_curved, foot.eta, -dA);
       for (int i = 0; i < 2; ++i) {
         sums.gap[i] += dA * foot.off[i];
-        sums.normal[i] += dA * (foot.normal[i] - (rigid ? T(0) : nu[i]));
+        sums.normal[i] += dA * (foot.normal[i] - (rigid ? T(0) : at.normal[i]));
       }
       visit(segment, facets, point);
     }

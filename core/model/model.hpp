@@ -49,7 +49,7 @@ struct MasterCurve {
   std::vector<std::vector<int>> facets = {};
   std::vector<int> ends = {};
   std::vector<std::array<int, 3>> edges = {};  ///< per facet: the side of a quadratic element that it is half of
-  std::map<int, OwnVertex> own = {};  ///< of a side that is integrated against itself: per node
+  std::map<int, OwnVertex> own = {};           ///< of a side that is integrated against itself: per node
   bool is_integrated() const { return !facets.empty(); }
   /// Whether its last patch ends where the first begins.
   bool is_loop() const { return patches.back().next == 0; }

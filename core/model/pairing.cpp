@@ -256,8 +256,7 @@ void pair_segments(Model& model, const Points<double>& points, const Pairing& pa
   const auto corners = model.scene.finite_strain ? corners_of(pairing.slave, points) : std::set<int>{};
   auto of_node = segments_of_nodes(master, pairing, slides || master.facets.empty(), corners);
   const int curve = slides ? static_cast<int>(model.curves.size()) : -1;
-  if (slides)
-    model.curves.push_back(integrated_curve(model, points, pairing.index, pairing.obstacle, pairing.master));
+  if (slides) model.curves.push_back(integrated_curve(model, points, pairing.index, pairing.obstacle, pairing.master));
   const std::size_t first = model.points.size();
   for (int node : pairing.slave.nodes) {
     if (of_node[node].empty()) continue;

@@ -94,7 +94,8 @@ void find_segments(const Model& model, int curve, const Points<double>& start, c
       };
       const auto nearest = search.nearest(x, counts);
       const bool is_any = nearest.facet >= 0;  // (else a side that may touch itself nowhere near)
-      facing.distance = is_any ? nearest.distance : (positions.rowwise().maxCoeff() - positions.rowwise().minCoeff()).norm();
+      facing.distance =
+          is_any ? nearest.distance : (positions.rowwise().maxCoeff() - positions.rowwise().minCoeff()).norm();
       facing.nearest = nearest.facet;
     } else {
       facing.patch = facing.pieces.front().facet;

@@ -54,6 +54,7 @@ class IncrementSearch {
   Increment<T> find() {
     if (auto rest = rest_of_floating_bodies()) return std::move(*rest);
     found_ = solve_increment(run_, previous_, factor_, time_, Start<T>{previous_, {}});
+    if (prevents_what_crosses()) return failed(Status::infeasible, "");
     if (!rescues_ || is_final()) return std::move(found_);
     if (!solved() && !balances()) return failed(Status::no_equilibrium, found_.message);
     if (!solved() && in_vain()) return std::move(found_);
@@ -78,6 +79,11 @@ class IncrementSearch {
     return std::nullopt;
   }
 
+  /// Whether supports drive facets further through one another, which a solution does not see once one of them is
+  /// beyond the other. A penalty holds what overlaps, and so may its solution.
+  bool prevents_what_crosses() const { return solved() && prevents_penetration(run_.method) && crosses(); }
+  bool crosses() const { return cross_between(run_.model, run_.slots, run_.start, time_); }
+
   /// Whether what the method found stands.
   bool is_final() const {
     const bool prescribed =
@@ -86,9 +92,7 @@ class IncrementSearch {
     return prescribed || (solved() && (!several() || found_.cut_off));
   }
 
-  bool in_vain() const {
-    return bound_.is_spent() || !may_move_ || cross_between(run_.model, run_.slots, run_.start, time_);
-  }
+  bool in_vain() const { return bound_.is_spent() || !may_move_ || crosses(); }
 
   Increment<T> failed(Status status, std::string message) {
     found_.status = status;

@@ -36,7 +36,7 @@ std::vector<int> shared_points(const Model& model, const Slots<T>& slots, const 
 /// A point whose overlap no stiffness removes, in words; empty if there is none.
 ///
 /// One augmentation from the solution finds it, with 1e8 nodal stiffnesses. Tangential tractions stay, and points are
-/// closed and opened until tractions and gaps agree. An overlap to which bodies can yield falls to some 1e-8 of itself.
+/// closed and opened until tractions and gaps agree. With present geometry Newton's method goes on until that is solved. An overlap to which bodies can yield falls to some 1e-8 of itself.
 /// An overlap that supports or other contacts prescribe stays, there or elsewhere; its force is stiffness times
 /// overlap. The augmentation is skipped unless points share a node or are held by supports.
 template <class T>
@@ -64,19 +64,20 @@ std::string unyielding_point(Run<T>& run, const ContactInput<T>& found, const Eq
   std::vector<ContactState> states = equilibrium.field.state;
   for (std::size_t p = 0; p < states.size(); ++p)
     if (states[p] != ContactState::open) states[p] = closed(static_cast<int>(p));
-  const Vector<T> compact = run.engine.compact(equilibrium.unknowns.u);
+  auto u = equilibrium.unknowns.u;
   double rest = 0;
   for (int round = 0; round < most_rounds; ++round) {
+    const Vector<T> compact = run.engine.compact(u);
     const auto pushed = evaluate_contact<T>(input, compact, traction, &states);
     ForceScale unused;
-    Vector<T> rows = run.engine.residual(equilibrium.unknowns.u, contact_forces(model, run.slots, pushed), unused);
+    Vector<T> rows = run.engine.residual(u, contact_forces(model, run.slots, pushed), unused);
     for (Eigen::Index row = 0; row < rows.size(); ++row)
       if (!run.engine.is_free(row)) rows[row] = T(0);
     std::vector<PointTangent<T>> tangents;
     for (int p = 0; p < static_cast<int>(model.points.size()); ++p)
       tangents.push_back(point_tangent<T>(input, p, compact, traction, states[p], equilibrium.field.facing));
     if (!run.engine.factorise(tangents, run.account.counters)) return "";
-    const Vector<T> u = equilibrium.unknowns.u + run.engine.solve({-rows, {}}).u.col(0);
+    u += run.engine.solve({-rows, {}}).u.col(0);
     ++run.account.counters.backsolves;
     const auto after = evaluate_contact<T>(input, run.engine.compact(u), traction, &states);
     run.account.counters.contact_evaluations += 2 * static_cast<long>(model.points.size());
@@ -91,7 +92,7 @@ std::string unyielding_point(Run<T>& run, const ContactInput<T>& found, const Eq
       states[p] = is_open ? closed(p) : ContactState::open;
       settled = false;
     }
-    if (settled) break;
+    if (settled && (rest <= left * worst || !model.effects.current_geometry)) break;
   }
   if (rest <= left * worst) return "";
   return name_of_point(model, run.slots, point) + " overlaps by " + short_number(worst) +

@@ -216,7 +216,8 @@ void read_contact(const std::string& name, const JsonNode& node, SceneReading& r
   if (const auto discretization = node.find("discretization")) {
     contact.segment = discretization->choice({"node", "segment"}) == "segment";
     if (contact.segment && (between ? self : contact.is_of_itself()) && !reading.scene.finite_strain)
-      discretization->error(R"(is "segment", which a side takes against itself at finite strain alone; allowed: "node")");
+      discretization->error(
+          R"(is "segment", which a side takes against itself at finite strain alone; allowed: "node")");
     if (contact.segment && contact.smoothing != Smoothing::none)
       discretization->error(R"(is "segment", which integrates along straight facets; with a smooth surface: "node")");
     if (contact.segment && !is_solid)

@@ -50,9 +50,8 @@ Contact::Contact(const Scene& scene, const std::string& called, const Json& side
     if (itself)
       master_.set_wall(seeker(node, scene.points), std::accumulate(of.begin(), of.end(), 0.0) / std::ssize(of));
   std::erase_if(areas_, [&](const auto& of) {
-    return segment && std::ranges::none_of(facets_, [&](const Facet& facet) {
-      return facet.has(of.first) && carries(of.first, facet);
-    });
+    return segment && std::ranges::none_of(
+                          facets_, [&](const Facet& facet) { return facet.has(of.first) && carries(of.first, facet); });
   });
   advance(Field::Zero(3, scene.points.cols()), at_rest);  // slip is measured from the start
 }
@@ -84,8 +83,8 @@ std::vector<Contact::Piece> Contact::cut(const Facet& facet, const Field& x) con
     const Patch& patch = master_.patches[p];
     const Line line = master_.line_of(patch);
     const auto cast = [&](const Vec2& y, bool is_free) {  // sides that end together, do so to 1e-6 of a facet
-      double xi = slave.xi(y);
-      for (int k = 0; k < 20 && !facet.edge.empty(); ++k)
+      double xi = slave.xi(y);                            // (a bend moves no place over an end)
+      for (int k = 0; k < 20 && !facet.edge.empty() && xi > 0 && xi < 1; ++k)
         xi += (y - facet.at(x, xi).head<2>()).dot(slave.tau) / facet.at(x, xi, 1).head<2>().dot(slave.tau);
       const double end = std::clamp(std::round(xi), 0.0, 1.0);
       return is_free && scene_.finite && std::abs(xi - end) <= 1e-6 ? end : xi;
@@ -158,7 +157,9 @@ double Contact::integrate(const Piece& piece, int node, const Field& x, Touch& t
         foot.normal -= in_space(right_of(facet.at(x, s, 1).head<2>()).normalized());
       }
       touch.tangent += dA / patch.length * slope;
-      touch.along += dA * (patch.arc + eta * patch.length + (end ? s - 1 : s) * chord);
+      const double turns =  // from the seam of a loop on, arcs go on as from the first patch that is faced
+          master_.loop > 0 ? std::round((master_.patches[touch.faced].arc - patch.arc) / master_.loop) : 0;
+      touch.along += dA * (patch.arc + turns * master_.loop + eta * patch.length + (end ? s - 1 : s) * chord);
     }
     share += length;
     touch.area += dA;
@@ -180,8 +181,8 @@ Touch Contact::on_pieces(int node, const Field& x) const {
     const double length = (scene_.points.col(facet.ends[1]) - scene_.points.col(facet.ends[0])).norm();
     whole += carries(facet.ends[0], facet) && carries(facet.ends[1], facet) ? length / 2 : length;
     for (const auto& piece : cut(facet, x)) {
-      share += integrate(piece, node, x, touch);
       if (touch.faced < 0) touch.faced = piece.patch;
+      share += integrate(piece, node, x, touch);
     }
   }
   const bool along_curve = scene_.finite && !master_.patches.empty();

@@ -293,9 +293,6 @@ TEST(Spaces, RefuseWhatTheyCannotHold) {
   Scene pulled = scenes::two_drums(2, 2, "Q4");
   pulled.supports[0].move['x'] = table({{0, 0.0}, {1, 0.1}});
   expect_refused(pulled, "/supports/0/move/x", "axis of revolution");
-  Scene segments = scenes::two_boxes(2, 2, "Q8");
-  segments.contacts[0].segment = true;
-  expect_refused(segments, "/contacts/touch", "linear elements");
 }
 
 // --- press fit ----------------------------------------------------------------------------------------

@@ -1,5 +1,6 @@
-/// Segment integration at finite strain: the patch test of A13 between any two meshes, sliding with friction over
-/// facets and ends, invariance, its limit of small strain, tangents and derivatives against the complex step.
+/// Segment integration at finite strain: the patch test of A13 between any two meshes and elements, sliding with
+/// friction over facets and ends, invariance, its limit of small strain, tangents and derivatives against the complex
+/// step.
 #include <gtest/gtest.h>
 
 #include "sensitivity/one_sided.hpp"
@@ -37,11 +38,16 @@ const Table still = table({{0, 0.0}});
 
 // --- A13: two blocks, pressed on one another by any meshes ----------------------------------------------------------
 
-Scene stacked_segments(double stretch, double mu, int slave, int master, Space space = Space::plane_strain) {
+/// Elements of the master's and of the slave's body; empty: Q4.
+using Elements = std::array<std::string, 2>;
+
+Scene stacked_segments(double stretch, double mu, int slave, int master, Space space = Space::plane_strain,
+                       const Elements& elements = {}) {
   Scene s = empty({{1, 4}});
   s.space = space;
   s.bodies = {rubber_body(scenes::box_body("lower", {0, 0}, {2, 0.5}, {master, 2}), s, "E", 1000),
               rubber_body(scenes::box_body("upper", {0, 0.5}, {2, 1}, {slave, 2}), s, "E_upper", 1000)};
+  for (int b : {0, 1}) s.bodies[b].element = elements[b];
   s.contacts = {joint(s, "upper.bottom", "lower.top", mu)};
   const Number down = parameter(s, "down", stretch - 1);
   s.supports = {scenes::support("lower.bottom", {{'y', still}}),
@@ -85,6 +91,18 @@ TEST(FiniteSegments, PassAUniformPressureBetweenAnyTwoMeshes) {
         }
 }
 
+TEST(FiniteSegments, PassAUniformPressureBetweenQuadraticElements) {
+  for (const Elements& elements : {Elements{"Q8", "Q4"}, {"Q4", "Q8"}, {"Q8", "Q8"}, {"T6", "T6"}, {"Q8", "T6"}})
+    for (const auto& [slave, master] : {std::pair{3, 4}, {7, 11}})
+      for (const Space space : {Space::plane_strain, Space::axisymmetric})
+        for (const auto& method : patch_methods()) {
+          const auto s = run(stacked_segments(0.8, 0.2, slave, master, space, elements), method);
+          ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
+          EXPECT_NEAR(s.value("most") / s.value("least"), 1, 1e-10)
+              << elements[0] << elements[1] << slave << ":" << master << name_of(method);
+        }
+}
+
 TEST(FiniteSegments, PassAUniformPressureOfRevolutionAndInPlaneStress) {
   for (const Space space : {Space::axisymmetric, Space::plane_stress})
     for (const auto& [slave, master] : {std::pair{3, 4}, {7, 11}})
@@ -101,6 +119,7 @@ TEST(FiniteSegments, PassAUniformPressureOfRevolutionAndInPlaneStress) {
 struct Ironing {
   double mu = 0.3, turned = 0, from = 0.8, along = 0.7;
   bool segment = true, shaped = false;
+  Elements elements = {};
 };
 
 Scene ironing_segments(const Ironing& of = {}) {
@@ -115,6 +134,7 @@ Scene ironing_segments(const Ironing& of = {}) {
   die.cells = {4, 2};
   s.bodies = {rubber_body({"slab", slab, LinearElastic{1.0, 0.0}, "", 1.0}, s, "E", 1),
               rubber_body({"die", die, LinearElastic{1.0, 0.0}, "", 1.0}, s, "E_die", 5)};
+  for (int b : {0, 1}) s.bodies[b].element = of.elements[b];
   s.contacts = {joint(s, "die.bottom", "slab.top", of.mu)};
   s.contacts[0].segment = of.segment;
   const Number down = parameter(s, "down", -0.15), along = parameter(s, "along", of.along);
@@ -268,8 +288,17 @@ TEST(FiniteSegments, SmallStrainIsTheirLimit) {  // D3
   }
 }
 
+/// Sides of quadratic elements, which bend as they are pressed.
+Ironing quadratic(double from = 0.8) {
+  Ironing of;
+  of.from = from;
+  of.elements = {"Q8", "T6"};
+  return of;
+}
+
 TEST(FiniteSegments, TangentsAreTheComplexStepOfForcesAndRows) {
-  for (const Scene& scene : {ironing_segments(), ironing_segments({0.3, 0, 2.7}), stacked_segments(0.7, 0.2, 3, 16)})
+  for (const Scene& scene : {ironing_segments(), ironing_segments({0.3, 0, 2.7}), stacked_segments(0.7, 0.2, 3, 16),
+                             ironing_segments(quadratic()), ironing_segments(quadratic(2.7))})
     for (const Method& method : {Method(MonolithicAL{}), Method(Penalty{scenes::relative(100)})}) {
       const auto s = run(scene, method);
       ASSERT_TRUE(is_converged(s.trajectory.status)) << s.trajectory.message;
@@ -284,6 +313,10 @@ TEST(FiniteSegments, DerivativesEqualTheComplexStepAndTheAdjoint) {
   shaped.shaped = true;
   for (const Method& method : {Method(MonolithicAL{}), finite_schemes()[0]})
     scenes::expect_derivatives_in_both_modes(ironing_segments(shaped), method);
+  Ironing bent = quadratic();
+  bent.shaped = true;
+  for (const Method& method : finite_schemes())
+    scenes::expect_derivatives_in_both_modes(ironing_segments(bent), method);
   scenes::expect_derivatives_in_both_modes(ironing_segments({0}), MonolithicAL{});
   scenes::expect_derivatives_in_both_modes(ironing_segments({0.3, 0, 2.7}), MonolithicAL{});
   for (const Space space : {Space::axisymmetric, Space::plane_stress}) {

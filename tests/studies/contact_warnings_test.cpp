@@ -39,7 +39,8 @@ json block_between_nodes(bool finite) {
   json scene = {
       {"bodies",
        {{"block", box({0.3, 1}, {1.3, 2}, {1, 1}, material)}, {"slab", box({0, 0}, {4, 1}, {3, 1}, material)}}},
-      {"contacts", {{"t", {{"slave", "slab.top"}, {"master", "block.bottom"}, {"friction", 0.8}}}}},
+      {"contacts",
+       {{"t", {{"slave", "slab.top"}, {"master", "block.bottom"}, {"friction", 0.8}, {"discretization", "node"}}}}},
       {"supports",
        {{{"on", "slab.bottom"}, {"move", {{"x", 0}, {"y", 0}}}},
         {{"on", "block.top"}, {"move", {{"x", 0}, {"y", {{0, 0}, {1, -0.1}}}}}}}},

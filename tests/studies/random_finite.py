@@ -304,6 +304,14 @@ def is_solved(run):
     return run["status"].startswith("converged")
 
 
+def keep(scene, surface, method, folder):
+    if not folder:
+        return
+    Path(folder).mkdir(parents=True, exist_ok=True)
+    name = f"{scene['title'].replace(' ', '_')}.{surface}.{method}.json"
+    (Path(folder) / name).write_text(json.dumps(dict(scene, method={method: {}}), indent=1))
+
+
 def report(kind, surface, scenes, runs, asked):
     """Prints what came of a class; returns how many runs are unsolved, and how many are faults."""
     unsolved = faults = 0
@@ -311,26 +319,28 @@ def report(kind, surface, scenes, runs, asked):
     for method in asked.methods:
         of = runs[method]
         failed = [(scene, run) for scene, run in zip(scenes, of) if not is_solved(run)]
-        refused = [scene["title"] for scene, run in zip(scenes, of) if run["verified"] is False]
+        refused = [scene for scene, run in zip(scenes, of) if run["verified"] is False]
         unsolved += len(failed)
         faults += sum(run["status"] in ("crash", "hang") for _, run in failed) + len(refused)
         print(f"  {method}: {len(failed)} of {len(of)} fail, {sum(run['seconds'] for run in of):.1f} s")
         for scene, run in failed:
             print(f"    {scene['title']}: {run['status']} after {len(run['forces'])} steps: {run['message'][:150]}")
-            if asked.keep:
-                name = f"{scene['title'].replace(' ', '_')}.{surface}.{method}.json"
-                (Path(asked.keep) / name).write_text(json.dumps(dict(scene, method={method: {}}), indent=1))
-        for title in refused:
-            print(f"    {title}: verify refuses it")
+        for scene in refused:
+            print(f"    {scene['title']}: verify refuses it")
+        for scene in [scene for scene, _ in failed] + refused:
+            keep(scene, surface, method, asked.keep)
     for method in [m for m in asked.methods if m != "monolithic_al" and "monolithic_al" in asked.methods]:
         both = [(scene, a, b) for scene, a, b in zip(scenes, runs["monolithic_al"], runs[method])
                 if is_solved(a) and is_solved(b)]
-        far = [(apart(a, b), scene["title"], a["warnings"] + b["warnings"]) for scene, a, b in both
+        far = [(apart(a, b), scene, a["warnings"] + b["warnings"]) for scene, a, b in both
                if apart(a, b) > MARGIN[method]]
         silent = [x for x in far if not x[2]]
+        for _, scene, _ in silent:
+            keep(scene, surface, method, asked.keep)
         faults += len(silent) if method == "uzawa_al" else 0
         print(f"  {method} against monolithic_al: {len(far)} of {len(both)} apart, {len(silent)} without a warning"
-              + "".join(f"; {title} {x:.2g}" for x, title, _ in sorted(far, reverse=True)[:20]), flush=True)
+              + "".join(f"; {scene['title']} {x:.2g}" for x, scene, _ in sorted(far, key=lambda f: -f[0])[:20]),
+              flush=True)
     return unsolved, faults
 
 
@@ -344,7 +354,7 @@ def main():
     parser.add_argument("--methods", nargs="+", default=METHODS, choices=METHODS)
     parser.add_argument("--seconds", type=float, default=60, help="limit of one run")
     parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--keep", help="folder for the scenes that fail")
+    parser.add_argument("--keep", help="folder for the scenes that fail, are refused or differ")
     parser.add_argument("--verify", action="store_true", help="certificates of converged runs too")
     parser.add_argument("--most-unsolved", type=float, default=1, help="share of all runs")
     asked = parser.parse_args()
