@@ -80,7 +80,7 @@ class AugmentationLoop {
                                   .last_displacement = first ? &start_.state.displacement : nullptr,
                                   .arc = start_.arc,
                                   .rests = first && rests(run_, start_),
-                                  .tells_stability = first && tells_stability(run_, start_)};
+                                  .tells_stability = first && start_.at_rest};
     auto equilibrium =
         find_equilibrium(run_.engine, task, unknowns_, inner_options(method_, progress_.contraction()), run_.account);
     account_for(increment_, equilibrium, ++increment_.augmentations);

@@ -72,14 +72,10 @@ Increment<T> follow_motion(Run<T>& run, const State<T>& previous, const std::vec
     }
     pace.move(length);
     const bool may_rest = run.floating.empty() || is_slow(rest, moved.state, pace.alpha());
-    rest = std::move(moved.state);
-    if (!may_rest) {
-      pace.hasten();
-      continue;
-    }
-    result = attempt(rest, 0);
+    rest = moved.state;
+    result = may_rest ? attempt(rest, 0) : std::move(moved);
     const bool near = pace.is_near(distance(rest, result.state));
-    const bool settled = !several || (near && result.state.contact.state == rest.contact.state);
+    const bool settled = may_rest && (!several || (near && result.state.contact.state == rest.contact.state));
     if (result.usable() && settled) break;
     if (result.usable()) {
       result.status = Status::cycle;

@@ -58,13 +58,6 @@ bool rests(const Run<T>& run, const Start<T>& start) {
   return start.at_rest && !run.floating.empty();
 }
 
-/// Whether the start values are to have a tangent, if they count as solved: its determinant tells whether the
-/// equilibrium is stable.
-template <class T>
-bool tells_stability(const Run<T>& run, const Start<T>& start) {
-  return start.at_rest && run.floating.empty();
-}
-
 /// The multiplier lambda of a penalty: zero normal part, tangential traction of the last increment.
 template <class T>
 Vector<T> stored_traction(const Model& model, const State<T>& previous) {

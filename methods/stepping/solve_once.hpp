@@ -22,7 +22,7 @@ Increment<T> solve_once(Run<T>& run, const State<T>& previous, Multipliers multi
                                 .last_displacement = &start.state.displacement,
                                 .arc = start.arc,
                                 .rests = rests(run, start),
-                                .tells_stability = tells_stability(run, start)};
+                                .tells_stability = start.at_rest};
   auto u = run.engine.begin(time, start.state.displacement, previous.history.bodies);
   auto equilibrium =
       find_equilibrium<T>(run.engine, task, {std::move(u), std::move(lambda), time}, options, run.account);

@@ -159,9 +159,10 @@ TEST(SelfContact, OfABoundaryIsIntegratedAsOfTwoSides) {
     ASSERT_TRUE(is_converged(named.trajectory.status)) << name_of(method) << named.trajectory.message;
     ASSERT_TRUE(is_converged(itself.trajectory.status)) << name_of(method) << itself.trajectory.message;
     EXPECT_GT(itself.value("press"), 0.1) << "the ends meet";
-    // (corners of the boundary carry nothing: two of the three facets of an end are free to turn a bit)
+    // (corners of the boundary carry nothing, so that of the three facets of an end the outer ones are one piece with the
+    // middle: the ends differ by a tenth of what they move, and forces less)
     for (const auto& r : named.model.scene.responses)
-      EXPECT_NEAR(itself.value(r.name), named.value(r.name), 0.05 * std::abs(named.value(r.name)))
+      EXPECT_NEAR(itself.value(r.name), named.value(r.name), 0.15 * std::abs(named.value(r.name)))
           << name_of(method) << r.name;
   }
 }

@@ -256,9 +256,6 @@ def scene_of(kind, number, surface):
     for contact in scene["contacts"].values():
         if contact.pop("on", None):
             contact.update(SURFACES[drawn if surface == "as_drawn" else surface])
-    if any("discretization" in contact for contact in scene["contacts"].values()):  # takes linear elements alone
-        for body in scene["bodies"].values():
-            body["element"] = {"Q8": "Q4", "T6": "T3"}.get(body["element"], body["element"])
     responses = {f"{name}_{c}": {"contact_force": {"contact": name, "component": c}}
                  for name in scene["contacts"] for c in ("x", "y", "normal")}
     if press_on:
