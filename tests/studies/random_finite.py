@@ -291,10 +291,13 @@ def solve(program, scene, method, asked):
                       "warnings": sorted({w["code"] for w in result.get("warnings", [])})}
 
 
-def apart(one, other):
-    """The largest difference of forces in any step, of the largest force."""
+def apart(scene, one, other):
+    """The largest difference of forces in any step, of the largest force; of what strains the softest body by a
+    millionth, if that is more, since bodies that do not touch have forces that are rounding."""
+    softest = min(law["E"] for body in scene["bodies"].values() for law in body["material"].values())
     size = max((abs(x) for step in one["forces"] for x in step), default=0)
-    return max((abs(x - y) for p, q in zip(one["forces"], other["forces"]) for x, y in zip(p, q)), default=0) / (size or 1)
+    return max((abs(x - y) for p, q in zip(one["forces"], other["forces"]) for x, y in zip(p, q)),
+               default=0) / max(size, 1e-6 * softest)
 
 
 def is_solved(run):
@@ -329,8 +332,8 @@ def report(kind, surface, scenes, runs, asked):
     for method in [m for m in asked.methods if m != "monolithic_al" and "monolithic_al" in asked.methods]:
         both = [(scene, a, b) for scene, a, b in zip(scenes, runs["monolithic_al"], runs[method])
                 if is_solved(a) and is_solved(b)]
-        far = [(apart(a, b), scene, a["warnings"] + b["warnings"]) for scene, a, b in both
-               if apart(a, b) > MARGIN[method]]
+        far = [(apart(scene, a, b), scene, a["warnings"] + b["warnings"]) for scene, a, b in both
+               if apart(scene, a, b) > MARGIN[method]]
         silent = [x for x in far if not x[2]]
         for _, scene, _ in silent:
             keep(scene, surface, method, asked.keep)
