@@ -121,6 +121,8 @@ Scene clasp(bool itself, Geometry geometry = Geometry::facets, const std::string
   s.contacts[0].friction = parameter(s, "mu", 0.2);
   if (geometry == Geometry::b_spline) s.contacts[0].smoothing = Smoothing::b_spline;
   s.contacts[0].segment = geometry == Geometry::segments;
+  // (corners of a boundary carry no multiplier)
+  if (!itself && s.contacts[0].segment) s.contacts[0].slave = "clasp.end - clasp.inner - clasp.outer";
   s.supports = {scenes::support("clasp.start", {{'x', table({{0, 0.0}})}, {'y', table({{0, 0.0}})}})};
   Load around;
   around.on = "clasp.outer";
@@ -136,10 +138,15 @@ Scene clasp(bool itself, Geometry geometry = Geometry::facets, const std::string
   return s;
 }
 
-TEST(SelfContact, OfABoundaryIsThatOfTheTwoSidesThatMeet) {
+void expect_that_of_two_sides(Geometry geometry) {
   for (const Method& method : finite_methods()) {
     if (std::holds_alternative<Penalty>(method)) continue;  // (its stiffness is of other sides)
-    const auto named = run(clasp(false), method), itself = run(clasp(true), method);
+    const auto solve = [&](bool with_itself) {
+      Scene scene = clasp(with_itself, geometry);
+      scene.legs[0] = {0.1, 16};  // (no step is cut, so that both take the same ones)
+      return run(scene, method);
+    };
+    const auto named = solve(false), itself = solve(true);
     ASSERT_TRUE(is_converged(named.trajectory.status)) << name_of(method) << named.trajectory.message;
     ASSERT_TRUE(is_converged(itself.trajectory.status)) << name_of(method) << itself.trajectory.message;
     ASSERT_EQ(named.trajectory.increments.size(), itself.trajectory.increments.size());
@@ -152,19 +159,8 @@ TEST(SelfContact, OfABoundaryIsThatOfTheTwoSidesThatMeet) {
   }
 }
 
-TEST(SelfContact, OfABoundaryIsIntegratedAsOfTwoSides) {
-  for (const Method& method : finite_methods()) {
-    const auto named = run(clasp(false, Geometry::segments), method),
-               itself = run(clasp(true, Geometry::segments), method);
-    ASSERT_TRUE(is_converged(named.trajectory.status)) << name_of(method) << named.trajectory.message;
-    ASSERT_TRUE(is_converged(itself.trajectory.status)) << name_of(method) << itself.trajectory.message;
-    EXPECT_GT(itself.value("press"), 0.1) << "the ends meet";
-    // (corners of the boundary carry nothing, so that of the three facets of an end the outer ones are one piece with the
-    // middle: the ends differ by a tenth of what they move, and forces less)
-    for (const auto& r : named.model.scene.responses)
-      EXPECT_NEAR(itself.value(r.name), named.value(r.name), 0.15 * std::abs(named.value(r.name)))
-          << name_of(method) << r.name;
-  }
+TEST(SelfContact, OfABoundaryIsThatOfTheTwoSidesThatMeet) {
+  for (const Geometry geometry : {Geometry::facets, Geometry::segments}) expect_that_of_two_sides(geometry);
 }
 
 TEST(SelfContact, HasTheDerivativesOfTheWholeRun) {
