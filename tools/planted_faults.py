@@ -87,7 +87,7 @@ FAULTS = [
     ("a side against itself as deep as it likes", "core/contact/segments.cpp",
      "const bool is_too_deep = <<<!depths.empty() && off.dot(nu) > depths[shadow.facet]>>>;", "false"),
     ("bodies that float tried at rest too soon", "methods/rescue/motion.hpp",
-     "return <<<alpha * damped>>> <= slow", "0"),
+     "return <<<alpha>>> * largest_nodal_norm(way", "0"),
     ("no tie length", "core/model/pairing.cpp", "point.tie_length = <<<8>>> * unit_roundoff", "0"),
     ("facing nodes that look the same way", "core/model/pairing.cpp", "points).dot(normal(f)) < <<<0>>>;", "1e300"),
     # bodies, loads, supports

@@ -22,6 +22,19 @@
 
 namespace stickslip {
 
+/// Whether the damping alpha D of a step from one state to another is next to nothing: what is left of it moves nothing
+/// else. `damping`: D per contact node.
+template <class T>
+bool is_slow(const Model& model, const Vector<double>& damping, double alpha, const State<T>& from,
+             const State<T>& to) {
+  constexpr double slow = 1e-6;
+  Vector<T> way = to_compact(model, Vector<T>(to.displacement - from.displacement));
+  for (Eigen::Index i = 0; i < way.size(); ++i)
+    if (!(damping[i / model.dimension] > 0)) way[i] = T(0);
+  return alpha * largest_nodal_norm(way, model.dimension) <=
+         slow * largest_nodal_norm(to.displacement, model.dimension);
+}
+
 /// Follows the overdamped motion from `previous` until the method solves the unmodified equations. `several`: there may
 /// be more solutions. Then the solution must have the branches of the step before. Neither the solution, nor any step
 /// but the first, may then be farther away than all the way so far: it could as well belong to another solution. The
@@ -45,15 +58,6 @@ Increment<T> follow_motion(Run<T>& run, const State<T>& previous, const std::vec
     iterations += found.newton;
     return found;
   };
-  // whether the damping of floating bodies is next to nothing: what is left of it moves nothing else
-  const auto is_slow = [&](const State<T>& from, const State<T>& to, double alpha) {
-    constexpr double slow = 1e-6;
-    const Vector<T> way = to_compact(run.model, Vector<T>(to.displacement - from.displacement));
-    double damped = 0;
-    for (Eigen::Index i = 0; i < way.size(); ++i)
-      if (D[i / run.model.dimension] > 0) damped = std::max(damped, std::abs(value(way[i])));
-    return alpha * damped <= slow * largest_nodal_norm(to.displacement, run.model.dimension);
-  };
   const auto distance = [&](const State<T>& from, const State<T>& to) {
     return largest_nodal_norm(Vector<T>(to.displacement - from.displacement), run.model.dimension);
   };
@@ -71,7 +75,7 @@ Increment<T> follow_motion(Run<T>& run, const State<T>& previous, const std::vec
       continue;
     }
     pace.move(length);
-    const bool may_rest = run.floating.empty() || is_slow(rest, moved.state, pace.alpha());
+    const bool may_rest = run.floating.empty() || is_slow(run.model, D, pace.alpha(), rest, moved.state);
     rest = moved.state;
     result = may_rest ? attempt(rest, 0) : std::move(moved);
     const bool near = pace.is_near(distance(rest, result.state));
