@@ -58,7 +58,7 @@ class AugmentationLoop {
       const auto rho = adapted(initial_, increment_.rho_factor);
       const ContactInput<T> input{run_.model, run_.slots, rho, previous_.history, method_.cone_radius(), time_};
       auto equilibrium = balance(input);
-      if (!is_converged(equilibrium.status) || ends_with(input, equilibrium)) {
+      if (!is_converged(equilibrium.status) || equilibrium.forceless || ends_with(input, equilibrium)) {
         increment_.state = settle(run_, input, std::move(equilibrium.unknowns), std::move(equilibrium.field));
         return std::move(increment_);
       }
@@ -77,9 +77,9 @@ class AugmentationLoop {
                                   .anchor = start_.anchor,
                                   .resumed = resumed_,
                                   .forcing = inexact_ ? forcing : 0,
-                                  .last_displacement = first ? &start_.state.displacement : nullptr,
+                                  .last = first ? &start_.state : nullptr,
                                   .arc = start_.arc,
-                                  .rests = first && rests(run_, start_),
+                                  .rests = first && start_.at_rest,
                                   .tells_stability = first && start_.at_rest};
     auto equilibrium =
         find_equilibrium(run_.engine, task, unknowns_, inner_options(method_, progress_.contraction()), run_.account);

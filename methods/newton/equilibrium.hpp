@@ -79,13 +79,14 @@ struct EquilibriumTask {
   std::span<const ContactState> resumed = {};
   /// Share of the first residual at which an inner solve may end, even while states change; 0: it may not.
   double forcing = 0;
-  /// Displacement of the last state, all dofs; nullptr: the prescribed displacements do not change.
-  const Vector<T>* last_displacement = nullptr;
+  /// The last state; nullptr: the prescribed displacements do not change.
+  const State<T>* last = nullptr;
   /// Tractions as unknowns at given multipliers; nullptr: there are none.
   const Compliance<T>* compliance = nullptr;
   /// Arc of a step whose time is an unknown; nullptr: the time is given.
   const Arc* arc = nullptr;
-  /// Whether the start values may be the solution, as far as rounding tells. Else they are improved until that stops.
+  /// Whether the overdamped motion ended in the start values. They count as solved if only rounding is left of their
+  /// residuals, for nothing but rounding moves a body that floats. Else they are improved until that stops.
   bool rests = false;
   /// Whether a tangent is made of start values that count as solved, of bodies whose tangent changes: its determinant
   /// tells whether they are stable.
@@ -116,7 +117,8 @@ struct Equilibrium {
   Unknowns<T> unknowns;
   ContactField<T> field;
   int iterations = 0;
-  bool inexact = false;  ///< ended by `forcing`, short of the tolerance
+  bool inexact = false;    ///< ended by `forcing`, short of the tolerance
+  bool forceless = false;  ///< contact closes without a force: all tractions are zero, and nothing moved
   /// Some tangent had a determinant of the other sign (Engine::reversed), so there may be other solutions: of bodies of
   /// constant tangent.
   bool reversed = false;

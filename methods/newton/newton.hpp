@@ -69,12 +69,13 @@ class NewtonIterations {
         tangent_(engine, task, account),
         stop_(options, task.forcing, Carried<T>::newton_iterations, task.rests),
         unknowns_(std::move(unknowns)),
-        predictions_(predict(engine, task, evaluate_, tangent_, account, unknowns_) ? 1 : 0),
+        predictions_(!closes_without_force() && predict(engine, task, evaluate_, tangent_, account, unknowns_) ? 1 : 0),
         at_(evaluate_(unknowns_)) {}
 
   Equilibrium<T> solve() {
     for (int iteration = 0;; ++iteration) {
       record(iteration);
+      if (iteration == 0 && at_.forceless) return rest();
       auto end = stop_.judge(at_.residuals, at_.field, history());
       if (end && !goes_on(*end)) return result_of(std::move(*end));
       if (auto failure = step(iteration)) return result_of(std::move(*failure));
@@ -91,6 +92,20 @@ class NewtonIterations {
     if (account_.trace)
       account_.trace->take(task_.contact, Vector<T>(engine_.spread(unknowns_.u)), unknowns_.multiplier, at_.field,
                            history().back(), iteration);
+  }
+
+  /// Whether the start values need no force, in a run that has had none: then nothing is predicted.
+  bool closes_without_force() {
+    return task_.last && !is_linear() && account_.scales.force == 0 && evaluate_(unknowns_).forceless;
+  }
+
+  /// Contact that closes without a force: its tractions are zero, and nothing moves.
+  Equilibrium<T> rest() {
+    unknowns_.multiplier.setZero();
+    at_.field.traction.setZero();
+    at_.scales = account_.scales;
+    result_.forceless = true;
+    return result_of({});
   }
 
   /// Factorises the tangent of the branches that the points are in, and goes a step with it. Returns why there is none.

@@ -249,7 +249,7 @@ NewtonStep<T> NewtonTangent<T>::step_along(const Arc& arc, const Unknowns<T>& un
 template <class T>
 bool NewtonTangent<T>::factorise_in(const std::vector<ContactState>& branches, const Unknowns<T>& unknowns) {
   auto tangents = point_tangents(branches, unknowns);
-  if (task_.last_displacement && !task_.contact.model.effects.linear_bulk) tangents_ = tangents;
+  if (task_.last && !task_.contact.model.effects.linear_bulk) tangents_ = tangents;
   if (!decided_.empty()) detail::yield_decided(task_.contact, decided_, tangents);
   const auto& hold = task_.anchor.stiffness;
   if (!redundant_) {

@@ -34,12 +34,15 @@ inline bool moves(const Model& model, const ContactPoint& point) {
   return !obstacle.move.empty() || obstacle.rotate.has_value();
 }
 
-/// Branches in which points that touched an obstacle that moves go on with it.
+/// Branches in which points that pressed on an obstacle that moves go on with it. `resumed`: their states; empty: none.
 template <class T>
-void follow_obstacles(const ContactInput<T>& input, std::span<const ContactState> last,
+void follow_obstacles(const Model& model, const State<T>& last, std::span<const ContactState> resumed,
                       std::vector<ContactState>& branches) {
-  for (std::size_t p = 0; p < last.size(); ++p)
-    if (last[p] != ContactState::open && moves(input.model, input.model.points[p])) branches[p] = last[p];
+  for (std::size_t p = 0; p < resumed.size(); ++p) {
+    const auto& point = model.points[p];
+    const bool pressed = resumed[p] != ContactState::open && value(last.contact.traction[point.multiplier]) < 0;
+    if (pressed && moves(model, point)) branches[p] = resumed[p];
+  }
 }
 
 }  // namespace detail
@@ -69,10 +72,10 @@ bool predict(Engine<T>& engine, const EquilibriumTask<T>& task, Evaluator<T>& ev
              Account& account, Unknowns<T>& unknowns) {
   const Model& model = task.contact.model;
   const auto& slots = task.contact.slots;
-  if (!task.last_displacement) return false;
+  if (!task.last) return false;
   if (task.arc) return task.arc->begins && begin_path(engine, task, evaluate, tangent, account, unknowns);
   if (model.effects.linear_bulk) return false;
-  Unknowns<T> start{into_frames(model, slots.frames, Layout::all, *task.last_displacement), unknowns.multiplier};
+  Unknowns<T> start{into_frames(model, slots.frames, Layout::all, task.last->displacement), unknowns.multiplier};
   const Vector<T> prescribed = unknowns.u - start.u;
   const auto& points = model.points;
   const bool pushed = std::any_of(points.begin(), points.end(), [&](const auto& p) { return detail::moves(model, p); });
@@ -81,14 +84,14 @@ bool predict(Engine<T>& engine, const EquilibriumTask<T>& task, Evaluator<T>& ev
   if (!at.residuals.finite()) return false;
   if (!task.resumed.empty()) detail::resume_on_cone(task.contact, start.multiplier, task.resumed, at.field);
   auto branches = detail::step_branches(task.contact, engine.compact(start.u), at.field, start.multiplier, {});
-  detail::follow_obstacles(task.contact, task.resumed, branches);
+  detail::follow_obstacles(model, *task.last, task.resumed, branches);
   tangent.move_to(start, at.field, true);
   if (!tangent.factorise(start, branches)) return false;
   evaluate.take_rows_in(branches, start, at);
   const Vector<T> motion = engine.spread(prescribed);
   Vector<T> forces = Vector<T>::Constant(static_cast<Eigen::Index>(model.contact_nodes.size()) * model.dimension, T(0));
   detail::add_tangent_times(model, slots, tangent.tangents(), Vector<T>(engine.compact(prescribed)), forces, at.rows_l);
-  const BodyMotion<T> at_start{*task.last_displacement, task.contact.previous.bodies, task.contact.time};
+  const BodyMotion<T> at_start{task.last->displacement, task.contact.previous.bodies, task.contact.time};
   Vector<T> rows;
   {
     const Stopwatch time(account.seconds.bodies);

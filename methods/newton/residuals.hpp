@@ -55,12 +55,16 @@ struct Evaluation {
   Vector<T> rows_u, rows_l;
   Residuals residuals;
   RunScales scales;  ///< largest values of the run and of this iterate
+  /// No load acts, bodies bear nothing, the run has had no force, and contact has what the rounding of gaps makes of rho.
+  bool forceless = false;
 };
 
 /// Extreme values over the contact points, for estimates of rounding.
 struct PointSizes {
   double area_times_rho = 0;                                 ///< largest A rho
   double distance = 0;                                       ///< largest initial gap of a closed point, length
+  double tie = 0;                                            ///< largest tie_length() of a point that touches, length
+  double tie_force = 0;                                      ///< largest force that it makes of the body, k times it
   double elastic = 0;                                        ///< largest k / A
   double rho = 0;                                            ///< largest rho
   double softest = std::numeric_limits<double>::infinity();  ///< least k
@@ -84,6 +88,11 @@ PointSizes measure_points(const ContactInput<T>& input, const ContactField<T>& f
     sizes.area_times_rho = std::max(sizes.area_times_rho, area * value(input.rho[p].normal));
     if (field.state[p] != ContactState::open)
       sizes.distance = std::max(sizes.distance, std::abs(value(input.slots.geometry[p].gap)));
+    const double tie = tie_length(point, input.slots.geometry[p]);
+    if (value(field.gap[p]) <= tie) {
+      sizes.tie = std::max(sizes.tie, tie);
+      sizes.tie_force = std::max(sizes.tie_force, stiffness * tie);
+    }
     sizes.elastic = std::max(sizes.elastic, stiffness / area);
     sizes.softest = std::min(sizes.softest, stiffness);
     sizes.rho = std::max(sizes.rho, value(input.rho[p].normal));
@@ -209,6 +218,14 @@ class Evaluator {
     return evaluate_contact<T>(input, compact, multiplier, branches);
   }
   Vector<T> contact_field_forces(const Vector<T>& compact, const ContactField<T>& field) const;
+  /// Whether no load acts, and bodies bear no more than `most`, force.
+  bool bears_nothing(const Unknowns<T>& unknowns, double most) const {
+    const ContactInput<T>& input = task_.contact;
+    ForceScale bodies;
+    engine_.residual(unknowns.u, Vector<T>::Zero(engine_.compact(unknowns.u).size()), bodies);
+    return bodies.force <= most &&
+           external_forces(input.model, input.slots, input.time, engine_.all(unknowns.u)).isZero(0);
+  }
   void count() { account_.counters.contact_evaluations += static_cast<long>(task_.contact.model.points.size()); }
 
   Engine<T>& engine_;
@@ -315,6 +332,8 @@ detail::Evaluation<T> Evaluator<T>::operator()(const Unknowns<T>& unknowns) {
     if (!engine_.is_free(row)) at.rows_u[row] = T(0);
   at.residuals.equilibrium = detail::ratio(largest_nodal_norm(at.rows_u, model.dimension), at.scales.force);
   detail::set_floors(sizes, at.scales, force.rounding, magnitudes, at.residuals);
+  at.forceless = account_.scales.force == 0 && at.scales.force > 0 &&
+                 at.scales.force <= sizes.area_times_rho * sizes.tie && bears_nothing(unknowns, sizes.tie_force);
   if (!task_.has_multiplier_rows()) return at;
   at.rows_l = multiplier_residual(model, input.slots, at.field.traction, unknowns.multiplier);
   detail::measure_multipliers(input, unknowns.multiplier, sizes, magnitudes.displacement, at);

@@ -98,8 +98,8 @@ class Sequence {
     double least_residual = std::numeric_limits<double>::infinity();
     int waited = 0;  // steps since the least residual was halved
     Vector<T> about = unknowns_.u;
-    if (task_.last_displacement)
-      about = into_frames(task_.contact.model, task_.contact.slots.frames, Layout::all, *task_.last_displacement);
+    if (task_.last)
+      about = into_frames(task_.contact.model, task_.contact.slots.frames, Layout::all, task_.last->displacement);
     const auto closed = [](ContactState s) { return s != ContactState::open; };
     if (std::any_of(task_.resumed.begin(), task_.resumed.end(), closed))
       branches_.assign(task_.resumed.begin(), task_.resumed.end());
@@ -297,7 +297,7 @@ Equilibrium<T> solve_in_sequence(Engine<T>& engine, const EquilibriumTask<T>& ta
                                  .multipliers = task.multipliers,
                                  .anchor = task.anchor,
                                  .resumed = task.resumed,
-                                 .last_displacement = task.last_displacement,
+                                 .last = task.last,
                                  .compliance = compliant ? &compliance : nullptr};
   Sequence<T> sequence(engine, turns, start, options, account);
   Equilibrium<T> equilibrium;
@@ -340,8 +340,7 @@ Equilibrium<T> find_equilibrium(Engine<T>& engine, const EquilibriumTask<T>& tas
   NewtonOptions brief = options;
   brief.max_iterations = soon;
   bool in_sequence = account.sequential;
-  if (engine.condenses_tangents())
-    in_sequence = task.last_displacement && (account.sequential || task.solves_for_multipliers());
+  if (engine.condenses_tangents()) in_sequence = task.last && (account.sequential || task.solves_for_multipliers());
   if (!in_sequence && take(newton(engine, task, start, brief, account))) return found;
   account.sequential = take(detail::solve_in_sequence(engine, task, start, options, account));
   if (!account.sequential) take(newton(engine, task, std::move(start), options, account));

@@ -15,15 +15,20 @@
 
 namespace stickslip {
 
+/// Iterations of an equilibrium that Newton's method finds as it should, at most.
+inline constexpr long converging = 20;
+
 /// Counts iterations in vain of the attempts at a step: all iterations of an attempt that fails, and, of one that
-/// succeeds, those beyond max_iterations per equilibrium. So parts of a step that converge as they should cost nothing.
+/// succeeds, those beyond 20 per equilibrium. So parts of a step that converge as they should cost nothing.
 class WorkBound {
  public:
-  /// `counters`: of the run; must outlive it.
-  WorkBound(const Model& model, const Counters& counters, int max_iterations)
+  /// `counters`: of the run; must outlive it. `spent`: iterations of the run's increments so far, those in vain apart.
+  WorkBound(const Model& model, const Counters& counters, int max_iterations, long spent)
       : counters_(counters), each_(max_iterations) {
     const bool linear = model.effects.linear_bulk && !model.effects.current_geometry;
-    most_ = linear ? std::numeric_limits<long>::max() : equilibria_in_vain * std::max(each_, least_each);
+    const long each = std::max(each_, least_each), affordable = dofs_in_vain / std::max(model.dof_count(), 1);
+    most_ = std::max(spent_again * spent, std::clamp(affordable, few_in_vain * each, equilibria_in_vain * each));
+    if (linear) most_ = std::numeric_limits<long>::max();
   }
 
   /// Lessens the bound for a step at whose start a body is free and nothing presses on it: what holds it must be met
@@ -32,7 +37,7 @@ class WorkBound {
   void begin() { before_ = counters_.newton; }
   /// Ends an attempt. `equilibria`: number of its equilibria; 0: it failed.
   void end(int equilibria) {
-    vain_ += std::max(0L, counters_.newton - before_ - equilibria * each_);
+    vain_ += std::max(0L, counters_.newton - before_ - equilibria * std::min(each_, converging));
     begin();
   }
   /// Whether the present attempt and those before it have used up the bound.
@@ -45,10 +50,11 @@ class WorkBound {
   }
 
  private:
-  /// Bound in units of max_iterations. Steps that succeeded took up to 20; 50 take minutes at 8000 displacements.
-  static constexpr long equilibria_in_vain = 50;
-  static constexpr long few_in_vain = 4;
-  static constexpr long least_each = 100;  // for a small max_iterations, which is chosen to have steps cut
+  // Bounds in units of max_iterations. Steps that succeeded took up to 20.
+  static constexpr long equilibria_in_vain = 50, few_in_vain = 4;
+  static constexpr long dofs_in_vain = 6'000'000;  // iterations times displacements: 10 s at 3000, of 5 ms each
+  static constexpr long spent_again = 10;          // where the run was dear so far, it may be so on
+  static constexpr long least_each = 100;          // for a small max_iterations, which is chosen to have steps cut
   const Counters& counters_;
   long each_, most_ = 0, vain_ = 0, before_ = 0;
 };

@@ -51,13 +51,6 @@ struct Start {
   double tolerance(double asked) const { return is_step() && inexact_step ? std::sqrt(asked) : asked; }
 };
 
-/// Whether the start values count as solved if only rounding is left of their residuals: nothing but rounding moves a
-/// body that floats.
-template <class T>
-bool rests(const Run<T>& run, const Start<T>& start) {
-  return start.at_rest && !run.floating.empty();
-}
-
 /// The multiplier lambda of a penalty: zero normal part, tangential traction of the last increment.
 template <class T>
 Vector<T> stored_traction(const Model& model, const State<T>& previous) {

@@ -45,7 +45,7 @@ class Path {
   /// or tractions are not zero at t = 0, an increment at t = 0 comes first.
   bool advance() {
     if (trajectory_.increments.empty()) {
-      WorkBound bound(run_.model, run_.account.counters, newton_of(run_.method).max_iterations);
+      WorkBound bound(run_.model, run_.account.counters, newton_of(run_.method).max_iterations, 0);
       bound.begin();
       auto held = find_increment(run_, trajectory_.initial, {}, 0.0, bound);
       held.time = 0;

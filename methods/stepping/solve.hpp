@@ -47,7 +47,7 @@ std::optional<double> find_jump(Run<T>& run, const State<T>& previous, const std
   Trace* const trace = std::exchange(run.account.trace, nullptr);
   State<T> before = previous, after = reached;
   bool solved = true;
-  WorkBound bound(run.model, run.account.counters, newton_of(run.method).max_iterations);
+  WorkBound bound(run.model, run.account.counters, newton_of(run.method).max_iterations, 0);
   bound.begin();
   for (int level = 0; level < halvings && solved; ++level) {
     const double middle = (start + end) / 2;
@@ -147,7 +147,10 @@ bool advance(Run<T>& run, Trajectory<T>& trajectory, double target, bool may_cut
   double reached = start, step = target - start;
   int easy = 0, cutbacks = 0;
   std::optional<Increment<T>> failed;
-  WorkBound bound(run.model, run.account.counters, newton_of(run.method).max_iterations);
+  long spent = 0;
+  for (const auto& increment : trajectory.increments)
+    spent += std::min<long>(increment.newton, converging * std::max(1, increment.augmentations));
+  WorkBound bound(run.model, run.account.counters, newton_of(run.method).max_iterations, spent);
   const bool linear = run.model.effects.linear_bulk;
   FreeBodies free;
   if (!linear)

@@ -19,9 +19,9 @@ Increment<T> solve_once(Run<T>& run, const State<T>& previous, Multipliers multi
                                 .multipliers = multipliers,
                                 .anchor = start.anchor,
                                 .resumed = start.resumed(previous),
-                                .last_displacement = &start.state.displacement,
+                                .last = &start.state,
                                 .arc = start.arc,
-                                .rests = rests(run, start),
+                                .rests = start.at_rest,
                                 .tells_stability = start.at_rest};
   auto u = run.engine.begin(time, start.state.displacement, previous.history.bodies);
   auto equilibrium =

@@ -67,7 +67,7 @@ void enlarge(const Model& model, const Slots<double>& slots, const State<double>
   // A load is exact: above the rounding of the bodies' forces it tells how large forces are, be it ever so small.
   const double rounding = 10 * unit_roundoff * scales.stiffness * scales.reach;
   if (!(largest_nodal_norm(loads, D) > rounding))
-    scales.force = larger(scales.force, telling * scales.stiffness * scales.reach);
+    scales.force = larger(scales.force, telling * scales.stiffness * (scales.reach + scales.length));
   for (const auto& forces : {bulk_forces(model, slots, state.displacement, state.history.bodies), loads,
                              contact_forces(model, slots, state.contact)})
     scales.force = larger(scales.force, largest_nodal_norm(forces, D));

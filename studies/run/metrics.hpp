@@ -28,8 +28,8 @@ struct KktError {
 };
 
 /// Scales of the errors at an increment: the largest values of the run so far, but at least 1e-9 of what the largest
-/// displacement makes of lengths and of tractions (k / A), and of forces if no load gives their size. Smaller values
-/// are mostly rounding.
+/// displacement makes of lengths, and of what it and the largest relative displacement (an obstacle's too) make of
+/// tractions (k / A), and of forces if no load gives their size. Smaller values are mostly rounding.
 struct KktScales {
   double length = 0, traction = 0, force = 0;
   double least_traction = 0;  ///< that least scale of the tractions

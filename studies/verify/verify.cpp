@@ -16,7 +16,8 @@ struct Law {
   const char* why;
 };
 
-// Errors are relative to the largest force F, motion L and traction T of the run so far.
+// Errors are relative to the largest force F, motion L (of a node, and of a gap in an increment) and traction T of the
+// run so far.
 constexpr Law elements{"elements", 0, "an element may not be turned inside out"},
     supports{"supports", 1e-8, "of L: what is prescribed is exact, to the rounding of turns"},
     equilibrium{"equilibrium", 1e-8, "of F: Newton's methods end at 1e-9 and less"},
@@ -41,7 +42,7 @@ constexpr double least_strain = 1e-9;  ///< plastic strains that count
 constexpr double rounding = 1e-6;  ///< of a stiffness times a motion: the least force that counts, for those of a rigid
                                    ///< motion are 1e-16 of it, 1e-10 of this scale
 
-constexpr double rounding_of_motion = 1e-15;  ///< of the largest: springs of a penalty make a traction of it
+constexpr double rounding_of_motion = 1e-15;  ///< of the largest, or of a coordinate: springs make a traction of it
 
 /// Notes a violation, of which the worst is kept.
 void note(Step& step, const Law& law, double value, const std::string& where, double allowed = -1) {
@@ -173,11 +174,22 @@ class Judge {
         touch.traction = tractions.col(k);
         if (compliances.cols() > 0) touch.compliance = compliances.col(k).head<2>();
       }
+      for (auto& [node, touch] : contact.touches)
+        if (touch.faces) L_ = std::max(L_, std::abs(touch.opening));
       for (auto& [node, touch] : contact.touches) {
         if (of.empty() && touch.faces) touch.traction = free.col(node) / touch.area;
-        if (touch.area > 0) T_ = std::max({T_, touch.traction.norm(), rounding * bodies_.stiffness * L_ / touch.area});
+        if (touch.area > 0) T_ = std::max({T_, touch.traction.norm(), least_force(touch) / touch.area});
+        F_ = std::max(F_, least_force(touch));
       }
     }
+  }
+
+  /// The least force that counts at a place: a share of what its motion makes, and where coordinates are part of its
+  /// gap, what their rounding does.
+  double least_force(const Touch& touch) const {
+    const bool rounds = touch.faces && (scene_.finite || touch.gap != touch.normal.dot(touch.relative));
+    const double rounded = 4 * rounding_of_motion * scene_.points.col(touch.node).norm() / equilibrium.allowed;
+    return bodies_.stiffness * std::max(rounding * L_, rounds ? rounded : 0);
   }
 
   /// Signorini's conditions of a place; then its friction, and its work.

@@ -73,5 +73,51 @@ TEST(BodyHeldByFriction, FollowsItsPathInAnyNumberOfSteps) {
   }
 }
 
+/// One cube, or two that stand on one another, between a floor and a press that comes down until at t = 2 it touches,
+/// goes up again, and at the end is `gap` / 2 deep. No number of it is one that a computer has exactly.
+Scene touched_cube(double height, double gap, double friction, bool two, bool finite) {
+  Scene s;
+  s.finite_strain = finite;
+  s.legs = {{5, 5}};
+  s.bodies = {scenes::box_body("cube", {-0.5, 0}, {0.5, height}, {3, 2})};
+  if (two) s.bodies.push_back(scenes::box_body("top", {-0.4, height}, {0.4, height + 0.7}, {4, 2}));
+  if (finite)
+    for (auto& body : s.bodies) body.material = NeoHookean{1000, 0.3, NeoHookean::Volumetric::quadratic};
+  const std::string pressed = s.bodies.back().name;
+  const Table way = table({{0, 0.0}, {2, -gap}, {3, -gap / 3}, {5, -1.5 * gap}});
+  s.obstacles = {{"floor", Plane{{0.0, 0.0}, {0.0, 1.0}}},
+                 {"press", Plane{{0.0, height + (two ? 0.7 : 0) + gap}, {0.0, -1.0}}, {{'y', way}}}};
+  s.contacts = {contact("low", "cube.bottom", "floor"), contact("high", pressed + ".top", "press")};
+  if (two) s.contacts.push_back(contact("between", "top.bottom", "cube.top"));
+  for (auto& c : s.contacts) c.friction = friction;
+  s.responses = {response("N", Kind::contact_force, "high", "normal")};
+  return s;
+}
+
+TEST(ContactThatClosesWithoutForce, LeavesBodiesWhereTheyAreAndPressesThemLater) {
+  for (const bool finite : {false, true})
+    for (const bool two : {false, true})
+      for (const double friction : {0.0, 0.3})
+        for (const auto& [height, gap] : {std::pair{1.3, 0.02}, {0.7, 0.003}}) {
+          const auto scene = touched_cube(height, gap, friction, two, finite);
+          double exact = 0;
+          for (const auto& method : {Method(MonolithicAL{}), Method(UzawaAL{}), Method(Penalty{})}) {
+            const auto r = run(scene, method);
+            const std::string what =
+                std::string(name_of(method)) + (finite ? " finite" : " small") + (two ? " two" : " one");
+            ASSERT_TRUE(is_converged(r.trajectory.status)) << what << r.trajectory.message << height << friction;
+            EXPECT_EQ(r.trajectory.counters.cutbacks, 0) << what;
+            const auto& touched = r.trajectory.increments[1];
+            EXPECT_EQ(touched.newton, 0) << what;
+            EXPECT_TRUE(touched.state.contact.traction.isZero(0)) << what;
+            EXPECT_TRUE(touched.state.displacement.isZero(0)) << what;
+            if (exact == 0) exact = r.value("N");
+            EXPECT_GT(r.value("N"), 0) << what;
+            const double apart = prevents_penetration(method) ? 1e-6 : 1e-2;  // Uzawa's tolerance; a penalty's overlap
+            EXPECT_NEAR(r.value("N"), exact, apart * exact) << what;
+          }
+        }
+}
+
 }  // namespace
 }  // namespace stickslip
