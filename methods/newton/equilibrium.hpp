@@ -86,7 +86,8 @@ struct EquilibriumTask {
   /// Arc of a step whose time is an unknown; nullptr: the time is given.
   const Arc* arc = nullptr;
   /// Whether the overdamped motion ended in the start values. They count as solved if only rounding is left of their
-  /// residuals, for nothing but rounding moves a body that floats. Else they are improved until that stops.
+  /// residuals, for nothing but rounding moves a body that is free, or free to slide. Else they are improved until that
+  /// stops.
   bool rests = false;
   /// Whether a tangent is made of start values that count as solved, of bodies whose tangent changes: its determinant
   /// tells whether they are stable.

@@ -15,9 +15,6 @@
 
 namespace stickslip {
 
-/// Iterations of an equilibrium that Newton's method finds as it should, at most.
-inline constexpr long converging = 20;
-
 /// Counts iterations in vain of the attempts at a step: all iterations of an attempt that fails, and, of one that
 /// succeeds, those beyond 20 per equilibrium. So parts of a step that converge as they should cost nothing.
 class WorkBound {
@@ -27,17 +24,23 @@ class WorkBound {
       : counters_(counters), each_(max_iterations) {
     const bool linear = model.effects.linear_bulk && !model.effects.current_geometry;
     const long each = std::max(each_, least_each), affordable = dofs_in_vain / std::max(model.dof_count(), 1);
-    most_ = std::max(spent_again * spent, std::clamp(affordable, few_in_vain * each, equilibria_in_vain * each));
+    most_ = std::clamp(std::max(spent_again * spent, affordable), few_in_vain * each, equilibria_in_vain * each);
     if (linear) most_ = std::numeric_limits<long>::max();
   }
 
+  /// Iterations of an attempt that are not in vain, if its equilibria take as many as they should.
+  static long due(long iterations, int equilibria) {
+    constexpr long converging = 20;
+    return std::min(iterations, converging * equilibria);
+  }
   /// Lessens the bound for a step at whose start a body is free and nothing presses on it: what holds it must be met
   /// at once.
   void lessen() { most_ = std::min(most_, few_in_vain * std::max(each_, least_each)); }
   void begin() { before_ = counters_.newton; }
   /// Ends an attempt. `equilibria`: number of its equilibria; 0: it failed.
   void end(int equilibria) {
-    vain_ += std::max(0L, counters_.newton - before_ - equilibria * std::min(each_, converging));
+    const long iterations = counters_.newton - before_;
+    vain_ += iterations - due(iterations, equilibria);
     begin();
   }
   /// Whether the present attempt and those before it have used up the bound.
@@ -50,7 +53,7 @@ class WorkBound {
   }
 
  private:
-  // Bounds in units of max_iterations. Steps that succeeded took up to 20.
+  // Bounds in units of max_iterations: the most, and the least. Steps that succeeded took up to 20.
   static constexpr long equilibria_in_vain = 50, few_in_vain = 4;
   static constexpr long dofs_in_vain = 6'000'000;  // iterations times displacements: 10 s at 3000, of 5 ms each
   static constexpr long spent_again = 10;          // where the run was dear so far, it may be so on

@@ -137,6 +137,19 @@ void give_up(const Run<T>& run, double target, const FreeBodies& free, const Wor
   increments.push_back(std::move(failed));
 }
 
+template <class T>
+int equilibria_of(const Increment<T>& increment) {
+  return std::max(1, increment.augmentations);
+}
+
+/// Iterations of increments that converged, those in vain apart.
+template <class T>
+long spent_on(const std::vector<Increment<T>>& increments) {
+  long spent = 0;
+  for (const auto& increment : increments) spent += WorkBound::due(increment.newton, equilibria_of(increment));
+  return spent;
+}
+
 /// Advances the trajectory to the time `target`. False if it gave up; the failed increment is then the last.
 template <class T>
 bool advance(Run<T>& run, Trajectory<T>& trajectory, double target, bool may_cut) {
@@ -147,10 +160,8 @@ bool advance(Run<T>& run, Trajectory<T>& trajectory, double target, bool may_cut
   double reached = start, step = target - start;
   int easy = 0, cutbacks = 0;
   std::optional<Increment<T>> failed;
-  long spent = 0;
-  for (const auto& increment : trajectory.increments)
-    spent += std::min<long>(increment.newton, converging * std::max(1, increment.augmentations));
-  WorkBound bound(run.model, run.account.counters, newton_of(run.method).max_iterations, spent);
+  WorkBound bound(run.model, run.account.counters, newton_of(run.method).max_iterations,
+                  spent_on(trajectory.increments));
   const bool linear = run.model.effects.linear_bulk;
   FreeBodies free;
   if (!linear)
@@ -168,7 +179,7 @@ bool advance(Run<T>& run, Trajectory<T>& trajectory, double target, bool may_cut
     bound.begin();
     run.start = reached;
     auto increment = find_increment(run, previous, factor, next, bound, may_move);
-    bound.end(increment.usable() ? std::max(1, increment.augmentations) : 0);
+    bound.end(increment.usable() ? equilibria_of(increment) : 0);
     increment.time = next;
     increment.requested = last;
     increment.cutbacks = cutbacks;

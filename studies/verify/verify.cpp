@@ -16,8 +16,7 @@ struct Law {
   const char* why;
 };
 
-// Errors are relative to the largest force F, motion L (of a node, and of a gap in an increment) and traction T of the
-// run so far.
+// Errors are relative to the largest force F, motion L and traction T of the run so far.
 constexpr Law elements{"elements", 0, "an element may not be turned inside out"},
     supports{"supports", 1e-8, "of L: what is prescribed is exact, to the rounding of turns"},
     equilibrium{"equilibrium", 1e-8, "of F: Newton's methods end at 1e-9 and less"},
@@ -174,12 +173,11 @@ class Judge {
         touch.traction = tractions.col(k);
         if (compliances.cols() > 0) touch.compliance = compliances.col(k).head<2>();
       }
-      for (auto& [node, touch] : contact.touches)
-        if (touch.faces) L_ = std::max(L_, std::abs(touch.opening));
       for (auto& [node, touch] : contact.touches) {
         if (of.empty() && touch.faces) touch.traction = free.col(node) / touch.area;
         if (touch.area > 0) T_ = std::max({T_, touch.traction.norm(), least_force(touch) / touch.area});
         F_ = std::max(F_, least_force(touch));
+        size_ = std::max(size_, least_force(touch) * rounded_gap(touch));
       }
     }
   }
@@ -187,9 +185,12 @@ class Judge {
   /// The least force that counts at a place: a share of what its motion makes, and where coordinates are part of its
   /// gap, what their rounding does.
   double least_force(const Touch& touch) const {
+    return bodies_.stiffness * std::max(rounding * L_, rounded_gap(touch) / equilibrium.allowed);
+  }
+  /// What the rounding of coordinates leaves of a gap; 0 where displacements alone are part of it.
+  double rounded_gap(const Touch& touch) const {
     const bool rounds = touch.faces && (scene_.finite || touch.gap != touch.normal.dot(touch.relative));
-    const double rounded = 4 * rounding_of_motion * scene_.points.col(touch.node).norm() / equilibrium.allowed;
-    return bodies_.stiffness * std::max(rounding * L_, rounds ? rounded : 0);
+    return rounds ? 4 * rounding_of_motion * scene_.points.col(touch.node).norm() : 0;
   }
 
   /// Signorini's conditions of a place; then its friction, and its work.
