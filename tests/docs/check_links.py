@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""check_links.py SOURCE: every link of a page to a file leads to one, and to a heading where it names one.
+"""check_links.py SOURCE: every link of a page to a file leads to one, and to a heading if it names one; images too.
 `--self-test` proves that a fault is seen."""
 import pathlib
 import re
 import sys
 
-LINK = re.compile(r"\]\(([^)\s]+)\)")
+LINK = re.compile(r"\]\(([^)\s]+)\)|(?:src|srcset)=\"([^\"\s]+)\"")
 
 
 def anchors(text):
@@ -38,7 +38,7 @@ def main():
         return self_test()
     source = pathlib.Path(sys.argv[1])
     pages = [page for folder in (".", "docs", "core", "tests") for page in sorted((source / folder).glob("*.md"))]
-    faults = [fault(page, link) for page in pages for link in LINK.findall(page.read_text())]
+    faults = [fault(page, link or image) for page in pages for link, image in LINK.findall(page.read_text())]
     if any(faults):
         sys.exit("\n".join(filter(None, faults)))
 
