@@ -77,7 +77,7 @@ def worst(row, kind, of="enforcement"):
 
 
 def of_the_figure(program):
-    """The study whose charts the README shows."""
+    """The study of the README's first screen, and of the figure of docs/methods.md."""
     rows, folder = program.study("cattaneo_mindlin")
 
     def penalty(stiffness):
@@ -88,6 +88,10 @@ def of_the_figure(program):
 
     def count(row, name):
         return row["cost"]["counts"][name]
+
+    def back_solves(row):
+        """Those of the derivatives included."""
+        return count(row, "backsolves") + count(row, "sensitivity_backsolves")
 
     exact = rows["monolithic_al scale=1"]
     x = exact["interface"]["touch"]["x"]
@@ -101,6 +105,10 @@ def of_the_figure(program):
         "half width in elements": exact["responses"]["width"] / (x[middle + 1] - x[middle]),
         "runs": len(rows),
         "penalty error at 1e3": worst(penalty(1000), "response"),
+        "penalty derivative error at 1e3": worst(penalty(1000), "sensitivity"),
+        "penalty derivatives over responses at 1e3": worst(penalty(1000), "sensitivity") / worst(penalty(1000), "response"),
+        "penalty factorisations": count(penalty(1000), "factorizations"),
+        "penalty back-solves": back_solves(penalty(1000)),
         "least penalty error": worst(best, "response"),
         "stiffness of the least penalty error": best["knobs"]["stiffness"],
         "penalty error at 1e10": worst(penalty(10000000000), "response"),
@@ -112,7 +120,13 @@ def of_the_figure(program):
         "uzawa error at 1e-5": worst(uzawa("1e-05"), "response"),
         "uzawa derivative error at 1e-3": worst(uzawa("0.001"), "sensitivity"),
         "uzawa derivative error at 1e-5": worst(uzawa("1e-05"), "sensitivity"),
+        "uzawa error at 1e-7": worst(uzawa("1e-07"), "response"),
+        "uzawa derivative error at 1e-7": worst(uzawa("1e-07"), "sensitivity"),
+        "uzawa factorisations": count(uzawa("1e-07"), "factorizations"),
+        "uzawa back-solves": back_solves(uzawa("1e-07")),
         "monolithic error at any scale": max(worst(row, "response") for row in scales),
+        "monolithic derivative error at any scale": max(worst(row, "sensitivity") for row in scales),
+        "monolithic back-solves": back_solves(exact),
         "monolithic Newton": count(exact, "newton"),
         "monolithic factorisations": count(exact, "factorizations"),
         "most monolithic Newton": max(count(row, "newton") for row in scales),
