@@ -2,8 +2,8 @@
 """replay.py STICKSLIP SOURCE PAGE...: runs the commands that pages show and compares what they print.
 
 A command is a line `$ ...` of a block that opens with ```console; what follows it is what it prints, standard output
-and error together, in the order of the page. Commands of a page share a new folder, in which `studies` is that of the
-sources, SCENES its folder of scenes, and the program is found by its name. `...` stands for any text within a line, and alone for any lines.
+and error together, in the order of the page. Commands of a page begin in a new folder, in which `studies` is that of the
+sources, SCENES its folder of scenes, and the program is found by its name; `cd` holds for the commands after it. `...` stands for any text within a line, and alone for any lines. A block that opens with ```LANGUAGE NAME is the file NAME, written when its turn comes.
 
 Numbers agree to 1e-6 of themselves or to the last place shown; those below 1e-8 are rounding, and agree with one
 another. Whole numbers, and all else, must be the same. `--self-test` proves that a fault is seen.
@@ -20,11 +20,15 @@ ROUNDING = 1e-8
 
 
 def commands(text):
-    """(line number, command, lines expected) of each command of a page."""
-    found, inside = [], False
+    """(line number, command, lines expected) of each command of a page; a file is a command that writes it."""
+    found, inside, name, lines = [], False, "", []
     for number, line in enumerate(text.splitlines(), 1):
         if line.startswith("```"):
-            inside = line == "```console"
+            if name:
+                found.append((number, f"cat >{name} <<'END OF FILE'\n" + "\n".join([*lines, "END OF FILE"]), []))
+            inside, name, lines = line == "```console", line[3:].partition(" ")[2], []
+        elif name:
+            lines.append(line)
         elif inside and line.startswith("$ "):
             found.append((number, line[2:], []))
         elif inside and found:
@@ -101,16 +105,24 @@ def stripped(lines):
     return lines
 
 
+def ran(command, folder, environment):
+    """What a command prints, and the folder that it leaves the shell in."""
+    with tempfile.NamedTemporaryFile("r") as left:
+        run = subprocess.run(["bash", "-c", f'{command}\npwd >"{left.name}"'], cwd=folder, env=environment, text=True,
+                             timeout=600, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
+        return run.stdout, left.read().strip() or folder
+
+
 def replay(program, source, page):
     environment = {"SCENES": str(source / "studies" / "scenes"), **os.environ,
                    "PATH": f"{pathlib.Path(program).resolve().parent}:{os.environ['PATH']}"}
     faults = []
     with tempfile.TemporaryDirectory() as folder:
         os.symlink(source / "studies", pathlib.Path(folder) / "studies")
+        at = folder
         for number, command, shown in commands(page.read_text()):
-            run = subprocess.run(["bash", "-c", command], cwd=folder, env=environment, text=True, timeout=600,
-                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
-            printed, shown = stripped(run.stdout.splitlines()), stripped(shown)
+            output, at = ran(command, at, environment)
+            printed, shown = stripped(output.splitlines()), stripped(shown)
             wrong = output_agrees(shown, printed)
             if wrong is not None:
                 expected = shown[wrong] if wrong < len(shown) else "(nothing more)"
@@ -127,8 +139,13 @@ def self_test():
              (["a ... 2.0"], ["a x y 3.0"], False), (["open 1"], ["slip 1"], False),
              (["1.000001e+00"], ["1.000002e+00"], True), (["k"], [], False)]
     wrong = [case for case in cases if (output_agrees(case[0], case[1]) is None) != case[2]]
-    found = commands("```console\n$ a\nb\n$ c\n```\n$ d\n```json\n$ e\n```\n")
-    if wrong or found != [(2, "a", ["b"]), (4, "c", [])]:
+    found = commands("```console\n$ a\nb\n$ c\n```\n$ d\n```json\n$ e\n```\n```json f.json\n$ g\n```\n")
+    with tempfile.TemporaryDirectory() as folder:
+        os.mkdir(pathlib.Path(folder) / "below")
+        printed, at = ran("echo said; cd below", folder, os.environ)
+        moved = printed == "said\n" and os.path.samefile(at, pathlib.Path(folder) / "below")
+    if wrong or not moved or found != [
+            (2, "a", ["b"]), (4, "c", []), (12, "cat >f.json <<'END OF FILE'\n$ g\nEND OF FILE", [])]:
         sys.exit(f"the replay does not see what it should: {wrong} {found}")
 
 
