@@ -8,9 +8,9 @@
 #include "methods/stepping/engine_choice.hpp"
 #include "sensitivity/vertex_margin.hpp"
 #include "studies/io/json_document.hpp"
-#include "studies/run/contact_warnings.hpp"
 #include "studies/run/solution_warnings.hpp"
 #include "studies/run/step_reader.hpp"
+#include "studies/run/turned_surfaces.hpp"
 #include "studies/run/warnings.hpp"
 
 namespace stickslip {

@@ -2,81 +2,20 @@
 
 #include <fmt/core.h>
 
-#include <map>
-
 #include "core/contact/curve_search.hpp"
-#include "core/contact/facet_search.hpp"
 #include "core/model/contact_assembly.hpp"
 #include "core/model/master_curve.hpp"
 #include "core/model/pairing.hpp"
 #include "core/model/response.hpp"
 #include "methods/newton/residuals.hpp"
-#include "studies/io/wording.hpp"
+#include "studies/run/side_curve.hpp"
+#include "studies/run/turned_surfaces.hpp"
 #include "studies/run/warnings.hpp"
 
 namespace stickslip {
 namespace {
 
-using PlanePlace = Vec<double, 2>;
-
 std::string in_words(const PlanePlace& x) { return fmt::format("({:.6g}, {:.6g})", x[0], x[1]); }
-
-/// A side, or a polyline, as a curve at some positions: a copy, for searches of what it does not look for itself.
-struct SideCurve {
-  std::vector<int> nodes;  ///< per vertex; empty of a polyline
-  Eigen::Matrix2Xd places;
-  std::vector<Patch> patches;
-
-  auto position() const {
-    return [this](int vertex) -> PlanePlace { return places.col(vertex); };
-  }
-  /// Gap of x to the place that it faces.
-  double gap(const Facing& facing, const PlanePlace& x) const {
-    return foot_on_patch<double>(patches[facing.patch], facing.xi, x, position()).gap;
-  }
-};
-
-SideCurve curve_of_side(const SideSet& side, const Points<double>& points, const Contact& contact, bool smooth) {
-  SideCurve curve;
-  std::map<int, int> number;
-  auto facets = side.facets;
-  for (auto& facet : facets)
-    for (int& node : facet) {
-      const auto [found, is_new] = number.emplace(node, static_cast<int>(number.size()));
-      if (is_new) curve.nodes.push_back(node);
-      node = found->second;
-    }
-  curve.places.resize(2, static_cast<Eigen::Index>(curve.nodes.size()));
-  for (std::size_t v = 0; v < curve.nodes.size(); ++v)
-    curve.places.col(static_cast<Eigen::Index>(v)) = points.col(curve.nodes[v]).head<2>();
-  curve.patches = make_patches(facets, smooth ? contact.smoothing : Smoothing::none, contact.corner, curve.places);
-  return curve;
-}
-
-/// Displacement of a place of an obstacle at a time.
-PlanePlace obstacle_displacement(const Problem& problem, const Obstacle& obstacle, const PlanePlace& x, double time) {
-  const auto& numbers = problem.slots.numbers;
-  PlanePlace u = PlanePlace::Zero();
-  for (const auto& [axis, table] : obstacle.move)
-    if (axis < 'z') u[axis - 'x'] = evaluate(table, time, numbers);
-  if (obstacle.rotate)
-    u += rotated<double>(*obstacle.rotate, x, evaluate(obstacle.rotate->angle, time, numbers),
-                         problem.model.scene.finite_strain, numbers);
-  return u;
-}
-
-SideCurve curve_of_polyline(const Problem& problem, const Obstacle& obstacle, const Contact& contact, double time) {
-  const auto& polyline = std::get<Polyline>(obstacle.shape);
-  const int count = static_cast<int>(polyline.points.size());
-  SideCurve curve;
-  curve.places.resize(2, count);
-  for (int v = 0; v < count; ++v) {
-    const PlanePlace x(problem.slots.numbers(polyline.points[v][0]), problem.slots.numbers(polyline.points[v][1]));
-    curve.places.col(v) = x + obstacle_displacement(problem, obstacle, x, time);
-  }
-  curve.patches = make_patches(facets_of(polyline), contact.smoothing, contact.corner, curve.places);
-  return curve;
-}
 
 /// Calls f(vertex, place on the curve, normal out of the solid, of any length) for each vertex of a curve; on a
 /// B-spline for the places that belong to them.
@@ -104,12 +43,6 @@ Points<double> positions_of(const Problem& problem, const State<double>& state) 
   const auto& model = problem.model;
   return problem.slots.points +
          Eigen::Map<const Matrix<double>>(state.displacement.data(), model.dimension, model.node_count);
-}
-
-/// The master of Scene::contacts[c], if it is an obstacle.
-const Obstacle* obstacle_of(const Model& model, int c) {
-  const int obstacle = model.contact_sides[c].obstacle;
-  return obstacle < 0 ? nullptr : &model.scene.obstacles[obstacle];
 }
 
 /// Whether a contact looks from its slave's nodes alone at a master that has nodes, or vertices, of its own.
@@ -326,21 +259,6 @@ void add_nodes_without_area(const Problem& problem, int c, std::vector<Warning>&
                                   nodes.size() == 1 ? "has" : "have", nodes.size() == 1 ? "its" : "their")});
 }
 
-/// Geometry of the nearest place of an obstacle at the start: outward normal and gap; none past its free ends.
-std::optional<std::pair<PlanePlace, double>> start_against(const Problem& problem, const Obstacle& obstacle,
-                                                           const SideCurve& polyline, const CurveSearch* search,
-                                                           const PlanePlace& x) {
-  if (!search) {
-    if (ambiguity(x, obstacle.shape, problem.slots.numbers)) return std::nullopt;
-    const auto at = against_rigid<double>(x, obstacle.shape, problem.slots.numbers);
-    return std::pair{PlanePlace(at.normal[0], at.normal[1]), at.gap};
-  }
-  const Facing facing = search->facing(x, PlanePlace::Zero());
-  if (facing.patch == Patch::none) return std::nullopt;
-  const auto foot = foot_on_patch<double>(polyline.patches[facing.patch], facing.xi, x, polyline.position());
-  return std::pair{foot.normal, foot.gap};
-}
-
 bool touches(const CaseResult& result, int c) {
   const auto& points = result.problem->model.points;
   const auto steps = solved_steps(result);
@@ -350,17 +268,6 @@ bool touches(const CaseResult& result, int c) {
       if (points[p].contact == c && states[p] != ContactState::open) return true;
     return false;
   });
-}
-
-Warning turned_warning(const Problem& problem, int c, const std::string& words, int faulty) {
-  const auto& contact = problem.model.scene.contacts[c];
-  const Obstacle& obstacle = *obstacle_of(problem.model, c);
-  const char* remedy = std::holds_alternative<Polyline>(obstacle.shape)
-                           ? "turn the points of the polyline round: its solid is on their right"
-                       : std::holds_alternative<Plane>(obstacle.shape)
-                           ? "turn the normal of the plane round: it points out of the solid"
-                           : R"(look at "inside" of the circle: true is a cup, solid outside)";
-  return {WarningCode::turned_surface, contact.name, static_cast<double>(faulty), remedy, contact.name + ": " + words};
 }
 
 }  // namespace
@@ -373,73 +280,13 @@ ContactMeasures measures_of_contact(const Problem& problem, const State<double>&
     measures.moment = unbalanced_moment(problem, state, contact);
   return measures;
 }
-
-std::string turned_surface(const Problem& problem, int contact_index, int& faulty) {
-  constexpr double alike_from =
-      0.5;                          // cosine of the two normals: a side that is steeper may come to touch with its end
-  constexpr double against = 1e-9;  // cosine: less is a side along the obstacle's normal, to rounding
-  const auto& [model, slots, unused] = problem;
-  const auto& contact = model.scene.contacts[contact_index];
-  const Obstacle* const obstacle = obstacle_of(model, contact_index);
-  if (!obstacle || model.dimension != 2) return "";
-  const SideSet side = surface_of(model, slots.points, model.contact_sides[contact_index].slave);
-  if (!is_continuum(model.bodies[side.body].mesh.shape)) return "";  // points and bars have no inside
-  std::map<int, PlanePlace> outward;
-  for (const auto& facet : side.facets) {
-    const PlanePlace along = slots.points.col(facet[1]).head<2>() - slots.points.col(facet[0]).head<2>();
-    for (int node : facet)
-      outward.try_emplace(node, PlanePlace::Zero()).first->second += PlanePlace(along[1], -along[0]);
-  }
-  if (outward.empty()) return "";
-  const bool is_polyline = std::holds_alternative<Polyline>(obstacle->shape);
-  const SideCurve polyline = is_polyline ? curve_of_polyline(problem, *obstacle, contact, 0) : SideCurve{};
-  std::optional<CurveSearch> search;
-  if (is_polyline) search.emplace(polyline.patches, polyline.places);
-  int alike = 0, opposed = 0, inside = 0, all = 0;
-  for (int node : side.nodes) {
-    const PlanePlace x = slots.points.col(node).head<2>();
-    const auto found = outward.find(node);
-    const auto at = start_against(problem, *obstacle, polyline, search ? &*search : nullptr, x);
-    if (!at || found == outward.end()) continue;
-    const double cosine = at->first.dot(found->second.normalized());
-    const double rounding = 8 * unit_roundoff * (x.norm() + std::abs(at->second));
-    ++all;
-    alike += cosine > alike_from;
-    opposed += cosine < -against;
-    inside += at->second < -rounding;
-  }
-  if (alike > 0 && opposed == 0) {
-    faulty = alike;
-    return fmt::format("the solid of {} is on the side of {}, whose outward normals point the same way as its own",
-                       contact.master, contact.slave);
-  }
-  if (alike > 0 && opposed > 0 && 2 * inside > all && inside + 1 >= all) {  // a closed side: one node may be on it
-    faulty = inside;
-    return fmt::format("{} starts inside of the solid of {}", contact.slave, contact.master);
-  }
-  return "";
-}
-
-void name_turned_surfaces(const Problem& problem, Trajectory<double>& trajectory) {
-  if (is_converged(trajectory.status)) return;
-  for (std::size_t c = 0; c < problem.model.scene.contacts.size(); ++c) {
-    int faulty = 0;
-    const std::string words = turned_surface(problem, static_cast<int>(c), faulty);
-    if (words.empty()) continue;
-    const Warning warning = turned_warning(problem, static_cast<int>(c), words, faulty);
-    trajectory.message += (trajectory.message.empty() ? "" : "; ") + warning.text + "; " + warning.remedy;
-  }
-}
-
 void add_contact_warnings(const CaseResult& result, std::vector<Warning>& warnings) {
   const auto& problem = *result.problem;
   const auto& scene = problem.model.scene;
   for (int c = 0; c < static_cast<int>(scene.contacts.size()); ++c) {
     add_narrow_contact(result, c, warnings);
     add_masters_inside(result, c, warnings);
-    int faulty = 0;
-    if (const std::string words = turned_surface(problem, c, faulty); !words.empty())
-      warnings.push_back(turned_warning(problem, c, words, faulty));
+    if (auto warning = turned_surface(problem, c)) warnings.push_back(std::move(*warning));
     if (touches(result, c)) add_nodes_without_area(problem, c, warnings);
   }
   for (std::size_t i = 0; i < scene.responses.size(); ++i) {
@@ -469,9 +316,7 @@ void add_contact_warnings(const CaseResult& result, std::vector<Warning>& warnin
 std::vector<Warning> contact_warnings_before(const Problem& problem) {
   std::vector<Warning> warnings;
   for (int c = 0; c < static_cast<int>(problem.model.scene.contacts.size()); ++c) {
-    int faulty = 0;
-    if (const std::string words = turned_surface(problem, c, faulty); !words.empty())
-      warnings.push_back(turned_warning(problem, c, words, faulty));
+    if (auto warning = turned_surface(problem, c)) warnings.push_back(std::move(*warning));
     add_nodes_without_area(problem, c, warnings);
   }
   return warnings;

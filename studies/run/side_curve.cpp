@@ -1,0 +1,60 @@
+#include "studies/run/side_curve.hpp"
+
+#include <map>
+
+#include "core/model/master_curve.hpp"
+#include "core/model/pairing.hpp"
+
+namespace stickslip {
+namespace {
+
+/// Displacement of a place of an obstacle at a time.
+PlanePlace obstacle_displacement(const Problem& problem, const Obstacle& obstacle, const PlanePlace& x, double time) {
+  const auto& numbers = problem.slots.numbers;
+  PlanePlace u = PlanePlace::Zero();
+  for (const auto& [axis, table] : obstacle.move)
+    if (axis < 'z') u[axis - 'x'] = evaluate(table, time, numbers);
+  if (obstacle.rotate)
+    u += rotated<double>(*obstacle.rotate, x, evaluate(obstacle.rotate->angle, time, numbers),
+                         problem.model.scene.finite_strain, numbers);
+  return u;
+}
+
+}  // namespace
+
+SideCurve curve_of_side(const SideSet& side, const Points<double>& points, const Contact& contact, bool smooth) {
+  SideCurve curve;
+  std::map<int, int> number;
+  auto facets = side.facets;
+  for (auto& facet : facets)
+    for (int& node : facet) {
+      const auto [found, is_new] = number.emplace(node, static_cast<int>(number.size()));
+      if (is_new) curve.nodes.push_back(node);
+      node = found->second;
+    }
+  curve.places.resize(2, static_cast<Eigen::Index>(curve.nodes.size()));
+  for (std::size_t v = 0; v < curve.nodes.size(); ++v)
+    curve.places.col(static_cast<Eigen::Index>(v)) = points.col(curve.nodes[v]).head<2>();
+  curve.patches = make_patches(facets, smooth ? contact.smoothing : Smoothing::none, contact.corner, curve.places);
+  return curve;
+}
+
+SideCurve curve_of_polyline(const Problem& problem, const Obstacle& obstacle, const Contact& contact, double time) {
+  const auto& polyline = std::get<Polyline>(obstacle.shape);
+  const int count = static_cast<int>(polyline.points.size());
+  SideCurve curve;
+  curve.places.resize(2, count);
+  for (int v = 0; v < count; ++v) {
+    const PlanePlace x(problem.slots.numbers(polyline.points[v][0]), problem.slots.numbers(polyline.points[v][1]));
+    curve.places.col(v) = x + obstacle_displacement(problem, obstacle, x, time);
+  }
+  curve.patches = make_patches(facets_of(polyline), contact.smoothing, contact.corner, curve.places);
+  return curve;
+}
+
+const Obstacle* obstacle_of(const Model& model, int c) {
+  const int obstacle = model.contact_sides[c].obstacle;
+  return obstacle < 0 ? nullptr : &model.scene.obstacles[obstacle];
+}
+
+}  // namespace stickslip

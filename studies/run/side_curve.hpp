@@ -1,0 +1,36 @@
+/// Sides and polylines as curves of their own, for searches of what a contact does not look for itself.
+#pragma once
+
+#include <vector>
+
+#include "core/contact/curve_search.hpp"
+#include "studies/run/case.hpp"
+
+namespace stickslip {
+
+using PlanePlace = Vec<double, 2>;
+
+/// A side, or a polyline, as a curve at some positions: a copy, for searches of what it does not look for itself.
+struct SideCurve {
+  std::vector<int> nodes;  ///< per vertex; empty of a polyline
+  Eigen::Matrix2Xd places;
+  std::vector<Patch> patches;
+
+  auto position() const {
+    return [this](int vertex) -> PlanePlace { return places.col(vertex); };
+  }
+  /// Gap of x to the place that it faces.
+  double gap(const Facing& facing, const PlanePlace& x) const {
+    return foot_on_patch<double>(patches[facing.patch], facing.xi, x, position()).gap;
+  }
+};
+
+SideCurve curve_of_side(const SideSet& side, const Points<double>& points, const Contact& contact, bool smooth);
+
+/// pre: the obstacle is a polyline
+SideCurve curve_of_polyline(const Problem& problem, const Obstacle& obstacle, const Contact& contact, double time);
+
+/// The master of Scene::contacts[c], if it is an obstacle; else nullptr.
+const Obstacle* obstacle_of(const Model& model, int c);
+
+}  // namespace stickslip

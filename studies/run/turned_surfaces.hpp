@@ -1,0 +1,18 @@
+/// Obstacles that are turned inside out: points of a polyline in the wrong order, normals that point into the solid.
+#pragma once
+
+#include <optional>
+
+#include "core/model/warning.hpp"
+#include "studies/run/case.hpp"
+
+namespace stickslip {
+
+/// The warning where an obstacle cannot be what the contact means; none: it can. Its solid is where the slave is: no
+/// outward normal of the slave is against its own, or a closed slave is inside of it as a whole.
+std::optional<Warning> turned_surface(const Problem& problem, int contact);
+
+/// Adds to the message of a run that failed the obstacles that are turned inside out.
+void name_turned_surfaces(const Problem& problem, Trajectory<double>& trajectory);
+
+}  // namespace stickslip
