@@ -23,6 +23,7 @@
 #include "studies/io/result_rows.hpp"
 #include "studies/report/report.hpp"
 #include "studies/run/certificate.hpp"
+#include "studies/run/contact_start.hpp"
 #include "studies/run/explain.hpp"
 #include "studies/run/export_system.hpp"
 #include "studies/run/fields.hpp"
@@ -58,7 +59,7 @@ std::string derivative_in_words(double derivative) {
 
 void print_summary(const CaseResult& result) {
   const auto& scene = result.problem->model.scene;
-  say(std::cout, "{:>10} {:>24} {:>7} {:>7} {:>6} {:>6} {:>6} {:>10}\n", "time", "status", "newton", "augm.", "open",
+  say(std::cout, "{:>10} {:>21} {:>7} {:>7} {:>6} {:>6} {:>6} {:>10}\n", "time", "status", "newton", "augm.", "open",
       "stick", "slip", "kkt");
   for (const auto& step : result.steps) {
     int open = 0, stick = 0, slip = 0;
@@ -67,7 +68,7 @@ void print_summary(const CaseResult& result) {
       stick += s.stick;
       slip += s.slip;
     }
-    say(std::cout, "{:>10.6g} {:>24} {:>7} {:>7} {:>6} {:>6} {:>6} {:>10.1e}\n", step.increment->time,
+    say(std::cout, "{:>10.6g} {:>21} {:>7} {:>7} {:>6} {:>6} {:>6} {:>10.1e}\n", step.increment->time,
         name_of(step.increment->status), step.newton, step.augmentations, open, stick, slip, step.kkt.largest());
   }
   const auto solved = solved_steps(result);
@@ -78,23 +79,32 @@ void print_summary(const CaseResult& result) {
   const auto& last = solved.back();
   say(std::cout, "\nresponses at t = {:g}{}, and their derivatives\n", last.increment->time,
       has_ended(result) ? "" : ", the last step that converged");
+  constexpr std::size_t below_value = 4;  // indent of a row that goes on
   for (std::size_t i = 0; i < scene.responses.size(); ++i) {
-    say(std::cout, "  {:<20} {: .10e}", scene.responses[i].name, last.responses[i]);
+    std::vector<std::string> row{fmt::format("  {:<20} {: .10e}", scene.responses[i].name, last.responses[i])};
     for (std::size_t j = 0; last.sensitivities.size() && j < scene.parameters.size(); ++j)
-      say(std::cout, "   d/d{} {}", scene.parameters[j].name, derivative_in_words(last.sensitivities(i, j)));
-    say(std::cout, "\n");
+      row.push_back(fmt::format("d/d{} {}", scene.parameters[j].name, derivative_in_words(last.sensitivities(i, j))));
+    say(std::cout, "{}\n", wrapped(row, "   ", below_value, terminal_width()));
   }
   for (std::size_t i = 0; has_ended(result) && i < scene.objectives.size(); ++i) {
-    say(std::cout, "  {:<20} {: .10e}", scene.objectives[i].name, result.objectives[i]);
+    std::vector<std::string> row{fmt::format("  {:<20} {: .10e}", scene.objectives[i].name, result.objectives[i])};
     const auto& gradient = result.gradients.of_objectives;
     constexpr Eigen::Index shown = 8;
     for (Eigen::Index j = 0; j < std::min(gradient.cols(), shown); ++j)
-      say(std::cout, "   d/d{} {}", scene.parameters[j].name, derivative_in_words(gradient(i, j)));
-    say(std::cout, "{}\n", gradient.cols() > shown ? "   ..." : "");
+      row.push_back(fmt::format("d/d{} {}", scene.parameters[j].name, derivative_in_words(gradient(i, j))));
+    if (gradient.cols() > shown) row.emplace_back("...");
+    say(std::cout, "{}\n", wrapped(row, "   ", below_value, terminal_width()));
   }
   if (!scene.parameters.empty() && !last.differentiable)
     say(std::cout,
         "  a contact point is about to change state: these hold on one side only (result.json: one_sided)\n");
+}
+
+/// One line for each contact: its gaps at the start.
+void print_start_gaps(const Problem& problem) {
+  std::cout << '\n';
+  for (const auto& gaps : start_gaps_of_rules(problem))
+    say(std::cout, "gap of {} at the start: {}\n", gaps.name, gaps.in_words());
 }
 
 /// picture.json, with what a study's rows hold of it.
@@ -175,14 +185,27 @@ std::vector<OutputFolder> folders_of_run(const std::filesystem::path& directory,
   return folders;
 }
 
+/// Simulates, and shows how far it is where the output is not for programs.
+CaseResult simulate_with_progress(const Simulation& simulation, const RunArguments& arguments, Trace* trace) {
+  if (arguments.json) return simulate(simulation, {}, trace);
+  constexpr std::chrono::seconds quiet(2);  // a run of a second or two speaks for itself
+  Progress progress(std::cerr, progress_style_of_stderr(), "steps", simulation.problem->model.most_steps(),
+                    std::chrono::steady_clock::now, quiet);
+  const Ticker ticker(progress);
+  return simulate(
+      simulation, [&] { progress.advance(); }, trace);
+}
+
 /// A line for each option: name, default, meaning. `before`: what the names begin with.
 void print_options(const nlohmann::ordered_json& options, const std::string& before) {
+  constexpr std::size_t below_meaning = 38;  // columns of name and default
   for (const auto& [name, option] : options.items())
     if (option.contains("properties"))
       print_options(option.at("properties"), before + name + "/");
     else
-      say(std::cout, "  {:<22} {:<12} {}\n", before + name, option.at("default").dump(),
-          option.at("description").get<std::string>());
+      std::cout << wrapped_lines(fmt::format("  {:<22} {:<12} {}\n", before + name, option.at("default").dump(),
+                                             option.at("description").get<std::string>()),
+                                 below_meaning, terminal_width());
 }
 
 }  // namespace
@@ -199,19 +222,8 @@ int run_command(const RunArguments& arguments) {
         "write");
   if (!writes && arguments.report) throw InputFault("--report: with --json nothing is written; give -o DIR too");
   const auto folders = folders_of_run(directory, arguments, writes);
-  std::optional<Progress> progress;  // of long work only: a run of a second or two speaks for itself
-  const auto start = std::chrono::steady_clock::now();
-  long pending = 0;
-  const auto on_step = [&] {
-    ++pending;
-    if (arguments.json || std::chrono::steady_clock::now() - start < std::chrono::seconds(2)) return;
-    if (!progress)
-      progress.emplace(std::cerr, progress_style_of_stderr(), "steps", loaded->problem->model.most_steps());
-    progress->advance(std::exchange(pending, 0));
-  };
   Trace trace;
-  const auto result = simulate(*loaded, on_step, arguments.trace ? &trace : nullptr);
-  progress.reset();
+  const auto result = simulate_with_progress(*loaded, arguments, arguments.trace ? &trace : nullptr);
   std::vector<std::string> written;
   const json document =
       writes ? write_run(directory, arguments, *loaded, result, arguments.trace ? &trace : nullptr, written)
@@ -223,7 +235,10 @@ int run_command(const RunArguments& arguments) {
   } else {
     if (arguments.trace) std::cout << trace_table(trace) << '\n';
     print_summary(result);
-    say(std::cout, "\neffects: {}\nwritten: {}\n", ledger_line(document["ledger"]), fmt::join(written, ", "));
+    print_start_gaps(*loaded->problem);
+    const std::string ending =
+        fmt::format("effects: {}\nwritten: {}\n", ledger_line(document["ledger"]), fmt::join(written, ", "));
+    std::cout << wrapped_lines(ending, 2, terminal_width());
   }
   for (const auto& warning : document["warnings"])
     say(std::cerr, "warning ({}): {}; {}\n", warning["code"].get<std::string>(),
@@ -241,7 +256,7 @@ int explain_command(const RunArguments& arguments) {
     std::cout << json_text({{"explain", text}, {"ledger", ledger_json(forecast(loaded->input, *loaded->problem))}}, 2)
               << '\n';
   else
-    std::cout << text;
+    std::cout << wrapped_lines(text, 6, terminal_width());
   return done;
 }
 

@@ -1,4 +1,4 @@
-/// What the commands of the program return to the shell, as docs/commands.md tells users.
+/// What the commands of the program return to the shell, as docs/commands.md says.
 #pragma once
 
 namespace stickslip {

@@ -19,6 +19,7 @@
 
 #include "core/algebra/linear_solver.hpp"
 #include "core/algebra/memory.hpp"
+#include "studies/app/command_line.hpp"
 #include "studies/app/commands.hpp"
 #include "studies/app/exit_codes.hpp"
 #include "studies/input/method_options.hpp"
@@ -156,6 +157,7 @@ Actions add_commands(CLI::App& app, Arguments& given) {
   Actions actions;
   const auto add = [&](const char* name, const char* description, auto action) -> CLI::App& {
     actions.emplace_back(app.add_subcommand(name, description), std::move(action));
+    actions.back().first->allow_extras();  // left_over() refuses them
     return *actions.back().first;
   };
   add_run(add("run", "simulate a scene",
@@ -204,9 +206,20 @@ std::string unknown_command(const Actions& actions, int argc, char** argv) {
   return "there is no command " + in_quotes(word) + ";" + suggestion(word, names) + " allowed: " + listed(names);
 }
 
+/// What is wrong with words that a command left over; "": nothing is left.
+std::string left_over(const CLI::App& command) {
+  const std::vector<std::string> words = command.remaining();
+  if (words.empty()) return "";
+  std::vector<std::string> options;
+  for (const auto* option : command.get_options())
+    if (const auto& names = option->get_lnames(); !names.empty()) options.push_back("--" + names.front());
+  return unexpected_word(command.get_name(), options, words);
+}
+
 /// Exit code of the command that the line names; 2 where the line is at fault, which is printed.
 int run_line(CLI::App& app, const Actions& actions, int argc, char** argv) {
   if (const std::string fault = unknown_command(actions, argc, argv); !fault.empty()) throw InputFault(fault);
+  if (const std::string fault = set_in_two_words({argv, argv + argc}); !fault.empty()) throw InputFault(fault);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -216,12 +229,15 @@ int run_line(CLI::App& app, const Actions& actions, int argc, char** argv) {
     std::cerr << printable_lines(faults.str());
     return code == 0 ? on_standard_output(done) : bad_input;
   }
-  for (const auto& [command, action] : actions)
-    if (*command) return action();
+  for (const auto& [command, action] : actions) {
+    if (!*command) continue;
+    if (const std::string fault = left_over(*command); !fault.empty()) throw InputFault(fault);
+    return action();
+  }
   return done;  // never: one is required
 }
 
-/// What a user does about a file that cannot be written or read; "" where that hangs on the file.
+/// What a user does about a file that cannot be written or read; "" if that depends on the file.
 std::string what_helps(const std::error_code& code) {
   if (code == std::errc::no_space_on_device || code == std::error_code(EDQUOT, std::generic_category()))
     return "; make room there and run it again, a study with --resume";
@@ -273,7 +289,7 @@ int main(int argc, char** argv) {
     return out_of_memory();
   } catch (const std::exception& error) {
     std::cerr << "stickslip: " << printable_lines(error.what())
-              << "\nthis is a bug of ours: please report it with the scene\n";
+              << "\nthis is a bug in stickslip: please report it with the scene\n";
     return our_bug;
   }
 }

@@ -108,7 +108,7 @@ void copy_drawings(const std::vector<Part>& parts, const fs::path& output) {
   }
 }
 
-/// "label" of a missing cell is not recorded anywhere: its place in the study's order tells it.
+/// "label" of a missing cell is not recorded anywhere: it follows from its place in the study's order.
 std::string places(const std::vector<std::size_t>& missing) {
   constexpr std::size_t most = 12;
   std::string text;

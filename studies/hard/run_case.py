@@ -110,18 +110,18 @@ def run_case(program, case, method, folder, timeout, verify):
     except OSError as error:
         return {**row, "status": "crash", "message": str(error), "seconds": 0.0, "exit": None}
     row["exit"] = code
-    told = errors.replace(str(case.path.parent) + os.sep, "").strip()[-4000:]
+    said = errors.replace(str(case.path.parent) + os.sep, "").strip()[-4000:]
     if code is None:
         return {**row, "status": "hang", "message": f"no end within {timeout:g} s"}
     if code == 2:
-        return {**row, "status": "refused", "message": told}
+        return {**row, "status": "refused", "message": said}
     if code not in (0, 3):
-        return {**row, "status": "crash", "message": f"exit code {code}. {told}"}
+        return {**row, "status": "crash", "message": f"exit code {code}. {said}"}
     document = _read_result(folder / "result.json", row["faults"])
     try:
         row.update(_summary(document))
     except (TypeError, KeyError) as error:
-        return {**row, "status": "crash", "message": f"exit code {code}, and no whole result.json ({error}). {told}"}
+        return {**row, "status": "crash", "message": f"exit code {code}, and no whole result.json ({error}). {said}"}
     if (code == 0) != (row["status"] in SOLVED):
         row["faults"].append(f"exit code {code} does not go with status {row['status']}")
     if row["status"] in SOLVED:

@@ -93,7 +93,7 @@ FrictionLaw<Number> read_friction(const JsonNode& node, SceneReading& reading) {
     node.must_be(all_forms());
     return {};
   }
-  const auto& kinds = friction_kinds();  // (of several keys the last tells the law, of none the first)
+  const auto& kinds = friction_kinds();  // (of several keys the last decides the law, of none the first)
   const auto named = std::find_if(kinds.rbegin(), kinds.rend(), [&](const auto& kind) { return node.find(kind.key); });
   return (named == kinds.rend() ? kinds.front() : *named).read(node, reading);
 }

@@ -20,7 +20,7 @@ struct ProblemSize {
 /// Nodes of a mesh that a generator makes, within a few per cent; of an imported one those it has.
 double estimated_nodes(const MeshDescription& mesh, const std::string& element);
 
-/// Bytes of a run, within a factor of two: it is meant to tell a megabyte from a terabyte.
+/// Bytes of a run, within a factor of two: it separates a megabyte from a terabyte.
 double estimated_bytes(const ProblemSize& size);
 
 /// Bytes that this process may have: the machine's memory, or less where a limit of the process or of its control group

@@ -10,12 +10,12 @@
 namespace stickslip {
 namespace {
 
-constexpr std::size_t most_told = 100;  // beyond, nobody reads on
+constexpr std::size_t most_shown = 100;  // beyond, nobody reads on
 
 std::string lines(const std::vector<Diagnostic>& all, const std::string& before, const std::string& noun) {
   std::string text;
-  for (std::size_t i = 0; i < std::min(all.size(), most_told); ++i) text += before + all[i].text() + "\n";
-  if (all.size() > most_told) text += "... and " + std::to_string(all.size() - most_told) + " more " + noun + "s\n";
+  for (std::size_t i = 0; i < std::min(all.size(), most_shown); ++i) text += before + all[i].text() + "\n";
+  if (all.size() > most_shown) text += "... and " + std::to_string(all.size() - most_shown) + " more " + noun + "s\n";
   return text;
 }
 

@@ -61,6 +61,18 @@ class TokenCursor {
     return start;
   }
 
+  /// Moves to the comma before the next token; false where there is none.
+  bool go_to_comma() {
+    for (; offset_ < text_.size() && text_[offset_] != ','; advance()) {
+      if (text_[offset_] == '/')
+        skip_comment();
+      else if (std::string_view(" \t\r\n").find(text_[offset_]) == std::string_view::npos)
+        return false;
+    }
+    return offset_ < text_.size();
+  }
+  Position position() const { return {line_, column_}; }
+
   std::size_t offset() const { return offset_; }
 
   /// The token that was taken last.
@@ -97,6 +109,14 @@ class TokenCursor {
   std::size_t offset_ = 0, begin_ = 0;
   int line_ = 1, column_ = 1;
 };
+
+/// "0.5" of ".5", and "-0.5" of "-.5"; "" of what is no such number.
+std::string with_zero_before_point(std::string_view word) {
+  const std::string sign = word.starts_with('-') ? "-" : "";
+  const std::string_view digits = word.substr(sign.size());
+  const bool number = digits.size() > 1 && digits[0] == '.' && std::isdigit(static_cast<unsigned char>(digits[1]));
+  return number ? sign + "0" + std::string(digits) : "";
+}
 
 }  // namespace
 
@@ -145,7 +165,7 @@ class PositionReader : public json::json_sax_t {
     const std::size_t last = position > 0 ? position - 1 : 0;  // of the last character that was read
     const bool mark = last < text_.size() && std::string_view("{}[],:").find(text_[last]) != std::string_view::npos;
 
-    TokenCursor token = cursor_;
+    TokenCursor token = cursor_, comma = cursor_;
     TokenCursor::Position at = token.next_start();
     std::string pointer;
     if (last < cursor_.offset() && !open_.empty()) {  // as in 0x3, whose 0 alone was taken for the value
@@ -158,6 +178,15 @@ class PositionReader : public json::json_sax_t {
       pointer = next_pointer();
     } else if (const std::string word = leading_word(token.rest()); is_not_finite(word)) {
       message = "is " + word + "; must be a finite number";
+      pointer = next_pointer();
+    } else if (has("unexpected") && last < text_.size() && (text_[last] == '}' || text_[last] == ']') &&
+               comma.go_to_comma()) {
+      at = comma.position();
+      message = std::string("is not JSON: a comma stands before the ") + text_[last] + " that ends the " +
+                (text_[last] == '}' ? "object" : "list") + "; take the comma out";
+    } else if (token.take(); has("invalid") && !with_zero_before_point(token.taken()).empty()) {
+      message = "is " + std::string(token.taken()) + ", which is not JSON; must be " +
+                with_zero_before_point(token.taken()) + ", with a digit before the point";
       pointer = next_pointer();
     } else {
       if (has("unexpected end of input"))
@@ -269,7 +298,7 @@ std::string near_file(const std::filesystem::path& missing) {
   return near.empty() ? "" : ";" + near;
 }
 
-/// What a file is in place of JSON; "" where a parser has to tell.
+/// What a file is in place of JSON; "" where a parser has to find out.
 std::string is_no_json(std::string_view content) {
   if (content.find_first_not_of(" \t\r\n") == std::string_view::npos) return "is empty; must be a JSON object, {...}";
   const bool utf_16 = content.starts_with("\xFF\xFE") || content.starts_with("\xFE\xFF");
@@ -368,6 +397,8 @@ void JsonDocument::override_value(const std::string& assignment, Diagnostics& di
   if (old && old->is_object()) return fault(pointer + " names an object; must name a number, a text or an array");
   json value = json::parse(text, nullptr, false);
   if (value.is_discarded()) {
+    if (const std::string number = with_zero_before_point(text); !number.empty())
+      return fault(in_quotes(text) + " is not a value of JSON; must be " + number + ", with a digit before the point");
     if (old && !old->is_string())
       return fault(in_quotes(text) + " is not a value of JSON; must be like " + shown(*old));
     value = text;

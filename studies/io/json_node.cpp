@@ -32,7 +32,7 @@ void JsonNode::error_at_key(const std::string& message) const {
 }
 
 void JsonNode::must_be(const std::string& what) const {
-  // of a whole file of another kind, which may be none of the user's, no content is told
+  // of a whole file of another kind, which may be none of the user's, no content is shown
   const bool foreign = pointer_.empty() && (value_->is_string() || value_->is_array());
   error("is " + (foreign ? (value_->is_string() ? "a text" : "an array") : shown(*value_)) + "; must be " + what);
 }
@@ -119,7 +119,7 @@ std::optional<double> JsonNode::number(const Rule& rule) const {
   if (value_->is_number())
     // a whole number with more digits than a double has is rounded, never infinite
     if (const double number = value_->get<double>(); rule.holds(number)) return number;
-  must_be(rule.text);
+  must_be(value_->is_number() ? std::string(rule.text) + rule.instead : rule.text);
   return std::nullopt;
 }
 

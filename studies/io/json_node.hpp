@@ -15,13 +15,17 @@ namespace stickslip {
 struct Rule {
   const char* text;
   bool (*holds)(double);
+  const char* instead = "";  ///< follows `text` where a number breaks the rule: what to use
 };
 inline constexpr Rule any_number{"a number", [](double) { return true; }};
 inline constexpr Rule positive{"a number > 0", [](double x) { return x > 0; }};
 inline constexpr Rule not_negative{"a number >= 0", [](double x) { return x >= 0; }};
 inline constexpr Rule below_one{"a number > 0 and < 1", [](double x) { return x > 0 && x < 1; }};
 inline constexpr Rule above_one{"a number > 1", [](double x) { return x > 1; }};
-inline constexpr Rule poisson_ratio{"a number > -1 and < 0.5", [](double nu) { return nu > -1 && nu < 0.5; }};
+inline constexpr Rule poisson_ratio{
+    "a number > -1 and < 0.5", [](double nu) { return nu > -1 && nu < 0.5; },
+    R"(; for a body that keeps its volume take 0.499 and "element": "Q4_mean_dilatation", )"
+    R"("Q8" or "T6")"};
 
 /// Keys of an object.
 struct Keys {

@@ -183,9 +183,9 @@ std::string in_the_way(const fs::path& folder, const std::vector<std::string>& n
   }
   constexpr std::size_t most = 100;
   std::string text;
-  std::size_t told = 0;
+  std::size_t listed = 0;
   for (const auto& fault : faults) {
-    if (++told > most) return text + "  and " + std::to_string(faults.size() - most) + " more\n";
+    if (++listed > most) return text + "  and " + std::to_string(faults.size() - most) + " more\n";
     text += "  " + fault + "\n";
   }
   return text;

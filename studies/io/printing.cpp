@@ -1,8 +1,11 @@
 #include "studies/io/printing.hpp"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 namespace stickslip {
@@ -83,6 +86,49 @@ std::string printable_lines(std::string_view text) { return printed(text, "\n");
 
 std::string json_text(const nlohmann::json& value, int indent) {
   return value.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+std::string wrapped(const std::vector<std::string>& pieces, std::string_view between, std::size_t indent,
+                    std::size_t width) {
+  std::string text;
+  std::size_t length = 0;  // of the last line
+  for (const auto& piece : pieces) {
+    const bool first = &piece == pieces.data();
+    if (!first && length + between.size() + piece.size() > width) {
+      text += "\n" + std::string(indent, ' ');
+      length = indent;
+    } else if (!first) {
+      text += between;
+      length += between.size();
+    }
+    text += piece;
+    length += piece.size();
+  }
+  return text;
+}
+
+std::string wrapped_lines(std::string_view text, std::size_t indent, std::size_t width) {
+  std::string out;
+  std::vector<std::string> words(1);
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto is = [&](std::size_t at, char c) { return at < text.size() && text[at] == c; };
+    const bool single = i > 0 && is(i, ' ') && !is(i - 1, ' ') && !is(i + 1, ' ');
+    if (text[i] == '\n') {
+      out += wrapped(words, " ", indent, width) + "\n";
+      words.assign(1, "");
+    } else if (single) {
+      words.emplace_back();
+    } else {
+      words.back() += text[i];
+    }
+  }
+  return out + wrapped(words, " ", indent, width);
+}
+
+std::size_t terminal_width() {
+  winsize size{};
+  const bool known = ::isatty(STDOUT_FILENO) == 1 && ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? size.ws_col : std::numeric_limits<std::size_t>::max() / 2;
 }
 
 std::string shell_word(std::string_view word) {

@@ -4,6 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace stickslip {
 
@@ -18,6 +19,17 @@ std::string printable_lines(std::string_view text);
 
 /// JSON in one line, or indented. Never throws: bytes that are not UTF-8 become U+FFFD.
 std::string json_text(const nlohmann::json& value, int indent = -1);
+
+/// Pieces in lines of at most `width` characters (bytes), a piece longer than that on a line of its own. `between`: put
+/// between two of one line. Lines after the first begin with `indent` spaces.
+std::string wrapped(const std::vector<std::string>& pieces, std::string_view between, std::size_t indent,
+                    std::size_t width);
+
+/// The same of each line of a text, broken at single spaces: where columns are apart by more, they stay together.
+std::string wrapped_lines(std::string_view text, std::size_t indent, std::size_t width);
+
+/// Characters in a line of the terminal that standard output is; no bound where it is none, so files stay as they are.
+std::size_t terminal_width();
 
 /// A word as bash reads it again: as it is, in single quotes, or, where it holds what would not print, as $'...'.
 std::string shell_word(std::string_view word);

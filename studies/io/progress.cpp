@@ -5,16 +5,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <condition_variable>
 #include <cstdlib>
 #include <ostream>
+#include <stop_token>
 #include <utility>
 
 namespace stickslip {
 namespace {
 
 constexpr int bar_width = 20;
+constexpr double shown_from = 5;  // seconds of a piece, before which it is as others are
 
-/// Share done, in `parts`, rounded down, so that all is told only when all is done.
+/// Share done, in `parts`, rounded down, so that all is shown only when all is done.
 long share(const ProgressState& state, long parts) {
   return state.total > 0 ? std::clamp(state.done * parts / state.total, 0L, parts) : parts;
 }
@@ -23,6 +26,7 @@ std::string times(const ProgressState& state) {
   std::string text = format_duration(state.elapsed) + " elapsed";
   const double remaining = estimate_remaining(state);
   if (remaining > 0) text += ", about " + format_duration(remaining) + " to go";
+  if (state.present >= shown_from) text += ", " + format_duration(state.present) + " in the present one";
   return text;
 }
 
@@ -53,9 +57,17 @@ std::string progress_line(const ProgressState& state) {
                      state.total - state.done, times(state));
 }
 
-Progress::Progress(std::ostream& out, Style style, std::string label, long total, Clock clock)
-    : out_(out), style_(style), label_(std::move(label)), total_(total), clock_(std::move(clock)), start_(clock_()) {
-  if (style_ == Style::bar) draw();
+Progress::Progress(std::ostream& out, Style style, std::string label, long total, Clock clock,
+                   std::chrono::steady_clock::duration quiet)
+    : out_(out),
+      style_(style),
+      label_(std::move(label)),
+      total_(total),
+      clock_(std::move(clock)),
+      start_(clock_()),
+      quiet_(quiet),
+      piece_start_(start_) {
+  if (style_ == Style::bar && !is_quiet()) draw();
 }
 
 Progress::~Progress() {
@@ -63,7 +75,9 @@ Progress::~Progress() {
 }
 
 ProgressState Progress::state() const {
-  return {done_, total_, std::chrono::duration<double>(clock_() - start_).count(), earlier_};
+  const auto now = clock_();
+  const auto seconds_since = [&](auto time) { return std::chrono::duration<double>(now - time).count(); };
+  return {done_, total_, seconds_since(start_), earlier_, done_ < total_ ? seconds_since(piece_start_) : 0};
 }
 
 void Progress::draw() {
@@ -76,11 +90,24 @@ void Progress::draw() {
 void Progress::advance(long pieces) {
   const std::scoped_lock lock(mutex_);
   done_ += pieces;
+  piece_start_ = clock_();
+  next_line_ = first_line;
+  if (is_quiet()) return;
   if (style_ == Style::bar) {
     if (done_ >= total_ || clock_() - last_drawn_ >= std::chrono::milliseconds(100)) draw();
     return;
   }
-  tell_tenths();
+  write_tenths();
+}
+
+void Progress::tick() {
+  const std::scoped_lock lock(mutex_);
+  const ProgressState now = state();
+  if (is_quiet() || done_ >= total_) return;
+  if (style_ == Style::bar) return draw();
+  if (now.present < next_line_) return;
+  next_line_ *= 2;
+  out_ << label_ << ": " << progress_line(now) << '\n' << std::flush;
 }
 
 void Progress::skip(long pieces) {
@@ -90,14 +117,14 @@ void Progress::skip(long pieces) {
   if (style_ == Style::bar)
     draw();
   else
-    tell_tenths();
+    write_tenths();
 }
 
-void Progress::tell_tenths() {
+void Progress::write_tenths() {
   const long tenths = share(state(), 10);
-  if (tenths <= tenths_told_) return;
+  if (tenths <= tenths_written_) return;
   out_ << label_ << ": " << progress_line(state()) << '\n' << std::flush;
-  tenths_told_ = tenths;
+  tenths_written_ = tenths;
 }
 
 void Progress::note(std::string_view message) {
@@ -109,6 +136,15 @@ void Progress::note(std::string_view message) {
     out_ << message << '\n' << std::flush;
   }
 }
+
+Ticker::Ticker(Progress& progress)
+    : thread_([&progress](const std::stop_token& stop) {
+        constexpr std::chrono::milliseconds pause(500);
+        std::mutex mutex;
+        std::condition_variable_any wake;
+        std::unique_lock lock(mutex);
+        while (!wake.wait_for(lock, stop, pause, [&] { return stop.stop_requested(); })) progress.tick();
+      }) {}
 
 Progress::Style progress_style_of_stderr() {
   const char* terminal = std::getenv("TERM");

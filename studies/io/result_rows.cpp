@@ -35,7 +35,7 @@ const char* kind_of(const json& value) {
   return value.is_array() ? "an array" : value.is_string() ? "a text" : value.is_number() ? "a number" : "no object";
 }
 
-/// What is wrong with a line of results.jsonl; "" where it is a row. What it holds is not told.
+/// What is wrong with a line of results.jsonl; "" where it is a row. It does not say what the line holds.
 std::string row_fault(const json& row) {
   if (!row.is_object()) return row.is_discarded() ? "it is not JSON" : std::string("it is ") + kind_of(row);
   for (const char* name : {"id", "status"})

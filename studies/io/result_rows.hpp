@@ -46,7 +46,7 @@ void drop_unsealed(StoredRows& stored);
 
 /// Takes the rows in `directory` up again for the cells of `ids`: what read_rows() mends is mended on the disk, and
 /// lines that are none of its rows, and rows of other cells (of another study, or of another version of the program),
-/// go to results.stale.jsonl. What was done is told in `notes`, a sentence each.
+/// go to results.stale.jsonl. `notes`: what was done, a sentence each.
 RowsById resume_rows(const std::filesystem::path& directory, const std::vector<std::string>& ids,
                      std::vector<std::string>& notes);
 
@@ -70,7 +70,7 @@ nlohmann::json read_description(const std::filesystem::path& directory);
 /// Throws InputFault where study.json or picture.json are there and damaged.
 void check_records(const std::filesystem::path& directory);
 
-/// What tells a cell from others of its label: "/contacts/sole/friction = 0.3, level 1"; "" where nothing is varied.
+/// What sets a cell apart from others of its label: "/contacts/sole/friction = 0.3, level 1"; "" where nothing is varied.
 std::string variant_text(const nlohmann::json& row);
 
 /// Whether a row's status is converged, or converged_at_roundoff.

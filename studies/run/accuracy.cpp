@@ -138,12 +138,15 @@ void AccuracyReader::read(const State<double>& before, const Increment<double>& 
   const auto found = worst(model_, slots_, rho, defects, defects_.with_layer(), allowed, accuracy_.errors.size());
   accuracy_.faults.emplace_back();
   if (found.excess == 0) return;
+  const auto name = std::visit([](const auto& m) { return std::string(m.regularisation_name); }, method_);
+  const std::string smaller = model_.points.empty() ? "" : "try a smaller " + name;
+  const auto after = [&](const char* words) { return smaller.empty() ? "" : words + smaller; };
   const std::string why = allowed.drowned ? "forces of the stiffest body, as far as it moves, round by more than is "
-                                            "accepted; hold it by supports, make it an obstacle, or try a smaller "
-                                          : "which neither the method nor rounding explains; try a smaller ";
+                                            "accepted; hold it by supports, make it an obstacle" +
+                                                after(", or ")
+                                          : "which neither the method nor rounding explains" + after("; ");
   accuracy_.faults.back() = "the method-blind error \"" + std::string(found.component) + "\" is " +
-                            short_number(found.value) + " at " + found.where + ", " + why +
-                            std::visit([](const auto& m) { return std::string(m.regularisation_name); }, method_);
+                            short_number(found.value) + " at " + found.where + ", " + why;
 }
 
 Accuracy assess(const Model& model, const Slots<double>& slots, const Method& method,

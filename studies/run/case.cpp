@@ -8,9 +8,9 @@
 #include "methods/stepping/engine_choice.hpp"
 #include "sensitivity/vertex_margin.hpp"
 #include "studies/io/json_document.hpp"
+#include "studies/run/failed_contact.hpp"
 #include "studies/run/solution_warnings.hpp"
 #include "studies/run/step_reader.hpp"
-#include "studies/run/turned_surfaces.hpp"
 #include "studies/run/warnings.hpp"
 
 namespace stickslip {
@@ -317,7 +317,7 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
         result.engine.body_solves - (shared ? solved_before : static_cast<double>(result.condensing.backsolves));
   mark_inaccurate(reader.accuracy(), result.trajectory);
   name_loose_body(problem->model, result.trajectory);
-  name_turned_surfaces(*problem, result.trajectory);
+  explain_failed_contact(*problem, result.trajectory);
   if (has_tangent(result.trajectory)) {
     if (result.trajectory.counters.newton > 0)  // otherwise nothing was factorised
       result.condition_estimate = workspace.engine->condition_estimate();

@@ -21,7 +21,7 @@ struct Problem {
   explicit Problem(const Scene& scene);
 };
 
-/// What warnings are told by of a body at a step.
+/// What warnings measure of a body at a step.
 struct BodyMeasures {
   double strain = 0, rotation = 0;  ///< largest component in an element; radians
   double spurious_pressure = 0;     ///< spurious_pressure()
@@ -29,7 +29,7 @@ struct BodyMeasures {
   std::string free_motion;          ///< free_motion() that nothing which presses holds; empty: none
 };
 
-/// What warnings are told by of a contact at a step.
+/// What warnings measure of a contact at a step.
 struct ContactMeasures {
   double inside = 0;       ///< depth, length, of a node of the master in the slave, deeper than the slave's points are
   double missing = 0;      ///< that depth as a force, by the stiffness of the points, over the force of the contact
@@ -114,7 +114,7 @@ nlohmann::json kkt_json(const KktError& error);
 nlohmann::json interface_json(const CaseResult& result);
 
 /// The steps that were solved: all of a run, or of one that failed those before. The last iterate of a step that failed
-/// is no answer: what tells of a run tells of these.
+/// is no answer: what reports a run reports these.
 std::span<const StepResult> solved_steps(const CaseResult& result);
 /// Whether these are all.
 bool has_ended(const CaseResult& result);

@@ -226,7 +226,7 @@ json solutions_json(const CaseResult& result) {
   return solutions;
 }
 
-/// Adds what a solved step tells: contacts, responses, margins and derivatives.
+/// Adds what a solved step holds: contacts, responses, margins and derivatives.
 void add_answers(const CaseResult& result, const StepResult& step, json& entry) {
   const auto& scene = result.problem->model.scene;
   json sensitivities = json::object();

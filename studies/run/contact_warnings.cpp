@@ -290,7 +290,7 @@ void add_contact_warnings(const CaseResult& result, std::vector<Warning>& warnin
     if (touches(result, c)) add_nodes_without_area(problem, c, warnings);
   }
   for (std::size_t i = 0; i < scene.responses.size(); ++i) {
-    constexpr double told = 0.01;  // of the largest value of the response
+    constexpr double noted = 0.01;  // of the largest value of the response
     if (!is_moment(scene.responses[i])) continue;
     double largest = 0, off = 0;
     int of = -1;
@@ -302,7 +302,7 @@ void add_contact_warnings(const CaseResult& result, std::vector<Warning>& warnin
           of = c;
         }
     }
-    if (of < 0 || !(off > told * largest)) continue;
+    if (of < 0 || !(off > noted * largest)) continue;
     const auto& contact = scene.contacts[of];
     warnings.push_back({WarningCode::unbalanced_moment, contact.name, off / largest,
                         contact.segment ? "refine both sides" : "take a stiffer penalty, or multipliers",

@@ -9,7 +9,7 @@
 
 namespace stickslip {
 
-/// What warnings tell of a contact at a step.
+/// What warnings measure of a contact at a step.
 ContactMeasures measures_of_contact(const Problem& problem, const State<double>& state, double time, int contact);
 
 void add_contact_warnings(const CaseResult& result, std::vector<Warning>& warnings);

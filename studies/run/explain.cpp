@@ -12,6 +12,7 @@
 #include "studies/input/size_estimate.hpp"
 #include "studies/io/numerals.hpp"
 #include "studies/io/printing.hpp"
+#include "studies/run/contact_start.hpp"
 #include "studies/run/contact_warnings.hpp"
 #include "studies/run/ledger_forecast.hpp"
 #include "studies/run/simulation.hpp"
@@ -62,16 +63,6 @@ std::string law_in_words(const FrictionLaw<Number>& friction) {
   return words;
 }
 
-/// Whether no support holds a node of a body: then it has its place by contact alone, or none.
-bool is_unheld(const Model& model, std::size_t b) {
-  const auto& body = model.bodies[b];
-  if (!is_continuum(body.mesh.shape)) return false;
-  return std::ranges::none_of(model.constraints, [&](const Constraint& held) {
-    const int node = held.dof / model.dimension - body.first_node;
-    return held.support >= 0 && node >= 0 && node < body.mesh.node_count;
-  });
-}
-
 /// With their heading. What kind of contact it is stands in the heading, or, where segments are among them, in each
 /// line.
 std::string contact_lines(const Problem& problem) {
@@ -80,6 +71,7 @@ std::string contact_lines(const Problem& problem) {
   const auto& contacts = model.scene.contacts;
   const bool mixed = std::any_of(contacts.begin(), contacts.end(), [](const auto& of) { return of.segment; });
   const std::string heading = mixed ? "contacts:\n" : "contacts (node to segment):\n";
+  const auto gaps = start_gaps(problem);
   std::string text;
   for (std::size_t c = 0; c < model.scene.contacts.size(); ++c) {
     const auto& contact = model.scene.contacts[c];
@@ -92,6 +84,7 @@ std::string contact_lines(const Problem& problem) {
     if (mixed) text += contact.segment ? " (segment-integrated)" : " (node to segment)";
     if (points < static_cast<int>(slaves)) text += fmt::format(" ({} slave nodes face no master)", slaves - points);
     text += contact.friction ? ", " + law_in_words(*contact.friction) + "\n" : ", frictionless\n";
+    if (points > 0) text += "    gap at the start: " + gaps[c].in_words() + "\n";
   }
   return heading + (text.empty() ? "  none\n" : text);
 }
@@ -156,7 +149,7 @@ std::string explain(const Input& input, const Problem& problem) {
     text += fmt::format("  {}: {}, {}{}{}\n", scene.bodies[b].name, counted(mesh.node_count, "node"),
                         counted(mesh.element_count(), shape_name(mesh.shape)),
                         has_mean_dilatation(model.bodies[b].kinematics) ? " with mean dilatation" : "",
-                        is_unheld(model, b) ? "; held by contact alone" : "");
+                        is_held_by_contact_alone(model, b) ? "; held by contact alone" : "");
   }
   text += contact_lines(problem);
   text += fmt::format("driving: {}, {}, {} to t = {}\n", count(scene.supports, "support"), count(scene.loads, "load"),
@@ -170,8 +163,8 @@ std::string explain(const Input& input, const Problem& problem) {
   text += "at its peak: " + about(needed_bytes(problem, input)) + ", within a factor of two\n";
   text += fmt::format("method: {}\n", json_with_exact_numbers(to_json(input.method)));
   text += engine_lines(input, problem);
-  text +=
-      "\nwhat each effect takes (~ about, > and more, ? hangs on the path):\n" + ledger_table(forecast(input, problem));
+  text += "\nwhat each effect takes (~ about, > and more, ? depends on the path):\n" +
+          ledger_table(forecast(input, problem));
   text += "\nsimulated:\n";
   if (effects.contact) text += "  unilateral contact\n";
   if (effects.friction) text += "  friction, path dependent (slip is remembered)\n";
@@ -193,6 +186,8 @@ std::string explain(const Input& input, const Problem& problem) {
                       effects.plasticity ? "" : "plasticity, ", effects.smoothing ? "" : "smoothing, ");
   for (const auto& warning : contact_warnings_before(problem))
     text += fmt::format("warning ({}): {}; {}\n", name_of(warning.code), warning.text, warning.remedy);
+  for (const auto& warning : overlaps_at_start(problem))
+    text += fmt::format("warning ({}): {}; {}\n", warning.code, warning.text, warning.remedy);
   return text;
 }
 

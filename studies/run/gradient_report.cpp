@@ -91,7 +91,7 @@ std::string check_faults(const GradientCheck& check) {
     text += fmt::format("{} of {} derivatives differ\n", differ, check.entries.size());
   if (const auto unchecked = count(GradientCheck::Verdict::not_checked); unchecked > 0)
     text += fmt::format(
-        "{} of {} derivatives are not checked: no difference step tells them to three digits, as of what is zero but "
+        "{} of {} derivatives are not checked: no difference step gives them to three digits, as of what is zero but "
         "for rounding, or near a change of contact states\n",
         unchecked, check.entries.size());
   return text;

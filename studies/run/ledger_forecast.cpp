@@ -36,7 +36,7 @@ struct Size {
   double steps, parameters, blocks, responses, objectives;
   double together;  ///< increments that are differentiated at once
   double path;      ///< factor that the number of steps holds to, as a path finds its own
-  double moving;    ///< factor that what hangs on the masters' nodes of a point holds to: points slide along curves
+  double moving;    ///< factor of what depends on the masters' nodes of a point: points slide along curves
   bool condensed, mixed, unknown, unsymmetric, iterates, truncated, follows;
   Condensed what() const { return condensed ? Condensed::all : mixed ? Condensed::part : Condensed::nothing; }
 };
@@ -148,7 +148,7 @@ double state_numbers(const Size& n) {
 
 /// Back-solves and evaluations of derivatives with `columns` right-hand sides an increment, that are `evaluated` times
 /// as many points. A penalty takes one solve; multipliers that are unknown up to two more, where rounding asks for
-/// them; a factor that follows the run is brought up to date by others; what Uzawa's schemes take hangs on the
+/// them; a factor that follows the run is brought up to date by others; what Uzawa's schemes take depends on the
 /// contraction.
 std::vector<Amount> derivative_counts(const Size& n, double columns, double evaluated) {
   const double on = columns > 0 ? 1 : 0;

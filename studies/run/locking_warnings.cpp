@@ -12,7 +12,7 @@
 namespace stickslip {
 namespace {
 
-/// Poisson's ratio from which locking is looked for, and spurious pressure that is told.
+/// Poisson's ratio from which locking is looked for, and spurious pressure that is worth a warning.
 constexpr double nearly_incompressible = 0.45, most_spurious = 0.2;
 
 /// Elements whose pressure locks where the material hardly changes its volume.

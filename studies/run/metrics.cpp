@@ -20,7 +20,7 @@ constexpr double rounding = 1e-13;
 /// Forces, tractions and relative displacements below this share of what the displacements would make of them by the
 /// stiffness alone have lost more than half of their digits to cancellation, and a free body with such forces counts as
 /// adrift (methods/newton/residuals.hpp): where nothing presses, they are no scale.
-constexpr double telling = 1e-9;
+constexpr double significant = 1e-9;
 
 /// Tangential parts of a point: traction, slip of the increment.
 struct Tangential {
@@ -48,7 +48,7 @@ void enlarge(const Model& model, const Slots<double>& slots, const State<double>
              KktScales& scales) {
   const int D = model.dimension;
   scales.reach = larger(scales.reach, largest_nodal_norm(state.displacement, D));
-  scales.length = larger(scales.length, telling * scales.reach);
+  scales.length = larger(scales.length, significant * scales.reach);
   double stiffest = 0;  // k / A
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
@@ -61,13 +61,13 @@ void enlarge(const Model& model, const Slots<double>& slots, const State<double>
     scales.traction = larger(scales.traction, traction);
     scales.length = larger(scales.length, larger(std::hypot(normal, along), traction / elastic));
   }
-  scales.least_traction = telling * stiffest * (scales.reach + scales.length);
+  scales.least_traction = significant * stiffest * (scales.reach + scales.length);
   scales.traction = larger(scales.traction, scales.least_traction);
   const Vector<double> loads = external_forces(model, slots, time, state.displacement);
-  // A load is exact: above the rounding of the bodies' forces it tells how large forces are, be it ever so small.
+  // A load is exact: above the rounding of the bodies' forces it shows how large forces are, be it ever so small.
   const double rounding = 10 * unit_roundoff * scales.stiffness * scales.reach;
   if (!(largest_nodal_norm(loads, D) > rounding))
-    scales.force = larger(scales.force, telling * scales.stiffness * (scales.reach + scales.length));
+    scales.force = larger(scales.force, significant * scales.stiffness * (scales.reach + scales.length));
   for (const auto& forces : {bulk_forces(model, slots, state.displacement, state.history.bodies), loads,
                              contact_forces(model, slots, state.contact)})
     scales.force = larger(scales.force, largest_nodal_norm(forces, D));

@@ -85,11 +85,4 @@ std::optional<Warning> turned_surface(const Problem& problem, int c) {
   return std::nullopt;
 }
 
-void name_turned_surfaces(const Problem& problem, Trajectory<double>& trajectory) {
-  if (is_converged(trajectory.status)) return;
-  for (std::size_t c = 0; c < problem.model.scene.contacts.size(); ++c)
-    if (const auto warning = turned_surface(problem, static_cast<int>(c)))
-      trajectory.message += (trajectory.message.empty() ? "" : "; ") + warning->text + "; " + warning->remedy;
-}
-
 }  // namespace stickslip

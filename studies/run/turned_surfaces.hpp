@@ -12,7 +12,4 @@ namespace stickslip {
 /// outward normal of the slave is against its own, or a closed slave is inside of it as a whole.
 std::optional<Warning> turned_surface(const Problem& problem, int contact);
 
-/// Adds to the message of a run that failed the obstacles that are turned inside out.
-void name_turned_surfaces(const Problem& problem, Trajectory<double>& trajectory);
-
 }  // namespace stickslip

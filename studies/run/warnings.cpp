@@ -8,6 +8,7 @@
 
 #include "methods/newton/residuals.hpp"
 #include "methods/stepping/diagnosis.hpp"
+#include "studies/run/contact_start.hpp"
 #include "studies/run/contact_warnings.hpp"
 #include "studies/run/locking_warnings.hpp"
 #include "studies/run/solution_warnings.hpp"
@@ -297,12 +298,16 @@ std::vector<Warning> warnings_of(const CaseResult& result) {
 
 json warnings_json(const CaseResult& result) {
   json out = json::array();
-  for (const auto& warning : warnings_of(result))
-    out.push_back({{"code", name_of(warning.code)},
+  const auto add = [&](std::string_view code, const auto& warning) {
+    out.push_back({{"code", code},
                    {"where", warning.where},
                    {"value", warning.value},
                    {"remedy", warning.remedy},
                    {"text", warning.text}});
+  };
+  for (const auto& warning : overlaps_at_start(*result.problem)) add(warning.code, warning);
+  for (const auto& warning : contacts_never_closed(result)) add(warning.code, warning);
+  for (const auto& warning : warnings_of(result)) add(name_of(warning.code), warning);
   return out;
 }
 

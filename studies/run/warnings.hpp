@@ -34,7 +34,8 @@ long steps_with(const CaseResult& result, std::size_t contact, std::vector<char>
 
 BodyMeasures measures_of_body(const Problem& problem, const State<double>& state, std::size_t body);
 
-/// [{"code", "where", "value", "remedy", "text"}].
+/// [{"code", "where", "value", "remedy", "text"}]: those of contact at the start (studies/run/contact_start.hpp), then
+/// warnings_of(). A value that is not finite is null.
 nlohmann::json warnings_json(const CaseResult& result);
 
 }  // namespace stickslip

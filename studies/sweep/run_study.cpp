@@ -159,7 +159,7 @@ struct Tally {
   long run = 0, failed = 0;
 };
 
-/// Who is told of a study that runs.
+/// Who hears of a study that runs.
 struct Listener {
   std::ostream& log;
   const std::function<void()>& on_run;  ///< after each run

@@ -214,7 +214,7 @@ ReferenceValues CellRunner::reference_of(const CaseResult& result) const {
   return all;
 }
 
-/// By the strain, where there is no model that could tell.
+/// By the strain, where there is no model to ask.
 bool CellRunner::has_current_geometry(const CellInput& cell) const {
   return variant_.problem && variant_.key == variant_key(cell) ? variant_.problem->model.effects.current_geometry
                                                                : cell.document.root().value("strain", "") == "finite";

@@ -33,9 +33,9 @@ constexpr Law elements{"elements", 0, "an element may not be turned inside out"}
     energy{"energy", 1e-6, "of all work, and half of what forces change by times motions: the step's own error"},
     flow{"plastic strain", 1e-6, "of the largest: the path of displacements decides it, by the law's own bound"},
     responses{"responses", 1e-7, "of the largest of their kind: the same formula of the same numbers"},
-    steps{"steps", 0, "every state that the scene asks for, and that the result tells of, is there"};
+    steps{"steps", 0, "every state that the scene asks for, and that the result holds, is there"};
 
-constexpr double told = 1e-4;          ///< of forces times arms: a moment between two sides that is remarked on
+constexpr double noted = 1e-4;         ///< of forces times arms: a moment between two sides that is remarked on
 constexpr double share = 1e-6;         ///< of a bound within which a traction is on it
 constexpr double least_strain = 1e-9;  ///< plastic strains that count
 constexpr double rounding = 1e-6;  ///< of a stiffness times a motion: the least force that counts, for those of a rigid
@@ -89,13 +89,13 @@ std::map<int, Held> supports_at(const Scene& scene, double time) {
   return held;
 }
 
-/// Numbers that are told one after the other, as vectors of `size` of them; NaN where one is no number.
-Field vectors(const Json& told, Eigen::Index size, std::size_t count, const std::string& what) {
-  if (told.size() != size * count)
-    throw BadFile(fmt::format("a {} has {} numbers; the mesh has {}", what, told.size(), size * count));
+/// Numbers that stand one after the other, as vectors of `size` of them; NaN where one is no number.
+Field vectors(const Json& given, Eigen::Index size, std::size_t count, const std::string& what) {
+  if (given.size() != size * count)
+    throw BadFile(fmt::format("a {} has {} numbers; the mesh has {}", what, given.size(), size * count));
   Field all = Field::Zero(3, count);
-  for (std::size_t k = 0; k < told.size(); ++k)
-    all(k % size, k / size) = told[k].is_number() ? told[k].get<double>() : NAN;
+  for (std::size_t k = 0; k < given.size(); ++k)
+    all(k % size, k / size) = given[k].is_number() ? given[k].get<double>() : NAN;
   return all;
 }
 
@@ -239,7 +239,7 @@ class Judge {
   void measure_moment(const Contact& contact, const Field& forces) {
     const double all = forces.colwise().norm().sum(), left = moment(forces);
     const bool is_of_two = !scene_.axisymmetric && forces.rowwise().sum().norm() <= equilibrium.allowed * all;
-    if (!is_of_two || !(left > told * all * arms().colwise().norm().maxCoeff())) return;
+    if (!is_of_two || !(left > noted * all * arms().colwise().norm().maxCoeff())) return;
     moments_left[contact.name] = std::max(moments_left[contact.name], left);
   }
 

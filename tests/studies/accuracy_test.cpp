@@ -79,6 +79,19 @@ TEST(Accuracy, NamesEachComponentWithItsPlaceAndValue) {
   }
 }
 
+TEST(Accuracy, AdvisesASmallerScaleWhereThereIsContactAlone) {
+  Scene scene = one_point();
+  const std::string words = "which neither the method nor rounding explains";
+  Point touching;
+  touching.rest().displacement << 0, -0.01, 0, 0;
+  EXPECT_THAT(fault(touching, MonolithicAL{}), testing::EndsWith(words + "; try a smaller scale"));
+  scene.contacts.clear();
+  scene.obstacles.clear();
+  Made free(scene);
+  free.next().displacement << 0, -0.01, 0, 0;
+  EXPECT_THAT(fault(free, MonolithicAL{}), testing::EndsWith(words));
+}
+
 TEST(Accuracy, ToleratesWhatTheMethodIsAskedForAndNoMore) {
   for (const double gap : {5e-5, 5e-2}) {
     Point made;

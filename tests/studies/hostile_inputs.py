@@ -36,11 +36,11 @@ STUDY = {"scene": "scene.json", "methods": [{"penalty": {"stiffness": [10, 100, 
 
 
 def run(*arguments, code=None, says="", timeout=60, **options):
-    """Runs it; the code and a part of what it says on standard error are asked for, and that it is no bug of ours."""
+    """Runs it; the code and a part of what it says on standard error are asked for, and that it is no bug in stickslip."""
     result = subprocess.run([PROGRAM, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=timeout,
                             **options)
     told = result.stderr.decode(errors="replace")
-    wrong = code is not None and result.returncode != code or says not in told or "bug of ours" in told
+    wrong = code is not None and result.returncode != code or says not in told or "bug in stickslip" in told
     if wrong or result.returncode not in (0, 2, 3):
         sys.exit(f"{arguments}: exit code {result.returncode}, not {code}, or not {says!r}:\n{told[-2000:]}")
     result.told = told
@@ -247,7 +247,7 @@ def directory_that_vanishes(work):
     process = started("study", long_study(work), "-o", str(directory), directory=directory)
     directory.rename(work / "elsewhere")
     told = process.communicate(timeout=60)[1]
-    if process.returncode not in (2, 3) or "was deleted or moved" not in told or "bug of ours" in told:
+    if process.returncode not in (2, 3) or "was deleted or moved" not in told or "bug in stickslip" in told:
         sys.exit(f"a directory that vanished: {process.returncode} {told[-500:]}")
     print("a directory that vanishes", flush=True)
 
@@ -260,7 +260,7 @@ def worker_that_is_killed(work):
         children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
     os.kill(int(children[0]), signal.SIGKILL)
     told = process.communicate(timeout=120)[1]
-    if process.returncode != 3 or "signal 9" not in told or "bug of ours" in told:
+    if process.returncode != 3 or "signal 9" not in told or "bug in stickslip" in told:
         sys.exit(f"a killed worker: {process.returncode} {told[-500:]}")
     if not 1590 <= len(rows(directory)) < 1600:
         sys.exit(f"a killed worker took {1600 - len(rows(directory))} cells with it")

@@ -32,7 +32,7 @@ def run(*arguments, code=0, says="", timeout=60, **options):
     options.setdefault("stderr", subprocess.PIPE)
     result = subprocess.run([PROGRAM, *map(str, arguments)], timeout=timeout, **options)
     told = (result.stderr or b"").decode(errors="replace")
-    if result.returncode != code or says not in told or "bug of ours" in told:
+    if result.returncode != code or says not in told or "bug in stickslip" in told:
         sys.exit(f"{arguments}: exit code {result.returncode}, wanted {code} and {says!r}:\n{told}")
     return told
 

@@ -98,5 +98,21 @@ TEST(Diagnostics, AreOneLineEach) {
   EXPECT_EQ(diagnostics.text(), "a\\n.json: /\\u001b[2J: is wrong\n");
 }
 
+TEST(Wrapped, BreaksBetweenPiecesAndIndentsWhatGoesOn) {
+  const std::vector<std::string> row{"  pull  1.0", "d/dmu  2.0", "d/dE  3.0"};
+  EXPECT_EQ(wrapped(row, "   ", 4, 1000), "  pull  1.0   d/dmu  2.0   d/dE  3.0");
+  EXPECT_EQ(wrapped(row, "   ", 4, 24), "  pull  1.0   d/dmu  2.0\n    d/dE  3.0");
+  EXPECT_EQ(wrapped(row, "   ", 4, 23), "  pull  1.0\n    d/dmu  2.0\n    d/dE  3.0");
+  EXPECT_EQ(wrapped(row, "   ", 4, 5), "  pull  1.0\n    d/dmu  2.0\n    d/dE  3.0");  // no piece is cut
+  EXPECT_EQ(wrapped({}, "   ", 4, 5), "");
+}
+
+TEST(WrappedLines, BreakAtSingleSpaces) {
+  EXPECT_EQ(wrapped_lines("one two three\nfour\n", 2, 7), "one two\n  three\nfour\n");
+  EXPECT_EQ(wrapped_lines("one two three\nfour\n", 2, 1000), "one two three\nfour\n");
+  EXPECT_EQ(wrapped_lines("  a      12 b  34", 2, 12), "  a      12\n  b  34");
+  EXPECT_EQ(wrapped_lines("", 2, 10), "");
+}
+
 }  // namespace
 }  // namespace stickslip

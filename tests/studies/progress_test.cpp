@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <sstream>
 #include <thread>
 #include <vector>
@@ -140,6 +141,61 @@ TEST_F(Progresses, CountsWhatSeveralThreadsDo) {
   const std::vector<std::string> told = lines(out_.str());
   ASSERT_EQ(told.size(), 10u);
   EXPECT_NE(told.back().find("4000 of 4000 done, 0 left"), std::string::npos);
+}
+
+TEST_F(Progresses, APieceThatTakesLongIsShownOnABar) {
+  Progress progress(out_, Progress::Style::bar, "steps", 4, clock());
+  progress.advance();
+  pass(4);
+  progress.tick();
+  EXPECT_EQ(out_.str().find("in the present one"), std::string::npos);
+  pass(8);
+  progress.tick();
+  EXPECT_NE(out_.str().find("1/4 done, 3 left, 12 s elapsed, about 36 s to go, 12 s in the present one"),
+            std::string::npos)
+      << out_.str();
+}
+
+TEST_F(Progresses, APieceThatTakesLongGetsALineOfALogAtTwiceTheTimeOfTheLast) {
+  Progress progress(out_, Progress::Style::lines, "steps", 40, clock());
+  for (int second = 0; second < 50; ++second) {
+    pass(1);
+    progress.tick();
+  }
+  const std::vector<std::string> written = lines(out_.str());
+  ASSERT_EQ(written.size(), 3u);  // after 10, 20 and 40 s
+  EXPECT_EQ(written[0], "steps: 0 %: 0 of 40 done, 40 left, 10 s elapsed, 10 s in the present one");
+  EXPECT_EQ(written[2], "steps: 0 %: 0 of 40 done, 40 left, 40 s elapsed, 40 s in the present one");
+  progress.advance();
+  for (int second = 0; second < 10; ++second) {
+    pass(1);
+    progress.tick();
+  }
+  EXPECT_EQ(lines(out_.str()).size(), 4u);  // the next piece begins anew
+}
+
+TEST_F(Progresses, SaysNothingAtFirstIfItIsToBeQuiet) {
+  for (const auto style : {Progress::Style::bar, Progress::Style::lines}) {
+    Progress progress(out_, style, "steps", 10, clock(), std::chrono::seconds(2));
+    pass(1);
+    for (int step = 0; step < 5; ++step) progress.advance();
+    progress.tick();
+    EXPECT_EQ(out_.str(), "");
+  }
+  Progress progress(out_, Progress::Style::bar, "steps", 10, clock(), std::chrono::seconds(2));
+  pass(3);
+  progress.tick();
+  EXPECT_NE(out_.str().find("0/10 done"), std::string::npos);
+}
+
+TEST_F(Progresses, ATickerRedrawsABarWhileAPieceGoesOn) {
+  Progress progress(out_, Progress::Style::bar, "steps", 4);
+  {
+    const Ticker ticker(progress);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1300));  // two ticks, and slack for a busy machine
+  }
+  const std::string text = out_.str();
+  EXPECT_GE(std::count(text.begin(), text.end(), '\r'), 2);  // the first draws it
 }
 
 }  // namespace

@@ -114,6 +114,15 @@ class Arguments(unittest.TestCase):
                 self.refused(TypeError, lambda: call(step), "step is ", "a whole number")
             for step in [1, -2, 10**30]:
                 self.refused(IndexError, lambda: call(step), f"there is no step {step}: the result has 1")
+        self.refused(KeyError, lambda: result.contact("stpo"),
+                     "there is no contact 'stpo'; did you mean 'stop'? there are: stop")
+        response, *_ = result.responses
+        for known in (result.responses, result.sensitivities):
+            self.refused(KeyError, lambda: known[response + "s"],
+                         f"there is no response '{response}s'; did you mean '{response}'? there are: ")
+        parameter, *_ = result.sensitivities[response]
+        self.refused(KeyError, lambda: result.sensitivities[response][parameter + "u"],
+                     f"there is no parameter '{parameter}u'; did you mean '{parameter}'? there are: ")
         self.refused(KeyError, lambda: result.contact("soul"), "there is no contact 'soul'; there are: stop")
         self.refused(KeyError, lambda: result.displacement_derivative("nu"), "there is no parameter 'nu'; there are: ")
         for name in [3, None, ["stop"]]:

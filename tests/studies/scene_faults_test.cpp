@@ -134,7 +134,7 @@ std::vector<Broken> broken_bodies() {
       {"negative_E", b, R"("E": 1000)", R"("E": @-1000)", "/bodies/block/material/linear_elastic/E",
        "is -1000; must be a number > 0"},
       {"nu_too_large", b, R"("nu": 0.25)", R"("nu": @0.5)", "/bodies/block/material/linear_elastic/nu",
-       "is 0.5; must be a number > -1 and < 0.5"},
+       R"(is 0.5; must be a number > -1 and < 0.5; for a body that keeps its volume take 0.499 and "element": "Q4_mean)"},
       {"nu_text", b, R"("nu": 0.25)", R"("nu": @"0.25")", "/bodies/block/material/linear_elastic/nu",
        R"(is "0.25"; must be a number)"},
       {"nu_missing", b, R"({"E": 1000, "nu": 0.25})", R"(@{"E": 1000})", "/bodies/block/material/linear_elastic",

@@ -189,7 +189,7 @@ def not_overwritten(study, whole, work):
     ]
     for arguments, reason in refusals:
         refused = run(*arguments, check=False)
-        if refused.returncode != 2 or reason not in refused.stderr or "bug of ours" in refused.stderr:
+        if refused.returncode != 2 or reason not in refused.stderr or "bug in stickslip" in refused.stderr:
             sys.exit(f"{arguments}: {refused.returncode} {refused.stderr}")
     with open("/dev/full", "w") as full:
         lost = subprocess.run([PROGRAM, "run", scene, "--json"], stdout=full, stderr=subprocess.PIPE, text=True)

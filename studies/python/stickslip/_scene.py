@@ -1,8 +1,9 @@
 """Scenes: what is run, explained and checked, and what comes out."""
 
 import json
+from difflib import get_close_matches
 from os import PathLike
-from typing import Any, Dict, List, Mapping, Optional, Union
+from typing import Any, Dict, List, Mapping, NoReturn, Optional, Union
 
 import numpy as np
 
@@ -10,6 +11,20 @@ from stickslip import _arguments, _stickslip
 
 Scene = Union[Mapping[str, Any], str, "PathLike[str]"]
 Arrays = Dict[str, np.ndarray]
+
+
+class _ByName(Dict[str, Any]):
+    """A dict by name. A name that it lacks is a KeyError that lists its names, the nearest first."""
+
+    def __init__(self, kind: str, known: Mapping[str, Any]):
+        super().__init__(known)
+        self._kind = kind
+
+    def __missing__(self, name: Any) -> NoReturn:
+        raise _no_name(self._kind, name, self)
+
+    def __reduce__(self) -> tuple:
+        return _ByName, (self._kind, dict(self))
 
 
 class NotConverged(RuntimeError):
@@ -84,8 +99,9 @@ class Result:
         self.notes = state["notes"]
         self.times = state["times"]
         self.failed_at = state["failed_at"]
-        self.responses = state["responses"]
-        self.sensitivities = state["sensitivities"]
+        self.responses = _ByName("response", state["responses"])
+        self.sensitivities = _ByName("response", {response: _ByName("parameter", of)
+                                                  for response, of in state["sensitivities"].items()})
         self.coordinates = state["coordinates"]
         self.elements = state["elements"]
         self._displacements = state["displacements"]
@@ -217,7 +233,7 @@ class Gradcheck:
         `computed` and `difference` (the derivative, by the method and by differences), `error` (the distance of the two
         over `scale`), `estimate` of the error of the difference itself and what is `allowed`, both over `scale` too,
         relative `step` of the parameter, `side` of the derivative ("both"; where they differ, "below" or "above"),
-        how many `steps` there are, how many of them `unchecked`, as no difference tells three digits, the first
+        how many `steps` there are, how many of them `unchecked`, as no difference gives three digits, the first
         `unchecked_at`, `verdict` ("agrees", "differs", "not checked": a step or more were not).
         pandas.DataFrame(check.entries) is a table of them.
     """
@@ -293,5 +309,7 @@ def _scene_arguments(scene: Any, method: Any, set: Any) -> tuple:
     return _arguments.scene(scene), _arguments.method(method), _arguments.overrides(set)
 
 
-def _no_name(kind: str, name: str, known: Mapping[str, Any]) -> KeyError:
-    return KeyError(f"there is no {kind} {name!r}; there are: {', '.join(known) or 'none'}")
+def _no_name(kind: str, name: Any, known: Mapping[str, Any]) -> KeyError:
+    near = get_close_matches(str(name), known, n=1)
+    nearest = f" did you mean {near[0]!r}?" if near else ""
+    return KeyError(f"there is no {kind} {name!r};{nearest} there are: {', '.join(known) or 'none'}")

@@ -1,0 +1,142 @@
+#include "studies/run/contact_start.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/model/state.hpp"
+
+namespace stickslip {
+namespace {
+
+/// Share of a slave facet, or of the motion, up to which a gap is rounding. An overlap of it strains the elements by about
+/// as much, and a file with seven digits moves its nodes as far.
+constexpr double rounding = 1e-6;
+
+void add(StartGaps& all, const StartGaps& more) {
+  all.least = std::min(all.least, more.least);
+  all.largest = std::max(all.largest, more.largest);
+  all.points += more.points;
+  all.overlapping += more.overlapping;
+  all.unasked += more.unasked;
+  all.overlap = std::max(all.overlap, more.overlap);
+}
+
+/// Name under which a contact is taken together with others.
+const std::string& rule_of(const Contact& contact) { return contact.group.empty() ? contact.name : contact.group; }
+
+/// Whether a point faces its master in a field; others have no gap.
+bool faces_master(const ContactPoint& point, const Facing& facing) {
+  return point.curve < 0 || facing.patch != Patch::none || !facing.pieces.empty();
+}
+
+/// Length up to which a gap or an overlap of a point is rounding. `motion`: size of the motion of contact, length.
+double negligible_gap(const ContactPoint& point, double motion) {
+  return std::max(point.tie_length, rounding * std::max(point.mesh_size, motion));
+}
+
+/// Of one point.
+StartGaps start_gap(const Problem& problem, std::size_t p) {
+  const auto& point = problem.model.points[p];
+  const double nothing = negligible_gap(point, 0), measured = problem.slots.geometry[p].gap;
+  const double gap = std::abs(measured) <= nothing ? 0 : measured;
+  const double asked = std::max(0.0, -problem.slots.numbers(problem.model.scene.contacts[point.contact].offset));
+  const double unasked = -gap - asked;
+  const bool is_unasked = unasked > nothing;
+  return {"", gap, gap, 1, gap < 0, is_unasked, is_unasked ? unasked : 0};
+}
+
+/// Least gap over all steps, length, of each contact or rule none of whose points ever closes or touches, by name;
+/// infinite where none ever faces the master.
+std::map<std::string, double> least_gaps_of_open_rules(const CaseResult& result) {
+  const auto& model = result.problem->model;
+  std::map<std::string, double> least;
+  for (const auto& contact : model.scene.contacts) least[rule_of(contact)] = std::numeric_limits<double>::infinity();
+  for (const auto& step : result.steps) {
+    const auto& field = step.increment->state.contact;
+    for (std::size_t p = 0; p < model.points.size(); ++p) {
+      const auto& point = model.points[p];
+      const auto found = least.find(rule_of(model.scene.contacts[point.contact]));
+      if (found == least.end()) continue;
+      const double gap = field.gap[static_cast<Eigen::Index>(p)];
+      const bool faces = faces_master(point, facing_in(model, field, p));
+      // (a point that touches without force may count as open)
+      if (field.state[p] != ContactState::open || (faces && gap <= negligible_gap(point, result.scales.length)))
+        least.erase(found);
+      else if (faces)
+        found->second = std::min(found->second, gap);
+    }
+  }
+  return least;
+}
+
+}  // namespace
+
+std::string StartGaps::in_words() const {
+  if (points == 0) return "no point faces the master";
+  return fmt::format("least {:.3g}, largest {:.3g}, {} of {} points overlap", least, largest, overlapping, points);
+}
+
+std::vector<StartGaps> start_gaps(const Problem& problem) {
+  const auto& model = problem.model;
+  std::vector<StartGaps> gaps(model.scene.contacts.size());
+  for (std::size_t c = 0; c < gaps.size(); ++c) gaps[c].name = model.scene.contacts[c].name;
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const auto& point = model.points[p];
+    if (faces_master(point, point.facing)) add(gaps[point.contact], start_gap(problem, p));
+  }
+  return gaps;
+}
+
+std::vector<StartGaps> start_gaps_of_rules(const Problem& problem) {
+  std::vector<StartGaps> rules;
+  const auto contacts = start_gaps(problem);
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const std::string& name = rule_of(problem.model.scene.contacts[c]);
+    if (rules.empty() || rules.back().name != name) rules.push_back({name});  // (pairs of a rule are neighbours)
+    add(rules.back(), contacts[c]);
+  }
+  return rules;
+}
+
+std::vector<StartWarning> overlaps_at_start(const Problem& problem) {
+  std::vector<StartWarning> warnings;
+  for (const auto& gaps : start_gaps(problem)) {
+    if (gaps.unasked == 0) continue;
+    warnings.push_back(
+        {"starts_overlapping", gaps.name, gaps.overlap,
+         "move the bodies apart; refine curved sides, whose facets leave the curve; if an interference is meant, let "
+         "the sides touch and give it as a negative `offset`",
+         fmt::format("{}: {} of {} points overlap at the start by up to {:.3g}, which no `offset` asks for, and the "
+                     "first step pushes them apart",
+                     gaps.name, gaps.unasked, gaps.points, gaps.overlap)});
+  }
+  return warnings;
+}
+
+std::vector<StartWarning> contacts_never_closed(const CaseResult& result) {
+  if (!is_converged(result.trajectory.status) || result.steps.empty()) return {};
+  std::vector<StartWarning> warnings;
+  for (const auto& [name, gap] : least_gaps_of_open_rules(result)) {
+    const std::string nearest =
+        std::isfinite(gap) ? fmt::format("the nearest is {:.3g} away at the least", gap) : "none ever faces the master";
+    warnings.push_back({"never_closes", name, gap,
+                        "look at the gap at the start, the direction of loads and motions, and the side on which the "
+                        "master is solid",
+                        fmt::format("{}: no point closes in any of {} steps; {}", name, result.steps.size(), nearest)});
+  }
+  return warnings;
+}
+
+bool is_held_by_contact_alone(const Model& model, std::size_t b) {
+  const auto& body = model.bodies[b];
+  if (!is_continuum(body.mesh.shape)) return false;
+  return std::ranges::none_of(model.constraints, [&](const Constraint& held) {
+    const int node = held.dof / model.dimension - body.first_node;
+    return held.support >= 0 && node >= 0 && node < body.mesh.node_count;
+  });
+}
+
+}  // namespace stickslip

@@ -1,0 +1,128 @@
+#include "studies/run/failed_contact.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string_view>
+#include <vector>
+
+#include "studies/io/wording.hpp"
+#include "studies/run/contact_start.hpp"
+#include "studies/run/side_curve.hpp"
+#include "studies/run/solution_warnings.hpp"
+#include "studies/run/turned_surfaces.hpp"
+
+namespace stickslip {
+namespace {
+
+/// Of open points alone.
+std::string what_to_check_if_open(const FailedContact& contact) {
+  if (contact.nearest > 0) {
+    const std::string apart = std::isfinite(contact.nearest)
+                                  ? fmt::format("the nearest starts {:.3g} from its master", contact.nearest)
+                                  : "none faces a master at the start";
+    return "all are open, and " + apart +
+           ": nothing holds the body on its way; let it touch at the start, or move it by a support";
+  }
+  return "all are open: the load may pull the body off its master, or the master may be solid on the wrong side; "
+         "check the sign of the load, the normal of a plane (it points out of the solid) and the order of a "
+         "polyline's points (its solid is on their right)";
+}
+
+std::string what_to_check(const FailedContact& contact) {
+  if (contact.turned || !contact.unheld) return "";
+  if (contact.stick + contact.slip == 0) return what_to_check_if_open(contact);
+  if (!contact.rough)
+    return "no contact has friction, so nothing resists sliding; give one `friction`, or hold the body by a support";
+  if (contact.stick < contact.slip)
+    return "most of those that touch slip: the load may be more than friction bears; push less, raise `friction`, or "
+           "prescribe the motion by a support";
+  return "";
+}
+
+/// Whether the step failed in a way that forces of contact may explain. (Others have messages that name the cause.)
+bool may_be_contact(const Increment<double>& failed) {
+  const Status s = failed.status;
+  return !failed.solved() && (s == Status::no_equilibrium || s == Status::singular || s == Status::cycle ||
+                              s == Status::stagnated || s == Status::cap);
+}
+
+/// Replaces a part of a text, where it is there.
+void replace(std::string& text, std::string_view part, std::string_view by) {
+  if (const auto at = text.find(part); at != std::string::npos) text.replace(at, part.size(), by);
+}
+
+FailedContact failed_contact(const Problem& problem, const ContactField<double>& field) {
+  const auto& model = problem.model;
+  FailedContact contact;
+  contact.rough = model.effects.friction;
+  for (const auto state : field.state)
+    ++(state == ContactState::open ? contact.open : is_slipping(state) ? contact.slip : contact.stick);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) contact.unheld |= is_held_by_contact_alone(model, b);
+  contact.nearest = std::numeric_limits<double>::infinity();
+  for (const auto& gaps : start_gaps(problem)) contact.nearest = std::min(contact.nearest, gaps.least);
+  return contact;
+}
+
+}  // namespace
+
+std::string failed_contact_in_words(const FailedContact& contact) {
+  const int all = contact.open + contact.stick + contact.slip;
+  if (all == 0) return "";
+  const std::string counts = contact.rough
+                                 ? fmt::format("{} stick, {} slip, {} open", contact.stick, contact.slip, contact.open)
+                                 : fmt::format("{} closed, {} open", contact.slip, contact.open);
+  const std::string advice = what_to_check(contact);
+  return fmt::format("{}: {}{}", counted(all, "contact point"), counts, advice.empty() ? "" : "; " + advice);
+}
+
+Advisable advisable(const Model& model) {
+  Advisable scene{.contact = !model.points.empty()};
+  for (std::size_t c = 0; c < model.scene.contacts.size(); ++c) {
+    const auto& contact = model.scene.contacts[c];
+    const Obstacle* const obstacle = obstacle_of(model, static_cast<int>(c));
+    const bool facets = !obstacle || std::holds_alternative<Polyline>(obstacle->shape);
+    scene.other_side |= !obstacle && !contact.is_of_itself();
+    scene.may_be_smooth |= facets && !contact.segment && contact.smoothing == Smoothing::none;
+    scene.may_be_segments |=
+        facets && !contact.segment && std::ranges::any_of(model.points, [&](const auto& point) {
+          return point.contact == static_cast<int>(c) && is_continuum(model.bodies[point.slave_body].mesh.shape);
+        });
+  }
+  return scene;
+}
+
+std::string with_fitting_advice(std::string message, const Advisable& scene) {
+  if (!scene.contact) {
+    replace(message, "try a smaller stiffness or scale, or more steps", "try more steps");
+    replace(message, "; try a smaller stiffness or scale", "");
+  }
+  std::vector<std::string> ways;
+  if (scene.other_side) ways.emplace_back("the other side as the slave");
+  if (scene.may_be_smooth) ways.emplace_back("a smooth master");
+  if (scene.may_be_segments) ways.emplace_back("segments");
+  replace(message, "; try the other side as the slave, a smooth master, or segments",
+          ways.empty() ? "" : fmt::format("; try {}", fmt::join(ways, " or ")));
+  if (ways.empty()) replace(message, ", as where nodes of a slave are further apart than those of its master", "");
+  return message;
+}
+
+void explain_failed_contact(const Problem& problem, Trajectory<double>& trajectory) {
+  if (is_converged(trajectory.status)) return;
+  trajectory.message = with_fitting_advice(std::move(trajectory.message), advisable(problem.model));
+  std::vector<std::string> sentences;
+  for (std::size_t c = 0; c < problem.model.scene.contacts.size(); ++c)
+    if (const auto warning = turned_surface(problem, static_cast<int>(c)))
+      sentences.push_back(warning->text + "; " + warning->remedy);
+  if (!trajectory.increments.empty() && may_be_contact(trajectory.increments.back()) && !loose_body(problem.model)) {
+    FailedContact contact = failed_contact(problem, trajectory.increments.back().state.contact);
+    contact.turned = !sentences.empty();
+    sentences.insert(sentences.begin(), failed_contact_in_words(contact));
+  }
+  for (const auto& sentence : sentences)
+    if (!sentence.empty()) trajectory.message += (trajectory.message.empty() ? "" : "; ") + sentence;
+}
+
+}  // namespace stickslip
