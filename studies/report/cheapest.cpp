@@ -61,6 +61,15 @@ std::string alternatives(const std::vector<std::string>& settings) {
   return told < settings.size() ? out + " or " + counted(static_cast<long>(settings.size() - told), "other") : out;
 }
 
+/// "stiffness 1 to 100" of the numbers that an option has in the runs; "" of fewer than two.
+std::string range_of(const std::vector<const Cell*>& runs, const std::string& option) {
+  std::set<double> values;
+  for (const Cell* run : runs)
+    if (const Knob* knob = find_knob(*run, option); knob && knob->value) values.insert(*knob->value);
+  return values.size() < 2 ? ""
+                           : option + " " + exact_number(*values.begin()) + " to " + exact_number(*values.rbegin());
+}
+
 /// The run of a row that reaches an accuracy with least work; of equals the default setting, else the first.
 Pick cheapest(const Row& row, const Measure& measure, double level) {
   Pick best;
@@ -93,12 +102,18 @@ std::optional<double> Measure::error(const Cell& cell) const {
 
 double Measure::work(const Cell& cell) const { return work_of(cell, of); }
 
+double Measure::weight(const Cell& cell) const { return ratio_of(ratio, cell.refine); }
+
+double Measure::median(const Cell& cell) const {
+  return of == Of::responses ? cell.median_seconds : cell.median_sensitivity_seconds;
+}
+
 double Measure::seconds(const Cell& cell) const {
   return of == Of::responses ? cell.seconds : cell.sensitivity_seconds;
 }
 
 std::optional<Measure> measure_of(const Study& study, Of of) {
-  Measure measure{of, true, {}};
+  Measure measure{.of = of, .ratio = study.ratio};
   const auto runs = runs_of(study);
   const auto has_errors = [&] {
     return std::any_of(runs.begin(), runs.end(), [&](auto* c) { return measure.error(*c); });
@@ -130,8 +145,11 @@ std::pair<std::vector<Row>, std::string> rows_of(const Study& study) {
     (known == by_series.end() ? by_series.emplace_back(Row{series, {}, beside_method(series, cell->family)}) : *known)
         .runs.push_back(cell);
   }
-  if (knob.empty() || by_series.size() < 2 || by_series.size() > most) return {by_method, "method"};
-  return {by_series, family_name(study.families.front())};
+  const bool apart = !knob.empty() && by_series.size() >= 2 && by_series.size() <= most;
+  auto& rows = apart ? by_series : by_method;
+  for (auto& row : rows)
+    if (!row.runs.empty()) row.swept = range_of(row.runs, running_knob(study, row.runs.front()->family));
+  return {rows, apart ? family_name(study.families.front()) : "method"};
 }
 
 std::optional<double> nearest_of(const Row& row, const Measure& measure) {

@@ -1,6 +1,7 @@
 /// Who brings an error down to an accuracy for the least work: what a verdict is made of.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -23,12 +24,15 @@ struct Level {
 struct Measure {
   Of of = Of::responses;
   bool on_same_mesh = true;  ///< else against the closed form, a finer mesh or given values
-  std::vector<Level> levels;
+  std::vector<Level> levels = {};
+  std::map<int, double> ratio = {};  ///< Study::ratio
 
   std::string noun() const;  ///< "response"
   std::optional<double> error(const Cell& cell) const;
   double work(const Cell& cell) const;
+  double weight(const Cell& cell) const;  ///< of a back-solve in its work; 0 where it was not measured
   double seconds(const Cell& cell) const;
+  double median(const Cell& cell) const;  ///< of the seconds; 0 without a timing pass
 };
 
 /// Nothing where no error was measured.
@@ -40,6 +44,7 @@ struct Row {
   std::string name;
   std::vector<const Cell*> runs;
   std::string head = name;  ///< what the table's first column says
+  std::string swept = {};   ///< "stiffness 1 to 100"; "" where its runs have one value
 };
 
 /// The rows, and what the head of their column says.

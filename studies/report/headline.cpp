@@ -14,6 +14,8 @@
 
 namespace stickslip::report {
 
+using nlohmann::json;
+
 namespace {
 
 std::vector<const Cell*> main_cells(const Study& study) {
@@ -99,6 +101,51 @@ std::string mesh_sentence(const Study& study) {
   return out + ".";
 }
 
+/// Whether a run of a family converged in a variant; of a family without runs there, too.
+bool converges_in(const Study& study, const std::string& family, const std::string& variant) {
+  bool ran = false;
+  for (const auto& cell : study.cells) {
+    if (cell.family != family || cell.variant != variant) continue;
+    if (cell.converged) return true;
+    ran = true;
+  }
+  return !ran;
+}
+
+/// "a", "a and b", "a, b and c"; of more than four "a, b, c and 4 others".
+std::string listed(std::vector<std::string> names) {
+  constexpr std::size_t most = 4;
+  if (names.size() > most) names = {names[0], names[1], names[2], fmt::format("{} others", names.size() - 3)};
+  std::string out = names.front();
+  for (std::size_t i = 1; i < names.size(); ++i) out += (i + 1 == names.size() ? " and " : ", ") + names[i];
+  return out;
+}
+
+/// "At friction = 0.4 only Monolithic AL converged." of the variants in which some method never did.
+std::string lost_methods(const Study& study) {
+  std::map<std::vector<std::string>, std::vector<std::string>> variants;  // by the methods that are lost there
+  for (const auto& variant : study.variants) {
+    std::vector<std::string> lost;
+    for (const auto& family : study.families)
+      if (!converges_in(study, family, variant)) lost.push_back(family_name(family));
+    if (!lost.empty()) variants[lost].push_back(variant);
+  }
+  std::string out;
+  for (const auto& [lost, where] : variants) {
+    std::vector<std::string> left;
+    for (const auto& family : study.families)
+      if (std::find(lost.begin(), lost.end(), family_name(family)) == lost.end()) left.push_back(family_name(family));
+    const std::string who = left.empty()       ? "no run"
+                            : left.size() == 1 ? "only " + left.front()
+                                               : "no run of " + listed(lost);
+    std::string sentence =
+        (where.size() == study.variants.size() ? "" : "at " + listed(where) + " ") + who + " converged. ";
+    sentence[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence[0])));
+    out += sentence;
+  }
+  return out;
+}
+
 /// What a study without references does not tell.
 std::string reference_sentence(const Study& study) {
   const bool measured = std::any_of(study.cells.begin(), study.cells.end(), [](const Cell& cell) {
@@ -121,12 +168,44 @@ std::string failure_sentence(const Study& study) {
   if (failed == 0) return study.cells.size() == 1 ? "The run converged." : "All runs converged.";
   std::string kinds;
   for (const auto& [status, n] : by_status) kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", n, status);
-  return fmt::format("{} of {} runs did not converge ({}); {}.", failed, study.cells.size(), kinds,
-                     failed == 1 ? "it stays in the tables and, where it left numbers, in the charts as a cross"
-                                 : "they stay in the tables and, where they left numbers, in the charts as crosses");
+  return fmt::format("{} of {} runs did not converge ({}).", failed, study.cells.size(), kinds);
 }
 
 }  // namespace
+
+std::string run_of_picture(const Study& study) {
+  const json& ids = array_at(study.description, "cells");
+  for (const auto& cell : study.cells)
+    if (!ids.empty() && at(cell.record, "id") == ids.back())
+      return cell.label + (cell.variant.empty() ? "" : ", " + cell.variant);
+  return "";
+}
+
+std::string failures(const Study& study) {
+  const bool failed = std::any_of(study.cells.begin(), study.cells.end(), [](auto& cell) { return !cell.converged; });
+  return failed ? lost_methods(study) + failure_sentence(study) : "";
+}
+
+std::string reference_run(const Study& study) {
+  for (const auto& entry : array_at(study.description, "reference"))
+    for (const auto& [family, options] : object_at(entry, "method").items()) {
+      const Cell* same = nullptr;
+      for (const auto& cell : study.cells)
+        if (cell.family == family && cell.variant == study.main_variant && cell.converged &&
+            !cell.enforcement.empty() && worst(cell.enforcement, "") == 0.0 &&
+            (!same || at(cell.record, "default") == true))
+          same = &cell;
+      return same ? same->label + ", one of the runs" : family_name(family) + ", run apart";
+    }
+  return "";
+}
+
+std::string work_in_words(const Study& study) {
+  const auto weight = study.ratio.begin();
+  return study.ratio.empty()       ? "work (factorisations)"
+         : study.ratio.size() == 1 ? fmt::format("work (factorisations + {} back-solves)", number(weight->second, 2))
+                                   : "work (factorisations + weighted back-solves)";
+}
 
 std::vector<std::string> what_else_errs(const Study& study) {
   const std::string reference = discretization_reference(study);
@@ -189,7 +268,6 @@ std::vector<std::string> headline(const Study& study) {
   if (!out.empty() && !study.main_variant.empty())
     out.push_back("These figures are for " + study.main_variant +
                   (study.variants.size() > 1 ? "; the charts offer the others." : "."));
-  out.push_back(failure_sentence(study));
   std::vector<const nlohmann::json*> rows;
   for (const auto& cell : study.cells) rows.push_back(&cell.record);
   for (auto& sentence : disagreements(rows)) out.push_back(std::move(sentence));

@@ -15,6 +15,19 @@ constexpr double digits_of_given_values = 1e-9;  ///< errors below it are of the
 /// itself costs in accuracy; what failed; what runs disagree about; what they warn of. At least one sentence.
 std::vector<std::string> headline(const Study& study);
 
+/// Which methods are lost in which variants, and how many runs failed; "" where all converged.
+std::string failures(const Study& study);
+
+/// The run that the picture is of, "Monolithic AL, friction = 0.4"; "" where it is not recorded.
+std::string run_of_picture(const Study& study);
+
+/// What enforcement errors are against, and whether that is one of the runs: "Monolithic AL scale=1, one of the runs"; ""
+/// where there is no such reference.
+std::string reference_run(const Study& study);
+
+/// What work is in this study: "work (factorisations + 0.11 back-solves)".
+std::string work_in_words(const Study& study);
+
 /// What, besides the method, makes the difference to the references: of mesh, steps and references those that may.
 std::vector<std::string> what_else_errs(const Study& study);
 

@@ -118,6 +118,9 @@ void measure_work(Cell& cell, double ratio) {
       cell.count("factorizations") - cell.count("sensitivity_factorizations") + ratio * cell.count("backsolves");
   cell.sensitivity_seconds = number_at(seconds, "total");
   cell.seconds = cell.sensitivity_seconds - number_at(seconds, "sensitivity");
+  const json& median = at(at(at(cell.record, "cost"), "timing"), "median");
+  cell.median_sensitivity_seconds = number_at(median, "total");
+  cell.median_seconds = cell.median_sensitivity_seconds - number_at(median, "sensitivity");
 }
 
 template <class Get>
@@ -212,10 +215,7 @@ Study read_study(const std::filesystem::path& directory) {
       cell.variant = cell.scene;
       if (study.refined) cell.variant += fmt::format("{}mesh level {}", cell.scene.empty() ? "" : ", ", cell.refine);
     }
-  for (auto& cell : study.cells) {
-    const auto ratio = study.ratio.find(cell.refine);
-    measure_work(cell, ratio == study.ratio.end() ? 0 : ratio->second);
-  }
+  for (auto& cell : study.cells) measure_work(cell, ratio_of(study.ratio, cell.refine));
   study.families = distinct(study.cells, [](const Cell& c) { return c.family; });
   complete_knobs(study.cells);
   name_runs(study);
@@ -248,8 +248,13 @@ Study read_run(const std::filesystem::path& directory) {
   name_runs(study);
   study.variants = {""};
   study.ratio = measured_ratio(study.cells);
-  measure_work(study.cells.front(), study.ratio.empty() ? 0 : study.ratio.begin()->second);
+  measure_work(study.cells.front(), ratio_of(study.ratio, study.cells.front().refine));
   return study;
+}
+
+double ratio_of(const std::map<int, double>& ratio, int refine) {
+  const auto found = ratio.find(refine);
+  return found == ratio.end() ? 0 : found->second;
 }
 
 std::string family_name(const std::string& family) {

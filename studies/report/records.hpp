@@ -38,8 +38,9 @@ struct Cell {
   std::map<std::string, double> kkt;             ///< method-blind measures
   double work = 0;              ///< flop equivalents in factorisations, the response alone (see Study::ratio)
   double sensitivity_work = 0;  ///< the same with the derivatives' share added
-  double seconds = 0, sensitivity_seconds = 0;  ///< 0 where not recorded; without output
-  double count(const std::string& name) const;  ///< cost.counts[name]; 0 where not recorded
+  double seconds = 0, sensitivity_seconds = 0;  ///< 0 where not recorded; without output; of several the least
+  double median_seconds = 0, median_sensitivity_seconds = 0;  ///< of a timing pass; 0 where there was none
+  double count(const std::string& name) const;                ///< cost.counts[name]; 0 where not recorded
 };
 
 struct Study {
@@ -81,6 +82,9 @@ const Knob* find_knob(const Cell& cell, const std::string& name);
 /// What the discretisation errors are against: "the closed form", "the finer mesh", "the given values", or, where the
 /// study has several of them or names none, "the references".
 std::string discretization_reference(const Study& study);
+
+/// Study::ratio of a mesh level; 0 where it was not measured.
+double ratio_of(const std::map<int, double>& ratio, int refine);
 
 /// Whether no contact has friction: the ledgers say so or, in records without them, all that touches is "closed", and
 /// no measure speaks of slip.

@@ -74,6 +74,7 @@ Of first_measure(const Study& study) {
 std::optional<Figure> first_chart(const Study& study, std::size_t rows_of_verdict) {
   const Of of = first_measure(study);
   auto figure = work_precision(study, Against::same_mesh, of);
+  const bool on_same_mesh = figure.has_value();
   if (!figure) figure = work_precision(study, Against::discretization, of);
   if (!figure) return std::nullopt;
   json rows = json::array();
@@ -92,10 +93,11 @@ std::optional<Figure> first_chart(const Study& study, std::size_t rows_of_verdic
   figure->charts.erase(figure->charts.begin() + 1, figure->charts.end());
   figure->charts.front().title.clear();
   constexpr std::size_t few = 4;  // rows, beside which a screen of 800 pixels has room for the whole chart
-  figure->charts.front().height = 220 - 20 * static_cast<double>(std::max(rows_of_verdict, few) - few);
+  figure->charts.front().height = 200 - 20 * static_cast<double>(std::max(rows_of_verdict, few) - few);
   figure->id = "first";
-  figure->title = "What accuracy costs";
+  figure->title = "What accuracy costs" + (study.main_variant.empty() ? "" : ": " + study.main_variant);
   figure->text = std::string("Error of the worst ") + (of == Of::responses ? "response" : "derivative") +
+                 (on_same_mesh && !reference_run(study).empty() ? " against " + reference_run(study) : "") +
                  ". Lower left is better.";
   if (const std::string words = understood(study); !words.empty()) figure->text += " " + words;
   return figure;
@@ -106,10 +108,14 @@ std::string first_screen(const Study& all, const Study& study, Figures& figures)
   auto overview = draw_overview(study.picture);
   if (const std::string title = text_at(study.description, "scene_title"); overview && !title.empty())
     overview->title = title;
+  if (const std::string run = run_of_picture(all); overview && !run.empty())
+    overview->text = run + ". " + overview->text;
   const Verdict best = verdict(all);
   const std::string scene = figures.show(std::move(overview)), chart = figures.show(first_chart(study, best.rows));
   const std::string sights = scene.empty() && chart.empty() ? "" : "<div class=\"first\">" + scene + chart + "</div>\n";
-  return best.reason + sights + best.table;
+  const std::string failed = failures(all);
+  return (failed.empty() ? "" : "<p class=\"reason\">" + escape_sentence(failed) + "</p>\n") + best.reason + sights +
+         best.table;
 }
 
 std::string of_errors(const Study& all, const Study& study, Of of, Figures& figures) {

@@ -95,6 +95,8 @@ json rows_of(const Study& study, const Subject& subject, SeriesList& series) {
       r["backsolves"] = cell.count("backsolves") + (derivative ? cell.count("sensitivity_backsolves") : 0);
       r["seconds"] = derivative ? cell.sensitivity_seconds : cell.seconds;
       const Knob* value = find_knob(cell, knob);
+      if (const double median = derivative ? cell.median_sensitivity_seconds : cell.median_seconds; median > 0)
+        r["median"] = median;
       r["order"] = value && value->value ? *value->value : 0;
       if (value) r["setting"] = value->text;
       rows.push_back(r);
@@ -117,14 +119,15 @@ std::string what_is_joined(const Study& study) {
 void describe(const Study& study, const Subject& subject, Figure& figure) {
   const std::string what = subject.derivative ? "sensitivities" : "responses", joined = what_is_joined(study);
   if (subject.against == Against::same_mesh) {
+    const std::string named = reference_run(study);
     figure.id = "enforcement-" + what;
     figure.title = subject.derivative ? "Sensitivities: what enforcing contact exactly costs"
                                       : "Responses: what enforcing contact exactly costs";
-    figure.text =
-        "Enforcement error: the distance from the reference solution on the same mesh. Lower left is better. ";
+    figure.text = "Enforcement error: the distance from " + (named.empty() ? "the reference solution" : named + ",") +
+                  " on the same mesh. Lower left is better. ";
     if (!subject.derivative)
       figure.text += "What is seen is the method alone. " + joined +
-                     " A method that is the reference itself stands on the line of exact zeros. ";
+                     " A run without any error stands on the line of exact zeros. ";
   } else if (subject.against == Against::discretization) {
     const std::string reference = discretization_reference(study);
     figure.id = "discretization-" + what;
@@ -147,28 +150,29 @@ void describe(const Study& study, const Subject& subject, Figure& figure) {
 }
 
 /// One chart a measure of cost, where some run has it.
-void add_charts(const Subject& subject, Figure& figure) {
+void add_charts(const Study& study, const Subject& subject, Figure& figure) {
   const std::string y_title = subject.is_of_state() ? "measure"
                               : subject.derivative  ? "relative error of the sensitivity"
                                                     : "relative error of the response";
-  const auto add = [&](const std::string& field, const std::string& title, bool folded) {
+  const auto add = [&](const std::string& field, const std::string& name, const std::string& axis, bool folded) {
     const auto positive = [&](const json& r) { return r[field].get<double>() > 0; };
     if (std::none_of(figure.rows.begin(), figure.rows.end(), positive)) return;
-    figure.charts.push_back({.title = "against " + title,
-                             .x = {field, title, Spacing::logarithmic},
+    figure.charts.push_back({.title = "against " + name,
+                             .x = {field, axis, Spacing::logarithmic},
                              .y = {"shown", y_title, Spacing::logarithmic},
                              .tooltip = {{"label", "method"},
                                          {"error", "error"},
                                          {"work", "work"},
                                          {"seconds", "seconds"},
+                                         {"median", "median"},
                                          {"backsolves", "back-solves"},
                                          {"status", "status"}},
                              .folded = folded,
                              .words = {"series", "setting"}});
   };
-  add("work", "work (factorisations)", false);
-  add("seconds", "seconds", false);
-  add("backsolves", "back-solves", true);
+  add("work", "work (factorisations)", work_in_words(study), false);
+  add("seconds", "seconds", "seconds", false);
+  add("backsolves", "back-solves", "back-solves", true);
 }
 
 }  // namespace
@@ -183,7 +187,7 @@ std::optional<Figure> work_precision(const Study& study, Against against, Of of)
   figure.series = series.list;
   describe(study, subject, figure);
   figure.folded = subject.is_of_state() ? "of the final states" : why_it_may_be_folded(study, against, of);
-  add_charts(subject, figure);
+  add_charts(study, subject, figure);
   if (figure.charts.empty()) return std::nullopt;
   offer(figure, "Quantity", "quantity", subject.worst_name());
   offer(figure, "Scene", "scene", study.main_variant);

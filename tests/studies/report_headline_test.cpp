@@ -49,6 +49,57 @@ TEST_F(ReportHeadline, HeadlineSaysForWhichSceneThePenaltysErrorFallsAndWhereItF
                         "1e9. It fails at 1e9 (cap) for friction = 0.3."));
 }
 
+/// Which methods are lost where comes before who is the cheapest.
+TEST_F(ReportHeadline, SaysWhichMethodsConvergeWhere) {
+  std::vector<json> cells;
+  for (const double friction : {0.1, 0.3, 0.4})
+    for (auto& c : three_methods()) {
+      c["id"] = std::to_string(cells.size());
+      c["vary"] = {{"/contacts/sole/friction", friction}};
+      if (friction == 0.4 && !c["method"].contains("monolithic_al")) c["status"] = "cap";
+      cells.push_back(c);
+    }
+  record(description(), cells);
+  EXPECT_EQ(report::failures(study()),
+            "At friction = 0.4 only Monolithic AL converged. 6 of 21 runs did not converge (6 cap).");
+  const std::string text = without_scripts(page());
+  EXPECT_LT(text.find("At friction = 0.4 only Monolithic AL converged."), text.find("is cheapest"));
+  for (auto& c : cells)
+    if (c["method"].contains("uzawa_al")) c["status"] = "cycle";
+  record(description(), cells);
+  EXPECT_THAT(report::failures(study()),
+              HasSubstr("At friction = 0.1 and friction = 0.3 no run of Uzawa AL converged."));
+  record(description(), three_methods());
+  EXPECT_EQ(report::failures(study()), "");
+}
+
+TEST_F(ReportHeadline, NamesTheReferenceAndThatItIsOneOfTheRuns) {
+  json about = description();
+  about["reference"] = {{{"method", {{"monolithic_al", json::object()}}}}};
+  record(about, three_methods());
+  EXPECT_EQ(report::reference_run(study()), "Monolithic AL, one of the runs");
+  EXPECT_THAT(page(), HasSubstr("Error of the worst response against Monolithic AL, one of the runs."));
+  about["reference"][0] = {{"method", {{"penalty", {{"stiffness", 1e12}}}}}};
+  record(about, three_methods());
+  EXPECT_EQ(report::reference_run(study()), "Penalty, run apart");
+}
+
+/// The picture is of one run, and says of which.
+TEST_F(ReportHeadline, NamesTheRunOfThePicture) {
+  json about = description();
+  const auto cells = recorded::in_two_scenes(three_methods());
+  about["cells"] = {"another", cells.back()["id"]};
+  record(about, cells, recorded::picture());
+  EXPECT_EQ(report::run_of_picture(study()), "Monolithic AL, friction = 0.3");
+  EXPECT_THAT(page(), HasSubstr("Monolithic AL, friction = 0.3. At the last step: "));
+}
+
+TEST_F(ReportHeadline, DefinesWorkAtItsAxis) {
+  record(description(), three_methods());
+  EXPECT_EQ(report::work_in_words(study()), "work (factorisations + 0.1 back-solves)");
+  EXPECT_THAT(page(), HasSubstr("\"title\":\"work (factorisations + 0.1 back-solves)\""));
+}
+
 TEST_F(ReportHeadline, NamesWhatTheDiscretisationErrorIsAgainst) {
   json study_json = description();
   const json method = {{"method", {{"monolithic_al", json::object()}}}}, fine = {{"overkill", {{"refine", 2}}}};
