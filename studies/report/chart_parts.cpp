@@ -9,6 +9,7 @@
 #include <set>
 #include <tuple>
 
+#include "studies/report/colors.hpp"
 #include "studies/report/html.hpp"
 #include "studies/report/labels.hpp"
 #include "studies/report/look_up.hpp"
@@ -41,16 +42,12 @@ std::string color_of(const Study& study, const std::string& family) {
   return spare[other % spare.size()];
 }
 
-/// Another shade of a colour for each further series of a method: lighter, darker, lighter still, ...
+/// A method's colour, and another shade of it for each further series: by the contrast to the paper.
 std::string shade(const std::string& color, std::size_t count) {
-  constexpr std::array<double, 5> toward = {0, 0.45, -0.45, 0.65, -0.65};  // white 1, black -1
-  const double by = toward[count % toward.size()];
-  std::string out = "#";
-  for (std::size_t i = 1; i + 1 < color.size(); i += 2) {
-    const double part = std::stoi(color.substr(i, 2), nullptr, 16);
-    out += fmt::format("{:02X}", std::lround(by >= 0 ? part + by * (255 - part) : part * (1 + by)));
-  }
-  return out;
+  constexpr std::array<double, 4> contrasts = {8.5, least_contrast, 14, 4};
+  const double wanted =
+      count == 0 ? std::max(contrast(color, light_paper), least_contrast) : contrasts[(count - 1) % contrasts.size()];
+  return with_contrast(color, light_paper, wanted);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "studies/report/colors.hpp"
 #include "studies/report/drawing_parts.hpp"
 #include "studies/report/html.hpp"
 
@@ -10,6 +11,7 @@ namespace {
 
 std::string in_page(const std::string& color) {
   if (color.empty()) return "none";
+  if (is_of_curve(color)) return "light-dark(" + in_light(color) + "," + on_dark(in_light(color)) + ")";
   return is_named(color) ? "var(--" + color + ")" : color;
 }
 

@@ -1,7 +1,8 @@
 /// A line drawing, written once and given out as SVG (inside a page or as a file of its own) and as PGF.
 ///
-/// Coordinates are pixels of SVG, y down; a pixel is 0.75 points of PGF. Colours are "#RRGGBB" or one of the names ink,
-/// soft, line, paper: in a page these follow its light or dark scheme, in files they are those of the light one. ""
+/// Coordinates are pixels of SVG, y down; a pixel is 0.75 points of PGF. Colours are "#RRGGBB", "curve #RRGGBB" or
+/// one of the names ink, soft, line, paper: in a page the latter two follow its light or dark scheme, in files they are
+/// those of the light one. ""
 /// draws nothing.
 #pragma once
 
@@ -81,8 +82,9 @@ class Drawing {
 
   std::string inline_svg() const;
   std::string svg_file() const;
-  /// For LaTeX, which sets the texts in the font of the document.
-  std::string pgf() const;
+  /// For LaTeX, which sets the texts in the font of the document: as wide as \linewidth, or less than 120 mm with another
+  /// layout, `narrow`, if there is one.
+  std::string pgf(const Drawing* narrow = nullptr) const;
   /// Moves, lines and curves of all shapes.
   std::size_t pieces() const;
 
@@ -108,6 +110,8 @@ class Drawing {
   class SvgWriter;
   class PgfWriter;
 
+  std::string pgf_picture() const;
+
   double width_, height_;
   std::string title_, description_;
   std::vector<Item> items_;
@@ -117,6 +121,9 @@ class Drawing {
 /// A marker of some 9 pixels by its name: circle, square, triangle-up (-down, -left, -right), diamond, cross (upright),
 /// failed (a diagonal cross).
 Path marker(std::string_view shape, double x, double y);
+
+/// A text as LaTeX sets it.
+std::string tex_text(const std::string& text);
 
 /// A path in the notation of SVG.
 std::string svg_path(const Path& path);

@@ -31,6 +31,7 @@ bool is_named(const std::string& color) { return light().count(color) > 0; }
 
 std::string in_light(const std::string& color) {
   if (color.empty()) return "none";
+  if (is_of_curve(color)) return color.substr(color.find('#'));
   const auto named = light().find(color);
   return named == light().end() ? color : named->second;
 }

@@ -8,10 +8,38 @@
 namespace stickslip::report {
 namespace {
 
-/// A text as LaTeX sets it.
+/// "⁻" and the digits as they are raised, each with what it stands for.
+constexpr std::pair<std::string_view, char> raised[] = {{"⁻", '-'}, {"⁰", '0'}, {"¹", '1'}, {"²", '2'},
+                                                        {"³", '3'}, {"⁴", '4'}, {"⁵", '5'}, {"⁶", '6'},
+                                                        {"⁷", '7'}, {"⁸", '8'}, {"⁹", '9'}};
+
+/// The raised letters that `text` begins with, taken off it.
+std::string take_raised(std::string_view& text) {
+  std::string out;
+  for (bool more = true; more;) {
+    more = false;
+    for (const auto& [letter, plain] : raised)
+      if (text.starts_with(letter)) {
+        out += plain;
+        text.remove_prefix(letter.size());
+        more = true;
+      }
+  }
+  return out;
+}
+
+}  // namespace
+
 std::string tex_text(const std::string& text) {
   std::string out;
-  for (const char c : text) switch (c) {
+  for (std::string_view rest = text; !rest.empty();) {
+    if (const std::string power = take_raised(rest); !power.empty()) {
+      out += "\\textsuperscript{" + power + "}";
+      continue;
+    }
+    const char c = rest.front();
+    rest.remove_prefix(1);
+    switch (c) {
       case '\\':
         out += "\\textbackslash{}";
         break;
@@ -40,12 +68,11 @@ std::string tex_text(const std::string& text) {
       default:
         out += static_cast<unsigned char>(c) < 32 ? ' ' : c;
     }
+  }
   return out;
 }
 
-}  // namespace
-
-/// The items as commands of PGF's basic layer. A pixel is 0.75 bp, y up.
+/// The items as commands of PGF's basic layer, y up. A pixel is \\stickslipunit.
 class Drawing::PgfWriter {
  public:
   explicit PgfWriter(double height) : height_(height) {}
@@ -58,7 +85,7 @@ class Drawing::PgfWriter {
       out += color("stroke", style.stroke) + "\\pgfsetlinewidth{" + length(style.width) + "}";
       std::string dash;
       for (const double d : style.dash) dash += "{" + length(d) + "}";
-      if (!dash.empty()) out += "\\pgfsetdash{" + dash + "}{0bp}";
+      if (!dash.empty()) out += "\\pgfsetdash{" + dash + "}{0pt}";
     }
     const char* const use = style.fill.empty() ? "stroke" : style.stroke.empty() ? "fill" : "fill,stroke";
     return out + "\\pgfusepath{" + use + "}\\end{pgfscope}%\n";
@@ -67,7 +94,7 @@ class Drawing::PgfWriter {
   std::string operator()(const Text& item) const {
     const auto& style = item.style;
     const char* const anchor = style.anchor == Anchor::start ? "left," : style.anchor == Anchor::end ? "right," : "";
-    const std::string size = short_number(points * style.size), skip = short_number(1.2 * points * style.size);
+    const std::string size = length(style.size), skip = length(1.2 * style.size);
     return fmt::format(
         "\\begin{{pgfscope}}{}\\pgftext[{}base,x={},y={}{}]{{\\fontsize{{{}}}{{{}}}\\selectfont{} "
         "{}}}\\end{{pgfscope}}%\n",
@@ -81,10 +108,9 @@ class Drawing::PgfWriter {
 
   std::string operator()(const Unclip&) const { return "\\end{pgfscope}%\n"; }
 
-  static std::string length(double pixels) { return short_number(points * pixels) + "bp"; }
+  static std::string length(double pixels) { return short_number(pixels) + "\\stickslipunit"; }
 
  private:
-  static constexpr double points = 0.75;
   double height_;
 
   static std::string color(const char* of, const std::string& name) {
@@ -108,15 +134,22 @@ class Drawing::PgfWriter {
   }
 };
 
-std::string Drawing::pgf() const {
-  std::string out =
-      "% \\usepackage{pgf} and \\input this file; texts are in the font of the document.\n\\begingroup%\n"
-      "\\begin{pgfpicture}%\n\\pgfpathrectangle{\\pgfpointorigin}{\\pgfpoint{" +
-      PgfWriter::length(width_) + "}{" + PgfWriter::length(height_) + "}}\\pgfusepath{use as bounding box}%\n" +
-      "\\pgfsetroundjoin%\n";
+std::string Drawing::pgf_picture() const {
+  std::string out = fmt::format("\\stickslipunit=\\linewidth\\divide\\stickslipunit by {:.0f}%\n", width_);
+  out += "\\begin{pgfpicture}%\n\\pgfpathrectangle{\\pgfpointorigin}{\\pgfpoint{" + PgfWriter::length(width_) + "}{" +
+         PgfWriter::length(height_) + "}}\\pgfusepath{use as bounding box}%\n\\pgfsetroundjoin%\n";
   PgfWriter write(height_);
   for (const auto& item : items_) out += std::visit(write, item);
-  return out + "\\end{pgfpicture}%\n\\endgroup%\n";
+  return out + "\\end{pgfpicture}%\n";
+}
+
+std::string Drawing::pgf(const Drawing* narrow) const {
+  const std::string layouts =
+      narrow ? "\\ifdim\\linewidth<120mm%\n" + narrow->pgf_picture() + "\\else%\n" + pgf_picture() + "\\fi%\n"
+             : pgf_picture();
+  return "% \\usepackage{pgf} and \\input this file: as wide as \\linewidth, texts in the font of the document.\n"
+         "\\begingroup%\n\\ifx\\stickslipunit\\undefined\\newdimen\\stickslipunit\\fi%\n" +
+         layouts + "\\endgroup%\n";
 }
 
 std::size_t Drawing::pieces() const {

@@ -36,10 +36,12 @@ bool is_of_looks(const std::string& field) {
 /// By name.
 using Files = std::map<std::string, std::string>;
 
-void add_drawing(const std::string& stem, const Drawing& drawing, Files& files) {
+/// `narrow`: the same for one column of a paper.
+void add_drawing(const std::string& stem, const Drawing& drawing, Files& files,
+                 const std::optional<Drawing>& narrow = std::nullopt) {
   files[stem + ".svg"] = drawing.svg_file();
   constexpr std::size_t most_pieces = 20'000;  // TeX's memory holds some ten times that
-  if (drawing.pieces() <= most_pieces) files[stem + ".pgf"] = drawing.pgf();
+  if (drawing.pieces() <= most_pieces) files[stem + ".pgf"] = drawing.pgf(narrow ? &*narrow : nullptr);
 }
 
 /// PDFs of the drawings in a folder, the same bytes each time.
@@ -56,6 +58,10 @@ void add_pdfs(const fs::path& folder, const Files& drawings) {
 }
 
 }  // namespace
+
+std::string file_of(const Figure& figure, const Chart& chart) {
+  return figure.id + (chart.title.empty() ? "" : "-" + slug(chart.title));
+}
 
 std::vector<std::string> columns_of(const json& rows) {
   std::set<std::string> texts, others;
@@ -85,7 +91,7 @@ void write_figures(const fs::path& directory, const std::vector<Figure>& figures
   for (const auto& figure : figures) {
     for (const auto& chart : figure.charts)
       if (const auto drawing = draw_plot(figure, chart))
-        add_drawing(figure.id + (chart.title.empty() ? "" : "-" + slug(chart.title)), *drawing, files);
+        add_drawing(file_of(figure, chart), *drawing, files, draw_plot(figure, chart, one_column));
     files[figure.id + ".csv"] = to_csv(figure.rows);
   }
   for (const auto& plate : plates) {

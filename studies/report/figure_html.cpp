@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "studies/report/colors.hpp"
 #include "studies/report/drawing_parts.hpp"
 #include "studies/report/figure_files.hpp"
 #include "studies/report/html.hpp"
@@ -117,6 +118,8 @@ json chart_json(const Figure& figure, const Chart& chart) {
               {"y", axis_json(chart.y)},
               {"tips", chart.tooltip},
               {"only", chart.only},
+              {"file", file_of(figure, chart)},
+              {"folded", chart.folded},
               {"height", chart.height}};
   if (!chart.words.name.empty()) out["words"] = {{"name", chart.words.name}, {"value", chart.words.value}};
   return out;
@@ -129,6 +132,7 @@ json series_json(const std::vector<Series>& list) {
   for (const auto& s : list)
     out.push_back({{"name", s.name},
                    {"color", s.color},
+                   {"dark", s.color == "$ink" ? s.color : on_dark(s.color)},
                    {"shape", svg_path(marker(s.shape, 0, 0))},
                    {"dash", s.dash},
                    {"size", s.size / of_unit}});
@@ -164,7 +168,8 @@ std::string to_html(const Figure& figure) {
                             {"rows", table["rows"]},
                             {"series", series_json(figure.series)},
                             {"failed", svg_path(marker("failed", 0, 0))},
-                            {"charts", charts}}));
+                            {"charts", charts},
+                            {"caption", tex_text(figure.title)}}));
   return behind_a_fold(figure.id, figure.title, figure.folded, out);
 }
 

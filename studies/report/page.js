@@ -23,7 +23,10 @@
     return Number.isInteger(x) && Math.abs(x) < 1e7 && x % 1000 ? String(x) :
         x.toExponential(5).replace(/\.?0*e\+?/, 'e');
   }
-  vega.expressionFunction('numeral', numeral);
+  /** A numeral with its power of ten as one writes it: "2·10⁻⁴" of "2e-4". */
+  const powered = (text) => text.replace(/^(-?)(1?)(.*)e(-?)(\d+)$/, (all, sign, one, rest, minus, digits) =>
+      sign + (one && !rest ? '' : one + rest + '·') + '10' + (minus && '⁻') + [...digits].map((d) => '⁰¹²³⁴⁵⁶⁷⁸⁹'[d]).join(''));
+  vega.expressionFunction('powered', (x) => powered(numeral(x)));
   const shown = (value) => typeof value === 'number' ? numeral(value) : String(value ?? '');
 
   /** Whether a row has a place along an axis. */
@@ -42,7 +45,7 @@
       [low, high] = [low - (Math.abs(low) || 1), low + (Math.abs(low) || 1)];
     }
     const ticks = Math.max(2, Math.floor(room / 60)), decades = axis.log ? Math.floor(Math.log10(high / low)) : 0;
-    const named = axis.log ? "datum.label === '' ? '' : numeral(datum.value)" : 'numeral(datum.value)';
+    const named = axis.log ? "datum.label === '' ? '' : powered(datum.value)" : 'powered(datum.value)';
     const title = axis.title.startsWith('{') ? rows[0]?.[axis.title.slice(1, -1)] ?? '' : axis.title;
     return {
       field: axis.field, type: 'quantitative', title: wrapped(title, room / 7),
@@ -78,13 +81,21 @@
     return [...names, ...values];
   }
 
-  /** A chart of these rows in Vega-Lite; `data` is of its figure. */
-  function specification(chart, data, rows, width, height) {
-    const names = new Set(rows.map((row) => row.series)), ink = css('--ink');
+  const INK = '#1b1d21';  // on paper, whatever the screen's scheme
+  const inkOn = (paper) => paper ? INK : css('--ink');
+  const colorOf = (series, paper) =>
+      series.color === '$ink' ? inkOn(paper) : dark.matches && !paper ? series.dark : series.color;
+
+  /** A chart of these rows in Vega-Lite; `data` is of its figure; on `paper` it has its legend, and the light scheme. */
+  function specification(chart, data, rows, width, height, paper) {
+    const names = new Set(rows.map((row) => row.series)), ink = inkOn(paper);
     const present = data.series.filter((s) => names.has(s.name));
-    const by = (type, range) => ({field: 'series', type, title: null, legend: null,
+    const longest = Math.max(...present.map((s) => s.name.length));  // letters, of some 6 pixels
+    const columns = Math.max(1, Math.floor(width / (6 * longest + 60)));
+    const legend = paper && present.length > 1 ? {orient: 'bottom', columns, labelLimit: width, symbolOpacity: 1} : null;
+    const by = (type, range) => ({field: 'series', type, title: null, legend,
                                   scale: {type: 'ordinal', domain: present.map((s) => s.name), range: present.map(range)}});
-    const color = by('nominal', (s) => s.color === '$ink' ? ink : s.color);
+    const color = by('nominal', (s) => colorOf(s, paper));
     const tooltip = chart.tips.map(([field, title]) => ({field, title}));
     const ground = rows.find((row) => row.zero)?.[chart.y.field];
     const x = channel(chart.x, rows, width - 110), y = channel(chart.y, rows, height, ground);
@@ -123,7 +134,8 @@
   function withWords(spec) {
     spec.marks.push({
       type: 'text', name: 'words', from: {data: 'ends_marks'}, interactive: false,
-      encode: {update: {text: {field: 'datum.words'}, fill: {value: css('--ink')}, fontSize: {value: 11}}},
+      encode: {update: {text: {field: 'datum.words'}, fontSize: {value: 11},
+                        fill: {signal: "scale('color', datum.datum.series)"}}},
       transform: [{type: 'label', size: {signal: '[width, height]'}, padding: 0,
                    avoidMarks: ['lines_pathgroup', 'points_marks'], offset: [4],
                    anchor: ['top-right', 'top-left', 'bottom-right', 'bottom-left', 'right', 'left', 'top', 'bottom']}],
@@ -141,7 +153,7 @@
     place.replaceChildren();
     for (const s of series.length > 1 ? series.filter((s) => names.has(s.name)) : []) {
       const button = place.appendChild(document.createElement('button'));
-      const color = s.color === '$ink' ? css('--ink') : s.color;
+      const color = colorOf(s);
       button.type = 'button';
       button.setAttribute('aria-pressed', !off.has(s.name));
       button.innerHTML = `<svg width="44" height="16" aria-hidden="true" fill="none" stroke="${color}" stroke-width="2">` +
@@ -163,9 +175,10 @@
     return `<table>${lines.join('')}</table>`;
   }
 
-  function config() {
-    const ink = css('--ink'), soft = css('--soft'), line = css('--line');
+  function config(paper) {
+    const ink = inkOn(paper), [soft, line] = paper ? ['#5b616b', '#d5d8dd'] : [css('--soft'), css('--line')];
     return {
+      legend: {labelColor: ink, labelFontSize: 12},
       background: 'transparent',
       font: 'system-ui, sans-serif',
       axis: {labelColor: ink, titleColor: ink, gridColor: line, domainColor: soft, tickColor: soft, labelFontSize: 12,
@@ -191,6 +204,9 @@
     line.textContent = selects.map((select) => select.parentElement.firstChild.data + select.value).join('; ');
   }
 
+  const isOf = (chart) => (row) =>
+      (!chart.only || row.panel === chart.only) && hasPlace(row, chart.x) && hasPlace(row, chart.y);
+
   /** Draws a figure: as wide as its place, or as wide as paper is. */
   async function draw(figure, paper) {
     tellChosen(figure);
@@ -201,15 +217,15 @@
     for (const [i, chart] of data.charts.entries()) {
       const panel = panels[i];
       if (panel.closest('details:not([open])')) continue;  // has no width yet; drawn when it is opened
-      const isOwn = (row) => (!chart.only || row.panel === chart.only) && hasPlace(row, chart.x) && hasPlace(row, chart.y);
-      const own = all.filter(isOwn), height = paper ? Math.min(chart.height, 220) : chart.height;
+      const own = all.filter(isOf(chart)), height = paper ? Math.min(chart.height, 220) :
+          panel.clientWidth < 450 ? Math.max(chart.height, 280) : chart.height;  // a phone's chart is as high as wide
       panel.hidden = own.length === 0;
       if (panel.hidden) continue;
       inPanels.push(...own);
-      const spec = specification(chart, data, rows.filter(isOwn), paper ?? panel.clientWidth, height);
+      const spec = specification(chart, data, rows.filter(isOf(chart)), paper ?? panel.clientWidth, height, paper);
       if (paper) spec.width = paper;
       await vegaEmbed(panel.querySelector('.vega'), spec, {
-        mode: 'vega-lite', renderer: 'svg', config: config(), logLevel: vega.Error, patch: withWords,
+        mode: 'vega-lite', renderer: 'svg', config: config(paper), logLevel: vega.Error, patch: withWords,
         actions: {export: true, source: false, compiled: false, editor: false},
         tooltip: {theme: dark.matches ? 'dark' : 'light', formatTooltip: tooltipTable},
         downloadFileName: figure.id + '-' + i,
@@ -217,6 +233,48 @@
       panel.querySelector('.static').hidden = true;
     }
     drawLegend(figure, data.series, inPanels);
+  }
+
+  /** The open charts of a figure as SVG files of that width in millimetres, with their legends. */
+  async function saveAsSvg(figure, millimetres) {
+    const data = dataOf(figure), rows = chosenRows(figure, data), width = millimetres * 96 / 25.4;
+    for (const chart of data.charts.filter((chart) => !chart.folded)) {
+      const spec = specification(chart, data, rows.filter(isOf(chart)), width, Math.min(0.6 * width, 300), true);
+      spec.width = width - 20;
+      const place = document.createElement('div');
+      const {view} = await vegaEmbed(place, spec, {mode: 'vega-lite', renderer: 'svg', config: config(true),
+                                                   actions: false, logLevel: vega.Error, patch: withWords});
+      const svg = (await view.toSVG()).replace(/ width="[^"]*"/, ` width="${millimetres}mm"`).replace(/ height="[^"]*"/, '');
+      save(new Blob([svg], {type: 'image/svg+xml'}), `${chart.file}-${millimetres}mm.svg`);
+    }
+  }
+
+  function save(blob, name) {
+    const link = document.createElement('a');
+    link.href = URL.createObjectURL(blob);
+    link.download = name;
+    link.click();
+  }
+
+  /** What a figure is in a paper: its width, LaTeX that takes the file beside the page, and an SVG. */
+  function offerPaper(figure) {
+    const data = dataOf(figure), place = document.createElement('details'), code = document.createElement('pre');
+    place.className = 'paper';
+    place.innerHTML = '<summary>For a paper</summary><p>Width in mm: <input type="number" min="40" max="400" value="85"> ' +
+        '(85: one column, 170: two) <button type="button">Save as SVG</button></p>';
+    place.append(code);
+    const width = place.querySelector('input');
+    const write = () => {
+      const graphics = data.charts.filter((chart) => !chart.folded).map((chart) => `  \\input{figures/${chart.file}.pgf}\n`);
+      const wide = Number(width.value) > 120 ? '*' : '';
+      code.textContent = `% \\usepackage{pgf}\n\\begin{figure${wide}}\n  \\centering\n` +
+          `  {\\setlength{\\linewidth}{${width.value}mm}%\n${graphics.join('')}  }\n  \\caption{${data.caption}}\n` +
+          `  \\label{fig:${figure.id}}\n\\end{figure${wide}}\n`;
+    };
+    write();
+    width.addEventListener('input', write);
+    place.querySelector('button').addEventListener('click', () => saveAsSvg(figure, Number(width.value)).catch(console.error));
+    figure.querySelector('details.data').before(place);
   }
 
   /** The rows that are chosen as a table, below the chart. */
@@ -258,22 +316,29 @@
     watch.observe(figure);
     figure.addEventListener('change', () => (tabulate(figure), draw(figure).catch(console.error)));
     figure.querySelector('details.data').addEventListener('toggle', () => tabulate(figure));
+    offerPaper(figure);
     for (const folded of figure.querySelectorAll('details.panels-folded'))
       folded.addEventListener('toggle', () => folded.open && draw(figure).catch(console.error));
   }
   dark.addEventListener('change', () => drawn.forEach((figure) => draw(figure).catch(console.error)));
 
-  // Paper has no folds: charts and tables are whole there; licences, and the data of charts, stay away.
+  // Paper has the short form (page.css) or, by the link, all of it without folds; licences, and the data of charts, stay
+  // away.
   let unfolded = [];
-  addEventListener('beforeprint', () => {
+  addEventListener('beforeprint', () => figures.forEach((figure) => draw(figure, 680).catch(console.error)));
+  addEventListener('afterprint', () => {
+    document.body.classList.remove('whole');
+    unfolded.forEach((details) => (details.open = false));
+    unfolded = [];
+    figures.forEach((figure) => draw(figure).catch(console.error));
+  });
+  document.getElementById('print-all').addEventListener('click', async () => {
+    document.body.classList.add('whole');
     unfolded = [...document.querySelectorAll(
         'details.fold:not([open]), details:not([open]):not(figure details):has(> .wide, > pre.wrap, > dl)')];
-    for (const details of unfolded) details.open = true;
-    for (const figure of figures) draw(figure, 680).catch(console.error);
-  });
-  addEventListener('afterprint', () => {
-    for (const figure of figures) draw(figure).catch(console.error);
-    unfolded.forEach((details) => (details.open = false));
+    unfolded.forEach((details) => (details.open = true));
+    await Promise.all(figures.map((figure) => draw(figure, 680)));
+    print();
   });
 
   // Each table can be taken along.

@@ -14,7 +14,10 @@ using nlohmann::json;
 
 namespace {
 
-constexpr double width = 640, left = 74, right = 620, top = 12, bottom = 300;  // of the picture, of the axes
+constexpr double left = 74, margin = 20, top = 12;  // of the axes; beside them on the right
+
+/// Where the axes end: lower where a chart is narrow.
+double bottom_of(double width) { return width < two_columns ? 0.65 * width : 300; }
 
 bool is_log(const Quantity& quantity) { return quantity.spacing == Spacing::logarithmic; }
 
@@ -33,6 +36,7 @@ bool is_shown(const Figure& figure, const Chart& chart, const json& row) {
 
 /// What is drawn of a chart: its rows, the guides beside them, and the axes they span.
 struct Frame {
+  double width, right, bottom;  ///< of the picture; of the axes
   std::vector<const json*> rows, guides;
   Axis x, y;
   std::optional<double> ground;  ///< where exact zeros stand, off what the axis names
@@ -51,7 +55,7 @@ std::optional<double> ground_of(const std::vector<const json*>& rows, const Char
   return zero == rows.end() ? std::nullopt : std::optional(number_of(**zero, chart.y.field));
 }
 
-std::optional<Frame> frame_of(const Figure& figure, const Chart& chart) {
+std::optional<Frame> frame_of(const Figure& figure, const Chart& chart, double width) {
   std::vector<const json*> rows, guides;
   for (const auto& row : figure.rows)
     if (is_shown(figure, chart, row)) (row.value("guide", false) ? guides : rows).push_back(&row);
@@ -66,8 +70,26 @@ std::optional<Frame> frame_of(const Figure& figure, const Chart& chart) {
   };
   const auto [x_low, x_high] = bounds(chart.x.field);
   const auto [y_low, y_high] = bounds(chart.y.field);
-  return Frame{rows, guides, Axis(x_low, x_high, is_log(chart.x), left, right, chart.x.bounded),
-               Axis(y_low, y_high, is_log(chart.y), bottom, top), ground_of(rows, chart)};
+  const double right = width - margin, bottom = bottom_of(width);
+  return Frame{width,
+               right,
+               bottom,
+               rows,
+               guides,
+               Axis(x_low, x_high, is_log(chart.x), left, right, chart.x.bounded),
+               Axis(y_low, y_high, is_log(chart.y), bottom, top),
+               ground_of(rows, chart)};
+}
+
+/// "2·10⁻⁴" of "2e-4".
+std::string with_power(const std::string& numeral) {
+  static const char* const raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  const std::size_t e = numeral.find('e');
+  if (e == std::string::npos) return numeral;
+  const std::string factor = numeral.substr(0, e);
+  std::string out = factor == "1" ? "10" : factor == "-1" ? "-10" : factor + "·10";
+  for (const char c : numeral.substr(e + 1)) out += c == '-' ? "⁻" : raised[c - '0'];
+  return out;
 }
 
 /// Ticks with their labels, in as many digits as tell them apart.
@@ -77,7 +99,7 @@ std::vector<std::pair<double, std::string>> labelled(const std::vector<double>& 
   for (int digits = fewest; digits <= most; ++digits) {
     out.clear();
     std::set<std::string> labels;
-    for (const double tick : ticks) labels.insert(out.emplace_back(tick, number(tick, digits)).second);
+    for (const double tick : ticks) labels.insert(out.emplace_back(tick, with_power(number(tick, digits))).second);
     if (labels.size() == ticks.size()) break;
   }
   return out;
@@ -85,6 +107,7 @@ std::vector<std::pair<double, std::string>> labelled(const std::vector<double>& 
 
 void draw_axes(const Frame& frame, const Chart& chart, Drawing& drawing) {
   const Style grid{"line"};
+  const double right = frame.right, bottom = frame.bottom;
   for (const auto& [tick, label] : labelled(frame.x.ticks(chart.x.least_step))) {
     drawing.line(frame.x(tick), top, frame.x(tick), bottom, grid);
     drawing.text(frame.x(tick), bottom + 16, label, {Anchor::middle});
@@ -103,7 +126,7 @@ void draw_axes(const Frame& frame, const Chart& chart, Drawing& drawing) {
 void draw_ground(const Frame& frame, Drawing& drawing) {
   if (!frame.ground) return;
   const double y = frame.y(*frame.ground);
-  drawing.line(left, y, right, y, {"ink", "", 1, {1, 3}});
+  drawing.line(left, y, frame.right, y, {"ink", "", 1, {1, 3}});
   drawing.text(left - 6, y + 4, "exactly 0", {Anchor::end});
 }
 
@@ -163,11 +186,12 @@ class EndValues {
     }
   }
 
-  void draw(const Line& line, Drawing& drawing) {
+  /// `color`: that of the line, so that a value beside another line's marker is not taken for its own.
+  void draw(const Line& line, const std::string& color, Drawing& drawing) {
     const auto [x1, y1] = place_of(frame_, chart_, *line.front());
     const auto [x2, y2] = place_of(frame_, chart_, *line.back());
     if (std::abs(x1 - x2) > size || std::abs(y1 - y2) > size)
-      for (const json* end : {line.back(), line.front()}) draw_value(*end, drawing);
+      for (const json* end : {line.back(), line.front()}) draw_value(*end, color, drawing);
   }
 
  private:
@@ -179,18 +203,18 @@ class EndValues {
   };
   static constexpr double size = 11, aside = 7, above = 6, below = 14;
 
-  void draw_value(const json& row, Drawing& drawing) {
+  void draw_value(const json& row, const std::string& color, Drawing& drawing) {
     const std::string value = row.value(chart_.words.value, "");
     const auto [x, y] = place_of(frame_, chart_, row);
     const double wide = text_width(value, size);
     for (const double base : {y - above, y + below})
       for (const double from : {x + aside, x - aside - wide}) {
         const Box box{from, from + wide, base - size, base};
-        if (box.left < left || box.right > width || box.bottom > bottom ||
+        if (box.left < left || box.right > frame_.width || box.bottom > frame_.bottom ||
             std::any_of(taken_.begin(), taken_.end(), [&](const Box& other) { return box.overlaps(other); }))
           continue;
         taken_.push_back(box);
-        return drawing.text(from, base, value, {Anchor::start, size});
+        return drawing.text(from, base, value, {Anchor::start, size, color});
       }
   }
 
@@ -217,9 +241,27 @@ bool draw_series(const Frame& frame, const Chart& chart, const Series& series, E
       path.empty() ? path.move(x, y) : path.line(x, y);
     }
     drawing.path(path, style_of(series, true));
-    if (!chart.words.value.empty()) values.draw(line, drawing);
+    if (!chart.words.value.empty()) values.draw(line, color_of(series), drawing);
   }
   return present;
+}
+
+/// The names of what is drawn below the axes, side by side where they have room. Its height.
+double draw_legend(const Frame& frame, const std::vector<const Series*>& present, Drawing& drawing) {
+  constexpr double line_height = 18, sample = 34, gap = 8, apart = 20;
+  double x = 10, y = frame.bottom + 58;
+  for (const Series* series : present) {
+    const double wide = sample + gap + text_width(series->name, 12);
+    if (x > 10 && x + wide > frame.width) {
+      x = 10;
+      y += line_height;
+    }
+    drawing.line(x, y, x + sample, y, style_of(*series, true));
+    if (has_markers(frame, *series)) drawing.path(marker(series->shape, x + sample / 2, y), style_of(*series, false));
+    drawing.text(x + sample + gap, y + 4, series->name);
+    x += wide + apart;
+  }
+  return y + line_height;
 }
 
 }  // namespace
@@ -245,50 +287,47 @@ double Axis::operator()(double value) const { return from_ + (to_ - from_) * (sc
 double Axis::scaled(double value) const { return log_ ? std::log10(value) : value; }
 
 std::vector<double> Axis::ticks(double least_step) const {
+  constexpr double apart = 40;  // pixels that a label needs
+  const double most = std::clamp(std::abs(to_ - from_) / apart, 3.0, 8.0);
   std::vector<double> out;
   if (log_ && high_ - low_ >= 2) {
-    const double step = std::max(1.0, std::ceil((high_ - low_) / 7));
+    const double step = std::max(1.0, std::ceil((high_ - low_) / (most - 1)));
     for (double e = std::ceil(low_ / step) * step; e <= high_; e += step) out.push_back(std::pow(10, e));
   } else if (log_) {
     for (double e = std::floor(low_); e <= high_; ++e)
       for (const double m : {1, 2, 5})
         if (const double v = m * std::pow(10, e); scaled(v) >= low_ && scaled(v) <= high_) out.push_back(v);
   } else {
-    double step = std::pow(10, std::floor(std::log10((high_ - low_) / 5)));
-    for (const double m : {5, 2})
-      if ((high_ - low_) / (m * step) >= 4) {
-        step *= m;
-        break;
-      }
+    const double power = std::pow(10, std::floor(std::log10((high_ - low_) / most)));
+    double step = power;
+    for (const double m : {2, 5, 10})
+      if ((high_ - low_) / step > most) step = m * power;
     step = std::max(step, least_step);
     for (double i = std::ceil(low_ / step); i * step <= high_; ++i) out.push_back(i * step + 0.0);  // 0, never -0
   }
   return out;
 }
 
+std::string color_of(const Series& series) { return series.color == "$ink" ? "ink" : "curve " + series.color; }
+
 Style style_of(const Series& series, bool dashed) {
-  Style style{series.color == "$ink" ? "ink" : series.color, "", 2, {}};
+  Style style{color_of(series), "", 2, {}};
   if (dashed && series.dash.back() > 0) style.dash.assign(series.dash.begin(), series.dash.end());
   return style;
 }
 
-std::optional<Drawing> draw_plot(const Figure& figure, const Chart& chart) {
-  const auto frame = frame_of(figure, chart);
+std::optional<Drawing> draw_plot(const Figure& figure, const Chart& chart, double width) {
+  const auto frame = frame_of(figure, chart, width);
   if (!frame) return std::nullopt;
-  Drawing drawing(width, bottom, figure.title + (chart.title.empty() ? "" : ", " + chart.title), figure.text);
+  Drawing drawing(width, frame->bottom, figure.title + (chart.title.empty() ? "" : ", " + chart.title), figure.text);
   draw_axes(*frame, chart, drawing);
   draw_ground(*frame, drawing);
   draw_guides(*frame, chart, drawing);
   EndValues values(*frame, chart);
-  double legend = bottom + 58;
-  for (const auto& series : figure.series) {
-    if (!draw_series(*frame, chart, series, values, drawing)) continue;
-    drawing.line(left, legend, left + 34, legend, style_of(series, true));
-    if (has_markers(*frame, series)) drawing.path(marker(series.shape, left + 17, legend), style_of(series, false));
-    drawing.text(left + 42, legend + 4, series.name);
-    legend += 18;
-  }
-  drawing.set_height(legend);
+  std::vector<const Series*> present;
+  for (const auto& series : figure.series)
+    if (draw_series(*frame, chart, series, values, drawing)) present.push_back(&series);
+  drawing.set_height(draw_legend(*frame, present, drawing));
   return drawing;
 }
 

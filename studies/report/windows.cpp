@@ -122,7 +122,8 @@ void draw_window(const Window& window, const Series& looks, const Axis& x, std::
                  Drawing& drawing) {
   const double y = top + 23;
   drawing.text(left, top + 11, window.name, {Anchor::start, name_size});
-  Style bar{looks.color, "", 7, {}};
+  const std::string color = color_of(looks);
+  Style bar{color, "", 7, {}};
   for (std::size_t i = 1; i < window.runs.size(); ++i)
     if (window.runs[i - 1].cell->converged && window.runs[i].cell->converged)
       drawing.line(x(window.runs[i - 1].knob), y, x(window.runs[i].knob), y, bar);
@@ -132,8 +133,7 @@ void draw_window(const Window& window, const Series& looks, const Axis& x, std::
       drawing.path(marker("failed", x(run.knob), y), {"ink", "", 2, {}}, in_words(run));
     else
       drawing.path(Path().circle(x(run.knob), y, 5),
-                   {looks.color, !target || (error && *error <= *target) ? looks.color : "paper", 2, {}},
-                   in_words(run));
+                   {color, !target || (error && *error <= *target) ? color : "paper", 2, {}}, in_words(run));
   }
   const Run* automatic = automatic_of(window);
   if (automatic) drawing.path(diamond(x(automatic->knob), y), {"ink", "", 2, {}}, in_words(*automatic));

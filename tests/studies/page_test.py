@@ -70,11 +70,42 @@ CHOICE = """
           unfolded: await until(() => drawn(more).length > 0)};
 """
 BEFORE_PAPER = """
-  const open = all('details[open]').length;
+  const open = all('details[open]').length, wide = () => Number(drawn(chart)[0].getAttribute('width')) > 600;
   dispatchEvent(new Event('beforeprint'));
-  const wide = await until(() => Number(drawn(chart)[0].getAttribute('width')) > 600 && all('details[open]').length > open);
+  const short = await until(wide) && all('details[open]').length === open;
   dispatchEvent(new Event('afterprint'));
-  return {wide, closed: all('details[open]').length === open};
+  let whole = false;
+  window.print = () => { whole = document.body.matches('.whole') && all('details[open]').length > open; };
+  document.getElementById('print-all').click();
+  const printed = await until(() => whole) && wide();
+  dispatchEvent(new Event('afterprint'));
+  return {short, printed, closed: all('details[open]').length === open && !document.body.matches('.whole')};
+"""
+SECTIONS = "return all('main > section').filter((section) => seen(section).height > 0).length;"
+CONTRASTS = """
+  const luminance = (color) => {
+    const [r, g, b] = color.match(/[\\d.]+/g).map((part) => part / 255).map(
+        (s) => s <= 0.04045 ? s / 12.92 : ((s + 0.055) / 1.055) ** 2.4);
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  };
+  const paper = luminance(getComputedStyle(document.body).backgroundColor);
+  const contrast = (color) => {
+    const [low, high] = [luminance(color), paper].sort((a, b) => a - b);
+    return (high + 0.05) / (low + 0.05);
+  };
+  const colors = (selector, what) => all(selector).map((element) => getComputedStyle(element)[what]);
+  return [...new Set([...colors('.legend button svg', 'stroke'), ...colors('.plate svg path[style*="light-dark"]', 'stroke'),
+                      ...colors('g.mark-text.role-mark text[fill]', 'fill')])].map((color) => [color, contrast(color)]);
+"""
+FOR_A_PAPER = """
+  const place = chart.querySelector('.paper'), width = place.querySelector('input'), saved = [];
+  const code = place.querySelector('pre').textContent;
+  width.value = '170';
+  width.dispatchEvent(new Event('input'));
+  URL.createObjectURL = (blob) => { saved.push(blob); return '#'; };
+  place.querySelector('button').click();
+  await until(() => saved.length > 1);
+  return {code, wide: place.querySelector('pre').textContent, svg: await saved[0].text()};
 """
 
 
@@ -149,6 +180,32 @@ def check_charts(name, found):
     check(f"{name}: colours", found["paint"] == found["ink"], found)
 
 
+def check_contrasts(scheme, found):
+    """Curves and their words stand out from the paper by 3, which WCAG asks of graphics."""
+    check(f"{scheme}: curves", len(found) > 5, found)
+    check(f"{scheme}: contrast", all(contrast >= 3 for _, contrast in found), found)
+
+
+def check_print(browser):
+    """Paper has the first screen, what came out and where it is from; the rest if it is asked for."""
+    on_screen = browser.run(SECTIONS)
+    browser.ask("Emulation.setEmulatedMedia", media="print")
+    short = browser.run(SECTIONS)
+    whole = browser.run("document.body.classList.add('whole');" + SECTIONS)
+    browser.run("document.body.classList.remove('whole');")
+    check("paper: sections", short == 3 and whole == on_screen > 6, [on_screen, short, whole])
+    check("paper", len(browser.ask("Page.printToPDF")["data"]) > 50_000, "no PDF")
+    browser.ask("Emulation.setEmulatedMedia", media="")
+
+
+def check_paper(found):
+    """LaTeX for one column and for two, and a chart of that width with its legend."""
+    check("LaTeX", "\\setlength{\\linewidth}{85mm}" in found["code"] and "\\begin{figure}" in found["code"] and
+          "\\input{figures/enforcement-responses-against-seconds.pgf}" in found["code"], found["code"])
+    check("LaTeX of two columns", "\\begin{figure*}" in found["wide"], found["wide"])
+    check("SVG", 'width="170mm"' in found["svg"] and "role-legend" in found["svg"] and "Uzawa AL" in found["svg"], found["svg"])
+
+
 def check_page(browser):
     browser.open(1200)
     wide = browser.run(CHARTS)
@@ -164,13 +221,16 @@ def check_page(browser):
     check("choice", all(choice.values()), choice)
     paper = browser.run(BEFORE_PAPER)
     check("paper", all(paper.values()), paper)
-    check("paper", len(browser.ask("Page.printToPDF")["data"]) > 100_000, "no PDF")
+    check_print(browser)
+    check_paper(browser.run(FOR_A_PAPER))
+    check_contrasts("light", browser.run(CONTRASTS))
     browser.open(390)
     check_charts("a phone", browser.run(CHARTS))
     browser.open(1200, "dark")
     dark = browser.run(CHARTS)
     check_charts("dark", dark)
     check("dark", dark["ink"] != wide["ink"], dark)
+    check_contrasts("dark", browser.run(CONTRASTS))
 
 
 def main():
