@@ -108,9 +108,10 @@ void print_start_gaps(const Problem& problem) {
 }
 
 /// picture.json, with what a study's rows hold of it.
-void write_picture(const std::filesystem::path& directory, const CaseResult& result, Written& written) {
+void write_picture(const std::filesystem::path& directory, const Simulation& simulation, const CaseResult& result,
+                   Written& written) {
   const Stopwatch time(written.seconds);
-  json picture = picture_json(result);
+  json picture = picture_json(result, fields_every(simulation.input.output));
   if (picture.is_null()) return;
   picture["interface"] = interface_json(result);
   picture["film"] = film_json(result);
@@ -154,7 +155,7 @@ json write_run(const std::filesystem::path& directory, const RunArguments& argum
   Written written;
   remove_run(directory);
   const auto traced = write_trace(directory, *simulation.problem, trace, written);
-  if (arguments.report) write_picture(directory, result, written);
+  if (arguments.report) write_picture(directory, simulation, result, written);
   json document = write_result(directory, simulation, result, written);
   const bool has_solution = document["solution"].contains("file"), certified = arguments.report && has_solution;
   if (certified)

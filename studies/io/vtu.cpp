@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -119,7 +120,10 @@ Matrix<double> padded(const Matrix<double>& values) {
 
 std::string named_array(const std::string& name, const Matrix<double>& given) {
   const Matrix<double> values = padded(given);
-  const std::string attributes = fmt::format("Name=\"{}\" NumberOfComponents=\"{}\"", escaped(name), values.rows());
+  std::string attributes = fmt::format("Name=\"{}\" NumberOfComponents=\"{}\"", escaped(name), values.rows());
+  constexpr std::array<const char*, 6> of_tensor = {"xx", "yy", "zz", "xy", "yz", "xz"};
+  for (std::size_t i = 0; values.rows() == 6 && i < of_tensor.size(); ++i)
+    attributes += fmt::format(" ComponentName{}=\"{}\"", i, of_tensor[i]);
   return data_array(attributes, std::span<const double>(values.data(), static_cast<std::size_t>(values.size())));
 }
 
@@ -206,8 +210,8 @@ std::string pvd_text(const std::vector<PvdEntry>& entries) {
       byte_order);
   for (const PvdEntry& entry : entries) {
     // fmt writes the shortest text that reads back as the same double.
-    out +=
-        fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"0\" file=\"{}\"/>\n", entry.time, escaped(entry.file));
+    out += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"{}\" file=\"{}\"/>\n", entry.time, entry.part,
+                       escaped(entry.file));
   }
   return out + "</Collection>\n</VTKFile>\n";
 }

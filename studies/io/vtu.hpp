@@ -14,7 +14,7 @@ namespace stickslip {
 enum class VtuCell : unsigned char { vertex = 1, line = 3, triangle = 5, quad = 9, triangle6 = 22, quad8 = 23 };
 
 /// One field: a column of `values` for each point or cell. 1 row is a scalar, 2 or 3 a vector (2 is padded with a zero
-/// to VTK's 3), 6 a symmetric tensor in VTK's order xx yy zz xy yz xz.
+/// to VTK's 3), 6 a symmetric tensor in VTK's order xx yy zz xy yz xz, by which its components are named.
 struct VtuField {
   std::string name;
   Matrix<double> values;
@@ -41,6 +41,7 @@ std::string vtu_text(const VtuData& data);
 struct PvdEntry {
   double time = 0;
   std::string file;
+  int part = 0;  ///< block of the data of that time
 };
 
 /// The file of the collection.

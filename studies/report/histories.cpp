@@ -59,7 +59,7 @@ std::optional<Figure> convergence_histories(const Study& study) {
                     " that took most iterations (of a run that failed, the last). The residual is the largest "
                     "of equilibrium") +
                 (is_frictionless(study) ? " and contact" : ", normal and tangential contact") +
-                ", each relative to its own scale";
+                ", each relative to its own scale. Of a step that was tried several times, the last try";
   const auto shown = telling_cells(study, Furthest::left_out);
   add_first(series, study, shown);
   for (const auto& cell : study.cells) {

@@ -91,7 +91,7 @@
     const names = new Set(rows.map((row) => row.series)), ink = inkOn(paper);
     const present = data.series.filter((s) => names.has(s.name));
     const longest = Math.max(...present.map((s) => s.name.length));  // letters, of some 6 pixels
-    const columns = Math.max(1, Math.floor(width / (6 * longest + 60)));
+    const columns = Math.max(1, Math.floor(width / (6 * longest + 40)));
     const legend = paper && present.length > 1 ? {orient: 'bottom', columns, labelLimit: width, symbolOpacity: 1} : null;
     const by = (type, range) => ({field: 'series', type, title: null, legend,
                                   scale: {type: 'ordinal', domain: present.map((s) => s.name), range: present.map(range)}});
@@ -180,7 +180,7 @@
     return {
       legend: {labelColor: ink, labelFontSize: 12},
       background: 'transparent',
-      font: 'system-ui, sans-serif',
+      font: paper ? 'Helvetica, Arial, sans-serif' : 'system-ui, sans-serif',
       axis: {labelColor: ink, titleColor: ink, gridColor: line, domainColor: soft, tickColor: soft, labelFontSize: 12,
              titleFontSize: 12, titleFontWeight: 'normal', titleLimit: Math.min(420, innerWidth - 110)},
       view: {stroke: line},
@@ -239,8 +239,8 @@
   async function saveAsSvg(figure, millimetres) {
     const data = dataOf(figure), rows = chosenRows(figure, data), width = millimetres * 96 / 25.4;
     for (const chart of data.charts.filter((chart) => !chart.folded)) {
-      const spec = specification(chart, data, rows.filter(isOf(chart)), width, Math.min(0.6 * width, 300), true);
-      spec.width = width - 20;
+      const spec = specification({...chart, words: null}, data, rows.filter(isOf(chart)), width, Math.min(0.6 * width, 300), true);
+      Object.assign(spec, {width: width - 90, autosize: 'pad'});  // beside the axis; the whole is then scaled to its width
       const place = document.createElement('div');
       const {view} = await vegaEmbed(place, spec, {mode: 'vega-lite', renderer: 'svg', config: config(true),
                                                    actions: false, logLevel: vega.Error, patch: withWords});
@@ -339,6 +339,18 @@
     unfolded.forEach((details) => (details.open = true));
     await Promise.all(figures.map((figure) => draw(figure, 680)));
     print();
+  });
+
+  // The slider of a run's steps: its pictures, and the tractions.
+  const slider = document.querySelector('.slider input'), step = document.querySelector('#step-tractions select');
+  if (step) step.parentElement.hidden = true;
+  slider?.addEventListener('input', () => {
+    const steps = [...document.querySelectorAll('.step')];
+    steps.forEach((place, i) => (place.hidden = i !== Number(slider.value)));
+    slider.nextElementSibling.textContent = steps[slider.value].dataset.words;
+    if (!step) return;
+    step.value = steps[slider.value].dataset.words;
+    step.dispatchEvent(new Event('change', {bubbles: true}));
   });
 
   // Each table can be taken along.

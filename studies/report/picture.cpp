@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <tuple>
 #include <vector>
 
 #include "studies/io/wording.hpp"
@@ -204,7 +206,60 @@ std::optional<Scene> scene_of(const json& picture) { return picture.is_object() 
 /// The height at which the whole fills a width.
 double height_of(const Scene& scene, double wide) { return wide * scene.whole.height() / scene.whole.width(); }
 
+/// How many points are in each state: "step 2, t = 0.5: 3 open, 1 slip".
+std::string states_at(long step, double time, const std::vector<ContactPoint>& contact) {
+  std::map<std::string, long> count;
+  for (const auto& point : contact) ++count[point.state];
+  std::string out = (step == 0 ? std::string("start") : fmt::format("step {}", step)) + ", t = " + number(time, 4);
+  for (const auto& [state, n] : count)
+    out += fmt::format("{} {} {}", out.find(':') == std::string::npos ? ":" : ",", n, state);
+  return out;
+}
+
+/// The places of the frames that are drawn: of many some, evenly, the last among them.
+std::vector<std::size_t> drawn_frames(std::size_t frames, std::size_t elements) {
+  constexpr std::size_t most = 40, most_elements = 40'000;  // of all: some 3 MB of a page
+  const std::size_t room = std::clamp<std::size_t>(most_elements / std::max<std::size_t>(elements, 1), 2, most);
+  const std::size_t stride = (frames + room - 1) / room;
+  std::vector<std::size_t> out;
+  for (std::size_t i = frames == 0 ? 0 : (frames - 1) % stride; i < frames; i += stride) out.push_back(i);
+  return out;
+}
+
 }  // namespace
+
+std::vector<StepPicture> draw_steps(const json& picture) {
+  const json& frames = array_at(picture, "frames");
+  json bodies = picture.is_object() ? picture : json::object();
+  for (const char* key : {"frames", "paths"}) bodies.erase(key);
+  std::vector<std::pair<const json*, Scene>> scenes;
+  for (const std::size_t i : drawn_frames(frames.size(), array_at(picture, "elements").size())) {
+    bodies.update(frames[i]);
+    if (auto scene = lay_out(bodies)) scenes.emplace_back(&frames[i], *std::move(scene));
+  }
+  if (scenes.size() < 2) return {};
+  Box whole;
+  double peak = 0, scale = scenes.front().second.scale;
+  for (const auto& [frame, scene] : scenes) {
+    whole.add(scene.whole.min);
+    whole.add(scene.whole.max);
+    peak = std::max(peak, scene.peak);
+    scale = std::min(scale, scene.scale);  // of the largest displacements
+  }
+  constexpr double canvas = 640, lowest = 160, highest = 330;
+  std::vector<StepPicture> out;
+  for (auto& [frame, scene] : scenes) {
+    std::tie(scene.whole, scene.peak, scene.scale, scene.zooms) = std::tuple(whole, peak, scale, false);
+    const double time = number_at(*frame, "time");
+    const double height = std::clamp(height_of(scene, canvas), lowest, highest);
+    const long step = std::lround(number_at(*frame, "step"));
+    out.push_back({step, states_at(step, time, scene.contact),
+                   draw(scene, array_at(*frame, "obstacles"),
+                        {"step", "Step at t = " + number(time, 6), canvas, canvas, height, 0, 0, 1500})
+                       .drawing});
+  }
+  return out;
+}
 
 bool needs_close_up(const json& picture) {
   const auto scene = scene_of(picture);

@@ -3,6 +3,8 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "studies/report/charts.hpp"
 
@@ -18,5 +20,16 @@ bool needs_close_up(const nlohmann::json& picture);
 
 /// The same for half the width of a page, with the close-up only where the bodies leave room beside them.
 std::optional<Plate> draw_overview(const nlohmann::json& picture);
+
+/// A step of a run, the states of its points, and a drawing.
+struct StepPicture {
+  long step;          ///< its number; 0: the start
+  std::string words;  ///< "step 2, t = 0.5: 3 open, 1 slip"
+  Drawing drawing;
+};
+
+/// The steps that picture.json has as `frames`, all in one window and at one scale; of many as many as a page holds, the
+/// last among them.
+std::vector<StepPicture> draw_steps(const nlohmann::json& picture);
 
 }  // namespace stickslip::report

@@ -15,6 +15,7 @@
 #include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
 #include "studies/report/picture.hpp"
+#include "studies/report/steps.hpp"
 #include "studies/report/tables.hpp"
 
 namespace stickslip::report {
@@ -58,7 +59,7 @@ std::vector<std::pair<const char*, double>> states_of(const json& step, const st
 std::string steps_table(const Study& run) {
   const Cell& cell = run.cells.front();
   Table table;
-  table.header = {"time", "status", "Newton", "augmentations", "cutbacks", "worst KKT measure"};
+  table.header = {"time", "status", "Newton", "in the history", "augmentations", "cutbacks", "worst KKT measure"};
   const json& steps = array_at(cell.record, "steps");
   if (steps.empty()) return "";
   constexpr std::size_t most_apart = 3;  // of more contacts the states of each share a column
@@ -81,9 +82,13 @@ std::string steps_table(const Study& run) {
     double worst = 0;
     for (const auto& [measure, value] : object_at(step, "kkt").items())
       if (value.is_number()) worst = std::max(worst, value.get<double>());
-    std::vector<std::string> row = {number(number_at(step, "time"), 6), in_plain_words(text_at(step, "status")),
-                                    whole(number_at(step, "newton")),   whole(number_at(step, "augmentations")),
-                                    whole(number_at(step, "cutbacks")), number(worst)};
+    std::vector<std::string> row = {number(number_at(step, "time"), 6),
+                                    in_plain_words(text_at(step, "status")),
+                                    whole(number_at(step, "newton")),
+                                    whole(static_cast<double>(array_at(step, "history").size())),
+                                    whole(number_at(step, "augmentations")),
+                                    whole(number_at(step, "cutbacks")),
+                                    number(worst)};
     for (const auto& [contact, frictionless] : contacts) {
       std::string counts;
       for (const auto& [state, points] : states_of(step, contact, frictionless)) {
@@ -96,7 +101,10 @@ std::string steps_table(const Study& run) {
     const std::string status = text_at(step, "status");
     table.row_classes.emplace_back(status.starts_with("converged") ? "" : "failed");
   }
-  return compact_html(table, "Steps");
+  return "<p class=\"note\">Newton counts the iterations of all tries of a step. Its history has those of the last "
+         "try, and "
+         "once more the state that each augmentation starts from.</p>\n" +
+         compact_html(table, "Steps");
 }
 
 /// Of a parameter the largest of its derivatives, each over its response: what is next to nothing beside it is
@@ -212,7 +220,8 @@ std::string first_of_run(const Study& run, Figures& figures) {
 std::vector<Section> sections_of_run(const Study& run, Figures& figures) {
   auto derivatives = derivative_histories(run, first_choice(response_histories(run), "response"));
   if (derivatives) derivatives->folded.clear();
-  std::string solution = figures.beside(std::move(derivatives), film_of_states(run));
+  std::string solution = steps_of_run(run, figures);
+  solution += figures.beside(std::move(derivatives), film_of_states(run));
   if (needs_close_up(run.picture)) solution += figures.show(draw_picture(run.picture));
   solution += figures.show(tractions(run));
   auto convergence = convergence_histories(run);

@@ -191,11 +191,11 @@ Matrix<double> element_plastic_strain(const Problem& problem, const State<double
   return Eigen::Map<const Vector<double>>(means.data(), static_cast<Eigen::Index>(means.size())).transpose();
 }
 
-VtuData fields_of(const CaseResult& result, const StepResult& step, bool last) {
+VtuData fields_of(const CaseResult& result, const State<double>& state, double time, bool last) {
   const auto& problem = *result.problem;
   const auto& model = problem.model;
   VtuData data;
-  data.time = step.increment->time;
+  data.time = time;
   data.points.resize(model.dimension, 0);
   Matrix<double> body_index(1, 0);
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
@@ -204,7 +204,6 @@ VtuData fields_of(const CaseResult& result, const StepResult& step, bool last) {
     body_index.conservativeResize(1, static_cast<Eigen::Index>(data.cells.size()));
     body_index.rightCols(body.mesh.element_count()).setConstant(static_cast<double>(b));
   }
-  const auto& state = step.increment->state;
   data.point_fields.push_back({"displacement", nodal(model, state.displacement)});
   if (model.effects.contact) append_contact_fields(data, problem, state);
   const auto& derivative = result.gradients.last_displacement;
@@ -242,7 +241,30 @@ std::vector<std::size_t> steps_with_fields(const CaseResult& result, int every) 
   return steps;
 }
 
-std::string field_file(std::size_t step) { return fmt::format("fields_{:04}.vtu", step + 1); }
+/// Of a step, from 1 on; 0: of the start.
+std::string field_file(std::size_t number) { return fmt::format("fields_{:04}.vtu", number); }
+std::string obstacle_file(std::size_t number) { return fmt::format("obstacles_{:04}.vtu", number); }
+
+/// A time whose fields are written.
+struct Moment {
+  std::size_t number;  ///< of the step, from 1 on; 0: the start
+  double time;
+  const State<double>& state;
+};
+
+std::vector<Moment> moments_of(const CaseResult& result, int every) {
+  std::vector<Moment> out;
+  if (every > 0 && !solved_steps(result).empty()) out.push_back({0, 0, result.trajectory.initial});
+  for (const std::size_t n : steps_with_fields(result, every))
+    out.push_back({n + 1, result.steps[n].increment->time, result.steps[n].increment->state});
+  return out;
+}
+
+/// Whether the obstacles are written beside the fields: of several moments, in the plane.
+bool has_obstacle_files(const CaseResult& result, int every) {
+  const auto& scene = result.problem->model.scene;
+  return every > 0 && !scene.obstacles.empty() && result.problem->model.dimension == 2;
+}
 
 /// The shape at the start, and what it moved by until `time`: a displacement, and where it rotates an angle in degrees
 /// about a center.
@@ -258,6 +280,73 @@ json obstacle_json(const Obstacle& obstacle, double time, bool finite, const Num
   }
   if (!obstacle.move.empty() || obstacle.rotate) shape.begin().value()["moved"] = moved;
   return shape;
+}
+
+/// Where the outline of an obstacle is at the start, of a plane as much as lies beside the bodies.
+std::vector<Eigen::Vector2d> outline_of(const json& kind, const json& shape, const Points<double>& bodies) {
+  const auto point = [](const json& x) { return Eigen::Vector2d(x[0], x[1]); };
+  std::vector<Eigen::Vector2d> out;
+  if (kind == "plane") {
+    const Eigen::Vector2d at = point(shape["point"]), n = point(shape["normal"]).normalized(), along(n.y(), -n.x());
+    const Eigen::VectorXd s = along.transpose() * (bodies.colwise() - at);
+    const double room = s.maxCoeff() - s.minCoeff();
+    for (const double end : {s.minCoeff() - room, s.maxCoeff() + room}) out.emplace_back(at + end * along);
+  } else if (kind == "circle") {
+    constexpr int sides = 128;  // off the circle by 3e-4 of its radius
+    for (int i = 0; i <= sides; ++i) {
+      const double angle = 2 * std::acos(-1.0) * i / sides;
+      out.emplace_back(point(shape["center"]) +
+                       shape["radius"].get<double>() * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+    }
+  } else {
+    for (const auto& vertex : shape["points"]) out.push_back(point(vertex));
+  }
+  return out;
+}
+
+/// What a point of an obstacle moved by: by + (R - I) (X - center), linear in the angle at small strain.
+Eigen::Vector2d moved_by(const json& moved, const Eigen::Vector2d& x) {
+  const auto vector = [](const json& v) { return Eigen::Vector2d(v[0], v[1]); };
+  if (moved.is_null()) return Eigen::Vector2d::Zero();
+  if (!moved.contains("center")) return vector(moved["by"]);
+  const Eigen::Vector2d arm = x - vector(moved["center"]), across(-arm.y(), arm.x());
+  const double angle = moved["degrees"].get<double>() * std::acos(-1.0) / 180;
+  if (!moved.value("finite", false)) return vector(moved["by"]) + angle * across;
+  return vector(moved["by"]) + (std::cos(angle) - 1) * arm + std::sin(angle) * across;
+}
+
+/// The obstacles as lines at the start, with their displacement.
+VtuData obstacles_of(const Problem& problem, double time) {
+  const auto& scene = problem.model.scene;
+  VtuData data;
+  data.time = time;
+  std::vector<Eigen::Vector2d> points, displacements;
+  std::vector<double> owner;
+  for (std::size_t o = 0; o < scene.obstacles.size(); ++o) {
+    const json drawn = obstacle_json(scene.obstacles[o], time, scene.finite_strain, problem.slots.numbers);
+    const auto outline = outline_of(drawn.begin().key(), drawn.begin().value(), problem.slots.points);
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      if (i > 0) {
+        data.cells.push_back(VtuCell::line);
+        const int last = static_cast<int>(points.size());
+        data.connectivity.insert(data.connectivity.end(), {last - 1, last});
+        owner.push_back(static_cast<double>(o));
+      }
+      points.push_back(outline[i]);
+      displacements.push_back(moved_by(drawn.begin().value().value("moved", json()), outline[i]));
+    }
+  }
+  const auto columns = [](const std::vector<Eigen::Vector2d>& list) {
+    Matrix<double> out(2, static_cast<Eigen::Index>(list.size()));
+    for (std::size_t i = 0; i < list.size(); ++i) out.col(static_cast<Eigen::Index>(i)) = list[i];
+    return out;
+  };
+  data.points = columns(points);
+  data.point_fields.push_back({"displacement", columns(displacements)});
+  data.cell_fields.push_back(
+      {"obstacle",
+       Eigen::Map<const Vector<double>>(owner.data(), static_cast<Eigen::Index>(owner.size())).transpose()});
+  return data;
 }
 
 /// Nodes of all bodies, what moved and stresses them, and their elements by nodes.
@@ -347,11 +436,14 @@ Vector<double> traction_vector(const Problem& problem, const State<double>& stat
 
 void for_each_field(const CaseResult& result, int every, const std::function<void(std::string, std::string)>& take) {
   std::vector<PvdEntry> entries;
-  for (const std::size_t n : steps_with_fields(result, every)) {
-    const std::string file = field_file(n);
-    take(file, vtu_text(fields_of(result, result.steps[n], n + 1 == solved_steps(result).size())));
-    const bool may_return = result.problem->model.scene.arc_length.has_value();  // (viewers put times in order)
-    entries.push_back({may_return ? static_cast<double>(n + 1) : result.steps[n].increment->time, file});
+  const bool may_return = result.problem->model.scene.arc_length.has_value();  // (viewers put times in order)
+  for (const auto& [number, time, state] : moments_of(result, every)) {
+    const double shown = may_return ? static_cast<double>(number) : time;
+    take(field_file(number), vtu_text(fields_of(result, state, time, number == solved_steps(result).size())));
+    entries.push_back({shown, field_file(number)});
+    if (!has_obstacle_files(result, every)) continue;
+    take(obstacle_file(number), vtu_text(obstacles_of(*result.problem, time)));
+    entries.push_back({shown, obstacle_file(number), 1});
   }
   take("fields.pvd", pvd_text(entries));
 }
@@ -363,7 +455,10 @@ void write_fields(const std::filesystem::path& directory, const CaseResult& resu
 
 std::vector<std::string> field_files(const CaseResult& result, int every) {
   std::vector<std::string> files{"fields.pvd"};
-  for (const std::size_t n : steps_with_fields(result, every)) files.push_back(field_file(n));
+  for (const auto& moment : moments_of(result, every)) {
+    files.push_back(field_file(moment.number));
+    if (has_obstacle_files(result, every)) files.push_back(obstacle_file(moment.number));
+  }
   return files;
 }
 
@@ -394,7 +489,7 @@ json paths_json(const CaseResult& result) {
 
 }  // namespace
 
-json picture_json(const CaseResult& result) {
+json picture_json(const CaseResult& result, int every) {
   if (result.steps.empty()) return nullptr;
   const auto& problem = *result.problem;
   const auto& scene = problem.model.scene;
@@ -405,9 +500,24 @@ json picture_json(const CaseResult& result) {
   picture["contact"] = contact_json(problem, state);
   if (json paths = paths_json(result); !paths.empty()) picture["paths"] = std::move(paths);
   if (scene.finite_strain) picture["finite"] = true;  // it is drawn at true scale
-  picture["obstacles"] = json::array();
-  for (const auto& obstacle : scene.obstacles)
-    picture["obstacles"].push_back(obstacle_json(obstacle, time, scene.finite_strain, problem.slots.numbers));
+  const auto obstacles_at = [&](double t) {
+    json out = json::array();
+    for (const auto& obstacle : scene.obstacles)
+      out.push_back(obstacle_json(obstacle, t, scene.finite_strain, problem.slots.numbers));
+    return out;
+  };
+  picture["obstacles"] = obstacles_at(time);
+  if (every > 0)
+    for (const auto& moment : moments_of(result, every)) {
+      const json bodies = bodies_json(problem, moment.state);
+      picture["frames"].push_back({{"step", moment.number},
+                                   {"time", moment.time},
+                                   {"displacement", bodies["displacement"]},
+                                   {"von_mises", bodies["von_mises"]},
+                                   {"contact", contact_json(problem, moment.state)},
+                                   {"obstacles", obstacles_at(moment.time)}});
+      if (bodies.contains("plastic_strain")) picture["frames"].back()["plastic_strain"] = bodies["plastic_strain"];
+    }
   picture["responses"] = json::object();
   for (const auto& response : scene.responses) picture["responses"][response.name] = name_of(response.kind);
   return picture;

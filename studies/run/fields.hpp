@@ -12,10 +12,11 @@
 namespace stickslip {
 
 /// What the names of the files of fields are.
-inline constexpr const char* field_names[] = {"fields.pvd", "fields_#.vtu"};
+inline constexpr const char* field_names[] = {"fields.pvd", "fields_#.vtu", "obstacles_#.vtu"};
 
 /// Gives name and content of fields_NNNN.vtu for every `every`-th step and the last one (0: the last alone), and of
-/// fields.pvd.
+/// fields.pvd. Of several steps there is the start too, as fields_0000.vtu, and in the plane the obstacles of each as
+/// obstacles_NNNN.vtu, a block of their own with the same displacement field.
 /// Point fields: displacement, contact_state (-1: no contact point, 0 open, 1 stick, 2 slip), contact_pressure,
 /// contact_traction (force per area on the slave), gap (no number where a node is no slave, or faces nothing),
 /// contact_force (nodal forces of all contacts on both sides); at the last step d_displacement_d_NAME per parameter.
@@ -41,7 +42,8 @@ Vector<double> traction_vector(const Problem& problem, const State<double>& stat
 std::vector<double> mean_plastic_strains(const Problem& problem, const State<double>& state, int body);
 
 /// The last step as the report's picture: points, elements, displacement, von Mises stress, contact points, obstacles
-/// as at the start with what they moved by since, and the kinds of the responses by name.
-nlohmann::json picture_json(const CaseResult& result);
+/// as at the start with what they moved by since, and the kinds of the responses by name. `every`: as for_each_field;
+/// of several steps, `frames` has what differs in each.
+nlohmann::json picture_json(const CaseResult& result, int every = 0);
 
 }  // namespace stickslip

@@ -346,15 +346,15 @@ LedgerRow sparse_row(const Size& n, const Factors& factors) {
           on ? not_apart : 0};
 }
 
-/// Steps whose fields are written.
+/// Steps whose fields are written; of several, the start too.
 double field_steps(const OutputOptions& output, double steps) {
   switch (output.fields) {
     case OutputOptions::Fields::last:
       return std::min(steps, 1.0);
     case OutputOptions::Fields::all:
-      return steps;
+      return steps + 1;
     case OutputOptions::Fields::every:
-      return std::ceil(steps / output.every);
+      return std::ceil(steps / output.every) + 1;
   }
   return 0;
 }
@@ -382,14 +382,16 @@ LedgerRow files_row(const Input& input, const Model& model, const Size& n) {
   double connectivity = 0;
   for (const auto& body : model.bodies) connectivity += static_cast<double>(body.mesh.connectivity.size());
   const double numbers = (6 + of_contact * sets) * model.node_count + connectivity + 10 * element_count(model);
-  const double bytes =
-      files * (head + base64 * real_bytes * numbers) + base64 * real_bytes * 3 * n.parameters * model.node_count;
+  const bool of_obstacles = input.output.fields != OutputOptions::Fields::last && !model.scene.obstacles.empty() &&
+                            model.dimension == 2;  // some kilobytes each, beside those of the bodies
+  const double bytes = files * ((of_obstacles ? 2 : 1) * head + base64 * real_bytes * numbers) +
+                       base64 * real_bytes * 3 * n.parameters * model.node_count;
   const double solution = n.whole < n.states ? 0 : solution_bytes(model, connectivity, n.steps);  // (states let go)
   return {"output",
           true,
           {},
           {{"fields", bytes, within * n.path}, {"solution", solution, within * n.path}, {"picture", 0}, {"trace", 0}},
-          {{"files", files + (solution > 0 ? 2 : 1),
+          {{"files", (of_obstacles ? 2 : 1) * files + (solution > 0 ? 2 : 1),
             input.output.fields == OutputOptions::Fields::last ? exactly : n.path}},
           not_apart};
 }

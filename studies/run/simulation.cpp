@@ -12,7 +12,6 @@
 #include "studies/run/solution_file.hpp"
 
 namespace stickslip {
-namespace {
 
 int fields_every(const OutputOptions& output) {
   switch (output.fields) {
@@ -25,6 +24,8 @@ int fields_every(const OutputOptions& output) {
   }
   return 0;
 }
+
+namespace {
 
 /// What the bodies and their contact need, by sparse matrices.
 ProblemSize size_without_steps(const Model& model) {
@@ -119,8 +120,8 @@ OutputFolder folder_of_run(const std::filesystem::path& directory, const std::ve
 }
 
 void remove_run(const std::filesystem::path& directory) {
-  remove_outputs(directory, {"result.json", "solution.json", "fields.pvd", "fields_#.vtu", "picture.json",
-                             "certificate.json", "report.html", "figures/*", "trace.csv", "cones.svg"});
+  remove_outputs(directory, {"result.json", "solution.json", "fields.pvd", "fields_#.vtu", "obstacles_#.vtu",
+                             "picture.json", "certificate.json", "report.html", "figures/*", "trace.csv", "cones.svg"});
 }
 
 /// Writes solution.json, or nothing where it would be too large; returns what result.json says of it.

@@ -349,6 +349,44 @@ TEST(Fields, AFrictionlessPointTouchesAndDoesNotSlip) {
   for (const auto& state : interface["under"]["state"]) EXPECT_NE(state, "slip");
 }
 
+/// Of several steps there is the start, and the obstacles in a block of their own that moves with its displacement.
+TEST(Fields, OfSeveralStepsHaveTheStartAndTheObstacles) {
+  json scene = disk_between_plates();
+  scene["obstacles"]["low"]["rotate"] = {{"center", {0, -1}}, {"angle", {{0, 0}, {1, 0.1}}}};
+  const auto result = cases::run(scene, {{"monolithic_al", json::object()}}, "disk.json");
+  std::map<std::string, std::string> files;
+  for_each_field(result, 1, [&](const std::string& name, const std::string& text) { files[name] = text; });
+  const std::size_t steps = result.steps.size();
+  ASSERT_EQ(files.size(), 2 * (steps + 1) + 1);
+  EXPECT_EQ(field_files(result, 1).size(), files.size());
+  EXPECT_EQ(vtu::array_named(files["fields_0000.vtu"], "TimeValue").values<double>(), std::vector<double>{0});
+  for (const double u : vtu::array_named(files["fields_0000.vtu"], "displacement").values<double>()) EXPECT_EQ(u, 0);
+  const std::string last = files["obstacles_000" + std::to_string(steps) + ".vtu"];
+  const auto points = vtu::array_named(last, "Points").values<double>();
+  const auto moved = vtu::array_named(last, "displacement").values<double>();
+  const auto owner = vtu::array_named(last, "obstacle").values<double>();
+  ASSERT_EQ(owner, (std::vector<double>{0, 1}));  // a line each
+  const double turn = 0.1 * std::acos(-1.0) / 180;
+  for (std::size_t i = 0; i < 2; ++i) {  // the low plate, y = -1, turns about (0, -1)
+    EXPECT_EQ(points[3 * i + 1], -1);
+    EXPECT_NEAR(moved[3 * i + 1], turn * points[3 * i], 1e-15);
+    EXPECT_EQ(moved[6 + 3 * i + 1], -0.05);
+  }
+  EXPECT_NE(files["fields.pvd"].find("part=\"1\" file=\"obstacles_0000.vtu\""), std::string::npos);
+  EXPECT_EQ(field_files(result, 0).size(), 2u);  // of the last step alone as ever
+}
+
+/// What differs from step to step is in the picture where the steps' fields are kept.
+TEST(Fields, APictureHasTheStepsThatWereKept) {
+  const auto result = cases::run(disk_between_plates(), {{"monolithic_al", json::object()}}, "disk.json");
+  EXPECT_FALSE(picture_json(result).contains("frames"));
+  const json picture = picture_json(result, 1);
+  ASSERT_EQ(picture["frames"].size(), result.steps.size() + 1);
+  EXPECT_EQ(picture["frames"][0]["time"], 0);
+  for (const char* part : {"displacement", "von_mises", "contact", "obstacles"})
+    EXPECT_EQ(picture["frames"].back()[part], picture[part]) << part;
+}
+
 TEST(Fields, APictureSaysWhatItsObstaclesMovedBy) {
   json scene = disk_between_plates();
   scene["obstacles"]["low"]["rotate"] = {{"center", {0, -1}}, {"angle", {{0, 0}, {1, 0.1}}}};

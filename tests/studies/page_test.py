@@ -107,6 +107,19 @@ FOR_A_PAPER = """
   await until(() => saved.length > 1);
   return {code, wide: place.querySelector('pre').textContent, svg: await saved[0].text()};
 """
+STEPS = """
+  const slider = document.querySelector('.slider input'), steps = all('.step'),
+      tractions = document.getElementById('step-tractions');
+  const places = () => all('g.mark-symbol.role-mark path', tractions).map((path) => seen(path).top - seen(tractions).top).join();
+  tractions.scrollIntoView();
+  await until(() => drawn(tractions).length && places());
+  const last = places();
+  slider.value = 2;
+  slider.dispatchEvent(new Event('input'));
+  await until(() => places() !== last);
+  return {first: places(), last, words: document.querySelector('.slider output').textContent,
+          shown: steps.flatMap((step, i) => seen(step).height > 0 ? [i] : [])};
+"""
 
 
 class Browser:
@@ -233,6 +246,23 @@ def check_page(browser):
     check_contrasts("dark", browser.run(CONTRASTS))
 
 
+def check_steps(browser):
+    """The slider of a run shows one step at a time, with its tractions."""
+    browser.open(1200)
+    found = browser.run(STEPS)
+    check("steps", found["first"] != found["last"] and found["words"].startswith("step 2, t = 1: ") and
+          found["shown"] == [2], found)
+
+
+def run_with_steps(program, source, folder):
+    """A run of a shipped scene whose steps are kept."""
+    text = (source / "studies/scenes/ironing.json").read_text()
+    scene = folder / "ironing.json"
+    scene.write_text(text.replace('"method":', '"output": {"fields": "all"}, "method":'))
+    subprocess.run([program, "run", scene, "-o", folder / "run", "--report"], check=True, capture_output=True)
+    return folder / "run" / "report.html"
+
+
 def main():
     program, source = sys.argv[1], pathlib.Path(sys.argv[2])
     chromium = next(filter(None, map(shutil.which, BROWSERS)), None)
@@ -246,6 +276,8 @@ def main():
         browser = Browser(chromium, pathlib.Path(folder) / "profile", (study / "report.html").as_uri())
         try:
             check_page(browser)
+            browser.page = run_with_steps(program, source, pathlib.Path(folder)).as_uri()
+            check_steps(browser)
         finally:
             browser.close()
 

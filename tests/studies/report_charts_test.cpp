@@ -1,7 +1,10 @@
 /// Where methods work, profiles and films: charts of all runs of a study.
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 
 #include "studies/report/charts.hpp"
+#include "studies/report/colors.hpp"
+#include "studies/report/embedded.hpp"
 #include "studies/report/html.hpp"
 #include "tests/studies/recorded_study.hpp"
 #include "tests/support/largest.hpp"
@@ -242,6 +245,29 @@ TEST_F(ReportCharts, ThereIsNoFilmOfOnePointOrOneStepOrOfABrokenRecord) {
     record(description(), cells);
     EXPECT_FALSE(report::film_of_states(study())) << film;
   }
+}
+
+/// Curves stand out from white paper and from dark paper, each further one of a method too.
+TEST_F(ReportCharts, CurvesStandOutFromBothPapers) {
+  std::vector<json> cells;
+  for (const char* family : {"penalty", "uzawa_al", "monolithic_al", "fourth", "fifth", "sixth"})
+    for (int option = 0; option < 6; ++option)
+      for (const double tolerance : {1e-4, 1e-8}) {
+        cells.push_back(cell(family, {{"option", option}, {"tolerance", tolerance}}, tolerance, 10 + option));
+        cells.back()["label"] = fmt::format("{} option={} tolerance={}", family, option, tolerance);
+      }
+  record(description(), cells);
+  const auto figure = report::work_precision(study(), report::Against::same_mesh, report::Of::responses);
+  ASSERT_TRUE(figure);
+  EXPECT_EQ(figure->series.size(), 36u);
+  constexpr double of_graphics = 3;  // [WCAG 2.1, 1.4.11]
+  for (const auto& series : figure->series) {
+    EXPECT_GE(report::contrast(series.color, report::light_paper), of_graphics) << series.name;
+    EXPECT_GE(report::contrast(report::on_dark(series.color), report::dark_paper), of_graphics) << series.name;
+  }
+  EXPECT_NEAR(report::contrast("#000000", "#ffffff"), 21, 1e-12);
+  for (const std::string_view paper : {report::light_paper, report::dark_paper})
+    EXPECT_NE(std::string(report::embedded::page_css()).find("--paper: " + std::string(paper)), std::string::npos);
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ using recorded::in_two_scenes;
 using recorded::json;
 using recorded::three_methods;
 using recorded::with_failure;
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
@@ -86,7 +87,7 @@ TEST_F(ReportFiles, EveryFigureIsAFileInThreeFormats) {
     EXPECT_THAT(svg, HasSubstr("<desc>")) << stem;
     EXPECT_THAT(svg, Not(HasSubstr("var(--"))) << stem << ": a file has no page to take its colours from";
     EXPECT_THAT(svg, Not(HasSubstr("nan"))) << stem;
-    EXPECT_THAT(file(stem + ".pgf"), testing::EndsWith("\\end{pgfpicture}%\n\\endgroup%\n")) << stem;
+    EXPECT_THAT(file(stem + ".pgf"), testing::EndsWith("\\endgroup%\n")) << stem;
   }
   EXPECT_THAT(file("windows-stiffness.csv"),
               testing::StartsWith("series,status,automatic,error,iterations,iterations_over_least,option_value\r\n"
@@ -112,11 +113,46 @@ TEST(ReportDrawing, PgfHasItsTextsAsLatexSetsThem) {
   drawing.text(20, 40, "50 % of {a_b}", {report::Anchor::end, 12, "#D55E00"});
   drawing.line(0, 0, 200, 100, {"ink", "", 2, {4, 2}});
   const std::string pgf = drawing.pgf();
-  EXPECT_THAT(pgf, HasSubstr("\\pgftext[right,base,x=15bp,y=45bp]"));
+  EXPECT_THAT(pgf, HasSubstr("\\pgftext[right,base,x=20\\stickslipunit,y=60\\stickslipunit]"));
   EXPECT_THAT(pgf, HasSubstr("50 \\% of \\{a\\_b\\}}"));
   EXPECT_THAT(pgf, HasSubstr("\\definecolor{stickslip}{HTML}{D55E00}"));
-  EXPECT_THAT(pgf, HasSubstr("\\pgfpathmoveto{\\pgfpoint{0bp}{75bp}}%\n\\pgfpathlineto{\\pgfpoint{150bp}{0bp}}"));
-  EXPECT_THAT(pgf, HasSubstr("\\pgfsetdash{{3bp}{1.5bp}}{0bp}"));
+  EXPECT_THAT(pgf, HasSubstr("\\pgfpathmoveto{\\pgfpoint{0\\stickslipunit}{100\\stickslipunit}}%\n"
+                             "\\pgfpathlineto{\\pgfpoint{200\\stickslipunit}{0\\stickslipunit}}"));
+  EXPECT_THAT(pgf, HasSubstr("\\pgfsetdash{{4\\stickslipunit}{2\\stickslipunit}}{0pt}"));
+}
+
+/// As wide as the line, and below 120 mm laid out for one column.
+TEST(ReportDrawing, PgfIsAsWideAsTheLine) {
+  report::Drawing wide(640, 100, "wide", ""), narrow(320, 100, "narrow", "");
+  EXPECT_THAT(wide.pgf(), AllOf(HasSubstr("\\stickslipunit=\\linewidth\\divide\\stickslipunit by 640%"),
+                                Not(HasSubstr("\\ifdim"))));
+  const std::string both = wide.pgf(&narrow);
+  EXPECT_LT(both.find("\\ifdim\\linewidth<120mm"), both.find("by 320%"));
+  EXPECT_LT(both.find("by 320%"), both.find("\\else"));
+  EXPECT_LT(both.find("\\else"), both.find("by 640%"));
+}
+
+TEST(ReportDrawing, PgfRaisesPowers) {
+  EXPECT_EQ(report::tex_text("2·10⁻¹⁵ & 10³"), "2·10\\textsuperscript{-15} \\& 10\\textsuperscript{3}");
+}
+
+/// Names stand side by side below a chart, which leaves three quarters of the height or more to the curves.
+TEST_F(ReportFiles, LegendsTakeLessThanAQuarterOfTheHeight) {
+  auto cells = three_methods();
+  for (const double scale : {1.0, 10.0, 100.0})
+    for (const double tolerance : {1e-4, 1e-8})
+      cells.push_back(recorded::cell("uzawa_al", {{"scale", scale}, {"tolerance", tolerance}}, tolerance, 20));
+  record(description(), cells);
+  page();
+  const std::string svg = file("first.svg");
+  const double height = std::stod(svg.substr(svg.find("height=\"") + 8));
+  EXPECT_LT(height - 336, height / 4);  // the title of the axis is at 336
+}
+
+TEST_F(ReportFiles, TicksArePowersOfTen) {
+  record(description(), three_methods());
+  page();
+  EXPECT_THAT(file("first.svg"), AllOf(HasSubstr(">10⁻⁶<"), Not(HasSubstr(">1e-6<"))));
 }
 
 TEST_F(ReportFiles, FiguresHoldWhatThePagesChartsShow) {
@@ -130,13 +166,13 @@ TEST_F(ReportFiles, FiguresHoldWhatThePagesChartsShow) {
 }
 
 TEST(ReportAxis, DoesNotMagnifyRounding) {
-  const report::Axis rounding(5.23428663391, 5.23428663392, false, 0, 100), change(5.23, 5.24, false, 0, 100);
+  const report::Axis rounding(5.23428663391, 5.23428663392, false, 0, 300), change(5.23, 5.24, false, 0, 300);
   EXPECT_LE(rounding.ticks().front(), 3);
   EXPECT_GE(rounding.ticks().back(), 7);
   EXPECT_GT(change.ticks().front(), 5.2);
-  const report::Axis seventh_digit(5.234286, 5.234287, false, 0, 100);  // a page has six
+  const report::Axis seventh_digit(5.234286, 5.234287, false, 0, 300);  // a page has six
   EXPECT_LE(seventh_digit.ticks().front(), 3);
-  const report::Axis nothing(0, 0, false, 0, 100);
+  const report::Axis nothing(0, 0, false, 0, 300);
   EXPECT_EQ(nothing.ticks().front(), -1);
 }
 

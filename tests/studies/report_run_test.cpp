@@ -62,6 +62,32 @@ TEST_F(ReportOfARun, HasPictureHistoriesStatesAndValues) {
   EXPECT_TRUE(fs::exists(directory_ / "figures" / "response-histories.csv"));
 }
 
+/// A slider over the steps whose fields were kept, the last of them first.
+TEST_F(ReportOfARun, HasASliderOverTheStepsThatWereKept) {
+  const auto document = cases::load(scene_files / "ironing.json");
+  const auto result = cases::run(document, document["method"], scene_files / "ironing.json");
+  EXPECT_THAT(page_of(result), Not(HasSubstr("id=\"steps\"")));
+  json drawn = picture_json(result, 1);
+  drawn["interface"] = interface_json(result);
+  std::ofstream(directory_ / "picture.json") << drawn.dump();
+  const std::string html = written();
+  EXPECT_THAT(html, AllOf(HasSubstr("<input type=\"range\" autocomplete=\"off\" min=\"0\" max=\"6\" value=\"6\">"),
+                          HasSubstr("data-words=\"start, t = 0: "), HasSubstr("id=\"step-tractions\"")));
+  std::size_t pictures = 0, hidden = 0;
+  for (const auto& tag : recorded::tags_of(html))
+    if (tag.attributes.find("class=\"step drawn\"") != std::string::npos) {
+      ++pictures;
+      hidden += tag.attributes.ends_with(" hidden");
+    }
+  EXPECT_EQ(pictures, 7u);
+  EXPECT_EQ(hidden, 6u);
+}
+
+TEST_F(ReportOfARun, TheStepTableSaysHowManyIterationsTheHistoryHolds) {
+  EXPECT_THAT(page_of("ironing"),
+              AllOf(HasSubstr(">in the history</th>"), HasSubstr("Its history has those of the last try")));
+}
+
 // The total is of the solve and its derivatives; output comes on top of it.
 TEST_F(ReportOfARun, TellsTheSecondsOfTheSolveWhateverItsOutputTook) {
   page_of("belt");
@@ -217,7 +243,8 @@ TEST_F(ReportOfARun, WithoutASolutionShowsTheLastStepThatHasOneUnderABanner) {
   EXPECT_TRUE(document["objectives"]["J"]["value"].is_null());
   const json picture = picture_json(result);
   const auto& x = result.steps[0].increment->state.displacement;
-  EXPECT_EQ(field_files(result, 1), (std::vector<std::string>{"fields.pvd", "fields_0001.vtu"}));
+  EXPECT_EQ(field_files(result, 1), (std::vector<std::string>{"fields.pvd", "fields_0000.vtu", "obstacles_0000.vtu",
+                                                              "fields_0001.vtu", "obstacles_0001.vtu"}));
   EXPECT_EQ(film_json(result)["times"], json::parse("[0.5]"));
   EXPECT_NE(picture.dump().find(json(x[x.size() - 2]).dump()), std::string::npos);
   const std::string html = page_of(result);

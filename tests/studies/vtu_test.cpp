@@ -89,7 +89,9 @@ TEST_F(Vtu, FieldsComeBackBitByBit) {
   EXPECT_EQ(array_named(xml, "pressure").values<double>(), flat(data.point_fields[0].values));
   EXPECT_EQ(array_named(xml, "normal").values<double>(), flat(data.point_fields[2].values));
   EXPECT_EQ(array_named(xml, "stress").values<double>(), flat(data.cell_fields[0].values));
-  EXPECT_NE(array_named(xml, "stress").attributes.find("NumberOfComponents=\"6\""), std::string::npos);
+  EXPECT_NE(array_named(xml, "stress").attributes.find("NumberOfComponents=\"6\" ComponentName0=\"xx\""),
+            std::string::npos);
+  EXPECT_NE(array_named(xml, "stress").attributes.find("ComponentName5=\"xz\""), std::string::npos);
 }
 
 TEST_F(Vtu, AVectorInThePlaneIsPaddedWithZero) {
@@ -183,10 +185,10 @@ TEST_F(Vtu, BodiesAreAppendedWithTheirNodesAfterThoseBefore) {
 }
 
 TEST_F(Vtu, ACollectionListsItsFilesWithTimesThatReadBackExactly) {
-  const std::string xml = pvd_text({{0.1, "fields_1.vtu"}, {1.0 / 3, "a&b.vtu"}});
+  const std::string xml = pvd_text({{0.1, "fields_1.vtu"}, {1.0 / 3, "a&b.vtu", 1}});
   EXPECT_NE(xml.find("<VTKFile type=\"Collection\""), std::string::npos);
   EXPECT_NE(xml.find("timestep=\"0.1\" group=\"\" part=\"0\" file=\"fields_1.vtu\""), std::string::npos);
-  EXPECT_NE(xml.find("file=\"a&amp;b.vtu\""), std::string::npos);
+  EXPECT_NE(xml.find("part=\"1\" file=\"a&amp;b.vtu\""), std::string::npos);
   const std::size_t second = xml.find("timestep=\"", xml.find("fields_1.vtu")) + std::strlen("timestep=\"");
   EXPECT_EQ(std::strtod(xml.c_str() + second, nullptr), 1.0 / 3);
 }
