@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 #include <map>
 
 #include "studies/report/chart_parts.hpp"
@@ -33,6 +33,7 @@ json rows_of(const json& frame, const json& interface, const std::string& time) 
                       {"failed", false},
                       {"s", arc[i]},
                       {"order", arc[i]},
+                      {"unmarked", i % std::max<std::size_t>(arc.size() / 12, 1) != 0},  // a dozen markers a curve
                       {"value", value},
                       {"state", text_at(point, "state")}});
   }

@@ -7,7 +7,7 @@ from typing import Any, Optional
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.ticker import LogFormatter
+from matplotlib.ticker import LogFormatterSciNotation
 
 from stickslip import _arguments
 from stickslip._scene import Result
@@ -156,7 +156,7 @@ def work_precision(study: Table, of: str = "response", against: str = "enforceme
     ax.set(xscale="log", yscale="log", xlabel=units.get(work, work.replace("_", " ")),
            ylabel=f"relative error of the {of}", title=f"{against} error".capitalize())
     for which in (ax.xaxis.set_major_formatter, ax.xaxis.set_minor_formatter):
-        which(LogFormatter(labelOnlyBase=False, minor_thresholds=(2, 1)))
+        which(LogFormatterSciNotation(labelOnlyBase=False, minor_thresholds=(2, 1)))
     if any(error == EXACT for points in curves.values() for _, _, error, _ in points):
         ax.axhline(EXACT, color="k", linestyle=":", linewidth=1)
         ax.annotate("exactly 0", (0, EXACT), xycoords=("axes fraction", "data"), xytext=(4, 3),
