@@ -30,8 +30,9 @@ struct Quantity {
   std::string field;  ///< of the rows
   std::string title;  ///< "{FIELD}" stands for what the rows shown have there
   Spacing spacing = Spacing::linear;
-  double least_step = 0;  ///< between ticks: 1 of what is counted
-  bool bounded = false;   ///< nothing lies below its least value
+  double least_step = 0;    ///< between ticks: 1 of what is counted
+  bool bounded = false;     ///< nothing lies below its least value
+  std::string spread = {};  ///< field with the other end of a line that starts at the point: how far a value varies
 };
 
 /// Fields of the rows with the words at the ends of lines: their names, and values; without a name no words.

@@ -104,11 +104,9 @@ std::string behind_a_fold(const std::string& id, const std::string& title, const
 }
 
 json axis_json(const Quantity& quantity) {
-  return {{"field", quantity.field},
-          {"title", quantity.title},
-          {"log", quantity.spacing == Spacing::logarithmic},
-          {"step", quantity.least_step},
-          {"bounded", quantity.bounded}};
+  return {
+      {"field", quantity.field},     {"title", quantity.title},     {"log", quantity.spacing == Spacing::logarithmic},
+      {"step", quantity.least_step}, {"bounded", quantity.bounded}, {"spread", quantity.spread}};
 }
 
 /// What page.js draws a chart from.

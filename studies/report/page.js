@@ -109,6 +109,8 @@
       layer(curves, {type: 'line', strokeWidth: 2},
             {color, strokeDash: by('ordinal', (s) => s.dash), detail: {field: 'line'},
              order: {field: 'order', type: 'quantitative'}}, {name: 'lines'}),
+      layer(curves.filter((row) => row[chart.x.spread] > row[chart.x.field]), {type: 'rule', clip: true},
+            {color, x2: {field: chart.x.spread || 'none'}}),
       layer(curves.filter((row) => !row.unmarked), {type: 'point', filled: false, opacity: 1},
             {color, shape: by('nominal', (s) => s.shape), size: by('ordinal', (s) => s.size), tooltip,
              strokeWidth: {condition: {param: 'near', empty: false, value: 4}, value: 2}},

@@ -231,6 +231,8 @@ bool draw_series(const Frame& frame, const Chart& chart, const Series& series, E
     present = true;
     const auto [x, y] = place_of(frame, chart, *row);
     const bool failed = row->value("failed", false);
+    if (const std::string& spread = chart.x.spread; row->contains(spread))
+      drawing.line(x, y, std::min(frame.x(number_of(*row, spread)), frame.right), y, {color_of(series)});
     if (failed || !row->value("unmarked", false))
       drawing.path(marker(failed ? "failed" : series.shape, x, y), style_of(series, false));
   }

@@ -150,6 +150,7 @@ TEST_F(ReportVerdict, ShowsTheSpreadOfTimings) {
   const std::string verdict = verdict_of(description(), cells);
   EXPECT_THAT(row(verdict, "Monolithic AL")[0], HasSubstr("20–22 s"));
   EXPECT_THAT(verdict, HasSubstr("times: least–median"));
+  EXPECT_THAT(page(), HasSubstr("\"spread\":\"median\""));  // a line from each point in the charts against seconds
 }
 
 TEST_F(ReportVerdict, SaysWhatBesidesTheMethodErrs) {
