@@ -150,9 +150,10 @@ std::string of_solver(const Study& study, Figures& figures) {
 
 /// `study`: what of `all` is shown run by run.
 std::vector<Section> sections_of(const Study& all, const Study& study, Figures& figures) {
+  const std::string variant = study.main_variant.empty() ? "" : ": " + escape(study.main_variant);
   return {
       {"findings", "What came out", findings(all, study)},
-      {"solution", "The solution", of_solution(study, figures)},
+      {"solution", "The solution" + variant, of_solution(study, figures)},
       {"certificates", "Certificates", certificates_of_study(study)},
       {"responses", "Accuracy against cost: responses", of_errors(all, study, Of::responses, figures)},
       {"sensitivities", "Accuracy against cost: sensitivities", of_errors(all, study, Of::sensitivities, figures)},

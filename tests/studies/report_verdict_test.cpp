@@ -140,6 +140,8 @@ TEST_F(ReportVerdict, NamesItsVariant) {
   EXPECT_THAT(verdict, AllOf(HasSubstr("Response within 1&nbsp;% at friction = 0.3: "),
                              HasSubstr("Derivative within 1&nbsp;% at friction = 0.3: "),
                              HasSubstr("on the same mesh (friction = 0.3).")));
+  EXPECT_THAT(page(), AllOf(HasSubstr(">What accuracy costs: friction = 0.3</h3>"),
+                            HasSubstr(">The solution: friction = 0.3</h2>")));
 }
 
 /// How far seconds spread is said where a timing pass measured it.
