@@ -1,7 +1,7 @@
 /// What is tried for one increment, in which order, and what it ends in.
 ///
-///   1  rest      bodies that float are moved to rest (methods/rescue/motion.hpp): a singular tangent would send them
-///                anywhere
+///   1  rest      bodies that float are moved to rest, and with them all that supports alone do not hold
+///                (methods/rescue/motion.hpp): a singular tangent would send them anywhere
 ///   2  method    the method itself, from the last state. Its equilibria are sought by Newton's method, by the sequence
 ///                of linear problems, and by Newton's method again (methods/rescue/sequential.hpp). A solution ends the
 ///                search, unless there may be several; so does what supports drive into one another: infeasible
@@ -9,7 +9,7 @@
 ///   4  branches  of few points all combinations (methods/rescue/all_branches.hpp). If there is no solution:
 ///                no_equilibrium, or infeasible where points penetrate whatever bodies do. Else the method starts again
 ///                from the one in which the motion comes to rest
-///   5  motion    the overdamped motion from the last state to rest
+///   5  motion    the overdamped motion of all bodies from the last state to rest
 ///   6  branches  those of 4 where repeated constraints hide some, if nothing else was found
 ///
 /// A step that this leaves without a solution is cut (methods/stepping/solve.hpp). All that one step spends in vain,
@@ -73,7 +73,7 @@ class IncrementSearch {
 
   std::optional<Increment<T>> rest_of_floating_bodies() {
     if (run_.floating.empty() || !rescues_ || !balances()) return std::nullopt;
-    auto rest = follow_motion(run_, previous_, factor_, time_, false, bound_);
+    auto rest = follow_motion(run_, previous_, factor_, time_, false, run_.movable, bound_);
     if (rest.usable()) return rest;
     run_.account.scales = before_;
     return std::nullopt;
@@ -127,7 +127,7 @@ class IncrementSearch {
   /// The rest that the motion comes to; else what the method found. `all`: solutions to fall back on.
   Increment<T> by_motion(const std::optional<Solutions<T>>& all) {
     const RunScales after = std::exchange(run_.account.scales, before_);
-    auto rest = follow_motion(run_, previous_, factor_, time_, several(), bound_);
+    auto rest = follow_motion(run_, previous_, factor_, time_, several(), {}, bound_);
     constexpr double runaway = 1e4;  // a multiplier that grows for ever makes any violation small against it
     const bool grown = found_.status == Status::infeasible && norm(values(rest.state.contact.traction)) >
                                                                   runaway * norm(values(found_.state.contact.traction));

@@ -188,6 +188,7 @@ std::string words_of_imbalance(const Model& model, const Slots<T>& slots, double
 struct FreeBodies {
   std::string words;           ///< the first of them and its motion; empty if there is none
   std::vector<char> floating;  ///< per body: it is free, and no contact presses on it; empty if there is none
+  std::vector<char> movable;   ///< if there is one, per body: supports alone leave it free to move; else empty
 };
 
 /// Whether a contact presses on a body. Tractions that are rounding of the displacements do not count.
@@ -231,6 +232,9 @@ FreeBodies free_bodies(const Model& model, const Slots<T>& slots, const State<T>
     free.floating.resize(model.bodies.size());
     free.floating[b] = 1;
   }
+  const std::vector<ContactState> open(model.points.size(), ContactState::open);
+  for (std::size_t b = 0; b < free.floating.size(); ++b)
+    free.movable.push_back(!free_motion(model, slots, b, at, open).empty());
   return free;
 }
 

@@ -32,17 +32,19 @@ struct Run {
   double start = 0;                                         ///< time at which the increment begins
   /// Per body: it is free to move where the increment begins, and nothing presses on it; empty: no body is.
   std::vector<char> floating = {};
+  /// If a body is, per body: supports alone leave it free to move; else empty.
+  std::vector<char> movable = {};
 };
 
 /// Where a method begins to look for an increment's solution, and what holds the bodies there.
 template <class T>
 struct Start {
   const State<T>& state;     ///< the last increment's state, or a step of the motion
-  Anchor<T> anchor;          ///< of the motion; empty: the unmodified equations
+  Anchor<T> anchor;          ///< of the motion, or at rest of bodies that float; empty: none
   bool inexact_step = true;  ///< whether a step of the motion is solved to the root of the tolerance alone
   const Arc* arc = nullptr;  ///< of a step along a path, whose time is a guess then
   bool at_rest = false;      ///< whether the overdamped motion ended in the state
-  bool is_step() const { return anchor.stiffness.size() > 0; }
+  bool is_step() const { return anchor.stiffness.size() > 0 && !at_rest; }
   /// States that points resume which start on their cone: those of the last increment, where it starts there.
   std::span<const ContactState> resumed(const State<T>& previous) const {
     if (&state != &previous) return {};

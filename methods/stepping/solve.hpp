@@ -168,7 +168,7 @@ bool advance(Run<T>& run, Trajectory<T>& trajectory, double target, bool may_cut
     free = free_bodies(run.model, run.slots, start_count ? trajectory.increments.back().state : trajectory.initial,
                        start_count == 0);
   run.floating = free.floating;
-  if (!run.floating.empty()) bound.lessen();
+  run.movable = free.movable;
   while (true) {
     const bool last = reached + step >= target - 1e-9 * (target - start);
     const double next = last ? target : reached + step;

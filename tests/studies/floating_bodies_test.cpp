@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <optional>
 
 #include "studies/run/explain.hpp"
 #include "studies/run/warnings.hpp"
@@ -100,6 +101,21 @@ TEST(ABodyFreeToSlide, RestsWhereItIsPressedAtEveryScaleOfUzawa) {
       EXPECT_NEAR(result.steps.back().responses[0], 20, 1e-8 * 20) << strain << scale;  // balance; Uzawa's tolerance
       EXPECT_LE(result.trajectory.counters.newton, 60) << strain << scale;
     }
+}
+
+/// At first nothing presses on one of the disks, and the other is held by single nodes, on which it rolls as one slips.
+/// Whatever supports alone do not hold is moved with what floats.
+TEST(FloatingBodies, AreFoundBesideThoseThatRoll) {
+  const std::string file = std::string(STICKSLIP_SOURCE_DIR) + "/studies/hard/disks-between-plates.json";
+  std::optional<double> press;
+  for (const auto& method : {"monolithic_al", "uzawa_al", "penalty"}) {
+    const auto result = cases::run(cases::load(file), {{method, json::object()}}, file);
+    ASSERT_TRUE(is_converged(result.status())) << method << result.message();
+    const auto& response = result.steps.back().responses;
+    if (!press) press = response[0];
+    const double yield = std::string(method) == "penalty" ? 1e-3 : 1e-7;  // its springs; Uzawa's tolerance, amplified
+    EXPECT_NEAR(response[0], *press, yield * std::abs(*press)) << method;
+  }
 }
 
 /// What cannot be held is given up after a few hundred iterations, and its motion is named.
