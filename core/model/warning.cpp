@@ -24,6 +24,10 @@ std::string_view name_of(WarningCode code) {
       return "master_inside";
     case WarningCode::turned_surface:
       return "turned_surface";
+    case WarningCode::starts_overlapping:
+      return "starts_overlapping";
+    case WarningCode::never_closes:
+      return "never_closes";
     case WarningCode::no_area:
       return "no_area";
     case WarningCode::floating_body:

@@ -125,7 +125,7 @@ AugmentationStatus augmentation_status(const UzawaAL& method, const Slots<T>& sl
     return end(Status::infeasible, point);
   if (!progress.is_two_cycle()) return result;
   const std::string cycle = "the augmentations go to and fro between two multipliers";
-  return end(Status::cycle, cycle + (method.is_globalised() ? "; try more steps" : frozen_advice));
+  return end(Status::cycle, cycle + (method.is_globalised() ? "" : frozen_advice));
 }
 
 /// Sets status and message of the increment, if the augmentations are done or their number is at its limit. The outer

@@ -52,8 +52,7 @@ inline constexpr const char* kept_message =
     "a point at a vertex of facets has no equilibrium on either of them: it is held on one; try a smooth surface, or "
     "segments";
 
-inline constexpr const char* far_message =
-    "points go to and fro between facets; try a smooth surface, segments, or more steps";
+inline constexpr const char* far_message = "points go to and fro between facets";
 
 /// The iterations of one equilibrium.
 template <class T>

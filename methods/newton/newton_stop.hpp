@@ -44,12 +44,11 @@ class NewtonStop {
                residuals.within(forcing_ * history[0].residual)) {  // (within it, one more iteration is exact)
       return NewtonEnd{Status::converged, "", true};
     } else if (repeats_) {
-      return NewtonEnd{Status::cycle, "the active set repeats; try a smaller stiffness or scale, or more steps"};
+      return NewtonEnd{Status::cycle, "the active set repeats"};
     }
     const bool close = residuals.within(std::sqrt(options_.tolerance));  // where a step should square the residual
     if (steady_ >= patience && 2 * residuals.largest() > history[iteration - patience].residual)
-      return NewtonEnd{close ? Status::stagnated : Status::cycle,
-                       "no step lowers the residual any more; try a smaller stiffness or scale"};
+      return NewtonEnd{close ? Status::stagnated : Status::cycle, "no step lowers the residual any more"};
     if (iteration >= options_.max_iterations)
       return NewtonEnd{Status::cap, "Newton's method reached max_iterations; try more steps"};
     return std::nullopt;

@@ -33,9 +33,6 @@ class WorkBound {
     constexpr long converging = 20;
     return std::min(iterations, converging * equilibria);
   }
-  /// Lessens the bound for a step at whose start a body is free and nothing presses on it: what holds it must be met
-  /// at once.
-  void lessen() { most_ = std::min(most_, few_in_vain * std::max(each_, least_each)); }
   void begin() { before_ = counters_.newton; }
   /// Ends an attempt. `equilibria`: number of its equilibria; 0: it failed.
   void end(int equilibria) {
@@ -47,9 +44,8 @@ class WorkBound {
   bool is_spent() const { return vain_ + counters_.newton - before_ >= most_; }
   std::string in_words() const {
     return "given up after " + std::to_string(vain_) +
-           " iterations in vain, of parts of the step too: no equilibrium may lead on from the last, as where nodes of "
-           "a slave are further apart than those of its master; try the other side as the slave, a smooth master, or "
-           "segments";
+           " iterations without a solution, those of parts of the step included; no equilibrium may lead on from the "
+           "last";
   }
 
  private:

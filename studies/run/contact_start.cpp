@@ -101,12 +101,12 @@ std::vector<StartGaps> start_gaps_of_rules(const Problem& problem) {
   return rules;
 }
 
-std::vector<StartWarning> overlaps_at_start(const Problem& problem) {
-  std::vector<StartWarning> warnings;
+std::vector<Warning> overlaps_at_start(const Problem& problem) {
+  std::vector<Warning> warnings;
   for (const auto& gaps : start_gaps(problem)) {
     if (gaps.unasked == 0) continue;
     warnings.push_back(
-        {"starts_overlapping", gaps.name, gaps.overlap,
+        {WarningCode::starts_overlapping, gaps.name, gaps.overlap,
          "move the bodies apart; refine curved sides, whose facets leave the curve; if an interference is meant, let "
          "the sides touch and give it as a negative `offset`",
          fmt::format("{}: {} of {} points overlap at the start by up to {:.3g}, which no `offset` asks for, and the "
@@ -116,13 +116,13 @@ std::vector<StartWarning> overlaps_at_start(const Problem& problem) {
   return warnings;
 }
 
-std::vector<StartWarning> contacts_never_closed(const CaseResult& result) {
+std::vector<Warning> contacts_never_closed(const CaseResult& result) {
   if (!is_converged(result.trajectory.status) || result.steps.empty()) return {};
-  std::vector<StartWarning> warnings;
+  std::vector<Warning> warnings;
   for (const auto& [name, gap] : least_gaps_of_open_rules(result)) {
     const std::string nearest =
         std::isfinite(gap) ? fmt::format("the nearest is {:.3g} away at the least", gap) : "none ever faces the master";
-    warnings.push_back({"never_closes", name, gap,
+    warnings.push_back({WarningCode::never_closes, name, gap,
                         "look at the gap at the start, the direction of loads and motions, and the side on which the "
                         "master is solid",
                         fmt::format("{}: no point closes in any of {} steps; {}", name, result.steps.size(), nearest)});

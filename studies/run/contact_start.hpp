@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/model/warning.hpp"
 #include "studies/run/case.hpp"
 
 namespace stickslip {
@@ -27,21 +28,11 @@ std::vector<StartGaps> start_gaps(const Problem& problem);
 /// The same, those of the pairs of one `between` taken together.
 std::vector<StartGaps> start_gaps_of_rules(const Problem& problem);
 
-/// A warning as Warning is one (core/model/warning.hpp), with a code beside those of WarningCode:
-///
-///   starts_overlapping   value: depth, length, without what `offset` asks for
-///   never_closes         value: least gap of the run, length
-struct StartWarning {
-  std::string code, where;
-  double value = 0;
-  std::string remedy, text;
-};
-
 /// Contacts that overlap at the start although no `offset` asks for it.
-std::vector<StartWarning> overlaps_at_start(const Problem& problem);
+std::vector<Warning> overlaps_at_start(const Problem& problem);
 
 /// Contacts of which no point closed in any step. None if the run failed: its message says what its points did.
-std::vector<StartWarning> contacts_never_closed(const CaseResult& result);
+std::vector<Warning> contacts_never_closed(const CaseResult& result);
 
 /// Whether no support holds a node of a body: then contact alone holds it, or nothing does.
 bool is_held_by_contact_alone(const Model& model, std::size_t body);

@@ -184,10 +184,9 @@ std::string explain(const Input& input, const Problem& problem) {
   if (!effects.sensitivity) text += "  derivatives: the scene names no parameters\n";
   text += fmt::format("  {}{}{}inertia\n", scene.finite_strain ? "" : "large displacements and sliding, ",
                       effects.plasticity ? "" : "plasticity, ", effects.smoothing ? "" : "smoothing, ");
-  for (const auto& warning : contact_warnings_before(problem))
-    text += fmt::format("warning ({}): {}; {}\n", name_of(warning.code), warning.text, warning.remedy);
-  for (const auto& warning : overlaps_at_start(problem))
-    text += fmt::format("warning ({}): {}; {}\n", warning.code, warning.text, warning.remedy);
+  for (const auto& warnings : {contact_warnings_before(problem), overlaps_at_start(problem)})
+    for (const auto& warning : warnings)
+      text += fmt::format("warning ({}): {}; {}\n", name_of(warning.code), warning.text, warning.remedy);
   return text;
 }
 

@@ -42,16 +42,14 @@ std::string what_to_check(const FailedContact& contact) {
   return "";
 }
 
+/// Whether iterations were given up without a cause that is known.
+bool is_without_cause(Status s) { return s == Status::cycle || s == Status::stagnated; }
+
 /// Whether the step failed in a way that forces of contact may explain. (Others have messages that name the cause.)
 bool may_be_contact(const Increment<double>& failed) {
   const Status s = failed.status;
-  return !failed.solved() && (s == Status::no_equilibrium || s == Status::singular || s == Status::cycle ||
-                              s == Status::stagnated || s == Status::cap);
-}
-
-/// Replaces a part of a text, where it is there.
-void replace(std::string& text, std::string_view part, std::string_view by) {
-  if (const auto at = text.find(part); at != std::string::npos) text.replace(at, part.size(), by);
+  return !failed.solved() &&
+         (s == Status::no_equilibrium || s == Status::singular || s == Status::cap || is_without_cause(s));
 }
 
 FailedContact failed_contact(const Problem& problem, const ContactField<double>& field) {
@@ -94,31 +92,30 @@ Advisable advisable(const Model& model) {
   return scene;
 }
 
-std::string with_fitting_advice(std::string message, const Advisable& scene) {
-  if (!scene.contact) {
-    replace(message, "try a smaller stiffness or scale, or more steps", "try more steps");
-    replace(message, "; try a smaller stiffness or scale", "");
-  }
-  std::vector<std::string> ways;
+std::string advice_in_words(const Advisable& scene) {
+  std::vector<std::string> ways = {"more steps"};
+  if (scene.contact) ways.emplace_back("a smaller stiffness or scale");
   if (scene.other_side) ways.emplace_back("the other side as the slave");
   if (scene.may_be_smooth) ways.emplace_back("a smooth master");
   if (scene.may_be_segments) ways.emplace_back("segments");
-  replace(message, "; try the other side as the slave, a smooth master, or segments",
-          ways.empty() ? "" : fmt::format("; try {}", fmt::join(ways, " or ")));
-  if (ways.empty()) replace(message, ", as where nodes of a slave are further apart than those of its master", "");
-  return message;
+  const std::string last = ways.back();
+  ways.pop_back();
+  return "try " + (ways.empty() ? last : fmt::format("{} or {}", fmt::join(ways, ", "), last));
 }
 
 void explain_failed_contact(const Problem& problem, Trajectory<double>& trajectory) {
   if (is_converged(trajectory.status)) return;
-  trajectory.message = with_fitting_advice(std::move(trajectory.message), advisable(problem.model));
   std::vector<std::string> sentences;
+  if (is_without_cause(trajectory.status)) sentences.push_back(advice_in_words(advisable(problem.model)));
+  bool turned = false;
   for (std::size_t c = 0; c < problem.model.scene.contacts.size(); ++c)
-    if (const auto warning = turned_surface(problem, static_cast<int>(c)))
+    if (const auto warning = turned_surface(problem, static_cast<int>(c))) {
+      turned = true;
       sentences.push_back(warning->text + "; " + warning->remedy);
+    }
   if (!trajectory.increments.empty() && may_be_contact(trajectory.increments.back()) && !loose_body(problem.model)) {
     FailedContact contact = failed_contact(problem, trajectory.increments.back().state.contact);
-    contact.turned = !sentences.empty();
+    contact.turned = turned;
     sentences.insert(sentences.begin(), failed_contact_in_words(contact));
   }
   for (const auto& sentence : sentences)

@@ -29,11 +29,12 @@ struct Advisable {
 };
 Advisable advisable(const Model& model);
 
-/// A message of methods/, whose advice is for scenes of any kind, without what this scene lacks or does already.
-std::string with_fitting_advice(std::string message, const Advisable& scene);
+/// What to try if iterations did not converge: "try more steps or segments". Nothing that the scene lacks, or is so
+/// already.
+std::string advice_in_words(const Advisable& scene);
 
-/// Adds to the message of a run that failed what its contact points do, and the obstacles that are turned inside out; takes
-/// out advice that does not fit the scene.
+/// Adds to the message of a run that failed what its contact points do, what to try, and the obstacles that are turned
+/// inside out.
 void explain_failed_contact(const Problem& problem, Trajectory<double>& trajectory);
 
 }  // namespace stickslip

@@ -281,7 +281,8 @@ long steps_with(const CaseResult& result, std::size_t contact, std::vector<char>
 }
 
 std::vector<Warning> warnings_of(const CaseResult& result) {
-  std::vector<Warning> warnings;
+  std::vector<Warning> warnings = overlaps_at_start(*result.problem);
+  std::ranges::move(contacts_never_closed(result), std::back_inserter(warnings));
   add_deformations(result, warnings);
   add_slips(result, warnings);
   add_held_points(result, warnings);
@@ -298,16 +299,12 @@ std::vector<Warning> warnings_of(const CaseResult& result) {
 
 json warnings_json(const CaseResult& result) {
   json out = json::array();
-  const auto add = [&](std::string_view code, const auto& warning) {
-    out.push_back({{"code", code},
+  for (const auto& warning : warnings_of(result))
+    out.push_back({{"code", name_of(warning.code)},
                    {"where", warning.where},
                    {"value", warning.value},
                    {"remedy", warning.remedy},
                    {"text", warning.text}});
-  };
-  for (const auto& warning : overlaps_at_start(*result.problem)) add(warning.code, warning);
-  for (const auto& warning : contacts_never_closed(result)) add(warning.code, warning);
-  for (const auto& warning : warnings_of(result)) add(name_of(warning.code), warning);
   return out;
 }
 
